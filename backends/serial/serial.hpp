@@ -1,0 +1,203 @@
+// The serial backend: plain loops over the kernel structs. It is the specification that the other backends are held
+// to, and the sanitizer of all kernels: its accessors check every index in debug builds.
+// Compile with -ffp-contract=off (target photongrid::serial does), or results differ in the last bit from the GPUs'.
+#pragma once
+
+#include <photongrid/backend.hpp>
+#include <photongrid/kernel_source.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace photongrid {
+
+class serial_backend {
+    struct account {
+        std::uint64_t now = 0, peak = 0;
+    };
+
+public:
+    template <element T>
+    class buffer {
+    public:
+        using value_type = T;
+        buffer() = default;
+        buffer(buffer&& other) noexcept { swap(other); }
+        buffer& operator=(buffer&& other) noexcept
+        {
+            buffer(std::move(other)).swap(*this);
+            return *this;
+        }
+        buffer(const buffer&) = delete;
+        buffer& operator=(const buffer&) = delete;
+        ~buffer()
+        {
+            if (account_)
+                account_->now -= data_.size() * sizeof(T);
+        }
+        std::size_t size() const noexcept { return data_.size(); }
+
+    private:
+        friend serial_backend;
+        buffer(std::shared_ptr<account> a, std::vector<T> data)
+            : account_(std::move(a)), data_(std::move(data))
+        {
+            account_->now += data_.size() * sizeof(T);
+            account_->peak = std::max(account_->peak, account_->now);
+        }
+        void swap(buffer& other) noexcept
+        {
+            std::swap(account_, other.account_);
+            std::swap(data_, other.data_);
+        }
+        std::shared_ptr<account> account_;
+        std::vector<T> data_;
+    };
+
+    serial_backend()
+    {
+        caps_.backend = "serial";
+        caps_.device = "this CPU, one thread";
+        caps_.max_elements = std::uint64_t{1} << 31;
+        caps_.max_route_slots = 16;
+        caps_.exact_division = true; // IEEE 754, as C++ on every platform with std::numeric_limits<float>::is_iec559
+        caps_.exact_sqrt = true;
+        static_assert(std::numeric_limits<float>::is_iec559);
+    }
+
+    template <element T>
+    buffer<T> make(std::size_t n)
+    {
+        if (n > caps_.max_elements)
+            throw backend_error("serial: a buffer of " + std::to_string(n) + " elements was asked for; the limit is " + std::to_string(caps_.max_elements));
+        return buffer<T>(account_, std::vector<T>(n));
+    }
+    template <element T, std::size_t E>
+    buffer<T> upload(std::span<const T, E> data)
+    {
+        return buffer<T>(account_, std::vector<T>(data.begin(), data.end()));
+    }
+    template <element T>
+    std::vector<T> download(const buffer<T>& b)
+    {
+        return b.data_;
+    }
+
+    template <gather_kernel K, class Reads, class Writes>
+    void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
+    {
+        detail::check_call<K>("run", l, reads, writes);
+        K k = prepare<K>(l, args, reads);
+        for (uint i = l.first; i != l.first + l.elements; ++i) {
+            load(k, i, writes);
+            k.kernel(i);
+            store(k, i, writes);
+        }
+        ++costs_[std::string(kernel_name<K>())].passes;
+    }
+
+    template <iterative_kernel K, class Reads, class Writes>
+    progress run_until_done(launch l, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
+    {
+        detail::check_call<K>("run_until_done", l, reads, writes);
+        K k = prepare<K>(l, args, reads);
+        progress p;
+        p.finished = true;
+        std::vector<std::uint64_t> ended; // ended[q]: elements that took q passes
+        for (uint i = l.first; i != l.first + l.elements; ++i) {
+            load(k, i, writes);
+            uint q = 0;
+            for (; q < max_passes && !k.done(); ++q)
+                k.kernel(i);
+            p.finished = k.done() && p.finished;
+            store(k, i, writes);
+            if (q >= ended.size())
+                ended.resize(q + std::size_t{1});
+            ++ended[q];
+        }
+        p.passes = ended.empty() ? 0u : static_cast<uint>(ended.size() - 1);
+        p.active.assign(p.passes, 0);
+        for (std::uint64_t q = p.passes, still = 0; q > 0; --q)
+            p.active[q - 1] = still += ended[q];
+        costs_[std::string(kernel_name<K>())].passes += p.passes;
+        return p;
+    }
+
+    template <predicate_kernel K, class Reads>
+    std::uint64_t count(launch l, const typename K::Params& args, Reads reads)
+    {
+        detail::check_call<K>("count", l, reads, std::tuple<>{});
+        K k = prepare<K>(l, args, reads);
+        std::uint64_t n = 0;
+        for (uint i = l.first; i != l.first + l.elements; ++i)
+            n += k.holds(i) ? 1u : 0u;
+        ++costs_[std::string(kernel_name<K>())].passes;
+        return n;
+    }
+
+    template <route_kernel K, class Reads>
+    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots, buffer<glm::vec4>& totals)
+    {
+        detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
+        K k = prepare<K>(l, args, reads);
+        const uint capacity = route_capacity(m);
+        std::vector<uint> arrived(destinations);
+        std::fill(slots.data_.begin(), slots.data_.end(), nowhere);
+        std::fill(totals.data_.begin(), totals.data_.end(), glm::vec4(0));
+        for (uint i = l.first; i != l.first + l.elements; ++i) {
+            k.kernel(i);
+            const uint d = k.output(slot<0>{});
+            if (d >= destinations)
+                continue;
+            if (arrived[d] < capacity)
+                slots.data_[std::size_t{d} * capacity + arrived[d]++] = k.output(slot<1>{});
+            totals.data_[d] += k.output(slot<2>{});
+        }
+        ++costs_[std::string(kernel_name<K>())].passes;
+    }
+
+    void finish() {}
+    const capabilities& caps() const { return caps_; }
+    std::uint64_t bytes() const { return account_->now; }
+    std::uint64_t peak_bytes() const { return account_->peak; }
+    const std::map<std::string, kernel_cost>& costs() const { return costs_; }
+
+private:
+    template <class K, class Reads>
+    static K prepare(const launch& l, const typename K::Params& args, [[maybe_unused]] const Reads& reads)
+    {
+        K k{};
+        k.args = args;
+        turn_switches(k, l.switches);
+        if constexpr (input_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
+            (k.bind(slot<I>{}, std::span<const input_t<K, I>>(std::get<I>(reads).data_)), ...);
+        }(std::make_index_sequence<input_count<K>>{});
+        return k;
+    }
+    template <class K, class Writes>
+    static void load(K& k, uint i, Writes& writes)
+    {
+        [&]<std::size_t... I>(std::index_sequence<I...>) {
+            const auto one = [&]<std::size_t J>(slot<J> s) {
+                if constexpr (K::is_state(s))
+                    k.output(s) = std::get<J>(writes).data_[i];
+            };
+            (one(slot<I>{}), ...);
+        }(std::make_index_sequence<output_count<K>>{});
+    }
+    template <class K, class Writes>
+    static void store(K& k, uint i, Writes& writes)
+    {
+        [&]<std::size_t... I>(std::index_sequence<I...>) {
+            ((std::get<I>(writes).data_[i] = k.output(slot<I>{})), ...);
+        }(std::make_index_sequence<output_count<K>>{});
+    }
+
+    capabilities caps_;
+    std::shared_ptr<account> account_ = std::make_shared<account>();
+    std::map<std::string, kernel_cost> costs_;
+};
+
+static_assert(backend<serial_backend>);
+
+} // namespace photongrid

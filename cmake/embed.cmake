@@ -1,0 +1,22 @@
+# photongrid_embed(OUTPUT header TABLE name FILES file...)
+#
+# Writes a header that holds the text of each file, byte for byte, as `inline constexpr text_file TABLE[]`, at configure
+# time. Editing a file configures again. Names are shown relative to BASE (in messages of shader compilers).
+function(photongrid_embed)
+  cmake_parse_arguments(arg "" "OUTPUT;TABLE;BASE" "FILES" ${ARGN})
+  set(entries "")
+  foreach(file IN LISTS arg_FILES)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
+    file(READ "${file}" text)
+    file(RELATIVE_PATH name "${arg_BASE}" "${file}")
+    string(APPEND entries "    text_file{\"${name}\", R\"glsl(${text})glsl\"},\n")
+  endforeach()
+  list(LENGTH arg_FILES count)
+  set(content "// Made by CMake (cmake/embed.cmake); do not edit.\n#pragma once\n#include <photongrid/text_file.hpp>\nnamespace photongrid {\ninline constexpr text_file ${arg_TABLE}[${count}] = {\n${entries}};\n} // namespace photongrid\n")
+  if(EXISTS "${arg_OUTPUT}")
+    file(READ "${arg_OUTPUT}" old)
+  endif()
+  if(NOT "${old}" STREQUAL "${content}")
+    file(WRITE "${arg_OUTPUT}" "${content}")
+  endif()
+endfunction()

@@ -1,0 +1,194 @@
+// What a backend is: buffers and a few verbs, each from the paper (docs/design.md has the table).
+#pragma once
+
+#include <photongrid/kernel.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace photongrid {
+
+/// A driver that is missing, a context that cannot be had, a device limit exceeded, a device lost. The text says what
+/// was tried, what failed, and what to install or change.
+struct backend_error : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Which elements a pass computes: `first`, `first + 1`, … `first + elements - 1`. Bit B of `switches` is the kernel's
+/// SWITCH B. A launch converts from a plain count.
+struct launch {
+    uint elements = 0;
+    uint first = 0;
+    uint switches = ~0u;
+
+    constexpr launch(std::size_t elements_, uint first_ = 0, uint switches_ = ~0u)
+        : elements(static_cast<uint>(elements_)), first(first_), switches(switches_)
+    {
+        if (elements_ > std::numeric_limits<uint>::max() - first_)
+            throw std::invalid_argument("launch: elements: more than 2^32 - 1 elements in one pass");
+    }
+};
+
+/// The buffers that a kernel reads, in the order of its INPUT slots.
+template <class... Buffers>
+std::tuple<const Buffers&...> reads(const Buffers&... buffers)
+{
+    return {buffers...};
+}
+
+/// The buffers that a kernel writes, in the order of its OUTPUT and STATE slots.
+template <class... Buffers>
+std::tuple<Buffers&...> writes(Buffers&... buffers)
+{
+    return {buffers...};
+}
+
+/// What run_until_done did.
+struct progress {
+    uint passes = 0;                    ///< passes run
+    bool finished = false;              ///< true when every element is done
+    std::vector<std::uint64_t> active;  ///< per pass: elements that were not yet done when it began
+};
+
+/// What was spent on one kernel.
+struct kernel_cost {
+    std::uint64_t instructions = 0; ///< SPIR-V instructions, 0 where the backend compiles none
+    double compile_ms = 0;          ///< all specialisations together
+    std::uint64_t passes = 0;       ///< passes run so far
+};
+
+/// What a device is and can do. Algorithms may ask; nothing here changes after construction.
+struct capabilities {
+    std::string backend;              ///< "serial", "gl", "gl-osmesa", "vulkan"
+    std::string device;               ///< the driver's own words
+    bool software = true;             ///< true where the device is a CPU
+    std::uint64_t max_elements = 0;   ///< in one buffer
+    uint max_route_slots = 0;         ///< largest m of route's m x m slots a destination
+    bool exact_division = false;      ///< a / b rounds correctly (self-test at start)
+    bool exact_sqrt = false;          ///< sqrt rounds correctly (self-test at start)
+    uint loop_limit = 0;              ///< iterations after which the driver silently ends loops; 0: none known
+};
+
+namespace detail {
+    /// Checks the arguments of one call against kernel K: types at compile time, sizes at run time.
+    template <kernel_struct K, class Reads, class Writes>
+    void check_call(const char* verb, const launch& l, [[maybe_unused]] const Reads& reads, [[maybe_unused]] const Writes& writes)
+    {
+        static_assert(std::tuple_size_v<Reads> == input_count<K>, "reads(...) must name one buffer per INPUT of the kernel");
+        static_assert(std::tuple_size_v<Writes> == output_count<K>, "writes(...) must name one buffer per OUTPUT and STATE");
+        [[maybe_unused]] const auto fail = [&](std::string_view name, std::size_t size) {
+            throw std::invalid_argument(std::string(verb) + "<" + std::string(kernel_name<K>()) + ">: buffer '" + std::string(name) + "' holds "
+                + std::to_string(size) + " elements; the pass writes elements " + std::to_string(l.first) + " to "
+                + std::to_string(std::uint64_t{l.first} + l.elements) + " (exclusive)");
+        };
+        if constexpr (input_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
+            static_assert((std::same_as<typename std::remove_cvref_t<std::tuple_element_t<I, Reads>>::value_type, input_t<K, I>> && ...),
+                "a buffer's element type differs from the kernel's INPUT");
+        }(std::make_index_sequence<input_count<K>>{});
+        if constexpr (output_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
+            static_assert((std::same_as<typename std::remove_cvref_t<std::tuple_element_t<I, Writes>>::value_type, output_t<K, I>> && ...),
+                "a buffer's element type differs from the kernel's OUTPUT or STATE");
+            const auto check = [&](std::string_view name, std::size_t size) {
+                if (size < std::uint64_t{l.first} + l.elements)
+                    fail(name, size);
+            };
+            (check(K::output_name(slot<I>{}), std::get<I>(writes).size()), ...);
+        }(std::make_index_sequence<output_count<K>>{});
+    }
+
+    /// Checks the sizes of a route call; `limit` is the device's largest m.
+    inline void check_route(uint destinations, uint m, uint limit, std::size_t slots, std::size_t totals)
+    {
+        const std::uint64_t capacity = m * m < 255u ? m * m : 255u;
+        if (m < 1 || m > limit)
+            throw std::invalid_argument("route: m: " + std::to_string(m) + " by " + std::to_string(m) + " slots asked for; this device takes 1 to " + std::to_string(limit));
+        if (slots < destinations * capacity || totals < destinations)
+            throw std::invalid_argument("route: slots, totals: " + std::to_string(destinations) + " destinations of " + std::to_string(capacity) + " slots need buffers of "
+                + std::to_string(destinations * capacity) + " and " + std::to_string(destinations) + " elements, not " + std::to_string(slots) + " and " + std::to_string(totals));
+    }
+
+    /// A kernel with one input and one output, for the concept below.
+    struct concept_probe {
+        struct Params {
+            uint unused;
+        };
+        Params args{};
+        static constexpr std::string_view path = "concept_probe.glsl";
+        static uint input_type(slot<0>);
+        static constexpr std::string_view input_name(slot<0>) { return "in"; }
+        void bind(slot<0>, std::span<const uint>) {}
+        uint out{};
+        uint& output(slot<0>) { return out; }
+        static constexpr std::string_view output_name(slot<0>) { return "out"; }
+        static constexpr bool is_state(slot<0>) { return true; }
+        void kernel(uint) {}
+        bool done() { return true; }
+        bool holds(uint) { return true; }
+    };
+
+    struct route_probe : concept_probe {
+        uint payload{};
+        glm::vec4 amount{};
+        using concept_probe::is_state;
+        using concept_probe::output;
+        using concept_probe::output_name;
+        uint& output(slot<1>) { return payload; }
+        glm::vec4& output(slot<2>) { return amount; }
+        static constexpr std::string_view output_name(slot<1>) { return "payload"; }
+        static constexpr std::string_view output_name(slot<2>) { return "amount"; }
+        static constexpr bool is_state(slot<1>) { return false; }
+        static constexpr bool is_state(slot<2>) { return false; }
+    };
+} // namespace detail
+
+/// A backend runs kernels over buffers. Work may be deferred; `download` and `finish` wait for it. Every verb throws
+/// backend_error when the device refuses and std::invalid_argument when a buffer is too small.
+///
+/// - `make<T>(n)`            a buffer of n elements, n from 0 up, contents undefined
+/// - `upload(span<const T>)` a buffer with these contents
+/// - `download(buffer)`      its contents as std::vector<T>
+/// - `run<K>(launch, params, reads(…), writes(…))`             one pass (the paper's screen-sized quad)
+/// - `run_until_done<K>(launch, params, reads, writes, passes)` passes over the elements not yet done (3.3, 4.3), at most
+///                           `passes` of them; may be called again to go on
+/// - `count<K>(launch, params, reads(…))`                       how many elements `holds` is true for (occlusion query)
+/// - `route<K>(launch, params, reads, destinations, m, slots, totals)`  many-to-one scatter (2.2.2): with cap =
+///                           min(m*m, 255), slots[d*cap + r] = payload of the r-th draw (in index order) with destination
+///                           d, for r < cap, the rest 0xFFFFFFFF; totals[d] = sum of all amounts with destination d
+/// - `finish()`              waits until all passes are done
+/// - `caps()`, `bytes()`, `peak_bytes()`, `costs()`             what it is, holds, held at most, has spent
+template <class B>
+concept backend = requires(B& b, const B& cb, typename B::template buffer<uint>& u, typename B::template buffer<glm::vec4>& v, launch l,
+    detail::concept_probe::Params p, std::span<const uint> host) {
+    { b.template make<uint>(std::size_t{}) } -> std::same_as<typename B::template buffer<uint>>;
+    { b.upload(host) } -> std::same_as<typename B::template buffer<uint>>;
+    { b.download(u) } -> std::same_as<std::vector<uint>>;
+    { u.size() } -> std::same_as<std::size_t>;
+    b.template run<detail::concept_probe>(l, p, reads(u), writes(u));
+    { b.template run_until_done<detail::concept_probe>(l, p, reads(u), writes(u), uint{}) } -> std::same_as<progress>;
+    { b.template count<detail::concept_probe>(l, p, reads(u)) } -> std::same_as<std::uint64_t>;
+    b.template route<detail::route_probe>(l, p, reads(u), uint{}, uint{}, u, v);
+    b.finish();
+    { cb.caps() } -> std::same_as<const capabilities&>;
+    { cb.bytes() } -> std::same_as<std::uint64_t>;
+    { cb.peak_bytes() } -> std::same_as<std::uint64_t>;
+    { cb.costs() } -> std::same_as<const std::map<std::string, kernel_cost>&>;
+};
+
+/// The buffers of backend B.
+template <class B, element T>
+using buffer_of = typename B::template buffer<T>;
+
+/// Slots that a routed destination really has: m*m, but 255 at most, since an 8-bit stencil cannot count further
+/// (docs/decisions.md).
+constexpr uint route_capacity(uint m) { return m * m < 255u ? m * m : 255u; }
+
+/// Marks "no destination" and "no payload" in route.
+inline constexpr uint nowhere = 0xFFFFFFFFu;
+
+} // namespace photongrid

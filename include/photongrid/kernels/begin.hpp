@@ -1,0 +1,51 @@
+// The kernel dialect read as C++. Include this, then kernel files inside structs, then kernels/end.hpp.
+//
+// A kernel file is GLSL 4.50 and C++20 at once (docs/design.md). It declares, with the words below, what it reads and
+// writes, and defines `void kernel(uint i)`, which computes element i. GL and Vulkan define the same words their way.
+//
+//   PARAMS(P)             the struct P of uniform values, visible as `args`
+//   INPUT(B, T, NAME)     a read-only buffer at input slot B; NAME(i) is its element i
+//   OUTPUT(B, T, NAME)    the variable NAME is written to element i of the buffer at output slot B
+//   STATE(B, T, NAME)     like OUTPUT, but NAME holds the element's old value before `kernel` runs: in place
+//   SWITCH(B, NAME)       a bool, constant while a pass runs; compiled in on GPUs, so that `if (NAME)` costs nothing
+//
+// No include guard: this file is meant to be read again by every header that holds kernels.
+#include <cassert>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <glm/integer.hpp>
+#include <photongrid/kernel.hpp>
+#include <span>
+#include <string_view>
+
+// NOLINTBEGIN
+#define PARAMS(P)                                                                                                       \
+    P args{};                                                                                                          \
+    static constexpr std::string_view path = __FILE__;
+
+#define INPUT(B, T, NAME)                                                                                              \
+    std::span<const T> NAME##_data{};                                                                                  \
+    const T& NAME(::photongrid::uint i) const                                                                          \
+    {                                                                                                                  \
+        assert(i < NAME##_data.size() && "kernel reads past the end of " #NAME);                                       \
+        return NAME##_data[i];                                                                                         \
+    }                                                                                                                  \
+    static T input_type(::photongrid::slot<B>);                                                                        \
+    static constexpr std::string_view input_name(::photongrid::slot<B>) { return #NAME; }                              \
+    void bind(::photongrid::slot<B>, std::span<const T> data) { NAME##_data = data; }
+
+#define PHOTONGRID_VARIABLE(B, T, NAME, IS_STATE)                                                                      \
+    T NAME{};                                                                                                          \
+    T& output(::photongrid::slot<B>) { return NAME; }                                                                  \
+    static constexpr std::string_view output_name(::photongrid::slot<B>) { return #NAME; }                             \
+    static constexpr bool is_state(::photongrid::slot<B>) { return IS_STATE; }
+
+#define OUTPUT(B, T, NAME) PHOTONGRID_VARIABLE(B, T, NAME, false)
+#define STATE(B, T, NAME) PHOTONGRID_VARIABLE(B, T, NAME, true)
+
+#define SWITCH(B, NAME)                                                                                                \
+    bool NAME = true;                                                                                                  \
+    void turn(::photongrid::slot<B>, bool on) { NAME = on; }
+
+#define precise
+// NOLINTEND

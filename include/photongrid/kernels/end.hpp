@@ -1,0 +1,8 @@
+// Takes the dialect of kernels/begin.hpp back, so that no word of it reaches a user's code.
+#undef PARAMS
+#undef INPUT
+#undef PHOTONGRID_VARIABLE
+#undef OUTPUT
+#undef STATE
+#undef SWITCH
+#undef precise

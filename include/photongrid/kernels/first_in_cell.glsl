@@ -1,0 +1,29 @@
+// Where cell i begins in the sorted pairs, and how many lie in it: two binary searches, unrolled into one pass (2.2.1).
+// An empty cell begins where the next one does.
+struct Params {
+    uint pairs; // how many sorted pairs there are
+};
+PARAMS(Params)
+INPUT(0, uvec2, pairs)
+OUTPUT(0, uvec2, cell) // x: first, y: count
+
+// How many keys are less than `key`.
+uint keys_below(uint key)
+{
+    uint low = 0u;
+    uint high = args.pairs;
+    while (low < high) {
+        uint middle = low + (high - low) / 2u;
+        if (pairs(middle).x < key)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+void kernel(uint i)
+{
+    uint first = keys_below(i);
+    cell = uvec2(first, keys_below(i + 1u) - first);
+}

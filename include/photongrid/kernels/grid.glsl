@@ -1,0 +1,48 @@
+// The uniform grid (2.2): which cell a point lies in. Build and search call the same function, so they agree bit for bit.
+#ifndef PHOTONGRID_GRID
+#define PHOTONGRID_GRID
+
+struct Grid {
+    vec4 origin;       // lowest corner, m
+    vec4 inverse_cell; // cells per m along each axis
+    vec4 cell;         // edges of a cell, m
+    uvec4 resolution;  // cells along each axis; w: all cells
+};
+
+// Distance from the grid's lowest corner in cells: monotone in x, since subtracting and multiplying round monotonically.
+inline float in_cells(float x, float origin, float inverse_cell)
+{
+    precise float u = (x - origin) * inverse_cell;
+    return u;
+}
+
+// The cell that holds u; whatever lies outside belongs to the border cells, NaN to the first.
+inline uint clamped_cell(float u, uint resolution)
+{
+    float last = float(resolution - 1u);
+    float f = floor(u);
+    f = f > 0.0f ? f : 0.0f;
+    f = f < last ? f : last;
+    return uint(f);
+}
+
+inline uvec4 cell_coordinates(Grid grid, vec4 p)
+{
+    return uvec4(clamped_cell(in_cells(p.x, grid.origin.x, grid.inverse_cell.x), grid.resolution.x),
+        clamped_cell(in_cells(p.y, grid.origin.y, grid.inverse_cell.y), grid.resolution.y),
+        clamped_cell(in_cells(p.z, grid.origin.z, grid.inverse_cell.z), grid.resolution.z), 0u);
+}
+
+// x fastest: a row of cells along x is one contiguous range.
+inline uint cell_number(Grid grid, uint x, uint y, uint z)
+{
+    return (z * grid.resolution.y + y) * grid.resolution.x + x;
+}
+
+// False for NaN and infinity.
+inline bool is_finite(vec4 p)
+{
+    return abs(p.x) <= 3.4028234e38f && abs(p.y) <= 3.4028234e38f && abs(p.z) <= 3.4028234e38f;
+}
+
+#endif

@@ -1,0 +1,66 @@
+// What a photon map is: photons, a uniform grid over them, and per cell where its photons stand in a list. Sorting (2.2.1)
+// and stencil routing (2.2.2) both end in this form, so one estimate serves both.
+#pragma once
+
+#include <photongrid/backend.hpp>
+#include <photongrid/kernels.hpp>
+
+#include <cmath>
+#include <string>
+
+namespace photongrid {
+
+/// Photons in buffers of backend B, one element each, all of the same length.
+template <backend B>
+struct photons {
+    buffer_of<B, glm::vec4> positions;  ///< xyz, m
+    buffer_of<B, glm::vec4> powers;     ///< rgb flux, W
+    buffer_of<B, glm::vec4> directions; ///< xyz: unit vector of travel; may be empty where nobody asks for it
+
+    uint size() const { return static_cast<uint>(positions.size()); }
+};
+
+/// A uniform grid: origin, cell edges (m) and resolution, as kernels read it.
+using grid = kernels::Grid;
+
+/// A grid of `resolution` cells over the box from `low` to `high` (m). An axis without extent gets a thin one, so that
+/// planar photons need no special care. Points outside belong to the border cells.
+/// Throws std::invalid_argument for a resolution of 0, more than 2^31 cells, or a box that is not finite.
+inline grid make_grid(glm::vec3 low, glm::vec3 high, glm::uvec3 resolution)
+{
+    const auto cells = std::uint64_t{resolution.x} * resolution.y * (resolution.z > 0 ? resolution.z : 0);
+    if (resolution.x < 1 || resolution.y < 1 || resolution.z < 1 || std::uint64_t{resolution.x} * resolution.y > (1u << 31) || cells > (1u << 31))
+        throw std::invalid_argument("make_grid: resolution: " + std::to_string(resolution.x) + " x " + std::to_string(resolution.y) + " x " + std::to_string(resolution.z)
+            + " cells; each axis needs at least 1, all together at most 2^31");
+    grid g{};
+    g.resolution = glm::uvec4(resolution, static_cast<uint>(cells));
+    const float scale = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x), std::abs(high.y), std::abs(high.z), high.x - low.x, high.y - low.y, high.z - low.z});
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!std::isfinite(low[axis]) || !std::isfinite(high[axis]) || !std::isfinite(high[axis] - low[axis]) || high[axis] < low[axis])
+            throw std::invalid_argument("make_grid: low, high: axis " + std::to_string(axis) + " goes from " + std::to_string(low[axis]) + " to " + std::to_string(high[axis])
+                + "; both must be finite and the first not larger");
+        const float extent = std::max({high[axis] - low[axis], 1e-6f * scale, 1e-30f});
+        g.origin[axis] = low[axis];
+        g.cell[axis] = extent / static_cast<float>(resolution[axis]);
+        g.inverse_cell[axis] = static_cast<float>(resolution[axis]) / extent;
+    }
+    return g;
+}
+
+/// How many cells `g` has.
+inline uint cell_count(const grid& g) { return g.resolution.w; }
+
+/// A photon map: see the top of this file. `list` holds photon ids; cell c's are list[cells[c].x] and the next cells[c].y.
+template <backend B>
+struct photon_map {
+    grid cells_of{};
+    photongrid::photons<B> photons;
+    buffer_of<B, glm::uvec2> cells; ///< x: first, y: count
+    buffer_of<B, uint> list;        ///< photon ids by cell, x fastest
+    bool contiguous = true;         ///< cells follow each other in the list without gaps (sorted), so a row is one range
+    uint invalid = 0;               ///< photons in no cell: NaN or infinite
+    uint overfull_cells = 0;        ///< cells for which more photons were destined than they have slots (routed)
+    buffer_of<B, glm::vec4> surpluses; ///< routed: per cell, w: photons not kept; empty when sorted
+};
+
+} // namespace photongrid

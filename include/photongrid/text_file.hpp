@@ -1,0 +1,13 @@
+// A file's text, embedded in the program.
+#pragma once
+
+#include <string_view>
+
+namespace photongrid {
+
+struct text_file {
+    std::string_view name; ///< path relative to the repository, "kernels/bitonic_step.glsl"
+    std::string_view text;
+};
+
+} // namespace photongrid
