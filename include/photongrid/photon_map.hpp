@@ -60,7 +60,18 @@ struct photon_map {
     bool contiguous = true;         ///< cells follow each other in the list without gaps (sorted), so a row is one range
     uint invalid = 0;               ///< photons in no cell: NaN or infinite
     uint overfull_cells = 0;        ///< cells for which more photons were destined than they have slots (routed)
-    buffer_of<B, glm::vec4> surpluses; ///< routed: per cell, w: photons not kept; empty when sorted
+    buffer_of<B, glm::vec4> surpluses; ///< routed: per cell, w: flux of photons not kept, W, given to the kept; empty when sorted
 };
+
+/// Flux (W, all channels together) that stencil routing took from photons it could not keep and gave to the others of
+/// their cells; 0 for a sorted map. Reads the cells back.
+template <backend B>
+double redistributed_flux(B& b, const photon_map<B>& map)
+{
+    double sum = 0;
+    for (const auto& s : b.download(map.surpluses))
+        sum += static_cast<double>(s.w);
+    return sum;
+}
 
 } // namespace photongrid

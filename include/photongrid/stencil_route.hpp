@@ -13,7 +13,7 @@ struct routed_cells {
     buffer_of<B, glm::uvec2> cells;      ///< x: first slot, y: photons kept
     buffer_of<B, glm::vec4> powers;      ///< per photon, W: with the surplus of its cell shared out
     buffer_of<B, glm::vec4> totals;      ///< per cell: flux destined for it, W, and how many photons
-    buffer_of<B, glm::vec4> surpluses;   ///< per cell: rgb W added to each kept photon, w photons not kept
+    buffer_of<B, glm::vec4> surpluses;   ///< per cell: rgb W added to each kept photon, w flux moved, W
     std::uint64_t overfull_cells = 0;
 };
 

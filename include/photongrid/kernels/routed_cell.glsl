@@ -9,7 +9,7 @@ INPUT(1, uint, slots)
 INPUT(2, vec4, powers)
 OUTPUT(0, uvec2, cell)  // x: first slot, y: photons kept
 OUTPUT(1, vec4, scale)  // kept photons' flux is multiplied by this ...
-OUTPUT(2, vec4, surplus) // ... and this is added, W: a channel that no kept photon carries, spread evenly; w: photons not kept
+OUTPUT(2, vec4, surplus) // ... and this is added, W: a channel that no kept photon carries, spread evenly; w: flux moved, all channels, W
 
 void kernel(uint i)
 {
@@ -37,5 +37,5 @@ void kernel(uint i)
         scale.z = total.z / sum.z;
     else
         surplus.z = total.z * share;
-    surplus.w = float(destined - kept);
+    surplus.w = (total.x - sum.x) + (total.y - sum.y) + (total.z - sum.z);
 }

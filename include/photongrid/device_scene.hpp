@@ -1,0 +1,248 @@
+// A scene as kernels read it: one buffer of vec4 records, recentred so that float keeps its precision far from the origin.
+// The records' layout is kernels/scene_hit.glsl's.
+#pragma once
+
+#include <photongrid/backend.hpp>
+#include <photongrid/photon_map.hpp>
+#include <photongrid/scene.hpp>
+
+#include <algorithm>
+#include <photongrid/trace_kernels.hpp>
+
+namespace photongrid {
+
+/// What a scene has, as the SWITCHes of the tracing kernels: code for what it lacks is not compiled.
+enum scene_feature : uint {
+    has_spheres = 1u << 0,
+    has_quadrics = 1u << 1, ///< cylinders, cones, paraboloids
+    has_disks = 1u << 2,
+    has_polygons = 1u << 3,
+    has_mirrors = 1u << 4, ///< and metals
+    has_glass = 1u << 5,
+    has_point_lights = 1u << 6,
+    has_area_lights = 1u << 7,
+};
+
+/// The records of a scene and where they stand.
+struct scene_records {
+    std::vector<glm::vec4> records;
+    kernels::Scene layout{};
+    uint features = 0;
+    dvec3 center{0};           ///< subtracted from every position, m
+    glm::vec3 low{0}, high{0}; ///< box of the Lambertian surfaces, recentred: where photons can be stored
+};
+
+namespace detail {
+    struct box {
+        dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+        void add(const dvec3& p, const dvec3& margin = dvec3(0))
+        {
+            low = glm::min(low, p - margin);
+            high = glm::max(high, p + margin);
+        }
+        bool empty() const { return !(low.x <= high.x); }
+    };
+
+    /// How far a disc of radius r about an axis reaches along x, y and z.
+    inline dvec3 disc_reach(const dvec3& axis, double r)
+    {
+        const dvec3 a = glm::normalize(axis);
+        return r * glm::sqrt(glm::max(dvec3(0), dvec3(1) - a * a));
+    }
+
+    inline void add_bounds(box& b, const sphere& s) { b.add(s.center, dvec3(s.radius)); }
+    inline void add_bounds(box& b, const cylinder& c)
+    {
+        b.add(c.base, disc_reach(c.top - c.base, c.radius));
+        b.add(c.top, disc_reach(c.top - c.base, c.radius));
+    }
+    inline void add_bounds(box& b, const cone& c)
+    {
+        b.add(c.base, disc_reach(c.apex - c.base, c.radius));
+        b.add(c.apex);
+    }
+    inline void add_bounds(box& b, const paraboloid& p)
+    {
+        b.add(p.vertex);
+        b.add(p.rim, disc_reach(p.rim - p.vertex, p.radius));
+    }
+    inline void add_bounds(box& b, const disk& d) { b.add(d.center, disc_reach(d.normal, d.radius)); }
+    inline void add_bounds(box& b, const polygon& p)
+    {
+        for (const auto& v : p.vertices)
+            b.add(v);
+    }
+
+    /// Writes records; positions are recentred.
+    class record_writer {
+    public:
+        record_writer(scene_records& out, double scale) : out_(out), edge_margin_(scale * 0x1p-20) {}
+
+        void put(const dvec3& v, double w) { out_.records.emplace_back(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w)); }
+        void put_position(const dvec3& v, double w) { put(v - out_.center, w); }
+        uint next() const { return static_cast<uint>(out_.records.size()); }
+
+        /// x^2 + y^2 + a z^2 + b z + c = 0, z from 0 to the axis' length.
+        void put_quadric(const dvec3& base, const dvec3& end, double a, double b, double c, uint material)
+        {
+            const double height = glm::length(end - base);
+            const dvec3 w = (end - base) / height;
+            const dvec3 u = glm::normalize(glm::cross(std::abs(w.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0), w));
+            put_position(base, height);
+            put(u, a);
+            put(glm::cross(w, u), b);
+            put(w, c);
+            put(dvec3(material, 0, 0), 0);
+        }
+
+        void put_polygon(const polygon& p, double light_tag)
+        {
+            const dvec3 n = glm::normalize(area_vector(p));
+            put(n, glm::dot(n, p.vertices[0] - out_.center));
+            put(dvec3(static_cast<double>(p.vertices.size()), p.material, light_tag), 0);
+            for (std::size_t i = 0; i < p.vertices.size(); ++i) {
+                const auto& a = p.vertices[i];
+                const auto& b = p.vertices[(i + 1) % p.vertices.size()];
+                const dvec3 across = glm::cross(n, b - a); // into the polygon
+                const double length = glm::length(across);
+                const dvec3 inward = length > 0 ? across / length : dvec3(0);
+                put(inward, glm::dot(inward, a - out_.center) - edge_margin_);
+            }
+        }
+
+    private:
+        scene_records& out_;
+        double edge_margin_;
+    };
+} // namespace detail
+
+/// Lays a scene out for kernels. \throws std::invalid_argument as check(scene) does, or when no surface is Lambertian.
+inline scene_records lay_out(const scene& s)
+{
+    check(s);
+    scene_records out;
+    detail::box all, lambertian;
+    const auto bound = [&](const auto& shapes) {
+        for (const auto& shape : shapes) {
+            detail::add_bounds(all, shape);
+            if (s.materials[shape.material].kind == material_kind::lambertian)
+                detail::add_bounds(lambertian, shape);
+        }
+    };
+    bound(s.spheres);
+    bound(s.cylinders);
+    bound(s.cones);
+    bound(s.paraboloids);
+    bound(s.disks);
+    bound(s.polygons);
+    detail::require(!lambertian.empty(), "materials: no shape is lambertian, so no photon can be stored and nothing can be lit");
+    for (const auto& l : s.rectangle_lights)
+        for (const auto& corner : {l.corner, l.corner + l.edge_u, l.corner + l.edge_v, l.corner + l.edge_u + l.edge_v})
+            all.add(corner);
+    for (const auto& l : s.point_lights)
+        all.add(l.position);
+    out.center = 0.5 * (all.low + all.high);
+    out.low = glm::vec3(lambertian.low - out.center);
+    out.high = glm::vec3(lambertian.high - out.center);
+    const double scale = 0.5 * glm::length(all.high - all.low);
+    out.layout.scale.x = static_cast<float>(scale * 0x1p-16);
+
+    detail::record_writer w(out, scale);
+    out.layout.round_things = {w.next(), s.spheres.size(), 0, 0};
+    for (const auto& x : s.spheres) {
+        w.put_position(x.center, x.radius);
+        w.put(dvec3(x.material, 0, 0), 0);
+    }
+    out.layout.round_things.z = w.next();
+    out.layout.round_things.w = static_cast<uint>(s.cylinders.size() + s.cones.size() + s.paraboloids.size());
+    for (const auto& x : s.cylinders)
+        w.put_quadric(x.base, x.top, 0, 0, -x.radius * x.radius, x.material);
+    for (const auto& x : s.cones) { // radius (1 - z/h)
+        const double h = glm::length(x.apex - x.base), r2 = x.radius * x.radius;
+        w.put_quadric(x.base, x.apex, -r2 / (h * h), 2 * r2 / h, -r2, x.material);
+    }
+    for (const auto& x : s.paraboloids) // radius^2 z/h
+        w.put_quadric(x.vertex, x.rim, 0, -x.radius * x.radius / glm::length(x.rim - x.vertex), 0, x.material);
+    out.layout.flat_things = {w.next(), s.disks.size(), 0, 0};
+    for (const auto& x : s.disks) {
+        const dvec3 n = glm::normalize(x.normal);
+        w.put(n, glm::dot(n, x.center - out.center));
+        w.put_position(x.center, x.radius);
+        w.put(dvec3(x.material, 0, 0), 0);
+    }
+    out.layout.flat_things.z = w.next();
+    out.layout.flat_things.w = static_cast<uint>(s.polygons.size() + s.rectangle_lights.size());
+    for (const auto& x : s.polygons)
+        w.put_polygon(x, 0);
+    for (std::size_t i = 0; i < s.rectangle_lights.size(); ++i) {
+        const auto& l = s.rectangle_lights[i];
+        w.put_polygon({{l.corner, l.corner + l.edge_u, l.corner + l.edge_u + l.edge_v, l.corner + l.edge_v}, 0}, static_cast<double>(i + 1));
+    }
+
+    out.layout.rest.x = w.next();
+    for (const auto& m : s.materials) {
+        const bool mirrors = m.kind == material_kind::mirror || m.kind == material_kind::metal;
+        w.put(m.reflectance, mirrors ? kernels::MIRROR_SURFACE : m.kind == material_kind::glass ? kernels::GLASS_SURFACE : kernels::LAMBERTIAN_SURFACE);
+        w.put(dvec3(m.index_of_refraction, 0, 0), 0);
+        out.features |= mirrors ? has_mirrors : m.kind == material_kind::glass ? has_glass : 0u;
+    }
+
+    // Rectangles first: a polygon's tag is its light's number. A light is chosen in proportion to its power.
+    out.layout.rest.y = w.next();
+    out.layout.rest.z = static_cast<uint>(s.rectangle_lights.size() + s.point_lights.size());
+    double total = 0, below = 0;
+    const auto weight = [](const dvec3& power) { return power.x + power.y + power.z; };
+    for (const auto& l : s.rectangle_lights)
+        total += weight(l.power);
+    for (const auto& l : s.point_lights)
+        total += weight(l.power);
+    const auto put_head = [&](double kind, const dvec3& power) {
+        below += weight(power);
+        w.put(dvec3(kind, weight(power) / total, below / total), 0);
+    };
+    for (const auto& l : s.rectangle_lights) {
+        const dvec3 normal = glm::cross(l.edge_u, l.edge_v);
+        put_head(1, l.power);
+        w.put_position(l.corner, 1 / (M_PI * glm::length(normal)));
+        w.put(l.edge_u, 0);
+        w.put(l.edge_v, 0);
+        w.put(glm::normalize(normal), glm::length(normal));
+        w.put(l.power, 0);
+    }
+    for (const auto& l : s.point_lights) {
+        put_head(0, l.power);
+        w.put_position(l.position, 0);
+        w.put(dvec3(0), 0);
+        w.put(dvec3(0), 0);
+        w.put(dvec3(0), 0);
+        w.put(l.power, 0);
+    }
+
+    out.features |= s.spheres.empty() ? 0u : has_spheres;
+    out.features |= out.layout.round_things.w == 0 ? 0u : has_quadrics;
+    out.features |= s.disks.empty() ? 0u : has_disks;
+    out.features |= out.layout.flat_things.w == 0 ? 0u : has_polygons;
+    out.features |= s.point_lights.empty() ? 0u : has_point_lights;
+    out.features |= s.rectangle_lights.empty() ? 0u : has_area_lights;
+    for (const auto& r : out.records)
+        detail::require(std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z) && std::isfinite(r.w), "scene: a size or a power is too large for single precision");
+    return out;
+}
+
+/// A scene on a device.
+template <backend B>
+struct device_scene {
+    scene_records about; ///< `records` stay on the host too
+    buffer_of<B, glm::vec4> records;
+};
+
+template <backend B>
+device_scene<B> upload_scene(B& b, const scene& s)
+{
+    device_scene<B> d;
+    d.about = lay_out(s);
+    d.records = b.upload(std::span<const glm::vec4>(d.about.records));
+    return d;
+}
+
+} // namespace photongrid

@@ -1,0 +1,107 @@
+// One bounce of all photons (2.1): frame f of the photon texture from frame f - 1. The photon that arrives is recorded;
+// Russian roulette by reflectance decides whether another leaves, so that powers change in colour only.
+#include "vector.glsl"
+#include "random.glsl"
+#include "scene_layout.glsl"
+#include "photon_event.glsl"
+
+struct Params {
+    Scene scene_layout;
+    uint paths;      // elements of a frame
+    uint first_path; // id of the path of a frame's element 0
+    uint last_frame; // the deepest bounce allowed
+    uint seed;
+};
+PARAMS(Params)
+SWITCH(0, SPHERES)
+SWITCH(1, QUADRICS)
+SWITCH(2, DISKS)
+SWITCH(3, POLYGONS)
+SWITCH(4, MIRRORS)
+SWITCH(5, GLASS)
+SWITCH(7, AREA_LIGHTS)
+INPUT(0, vec4, scene)
+INPUT(1, vec4, positions)
+INPUT(2, vec4, powers)
+INPUT(3, vec4, directions)
+INPUT(4, vec4, next_origins)
+INPUT(5, vec4, next_directions)
+OUTPUT(0, vec4, position)       // xyz, m; w: event
+OUTPUT(1, vec4, power)          // rgb arriving, W, not yet divided by the number of paths
+OUTPUT(2, vec4, direction)      // xyz of arrival; w: material
+OUTPUT(3, vec4, next_origin)
+OUTPUT(4, vec4, next_direction)
+
+#include "scene_hit.glsl"
+
+void kernel(uint i)
+{
+    uint frame = i / args.paths;
+    uint before = i - args.paths;
+    uint path = args.first_path + (i - frame * args.paths);
+    position = vec4(0.0f, 0.0f, 0.0f, event_code(NO_SURFACE, ENDED_BEFORE));
+    power = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    direction = power;
+    next_origin = power;
+    next_direction = power;
+    vec4 last = positions(before);
+    if (event_end(last) != GOES_ON)
+        return;
+
+    // What left the last surface: its power there, in the colour of the material, since roulette took the rest.
+    vec4 flux = powers(before);
+    if (frame > 1u) {
+        vec4 material = scene(args.scene_layout.rest.x + 2u * uint(directions(before).w));
+        float survival = largest3(vec3(material));
+        precise vec4 tinted = vec4(flux.x * (material.x / survival), flux.y * (material.y / survival), flux.z * (material.z / survival), 0.0f);
+        flux = tinted;
+    }
+    vec3 o = vec3(next_origins(before));
+    vec3 d = vec3(next_directions(before));
+    direction = vec4(d.x, d.y, d.z, 0.0f);
+    power = flux;
+
+    if (!is_finite3(o) || !is_finite3(d) || !is_finite3(vec3(flux))) {
+        position.w = event_code(NO_SURFACE, NOT_A_NUMBER);
+        return;
+    }
+    Hit hit = nearest_hit(o, d);
+    if (hit.t < 0.0f) {
+        position.w = event_code(NO_SURFACE, ESCAPED);
+        return;
+    }
+    position = vec4(hit.position.x, hit.position.y, hit.position.z, event_code(NO_SURFACE, ABSORBED));
+    if (!is_finite3(hit.position)) {
+        position.w = event_code(NO_SURFACE, NOT_A_NUMBER);
+        return;
+    }
+    if (hit.material == 0xFFFFFFFFu)
+        return; // lights' surfaces are black
+
+    vec4 material = scene(args.scene_layout.rest.x + 2u * hit.material);
+    vec4 optics = scene(args.scene_layout.rest.x + 2u * hit.material + 1u);
+    direction.w = float(hit.material);
+    vec4 r = random4(uvec4(path, frame, 0u, args.seed));
+    uint kind = uint(material.w);
+    uint surface = kind == LAMBERTIAN_SURFACE ? DIFFUSE_SURFACE : SPECULAR_SURFACE;
+    if (!(r.x < largest3(vec3(material)))) {
+        position.w = event_code(surface, ABSORBED);
+        return;
+    }
+    position.w = event_code(surface, frame < args.last_frame ? GOES_ON : CUT_OFF);
+    vec3 facing = dot3(hit.normal, d) > 0.0f ? -hit.normal : hit.normal;
+    vec3 next = facing;
+    if (kind == LAMBERTIAN_SURFACE)
+        next = cosine_direction(facing, r.y, r.z);
+    if (MIRRORS && kind == MIRROR_SURFACE)
+        next = mirrored(d, hit.normal);
+    if (GLASS && kind == GLASS_SURFACE) {
+        Fresnel f = dielectric(d, hit.normal, optics.x);
+        next = f.refracted;
+        if (r.w < f.reflected)
+            next = mirrored(d, hit.normal);
+    }
+    vec3 start = ray_start(hit.position, hit.normal, next);
+    next_origin = vec4(start.x, start.y, start.z, 0.0f);
+    next_direction = vec4(next.x, next.y, next.z, 0.0f);
+}

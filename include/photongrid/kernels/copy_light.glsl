@@ -1,0 +1,12 @@
+// A copy, for showing a picture while it goes on.
+struct Params {
+    uint unused;
+};
+PARAMS(Params)
+INPUT(0, vec4, original)
+OUTPUT(0, vec4, light)
+
+void kernel(uint i)
+{
+    light = original(i);
+}

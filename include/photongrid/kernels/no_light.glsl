@@ -1,0 +1,11 @@
+// Zeroes.
+struct Params {
+    uint unused;
+};
+PARAMS(Params)
+OUTPUT(0, vec4, light)
+
+void kernel(uint)
+{
+    light = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+}

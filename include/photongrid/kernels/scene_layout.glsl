@@ -1,0 +1,30 @@
+// Where things stand in the scene buffer (include/photongrid/device_scene.hpp writes it).
+#ifndef PHOTONGRID_SCENE_LAYOUT
+#define PHOTONGRID_SCENE_LAYOUT
+
+struct Scene {
+    uvec4 round_things; // first sphere, how many; first quadric, how many
+    uvec4 flat_things;  // first disk, how many; first polygon, how many
+    uvec4 rest;         // first material; first light, how many; unused
+    vec4 scale;         // x: distance by which a ray starts off its surface, m
+};
+
+// Materials' kinds.
+const uint LAMBERTIAN_SURFACE = 0u;
+const uint MIRROR_SURFACE = 1u; // metals too
+const uint GLASS_SURFACE = 2u;
+
+struct Hit {
+    float t;        // along the ray; negative: nothing hit
+    uint material;  // 0xFFFFFFFF: a light's surface
+    uint light;     // which light, if so
+    vec3 position;
+    vec3 normal;    // geometric, unit, outward or as the shape was given
+};
+
+struct Fresnel {
+    float reflected; // share of the light that is reflected, 1 for total internal reflection
+    vec3 refracted;  // direction of the rest
+};
+
+#endif

@@ -1,0 +1,21 @@
+// Adds up 16 neighbours: a tree of these sums any number of tallies.
+struct Params {
+    uint terms; // how many there are
+};
+PARAMS(Params)
+INPUT(0, uvec4, ends)
+INPUT(1, uvec4, hits)
+OUTPUT(0, uvec4, ends_sum)
+OUTPUT(1, uvec4, hits_sum)
+
+void kernel(uint i)
+{
+    ends_sum = uvec4(0u, 0u, 0u, 0u);
+    hits_sum = uvec4(0u, 0u, 0u, 0u);
+    for (uint n = i * 16u; n < i * 16u + 16u; ++n) {
+        if (n < args.terms) {
+            ends_sum += ends(n);
+            hits_sum += hits(n);
+        }
+    }
+}

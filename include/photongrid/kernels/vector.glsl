@@ -1,0 +1,90 @@
+// Vector arithmetic written out. GLSL's dot, length and normalize sum and round differently from device to device; these
+// do not.
+#ifndef PHOTONGRID_VECTOR
+#define PHOTONGRID_VECTOR
+
+inline float dot3(vec3 a, vec3 b)
+{
+    precise float s = a.x * b.x + a.y * b.y + a.z * b.z;
+    return s;
+}
+
+inline vec3 normalized3(vec3 v)
+{
+    precise float scale = 1.0f / sqrt(dot3(v, v));
+    precise vec3 n = v * scale;
+    return n;
+}
+
+inline vec3 along(vec3 origin, vec3 direction, float t)
+{
+    precise vec3 p = origin + direction * t;
+    return p;
+}
+
+inline float largest3(vec3 v)
+{
+    float m = v.x > v.y ? v.x : v.y;
+    return m > v.z ? m : v.z;
+}
+
+// The vector with these coordinates in the orthonormal basis whose third axis is n.
+// Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017.
+inline vec3 from_basis(vec3 local, vec3 n)
+{
+    float s = n.z >= 0.0f ? 1.0f : -1.0f;
+    precise float a = -1.0f / (s + n.z);
+    precise float b = n.x * n.y * a;
+    precise vec3 u = vec3(1.0f + s * n.x * n.x * a, s * b, -s * n.x);
+    precise vec3 v = vec3(b, s + n.y * n.y * a, -n.y);
+    precise vec3 w = u * local.x + v * local.y + n * local.z;
+    return w;
+}
+
+// (cos, sin) of 2 pi u without trigonometric functions, whose results differ between devices: the quadrant, then Taylor
+// polynomials on [-pi/4, pi/4], error below 4e-7.
+inline vec2 unit_circle(float u)
+{
+    precise float turns = u * 4.0f;
+    float quadrant = floor(turns);
+    precise float x = (turns - quadrant - 0.5f) * 1.57079633f;
+    precise float x2 = x * x;
+    precise float c = 1.0f + x2 * (-0.5f + x2 * (4.16666667e-2f + x2 * (-1.38888889e-3f + x2 * 2.48015873e-5f)));
+    precise float s = x * (1.0f + x2 * (-1.66666667e-1f + x2 * (8.33333333e-3f + x2 * (-1.98412698e-4f + x2 * 2.75573192e-6f))));
+    // x is measured from the quadrant's middle: turn by 45 degrees.
+    precise float cd = (c - s) * 0.70710678f;
+    precise float sd = (c + s) * 0.70710678f;
+    uint q = uint(quadrant) & 3u;
+    float even_x = q == 0u ? cd : -cd;
+    float even_y = q == 0u ? sd : -sd;
+    float odd_x = q == 1u ? -sd : sd;
+    float odd_y = q == 1u ? cd : -cd;
+    bool odd = (q & 1u) != 0u;
+    return vec2(odd ? odd_x : even_x, odd ? odd_y : even_y);
+}
+
+// A direction about n with density cos / pi.
+inline vec3 cosine_direction(vec3 n, float u, float v)
+{
+    precise float r = sqrt(u);
+    vec2 circle = unit_circle(v);
+    precise float z = sqrt(1.0f - u);
+    return from_basis(vec3(r * circle.x, r * circle.y, z), n);
+}
+
+// A direction with density 1 / (4 pi).
+inline vec3 uniform_direction(float u, float v)
+{
+    precise float z = 1.0f - 2.0f * u;
+    precise float r2 = 1.0f - z * z;
+    precise float r = sqrt(r2 > 0.0f ? r2 : 0.0f);
+    vec2 circle = unit_circle(v);
+    return vec3(r * circle.x, r * circle.y, z);
+}
+
+inline bool is_finite3(vec3 p)
+{
+    return abs(p.x) <= 3.4028234e38f && abs(p.y) <= 3.4028234e38f && abs(p.z) <= 3.4028234e38f;
+}
+
+#endif

@@ -1,0 +1,69 @@
+// What a render did: every photon and every millisecond accounted for. The program writes it as JSON (--stats).
+#pragma once
+
+#include <photongrid/scene.hpp>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+
+namespace photongrid {
+
+/// Where the photons went. absorbed + escaped + cut_off + invalid = emitted; stored + direct + dropped = diffuse hits.
+struct photon_stats {
+    std::uint64_t emitted = 0;   ///< paths, from the lights
+    std::uint64_t absorbed = 0;  ///< paths ended by Russian roulette, or on a light's own surface
+    std::uint64_t escaped = 0;   ///< paths that met nothing more (the paper's invalid mark)
+    std::uint64_t cut_off = 0;   ///< paths still alive at the deepest bounce allowed
+    std::uint64_t invalid = 0;   ///< paths that became NaN or infinite
+    std::uint64_t diffuse_hits = 0;
+    std::uint64_t stored = 0;    ///< diffuse hits in the map
+    std::uint64_t direct = 0;    ///< diffuse hits straight from a light, left to the shadow rays
+    std::uint64_t dropped = 0;   ///< diffuse hits of the last path beyond the number of photons asked for
+};
+
+struct map_stats {
+    map_builder builder = map_builder::sort;
+    std::uint64_t cells = 0;
+    std::uint64_t overfull_cells = 0;     ///< routed cells with more photons than slots
+    double redistributed_flux = 0;        ///< W, rgb together: flux of photons not kept, given to those kept
+    std::uint64_t sort_steps = 0;
+};
+
+/// One of the four stages of the paper's Table 1.
+struct stage_stats {
+    double ms = 0;
+    std::uint64_t passes = 0;
+    std::uint64_t device_bytes = 0; ///< largest amount held in buffers during the stage
+};
+
+struct estimate_stats {
+    double mean_count = 0;   ///< photons used
+    double mean_radius = 0;  ///< m
+    double mean_visited = 0; ///< photons looked at
+    std::uint64_t points = 0;
+};
+
+struct render_stats {
+    photon_stats photons;
+    map_stats map;
+    stage_stats trace_photons, build_map, trace_rays, radiance_estimate;
+    estimate_stats estimate;
+    std::uint64_t invalid_pixels = 0; ///< NaN or infinite before they were set to 0
+    std::uint64_t peak_device_bytes = 0;
+};
+
+/// Thrown out of a render when observer::cancelled said so.
+struct render_cancelled : std::runtime_error {
+    render_cancelled() : std::runtime_error("cancelled") {}
+};
+
+/// Who watches a render. Any of these may be empty.
+struct render_observer {
+    std::function<void(std::string_view stage, double fraction)> progress; ///< "trace_photons", …; fraction of the stage, 0 to 1
+    std::function<void(const image&)> intermediate;                        ///< the running estimate (3.4), after some passes
+    std::function<bool()> cancelled;                                       ///< asked between passes
+};
+
+} // namespace photongrid

@@ -1,0 +1,67 @@
+// The kernels of the tracer and the picture, read as C++.
+#pragma once
+
+#include <photongrid/kernels.hpp>
+#include <photongrid/kernels/begin.hpp>
+
+namespace photongrid::kernels {
+
+#include <photongrid/kernels/photon_event.glsl>
+#include <photongrid/kernels/scene_layout.glsl>
+#include <photongrid/kernels/vector.glsl>
+
+// 2.1
+struct emit_photon {
+#include <photongrid/kernels/emit_photon.glsl>
+};
+struct bounce_photon {
+#include <photongrid/kernels/bounce_photon.glsl>
+};
+struct path_goes_on {
+#include <photongrid/kernels/path_goes_on.glsl>
+};
+struct tally_path {
+#include <photongrid/kernels/tally_path.glsl>
+};
+struct sum_tallies {
+#include <photongrid/kernels/sum_tallies.glsl>
+};
+struct prefix_sum_step {
+#include <photongrid/kernels/prefix_sum_step.glsl>
+};
+struct path_is_emitted {
+#include <photongrid/kernels/path_is_emitted.glsl>
+};
+struct is_storable {
+#include <photongrid/kernels/is_storable.glsl>
+};
+struct gather_photon {
+#include <photongrid/kernels/gather_photon.glsl>
+};
+struct divide_power {
+#include <photongrid/kernels/divide_power.glsl>
+};
+
+// 2.4
+struct eye_ray {
+#include <photongrid/kernels/eye_ray.glsl>
+};
+struct eye_bounce {
+#include <photongrid/kernels/eye_bounce.glsl>
+};
+struct direct_light {
+#include <photongrid/kernels/direct_light.glsl>
+};
+struct no_light {
+#include <photongrid/kernels/no_light.glsl>
+};
+struct copy_light {
+#include <photongrid/kernels/copy_light.glsl>
+};
+struct shade {
+#include <photongrid/kernels/shade.glsl>
+};
+
+} // namespace photongrid::kernels
+
+#include <photongrid/kernels/end.hpp>
