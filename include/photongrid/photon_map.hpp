@@ -5,6 +5,7 @@
 #include <photongrid/backend.hpp>
 #include <photongrid/kernels.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 

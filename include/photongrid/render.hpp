@@ -185,14 +185,20 @@ image draw(B& b, const built_map<B>& built, const camera& view, const render_set
             observer.progress("trace_rays", static_cast<double>(ray + 1) / (settings.spp * branches));
 
         detail::stage_clock<B> estimating(b, stats.radiance_estimate);
-        knn_search<B> search(b, built.map, hits.points, {.k = settings.k, .max_radius = static_cast<float>(settings.max_radius)});
+        // Watched, passes are small, and pictures come after 1, 2, 4, 8, … of them; the result is the same.
+        knn_settings wanted{.k = settings.k, .max_radius = static_cast<float>(settings.max_radius)};
+        if (observer.intermediate) {
+            wanted.visits_per_pass = 256;
+            wanted.ranges_per_pass = 64;
+        }
+        knn_search<B> search(b, built.map, hits.points, wanted);
         const auto shade = [&](auto& target, auto& tally) {
             const auto found = search.estimates();
             b.template run<kernels::shade>(n, {.scene_layout = about.layout, .share = 1.0f / static_cast<float>(settings.spp)},
                 reads(built.scene.records, hits.points, hits.weights, hits.surfaces, hits.emissions, direct, found.irradiance, found.used), writes(target, tally));
         };
-        const bool watched = observer.intermediate || observer.cancelled;
-        while (!search.advance(watched ? 8u : nowhere).finished) {
+        uint passes = observer.intermediate ? 1u : observer.cancelled ? 8u : nowhere;
+        for (; !search.advance(passes).finished; passes *= observer.intermediate ? 2u : 1u) {
             if (observer.cancelled && observer.cancelled())
                 throw render_cancelled();
             if (observer.intermediate) {

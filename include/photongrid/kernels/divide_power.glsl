@@ -5,7 +5,7 @@ struct Params {
 PARAMS(Params)
 STATE(0, vec4, power)
 
-void kernel(uint)
+void kernel(uint i)
 {
     power = vec4(power.x * args.share, power.y * args.share, power.z * args.share, 0.0f);
 }

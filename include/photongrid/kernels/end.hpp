@@ -6,3 +6,6 @@
 #undef STATE
 #undef SWITCH
 #undef precise
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif

@@ -39,10 +39,12 @@ inline uint cell_number(Grid grid, uint x, uint y, uint z)
     return (z * grid.resolution.y + y) * grid.resolution.x + x;
 }
 
-// False for NaN and infinity.
+// False for NaN and infinity. By the exponent's bits: compilers may turn !(x <= largest) into x > largest, which is false
+// for NaN (Mesa does).
 inline bool is_finite(vec4 p)
 {
-    return abs(p.x) <= 3.4028234e38f && abs(p.y) <= 3.4028234e38f && abs(p.z) <= 3.4028234e38f;
+    return (floatBitsToUint(p.x) & 0x7F800000u) != 0x7F800000u && (floatBitsToUint(p.y) & 0x7F800000u) != 0x7F800000u
+        && (floatBitsToUint(p.z) & 0x7F800000u) != 0x7F800000u;
 }
 
 #endif

@@ -82,9 +82,11 @@ inline vec3 uniform_direction(float u, float v)
     return vec3(r * circle.x, r * circle.y, z);
 }
 
+// False for NaN and infinity; by the exponent's bits, as is_finite in grid.glsl and for the same reason.
 inline bool is_finite3(vec3 p)
 {
-    return abs(p.x) <= 3.4028234e38f && abs(p.y) <= 3.4028234e38f && abs(p.z) <= 3.4028234e38f;
+    return (floatBitsToUint(p.x) & 0x7F800000u) != 0x7F800000u && (floatBitsToUint(p.y) & 0x7F800000u) != 0x7F800000u
+        && (floatBitsToUint(p.z) & 0x7F800000u) != 0x7F800000u;
 }
 
 #endif

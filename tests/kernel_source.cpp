@@ -1,0 +1,70 @@
+// Splicing kernel texts, and bringing compilers' messages home.
+#include <photongrid/kernel_source.hpp>
+#include <photongrid/trace_kernels.hpp>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using namespace photongrid;
+
+constexpr text_file library[] = {{"kernels/a.glsl", "// a\nint a;\n"}, {"kernels/b.glsl", "#include \"a.glsl\"\nint b;\n"}};
+constexpr text_file prelude{"prelude.glsl", "#version 450\nint p;\n"};
+constexpr text_file kernel{"kernels/k.glsl", "// k\n#include \"b.glsl\"\n#include \"a.glsl\"\nint k;\n"};
+constexpr text_file epilogue{"epilogue.glsl", "void main() {}\n"};
+
+TEST(splice, numbers_every_line_by_its_own_file)
+{
+    const auto s = splice(prelude, "#define X 1\n", kernel, epilogue, library);
+    ASSERT_EQ(s.files, (std::vector<std::string>{"prelude.glsl", "kernels/k.glsl", "kernels/b.glsl", "kernels/a.glsl", "epilogue.glsl"}));
+    // Follow the #line directives as a compiler would and check that each declaration is where its file has it.
+    std::istringstream in(s.text);
+    std::size_t number = 1, seen = 0;
+    bool version_first = false;
+    for (std::string row; std::getline(in, row); ++number) {
+        if (row.starts_with("#version"))
+            version_first = number == 1;
+        if (row.starts_with("#line ")) {
+            number = std::stoul(row.substr(6)) - 1;
+            continue;
+        }
+        const std::pair<const char*, std::size_t> places[] = {{"int p;", 100002}, {"int k;", 200004}, {"int b;", 300002}, {"int a;", 400002}, {"void main() {}", 500001}};
+        for (const auto& [text, line] : places)
+            if (row == text) {
+                EXPECT_EQ(number, line) << text;
+                ++seen;
+            }
+    }
+    EXPECT_TRUE(version_first);
+    EXPECT_EQ(seen, 5u); // each file once
+}
+
+TEST(splice, names_the_place_of_a_missing_file)
+{
+    const text_file bad{"kernels/bad.glsl", "//\n#include \"nowhere.glsl\"\n"};
+    try {
+        splice(prelude, "", bad, epilogue, library);
+        FAIL();
+    } catch (const std::runtime_error& e) {
+        EXPECT_STREQ(e.what(), "kernels/bad.glsl:2: error: no kernel file named \"nowhere.glsl\"");
+    }
+}
+
+TEST(translate_log, understands_three_drivers)
+{
+    const auto s = splice(prelude, "", kernel, epilogue, library);
+    EXPECT_EQ(translate_log("0:200004(5): error: `x' undeclared\n", s), "kernels/k.glsl:4: error: `x' undeclared\n    int k;\n");
+    EXPECT_EQ(translate_log("0:300002(1): preprocessor error: syntax\n", s), "kernels/b.glsl:2: error: syntax\n    int b;\n");
+    EXPECT_EQ(translate_log("ERROR: 0:400002: 'y' : undeclared identifier \n", s), "kernels/a.glsl:2: error: 'y' : undeclared identifier \n    int a;\n");
+    EXPECT_EQ(translate_log("0(500001) : error C0000: syntax error\n", s), "epilogue.glsl:1: error: C0000: syntax error\n    void main() {}\n");
+    EXPECT_EQ(translate_log("something else\n", s), "something else\n");
+}
+
+TEST(kernel_texts, every_kernel_struct_has_its_text)
+{
+    EXPECT_EQ(find_kernel_text(kernels::knn_visit::path).name, "include/photongrid/kernels/knn_visit.glsl");
+    EXPECT_NE(find_kernel_text(kernels::shade::path).text.find("void kernel(uint i)"), std::string_view::npos);
+    EXPECT_THROW(find_kernel_text("x/none.glsl"), std::runtime_error);
+}
+
+} // namespace

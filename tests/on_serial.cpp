@@ -1,0 +1,16 @@
+// All backend tests on the serial backend.
+#include "algorithm_tests.hpp"
+#include "render_tests.hpp"
+
+namespace photongrid::testing {
+
+struct serial_tag {
+    using type = serial_backend;
+    static constexpr const char* name = "serial";
+    static std::unique_ptr<type> make() { return std::make_unique<type>(); }
+};
+
+INSTANTIATE_TYPED_TEST_SUITE_P(serial, algorithms, ::testing::Types<serial_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(serial, pictures, ::testing::Types<serial_tag>, tag_names);
+
+} // namespace photongrid::testing

@@ -1,0 +1,74 @@
+// Which backends a test runs on. A test body is written once, for a tag; each on_<backend>.cpp instantiates all of them.
+#pragma once
+
+#include <photongrid/backend.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+namespace photongrid::testing {
+
+/// True where a backend that cannot be had is a failure (CI sets it), not a skip with the reason.
+inline bool every_backend_required() { return std::getenv("PHOTONGRID_REQUIRE_BACKENDS") != nullptr; }
+/// True when software devices are refused: tests/run.sh --device hardware.
+inline bool hardware_wanted()
+{
+    const char* device = std::getenv("PHOTONGRID_DEVICE");
+    return device != nullptr && std::string(device) == "hardware";
+}
+
+/// One backend per tag and process: contexts are slow to make, and kernels stay compiled.
+template <class Tag>
+typename Tag::type* shared_backend(std::string& reason)
+{
+    static std::string why;
+    static const std::unique_ptr<typename Tag::type> instance = []() -> std::unique_ptr<typename Tag::type> {
+        try {
+            auto b = Tag::make();
+            if (hardware_wanted() && b->caps().software && b->caps().backend != "serial") {
+                why = "hardware was asked for, but this device is software: " + b->caps().device;
+                return nullptr;
+            }
+            return b;
+        } catch (const backend_error& e) {
+            why = e.what();
+            return nullptr;
+        }
+    }();
+    reason = why;
+    return instance.get();
+}
+
+/// A fixture whose `b()` is the backend under test; without one the test fails or skips aloud.
+template <class Tag>
+class on_backend : public ::testing::Test {
+protected:
+    using B = typename Tag::type;
+    void SetUp() override
+    {
+        std::string reason;
+        instance_ = shared_backend<Tag>(reason);
+        if (instance_ != nullptr)
+            return;
+        if (every_backend_required() || hardware_wanted())
+            FAIL() << Tag::name << ": " << reason;
+        GTEST_SKIP() << Tag::name << ": " << reason;
+    }
+    B& b() { return *instance_; }
+
+private:
+    B* instance_ = nullptr;
+};
+
+struct tag_names {
+    template <class Tag>
+    static std::string GetName(int)
+    {
+        return Tag::name;
+    }
+};
+
+} // namespace photongrid::testing
