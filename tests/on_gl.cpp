@@ -1,6 +1,7 @@
 // All backend tests on OpenGL, in an EGL and in an OSMesa context.
 #include "algorithm_tests.hpp"
 #include "render_tests.hpp"
+#include "scene_picture_tests.hpp"
 
 #include <photongrid/backends/gl/gl.hpp>
 
@@ -20,5 +21,6 @@ using contexts = ::testing::Types<egl_tag, osmesa_tag>;
 
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, algorithms, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, pictures, contexts, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(gl, scene_files, contexts, tag_names);
 
 } // namespace photongrid::testing

@@ -1,6 +1,7 @@
 // All backend tests on Vulkan, with the validation layer watching.
 #include "algorithm_tests.hpp"
 #include "render_tests.hpp"
+#include "scene_picture_tests.hpp"
 
 #include <photongrid/backends/vulkan/vulkan.hpp>
 
@@ -14,6 +15,7 @@ struct vulkan_tag {
 
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, algorithms, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, pictures, ::testing::Types<vulkan_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, scene_files, ::testing::Types<vulkan_tag>, tag_names);
 
 /// After all other tests of this program: the layer had nothing to say.
 class no_validation_messages : public ::testing::Environment {

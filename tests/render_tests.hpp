@@ -237,6 +237,126 @@ TYPED_TEST_P(pictures, every_photon_and_every_watt_is_accounted_for)
     }
 }
 
+TYPED_TEST_P(pictures, flux_balances_per_channel)
+{
+    // What a light sends out is absorbed at surfaces, escapes, or is cut off; per path and channel, on average.
+    for (auto s : {small_cornell(), all_shapes()}) {
+        auto& b = this->b();
+        s.render.photon_depth = 6; // so that some is cut off
+        const auto device = upload_scene(b, s);
+        const uint paths = 16384;
+        detail::photon_frames<typename TestFixture::B> f(b, std::size_t{paths} * 7);
+        const uint frames = detail::trace_batch(b, device, f, paths, 0, s.render);
+        const auto positions = b.download(f.positions), powers = b.download(f.powers), directions = b.download(f.directions);
+        dvec3 mean(0), squares(0);
+        for (uint p = 0; p < paths; ++p) {
+            dvec3 balance(0);
+            for (uint frame = 1; frame < frames; ++frame) {
+                const std::size_t i = std::size_t{frame} * paths + p;
+                const uint end = kernels::event_end(positions[i]);
+                if (end == kernels::ENDED_BEFORE)
+                    break;
+                const dvec3 arriving(powers[i]);
+                if (kernels::event_kind(positions[i]) == kernels::NO_SURFACE) { // escaped, or on a lamp
+                    balance += arriving;
+                    continue;
+                }
+                const dvec3 reflectance = s.materials[static_cast<std::size_t>(directions[i].w)].reflectance;
+                balance += arriving * (dvec3(1) - reflectance);
+                if (frame == 6) // whether cut off or absorbed here: what would have gone on, on average
+                    balance += arriving * reflectance;
+            }
+            mean += balance;
+            squares += balance * balance;
+        }
+        mean /= paths;
+        const dvec3 error = glm::sqrt(glm::max(dvec3(0), squares / double(paths) - mean * mean) / double(paths));
+        dvec3 power(0);
+        for (const auto& l : s.rectangle_lights)
+            power += l.power;
+        for (const auto& l : s.point_lights)
+            power += l.power;
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(mean[c], power[c], 4 * error[c]) << s.name << " channel " << c;
+    }
+}
+
+TYPED_TEST_P(pictures, a_photon_takes_at_most_64_bytes)
+{
+    // Positions, powers, directions, and the pairs twice while they are sorted; grid apart.
+    auto& b = this->b();
+    auto s = integrating_sphere(dvec3(0.5));
+    s.render.photons = 65536;
+    const auto device = upload_scene(b, s);
+    auto t = trace_photons(b, s, device, s.render);
+    b.finish();
+    const auto traced = b.bytes();
+    EXPECT_LE(traced, 48u * 65536u + 100000u);
+    const auto g = make_grid(device.about.low, device.about.high, {8, 8, 8});
+    const auto map = sorted_map(b, std::move(t.photons), g);
+    b.finish();
+    EXPECT_LE(b.bytes(), 64u * 65536u + 100000u);
+}
+
+TYPED_TEST_P(pictures, long_statistics_of_a_picture_equal_serials)
+{
+    // For devices that round loosely, and a check of all others: over 8 seeds a side, at least 99.75 % of the means over
+    // 8 x 8 pixels agree in a z-test (0.01, Sidak over the blocks).
+    serial_backend serial;
+    for (const auto& s : {small_cornell(), all_shapes()}) {
+        const uint bx = s.render.width / 8, by = s.render.height / 8;
+        const auto sample = [&](auto& device, uint first_seed) {
+            std::vector<std::vector<double>> blocks(std::size_t{bx} * by * 3);
+            for (uint seed = first_seed; seed < first_seed + 8; ++seed) {
+                auto settings = s.render;
+                settings.seed = seed;
+                render_stats stats;
+                const auto im = render(device, s, settings, {}, stats);
+                for (uint y = 0; y < by; ++y)
+                    for (uint x = 0; x < bx; ++x)
+                        for (int c = 0; c < 3; ++c) {
+                            double mean = 0;
+                            for (uint j = 0; j < 64; ++j)
+                                mean += static_cast<double>(im.pixels[(y * 8 + j / 8) * im.width + x * 8 + j % 8][c]) / 64;
+                            blocks[(std::size_t{y} * bx + x) * 3 + static_cast<std::size_t>(c)].push_back(mean);
+                        }
+            }
+            return blocks;
+        };
+        const auto mine = sample(this->b(), 100), theirs = sample(serial, 200);
+        const auto moments = [](const std::vector<double>& v) {
+            double mean = 0, variance = 0;
+            for (const double x : v)
+                mean += x / static_cast<double>(v.size());
+            for (const double x : v)
+                variance += (x - mean) * (x - mean) / static_cast<double>(v.size() - 1);
+            return std::pair{mean, variance / static_cast<double>(v.size())};
+        };
+        // Two-sided z for 1 - (1 - 0.01)^(1/n), widened by the 14 degrees of freedom of a t-test; bisection on the tail
+        // of Student's distribution, since 8 seeds are few for a normal one.
+        const double alpha = 1 - std::pow(1 - 0.01, 1.0 / static_cast<double>(mine.size()));
+        const auto tail = [](double t) { // P(|T| > t), 14 degrees of freedom, by Simpson's rule
+            const int n = 2000;
+            const double top = 200, h = (top - t) / n;
+            const auto density = [](double x) { return std::tgamma(7.5) / (std::sqrt(14 * M_PI) * std::tgamma(7)) * std::pow(1 + x * x / 14, -7.5); };
+            double sum = density(t) + density(top);
+            for (int i = 1; i < n; ++i)
+                sum += density(t + i * h) * (i % 2 == 1 ? 4 : 2);
+            return 2 * sum * h / 3;
+        };
+        double low = 0, high = 100;
+        for (int i = 0; i < 60; ++i)
+            (tail(0.5 * (low + high)) > alpha ? low : high) = 0.5 * (low + high);
+        std::size_t accepted = 0;
+        for (std::size_t i = 0; i < mine.size(); ++i) {
+            const auto [a, va] = moments(mine[i]);
+            const auto [c, vc] = moments(theirs[i]);
+            accepted += std::abs(a - c) <= high * std::sqrt(va + vc + 1e-14) ? 1u : 0u;
+        }
+        EXPECT_GE(static_cast<double>(accepted), 0.9975 * static_cast<double>(mine.size())) << s.name << ", limit " << high;
+    }
+}
+
 TYPED_TEST_P(pictures, cut_off_paths_are_counted)
 {
     auto s = integrating_sphere(dvec3(0.9));
@@ -354,7 +474,8 @@ TYPED_TEST_P(pictures, a_light_that_stores_no_photon_is_named)
 }
 
 REGISTER_TYPED_TEST_SUITE_P(pictures, a_closed_diffuse_sphere_has_the_known_radiance, direct_light_of_a_rectangle_equals_the_form_factor,
-    a_glass_ball_focuses_the_flux_it_should, every_photon_and_every_watt_is_accounted_for, cut_off_paths_are_counted, equal_the_serial_backends, sorting_and_routing_agree,
+    a_glass_ball_focuses_the_flux_it_should, every_photon_and_every_watt_is_accounted_for, flux_balances_per_channel, a_photon_takes_at_most_64_bytes,
+    long_statistics_of_a_picture_equal_serials, cut_off_paths_are_counted, equal_the_serial_backends, sorting_and_routing_agree,
     a_moved_camera_runs_no_photon_pass, the_same_seed_gives_the_same_bytes, running_estimates_are_shown_and_a_render_can_be_cancelled, a_light_that_stores_no_photon_is_named);
 
 } // namespace photongrid::testing

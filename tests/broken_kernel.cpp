@@ -1,0 +1,10 @@
+// Does not compile, on purpose: tests/CMakeLists.txt asks the C++ compiler where the mistake is.
+#include <photongrid/kernels.hpp>
+
+#include <photongrid/kernels/begin.hpp>
+namespace photongrid::kernels {
+struct broken {
+#include "broken_kernel.glsl"
+};
+} // namespace photongrid::kernels
+#include <photongrid/kernels/end.hpp>

@@ -1,0 +1,190 @@
+// Pictures on disk: what is written is read back, and a failed write leaves nothing.
+#include "image_file.hpp"
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace photongrid {
+namespace {
+
+    namespace fs = std::filesystem;
+
+    /// A folder of its own for each test.
+    class image_file : public ::testing::Test {
+    protected:
+        image_file()
+            : folder(fs::temp_directory_path() / ("photongrid_image_" + std::to_string(::getpid())))
+        {
+            fs::create_directories(folder);
+        }
+        ~image_file() override { fs::remove_all(folder); }
+        std::string path(const std::string& name) const { return (folder / name).string(); }
+        std::size_t files() const { return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator())); }
+        fs::path folder;
+    };
+
+    image gradient()
+    {
+        image p{.width = 7, .height = 5, .pixels = {}};
+        for (std::uint32_t i = 0; i < 35; ++i)
+            p.pixels.emplace_back(static_cast<float>(i) / 3.0f, 1e-30f * static_cast<float>(i), 1e30f);
+        p.pixels[4] = glm::vec3(-1.5f, 0.0f, std::numeric_limits<float>::infinity());
+        return p;
+    }
+
+    void write_text(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+    template <class Action>
+    std::string refusal(Action&& action)
+    {
+        try {
+            action();
+        } catch (const file_error& e) {
+            return e.what();
+        }
+        return "";
+    }
+
+    TEST_F(image_file, exr_and_pfm_come_back_bit_for_bit)
+    {
+        const auto p = gradient();
+        for (const auto* name : {"a.exr", "a.pfm", "a.PFM"}) {
+            SCOPED_TRACE(name);
+            write_image(path(name), p, 3.0, {{"seed", "7"}});
+            const auto q = read_image(path(name));
+            EXPECT_EQ(q.width, p.width);
+            EXPECT_EQ(q.height, p.height);
+            ASSERT_EQ(q.pixels.size(), p.pixels.size());
+            EXPECT_EQ(std::memcmp(q.pixels.data(), p.pixels.data(), p.pixels.size() * sizeof(glm::vec3)), 0);
+        }
+    }
+
+    TEST_F(image_file, pfm_has_the_bottom_row_first)
+    {
+        write_image(path("a.pfm"), {.width = 1, .height = 2, .pixels = {glm::vec3(1), glm::vec3(2)}});
+        std::ifstream in(path("a.pfm"), std::ios::binary);
+        const std::string all((std::istreambuf_iterator<char>(in)), {});
+        ASSERT_EQ(all.size(), 12u + 24u);
+        EXPECT_EQ(all.substr(0, 12), "PF\n1 2\n-1.0\n");
+        float first = 0;
+        std::memcpy(&first, all.data() + 12, sizeof first);
+        EXPECT_EQ(first, 2.0f);
+    }
+
+    TEST_F(image_file, reads_big_endian_grey_pfm)
+    {
+        write_text(path("a.pfm"), std::string("Pf\n1 1\n2.0\n\x3f\x80\x00\x00", 15));
+        EXPECT_EQ(read_image(path("a.pfm")).pixels.at(0), glm::vec3(2));
+    }
+
+    TEST_F(image_file, png_is_srgb)
+    {
+        const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+        const image p{.width = 2, .height = 2, .pixels = {{0.0f, 0.5f, 1.0f}, {0.001f, 2.0f, -1.0f}, {nan, inf, 0.2140411f}, {0.25f, 0.25f, 0.25f}}};
+        write_image(path("a.png"), p);
+        png_image png{};
+        png.version = PNG_IMAGE_VERSION;
+        ASSERT_TRUE(png_image_begin_read_from_file(&png, path("a.png").c_str())) << png.message;
+        EXPECT_EQ(png.width, 2u);
+        EXPECT_EQ(png.height, 2u);
+        EXPECT_EQ(png.format, static_cast<png_uint_32>(PNG_FORMAT_RGB));
+        EXPECT_EQ(png.flags & PNG_IMAGE_FLAG_COLORSPACE_NOT_sRGB, 0u);
+        std::vector<unsigned char> bytes(PNG_IMAGE_SIZE(png));
+        ASSERT_TRUE(png_image_finish_read(&png, nullptr, bytes.data(), 0, nullptr));
+        EXPECT_EQ(bytes, (std::vector<unsigned char>{0, 188, 255, 3, 255, 0, 0, 255, 127, 137, 137, 137}));
+        EXPECT_EQ(tone_mapped(0.25f, 1), 188);
+        EXPECT_EQ(tone_mapped(0.25f, 2), 255);
+        EXPECT_EQ(tone_mapped(0.5f, -1000), 0);
+    }
+
+    TEST_F(image_file, refuses_paths_that_cannot_be_written)
+    {
+        const auto p = gradient();
+        EXPECT_NE(refusal([&] { write_image(path("a.jpg"), p); }).find("expected .png, .exr or .pfm"), std::string::npos);
+        EXPECT_NE(refusal([&] { write_image(path("none/a.png"), p); }).find("there is no folder"), std::string::npos);
+        fs::create_directory(path("d.png"));
+        EXPECT_NE(refusal([&] { check_image_path(path("d.png")); }).find("is a folder"), std::string::npos);
+        EXPECT_NE(refusal([&] { write_file("/dev/null", ""); }).find("not a regular file"), std::string::npos);
+        EXPECT_EQ(files(), 1u);
+        EXPECT_EQ(refusal([&] { check_image_path(path("a.png")); }), "");
+    }
+
+    // A file-size limit stands for a full disk.
+    TEST_F(image_file, a_failed_write_leaves_the_old_file)
+    {
+        write_text(path("a.pfm"), "old");
+        image big{.width = 256, .height = 256, .pixels = std::vector<glm::vec3>(256 * 256)};
+        rlimit old{};
+        ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
+        const rlimit small{.rlim_cur = 4096, .rlim_max = old.rlim_max};
+        const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+        ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+        const auto said = refusal([&] { write_image(path("a.pfm"), big); });
+        setrlimit(RLIMIT_FSIZE, &old);
+        std::signal(SIGXFSZ, handler);
+        EXPECT_NE(said.find("cannot be written: File too large"), std::string::npos) << said;
+        EXPECT_EQ(files(), 1u);
+        EXPECT_EQ(fs::file_size(path("a.pfm")), 3u);
+    }
+
+    TEST_F(image_file, writes_through_a_link)
+    {
+        write_text(path("real.pfm"), "old");
+        fs::create_symlink(path("real.pfm"), path("link.pfm"));
+        write_image(path("link.pfm"), gradient());
+        EXPECT_TRUE(fs::is_symlink(path("link.pfm")));
+        EXPECT_EQ(read_image(path("real.pfm")).width, 7u);
+    }
+
+    TEST_F(image_file, refuses_broken_files)
+    {
+        EXPECT_NE(refusal([&] { read_image(path("none.pfm")); }).find("No such file"), std::string::npos);
+        EXPECT_NE(refusal([&] { read_image(path("none.exr")); }), "");
+        EXPECT_NE(refusal([&] { read_image(path("a.png")); }).find("expected .exr or .pfm"), std::string::npos);
+        for (const auto* text : {"", "P6\n1 1\n255\n", "PF\n1 1\n", "PF\n-1 1\n-1.0\n", "PF\n0 1\n-1.0\n", "PF\n60000 60000\n-1.0\n", "PF\n2 2\n-1.0\nabc", "PF\n2 2\n0\n"}) {
+            write_text(path("bad.pfm"), text);
+            EXPECT_NE(refusal([&] { read_image(path("bad.pfm")); }), "") << text;
+            write_text(path("bad.exr"), text);
+            EXPECT_NE(refusal([&] { read_image(path("bad.exr")); }), "") << text;
+        }
+        write_image(path("a.exr"), gradient());
+        fs::resize_file(path("a.exr"), fs::file_size(path("a.exr")) / 2);
+        EXPECT_NE(refusal([&] { read_image(path("a.exr")); }), "");
+    }
+
+    TEST(compare_images, measures)
+    {
+        const image a{.width = 2, .height = 1, .pixels = {{1, 1, 1}, {0.5f, 0, 0}}}, b{.width = 2, .height = 1, .pixels = {{1, 1, 1}, {0, 0, 0}}};
+        const auto d = compare_images(a, b);
+        EXPECT_DOUBLE_EQ(d.mse, 0.25 / 6);
+        EXPECT_DOUBLE_EQ(d.relmse, 0.25 / (0.01 * 0.01) / 6);
+        EXPECT_DOUBLE_EQ(d.largest, 0.5);
+        EXPECT_EQ(d.x, 1u);
+        EXPECT_EQ(d.compared, 2u);
+        EXPECT_EQ(compare_images(a, a).relmse, 0);
+    }
+
+    TEST(compare_images, skips_and_counts_what_is_not_finite)
+    {
+        auto a = gradient();
+        const auto b = a; // one pixel is infinite
+        a.pixels[7].x = std::numeric_limits<float>::quiet_NaN();
+        const auto d = compare_images(a, b);
+        EXPECT_EQ(d.not_finite, 2u);
+        EXPECT_EQ(d.compared, 33u);
+        EXPECT_EQ(d.mse, 0);
+        EXPECT_THROW(compare_images(a, image{.width = 5, .height = 7, .pixels = b.pixels}), std::invalid_argument);
+    }
+
+} // namespace
+} // namespace photongrid

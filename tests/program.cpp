@@ -1,0 +1,277 @@
+// The program from outside: what it prints, writes and returns.
+#include "image_file.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace photongrid {
+namespace {
+
+    namespace fs = std::filesystem;
+
+    struct ended {
+        int code = -1; ///< -1: ended by a signal
+        std::string out, err;
+    };
+
+    std::string contents(const fs::path& path)
+    {
+        std::ifstream in(path, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+
+    /// Runs the program in a folder of its own.
+    class program : public ::testing::Test {
+    protected:
+        program()
+            : folder(fs::temp_directory_path() / ("photongrid_program_" + std::to_string(::getpid())))
+        {
+            fs::create_directories(folder);
+        }
+        ~program() override { fs::remove_all(folder); }
+
+        pid_t start(std::vector<std::string> arguments) const
+        {
+            arguments.insert(arguments.begin(), PHOTONGRID_PROGRAM);
+            std::vector<char*> argv;
+            for (auto& a : arguments)
+                argv.push_back(a.data());
+            argv.push_back(nullptr);
+            const pid_t child = ::fork();
+            if (child == 0) {
+                const auto send = [&](const char* name, int to) { ::dup2(::open((folder.string() + name).c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), to); };
+                send(".out", 1);
+                send(".err", 2);
+                if (::chdir(folder.c_str()) == 0)
+                    ::execv(argv[0], argv.data());
+                ::_exit(127);
+            }
+            return child;
+        }
+        ended wait(pid_t child) const
+        {
+            int status = 0;
+            ::waitpid(child, &status, 0);
+            ended e{.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1, .out = contents(folder.string() + ".out"), .err = contents(folder.string() + ".err")};
+            fs::remove(folder.string() + ".out");
+            fs::remove(folder.string() + ".err");
+            return e;
+        }
+        ended run(std::vector<std::string> arguments) const { return wait(start(std::move(arguments))); }
+        std::size_t files() const { return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator())); }
+
+        fs::path folder;
+        const std::string ring = PHOTONGRID_SCENES "/ring.json";
+        /// Small enough for every test run.
+        const std::vector<std::string> small{"render", ring, "--backend", "serial", "--size", "32x24", "--photons", "300", "--k", "16", "--grid", "32,1,32"};
+        std::vector<std::string> small_with(std::vector<std::string> more) const
+        {
+            more.insert(more.begin(), small.begin(), small.end());
+            return more;
+        }
+    };
+
+    TEST_F(program, helps)
+    {
+        const auto help = run({"--help"});
+        EXPECT_EQ(help.code, 0);
+        for (const auto* word : {"render", "compare", "check", "devices", "Exit codes", "130"})
+            EXPECT_NE(help.out.find(word), std::string::npos) << word;
+        const auto render = run({"render", "--help"});
+        EXPECT_EQ(render.code, 0);
+        for (const auto* option : {"--backend", "--device", "--map", "--slots", "--photons", "--k", "--grid", "--max-radius", "--size", "--spp", "--light-samples", "--depth", "--seed", "--exposure", "-o",
+                 "--stats", "--progressive", "--quiet"})
+            EXPECT_NE(render.out.find(option), std::string::npos) << option;
+        const auto version = run({"--version"});
+        EXPECT_EQ(version.code, 0);
+        EXPECT_EQ(version.out.substr(0, 11), "photongrid ");
+    }
+
+    TEST_F(program, refuses_wrong_command_lines)
+    {
+        EXPECT_EQ(run({}).code, 2);
+        EXPECT_EQ(run({"draw"}).code, 2);
+        EXPECT_EQ(run({"render"}).code, 2);
+        for (const auto& wrong : std::vector<std::vector<std::string>>{{"--backend", "cuda"}, {"--size", "32"}, {"--size", "32x-4"}, {"--size", "0x4"}, {"--grid", "1,2"}, {"--grid", "1,2,3,4"}, {"--grid", "0,1,1"},
+                 {"--photons", "1e3"}, {"--photons", "-1"}, {"--photons", "99999999999"}, {"--k", "0"}, {"--max-radius", "nan"}, {"--max-radius", "-1"}, {"--exposure", "inf"}, {"--slots", "17"},
+                 {"--map", "hash"}, {"--device", "0"}, {"--spp", "0"}, {"--nonsense"}}) {
+            const auto e = run([&] {
+                auto all = small;
+                // An option given twice is an error of its own.
+                for (std::size_t i = 2; i + 1 < all.size();)
+                    if (all[i] == wrong[0])
+                        all.erase(all.begin() + static_cast<std::ptrdiff_t>(i), all.begin() + static_cast<std::ptrdiff_t>(i) + 2);
+                    else
+                        i += 2;
+                all.insert(all.end(), wrong.begin(), wrong.end());
+                return all;
+            }());
+            EXPECT_EQ(e.code, 2) << wrong[0] << ": " << e.err;
+            EXPECT_NE(e.err, "");
+        }
+        EXPECT_EQ(files(), 0u);
+    }
+
+    TEST_F(program, checks_scenes)
+    {
+        for (const auto* name : {"ring", "glass_ball", "cornell_box", "cornell_blocks"})
+            EXPECT_EQ(run({"check", PHOTONGRID_SCENES + std::string("/") + name + ".json"}).code, 0);
+        std::ofstream(folder / "bad.json") << "{\"photongrid\": 1,\n \"lihgts\": []}";
+        const auto e = run({"check", "bad.json"});
+        EXPECT_EQ(e.code, 3);
+        EXPECT_EQ(e.err, "bad.json:2:2: error: unknown key \"lihgts\" in \"scene\"; expected \"lights\"?\n");
+        EXPECT_EQ(run({"render", "bad.json"}).code, 3);
+        EXPECT_EQ(run({"check", "none.json"}).code, 3);
+    }
+
+    TEST_F(program, lists_devices)
+    {
+        const auto e = run({"devices"});
+        EXPECT_EQ(e.code, 0);
+        for (const auto* name : {"serial  ", "gl  ", "gl-osmesa  ", "vulkan  "})
+            EXPECT_NE(("\n" + e.out).find(std::string("\n") + name), std::string::npos) << e.out;
+    }
+
+    TEST_F(program, same_seed_same_bytes)
+    {
+        const auto first = run(small_with({"-o", "a.png", "-o", "a.exr", "-o", "a.pfm"}));
+        ASSERT_EQ(first.code, 0) << first.err;
+        EXPECT_EQ(first.out, "a.png\na.exr\na.pfm\n");
+        EXPECT_EQ(first.err, "") << "no terminal, no progress bar";
+        ASSERT_EQ(run(small_with({"-o", "b.png", "-o", "b.exr", "-o", "b.pfm"})).code, 0);
+        for (const auto* ending : {".png", ".exr", ".pfm"})
+            EXPECT_EQ(contents(folder / (std::string("a") + ending)), contents(folder / (std::string("b") + ending)));
+        ASSERT_EQ(run(small_with({"-o", "c.pfm", "--seed", "2"})).code, 0);
+        EXPECT_NE(contents(folder / "a.pfm"), contents(folder / "c.pfm"));
+        for (const auto* note : {"serial", "seed", "photongrid ", "max_radius"})
+            EXPECT_NE(contents(folder / "a.exr").find(note), std::string::npos) << note;
+
+        EXPECT_EQ(run({"compare", "a.exr", "a.pfm", "--max-relmse", "0"}).code, 0);
+        const auto differs = run({"compare", "c.pfm", "a.pfm", "--max-relmse", "1e-12"});
+        EXPECT_EQ(differs.code, 1);
+        EXPECT_NE(differs.out.find("relMSE"), std::string::npos);
+        EXPECT_EQ(run({"compare", "c.pfm", "a.pfm"}).code, 0);
+        EXPECT_EQ(run({"compare", "a.png", "a.pfm"}).code, 5);
+        EXPECT_EQ(run({"compare", "a.pfm", "none.pfm"}).code, 5);
+        write_image((folder / "other.pfm").string(), {.width = 1, .height = 1, .pixels = {glm::vec3(1)}});
+        EXPECT_EQ(run({"compare", "a.pfm", "other.pfm"}).code, 5);
+    }
+
+    TEST_F(program, names_the_picture_after_the_scene)
+    {
+        const auto e = run(small);
+        EXPECT_EQ(e.code, 0) << e.err;
+        EXPECT_EQ(e.out, "ring.png\n");
+        EXPECT_TRUE(fs::exists(folder / "ring.png"));
+        EXPECT_EQ(files(), 1u);
+    }
+
+    TEST_F(program, refuses_outputs_before_rendering)
+    {
+        EXPECT_EQ(run(small_with({"-o", "a.jpg"})).code, 5);
+        EXPECT_EQ(run(small_with({"-o", "none/a.png"})).code, 5);
+        EXPECT_EQ(run(small_with({"-o", "a.png", "--stats", "none/a.json"})).code, 5);
+        EXPECT_EQ(files(), 0u);
+    }
+
+    TEST_F(program, accounts_for_every_photon)
+    {
+        for (const auto* map : {"sort", "route"}) {
+            SCOPED_TRACE(map);
+            ASSERT_EQ(run(small_with({"--stats", "stats.json", "--map", map, "--max-radius", "0.2"})).code, 0);
+            const auto s = nlohmann::json::parse(contents(folder / "stats.json"));
+            EXPECT_EQ(s.at("scene"), "ring");
+            EXPECT_EQ(s.at("backend"), "serial");
+            EXPECT_NE(s.at("device"), "");
+            EXPECT_EQ(s.at("seed"), 1);
+            EXPECT_TRUE(s.contains("version"));
+            const auto& set = s.at("settings");
+            EXPECT_EQ(set.at("size"), nlohmann::json({32, 24}));
+            EXPECT_EQ(set.at("photons"), 300);
+            EXPECT_EQ(set.at("map"), map);
+            EXPECT_EQ(set.at("max_radius"), 0.2);
+            const auto& p = s.at("photons");
+            const auto count = [&](const char* key) { return p.at(key).get<std::uint64_t>(); };
+            EXPECT_EQ(count("emitted"), count("absorbed") + count("escaped") + count("cut_off") + count("invalid"));
+            EXPECT_EQ(count("stored"), 300u);
+            EXPECT_GT(count("direct"), 0u);
+            EXPECT_TRUE(p.contains("dropped"));
+            EXPECT_EQ(s.at("map").at("builder"), map);
+            EXPECT_EQ(s.at("map").at("cells"), 32 * 32);
+            EXPECT_TRUE(s.at("map").contains("overfull_cells"));
+            EXPECT_TRUE(s.at("map").contains("redistributed_flux"));
+            for (const auto* stage : {"trace_photons", "build_map", "trace_rays", "radiance_estimate"}) {
+                EXPECT_GT(s.at("stages").at(stage).at("ms"), 0) << stage;
+                EXPECT_GT(s.at("stages").at(stage).at("passes"), 0) << stage;
+                EXPECT_GT(s.at("stages").at(stage).at("device_bytes"), 0) << stage;
+            }
+            EXPECT_GT(s.at("estimate").at("mean_count"), 0);
+            EXPECT_GT(s.at("estimate").at("mean_radius"), 0);
+            EXPECT_GE(s.at("estimate").at("mean_visited"), s.at("estimate").at("mean_count"));
+            EXPECT_FALSE(s.at("kernels").empty());
+            for (const auto& [name, k] : s.at("kernels").items())
+                EXPECT_TRUE(k.contains("instructions") && k.contains("compile_ms") && k.contains("passes")) << name;
+            EXPECT_GT(s.at("peak_memory_bytes"), 1 << 20);
+            EXPECT_GT(s.at("peak_device_bytes"), 0);
+            EXPECT_GT(s.at("total_ms"), 0);
+        }
+    }
+
+    TEST_F(program, writes_the_running_estimate)
+    {
+        ASSERT_EQ(run(small_with({"--progressive", "steps", "-o", "last.png", "--k", "200"})).code, 2) << "--k twice";
+        const auto e = run(small_with({"--progressive", "steps", "-o", "last.png"}));
+        ASSERT_EQ(e.code, 0) << e.err;
+        ASSERT_TRUE(fs::exists(folder / "steps/ring-0001.png"));
+        std::string newest;
+        for (const auto& f : fs::directory_iterator(folder / "steps"))
+            newest = std::max(newest, f.path().string());
+        EXPECT_EQ(contents(newest), contents(folder / "last.png")) << "the last one is the picture";
+    }
+
+    TEST_F(program, never_replaces_a_backend_asked_for)
+    {
+        const auto e = run({"render", ring, "--backend", "vulkan", "--device", "no such device", "-o", "a.png"});
+        EXPECT_EQ(e.code, 4);
+        EXPECT_NE(e.err.find("vulkan"), std::string::npos) << e.err;
+        EXPECT_EQ(files(), 0u);
+    }
+
+    TEST_F(program, auto_says_what_it_chose)
+    {
+        auto arguments = small;
+        arguments[3] = "auto";
+        const auto e = run(arguments);
+        EXPECT_EQ(e.code, 0) << e.err;
+        EXPECT_NE(e.err.find("--backend auto: "), std::string::npos) << e.err;
+    }
+
+    // A picture that would take minutes, and a signal soon after it began.
+    TEST_F(program, an_interrupt_leaves_no_file)
+    {
+        for (const int signal : {SIGINT, SIGTERM}) {
+            const auto begun = std::chrono::steady_clock::now();
+            const auto child = start({"render", ring, "--backend", "serial", "--size", "64x64", "--spp", "60000", "--photons", "300", "-o", "a.png", "--stats", "a.json"});
+            std::this_thread::sleep_for(std::chrono::milliseconds(700));
+            ::kill(child, signal);
+            const auto e = wait(child);
+            EXPECT_EQ(e.code, 130) << e.err;
+            EXPECT_NE(e.err.find("interrupted"), std::string::npos) << e.err;
+            EXPECT_EQ(files(), 0u);
+            EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(30));
+        }
+    }
+
+} // namespace
+} // namespace photongrid

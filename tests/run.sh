@@ -1,0 +1,96 @@
+#!/usr/bin/env bash
+# Builds photongrid with warnings as errors and runs all tests; this is what CI runs.
+#
+#   tests/run.sh [--full] [--device hardware] [--no-install]
+#
+#   --full             adds the long runs, and the sanitizers on every backend instead of on the serial one
+#   --device hardware  every backend on a real GPU; software devices are refused (no sanitizers, no clang)
+#   --no-install       only say which Debian packages are missing, do not install them
+#
+# First the serial backend under the address and undefined behaviour sanitizers (build-asan/), then clang 14 (build-clang/),
+# then everything with g++, assertions on (build-tests/). It stops where something fails and ends with ctest's summary.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source examples/setup.sh
+
+install=yes full=no device=any
+while (($# > 0)); do
+  case $1 in
+    --full) full=yes ;;
+    --no-install) install=no ;;
+    --device)
+      device=${2:-}
+      if [[ $device != hardware ]]; then
+        echo "--device $device: expected \"hardware\"" >&2
+        exit 2
+      fi
+      shift
+      ;;
+    -h | --help)
+      sed -n '2,11s/^# \{0,1\}//p' tests/run.sh
+      exit 0
+      ;;
+    *)
+      echo "tests/run.sh: unknown argument \"$1\"; see tests/run.sh --help" >&2
+      exit 2
+      ;;
+  esac
+  shift
+done
+require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev vulkan-validationlayers clang-14
+
+export CMAKE_GENERATOR=Ninja          # for the projects that tests configure; a bare Debian has no make
+export NODEVICE_SELECT=1              # the implicit layer crashes processes that start side by side
+export PHOTONGRID_REQUIRE_BACKENDS=1  # a backend that cannot be had is a failure here, not a skipped test
+export UBSAN_OPTIONS=print_stacktrace=1
+export MESA_SHADER_CACHE_DIR=$PWD/build-tests/mesa-shader-cache
+mkdir -p "$MESA_SHADER_CACHE_DIR"
+
+# configure PRESET [OPTION...]
+configure() {
+  local preset=$1 launcher=()
+  shift
+  if command -v ccache >/dev/null; then
+    launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  fi
+  cmake --preset "$preset" --log-level=WARNING "${launcher[@]}" "$@"
+}
+# run_tests FOLDER [OPTION...]
+run_tests() {
+  local folder=$1
+  shift
+  ctest --test-dir "$folder" --output-on-failure --no-tests=error -j2 "$@"
+}
+short=(--label-exclude long)
+if [[ $full == yes ]]; then
+  short=()
+fi
+
+if [[ $device == hardware ]]; then
+  export PHOTONGRID_DEVICE=hardware
+else
+  echo "== sanitizers"
+  if [[ $full == yes ]]; then
+    # Mesa's drivers leak a little at exit. The Vulkan loader unloads its driver, after which a leak has no name to
+    # suppress, so the driver is loaded beforehand (google/sanitizers#1653).
+    asan=$(readlink -f "$(g++ -print-file-name=libasan.so)")
+    lavapipe=$(find /usr/lib -name 'libvulkan_lvp.so' -print -quit)
+    configure asan -DPHOTONGRID_GL=ON -DPHOTONGRID_VULKAN=ON "-DCMAKE_CROSSCOMPILING_EMULATOR=env;LD_PRELOAD=$asan:$lavapipe"
+    printf 'leak:%s\n' libOSMesa libvulkan_lvp libEGL_mesa swrast_dri libLLVM >build-asan/leaks.supp
+    export LSAN_OPTIONS=suppressions=$PWD/build-asan/leaks.supp:print_suppressions=0
+  else
+    configure asan
+  fi
+  cmake --build build-asan
+  run_tests build-asan --label-exclude long --exclude-regex consumer
+
+  echo "== clang"
+  configure clang
+  cmake --build build-clang --target all_verify_interface_header_sets photongrid_smoke
+  run_tests build-clang --tests-regex smoke
+fi
+
+echo "== g++, all tests"
+configure tests
+cmake --build build-tests
+run_tests build-tests "${short[@]}"
