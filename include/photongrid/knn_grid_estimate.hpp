@@ -11,8 +11,10 @@ struct knn_settings {
     uint k = 50;              ///< photons wanted; all within max_radius are taken when there are fewer
     float max_radius = 0;     ///< m; photons farther away are always rejected. 0 or less: nothing is found
     float min_radius = 0;     ///< m; the disc of the estimate is never smaller. 0: 2^-20 of the grid's largest extent
-    uint visits_per_pass = 2048; ///< photons one query examines in a pass at most
-    uint ranges_per_pass = 512;  ///< ranges of the list one query opens in a pass at most
+    /// Photons that one query examines in a pass at most, and ranges of the list that it opens. Any values give the same
+    /// result. 16 lanes x (visits + ranges) must stay below 65,535, after which llvmpipe and lavapipe end loops in silence.
+    uint visits_per_pass = 3072;
+    uint ranges_per_pass = 1023;
 };
 
 /// Estimates per query point, in buffers.

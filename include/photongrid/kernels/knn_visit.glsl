@@ -77,30 +77,10 @@ void kernel(uint i)
     uint x = cursor.w;
 
     uint left = args.visits;
-    for (uint opened = 0u; opened < args.ranges && ring != 0xFFFFFFFFu; ++opened) {
-        // Examine the rest of the open range, as far as the budget goes.
-        uint stop = end - at > left ? at + left : end;
-        left -= stop - at;
-        visited += stop - at;
-        for (; at < stop; ++at) {
-            uint photon = list(at);
-            vec4 q = positions(photon);
-            precise float dx = q.x - p.x;
-            precise float dy = q.y - p.y;
-            precise float dz = q.z - p.z;
-            precise float d2 = dx * dx + dy * dy + dz * dz;
-            d2 = d2 < 1.17549435e-38f ? 0.0f : d2; // denormals are 0 on every backend
-            if (d2 <= (held < args.wanted ? args.max_radius2 : radius2)) {
-                if (held < args.wanted && d2 > radius2)
-                    radius2 = d2;
-                ++held;
-                precise vec4 more = sum + powers(photon);
-                sum = more;
-            }
-        }
-        if (at < end)
-            break; // budget spent
-
+    uint steps = args.ranges;
+    // A loop over rings around one over rows: drivers that run lanes in lockstep pay for a whole turn of a loop, and this
+    // keeps the rows of neighbouring points in step and the end of a ring out of them.
+    while (steps > 0u && ring != 0xFFFFFFFFu) {
         // The box of cells that rings 0 … ring cover.
         uint low_x = c.x > ring ? c.x - ring : 0u;
         uint low_y = c.y > ring ? c.y - ring : 0u;
@@ -108,18 +88,74 @@ void kernel(uint i)
         uint high_x = min(c.x + ring, last_x);
         uint high_y = min(c.y + ring, last_y);
         uint high_z = min(c.z + ring, last_z);
-        float limit2 = held < args.wanted ? args.max_radius2 : radius2;
 
-        if (x > high_x) {
-            x = low_x;
-            ++y;
+        while (steps > 0u && (at < end || z <= high_z)) {
+            --steps;
+            // Examine the rest of the open range, as far as the budget goes.
+            uint stop = end - at > left ? at + left : end;
+            left -= stop - at;
+            visited += stop - at;
+            for (; at < stop; ++at) {
+                uint photon = list(at);
+                vec4 q = positions(photon);
+                precise float dx = q.x - p.x;
+                precise float dy = q.y - p.y;
+                precise float dz = q.z - p.z;
+                precise float d2 = dx * dx + dy * dy + dz * dz;
+                d2 = d2 < 1.17549435e-38f ? 0.0f : d2; // denormals are 0 on every backend
+                if (d2 <= (held < args.wanted ? args.max_radius2 : radius2)) {
+                    if (held < args.wanted && d2 > radius2)
+                        radius2 = d2;
+                    ++held;
+                    precise vec4 more = sum + powers(photon);
+                    sum = more;
+                }
+            }
+            if (at < end) {
+                steps = 0u; // budget spent
+            } else if (z <= high_z) {
+                // The next cells of this ring: all of row (z, y) on the ring's faces, else its two ends, of which the grid
+                // may lack either.
+                float limit2 = held < args.wanted ? args.max_radius2 : radius2;
+                float gap_y = gap(uy, c.y, y, args.grid.cell.y);
+                float gap_z = gap(uz, c.z, z, args.grid.cell.z);
+                float row2 = gap_y * gap_y + gap_z * gap_z;
+                float away2 = row2;
+                bool face = y + ring == c.y || y == c.y + ring || z + ring == c.z || z == c.z + ring;
+                bool lower = x + ring == c.x;
+                uint begin_x = face || lower ? x : c.x + ring;
+                uint end_x = face && CONTIGUOUS ? high_x : begin_x;
+                x = !face && lower ? c.x + ring : end_x + 1u;
+                if (begin_x == end_x) {
+                    float gap_x = gap(ux, c.x, begin_x, args.grid.cell.x);
+                    away2 = away2 + gap_x * gap_x;
+                }
+                if (away2 <= limit2 && begin_x <= last_x) {
+                    uint row = cell_number(args.grid, 0u, y, z);
+                    uvec2 first = cells(row + begin_x);
+                    uvec2 final = cells(row + end_x);
+                    at = first.x;
+                    end = final.x + final.y;
+                }
+                if (row2 > limit2)
+                    x = high_x + 1u; // no cell of the row reaches
+                if (gap_z * gap_z > limit2)
+                    y = high_y; // no row of the layer does
+                if (x > high_x) {
+                    x = low_x;
+                    ++y;
+                }
+                if (y > high_y) {
+                    y = low_y;
+                    ++z;
+                }
+            }
         }
-        if (y > high_y) {
-            y = low_y;
-            ++z;
-        }
-        if (z > high_z) {
+
+        if (steps > 0u) {
             // The ring is explored. Can any cell beyond it reach into the radius?
+            --steps;
+            float limit2 = held < args.wanted ? args.max_radius2 : radius2;
             float reach = 3.4028234e38f;
             reach = nearer(reach, high_x < last_x, ux, c.x, high_x + 1u, args.grid.cell.x);
             reach = nearer(reach, high_y < last_y, uy, c.y, high_y + 1u, args.grid.cell.y);
@@ -136,38 +172,7 @@ void kernel(uint i)
                 y = c.y > ring ? c.y - ring : 0u;
                 x = c.x > ring ? c.x - ring : 0u;
             }
-            continue;
         }
-
-        // The next cells of this ring in row (z, y): all of the row on the ring's faces, else its two ends.
-        float gap_y = gap(uy, c.y, y, args.grid.cell.y);
-        float gap_z = gap(uz, c.z, z, args.grid.cell.z);
-        if (gap_y * gap_y + gap_z * gap_z > limit2) {
-            x = high_x + 1u;
-            continue;
-        }
-        bool face = y + ring == c.y || y == c.y + ring || z + ring == c.z || z == c.z + ring;
-        uint begin_x = x;
-        uint end_x = x;
-        if (face) {
-            if (CONTIGUOUS)
-                end_x = high_x;
-            x = end_x + 1u;
-        } else if (x + ring == c.x) {
-            x = c.x + ring;
-        } else {
-            // The row's upper end, if the grid has it; x may still be at the clamped lower one.
-            begin_x = c.x + ring;
-            end_x = begin_x;
-            x = high_x + 1u;
-            if (begin_x > last_x)
-                continue;
-        }
-        uint row = cell_number(args.grid, 0u, y, z);
-        uvec2 first = cells(row + begin_x);
-        uvec2 final = cells(row + end_x);
-        at = first.x;
-        end = final.x + final.y;
     }
 
     gathered = vec4(sum.x, sum.y, sum.z, radius2);

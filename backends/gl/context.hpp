@@ -1,0 +1,306 @@
+// An OpenGL 4.5 core context without a window: EGL surfaceless, OSMesa, or the one the caller has current.
+#pragma once
+
+#include <photongrid/backends/gl/functions.hpp>
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#ifdef PHOTONGRID_HAS_OSMESA
+#include <GL/osmesa.h>
+#endif
+
+#include <array>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+namespace photongrid {
+
+/// Where the OpenGL context comes from.
+enum class gl_context_kind {
+    any,     ///< EGL, else OSMesa
+    egl,     ///< EGL without a surface
+    osmesa,  ///< OSMesa: always software
+    current, ///< the context that the caller has current, at construction and at every call
+};
+
+} // namespace photongrid
+
+namespace photongrid::gl {
+
+/// A context. `use()` makes it the thread's current one; a context belongs to one thread at a time.
+class context : public std::enable_shared_from_this<context> {
+public:
+    functions call;
+    std::string name = "gl"; ///< the backend's name: "gl" or "gl-osmesa"
+
+    context() = default;
+    context(const context&) = delete;
+    context& operator=(const context&) = delete;
+    virtual ~context() = default;
+
+    /// \throws backend_error when the context cannot be made current.
+    void use()
+    {
+        auto& last = last_used();
+        if (last.lock().get() == this && is_current())
+            return;
+        // EGL's and OSMesa's Mesa share one "current context" per thread without knowing of each other, so the one
+        // that leaves must be told.
+        if (const auto other = last.lock(); other && other.get() != this && !is_callers())
+            other->release();
+        bind();
+        last = weak_from_this();
+    }
+
+    /// True for the caller's own context, whose state may have changed since the last call.
+    virtual bool is_callers() const { return false; }
+
+protected:
+    virtual bool is_current() const = 0;
+    virtual void bind() = 0;
+    virtual void release() noexcept = 0;
+
+private:
+    static std::weak_ptr<context>& last_used()
+    {
+        thread_local std::weak_ptr<context> last;
+        return last;
+    }
+};
+
+inline std::string egl_error_name(EGLint code)
+{
+    constexpr std::array names{"EGL_SUCCESS", "EGL_NOT_INITIALIZED", "EGL_BAD_ACCESS", "EGL_BAD_ALLOC", "EGL_BAD_ATTRIBUTE", "EGL_BAD_CONFIG", "EGL_BAD_CONTEXT",
+        "EGL_BAD_CURRENT_SURFACE", "EGL_BAD_DISPLAY", "EGL_BAD_MATCH", "EGL_BAD_NATIVE_PIXMAP", "EGL_BAD_NATIVE_WINDOW", "EGL_BAD_PARAMETER", "EGL_BAD_SURFACE", "EGL_CONTEXT_LOST"};
+    const auto index = static_cast<std::size_t>(code - EGL_SUCCESS);
+    return index < names.size() ? names[index] : "EGL error " + std::to_string(code);
+}
+
+class egl_context final : public context {
+public:
+    /// An OpenGL 4.5 core context on `display`; the text of the exception says which step failed.
+    egl_context(EGLDisplay display, bool debug) : display_(display)
+    {
+        const auto fail = [](const char* step) { throw backend_error(std::string(step) + " failed with " + egl_error_name(eglGetError())); };
+        if (display == EGL_NO_DISPLAY)
+            fail("eglGetPlatformDisplay");
+        if (!eglInitialize(display, nullptr, nullptr))
+            fail("eglInitialize");
+        const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
+        for (const char* wanted : {"EGL_KHR_no_config_context", "EGL_KHR_surfaceless_context"})
+            if (extensions == nullptr || std::string_view(extensions).find(wanted) == std::string_view::npos)
+                throw backend_error(std::string("the EGL display has no ") + wanted);
+        if (!eglBindAPI(EGL_OPENGL_API))
+            fail("eglBindAPI(EGL_OPENGL_API)");
+        const std::array<EGLint, 9> wanted{EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+            EGL_CONTEXT_OPENGL_DEBUG, debug ? EGL_TRUE : EGL_FALSE, EGL_NONE};
+        context_ = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted.data());
+        if (context_ == EGL_NO_CONTEXT)
+            fail("eglCreateContext (OpenGL 4.5 core)");
+    }
+    ~egl_context() override
+    {
+        egl_context::release();
+        eglDestroyContext(display_, context_); // the display stays: terminating it would end every other context on it
+    }
+
+protected:
+    bool is_current() const override { return eglBindAPI(EGL_OPENGL_API) && eglGetCurrentContext() == context_; }
+    void bind() override
+    {
+        eglBindAPI(EGL_OPENGL_API);
+        if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
+            throw backend_error("gl: eglMakeCurrent failed with " + egl_error_name(eglGetError()) + "; is the context current in another thread?");
+    }
+    void release() noexcept override
+    {
+        if (is_current())
+            eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    }
+
+private:
+    EGLDisplay display_;
+    EGLContext context_ = EGL_NO_CONTEXT;
+};
+
+#ifdef PHOTONGRID_HAS_OSMESA
+class osmesa_context final : public context {
+public:
+    osmesa_context()
+    {
+        name = "gl-osmesa";
+        const std::array<int, 13> wanted{OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_STENCIL_BITS, 8, OSMESA_PROFILE, OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 4,
+            OSMESA_CONTEXT_MINOR_VERSION, 5, 0};
+        context_ = OSMesaCreateContextAttribs(wanted.data(), nullptr);
+        if (context_ == nullptr)
+            throw backend_error("OSMesaCreateContextAttribs (OpenGL 4.5 core) returned no context");
+    }
+    ~osmesa_context() override
+    {
+        osmesa_context::release();
+        OSMesaDestroyContext(context_);
+    }
+
+protected:
+    bool is_current() const override { return OSMesaGetCurrentContext() == context_; }
+    void bind() override
+    {
+        // OSMesa wants a window's memory; nothing is ever drawn there.
+        if (!OSMesaMakeCurrent(context_, window_.data(), GL_UNSIGNED_BYTE, 4, 4))
+            throw backend_error("gl-osmesa: OSMesaMakeCurrent failed");
+    }
+    void release() noexcept override
+    {
+        if (is_current())
+            OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0);
+    }
+
+private:
+    OSMesaContext context_ = nullptr;
+    std::array<unsigned char, 64> window_{};
+};
+#endif
+
+/// The context that the caller has current. Which one that is stays checked where EGL or OSMesa can tell.
+class callers_context final : public context {
+public:
+    callers_context() : token_(current_token()) {}
+    bool is_callers() const override { return true; }
+
+protected:
+    bool is_current() const override { return false; } // asks bind() at every call
+    void bind() override
+    {
+        if (current_token() != token_)
+            throw backend_error("gl: the context that was current when this backend was made is not current now; make it current before every call");
+    }
+    void release() noexcept override {}
+
+private:
+    static const void* current_token()
+    {
+        eglBindAPI(EGL_OPENGL_API);
+        if (const void* c = eglGetCurrentContext())
+            return c;
+#ifdef PHOTONGRID_HAS_OSMESA
+        return OSMesaGetCurrentContext();
+#else
+        return nullptr;
+#endif
+    }
+    const void* token_;
+};
+
+inline void (*find_by_egl(const char* name))() { return eglGetProcAddress(name); }
+#ifdef PHOTONGRID_HAS_OSMESA
+inline void (*find_by_osmesa(const char* name))() { return OSMesaGetProcAddress(name); }
+#endif
+
+/// True for the renderers of Mesa that run on the CPU.
+inline bool is_software(std::string_view renderer)
+{
+    for (const char* name : {"llvmpipe", "softpipe", "SWR", "Software Rasterizer"})
+        if (renderer.find(name) != std::string_view::npos)
+            return true;
+    return false;
+}
+
+/// EGL: a hardware device if there is one, else Mesa's software renderer.
+inline std::shared_ptr<context> make_egl_context(bool debug, std::string& tried)
+{
+    const auto find = [](auto& f, const char* name) { f = reinterpret_cast<std::remove_reference_t<decltype(f)>>(eglGetProcAddress(name)); };
+    const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    const std::string_view extensions = client != nullptr ? client : "";
+    std::shared_ptr<context> software;
+    const auto attempt = [&](const std::string& what, EGLDisplay display) -> std::shared_ptr<context> {
+        try {
+            auto c = std::make_shared<egl_context>(display, debug);
+            c->use();
+            c->call.load(find_by_egl);
+            if (!is_software(reinterpret_cast<const char*>(c->call.GetString(GL_RENDERER))))
+                return c;
+            if (!software)
+                software = c;
+        } catch (const backend_error& e) {
+            tried += "  EGL, " + what + ": " + e.what() + "\n";
+        }
+        return nullptr;
+    };
+    if (extensions.find("EGL_MESA_platform_surfaceless") != std::string_view::npos) {
+        if (auto c = attempt("surfaceless (eglGetPlatformDisplay)", eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)))
+            return c;
+    } else {
+        tried += "  EGL, surfaceless: the library has no EGL_MESA_platform_surfaceless (Debian packages libegl1, libegl-mesa0)\n";
+    }
+    // Drivers that know no surfaceless platform offer their devices instead.
+    PFNEGLQUERYDEVICESEXTPROC query_devices = nullptr;
+    PFNEGLQUERYDEVICESTRINGEXTPROC query_string = nullptr;
+    find(query_devices, "eglQueryDevicesEXT");
+    find(query_string, "eglQueryDeviceStringEXT");
+    if (query_devices != nullptr && query_string != nullptr && extensions.find("EGL_EXT_platform_device") != std::string_view::npos) {
+        std::array<EGLDeviceEXT, 16> devices{};
+        EGLint n = 0;
+        query_devices(static_cast<EGLint>(devices.size()), devices.data(), &n);
+        for (EGLint d = 0; d < n; ++d) {
+            const char* abilities = query_string(devices[static_cast<std::size_t>(d)], EGL_EXTENSIONS);
+            if (abilities != nullptr && std::string_view(abilities).find("EGL_MESA_device_software") != std::string_view::npos && software)
+                continue;
+            if (auto c = attempt("device " + std::to_string(d), eglGetPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(d)], nullptr)))
+                return c;
+        }
+    }
+    return software;
+}
+
+/// A context of the kind asked for, with its functions loaded, current in this thread. `find`: for kind `current`, the
+/// caller's function loader; empty: EGL's or OSMesa's, whichever has a context current.
+/// \throws backend_error that says what was tried, what failed and which package to install.
+inline std::shared_ptr<context> make_context(gl_context_kind kind, bool debug, loader find)
+{
+    if (kind == gl_context_kind::current) {
+        auto c = std::make_shared<callers_context>();
+        c->use();
+        if (find == nullptr) {
+            find = find_by_egl;
+#ifdef PHOTONGRID_HAS_OSMESA
+            if (OSMesaGetCurrentContext() != nullptr && eglGetCurrentContext() == EGL_NO_CONTEXT)
+                find = find_by_osmesa;
+#endif
+        }
+        c->call.load(find);
+        const auto* version = reinterpret_cast<const char*>(c->call.GetString(GL_VERSION));
+        if (version == nullptr)
+            throw backend_error("gl: no OpenGL context is current in this thread; make yours current before constructing the backend, or ask for gl_context_kind::any");
+        GLint major = 0, minor = 0;
+        c->call.GetIntegerv(GL_MAJOR_VERSION, &major);
+        c->call.GetIntegerv(GL_MINOR_VERSION, &minor);
+        if (major * 10 + minor < 45)
+            throw backend_error(std::string("gl: the current context is OpenGL ") + version + "; 4.5 core is needed");
+        return c;
+    }
+    std::string tried;
+    if (kind != gl_context_kind::osmesa)
+        if (auto c = make_egl_context(debug, tried)) {
+            c->use();
+            return c;
+        }
+    if (kind != gl_context_kind::egl) {
+#ifdef PHOTONGRID_HAS_OSMESA
+        try {
+            auto c = std::make_shared<osmesa_context>();
+            c->use();
+            c->call.load(find_by_osmesa);
+            return c;
+        } catch (const backend_error& e) {
+            tried += std::string("  OSMesa: ") + e.what() + " (Debian package libosmesa6)\n";
+        }
+#else
+        tried += "  OSMesa: this program was built without it (Debian package libosmesa6-dev, then configure again)\n";
+#endif
+    }
+    throw backend_error("gl: no OpenGL 4.5 core context could be had. Tried:\n" + tried
+        + "Install a driver: apt install libegl1 libgl1-mesa-dri (Mesa, also without a GPU), or libosmesa6");
+}
+
+} // namespace photongrid::gl

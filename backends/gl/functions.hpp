@@ -1,0 +1,112 @@
+// The OpenGL 4.5 core functions that this backend calls, in a table filled at run time: no loader library sees contexts of
+// EGL, OSMesa and the caller alike. Nothing here calls through a global symbol, so whatever reads pixels or buffers back
+// is counted (`functions::readbacks`).
+#pragma once
+
+#include <photongrid/backend.hpp>
+
+#include <GL/glcorearb.h>
+
+#include <cstdint>
+#include <string>
+
+namespace photongrid::gl {
+
+/// Finds an OpenGL function by name: eglGetProcAddress, OSMesaGetProcAddress, glfwGetProcAddress, ...
+using loader = void (*(*)(const char* name))();
+
+/// A function whose calls are counted.
+template <class Function>
+struct counted {
+    Function function = nullptr;
+    std::uint64_t calls = 0;
+    template <class... Args>
+    auto operator()(Args... args)
+    {
+        ++calls;
+        return function(args...);
+    }
+};
+
+// NOLINTBEGIN: a list is written once and read three times
+#define PHOTONGRID_GL_CALLS(X)                                                                                         \
+    X(GETSTRING, GetString) X(GETINTEGERV, GetIntegerv) X(GETFLOATV, GetFloatv) X(GETERROR, GetError)                  \
+    X(ENABLE, Enable) X(DISABLE, Disable) X(VIEWPORT, Viewport) X(SCISSOR, Scissor) X(COLORMASK, ColorMask)            \
+    X(BLENDFUNC, BlendFunc) X(BLENDEQUATION, BlendEquation) X(POLYGONMODE, PolygonMode) X(CLIPCONTROL, ClipControl)    \
+    X(STENCILFUNC, StencilFunc) X(STENCILOP, StencilOp) X(STENCILMASK, StencilMask)                                    \
+    X(POINTPARAMETERI, PointParameteri) X(PIXELSTOREI, PixelStorei)                                                    \
+    X(FLUSH, Flush) X(FINISH, Finish) X(TEXTUREBARRIER, TextureBarrier) X(DRAWARRAYS, DrawArrays)                      \
+    X(GENVERTEXARRAYS, GenVertexArrays) X(DELETEVERTEXARRAYS, DeleteVertexArrays) X(BINDVERTEXARRAY, BindVertexArray)  \
+    X(CREATETEXTURES, CreateTextures) X(DELETETEXTURES, DeleteTextures) X(TEXTURESTORAGE2D, TextureStorage2D)          \
+    X(TEXTUREPARAMETERI, TextureParameteri) X(TEXTURESUBIMAGE2D, TextureSubImage2D)                                    \
+    X(BINDTEXTUREUNIT, BindTextureUnit) X(BINDSAMPLER, BindSampler)                                                    \
+    X(CREATEFRAMEBUFFERS, CreateFramebuffers) X(DELETEFRAMEBUFFERS, DeleteFramebuffers)                                \
+    X(BINDFRAMEBUFFER, BindFramebuffer) X(NAMEDFRAMEBUFFERTEXTURE, NamedFramebufferTexture)                            \
+    X(NAMEDFRAMEBUFFERDRAWBUFFERS, NamedFramebufferDrawBuffers)                                                        \
+    X(NAMEDFRAMEBUFFERPARAMETERI, NamedFramebufferParameteri)                                                          \
+    X(CHECKNAMEDFRAMEBUFFERSTATUS, CheckNamedFramebufferStatus)                                                        \
+    X(CLEARNAMEDFRAMEBUFFERUIV, ClearNamedFramebufferuiv) X(CLEARNAMEDFRAMEBUFFERIV, ClearNamedFramebufferiv)          \
+    X(CLEARNAMEDFRAMEBUFFERFV, ClearNamedFramebufferfv)                                                                \
+    X(CREATEBUFFERS, CreateBuffers) X(DELETEBUFFERS, DeleteBuffers) X(NAMEDBUFFERDATA, NamedBufferData)                \
+    X(BINDBUFFER, BindBuffer) X(BINDBUFFERBASE, BindBufferBase)                                                        \
+    X(CREATEQUERIES, CreateQueries) X(DELETEQUERIES, DeleteQueries) X(BEGINQUERY, BeginQuery) X(ENDQUERY, EndQuery)    \
+    X(GETQUERYOBJECTUI64V, GetQueryObjectui64v) X(BEGINCONDITIONALRENDER, BeginConditionalRender)                      \
+    X(ENDCONDITIONALRENDER, EndConditionalRender)                                                                      \
+    X(CREATESHADER, CreateShader) X(DELETESHADER, DeleteShader) X(SHADERSOURCE, ShaderSource)                          \
+    X(COMPILESHADER, CompileShader) X(GETSHADERIV, GetShaderiv) X(GETSHADERINFOLOG, GetShaderInfoLog)                  \
+    X(CREATEPROGRAM, CreateProgram) X(DELETEPROGRAM, DeleteProgram) X(ATTACHSHADER, AttachShader)                      \
+    X(LINKPROGRAM, LinkProgram) X(GETPROGRAMIV, GetProgramiv) X(GETPROGRAMINFOLOG, GetProgramInfoLog)                  \
+    X(USEPROGRAM, UseProgram) X(PROGRAMUNIFORM4UI, ProgramUniform4ui)                                                  \
+    X(GETUNIFORMBLOCKINDEX, GetUniformBlockIndex) X(GETACTIVEUNIFORMBLOCKIV, GetActiveUniformBlockiv)                  \
+    X(DEBUGMESSAGECALLBACK, DebugMessageCallback)
+
+#define PHOTONGRID_GL_READS(X)                                                                                         \
+    X(READPIXELS, ReadPixels) X(GETTEXIMAGE, GetTexImage) X(GETTEXTUREIMAGE, GetTextureImage)                          \
+    X(GETTEXTURESUBIMAGE, GetTextureSubImage) X(GETBUFFERSUBDATA, GetBufferSubData)                                    \
+    X(GETNAMEDBUFFERSUBDATA, GetNamedBufferSubData) X(MAPBUFFER, MapBuffer) X(MAPBUFFERRANGE, MapBufferRange)          \
+    X(MAPNAMEDBUFFER, MapNamedBuffer) X(MAPNAMEDBUFFERRANGE, MapNamedBufferRange)
+
+/// The functions, by their names without "gl". Valid for the context (or the driver) that `load` asked.
+struct functions {
+#define X(TYPE, NAME) PFNGL##TYPE##PROC NAME = nullptr;
+    PHOTONGRID_GL_CALLS(X)
+#undef X
+#define X(TYPE, NAME) counted<PFNGL##TYPE##PROC> NAME;
+    PHOTONGRID_GL_READS(X)
+#undef X
+
+    /// Fills the table. \throws backend_error that names what the driver lacks.
+    void load(loader find)
+    {
+        std::string missing;
+        const auto get = [&](const char* name) {
+            auto* f = find(name);
+            if (f == nullptr)
+                missing += std::string(missing.empty() ? "" : ", ") + name;
+            return f;
+        };
+#define X(TYPE, NAME) NAME = reinterpret_cast<PFNGL##TYPE##PROC>(get("gl" #NAME));
+        PHOTONGRID_GL_CALLS(X)
+#undef X
+#define X(TYPE, NAME) NAME.function = reinterpret_cast<PFNGL##TYPE##PROC>(get("gl" #NAME));
+        PHOTONGRID_GL_READS(X)
+#undef X
+        if (!missing.empty())
+            throw backend_error("gl: the driver has no " + missing + "; OpenGL 4.5 core is needed");
+    }
+
+    /// How often pixels or buffers were read back or mapped so far.
+    std::uint64_t readbacks() const
+    {
+        std::uint64_t n = 0;
+#define X(TYPE, NAME) n += NAME.calls;
+        PHOTONGRID_GL_READS(X)
+#undef X
+        return n;
+    }
+};
+#undef PHOTONGRID_GL_CALLS
+#undef PHOTONGRID_GL_READS
+// NOLINTEND
+
+} // namespace photongrid::gl

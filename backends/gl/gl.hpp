@@ -1,0 +1,441 @@
+// The OpenGL backend: kernels as fragment programs, buffers as textures, as the paper has it, on OpenGL 4.5 core. No
+// compute shaders, no storage buffers, and nothing is read back between passes but occlusion queries.
+#pragma once
+
+#include <photongrid/backends/gl/routing.hpp>
+#include <photongrid/self_test.hpp>
+
+namespace photongrid {
+
+struct gl_options {
+    gl_context_kind context = gl_context_kind::any;
+    gl::loader find = nullptr; ///< for gl_context_kind::current: finds OpenGL functions; null: EGL's or OSMesa's own
+    uint tile = 64;            ///< run_until_done skips finished tiles of tile x tile elements (3.3); 1 to 2048
+    bool debug = false;        ///< check for errors after every pass, with the driver's own messages; slow
+};
+
+/// A backend on an OpenGL context. It and its buffers belong to one thread at a time. Every call makes its context
+/// current and leaves it so; with gl_context_kind::current the caller does, and finds OpenGL state changed.
+class gl_backend {
+public:
+    template <element T>
+    class buffer {
+    public:
+        using value_type = T;
+        buffer() = default;
+        buffer(buffer&& other) noexcept { swap(other); }
+        buffer& operator=(buffer&& other) noexcept
+        {
+            buffer(std::move(other)).swap(*this);
+            return *this;
+        }
+        std::size_t size() const noexcept { return size_; }
+
+    private:
+        friend gl_backend;
+        void swap(buffer& other) noexcept
+        {
+            std::swap(texture_, other.texture_);
+            std::swap(size_, other.size_);
+        }
+        gl::texture texture_;
+        std::size_t size_ = 0;
+    };
+
+    /// \throws backend_error that says what was tried, what failed and which package to install;
+    /// std::invalid_argument for a tile of 0 or above 2048.
+    explicit gl_backend(const gl_options& options = {}) : options_(options)
+    {
+        if (options.tile < 1 || options.tile > gl::row_width)
+            throw std::invalid_argument("gl_options: tile: " + std::to_string(options.tile) + "; it must be from 1 to " + std::to_string(gl::row_width));
+        device_ = std::make_shared<gl::device>(gl::make_context(options.context, options.debug, options.find));
+        made_ = std::make_unique<gl::programs>(device_);
+        const auto text = [&](GLenum what) {
+            const auto* s = reinterpret_cast<const char*>(device_->call.GetString(what));
+            return std::string(s != nullptr ? s : "unknown");
+        };
+        if (options.debug) {
+            device_->call.Enable(GL_DEBUG_OUTPUT);
+            device_->call.DebugMessageCallback(note_message, device_.get());
+        }
+        caps_.backend = device_->name();
+        const std::string renderer = text(GL_RENDERER);
+        caps_.device = renderer + ", OpenGL " + text(GL_VERSION);
+        caps_.software = gl::is_software(renderer);
+        caps_.max_elements = std::min(std::uint64_t{gl::row_width} * device_->max_size, (std::uint64_t{1} << 31) - 1);
+        caps_.max_route_slots = std::min(16u, device_->max_point);
+        // llvmpipe ends loops silently after that many iterations of an invocation group (lp_bld_limits.h).
+        caps_.loop_limit = renderer.find("llvmpipe") != std::string::npos ? 65535u : 0u;
+        std::tie(caps_.exact_division, caps_.exact_sqrt) = test_arithmetic(*this);
+        made_->costs.clear();
+        device_->peak_bytes = device_->bytes;
+    }
+    gl_backend(gl_backend&&) = default;
+    gl_backend& operator=(gl_backend&&) = delete;
+    ~gl_backend()
+    {
+        if (!device_)
+            return;
+        try {
+            device_->use();
+            device_->call.DeleteQueries(static_cast<GLsizei>(queries_.size()), queries_.data());
+            if (options_.debug)
+                device_->call.DebugMessageCallback(nullptr, nullptr);
+        } catch (const backend_error&) { // the caller's context is gone, and its queries with it
+        }
+    }
+
+    /// Kernel texts of your own, embedded by photongrid_embed(); they must outlive the backend.
+    void add_texts(std::span<const text_file> texts) { made_->add_texts(texts); }
+
+    template <element T>
+    buffer<T> make(std::size_t n)
+    {
+        if (n > caps_.max_elements)
+            throw backend_error(device_->name() + ": a buffer of " + std::to_string(n) + " elements was asked for; the limit of this device is " + std::to_string(caps_.max_elements)
+                + " (textures of " + std::to_string(gl::row_width) + " x " + std::to_string(device_->max_size) + ")");
+        buffer<T> b;
+        if (n == 0)
+            return b;
+        device_->use();
+        const uint width = std::min(gl::row_width, std::bit_ceil(static_cast<uint>(n)));
+        const auto rows = static_cast<uint>((n + gl::row_width - 1) / gl::row_width);
+        b.texture_ = device_->make(gl::texture_format<T>::internal, width, rows, sizeof(T), "a buffer of " + std::to_string(n) + " elements");
+        b.size_ = n;
+        return b;
+    }
+
+    template <element T, std::size_t E>
+    buffer<T> upload(std::span<const T, E> data)
+    {
+        auto b = make<T>(data.size());
+        using format = gl::texture_format<T>;
+        for_blocks(data.size(), [&](std::size_t first, GLint y, GLsizei width, GLsizei rows) {
+            device_->call.TextureSubImage2D(b.texture_.id, 0, 0, y, width, rows, format::format, format::type, data.data() + first);
+        });
+        if (!data.empty())
+            device_->check_errors("upload");
+        return b;
+    }
+
+    template <element T>
+    std::vector<T> download(const buffer<T>& b)
+    {
+        device_->use();
+        std::vector<T> data(b.size());
+        using format = gl::texture_format<T>;
+        for_blocks(data.size(), [&](std::size_t first, GLint y, GLsizei width, GLsizei rows) {
+            const auto bytes = sizeof(T) * static_cast<std::size_t>(width) * static_cast<std::size_t>(rows);
+            device_->call.GetTextureSubImage(b.texture_.id, 0, 0, y, 0, width, rows, 1, format::format, format::type, static_cast<GLsizei>(bytes), data.data() + first);
+        });
+        device_->check_errors("download");
+        return data;
+    }
+
+    template <gather_kernel K, class Reads, class Writes>
+    void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
+    {
+        detail::check_call<K>("run", l, reads, writes);
+        device_->use();
+        const GLuint program = made_->get<K>(gl::verb::run, l.switches);
+        count_passes<K>(1);
+        if (l.elements == 0)
+            return;
+        bind<K>(args, reads, writes);
+        if (target<K>(reads, writes))
+            device_->call.TextureBarrier();
+        draw(program, l);
+        check<K>("run");
+    }
+
+    /// Tiles with occlusion queries (3.3): each tile of a pass is drawn only if the pass before found an element of it
+    /// not done, which the device itself decides. The host looks at the queries once in `query_ring` passes.
+    template <iterative_kernel K, class Reads, class Writes>
+    progress run_until_done(launch l, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
+    {
+        detail::check_call<K>("run_until_done", l, reads, writes);
+        device_->use();
+        const GLuint program = made_->get<K>(gl::verb::until_done, l.switches);
+        progress p;
+        if (l.elements == 0) {
+            p.finished = true;
+            return p;
+        }
+        functions_t& gl = device_->call;
+        bind<K>(args, reads, writes);
+        target<K>(reads, writes);
+        std::vector<region> tiles = tiles_of(l);
+        const std::size_t stride = tiles.size() + 1; // the last of a set is for the final question
+        make_queries(query_ring * stride);
+        const auto query = [&](uint pass, std::size_t tile) { return queries_[pass % query_ring * stride + tile]; };
+        std::vector<char> live(tiles.size(), 1);
+        set_launch(program, l);
+        while (!p.finished && p.passes < max_passes) {
+            const uint begin = p.passes;
+            const uint end = begin + std::min(query_ring, max_passes - begin);
+            gl.Enable(GL_SCISSOR_TEST);
+            for (uint pass = begin; pass < end; ++pass) {
+                gl.TextureBarrier(); // states are read where the last pass wrote them
+                for (std::size_t t = 0; t < tiles.size(); ++t) {
+                    if (!live[t])
+                        continue;
+                    if (pass > begin)
+                        gl.BeginConditionalRender(query(pass - 1, t), GL_QUERY_WAIT);
+                    gl.BeginQuery(GL_SAMPLES_PASSED, query(pass, t));
+                    gl.Scissor(tiles[t].x, tiles[t].y, tiles[t].width, tiles[t].height);
+                    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+                    gl.EndQuery(GL_SAMPLES_PASSED);
+                    if (pass > begin)
+                        gl.EndConditionalRender();
+                }
+            }
+            gl.Disable(GL_SCISSOR_TEST);
+            p.passes = end;
+            // Asked for few passes: is everything done after the last of them?
+            const GLuint rest = end == max_passes ? query(end - 1, tiles.size()) : 0;
+            if (rest != 0)
+                ask_not_done<K>(l, args, rest);
+            ++query_polls_;
+            for (uint pass = begin; pass < end; ++pass) {
+                std::uint64_t active = 0;
+                for (std::size_t t = 0; t < tiles.size(); ++t)
+                    if (live[t]) {
+                        const std::uint64_t n = result(query(pass, t));
+                        live[t] = n != 0;
+                        active += n;
+                    }
+                p.active.push_back(active);
+            }
+            if (rest != 0)
+                p.finished = result(rest) == 0;
+            while (!p.active.empty() && p.active.back() == 0) {
+                p.active.pop_back();
+                p.finished = true;
+            }
+        }
+        if (max_passes == 0) {
+            const GLuint rest = query(0, tiles.size());
+            ask_not_done<K>(l, args, rest);
+            ++query_polls_;
+            p.finished = result(rest) == 0;
+        }
+        p.passes = static_cast<uint>(p.active.size());
+        count_passes<K>(p.passes);
+        check<K>("run_until_done");
+        return p;
+    }
+
+    template <predicate_kernel K, class Reads>
+    std::uint64_t count(launch l, const typename K::Params& args, Reads reads)
+    {
+        detail::check_call<K>("count", l, reads, std::tuple<>{});
+        device_->use();
+        const GLuint program = made_->get<K>(gl::verb::holds, l.switches);
+        count_passes<K>(1);
+        if (l.elements == 0)
+            return 0;
+        if (std::uint64_t{l.first} + l.elements > caps_.max_elements)
+            throw backend_error(device_->name() + ": count: elements up to " + std::to_string(std::uint64_t{l.first} + l.elements) + "; the limit of this device is " + std::to_string(caps_.max_elements));
+        make_queries(1);
+        bind<K>(args, reads, std::tuple<>{});
+        draw_counted(program, l, queries_[0]);
+        check<K>("count");
+        ++query_polls_;
+        return result(queries_[0]);
+    }
+
+    template <route_kernel K, class Reads>
+    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots, buffer<glm::vec4>& totals)
+    {
+        detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
+        if (std::uint64_t{l.first} + l.elements > caps_.max_elements)
+            throw backend_error(device_->name() + ": route: draws up to " + std::to_string(std::uint64_t{l.first} + l.elements) + "; the limit of this device is " + std::to_string(caps_.max_elements));
+        device_->use();
+        gl::routing pass{*device_, *made_, made_->get<K>(gl::verb::route_payload, l.switches), made_->get<K>(gl::verb::route_amount, l.switches), l, destinations, m};
+        count_passes<K>(1);
+        bind<K>(args, reads, std::tuple<>{});
+        if (totals.size() > 0)
+            pass.sum(totals.texture_);
+        if (slots.size() > 0)
+            pass.fill(slots.texture_, slots.size());
+        check<K>("route");
+    }
+
+    /// Compiles kernel K for every verb that it serves, without running it. \throws backend_error with the compiler's log.
+    template <kernel_struct K>
+    void compile(uint switches = ~0u)
+    {
+        device_->use();
+        if constexpr (gather_kernel<K>)
+            made_->get<K>(gl::verb::run, switches);
+        if constexpr (iterative_kernel<K>) {
+            made_->get<K>(gl::verb::until_done, switches);
+            made_->get<K>(gl::verb::not_done, switches);
+        }
+        if constexpr (predicate_kernel<K>)
+            made_->get<K>(gl::verb::holds, switches);
+        if constexpr (route_kernel<K>) {
+            made_->get<K>(gl::verb::route_payload, switches);
+            made_->get<K>(gl::verb::route_amount, switches);
+        }
+    }
+
+    void finish()
+    {
+        device_->use();
+        device_->call.Finish();
+        device_->check_errors("finish");
+    }
+    const capabilities& caps() const { return caps_; }
+    std::uint64_t bytes() const { return device_->bytes; }
+    std::uint64_t peak_bytes() const { return device_->peak_bytes; }
+    const std::map<std::string, kernel_cost>& costs() const { return made_->costs; }
+
+    /// How often pixels or buffers were read back or mapped: only `download` does.
+    std::uint64_t readbacks() const { return device_->call.readbacks(); }
+    /// How often the host waited for results of occlusion queries.
+    std::uint64_t query_polls() const { return query_polls_; }
+
+private:
+    using functions_t = gl::functions;
+    struct region {
+        GLint x, y;
+        GLsizei width, height;
+    };
+    static constexpr uint query_ring = 8; ///< passes between two looks at the queries
+
+    /// Calls f(first element, row, width, rows) for the full rows of a buffer and for its last, shorter one.
+    template <class F>
+    static void for_blocks(std::size_t n, F&& f)
+    {
+        const std::size_t full = n / gl::row_width;
+        const std::size_t rest = n % gl::row_width;
+        if (full > 0)
+            f(std::size_t{0}, 0, static_cast<GLsizei>(gl::row_width), static_cast<GLsizei>(full));
+        if (rest > 0)
+            f(full * gl::row_width, static_cast<GLint>(full), static_cast<GLsizei>(rest), 1);
+    }
+
+    /// The texels that a launch covers: part of one row, or whole rows (the program drops what is outside).
+    static region region_of(const launch& l)
+    {
+        const uint last = l.first + (l.elements - 1);
+        const uint row = l.first / gl::row_width, end = last / gl::row_width + 1;
+        if (end - row == 1)
+            return {static_cast<GLint>(l.first % gl::row_width), static_cast<GLint>(row), static_cast<GLsizei>(l.elements), 1};
+        return {0, static_cast<GLint>(row), static_cast<GLsizei>(gl::row_width), static_cast<GLsizei>(end - row)};
+    }
+    /// Tiles of about tile x tile elements; wider where there are few rows.
+    std::vector<region> tiles_of(const launch& l) const
+    {
+        const region all = region_of(l);
+        const auto high = std::min(static_cast<GLsizei>(options_.tile), all.height);
+        const auto wide = static_cast<GLsizei>(std::bit_ceil(options_.tile * options_.tile / static_cast<uint>(high)));
+        std::vector<region> tiles;
+        for (GLint y = all.y; y < all.y + all.height; y += high)
+            for (GLint x = all.x; x < all.x + all.width; x += wide)
+                tiles.push_back({x, y, std::min(wide, all.x + all.width - x), std::min(high, all.y + all.height - y)});
+        return tiles;
+    }
+
+    template <class K, class Reads, class Writes>
+    void bind(const typename K::Params& args, const Reads& reads, const Writes& writes)
+    {
+        static_assert(input_count<K> <= gl::max_inputs && output_count<K> <= gl::max_outputs, "OpenGL passes have at most 8 inputs and 8 outputs");
+        functions_t& gl = device_->call;
+        device_->set_uniforms(&args, sizeof args);
+        if constexpr (input_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
+            (gl.BindTextureUnit(I, std::get<I>(reads).texture_.id), ...);
+        }(std::make_index_sequence<input_count<K>>{});
+        if constexpr (std::tuple_size_v<Writes> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
+            ((K::is_state(slot<I>{}) ? gl.BindTextureUnit(gl::state_unit + I, std::get<I>(writes).texture_.id) : void()), ...);
+        }(std::make_index_sequence<output_count<K>>{});
+    }
+    /// Makes the written buffers the render targets. True when the pass also reads one of them.
+    template <class K, class Reads, class Writes>
+    bool target(const Reads& reads, const Writes& writes)
+    {
+        static_assert(output_count<K> > 0, "a kernel needs an OUTPUT or STATE to run");
+        bool feedback = false;
+        std::array<GLuint, output_count<K>> targets{};
+        [&]<std::size_t... I>(std::index_sequence<I...>) {
+            ((targets[I] = std::get<I>(writes).texture_.id, feedback = feedback || K::is_state(slot<I>{})), ...);
+        }(std::make_index_sequence<output_count<K>>{});
+        if constexpr (input_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
+            ((feedback = feedback || std::find(targets.begin(), targets.end(), std::get<I>(reads).texture_.id) != targets.end()), ...);
+        }(std::make_index_sequence<input_count<K>>{});
+        device_->draw_into(targets);
+        return feedback;
+    }
+    void set_launch(GLuint program, const launch& l)
+    {
+        // The triangle covers the viewport exactly, so no fragment outside the launch's rectangle is computed;
+        // gl_FragCoord counts from the target's corner and is the texel.
+        const region r = region_of(l);
+        device_->call.Viewport(r.x, r.y, r.width, r.height);
+        device_->call.UseProgram(program);
+        device_->call.ProgramUniform4ui(program, 0, l.first, l.elements, 0, 0);
+    }
+    void draw(GLuint program, const launch& l)
+    {
+        set_launch(program, l);
+        device_->call.DrawArrays(GL_TRIANGLES, 0, 3);
+    }
+    void draw_counted(GLuint program, const launch& l, GLuint query)
+    {
+        const region r = region_of(l);
+        device_->draw_into_nothing(static_cast<uint>(r.y + r.height));
+        device_->call.BeginQuery(GL_SAMPLES_PASSED, query);
+        draw(program, l);
+        device_->call.EndQuery(GL_SAMPLES_PASSED);
+    }
+    /// Counts the elements not done into `query`, by a pass that writes nothing. States stay bound.
+    template <class K>
+    void ask_not_done(const launch& l, const typename K::Params&, GLuint query)
+    {
+        draw_counted(made_->get<K>(gl::verb::not_done, l.switches), l, query);
+    }
+
+    void make_queries(std::size_t n)
+    {
+        if (n <= queries_.size())
+            return;
+        const std::size_t old = queries_.size();
+        queries_.resize(n);
+        device_->call.CreateQueries(GL_SAMPLES_PASSED, static_cast<GLsizei>(n - old), queries_.data() + old);
+    }
+    std::uint64_t result(GLuint query)
+    {
+        GLuint64 n = 0;
+        device_->call.GetQueryObjectui64v(query, GL_QUERY_RESULT, &n);
+        return n;
+    }
+
+    template <class K>
+    void count_passes(uint passes)
+    {
+        made_->costs[std::string(kernel_name<K>())].passes += passes;
+    }
+    template <class K>
+    void check(const char* verb)
+    {
+        if (options_.debug)
+            device_->check_errors(std::string(verb) + "<" + std::string(kernel_name<K>()) + ">");
+    }
+    static void APIENTRY note_message(GLenum, GLenum, GLuint, GLenum severity, GLsizei length, const GLchar* text, const void* user)
+    {
+        if (severity == GL_DEBUG_SEVERITY_HIGH)
+            static_cast<gl::device*>(const_cast<void*>(user))->messages += std::string(text, static_cast<std::size_t>(std::max(length, 0))) + "\n";
+    }
+
+    gl_options options_;
+    std::shared_ptr<gl::device> device_;
+    std::unique_ptr<gl::programs> made_;
+    capabilities caps_;
+    std::vector<GLuint> queries_;
+    std::uint64_t query_polls_ = 0;
+};
+
+static_assert(backend<gl_backend>);
+
+} // namespace photongrid

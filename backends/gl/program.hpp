@@ -1,0 +1,166 @@
+// Kernels as OpenGL programs: each is compiled once per verb and set of switches.
+#pragma once
+
+#include <photongrid/backend_texts/gl.hpp>
+#include <photongrid/backends/gl/device.hpp>
+#include <photongrid/kernel_source.hpp>
+
+#include <chrono>
+
+namespace photongrid::gl {
+
+/// What a kernel's program does.
+enum class verb { run, until_done, not_done, holds, route_payload, route_amount };
+
+/// A shader. \throws backend_error whose text is the compiler's log with each message at its own file and line.
+inline GLuint compile(device& d, GLenum stage, const spliced_source& source, const std::string& what)
+{
+    functions& gl = d.call;
+    const GLuint shader = gl.CreateShader(stage);
+    const char* text = source.text.c_str();
+    gl.ShaderSource(shader, 1, &text, nullptr);
+    gl.CompileShader(shader);
+    GLint good = 0, length = 0;
+    gl.GetShaderiv(shader, GL_COMPILE_STATUS, &good);
+    if (good)
+        return shader;
+    gl.GetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+    gl.GetShaderInfoLog(shader, length, nullptr, log.data());
+    log.resize(std::min(log.find('\0'), log.size()));
+    gl.DeleteShader(shader);
+    throw backend_error(d.name() + ": " + what + ": the OpenGL compiler refuses it:\n" + translate_log(log, source));
+}
+
+/// A program of two shaders, which it takes over. \throws backend_error with the linker's log.
+inline GLuint link(device& d, GLuint vertex, GLuint fragment, const std::string& what)
+{
+    functions& gl = d.call;
+    const GLuint program = gl.CreateProgram();
+    gl.AttachShader(program, vertex);
+    gl.AttachShader(program, fragment);
+    gl.LinkProgram(program);
+    gl.DeleteShader(vertex);
+    gl.DeleteShader(fragment);
+    GLint good = 0, length = 0;
+    gl.GetProgramiv(program, GL_LINK_STATUS, &good);
+    if (good)
+        return program;
+    gl.GetProgramiv(program, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+    gl.GetProgramInfoLog(program, length, nullptr, log.data());
+    log.resize(std::min(log.find('\0'), log.size()));
+    gl.DeleteProgram(program);
+    throw backend_error(d.name() + ": " + what + ": the OpenGL linker refuses it:\n" + log);
+}
+
+/// The programs of one backend, made when first asked for.
+class programs {
+public:
+    explicit programs(std::shared_ptr<device> d) : device_(std::move(d))
+    {
+        add_texts(kernel_texts);
+        add_texts(gl_texts);
+    }
+    programs(const programs&) = delete;
+    programs& operator=(const programs&) = delete;
+    ~programs()
+    {
+        try {
+            device_->use();
+        } catch (const backend_error&) {
+            return;
+        }
+        for (const auto& [key, id] : kernels_)
+            device_->call.DeleteProgram(id);
+        for (const auto& [key, id] : own_)
+            device_->call.DeleteProgram(id);
+    }
+
+    /// More kernel texts, in addition to the library's. They must outlive the backend.
+    void add_texts(std::span<const text_file> texts) { library_.insert(library_.end(), texts.begin(), texts.end()); }
+
+    /// The program of kernel K for verb `v` with these switches on.
+    template <kernel_struct K>
+    GLuint get(verb v, uint switches)
+    {
+        switches &= known_switches<K>();
+        const auto key = std::tuple(K::path.data(), v, switches);
+        if (const auto found = kernels_.find(key); found != kernels_.end())
+            return found->second;
+        const auto start = std::chrono::steady_clock::now();
+        const std::string name(kernel_name<K>());
+        const std::string what = "kernel " + name;
+        const text_file& kernel = find_kernel_text(K::path, library_);
+        std::string defines = "#define SWITCHES_ " + std::to_string(switches) + "u\n";
+        GLuint program = 0;
+        if (v == verb::route_payload || v == verb::route_amount) {
+            const GLuint vertex = gl::compile(*device_, GL_VERTEX_SHADER, splice(text("vertex_prelude.glsl"), defines, kernel, text("vertex_epilogue.glsl"), library_), what + " (vertex stage)");
+            program = link(*device_, vertex, compile_own(GL_FRAGMENT_SHADER, v == verb::route_payload ? "route_payload.glsl" : "route_amount.glsl"), what);
+        } else {
+            constexpr std::array verbs{"RUN_", "UNTIL_DONE_", "NOT_DONE_", "HOLDS_"};
+            defines += std::string("#define ") + verbs[static_cast<std::size_t>(v)] + "\n#define LOAD_STATES_(at) " + load_states<K>() + "\n";
+            const GLuint fragment = gl::compile(*device_, GL_FRAGMENT_SHADER, splice(text("fragment_prelude.glsl"), defines, kernel, text("fragment_epilogue.glsl"), library_), what + " (fragment stage)");
+            program = link(*device_, compile_own(GL_VERTEX_SHADER, "screen.glsl"), fragment, what);
+        }
+        kernels_.emplace(key, program);
+        check_layout(program, sizeof(typename K::Params), what);
+        costs[name].compile_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        return program;
+    }
+
+    /// A program of this backend's own, whose fragment shader is `file`.
+    GLuint own(const char* file)
+    {
+        GLuint& program = own_[file];
+        if (program == 0)
+            program = link(*device_, compile_own(GL_VERTEX_SHADER, "screen.glsl"), compile_own(GL_FRAGMENT_SHADER, file), file);
+        return program;
+    }
+
+    std::map<std::string, kernel_cost> costs;
+
+private:
+    const text_file& text(std::string_view name) const { return find_kernel_text(name, library_); }
+    GLuint compile_own(GLenum stage, const char* file)
+    {
+        photongrid::detail::splicer s(library_);
+        s.append(text(file));
+        return gl::compile(*device_, stage, s.take(), file);
+    }
+    template <class K>
+    static constexpr uint known_switches()
+    {
+        return []<std::size_t... B>(std::index_sequence<B...>) {
+            return ((requires(K k) { k.turn(slot<B>{}, true); } ? 1u << B : 0u) | ...);
+        }(std::make_index_sequence<32>{});
+    }
+    template <class K>
+    static std::string load_states()
+    {
+        std::string calls;
+        if constexpr (output_count<K> > 0) [&]<std::size_t... B>(std::index_sequence<B...>) {
+            ((calls += K::is_state(slot<B>{}) ? "load_state_" + std::to_string(B) + "(at); " : ""), ...);
+        }(std::make_index_sequence<output_count<K>>{});
+        return calls;
+    }
+    /// Params reach the program as bytes: the driver's layout must be C++'s.
+    void check_layout(GLuint program, std::size_t size, const std::string& what)
+    {
+        const GLuint block = device_->call.GetUniformBlockIndex(program, "args_block_");
+        if (block == GL_INVALID_INDEX)
+            return;
+        GLint bytes = 0;
+        device_->call.GetActiveUniformBlockiv(program, block, GL_UNIFORM_BLOCK_DATA_SIZE, &bytes);
+        if (static_cast<std::size_t>(bytes) != (size + 15) / 16 * 16)
+            throw backend_error(device_->name() + ": " + what + ": its Params have " + std::to_string(size) + " bytes in C++ and " + std::to_string(bytes)
+                + " in std140; put members of 16 bytes first and use no vec3 (docs/design.md)");
+    }
+
+    std::shared_ptr<device> device_;
+    std::vector<text_file> library_;
+    std::map<std::tuple<const char*, verb, uint>, GLuint> kernels_;
+    std::map<std::string, GLuint> own_;
+};
+
+} // namespace photongrid::gl
