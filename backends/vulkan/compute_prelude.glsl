@@ -1,0 +1,93 @@
+#version 450
+// The kernel dialect read as a Vulkan compute shader: one invocation an element. The backend defines, before this file,
+//   GROUP      invocations in a workgroup      SWITCHES   the bits of launch.switches
+//   OUTPUTS    how many OUTPUTs and STATEs the kernel has
+//   TEXELS     1: inputs are read as texel buffers, 0: as storage buffers
+// Bindings: 0 to 7 inputs, 8 to 15 outputs and states, 16 up the verb's own. No buffer is `restrict`: a pass may read
+// one frame of a buffer and write another.
+#define inline
+// Every float operation is marked NoContraction in the SPIR-V (spirv.hpp), so the word adds nothing; and glslang 12 loops
+// for ever, out of memory, where precise values depend on each other in a circle (eye_bounce.glsl).
+#define precise
+layout(local_size_x = GROUP) in;
+
+// launch_.x: elements, y: first element, z: workgroups, w: where the first element's outputs go.
+// The parameters stand last: what follows a nested struct is padded differently in std430 and C++.
+#define PARAMS(P) layout(push_constant) uniform launch_block_ { uvec4 launch_; P args; };
+
+#if TEXELS
+// lavapipe fetches a texel of all its lanes by vector loads, but a storage buffer word by word and lane by lane.
+#define BUFFER_float samplerBuffer
+#define BUFFER_vec2 samplerBuffer
+#define BUFFER_vec4 samplerBuffer
+#define BUFFER_uint usamplerBuffer
+#define BUFFER_uvec2 usamplerBuffer
+#define BUFFER_uvec4 usamplerBuffer
+#define INPUT(B, T, NAME)                                                                    \
+    layout(binding = B) uniform BUFFER_##T NAME##_data_;                                     \
+    T NAME(uint i) { return T(texelFetch(NAME##_data_, int(i))); }
+#else
+#define INPUT(B, T, NAME)                                                                    \
+    layout(std430, binding = B) readonly buffer NAME##_block_ { T NAME##_data_[]; };         \
+    T NAME(uint i) { return NAME##_data_[i]; }
+#endif
+
+#define OUTPUT(B, T, NAME)                                                                   \
+    T NAME;                                                                                  \
+    layout(std430, binding = 8 + B) buffer NAME##_block_ { T NAME##_data_[]; };              \
+    void load_##B(uint i) { NAME = T(0); }                                                   \
+    void store_##B(uint i) { NAME##_data_[i] = NAME; }
+
+#define STATE(B, T, NAME)                                                                    \
+    T NAME;                                                                                  \
+    layout(std430, binding = 8 + B) buffer NAME##_block_ { T NAME##_data_[]; };              \
+    void load_##B(uint i) { NAME = NAME##_data_[i]; }                                        \
+    void store_##B(uint i) { NAME##_data_[i] = NAME; }
+
+#define SWITCH(B, NAME) const bool NAME = ((SWITCHES >> B) & 1u) != 0u;
+
+#if OUTPUTS > 8
+#error a kernel has more than 8 outputs and states
+#endif
+// The calls of each kernel's load_B and store_B, for the verbs.
+#define EACH_1(F, i) F##0(i);
+#define EACH_2(F, i) EACH_1(F, i) F##1(i);
+#define EACH_3(F, i) EACH_2(F, i) F##2(i);
+#define EACH_4(F, i) EACH_3(F, i) F##3(i);
+#define EACH_5(F, i) EACH_4(F, i) F##4(i);
+#define EACH_6(F, i) EACH_5(F, i) F##5(i);
+#define EACH_7(F, i) EACH_6(F, i) F##6(i);
+#define EACH_8(F, i) EACH_7(F, i) F##7(i);
+#if OUTPUTS == 0
+#define LOAD_ALL(i)
+#define STORE_ALL(i)
+#elif OUTPUTS == 1
+#define LOAD_ALL(i) EACH_1(load_, i)
+#define STORE_ALL(i) EACH_1(store_, i)
+#elif OUTPUTS == 2
+#define LOAD_ALL(i) EACH_2(load_, i)
+#define STORE_ALL(i) EACH_2(store_, i)
+#elif OUTPUTS == 3
+#define LOAD_ALL(i) EACH_3(load_, i)
+#define STORE_ALL(i) EACH_3(store_, i)
+#elif OUTPUTS == 4
+#define LOAD_ALL(i) EACH_4(load_, i)
+#define STORE_ALL(i) EACH_4(store_, i)
+#elif OUTPUTS == 5
+#define LOAD_ALL(i) EACH_5(load_, i)
+#define STORE_ALL(i) EACH_5(store_, i)
+#elif OUTPUTS == 6
+#define LOAD_ALL(i) EACH_6(load_, i)
+#define STORE_ALL(i) EACH_6(store_, i)
+#elif OUTPUTS == 7
+#define LOAD_ALL(i) EACH_7(load_, i)
+#define STORE_ALL(i) EACH_7(store_, i)
+#else
+#define LOAD_ALL(i) EACH_8(load_, i)
+#define STORE_ALL(i) EACH_8(store_, i)
+#endif
+
+// The number of this workgroup, and of this invocation among all; groups are laid out in two dimensions because one holds
+// 65,535 at most.
+uint group_() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
+uint element_() { return group_() * uint(GROUP) + gl_LocalInvocationIndex; }

@@ -1,0 +1,345 @@
+// Finding a Vulkan device and opening it. Plain C API: <vulkan/vulkan_raii.hpp> takes seconds to compile in every file.
+#pragma once
+
+#include <photongrid/backends/vulkan/errors.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace photongrid {
+
+/// Which device to open, and how.
+struct vulkan_options {
+    std::string device{};       ///< "": the best (discrete, integrated, virtual, CPU); else an index or a part of the name
+    bool hardware_only = false; ///< refuse devices that are a CPU
+    bool validation = false;    ///< run the Khronos validation layer (core and synchronization) and collect its messages
+    bool staging = false;       ///< copy through staging buffers even where the host can reach the device's memory
+};
+
+/// A device that the caller has opened, and goes on owning. The instance must be for Vulkan 1.1 or later, the queue of a
+/// family with compute; nobody else may use the queue at the same time.
+struct vulkan_handles {
+    VkInstance instance = VK_NULL_HANDLE;
+    VkPhysicalDevice physical_device = VK_NULL_HANDLE;
+    VkDevice device = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;
+    std::uint32_t queue_family = 0;
+};
+
+/// A device as `vulkan_devices()` lists it.
+struct vulkan_device_info {
+    std::uint32_t index = 0;
+    std::string name;
+    std::string type;        ///< "discrete", "integrated", "virtual", "cpu", "other"
+    std::string driver;      ///< its name and version
+    std::string api_version; ///< "1.3.230"
+    bool software = false;   ///< true where the device is a CPU
+    std::uint64_t max_buffer_bytes = 0;
+    std::uint64_t memory_bytes = 0;         ///< largest device-local heap
+    std::uint32_t max_storage_buffers = 0;  ///< that one pass can bind
+    std::string unusable;                   ///< why this backend cannot use it; empty: it can
+};
+
+namespace vulkan_detail {
+    /// What the validation layer said.
+    struct message_log {
+        std::mutex mutex;
+        std::vector<std::string> messages;
+    };
+
+    inline VKAPI_ATTR VkBool32 VKAPI_CALL collect_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+        const VkDebugUtilsMessengerCallbackDataEXT* data, void* user)
+    {
+        auto& log = *static_cast<message_log*>(user);
+        const std::scoped_lock lock(log.mutex);
+        log.messages.emplace_back(data->pMessage ? data->pMessage : "");
+        return VK_FALSE;
+    }
+
+    /// An instance of our own, or a caller's.
+    class instance {
+    public:
+        /// \throws backend_error when there is no driver, or no validation layer where one is wanted.
+        explicit instance(bool validation)
+        {
+            std::uint32_t version = VK_API_VERSION_1_0;
+            if (const auto f = reinterpret_cast<PFN_vkEnumerateInstanceVersion>(vkGetInstanceProcAddr(nullptr, "vkEnumerateInstanceVersion")))
+                f(&version);
+            if (version < VK_API_VERSION_1_1)
+                throw backend_error("vulkan: the loader knows Vulkan 1.0 only; 1.1 is needed. Update it (Debian: apt install libvulkan1)");
+            VkApplicationInfo app{};
+            app.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+            app.pApplicationName = "photongrid";
+            app.apiVersion = VK_API_VERSION_1_1;
+            VkInstanceCreateInfo info{};
+            info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+            info.pApplicationInfo = &app;
+            std::vector<const char*> extensions;
+            constexpr const char* portability = "VK_KHR_portability_enumeration";
+            if (has_extension(nullptr, portability)) {
+                extensions.push_back(portability);
+                info.flags = 1; // VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR: MoltenVK counts too
+            }
+
+            constexpr const char* layer = "VK_LAYER_KHRONOS_validation";
+            VkDebugUtilsMessengerCreateInfoEXT messenger{};
+            VkValidationFeaturesEXT features{};
+            constexpr VkValidationFeatureEnableEXT synchronization = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+            if (validation) {
+                if (!has_layer(layer))
+                    throw backend_error(std::string("vulkan: validation was asked for, but the layer ") + layer + " is not installed (Debian: apt install vulkan-validationlayers)");
+                extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+                if (has_extension(layer, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME))
+                    extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
+                log_ = std::make_unique<message_log>();
+                messenger.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+                messenger.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+                messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+                messenger.pfnUserCallback = collect_message;
+                messenger.pUserData = log_.get();
+                features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
+                features.enabledValidationFeatureCount = 1;
+                features.pEnabledValidationFeatures = &synchronization;
+                features.pNext = &messenger;
+                info.pNext = &features;
+                info.enabledLayerCount = 1;
+                info.ppEnabledLayerNames = &layer;
+            }
+            info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+            info.ppEnabledExtensionNames = extensions.data();
+            const VkResult r = vkCreateInstance(&info, nullptr, &handle_);
+            if (r != VK_SUCCESS)
+                throw backend_error("vulkan: vkCreateInstance: " + result_name(r) + "; drivers were sought in " + driver_search_paths() + ". " + install_hint);
+            owned_ = true;
+            if (validation) {
+                const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(handle_, "vkCreateDebugUtilsMessengerEXT"));
+                if (create)
+                    create(handle_, &messenger, nullptr, &messenger_);
+            }
+        }
+        explicit instance(VkInstance callers) : handle_(callers) {}
+        instance(const instance&) = delete;
+        instance& operator=(const instance&) = delete;
+        ~instance()
+        {
+            if (messenger_)
+                if (const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(handle_, "vkDestroyDebugUtilsMessengerEXT")))
+                    destroy(handle_, messenger_, nullptr);
+            if (owned_)
+                vkDestroyInstance(handle_, nullptr);
+        }
+
+        VkInstance get() const { return handle_; }
+        std::vector<std::string> messages() const
+        {
+            if (!log_)
+                return {};
+            const std::scoped_lock lock(log_->mutex);
+            return log_->messages;
+        }
+        std::vector<VkPhysicalDevice> physical_devices() const
+        {
+            std::uint32_t n = 0;
+            const VkResult r = vkEnumeratePhysicalDevices(handle_, &n, nullptr);
+            if (r == VK_ERROR_INITIALIZATION_FAILED) // some loaders say so where drivers find no device
+                return {};
+            check(r, "vkEnumeratePhysicalDevices");
+            std::vector<VkPhysicalDevice> devices(n);
+            if (n > 0 && vkEnumeratePhysicalDevices(handle_, &n, devices.data()) < VK_SUCCESS)
+                n = 0;
+            devices.resize(n);
+            return devices;
+        }
+
+    private:
+        static bool has_layer(const char* name)
+        {
+            std::uint32_t n = 0;
+            vkEnumerateInstanceLayerProperties(&n, nullptr);
+            std::vector<VkLayerProperties> layers(n);
+            vkEnumerateInstanceLayerProperties(&n, layers.data());
+            return std::any_of(layers.begin(), layers.end(), [&](const auto& l) { return std::strcmp(l.layerName, name) == 0; });
+        }
+        static bool has_extension(const char* layer, const char* name)
+        {
+            std::uint32_t n = 0;
+            vkEnumerateInstanceExtensionProperties(layer, &n, nullptr);
+            std::vector<VkExtensionProperties> extensions(n);
+            vkEnumerateInstanceExtensionProperties(layer, &n, extensions.data());
+            return std::any_of(extensions.begin(), extensions.end(), [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+        }
+        std::unique_ptr<message_log> log_;
+        VkInstance handle_ = VK_NULL_HANDLE;
+        VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+        bool owned_ = false;
+    };
+
+    inline bool device_has_extension(VkPhysicalDevice d, const char* name)
+    {
+        std::uint32_t n = 0;
+        vkEnumerateDeviceExtensionProperties(d, nullptr, &n, nullptr);
+        std::vector<VkExtensionProperties> extensions(n);
+        vkEnumerateDeviceExtensionProperties(d, nullptr, &n, extensions.data());
+        return std::any_of(extensions.begin(), extensions.end(), [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+    }
+
+    /// The first queue family with compute; nothing if there is none.
+    inline std::optional<std::uint32_t> compute_family(VkPhysicalDevice d)
+    {
+        std::uint32_t n = 0;
+        vkGetPhysicalDeviceQueueFamilyProperties(d, &n, nullptr);
+        std::vector<VkQueueFamilyProperties> families(n);
+        vkGetPhysicalDeviceQueueFamilyProperties(d, &n, families.data());
+        for (std::uint32_t f = 0; f < n; ++f)
+            if ((families[f].queueFlags & VK_QUEUE_COMPUTE_BIT) != 0 && families[f].queueCount > 0)
+                return f;
+        return std::nullopt;
+    }
+
+    /// 3 for a discrete device down to 0 for a CPU.
+    inline int rank(VkPhysicalDeviceType t)
+    {
+        return t == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ? 4 : t == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU ? 3 : t == VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU ? 2 : t == VK_PHYSICAL_DEVICE_TYPE_CPU ? 0 : 1;
+    }
+
+    inline vulkan_device_info describe(VkPhysicalDevice d, std::uint32_t index)
+    {
+        VkPhysicalDeviceProperties p;
+        vkGetPhysicalDeviceProperties(d, &p);
+        vulkan_device_info i;
+        i.index = index;
+        i.name = p.deviceName;
+        constexpr const char* types[] = {"cpu", "other", "virtual", "integrated", "discrete"};
+        i.type = types[rank(p.deviceType)];
+        i.software = p.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+        i.api_version = std::to_string(VK_API_VERSION_MAJOR(p.apiVersion)) + "." + std::to_string(VK_API_VERSION_MINOR(p.apiVersion)) + "." + std::to_string(VK_API_VERSION_PATCH(p.apiVersion));
+        i.max_buffer_bytes = p.limits.maxStorageBufferRange;
+        i.max_storage_buffers = p.limits.maxPerStageDescriptorStorageBuffers;
+        VkPhysicalDeviceMemoryProperties m;
+        vkGetPhysicalDeviceMemoryProperties(d, &m);
+        for (std::uint32_t h = 0; h < m.memoryHeapCount; ++h)
+            if ((m.memoryHeaps[h].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0)
+                i.memory_bytes = std::max<std::uint64_t>(i.memory_bytes, m.memoryHeaps[h].size);
+        i.driver = "driver " + std::to_string(p.driverVersion);
+        if (p.apiVersion < VK_API_VERSION_1_1) {
+            i.unusable = "it offers Vulkan " + i.api_version + "; 1.1 is needed";
+            return i;
+        }
+        if (device_has_extension(d, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME)) {
+            VkPhysicalDeviceDriverProperties driver{};
+            driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
+            VkPhysicalDeviceProperties2 p2{};
+            p2.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+            p2.pNext = &driver;
+            vkGetPhysicalDeviceProperties2(d, &p2);
+            i.driver = std::string(driver.driverName) + " " + driver.driverInfo;
+        }
+        if (!compute_family(d))
+            i.unusable = "it has no compute queue";
+        return i;
+    }
+
+    inline std::string in_words(const std::vector<vulkan_device_info>& devices)
+    {
+        std::string text;
+        for (const auto& d : devices)
+            text += (text.empty() ? "" : "; ") + std::to_string(d.index) + ": " + d.name + " (" + d.type + (d.unusable.empty() ? "" : ", " + d.unusable) + ")";
+        return text.empty() ? "none" : text;
+    }
+
+    /// The device that `options` means.
+    /// \throws backend_error that lists the devices there are.
+    inline VkPhysicalDevice choose_device(const instance& in, const vulkan_options& options)
+    {
+        const auto devices = in.physical_devices();
+        if (devices.empty())
+            throw backend_error("vulkan: no device: drivers were found, but none has a device (sought in " + driver_search_paths() + "). " + install_hint);
+        std::vector<vulkan_device_info> all;
+        for (std::uint32_t d = 0; d < devices.size(); ++d)
+            all.push_back(describe(devices[d], d));
+
+        const auto lower = [](std::string s) {
+            std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+            return s;
+        };
+        const bool number = !options.device.empty() && options.device.size() < 6 && std::all_of(options.device.begin(), options.device.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+        std::optional<std::uint32_t> best;
+        int best_rank = -1;
+        for (const auto& i : all) {
+            VkPhysicalDeviceProperties p;
+            vkGetPhysicalDeviceProperties(devices[i.index], &p);
+            const bool meant = number ? std::stoul(options.device) == i.index : lower(i.name).find(lower(options.device)) != std::string::npos;
+            if (!meant || !i.unusable.empty() || (options.hardware_only && i.software) || rank(p.deviceType) <= best_rank)
+                continue;
+            best = i.index;
+            best_rank = rank(p.deviceType);
+        }
+        if (!best)
+            throw backend_error("vulkan: no device" + (options.device.empty() ? std::string() : " '" + options.device + "'") + (options.hardware_only ? " that is hardware" : "") + " can be used; there are: " + in_words(all)
+                + (options.hardware_only ? ". Install the GPU's Vulkan driver, or allow software devices" : ". Name one of these by index or part of its name"));
+        return devices[*best];
+    }
+
+    /// A logical device of our own, or a caller's.
+    class logical_device {
+    public:
+        logical_device(VkPhysicalDevice physical)
+        {
+            family_ = *compute_family(physical);
+            const float priority = 1.0f;
+            VkDeviceQueueCreateInfo queue{};
+            queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+            queue.queueFamilyIndex = family_;
+            queue.queueCount = 1;
+            queue.pQueuePriorities = &priority;
+            VkDeviceCreateInfo info{};
+            info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+            info.queueCreateInfoCount = 1;
+            info.pQueueCreateInfos = &queue;
+            constexpr const char* subset = "VK_KHR_portability_subset";
+            if (device_has_extension(physical, subset)) { // then it must be enabled
+                info.enabledExtensionCount = 1;
+                info.ppEnabledExtensionNames = &subset;
+            }
+            check(vkCreateDevice(physical, &info, nullptr, &handle_), "vkCreateDevice");
+            owned_ = true;
+            vkGetDeviceQueue(handle_, family_, 0, &queue_);
+        }
+        explicit logical_device(const vulkan_handles& h) : handle_(h.device), queue_(h.queue), family_(h.queue_family) {}
+        logical_device(const logical_device&) = delete;
+        logical_device& operator=(const logical_device&) = delete;
+        ~logical_device()
+        {
+            if (owned_)
+                vkDestroyDevice(handle_, nullptr);
+        }
+        VkDevice get() const { return handle_; }
+        VkQueue queue() const { return queue_; }
+        std::uint32_t family() const { return family_; }
+
+    private:
+        VkDevice handle_ = VK_NULL_HANDLE;
+        VkQueue queue_ = VK_NULL_HANDLE;
+        std::uint32_t family_ = 0;
+        bool owned_ = false;
+    };
+} // namespace vulkan_detail
+
+/// Every Vulkan device here, usable or not. No driver at all is a backend_error that says what to install.
+inline std::vector<vulkan_device_info> vulkan_devices()
+{
+    const vulkan_detail::instance in(false);
+    std::vector<vulkan_device_info> all;
+    for (const auto d : in.physical_devices())
+        all.push_back(vulkan_detail::describe(d, static_cast<std::uint32_t>(all.size())));
+    return all;
+}
+
+} // namespace photongrid

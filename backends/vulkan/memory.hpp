@@ -1,0 +1,245 @@
+// The device as the backend's parts share it, and its memory. Buffers own a part of it together, so a buffer may outlive
+// the backend that made it.
+#pragma once
+
+#include <photongrid/backends/vulkan/device.hpp>
+
+#include <cstdint>
+#include <map>
+
+namespace photongrid::vulkan_detail {
+
+enum class memory_kind { device, host };
+
+/// A VkBuffer with memory of its own.
+struct block {
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    VkDeviceSize bytes = 0;
+    void* mapped = nullptr; ///< where the host sees it; null: it does not
+};
+
+/// A device, open, and the blocks that are free for use again.
+class context {
+public:
+    explicit context(const vulkan_options& o)
+        : instance_(o.validation), physical_(choose_device(instance_, o)), device_(physical_)
+    {
+        look(o.staging);
+    }
+    explicit context(const vulkan_handles& h) : instance_(h.instance), physical_(h.physical_device), device_(h)
+    {
+        if (!h.instance || !h.physical_device || !h.device || !h.queue)
+            throw std::invalid_argument("vulkan_backend: handles: an instance, a physical device, a device and a queue are needed; one is null");
+        look(false);
+    }
+    context(const context&) = delete;
+    context& operator=(const context&) = delete;
+    ~context() { drop_free(); }
+
+    VkDevice device() const { return device_.get(); }
+    VkPhysicalDevice physical() const { return physical_; }
+    VkQueue queue() const { return device_.queue(); }
+    std::uint32_t family() const { return device_.family(); }
+    const VkPhysicalDeviceProperties& properties() const { return properties_; }
+    std::vector<std::string> messages() const { return instance_.messages(); }
+    std::uint64_t max_buffer_bytes() const { return max_buffer_bytes_; }
+    /// Bytes in buffers that somebody can still name.
+    std::uint64_t bytes() const { return named_; }
+    /// The most bytes held at once, those included that waited for their last pass.
+    std::uint64_t peak_bytes() const { return peak_; }
+    void forget(const block& b) { named_ -= b.bytes; }
+
+    block acquire(VkDeviceSize wanted, memory_kind kind)
+    {
+        // Sizes in steps of 256 bytes, 16 at least: a buffer of no elements can be bound too.
+        const VkDeviceSize bytes = (std::max<VkDeviceSize>(wanted, 16) + 255) / 256 * 256;
+        auto& free = free_[kind];
+        block b;
+        if (const auto found = free.find(bytes); found != free.end()) {
+            b = found->second;
+            free.erase(found);
+            free_bytes_ -= b.bytes;
+        } else {
+            b = allocate(bytes, kind);
+        }
+        bytes_ += b.bytes;
+        named_ += b.bytes;
+        peak_ = std::max(peak_, bytes_);
+        return b;
+    }
+
+    void release(const block& b, memory_kind kind)
+    {
+        bytes_ -= b.bytes;
+        if (free_bytes_ + b.bytes > keep_bytes || free_[kind].size() >= keep_blocks) {
+            destroy(b);
+            return;
+        }
+        free_[kind].emplace(b.bytes, b);
+        free_bytes_ += b.bytes;
+    }
+
+private:
+    // Algorithms ask for the same sizes again and again, and allocating costs more than a pass.
+    static constexpr VkDeviceSize keep_bytes = VkDeviceSize{64} << 20;
+    static constexpr std::size_t keep_blocks = 64;
+
+    void look(bool staging)
+    {
+        VkPhysicalDeviceMaintenance3Properties m3{};
+        m3.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
+        VkPhysicalDeviceProperties2 p2{};
+        p2.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+        p2.pNext = &m3;
+        vkGetPhysicalDeviceProperties2(physical_, &p2);
+        properties_ = p2.properties;
+        max_buffer_bytes_ = std::min<std::uint64_t>(properties_.limits.maxStorageBufferRange, m3.maxMemoryAllocationSize);
+        vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
+        // Where host and device share their memory, copies are a waste; across a bus, reading by the host is slow.
+        unified_ = !staging && properties_.deviceType != VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU && find_type(~0u, shared_memory) != none;
+    }
+
+    static constexpr std::uint32_t none = ~0u;
+    static constexpr VkMemoryPropertyFlags host_memory = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    static constexpr VkMemoryPropertyFlags shared_memory = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | host_memory | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+
+    std::uint32_t find_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const
+    {
+        for (std::uint32_t t = 0; t < memory_.memoryTypeCount; ++t)
+            if (((allowed >> t) & 1u) != 0 && (memory_.memoryTypes[t].propertyFlags & wanted) == wanted)
+                return t;
+        return none;
+    }
+
+    std::uint32_t memory_type(std::uint32_t allowed, memory_kind kind) const
+    {
+        if (kind == memory_kind::host) {
+            const auto cached = find_type(allowed, host_memory | VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
+            return cached != none ? cached : find_type(allowed, host_memory);
+        }
+        if (unified_)
+            if (const auto t = find_type(allowed, shared_memory); t != none)
+                return t;
+        const auto local = find_type(allowed, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+        return local != none ? local : find_type(allowed, 0);
+    }
+
+    block allocate(VkDeviceSize bytes, memory_kind kind)
+    {
+        const std::string what = "a buffer of " + std::to_string(bytes) + " bytes (" + std::to_string(bytes_) + " are in use)";
+        block b;
+        b.bytes = bytes;
+        VkBufferCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+        info.size = bytes;
+        info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT
+            | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
+        check(vkCreateBuffer(device(), &info, nullptr, &b.buffer), "vkCreateBuffer: " + what);
+        VkMemoryRequirements needs;
+        vkGetBufferMemoryRequirements(device(), b.buffer, &needs);
+        VkMemoryAllocateInfo memory{};
+        memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+        memory.allocationSize = needs.size;
+        memory.memoryTypeIndex = memory_type(needs.memoryTypeBits, kind);
+        VkResult r = vkAllocateMemory(device(), &memory, nullptr, &b.memory);
+        if (r != VK_SUCCESS && free_bytes_ > 0) {
+            drop_free();
+            r = vkAllocateMemory(device(), &memory, nullptr, &b.memory);
+        }
+        if (r == VK_SUCCESS)
+            r = vkBindBufferMemory(device(), b.buffer, b.memory, 0);
+        const bool seen = kind == memory_kind::host || (unified_ && (memory_.memoryTypes[memory.memoryTypeIndex].propertyFlags & shared_memory) == shared_memory);
+        if (r == VK_SUCCESS && seen)
+            r = vkMapMemory(device(), b.memory, 0, VK_WHOLE_SIZE, 0, &b.mapped);
+        if (r != VK_SUCCESS)
+            destroy(b);
+        check(r, "memory for " + what);
+        return b;
+    }
+
+    void destroy(const block& b) const
+    {
+        vkDestroyBuffer(device(), b.buffer, nullptr);
+        vkFreeMemory(device(), b.memory, nullptr);
+    }
+
+    void drop_free()
+    {
+        for (auto& [kind, blocks] : free_) {
+            for (auto& [bytes, b] : blocks)
+                destroy(b);
+            blocks.clear();
+        }
+        free_bytes_ = 0;
+    }
+
+    instance instance_;
+    VkPhysicalDevice physical_;
+    logical_device device_;
+    VkPhysicalDeviceProperties properties_{};
+    VkPhysicalDeviceMemoryProperties memory_{};
+    bool unified_ = false;
+    std::uint64_t max_buffer_bytes_ = 0;
+    std::map<memory_kind, std::multimap<VkDeviceSize, block>> free_;
+    VkDeviceSize free_bytes_ = 0;
+    std::uint64_t bytes_ = 0, named_ = 0, peak_ = 0;
+};
+
+/// A block in use: by a buffer, and by each batch of passes that touches it until that batch is done.
+class allocation {
+public:
+    /// `format` is that of an element, where it is to be read as a texel.
+    allocation(std::shared_ptr<context> c, VkDeviceSize bytes, memory_kind kind, VkFormat format = VK_FORMAT_UNDEFINED)
+        : context_(std::move(c)), kind_(kind), format_(format), bytes_(bytes), block_(context_->acquire(bytes, kind))
+    {
+    }
+    allocation(const allocation&) = delete;
+    allocation& operator=(const allocation&) = delete;
+    ~allocation()
+    {
+        forget();
+        vkDestroyBufferView(context_->device(), view_, nullptr);
+        context_->release(block_, kind_);
+    }
+
+    /// Nobody can name it any more; only passes that are not done hold it.
+    void forget()
+    {
+        if (named_)
+            context_->forget(block_);
+        named_ = false;
+    }
+
+    VkBuffer buffer() const { return block_.buffer; }
+    VkDeviceSize bytes() const { return bytes_; }
+    void* mapped() const { return block_.mapped; }
+    /// What a descriptor covers.
+    VkDeviceSize range() const { return std::max<VkDeviceSize>(bytes_, 16); }
+    /// The same as a texel buffer.
+    VkBufferView view()
+    {
+        if (view_)
+            return view_;
+        VkBufferViewCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO;
+        info.buffer = buffer();
+        info.format = format_;
+        info.range = range();
+        check(vkCreateBufferView(context_->device(), &info, nullptr, &view_), "vkCreateBufferView");
+        return view_;
+    }
+
+private:
+    std::shared_ptr<context> context_;
+    memory_kind kind_;
+    VkFormat format_;
+    VkBufferView view_ = VK_NULL_HANDLE;
+    VkDeviceSize bytes_;
+    bool named_ = true;
+    block block_;
+};
+
+using memory = std::shared_ptr<allocation>;
+
+} // namespace photongrid::vulkan_detail

@@ -1,0 +1,414 @@
+// The Vulkan backend: compute shaders over storage buffers, many passes a submission (docs/design.md).
+#pragma once
+
+#include <photongrid/backend_texts/vulkan.hpp>
+#include <photongrid/backends/vulkan/recorder.hpp>
+#include <photongrid/backends/vulkan/spirv.hpp>
+#include <photongrid/self_test.hpp>
+
+#include <bit>
+#include <chrono>
+
+namespace photongrid {
+
+/// Runs kernels as compute shaders, on the best Vulkan 1.1 device, on a chosen one, or on one that the caller has open.
+///
+/// Work is deferred: passes are recorded and submitted by the dozen; download, count, route, run_until_done and finish
+/// wait. One thread at a time may use a backend and its buffers. A buffer may outlive the backend. The memory of a buffer
+/// that is gone is free again when the last pass that uses it is done: bytes() counts what still has a name, peak_bytes()
+/// the most that was held. Up to 64 MiB of free memory are kept for the next buffers and counted in neither.
+///
+/// costs()[kernel].instructions is the number of SPIR-V instructions in the functions of the kernel's largest
+/// specialisation so far, after optimisation.
+class vulkan_backend {
+    using memory = vulkan_detail::memory;
+
+public:
+    template <element T>
+    class buffer {
+    public:
+        using value_type = T;
+        buffer() = default;
+        buffer(buffer&& other) noexcept : memory_(std::move(other.memory_)), n_(std::exchange(other.n_, 0)) {}
+        buffer& operator=(buffer&& other) noexcept
+        {
+            buffer old(std::move(other));
+            std::swap(memory_, old.memory_);
+            std::swap(n_, old.n_);
+            return *this;
+        }
+        buffer(const buffer&) = delete;
+        buffer& operator=(const buffer&) = delete;
+        ~buffer()
+        {
+            if (memory_)
+                memory_->forget();
+        }
+        std::size_t size() const noexcept { return n_; }
+
+    private:
+        friend vulkan_backend;
+        buffer(memory m, std::size_t n) : memory_(std::move(m)), n_(n) {}
+        memory memory_;
+        std::size_t n_ = 0;
+    };
+
+    /// Opens a device.
+    /// \throws backend_error when there is no driver, no such device, or no validation layer where one is asked for.
+    explicit vulkan_backend(const vulkan_options& options = {}) : vulkan_backend(std::make_shared<vulkan_detail::context>(options)) {}
+
+    /// Works on a device that the caller owns and that outlives this backend and its buffers.
+    explicit vulkan_backend(const vulkan_handles& handles) : vulkan_backend(std::make_shared<vulkan_detail::context>(handles)) {}
+
+    /// More kernel files than the library's own, as photongrid_embed() made them; they must outlive the backend.
+    void use_texts(std::span<const text_file> texts) { texts_.insert(texts_.end(), texts.begin(), texts.end()); }
+
+    /// A buffer of n elements, contents undefined.
+    /// \throws backend_error when n exceeds what the device binds, or its memory.
+    template <element T>
+    buffer<T> make(std::size_t n)
+    {
+        const auto limit = context_->max_buffer_bytes() / sizeof(T);
+        if (n > limit)
+            throw backend_error("vulkan: a buffer of " + std::to_string(n) + " elements of " + std::to_string(sizeof(T)) + " bytes was asked for; " + caps_.device + " binds "
+                + std::to_string(context_->max_buffer_bytes()) + " bytes (maxStorageBufferRange), " + std::to_string(limit) + " elements");
+        return buffer<T>(allocate(n * sizeof(T), format_of<T>), n);
+    }
+    template <element T, std::size_t E>
+    buffer<T> upload(std::span<const T, E> data)
+    {
+        auto b = make<T>(data.size());
+        recorder_.write(b.memory_, data.data(), data.size_bytes());
+        return b;
+    }
+    template <element T>
+    std::vector<T> download(const buffer<T>& b)
+    {
+        std::vector<T> data(b.n_);
+        recorder_.read(b.memory_, data.data(), data.size() * sizeof(T));
+        return data;
+    }
+
+    template <gather_kernel K, class Reads, class Writes>
+    void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
+    {
+        detail::check_call<K>("run", l, reads, writes);
+        ++cost<K>().passes;
+        if (l.elements > 0)
+            gather<K>(l, l.first, args, bound(reads, writes));
+    }
+
+    template <iterative_kernel K, class Reads, class Writes>
+    progress run_until_done(launch l, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
+    {
+        detail::check_call<K>("run_until_done", l, reads, writes);
+        progress p;
+        p.finished = true;
+        if (l.elements == 0)
+            return p;
+
+        // Four words a pass: the workgroups of its dispatch, and how many elements it takes. The host looks at them once in
+        // `together` passes.
+        constexpr uint together = 8, slot_bytes = 16;
+        const auto control = allocate((together + 1) * slot_bytes);
+        std::array<memory, 2> lists{allocate(l.elements * sizeof(uint)), allocate(l.elements * sizeof(uint))};
+        auto buffers = bound(reads, writes);
+        const auto first_extra = buffers.size();
+        buffers.insert(buffers.end(), {lists[1], lists[0], control});
+        recorder_.fill(control, 0, control->bytes(), 0);
+        recorder_.dispatch(kernel_pipeline<K>(verb::list, l.switches, buffers), buffers, push(l, groups(l.elements), l.first, args), groups(l.elements));
+        prepare_indirect(control, 0);
+        const auto& iterate = kernel_pipeline<K>(verb::iterate, l.switches, buffers);
+        for (;;) {
+            const uint now = std::min(together, max_passes - p.passes);
+            for (uint q = 0; q < now; ++q) {
+                buffers[first_extra] = lists[0];
+                buffers[first_extra + 1] = lists[1];
+                recorder_.dispatch_indirect(iterate, buffers, push(l, q, l.first, args), control, q * slot_bytes);
+                prepare_indirect(control, q + 1);
+                std::swap(lists[0], lists[1]);
+            }
+            std::array<glm::uvec4, together + 1> seen{};
+            recorder_.read(control, seen.data(), sizeof seen);
+            for (uint q = 0; q < now && seen[q].w > 0; ++q) {
+                p.active.push_back(seen[q].w);
+                ++p.passes;
+            }
+            p.finished = seen[now].w == 0;
+            if (p.finished || p.passes == max_passes)
+                break;
+            // now == together: the next pass goes on from where the last one ended.
+            recorder_.copy(control, together * slot_bytes, control, 0, slot_bytes);
+            recorder_.fill(control, slot_bytes, together * slot_bytes, 0);
+        }
+        cost<K>().passes += p.passes;
+        return p;
+    }
+
+    template <predicate_kernel K, class Reads>
+    std::uint64_t count(launch l, const typename K::Params& args, Reads reads)
+    {
+        detail::check_call<K>("count", l, reads, std::tuple<>{});
+        ++cost<K>().passes;
+        if (l.elements == 0)
+            return 0;
+        const auto held = allocate(sizeof(uint));
+        auto buffers = bound(reads, std::tuple<>{});
+        buffers.push_back(held);
+        recorder_.fill(held, 0, sizeof(uint), 0);
+        recorder_.dispatch(kernel_pipeline<K>(verb::count, l.switches, buffers), buffers, push(l, groups(l.elements), l.first, args), groups(l.elements));
+        uint n = 0;
+        recorder_.read(held, &n, sizeof n);
+        return n;
+    }
+
+    /// Deterministic: draws are sorted by destination, stably, so that each one's rank is its place in draw order, and
+    /// amounts are added in that order. Scratch: 40 bytes a draw and 8 a destination.
+    template <route_kernel K, class Reads>
+    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots, buffer<glm::vec4>& totals)
+    {
+        detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
+        ++cost<K>().passes;
+        auto destination = make<uint>(l.elements), payload = make<uint>(l.elements);
+        auto amount = make<glm::vec4>(l.elements);
+        auto buffers = bound(reads, std::tuple<>{});
+        buffers.insert(buffers.end(), {destination.memory_, payload.memory_, amount.memory_});
+        if (l.elements > 0)
+            gather<K>(l, 0, args, buffers);
+
+        auto keys = make<glm::uvec2>(l.elements);
+        own_pass("route_keys", l.elements, {destinations}, {destination.memory_, keys.memory_});
+        sort_by_destination(keys, destinations);
+
+        auto ranges = make<glm::uvec2>(destinations);
+        const auto most = allocate(sizeof(uint));
+        recorder_.fill(most, 0, sizeof(uint), 0);
+        own_pass("route_ranges", destinations, {l.elements}, {keys.memory_, ranges.memory_, most});
+        own_pass("route_slots", slots.size(), {destinations, route_capacity(m)}, {keys.memory_, ranges.memory_, payload.memory_, slots.memory_});
+        uint longest = 0;
+        recorder_.read(most, &longest, sizeof longest);
+        constexpr uint at_once = 4096;
+        std::uint64_t begin = 0;
+        do { // once at least: it also sets the totals of what nothing is destined for to 0
+            own_pass("route_totals", totals.size(), {destinations, static_cast<uint>(begin), at_once}, {keys.memory_, ranges.memory_, amount.memory_, totals.memory_});
+            begin += at_once;
+        } while (begin < longest);
+    }
+
+    void finish() { recorder_.finish(); }
+    const capabilities& caps() const { return caps_; }
+    std::uint64_t bytes() const { return context_->bytes(); }
+    std::uint64_t peak_bytes() const { return context_->peak_bytes(); }
+    const std::map<std::string, kernel_cost>& costs() const { return costs_; }
+
+    /// What the validation layer has said so far; always empty unless options.validation.
+    std::vector<std::string> validation_messages() const { return context_->messages(); }
+
+    /// The optimized SPIR-V of one kernel for `run` (or `count`, where it has no `kernel`), for tools and tests.
+    template <kernel_struct K>
+    std::vector<std::uint32_t> spirv(uint switches = ~0u)
+    {
+        return compile<K>(gather_kernel<K> ? verb::run : verb::count, switches, texel_limit_ > 0);
+    }
+    /// The same for its passes of run_until_done.
+    template <iterative_kernel K>
+    std::vector<std::uint32_t> iterate_spirv(uint switches = ~0u)
+    {
+        return compile<K>(verb::iterate, switches, texel_limit_ > 0);
+    }
+
+private:
+    enum class verb { run, list, iterate, count };
+
+    explicit vulkan_backend(std::shared_ptr<vulkan_detail::context> c)
+        : context_(std::move(c)), texts_(std::begin(kernel_texts), std::end(kernel_texts)), recorder_(context_), empty_(allocate(0))
+    {
+        const auto info = vulkan_detail::describe(context_->physical(), 0);
+        if (!info.unusable.empty())
+            throw backend_error("vulkan: " + info.name + " cannot be used: " + info.unusable);
+        group_ = std::min(64u, context_->properties().limits.maxComputeWorkGroupInvocations);
+        caps_.backend = "vulkan";
+        caps_.device = info.name + ", " + info.driver;
+        caps_.software = info.software;
+        caps_.max_elements = context_->max_buffer_bytes() / sizeof(glm::vec4);
+        caps_.max_route_slots = 16;
+        // lavapipe ends every loop of a group of invocations after so many iterations of all of them, without a word.
+        caps_.loop_limit = info.name.find("llvmpipe") != std::string::npos ? 65535u : 0u;
+        if (const char* e = std::getenv("PG_TEXEL"); e ? e[0] == '1' : info.software)
+            texel_limit_ = std::uint64_t{context_->properties().limits.maxTexelBufferElements} * sizeof(float);
+        std::tie(caps_.exact_division, caps_.exact_sqrt) = test_arithmetic(*this);
+    }
+
+    template <element T>
+    static constexpr VkFormat format_of = std::same_as<T, float> ? VK_FORMAT_R32_SFLOAT
+        : std::same_as<T, uint>                                  ? VK_FORMAT_R32_UINT
+        : std::same_as<T, glm::vec2>                             ? VK_FORMAT_R32G32_SFLOAT
+        : std::same_as<T, glm::uvec2>                            ? VK_FORMAT_R32G32_UINT
+        : std::same_as<T, glm::vec4>                             ? VK_FORMAT_R32G32B32A32_SFLOAT
+                                                                 : VK_FORMAT_R32G32B32A32_UINT;
+
+    memory allocate(std::size_t bytes, VkFormat format = VK_FORMAT_UNDEFINED) const
+    {
+        return std::make_shared<vulkan_detail::allocation>(context_, bytes, vulkan_detail::memory_kind::device, format);
+    }
+
+    /// The buffers of a call in the order of the kernel's bindings; a buffer without memory is bound as an empty one.
+    template <class Reads, class Writes>
+    std::vector<memory> bound(const Reads& reads, const Writes& writes) const
+    {
+        std::vector<memory> all;
+        const auto add = [&]<class... B>(const B&... b) { (all.push_back(b.memory_ ? b.memory_ : allocate(0, format_of<typename B::value_type>)), ...); };
+        std::apply(add, reads);
+        std::apply(add, writes);
+        return all;
+    }
+
+    std::uint64_t groups(std::uint64_t elements) const { return (elements + group_ - 1) / group_; }
+
+    /// The launch header, 16 bytes, and the parameters behind it.
+    template <class Params>
+    static std::array<std::byte, vulkan_detail::pipeline::push_bytes> push(const launch& l, std::uint64_t groups, uint where, const Params& args)
+    {
+        static_assert(sizeof(Params) <= vulkan_detail::pipeline::push_bytes - 16, "a kernel's Params are at most 112 bytes");
+        static_assert(std::is_trivially_copyable_v<Params>);
+        std::array<std::byte, vulkan_detail::pipeline::push_bytes> bytes{};
+        const uint header[4] = {l.elements, l.first, static_cast<uint>(groups), where};
+        std::memcpy(bytes.data(), header, sizeof header);
+        std::memcpy(bytes.data() + sizeof header, &args, sizeof args);
+        return bytes;
+    }
+
+    template <class K>
+    void gather(const launch& l, uint where, const typename K::Params& args, const std::vector<memory>& buffers)
+    {
+        recorder_.dispatch(kernel_pipeline<K>(verb::run, l.switches, buffers), buffers, push(l, groups(l.elements), where, args), groups(l.elements));
+    }
+
+    /// One pass of a shader that is the backend's own.
+    void own_pass(const std::string& name, std::uint64_t elements, std::initializer_list<uint> args, std::initializer_list<memory> buffers)
+    {
+        std::vector<memory> bound_buffers;
+        for (const auto& b : buffers)
+            bound_buffers.push_back(b ? b : empty_);
+        std::array<uint, 4> params{};
+        std::copy(args.begin(), args.end(), params.begin());
+        if (elements > 0)
+            recorder_.dispatch(own_pipeline(name, buffers.size()), bound_buffers, push(launch(elements), groups(elements), 0, params), groups(elements));
+    }
+
+    void prepare_indirect(const memory& control, uint pass)
+    {
+        own_pass("indirect", 1, {pass, context_->properties().limits.maxComputeWorkGroupCount[0]}, {control});
+    }
+
+    /// Sorts (destination, draw) by destination, keeping the order of draws: least significant digit first, 4 bits a time.
+    void sort_by_destination(buffer<glm::uvec2>& keys, uint destinations)
+    {
+        const uint n = static_cast<uint>(keys.size());
+        if (n < 2)
+            return;
+        // Chunks are taken in order by one invocation each; more of them than 16,384 would make the counters' sums long.
+        const uint chunk = std::max(256u, (n - 1) / 16384u + 1);
+        const uint chunks = (n - 1) / chunk + 1;
+        auto sorted = make<glm::uvec2>(n);
+        auto counters = make<uint>(std::size_t{16} * chunks);
+        for (uint shift = 0; shift < 32 && (destinations >> shift) != 0; shift += 4) {
+            own_pass("radix_count", chunks, {n, shift, chunk, chunks}, {keys.memory_, counters.memory_});
+            own_pass("radix_scan", 1, {16 * chunks}, {counters.memory_});
+            own_pass("radix_scatter", chunks, {n, shift, chunk, chunks}, {keys.memory_, counters.memory_, sorted.memory_});
+            std::swap(keys, sorted);
+        }
+    }
+
+    template <class K>
+    kernel_cost& cost()
+    {
+        return costs_[std::string(kernel_name<K>())];
+    }
+
+    /// The switches that K has, so that the others make no further specialisation.
+    template <class K>
+    static constexpr uint known_switches()
+    {
+        return []<std::size_t... B>(std::index_sequence<B...>) {
+            return (0u | ... | (requires(K& k) { k.turn(slot<B>{}, true); } ? 1u << B : 0u));
+        }(std::make_index_sequence<32>{});
+    }
+
+    std::string defines(std::size_t outputs, uint switches, bool listing, bool texels) const
+    {
+        return "#define GROUP " + std::to_string(group_) + "\n#define OUTPUTS " + std::to_string(outputs) + "\n#define SWITCHES " + std::to_string(switches) + "u\n#define LISTING " + (listing ? "1" : "0")
+            + "\n#define TEXELS " + (texels ? "1" : "0") + "\n";
+    }
+
+    static const text_file& own_text(const std::string& name) { return find_kernel_text(name + ".glsl", vulkan_texts); }
+
+    template <class K>
+    vulkan_detail::spirv_words compile(verb v, uint switches, bool texels)
+    {
+        constexpr const char* epilogues[] = {"run", "iterate", "iterate", "count"};
+        const auto begin = std::chrono::steady_clock::now();
+        const std::string name(kernel_name<K>());
+        const auto source = splice(own_text("compute_prelude"), defines(output_count<K>, switches & known_switches<K>(), v == verb::list, texels),
+            find_kernel_text(K::path, texts_), own_text(epilogues[static_cast<int>(v)]), texts_);
+        auto words = vulkan_detail::compile_spirv(source, name);
+        auto& c = costs_[name];
+        if (v != verb::list)
+            c.instructions = std::max(c.instructions, vulkan_detail::count_instructions(words));
+        c.compile_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+        return words;
+    }
+
+    template <class K>
+    const vulkan_detail::pipeline& kernel_pipeline(verb v, uint switches, const std::vector<memory>& buffers)
+    {
+        switches &= known_switches<K>();
+        const bool texels = std::all_of(buffers.begin(), buffers.begin() + input_count<K>, [&](const memory& m) { return m->bytes() <= texel_limit_; });
+        auto& p = pipelines_[{std::string(K::path), v, switches, texels}];
+        if (p)
+            return *p;
+        std::vector<vulkan_detail::binding> bindings;
+        for (std::uint32_t i = 0; i < input_count<K>; ++i)
+            bindings.push_back({i, texels ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
+        for (std::uint32_t o = 0; v != verb::count && o < output_count<K>; ++o)
+            bindings.push_back({8 + o});
+        static_assert(input_count<K> <= 8 && output_count<K> <= 8, "a kernel has at most 8 inputs and 8 outputs and states");
+        const std::uint32_t own = v == verb::count ? 1 : v == verb::run ? 0 : 3;
+        for (std::uint32_t e = 0; e < own; ++e)
+            bindings.push_back({16 + e});
+        const auto words = compile<K>(v, switches, texels);
+        const auto begin = std::chrono::steady_clock::now();
+        p = std::make_unique<vulkan_detail::pipeline>(*context_, words, std::move(bindings), std::string(kernel_name<K>()));
+        cost<K>().compile_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+        return *p;
+    }
+
+    const vulkan_detail::pipeline& own_pipeline(const std::string& name, std::size_t buffers)
+    {
+        auto& p = own_pipelines_[name];
+        if (p)
+            return *p;
+        const auto source = splice(own_text("compute_prelude"), defines(0, 0, false, false), own_text(name), text_file{name + " (end)", ""}, {});
+        std::vector<vulkan_detail::binding> bindings;
+        for (std::uint32_t b = 0; b < buffers; ++b)
+            bindings.push_back({b});
+        p = std::make_unique<vulkan_detail::pipeline>(*context_, vulkan_detail::compile_spirv(source, name), std::move(bindings), name);
+        return *p;
+    }
+
+    std::shared_ptr<vulkan_detail::context> context_;
+    capabilities caps_;
+    std::vector<text_file> texts_;
+    std::map<std::string, kernel_cost> costs_;
+    uint group_ = 64;
+    std::uint64_t texel_limit_ = 0; ///< bytes of the largest buffer that is read as texels; 0: none is
+    // Declared before the recorder, so that they outlive its last batch.
+    std::map<std::tuple<std::string, verb, uint, bool>, std::unique_ptr<vulkan_detail::pipeline>> pipelines_;
+    std::map<std::string, std::unique_ptr<vulkan_detail::pipeline>> own_pipelines_;
+    vulkan_detail::recorder recorder_;
+    memory empty_;
+};
+
+static_assert(backend<vulkan_backend>);
+
+} // namespace photongrid

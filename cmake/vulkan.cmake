@@ -1,0 +1,36 @@
+# The Vulkan backend: photongrid::vulkan. Switched off, with the name of the package, where something is absent.
+find_package(Vulkan QUIET)
+find_package(Threads QUIET)
+# glslang's own CMake files name these two and do not look for them.
+find_package(SPIRV-Tools QUIET)
+find_package(SPIRV-Tools-opt QUIET)
+if(TARGET SPIRV-Tools-opt)
+  find_package(glslang QUIET)
+endif()
+
+set(missing "")
+if(NOT Vulkan_FOUND)
+  list(APPEND missing libvulkan-dev)
+endif()
+if(NOT TARGET SPIRV-Tools-opt)
+  list(APPEND missing spirv-tools)
+endif()
+if(NOT TARGET glslang::SPIRV OR NOT TARGET glslang::glslang-default-resource-limits)
+  list(APPEND missing glslang-dev glslang-tools)
+endif()
+if(NOT Threads_FOUND)
+  list(APPEND missing "a thread library")
+endif()
+
+if(missing)
+  list(JOIN missing " " missing)
+  message(STATUS "photongrid: the Vulkan backend is switched off; missing: ${missing} (Debian package names)")
+  set(PHOTONGRID_VULKAN OFF)
+else()
+  file(GLOB vulkan_shaders CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/backends/vulkan/*.glsl)
+  photongrid_backend(vulkan TEXTS ${vulkan_shaders})
+  set(spirv_tools $<IF:$<TARGET_EXISTS:SPIRV-Tools-static>,SPIRV-Tools-static,SPIRV-Tools>)
+  # Static archives, named in the order in which they need each other.
+  target_link_libraries(photongrid_vulkan INTERFACE Vulkan::Vulkan glslang::SPIRV glslang::glslang
+    glslang::glslang-default-resource-limits SPIRV-Tools-opt ${spirv_tools} Threads::Threads)
+endif()

@@ -1,0 +1,174 @@
+#include "command_line.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <charconv>
+#include <cmath>
+
+namespace photongrid {
+
+namespace {
+    const char* const footer = R"(Examples:
+  photongrid render examples/scenes/cornell_box.json -o cornell.png
+  photongrid render ring.json --backend vulkan --map route -o ring.exr -o ring.png --stats ring-stats.json
+  photongrid render ring.json --size 128x96 --photons 4000 --exposure 1 --quiet
+  photongrid compare ring.exr reference.exr --max-relmse 1e-3
+  photongrid check my_scene.json
+
+Exit codes:
+  0    done
+  1    compare: relMSE above --max-relmse; render: the picture could not be made
+  2    the command line is wrong
+  3    the scene file is wrong
+  4    the backend or device cannot be had, or failed
+  5    a picture or statistics file could not be read or written, or pictures of different sizes were compared
+  130  interrupted (Ctrl-C); nothing half-written is left
+)";
+
+    // std::from_chars, so that "010" is ten, "-1" no number and "1e9x" an error.
+    template <class T>
+    T parsed(const std::string& option, std::string_view text, const char* expected)
+    {
+        T value{};
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error != std::errc() || end != text.data() + text.size())
+            throw CLI::ValidationError(option, "\"" + std::string(text) + "\" given; expected " + expected);
+        return value;
+    }
+
+    double parsed_number(const std::string& option, const std::string& text, const char* expected)
+    {
+        const auto value = parsed<double>(option, text, expected);
+        if (!std::isfinite(value))
+            throw CLI::ValidationError(option, "\"" + text + "\" given; expected " + expected);
+        return value;
+    }
+
+    /// Whole numbers with `separator` between them.
+    template <glm::length_t N>
+    glm::vec<N, glm::uint> parsed_list(const std::string& option, std::string_view text, char separator, const char* expected)
+    {
+        glm::vec<N, glm::uint> v(0);
+        for (glm::length_t i = 0; i < N; ++i) {
+            const auto end = i + 1 < N ? text.find(separator) : text.size();
+            if (end == std::string_view::npos)
+                throw CLI::ValidationError(option, std::string("expected ") + expected);
+            v[i] = parsed<glm::uint>(option, text.substr(0, end), expected);
+            text.remove_prefix(std::min(end + 1, text.size()));
+        }
+        return v;
+    }
+
+    void add_whole(CLI::App& to, const std::string& option, std::optional<std::uint32_t>& target, const std::string& about)
+    {
+        to.add_option_function<std::string>(
+              option, [&target, option](const std::string& text) { target = parsed<std::uint32_t>(option, text, "a whole number"); }, about)
+            ->type_name("N");
+    }
+
+    void add_number(CLI::App& to, const std::string& option, std::optional<double>& target, const std::string& about, const char* type)
+    {
+        to.add_option_function<std::string>(
+              option, [&target, option](const std::string& text) { target = parsed_number(option, text, "a number"); }, about)
+            ->type_name(type);
+    }
+
+    void add_render(CLI::App& to, render_options& o)
+    {
+        to.add_option("scene", o.scene_path, "scene file")->required()->type_name("SCENE.json");
+        to.add_option("--backend", o.backend, "auto: a hardware Vulkan device, else serial")->check(CLI::IsMember({"auto", "serial", "gl", "gl-osmesa", "vulkan"}))->type_name("auto|serial|gl|gl-osmesa|vulkan");
+        to.add_option("--device", o.device, "Vulkan device (with --backend vulkan); see `photongrid devices`")->type_name("NAME|INDEX");
+        to.add_option_function<std::string>(
+              "--map", [&o](const std::string& text) { o.map = text == "sort" ? map_builder::sort : map_builder::route; }, "build the photon map by bitonic sort or stencil routing")
+            ->check(CLI::IsMember({"sort", "route"}))
+            ->type_name("sort|route");
+        add_whole(to, "--slots", o.slots, "routed cells have N x N slots, 1 to 16");
+        add_whole(to, "--photons", o.photons, "photons stored");
+        add_whole(to, "--k", o.k, "photons sought by an estimate");
+        to.add_option_function<std::string>(
+              "--grid", [&o](const std::string& text) { o.grid = parsed_list<3>("--grid", text, ',', "three whole numbers: X,Y,Z"); }, "cells of the photon map")
+            ->type_name("X,Y,Z");
+        add_number(to, "--max-radius", o.max_radius, "largest search radius", "METRES");
+        to.add_option_function<std::string>(
+              "--size", [&o](const std::string& text) { o.size = parsed_list<2>("--size", text, 'x', "width and height: WxH"); }, "pixels")
+            ->type_name("WxH");
+        add_whole(to, "--spp", o.spp, "eye rays a pixel");
+        add_whole(to, "--light-samples", o.light_samples, "shadow rays an area light and eye ray");
+        add_whole(to, "--depth", o.depth, "reflections and refractions an eye ray follows");
+        add_whole(to, "--seed", o.seed, "same seed, same picture");
+        add_number(to, "--exposure", o.exposure, "PNG: pixel values times 2^EV", "EV");
+        to.add_option("-o,--output", o.outputs, "picture; may be given several times; default: the scene's name, .png")->allow_extra_args(false)->type_name("OUT.png|.exr|.pfm");
+        to.add_option("--stats", o.stats, "statistics, as JSON")->type_name("OUT.json");
+        to.add_option("--progressive", o.progressive, "folder for numbered pictures of the running estimate")->type_name("DIR");
+        to.add_flag("--quiet", o.quiet, "no progress, no remarks");
+    }
+} // namespace
+
+command read_command_line(int argc, char** argv)
+{
+    CLI::App app{"photongrid: photon mapping on any device", "photongrid"};
+    app.set_version_flag("--version", std::string("photongrid ") + PHOTONGRID_VERSION);
+    app.require_subcommand(1);
+    app.footer(footer);
+
+    render_options render;
+    auto& render_command = *app.add_subcommand("render", "Draws a scene");
+    add_render(render_command, render);
+
+    compare_options compare;
+    auto& compare_command = *app.add_subcommand("compare", "MSE, relMSE = mean of (A - B)^2 / (B + 0.01)^2 (pbrt's MRSE), largest difference of two linear pictures");
+    compare_command.add_option("A", compare.a, "picture")->required()->type_name("A.exr|.pfm");
+    compare_command.add_option("B", compare.b, "reference")->required()->type_name("B.exr|.pfm");
+    compare_command
+        .add_option_function<std::string>(
+            "--max-relmse", [&](const std::string& text) { compare.max_relmse = parsed_number("--max-relmse", text, "a number"); }, "exit with 1 above this")
+        ->type_name("V");
+
+    check_options check_scene;
+    auto& check_command = *app.add_subcommand("check", "Reads and checks a scene file");
+    check_command.add_option("scene", check_scene.scene_path, "scene file")->required()->type_name("SCENE.json");
+
+    auto& devices_command = *app.add_subcommand("devices", "Every backend and device that works here, its limits, and why others do not");
+
+    try {
+        app.parse(argc, argv);
+        if (!render.device.empty() && render.backend != "vulkan")
+            throw CLI::ValidationError("--device", "names a Vulkan device; expected --backend vulkan with it");
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? success : usage_error;
+    }
+    if (render_command.parsed())
+        return render;
+    if (compare_command.parsed())
+        return compare;
+    if (check_command.parsed())
+        return check_scene;
+    return devices_command.parsed() ? command(devices_options{}) : command(usage_error);
+}
+
+render_settings settings_for(const scene& s, const render_options& o)
+{
+    render_settings r = s.render;
+    if (o.size) {
+        r.width = o.size->x;
+        r.height = o.size->y;
+    }
+    r.builder = o.map.value_or(r.builder);
+    r.slots = o.slots.value_or(r.slots);
+    r.photons = o.photons.value_or(r.photons);
+    r.k = o.k.value_or(r.k);
+    r.spp = o.spp.value_or(r.spp);
+    r.light_samples = o.light_samples.value_or(r.light_samples);
+    r.depth = o.depth.value_or(r.depth);
+    r.seed = o.seed.value_or(r.seed);
+    r.grid = o.grid.value_or(r.grid);
+    r.max_radius = o.max_radius.value_or(r.max_radius);
+    r.exposure = o.exposure.value_or(r.exposure);
+    check(r);
+    const double cells = static_cast<double>(r.grid.x) * r.grid.y * r.grid.z;
+    if (cells > 0x1p31)
+        throw std::invalid_argument("grid: more than 2^31 cells");
+    return r;
+}
+
+} // namespace photongrid

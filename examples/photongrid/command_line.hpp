@@ -1,0 +1,49 @@
+// The command line: what was asked for, as data.
+#pragma once
+
+#include <photongrid/scene.hpp>
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace photongrid {
+
+/// Exit codes; --help lists them.
+enum exit_code { success = 0, failure = 1, usage_error = 2, scene_file_error = 3, backend_failure = 4, file_failure = 5, interrupted = 130 };
+
+/// `render`. What is empty is as the scene file has it.
+struct render_options {
+    std::string scene_path, backend = "auto", device;
+    std::optional<map_builder> map;
+    std::optional<std::uint32_t> slots, photons, k, spp, light_samples, depth, seed;
+    std::optional<glm::uvec3> grid;
+    std::optional<glm::uvec2> size;
+    std::optional<double> max_radius, exposure;
+    std::vector<std::string> outputs;
+    std::string stats, progressive;
+    bool quiet = false;
+};
+
+struct compare_options {
+    std::string a, b;
+    double max_relmse = std::numeric_limits<double>::infinity();
+};
+
+struct check_options {
+    std::string scene_path;
+};
+
+struct devices_options {};
+
+/// What to do; or the exit code where the command line has been answered already (help, version, mistake).
+using command = std::variant<exit_code, render_options, compare_options, check_options, devices_options>;
+
+command read_command_line(int argc, char** argv);
+
+/// The scene's settings with those of the command line in their place. Throws std::invalid_argument.
+render_settings settings_for(const scene& s, const render_options& o);
+
+} // namespace photongrid

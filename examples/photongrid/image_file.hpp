@@ -1,0 +1,53 @@
+// Pictures on disk: PNG for looking at, EXR and PFM for measuring. docs/scenes.md describes the tone map.
+#pragma once
+
+#include <photongrid/scene.hpp>
+
+#include <map>
+#include <stdexcept>
+#include <string>
+
+namespace photongrid {
+
+/// A file that cannot be read or written: "path: reason".
+struct file_error : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// What an EXR says about its making, by attribute name.
+using image_notes = std::map<std::string, std::string>;
+
+/// Throws file_error when `path` does not end in .png, .exr or .pfm, or its folder does not take files: said before
+/// hours of rendering, not after.
+void check_image_path(const std::string& path);
+
+/// The same for any file, whatever its ending.
+void check_file_path(const std::string& path);
+
+/// Writes a picture in the format of its ending. All or nothing: on an error, or when the program dies, `path` is
+/// what it was before. `exposure` (EV) is used by PNG only. Throws file_error.
+void write_image(const std::string& path, const image& picture, double exposure = 0, const image_notes& notes = {});
+
+/// Reads an EXR or PFM file. Throws file_error.
+image read_image(const std::string& path);
+
+/// Writes bytes by way of a temporary file beside `path`. Throws file_error.
+void write_file(const std::string& path, const std::string& bytes);
+
+/// Linear radiance to an 8-bit sRGB value: clamp(2^exposure * linear, 0, 1) through the sRGB transfer function.
+unsigned char tone_mapped(float linear, double exposure);
+
+/// How far picture a is from the reference b, over all channels of the pixels that are finite in both.
+struct image_difference {
+    double mse = 0;                 ///< mean of (a - b)^2
+    double relmse = 0;              ///< mean of (a - b)^2 / (b + 0.01)^2, as pbrt's MRSE
+    double largest = 0;             ///< largest |a - b|
+    std::uint32_t x = 0, y = 0;     ///< where that is
+    std::uint64_t compared = 0;     ///< pixels
+    std::uint64_t not_finite = 0;   ///< pixels skipped
+};
+
+/// Throws std::invalid_argument when the sizes differ.
+image_difference compare_images(const image& a, const image& b);
+
+} // namespace photongrid

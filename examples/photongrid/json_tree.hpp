@@ -1,0 +1,73 @@
+// JSON as a small tree that remembers where in the file everything stands. nlohmann's own tree does not, and a message
+// about a scene file is worth little without a line.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace photongrid {
+
+/// What is wrong with a scene file and where: "file:line:column: error: what was found and what was expected".
+/// Lines and columns count from 1, columns in characters. Line 0: the file as a whole ("file: error: …").
+struct scene_error : std::runtime_error {
+    scene_error(const std::string& file, std::size_t line_, std::size_t column_, const std::string& what_)
+        : std::runtime_error(file + (line_ > 0 ? ":" + std::to_string(line_) + ":" + std::to_string(column_) : "") + ": error: " + what_)
+        , line(line_)
+        , column(column_)
+    {
+    }
+    std::size_t line = 0, column = 0;
+};
+
+enum class json_kind { null, boolean, number, string, array, object };
+
+/// A value. `place` is its offset in the text.
+struct json_value {
+    json_kind kind = json_kind::null;
+    std::size_t place = 0;
+    bool truth = false;
+    double number = 0;
+    std::string text{};              ///< of a string; of a number as it stands in the file
+    std::vector<json_value> items{}; ///< of an array; of an object, each with its key
+    std::string key{};
+    std::size_t key_place = 0;
+
+    /// An object's value for `key`, or null.
+    const json_value* find(std::string_view key_wanted) const;
+};
+
+/// A parsed file: its name (for messages), its text, its tree.
+class json_tree {
+public:
+    static constexpr std::size_t max_bytes = std::size_t{16} << 20;
+    static constexpr std::size_t max_depth = 32;
+    static constexpr std::size_t max_values = 1'000'000;
+
+    /// Parses `text`. Throws scene_error on a syntax error, a key given twice, a number beyond double, or a limit above.
+    json_tree(std::string file, std::string text);
+
+    const json_value& root() const { return root_; }
+
+    /// Throws scene_error for what stands at `place`.
+    [[noreturn]] void fail(std::size_t place, const std::string& what) const;
+
+private:
+    friend class json_builder;
+    std::string file_, text_;
+    json_value root_;
+};
+
+/// A value in the words of a message: `the number -1`, `the text "big"`, `an array of 2`.
+std::string described(const json_value& v);
+
+/// The candidate most like `word`, where one is like it enough to be a misspelling; else empty.
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
+
+/// Reads a file's bytes, at most json_tree::max_bytes. Throws scene_error without a line.
+std::string read_scene_text(const std::string& path);
+
+} // namespace photongrid

@@ -1,0 +1,241 @@
+// The photongrid program: scene file in, picture and statistics out.
+#include "backends.hpp"
+#include "command_line.hpp"
+#include "image_file.hpp"
+#include "progress_bar.hpp"
+#include "scene_file.hpp"
+#include "stats_file.hpp"
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <iostream>
+#include <new>
+
+#include <sys/stat.h>
+
+namespace photongrid {
+
+namespace {
+    // --- Ctrl-C ---
+    volatile std::sig_atomic_t stop_asked = 0;
+    std::time_t stop_time = 0;
+
+    // The first signal asks; the renderer looks between passes. One that comes seconds later finds a pass that does not
+    // end and takes the process down; files are only ever put in place whole.
+    extern "C" void ask_to_stop(int)
+    {
+        timespec now{};
+        clock_gettime(CLOCK_MONOTONIC, &now);
+        if (stop_asked != 0 && now.tv_sec > stop_time + 1)
+            _exit(interrupted);
+        if (stop_asked == 0)
+            stop_time = now.tv_sec;
+        stop_asked = 1;
+    }
+
+    void watch_signals()
+    {
+        struct sigaction action {};
+        action.sa_handler = ask_to_stop;
+        action.sa_flags = SA_RESTART;
+        sigemptyset(&action.sa_mask);
+        sigaction(SIGINT, &action, nullptr);
+        sigaction(SIGTERM, &action, nullptr);
+    }
+
+    // --- render ---
+    render_result render_as_asked(const render_options& o, render_job job)
+    {
+        if (o.backend == "auto") {
+            if (const auto device = hardware_vulkan_device()) {
+                job.device = *device;
+                if (!o.quiet)
+                    std::cerr << "photongrid: --backend auto: vulkan, device " << *device << '\n';
+                return render_vulkan(job);
+            }
+            if (!o.quiet)
+                std::cerr << "photongrid: --backend auto: serial (no hardware Vulkan device)\n";
+            return render_serial(job);
+        }
+        if (o.backend == "serial")
+            return render_serial(job);
+        if (o.backend == "vulkan")
+            return render_vulkan(job);
+        return render_gl(job, o.backend == "gl-osmesa");
+    }
+
+    /// The scene's name as a file's.
+    std::string file_stem(const std::string& name)
+    {
+        std::string stem;
+        for (const char c : name) {
+            const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+            stem += plain ? c : '_';
+        }
+        return stem.empty() ? "picture" : stem;
+    }
+
+    /// Numbered pictures in a folder.
+    class picture_series {
+    public:
+        picture_series(std::string folder, std::string stem, double exposure)
+            : folder_(std::move(folder))
+            , stem_(std::move(stem))
+            , exposure_(exposure)
+        {
+            if (folder_.empty())
+                return;
+            std::error_code error;
+            std::filesystem::create_directories(folder_, error);
+            if (error)
+                throw file_error(folder_ + ": cannot be made: " + error.message());
+            check_image_path(path(1));
+        }
+        void add(const image& picture)
+        {
+            if (!folder_.empty())
+                write_image(path(++count_), picture, exposure_);
+        }
+        bool wanted() const { return !folder_.empty(); }
+
+    private:
+        std::string path(int number) const
+        {
+            char digits[24];
+            std::snprintf(digits, sizeof digits, "-%04d.png", number);
+            return folder_ + "/" + stem_ + digits;
+        }
+        std::string folder_, stem_;
+        double exposure_ = 0;
+        int count_ = 0;
+    };
+
+    exit_code run(const render_options& o)
+    {
+        const auto s = read_scene(o.scene_path);
+        render_settings settings;
+        try {
+            settings = settings_for(s, o);
+        } catch (const std::invalid_argument& e) {
+            std::cerr << "photongrid: error: on the command line: " << e.what() << '\n';
+            return usage_error;
+        }
+        auto outputs = o.outputs;
+        if (outputs.empty())
+            outputs.push_back(file_stem(s.name) + ".png");
+        for (const auto& path : outputs)
+            check_image_path(path);
+        if (!o.stats.empty())
+            check_file_path(o.stats);
+        picture_series series(o.progressive, file_stem(s.name), settings.exposure);
+
+        const auto start = std::chrono::steady_clock::now();
+        progress_bar bar(o.quiet);
+        render_job job{.scene = s, .settings = settings, .observer = {}, .device = o.device};
+        job.observer.progress = [&](std::string_view stage, double fraction) { bar.show(stage, fraction); };
+        job.observer.cancelled = [] { return stop_asked != 0; };
+        if (series.wanted())
+            job.observer.intermediate = [&](const image& picture) { series.add(picture); };
+        const auto result = render_as_asked(o, job);
+        const double total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        bar.clear();
+        if (stop_asked != 0)
+            throw render_cancelled();
+
+        if (result.stats.invalid_pixels > 0)
+            std::cerr << "photongrid: warning: " << result.stats.invalid_pixels << " pixels were NaN or infinite and are black\n";
+        series.add(result.picture);
+        for (const auto& path : outputs) {
+            write_image(path, result.picture, settings.exposure, picture_notes(s, settings, result));
+            std::cout << path << '\n';
+        }
+        if (!o.stats.empty())
+            write_file(o.stats, stats_json(s, settings, result, total_ms));
+        return success;
+    }
+
+    // --- the other commands ---
+    exit_code run(const compare_options& o)
+    {
+        const auto a = read_image(o.a), b = read_image(o.b);
+        image_difference d;
+        try {
+            d = compare_images(a, b);
+        } catch (const std::invalid_argument& e) {
+            std::cerr << "photongrid: error: " << o.a << ", " << o.b << ": " << e.what() << '\n';
+            return file_failure;
+        }
+        std::cout << "MSE     " << d.mse << "\nrelMSE  " << d.relmse << "\nlargest " << d.largest << " at pixel " << d.x << "," << d.y << '\n';
+        if (d.not_finite > 0)
+            std::cout << "skipped " << d.not_finite << " pixels that are not finite\n";
+        if (d.compared == 0) {
+            std::cerr << "photongrid: error: no pixel is finite in both pictures\n";
+            return failure;
+        }
+        return d.relmse > o.max_relmse ? failure : success;
+    }
+
+    exit_code run(const check_options& o)
+    {
+        const auto s = read_scene(o.scene_path);
+        const auto shapes = s.spheres.size() + s.cylinders.size() + s.cones.size() + s.paraboloids.size() + s.disks.size() + s.polygons.size();
+        std::cout << o.scene_path << ": \"" << s.name << "\": " << shapes << " shapes, " << s.materials.size() << " materials, " << s.point_lights.size() + s.rectangle_lights.size() << " lights\n";
+        return success;
+    }
+
+    exit_code run(const devices_options&)
+    {
+        std::vector<device_report> all{serial_device()};
+        for (auto&& more : {gl_devices(), vulkan_devices_report()})
+            all.insert(all.end(), more.begin(), more.end());
+        for (const auto& d : all) {
+            std::cout << d.backend << "  " << (d.works ? d.device : d.device.empty() ? "not available" : d.device + "  not usable") << '\n';
+            std::cout << "    " << d.about << '\n';
+        }
+        return success;
+    }
+
+    exit_code run(exit_code answered) { return answered; }
+} // namespace
+
+std::string limits(const capabilities& c)
+{
+    const auto yes_no = [](bool b) { return b ? "yes" : "no"; };
+    return std::string(c.software ? "software" : "hardware") + ", buffers of up to " + std::to_string(c.max_elements) + " elements, routing with up to " + std::to_string(c.max_route_slots) + " x "
+        + std::to_string(c.max_route_slots) + " slots, division rounds correctly: " + yes_no(c.exact_division) + ", square root: " + yes_no(c.exact_sqrt)
+        + (c.loop_limit > 0 ? ", loops end after " + std::to_string(c.loop_limit) + " iterations" : "");
+}
+
+} // namespace photongrid
+
+int main(int argc, char** argv)
+{
+    using namespace photongrid;
+    const auto say = [](const std::exception& e) { std::cerr << "photongrid: error: " << e.what() << '\n'; };
+    try {
+        watch_signals();
+        return std::visit([](const auto& options) { return run(options); }, read_command_line(argc, argv));
+    } catch (const render_cancelled&) {
+        std::cerr << "photongrid: interrupted; no picture written\n";
+        return interrupted;
+    } catch (const scene_error& e) {
+        std::cerr << e.what() << '\n'; // as compilers write it, so that editors find the place
+        return scene_file_error;
+    } catch (const backend_error& e) {
+        say(e);
+        return backend_failure;
+    } catch (const file_error& e) {
+        say(e);
+        return file_failure;
+    } catch (const std::bad_alloc&) {
+        std::cerr << "photongrid: error: out of memory; fewer photons, pixels or cells need less\n";
+        return failure;
+    } catch (const std::exception& e) {
+        say(e);
+        return failure;
+    }
+}

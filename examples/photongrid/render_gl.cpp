@@ -1,0 +1,31 @@
+#include "render_on.hpp"
+
+#include <photongrid/backends/gl/gl.hpp>
+
+namespace photongrid {
+
+render_result render_gl(const render_job& job, bool osmesa)
+{
+    gl_backend b(gl_options{.context = osmesa ? gl_context_kind::osmesa : gl_context_kind::egl});
+    return render_on(b, job);
+}
+
+std::vector<device_report> gl_devices()
+{
+    std::vector<device_report> all;
+    for (const bool osmesa : {false, true}) {
+        device_report r{.backend = osmesa ? "gl-osmesa" : "gl"};
+        try {
+            const gl_backend b(gl_options{.context = osmesa ? gl_context_kind::osmesa : gl_context_kind::egl});
+            r.device = b.caps().device;
+            r.works = true;
+            r.about = limits(b.caps());
+        } catch (const backend_error& e) {
+            r.about = e.what();
+        }
+        all.push_back(r);
+    }
+    return all;
+}
+
+} // namespace photongrid

@@ -1,0 +1,390 @@
+#include "scene_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+namespace photongrid {
+
+namespace {
+    // --- what the format knows ---
+    constexpr bool must = true, may = false;
+    constexpr scene_key scene_keys[] = {{"$schema", may}, {"photongrid", must}, {"name", may}, {"units", must}, {"camera", must}, {"materials", must}, {"shapes", must}, {"lights", must}, {"render", must}};
+    constexpr scene_key units_keys[] = {{"length", must}, {"power", must}};
+    constexpr scene_key camera_keys[] = {{"position", must}, {"look_at", must}, {"up", may}, {"vertical_fov", must}};
+    constexpr scene_key reflecting_keys[] = {{"type", must}, {"reflectance", must}};
+    constexpr scene_key mirror_keys[] = {{"type", must}, {"reflectance", may}};
+    constexpr scene_key glass_keys[] = {{"type", must}, {"index_of_refraction", must}, {"transmittance", may}};
+    constexpr scene_key sphere_keys[] = {{"type", must}, {"center", must}, {"radius", must}, {"material", must}};
+    constexpr scene_key cylinder_keys[] = {{"type", must}, {"base", must}, {"top", must}, {"radius", must}, {"material", must}};
+    constexpr scene_key cone_keys[] = {{"type", must}, {"base", must}, {"apex", must}, {"radius", must}, {"material", must}};
+    constexpr scene_key paraboloid_keys[] = {{"type", must}, {"vertex", must}, {"rim", must}, {"radius", must}, {"material", must}};
+    constexpr scene_key disk_keys[] = {{"type", must}, {"center", must}, {"normal", must}, {"radius", must}, {"material", must}};
+    constexpr scene_key vertices_keys[] = {{"type", must}, {"vertices", must}, {"material", must}};
+    constexpr scene_key point_keys[] = {{"type", must}, {"name", may}, {"position", must}, {"power", must}};
+    constexpr scene_key rectangle_keys[] = {{"type", must}, {"name", may}, {"corner", must}, {"edge_u", must}, {"edge_v", must}, {"power", must}};
+    constexpr scene_key render_keys[] = {{"size", must}, {"photons", must}, {"k", must}, {"grid", must}, {"max_radius", must}, {"light_samples", may}, {"spp", may}, {"depth", may}, {"photon_depth", may}, {"seed", may},
+        {"map", may}, {"slots", may}, {"exposure", may}};
+    constexpr object_keys objects[] = {{"scene", scene_keys}, {"units", units_keys}, {"camera", camera_keys}, {"lambertian", reflecting_keys}, {"mirror", mirror_keys}, {"metal", reflecting_keys}, {"glass", glass_keys},
+        {"sphere", sphere_keys}, {"cylinder", cylinder_keys}, {"cone", cone_keys}, {"paraboloid", paraboloid_keys}, {"disk", disk_keys}, {"triangle", vertices_keys}, {"polygon", vertices_keys}, {"point", point_keys},
+        {"rectangle", rectangle_keys}, {"render", render_keys}};
+
+    // Beyond these, single precision (squares and cubes of lengths, photon power) is no longer safe.
+    constexpr double max_length = 1e9, max_power = 1e15;
+    constexpr std::size_t max_shapes = 65'536, max_materials = 4'096, max_lights = 1'024, max_vertices = 1'024;
+
+    std::string joined(const std::vector<std::string>& words)
+    {
+        std::string all;
+        for (std::size_t i = 0; i < words.size(); ++i)
+            all += (i == 0 ? "\"" : i + 1 == words.size() ? " or \"" : ", \"") + words[i] + "\"";
+        return all;
+    }
+
+    /// A unit: a value in it is value * multiply / divide in SI. Two whole numbers round better than 0.001 would.
+    struct unit {
+        double multiply = 1, divide = 1;
+    };
+
+    class reader {
+    public:
+        reader(const std::string& file, std::string text)
+            : tree_(file, std::move(text))
+        {
+        }
+
+        scene read(const std::string& default_name)
+        {
+            const auto& root = tree_.root();
+            open(root, "scene");
+            if (const auto& version = at(root, "photongrid"); version.kind != json_kind::number || version.number != 1)
+                wrong(version, "the format's version, 1");
+            read_units(at(root, "units"));
+            scene_.name = default_name;
+            if (const auto* name = root.find("name"))
+                scene_.name = read_name(*name);
+            read_camera(at(root, "camera"));
+            read_materials(at(root, "materials"));
+            read_list(at(root, "shapes"), max_shapes, "shapes", [&](const json_value& v) { read_shape(v); });
+            read_list(at(root, "lights"), max_lights, "lights", [&](const json_value& v) { read_light(v); });
+            if (scene_.point_lights.empty() && scene_.rectangle_lights.empty())
+                tree_.fail(at(root, "lights").place, "lights: the scene has none; expected at least one");
+            read_render(at(root, "render"));
+            return std::move(scene_);
+        }
+
+    private:
+        [[noreturn]] void wrong(const json_value& v, const std::string& expected) const { tree_.fail(v.place, "found " + described(v) + "; expected " + expected); }
+
+        // --- objects ---
+        static const json_value& at(const json_value& object, std::string_view key) { return *object.find(key); }
+
+        static std::vector<std::string> names(std::span<const scene_key> keys)
+        {
+            std::vector<std::string> all;
+            for (const auto& k : keys)
+                all.emplace_back(k.name);
+            return all;
+        }
+
+        /// Holds `v` to the keys of `kind`: all required ones there, no unknown ones.
+        void open(const json_value& v, std::string_view kind) const
+        {
+            if (v.kind != json_kind::object)
+                wrong(v, "an object with the keys of \"" + std::string(kind) + "\"");
+            const auto keys = std::find_if(std::begin(objects), std::end(objects), [&](const object_keys& o) { return o.name == kind; })->keys;
+            for (const auto& m : v.items) {
+                if (m.key == "comment" || std::any_of(keys.begin(), keys.end(), [&](const scene_key& k) { return m.key == k.name; }))
+                    continue;
+                const auto near = nearest(m.key, names(keys));
+                tree_.fail(m.key_place, "unknown key " + described({.kind = json_kind::string, .text = m.key}).substr(9) + " in \"" + std::string(kind) + "\"; expected "
+                    + (near.empty() ? joined(names(keys)) : "\"" + near + "\"?"));
+            }
+            for (const auto& k : keys)
+                if (k.required && !v.find(k.name))
+                    tree_.fail(v.place, "\"" + std::string(kind) + "\" lacks the key \"" + k.name + "\"");
+        }
+
+        /// The value of "type", one of `types`.
+        const std::string& type_of(const json_value& v, const char* what, const std::vector<std::string>& types) const
+        {
+            if (v.kind != json_kind::object)
+                wrong(v, std::string("an object: a ") + what);
+            const auto* type = v.find("type");
+            if (!type)
+                tree_.fail(v.place, std::string("a ") + what + " lacks the key \"type\"; expected " + joined(types));
+            return one_of(*type, types);
+        }
+
+        const std::string& one_of(const json_value& v, const std::vector<std::string>& words) const
+        {
+            if (v.kind != json_kind::string || std::find(words.begin(), words.end(), v.text) == words.end())
+                wrong(v, joined(words));
+            return v.text;
+        }
+
+        template <class Read>
+        void read_list(const json_value& v, std::size_t limit, const char* what, Read&& read) const
+        {
+            if (v.kind != json_kind::array)
+                wrong(v, std::string("an array of ") + what);
+            if (v.items.size() > limit)
+                tree_.fail(v.items[limit].place, std::to_string(v.items.size()) + " " + what + "; expected at most " + std::to_string(limit));
+            for (const auto& item : v.items)
+                read(item);
+        }
+
+        /// Runs photongrid::check on a part and puts the place of the member at fault before its words.
+        template <class Part>
+        void checked(const json_value& v, const Part& part) const
+        {
+            try {
+                check(part);
+            } catch (const std::invalid_argument& e) {
+                const std::string_view what = e.what();
+                const auto* m = v.find(what.substr(0, what.find_first_of(":, ")));
+                tree_.fail(m ? m->place : v.place, std::string(what));
+            }
+        }
+
+        // --- numbers ---
+        double number(const json_value& v, double low, double high, const std::string& expected) const
+        {
+            if (v.kind != json_kind::number || !(v.number >= low && v.number <= high))
+                wrong(v, expected);
+            return v.number;
+        }
+
+        std::uint32_t whole(const json_value& v, std::uint32_t low, std::uint32_t high) const
+        {
+            const auto expected = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+            const double d = number(v, low, high, expected);
+            if (d != std::floor(d))
+                wrong(v, expected);
+            return static_cast<std::uint32_t>(d);
+        }
+
+        double in_units(const json_value& v, const unit& u, double low, double high, const std::string& expected) const
+        {
+            if (v.kind != json_kind::number)
+                wrong(v, expected);
+            const double d = v.number * u.multiply / u.divide;
+            if (!(d >= low && d <= high))
+                wrong(v, expected);
+            return d;
+        }
+
+        double length(const json_value& v) const { return in_units(v, length_, -max_length, max_length, "a length of at most 1e9 m"); }
+        double radius(const json_value& v) const { return in_units(v, length_, 1e-9, max_length, "a length from 1e-9 m to 1e9 m"); }
+
+        template <class Element>
+        dvec3 three(const json_value& v, const char* expected, Element&& element) const
+        {
+            if (v.kind != json_kind::array || v.items.size() != 3)
+                wrong(v, expected);
+            return {element(v.items[0]), element(v.items[1]), element(v.items[2])};
+        }
+
+        dvec3 point(const json_value& v) const
+        {
+            return three(v, "a point: [x, y, z]", [&](const json_value& c) { return length(c); });
+        }
+
+        dvec3 direction(const json_value& v) const
+        {
+            const auto d = three(v, "a direction: [x, y, z]", [&](const json_value& c) { return number(c, -1e9, 1e9, "a number from -1e9 to 1e9"); });
+            return d;
+        }
+
+        /// Three channels, or one number for all of them.
+        template <class Element>
+        dvec3 rgb(const json_value& v, const char* expected, Element&& element) const
+        {
+            return v.kind == json_kind::number ? dvec3(element(v)) : three(v, expected, element);
+        }
+
+        dvec3 fraction(const json_value& v) const
+        {
+            return rgb(v, "[red, green, blue] or one number, each from 0 to 1", [&](const json_value& c) { return number(c, 0, 1, "a number from 0 to 1"); });
+        }
+
+        dvec3 power(const json_value& v) const
+        {
+            return rgb(v, "[red, green, blue] or one number: power", [&](const json_value& c) { return in_units(c, power_, 0, max_power, "a power from 0 to 1e15 W"); });
+        }
+
+        std::string read_name(const json_value& v) const
+        {
+            if (v.kind != json_kind::string || v.text.empty() || v.text.size() > 100 || std::any_of(v.text.begin(), v.text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
+                wrong(v, "a name: text of 1 to 100 bytes");
+            return v.text;
+        }
+
+        // --- parts ---
+        void read_units(const json_value& v)
+        {
+            open(v, "units");
+            static const std::map<std::string, unit> lengths{{"m", {}}, {"cm", {1, 100}}, {"mm", {1, 1000}}}, powers{{"W", {}}, {"mW", {1, 1000}}, {"kW", {1000, 1}}};
+            length_ = lengths.at(one_of(at(v, "length"), {"m", "cm", "mm"}));
+            power_ = powers.at(one_of(at(v, "power"), {"W", "mW", "kW"}));
+        }
+
+        void read_camera(const json_value& v)
+        {
+            open(v, "camera");
+            auto& c = scene_.camera;
+            c.position = point(at(v, "position"));
+            c.look_at = point(at(v, "look_at"));
+            if (const auto* up = v.find("up"))
+                c.up = direction(*up);
+            c.vertical_fov = number(at(v, "vertical_fov"), 1e-3, 178.9, "an angle of 0.001 to 178.9 degrees");
+            checked(v, c);
+        }
+
+        void read_materials(const json_value& v)
+        {
+            if (v.kind != json_kind::object)
+                wrong(v, "an object: materials by name");
+            if (v.items.size() > max_materials)
+                tree_.fail(v.items[max_materials].key_place, std::to_string(v.items.size()) + " materials; expected at most " + std::to_string(max_materials));
+            for (const auto& m : v.items)
+                if (m.key != "comment") {
+                    material_index_[m.key] = static_cast<std::uint32_t>(scene_.materials.size());
+                    material_names_.push_back(m.key);
+                    scene_.materials.push_back(read_material(m));
+                }
+        }
+
+        material read_material(const json_value& v) const
+        {
+            const auto& type = type_of(v, "material", {"lambertian", "mirror", "metal", "glass"});
+            open(v, type);
+            material made{.name = v.key};
+            made.kind = type == "lambertian" ? material_kind::lambertian : type == "mirror" ? material_kind::mirror : type == "metal" ? material_kind::metal : material_kind::glass;
+            const auto* colour = v.find(type == "glass" ? "transmittance" : "reflectance");
+            made.reflectance = colour ? fraction(*colour) : dvec3(1);
+            if (const auto* ior = v.find("index_of_refraction"))
+                made.index_of_refraction = number(*ior, 1, 10, "an index of refraction from 1 to 10");
+            checked(v, made);
+            return made;
+        }
+
+        std::uint32_t material_of(const json_value& shape) const
+        {
+            const auto& v = at(shape, "material");
+            if (v.kind != json_kind::string)
+                wrong(v, "the name of a material");
+            const auto found = material_index_.find(v.text);
+            if (found == material_index_.end()) {
+                const auto near = nearest(v.text, material_names_);
+                wrong(v, "the name of a material in \"materials\"" + (near.empty() ? "" : ", perhaps \"" + near + "\""));
+            }
+            return found->second;
+        }
+
+        template <class Shape>
+        void add(std::vector<Shape>& shapes, const json_value& v, Shape shape) const
+        {
+            shape.material = material_of(v);
+            checked(v, shape);
+            shapes.push_back(std::move(shape));
+        }
+
+        void read_shape(const json_value& v)
+        {
+            const auto& type = type_of(v, "shape", {"sphere", "cylinder", "cone", "paraboloid", "disk", "triangle", "polygon"});
+            open(v, type);
+            const auto p = [&](const char* key) { return point(at(v, key)); };
+            const auto r = [&] { return radius(at(v, "radius")); };
+            if (type == "sphere")
+                add(scene_.spheres, v, {.center = p("center"), .radius = r()});
+            else if (type == "cylinder")
+                add(scene_.cylinders, v, {.base = p("base"), .top = p("top"), .radius = r()});
+            else if (type == "cone")
+                add(scene_.cones, v, {.base = p("base"), .apex = p("apex"), .radius = r()});
+            else if (type == "paraboloid")
+                add(scene_.paraboloids, v, {.vertex = p("vertex"), .rim = p("rim"), .radius = r()});
+            else if (type == "disk")
+                add(scene_.disks, v, {.center = p("center"), .normal = direction(at(v, "normal")), .radius = r()});
+            else
+                read_polygon(v, type == "triangle");
+        }
+
+        void read_polygon(const json_value& v, bool triangle)
+        {
+            const auto& list = at(v, "vertices");
+            if (list.kind != json_kind::array || list.items.size() < 3 || list.items.size() > (triangle ? 3 : max_vertices))
+                wrong(list, triangle ? "an array of 3 points" : "an array of 3 to " + std::to_string(max_vertices) + " points");
+            polygon p;
+            for (const auto& vertex : list.items)
+                p.vertices.push_back(point(vertex));
+            add(scene_.polygons, v, std::move(p));
+        }
+
+        void read_light(const json_value& v)
+        {
+            const auto& type = type_of(v, "light", {"point", "rectangle"});
+            open(v, type);
+            const auto* given = v.find("name");
+            const auto name = given ? read_name(*given) : "lights[" + std::to_string(scene_.point_lights.size() + scene_.rectangle_lights.size()) + "]";
+            if (type == "point") {
+                const point_light l{.name = name, .position = point(at(v, "position")), .power = power(at(v, "power"))};
+                checked(v, l);
+                scene_.point_lights.push_back(l);
+            } else {
+                const rectangle_light l{.name = name, .corner = point(at(v, "corner")), .edge_u = point(at(v, "edge_u")), .edge_v = point(at(v, "edge_v")), .power = power(at(v, "power"))};
+                checked(v, l);
+                scene_.rectangle_lights.push_back(l);
+            }
+        }
+
+        void read_render(const json_value& v)
+        {
+            open(v, "render");
+            auto& r = scene_.render;
+            const auto optional = [&](const char* key, std::uint32_t& setting, std::uint32_t low, std::uint32_t high) {
+                if (const auto* m = v.find(key))
+                    setting = whole(*m, low, high);
+            };
+            const auto& size = at(v, "size");
+            if (size.kind != json_kind::array || size.items.size() != 2)
+                wrong(size, "a size: [width, height] in pixels");
+            r.width = whole(size.items[0], 1, 16384);
+            r.height = whole(size.items[1], 1, 16384);
+            const auto cells = three(at(v, "grid"), "a grid: [x, y, z] cells", [&](const json_value& c) { return static_cast<double>(whole(c, 1, 1u << 20)); });
+            if (cells.x * cells.y * cells.z > 0x1p31)
+                wrong(at(v, "grid"), "at most 2^31 cells");
+            r.grid = glm::uvec3(cells);
+            r.max_radius = radius(at(v, "max_radius"));
+            optional("photons", r.photons, 1, 1u << 27);
+            optional("k", r.k, 1, 1u << 24);
+            optional("light_samples", r.light_samples, 1, 65536);
+            optional("spp", r.spp, 1, 65536);
+            optional("depth", r.depth, 0, 64);
+            optional("photon_depth", r.photon_depth, 1, 64);
+            optional("seed", r.seed, 0, 0xFFFFFFFFu);
+            optional("slots", r.slots, 1, 16);
+            if (const auto* map = v.find("map"))
+                r.builder = one_of(*map, {"sort", "route"}) == "sort" ? map_builder::sort : map_builder::route;
+            if (const auto* exposure = v.find("exposure"))
+                r.exposure = number(*exposure, -64, 64, "an exposure from -64 to 64 EV");
+            checked(v, r);
+        }
+
+        json_tree tree_;
+        scene scene_;
+        unit length_, power_;
+        std::map<std::string, std::uint32_t> material_index_;
+        std::vector<std::string> material_names_;
+    };
+} // namespace
+
+std::span<const object_keys> known_objects() { return objects; }
+
+scene parse_scene(const std::string& file, std::string text) { return reader(file, std::move(text)).read(std::filesystem::path(file).stem().string()); }
+
+scene read_scene(const std::string& path) { return parse_scene(path, read_scene_text(path)); }
+
+} // namespace photongrid

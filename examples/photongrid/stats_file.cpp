@@ -1,0 +1,61 @@
+#include "stats_file.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+
+#include <sys/resource.h>
+
+namespace photongrid {
+
+namespace {
+    using json = nlohmann::ordered_json;
+
+    const char* name_of(map_builder b) { return b == map_builder::sort ? "sort" : "route"; }
+
+    json settings_json(const render_settings& s)
+    {
+        return {{"size", {s.width, s.height}}, {"photons", s.photons}, {"k", s.k}, {"grid", {s.grid.x, s.grid.y, s.grid.z}}, {"max_radius", s.max_radius}, {"light_samples", s.light_samples}, {"spp", s.spp},
+            {"depth", s.depth}, {"photon_depth", s.photon_depth}, {"seed", s.seed}, {"map", name_of(s.builder)}, {"slots", s.slots}, {"exposure", s.exposure}};
+    }
+
+    json stage_json(const stage_stats& s) { return {{"ms", s.ms}, {"passes", s.passes}, {"device_bytes", s.device_bytes}}; }
+} // namespace
+
+std::string stats_json(const scene& s, const render_settings& settings, const render_result& result, double total_ms)
+{
+    const auto& r = result.stats;
+    const auto& p = r.photons;
+    json kernels = json::object();
+    for (const auto& [name, cost] : result.costs)
+        kernels[name] = {{"instructions", cost.instructions}, {"compile_ms", cost.compile_ms}, {"passes", cost.passes}};
+    const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.name}, {"backend", result.caps.backend}, {"device", result.caps.device}, {"seed", settings.seed}, {"settings", settings_json(settings)},
+        {"photons",
+            {{"emitted", p.emitted}, {"absorbed", p.absorbed}, {"escaped", p.escaped}, {"cut_off", p.cut_off}, {"invalid", p.invalid}, {"stored", p.stored}, {"direct", p.direct}, {"dropped", p.dropped}}},
+        {"map", {{"builder", name_of(r.map.builder)}, {"cells", r.map.cells}, {"overfull_cells", r.map.overfull_cells}, {"redistributed_flux", r.map.redistributed_flux}}},
+        {"stages",
+            {{"trace_photons", stage_json(r.trace_photons)}, {"build_map", stage_json(r.build_map)}, {"trace_rays", stage_json(r.trace_rays)}, {"radiance_estimate", stage_json(r.radiance_estimate)}}},
+        {"estimate", {{"mean_count", r.estimate.mean_count}, {"mean_radius", r.estimate.mean_radius}, {"mean_visited", r.estimate.mean_visited}}}, {"kernels", kernels},
+        {"peak_memory_bytes", peak_memory_bytes()}, {"peak_device_bytes", r.peak_device_bytes}, {"total_ms", total_ms}};
+    return all.dump(2) + "\n";
+}
+
+image_notes picture_notes(const scene& s, const render_settings& settings, const render_result& result)
+{
+    return {{"scene", s.name}, {"backend", result.caps.backend}, {"device", result.caps.device}, {"seed", std::to_string(settings.seed)}, {"settings", settings_json(settings).dump()},
+        {"version", std::string("photongrid ") + PHOTONGRID_VERSION}};
+}
+
+std::uint64_t peak_memory_bytes()
+{
+    // getrusage's figure outlives exec: a small program started by a large one would report the large one's.
+    std::ifstream status("/proc/self/status");
+    for (std::string word; status >> word;)
+        if (std::uint64_t kib = 0; word == "VmHWM:" && status >> kib)
+            return kib * 1024;
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+} // namespace photongrid

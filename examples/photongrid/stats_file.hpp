@@ -1,0 +1,18 @@
+// --stats: what a render did, as JSON; and the same facts as notes in an EXR.
+#pragma once
+
+#include "backends.hpp"
+#include "image_file.hpp"
+
+namespace photongrid {
+
+/// The JSON of --stats. docs/scenes.md lists its fields.
+std::string stats_json(const scene& s, const render_settings& settings, const render_result& result, double total_ms);
+
+/// Attributes for an EXR: seed, backend, device, settings, version.
+image_notes picture_notes(const scene& s, const render_settings& settings, const render_result& result);
+
+/// The largest amount of memory that this process has held, bytes.
+std::uint64_t peak_memory_bytes();
+
+} // namespace photongrid

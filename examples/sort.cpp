@@ -1,0 +1,16 @@
+// The library without the renderer: sort (key, value) pairs on a backend. Change the backend's line to sort on a GPU.
+#include <photongrid/backends/serial/serial.hpp>
+#include <photongrid/bitonic_sort.hpp>
+
+#include <iostream>
+
+int main()
+{
+    photongrid::serial_backend backend;
+    const std::vector<glm::uvec2> pairs{{30, 0}, {10, 1}, {20, 2}, {10, 3}};
+    auto buffer = backend.upload(std::span(pairs));
+    const auto report = photongrid::bitonic_sort(backend, buffer);
+    for (const auto& pair : backend.download(buffer))
+        std::cout << pair.x << " -> " << pair.y << '\n'; // 10 -> 1, 10 -> 3, 20 -> 2, 30 -> 0
+    std::cout << report.passes << " passes\n";
+}
