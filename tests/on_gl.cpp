@@ -15,6 +15,7 @@ struct egl_tag {
 struct osmesa_tag {
     using type = gl_backend;
     static constexpr const char* name = "osmesa";
+    static constexpr bool software_only = true;
     static std::unique_ptr<type> make() { return std::make_unique<type>(gl_options{.context = gl_context_kind::osmesa}); }
 };
 using contexts = ::testing::Types<egl_tag, osmesa_tag>;

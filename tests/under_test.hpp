@@ -49,6 +49,9 @@ protected:
     using B = typename Tag::type;
     void SetUp() override
     {
+        if constexpr (requires { Tag::software_only; })
+            if (hardware_wanted())
+                GTEST_SKIP() << Tag::name << " is never hardware";
         std::string reason;
         instance_ = shared_backend<Tag>(reason);
         if (instance_ != nullptr)

@@ -11,6 +11,8 @@
 
 #include <array>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -29,28 +31,38 @@ enum class gl_context_kind {
 namespace photongrid::gl {
 
 /// A context. `use()` makes it the thread's current one; a context belongs to one thread at a time.
-class context : public std::enable_shared_from_this<context> {
+class context {
 public:
     functions call;
     std::string name = "gl"; ///< the backend's name: "gl" or "gl-osmesa"
 
-    context() = default;
+    context()
+    {
+        const std::lock_guard lock(living().mutex);
+        living().contexts.insert(this);
+    }
     context(const context&) = delete;
     context& operator=(const context&) = delete;
-    virtual ~context() = default;
+    virtual ~context()
+    {
+        const std::lock_guard lock(living().mutex);
+        living().contexts.erase(this);
+    }
 
     /// \throws backend_error when the context cannot be made current.
     void use()
     {
-        auto& last = last_used();
-        if (last.lock().get() == this && is_current())
+        // Without a destructor, so that backends in static storage can still be destroyed when the thread's own
+        // variables are gone.
+        thread_local context* last = nullptr;
+        if (last == this && is_current())
             return;
         // EGL's and OSMesa's Mesa share one "current context" per thread without knowing of each other, so the one
         // that leaves must be told.
-        if (const auto other = last.lock(); other && other.get() != this && !is_callers())
-            other->release();
+        if (last != nullptr && last != this && !is_callers() && is_living(last))
+            last->release();
         bind();
-        last = weak_from_this();
+        last = this;
     }
 
     /// True for the caller's own context, whose state may have changed since the last call.
@@ -62,10 +74,20 @@ protected:
     virtual void release() noexcept = 0;
 
 private:
-    static std::weak_ptr<context>& last_used()
+    struct registry {
+        std::mutex mutex;
+        std::set<const context*> contexts;
+    };
+    /// All contexts there are; never destroyed, for the same reason.
+    static registry& living()
     {
-        thread_local std::weak_ptr<context> last;
-        return last;
+        static auto* const all = new registry;
+        return *all;
+    }
+    static bool is_living(const context* c)
+    {
+        const std::lock_guard lock(living().mutex);
+        return living().contexts.contains(c);
     }
 };
 

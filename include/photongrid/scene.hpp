@@ -229,7 +229,8 @@ inline void check(const rectangle_light& l)
 }
 inline void check(const camera& c)
 {
-    detail::require_axis(c.position, c.look_at, "position and look_at");
+    detail::require(detail::finite(c.position) && detail::finite(c.look_at), "position and look_at: must be finite");
+    detail::require(c.position != c.look_at, "position and look_at: are the same point, so the camera looks nowhere");
     detail::require(detail::finite(c.up) && glm::length(glm::cross(c.up, c.look_at - c.position)) > 1e-9 * glm::length(c.up) * glm::length(c.look_at - c.position) && glm::length(c.up) > 0,
         "up: must be finite, not zero, and not along the line of sight");
     detail::require(detail::finite(c.vertical_fov) && c.vertical_fov > 0 && c.vertical_fov < 179, "vertical_fov: must be between 0 and 179 degrees");
