@@ -297,6 +297,47 @@ TYPED_TEST_P(algorithms, route_takes_a_hundred_thousand_photons_to_one_cell)
     }
 }
 
+TYPED_TEST_P(algorithms, route_conserves_flux_in_crowded_cells)
+{
+    // Float sums of a third: 1e-5 up to 2,048 photons a cell, 5e-4 at 70,000.
+    auto& b = this->b();
+    for (const auto& [n, tolerance] : {std::pair{2048u, 1e-5}, std::pair{70000u, 5e-4}}) {
+        photon_set set;
+        set.g = make_grid(glm::vec3(0), glm::vec3(1), {2, 2, 2});
+        set.positions.assign(n, vec4(0.2f, 0.7f, 0.2f, 0.0f));
+        set.powers.assign(n, vec4(1.0f / 3, 0.1f, 1e-4f / 3, 0.0f));
+        const auto routed = stencil_route(b, upload_photons(b, set), set.g, 4, 1);
+        const auto powers = b.download(routed.powers);
+        const auto list = b.download(routed.list);
+        const auto cell = b.download(routed.cells).at(2);
+        ASSERT_EQ(cell.y, 16u);
+        glm::dvec3 after(0);
+        for (uint s = cell.x; s < cell.x + cell.y; ++s)
+            after += glm::dvec3(powers[list[s]]);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(after[c], n * static_cast<double>(set.powers[0][c]), tolerance * n * static_cast<double>(set.powers[0][c])) << n << " photons, channel " << c;
+    }
+}
+
+TYPED_TEST_P(algorithms, route_is_fair_to_later_photons)
+{
+    // Two lights' photons, the second's ids after the first's, all in one cell: both keep about half the slots.
+    auto& b = this->b();
+    photon_set set;
+    set.g = make_grid(glm::vec3(0), glm::vec3(1), {1, 1, 1});
+    set.positions.assign(2000, vec4(0.5f, 0.5f, 0.5f, 0.0f));
+    set.powers.assign(2000, vec4(1));
+    const auto photons = upload_photons(b, set);
+    std::uint64_t late = 0, kept = 0;
+    for (uint seed = 0; seed < 20; ++seed)
+        for (const uint id : b.download(stencil_route(b, photons, set.g, 16, seed).list)) {
+            ++kept;
+            late += id >= 1000 ? 1u : 0u;
+        }
+    EXPECT_EQ(kept, 20u * 255u);
+    EXPECT_NEAR(static_cast<double>(late), 0.5 * static_cast<double>(kept), 5 * 0.5 * std::sqrt(static_cast<double>(kept)));
+}
+
 TYPED_TEST_P(algorithms, route_says_no_to_what_it_cannot_do)
 {
     auto& b = this->b();
@@ -560,6 +601,7 @@ REGISTER_TYPED_TEST_SUITE_P(algorithms, buffers_keep_every_bit, a_pass_outside_a
     the_self_test_of_arithmetic_agrees_with_the_capabilities, sort_equals_std_sort_for_any_size_and_keys, sort_handles_the_sizes_where_networks_break,
     sort_reports_the_papers_numbers_of_passes, long_a_million_pairs_sort_and_index, index_equals_the_histogram,
     route_keeps_the_first_in_draw_order_and_all_the_flux, route_conserves_unequal_powers_and_absent_channels, route_takes_a_hundred_thousand_photons_to_one_cell,
+    route_conserves_flux_in_crowded_cells, route_is_fair_to_later_photons,
     route_says_no_to_what_it_cannot_do, estimate_uses_exactly_the_photons_within_its_radius, estimate_adds_up_the_flux_it_says,
     estimate_defines_what_has_no_neighbours, coincident_photons_give_a_finite_estimate, poisoned_photons_are_counted_and_harmless,
     a_search_can_be_watched_and_resumed, all_photons_in_one_cell_are_all_visited, everything_equals_the_serial_backend_bit_for_bit);

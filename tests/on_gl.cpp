@@ -24,4 +24,30 @@ INSTANTIATE_TYPED_TEST_SUITE_P(gl, algorithms, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, pictures, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, scene_files, contexts, tag_names);
 
+/// Between the first pass and the last nothing comes back to the CPU but the results of occlusion queries.
+template <class Tag>
+class readbacks : public on_backend<Tag> {};
+TYPED_TEST_SUITE(readbacks, contexts, tag_names);
+
+TYPED_TEST(readbacks, a_whole_picture_reads_no_pixel_back)
+{
+    auto& b = this->b();
+    const auto s = small_cornell();
+    for (const auto builder : {map_builder::sort, map_builder::route}) {
+        auto settings = s.render;
+        settings.builder = builder;
+        const auto before = b.readbacks();
+        std::uint64_t at_the_last_pass = 0;
+        render_observer observer;
+        observer.progress = [&](std::string_view stage, double) {
+            if (stage == "radiance_estimate")
+                at_the_last_pass = b.readbacks();
+        };
+        render_stats stats;
+        render(b, s, settings, observer, stats);
+        EXPECT_EQ(at_the_last_pass, before);
+        EXPECT_GT(b.readbacks(), before); // the picture itself: the counter counts
+    }
+}
+
 } // namespace photongrid::testing

@@ -255,7 +255,7 @@ public:
         count_passes<K>(1);
         bind<K>(args, reads, std::tuple<>{});
         if (totals.size() > 0)
-            pass.sum(totals.texture_);
+            pass.sum(totals.texture_, route_parts(totals.size(), destinations));
         if (slots.size() > 0)
             pass.fill(slots.texture_, slots.size());
         check<K>("route");

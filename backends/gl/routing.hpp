@@ -58,8 +58,8 @@ struct routing {
         gl.DeleteFramebuffers(1, &framebuffer);
     }
 
-    /// totals[d] = sum of the amounts of all draws to d, in draw order, by blending.
-    void sum(const texture& totals)
+    /// totals[d * parts + p] = sum of the amounts of the draws to d in the p-th block of draws, in draw order, by blending.
+    void sum(const texture& totals, uint parts)
     {
         functions& gl = on.call;
         constexpr std::array<GLfloat, 4> zero{};
@@ -70,6 +70,7 @@ struct routing {
             return;
         gl.UseProgram(amount);
         gl.ProgramUniform4ui(amount, 1, totals.width, destinations, 1, totals.height);
+        gl.ProgramUniform4ui(amount, 2, parts, route_block(draws.elements, parts), draws.first, 0);
         gl.Enable(GL_BLEND);
         gl.BlendEquation(GL_FUNC_ADD);
         gl.BlendFunc(GL_ONE, GL_ONE);
@@ -123,6 +124,7 @@ private:
         functions& gl = on.call;
         gl.UseProgram(payload);
         gl.ProgramUniform4ui(payload, 1, columns, destinations, m, rows);
+        gl.ProgramUniform4ui(payload, 2, 1, draws.elements, draws.first, 0);
         gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
         gl.StencilMask(0xFFu);
         // GL_INCR stops at 255, beyond every reference value: a full destination stays full (docs/decisions.md).

@@ -1,8 +1,10 @@
-// The sum of each destination's amounts in the order of the draws, a bounded number of them a pass: software devices end
-// loops silently, others kill long passes. The order makes the sum the same on every device.
+// The partial sums of each destination's amounts, a block of draws each, in the order of the draws, a bounded number of
+// them a pass: software devices end loops silently, others kill long passes. The order makes the sums the same everywhere.
 struct Params {
     uint destinations;
-    uint begin; // draws of each destination that earlier passes have added
+    uint parts; // partial sums of a destination
+    uint block; // draws that share one
+    uint begin; // draws of each partial sum that earlier passes have added
     uint most;  // draws that this pass adds at most
 };
 PARAMS(Params)
@@ -11,19 +13,40 @@ layout(std430, binding = 1) readonly buffer ranges_block_ { uvec2 ranges_[]; };
 layout(std430, binding = 2) readonly buffer amounts_block_ { vec4 amounts_[]; };
 layout(std430, binding = 3) buffer totals_block_ { vec4 totals_[]; };
 
+// The first of a destination's keys, sorted by draw, that is not before this draw.
+uint first_from(uvec2 range, uint draw)
+{
+    uint low = range.x;
+    uint high = range.x + range.y;
+    while (low < high) {
+        uint middle = low + (high - low) / 2u;
+        if (keys_[middle].y < draw)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 void main()
 {
-    uint d = element_();
-    if (d >= launch_.x)
+    uint place = element_();
+    if (place >= launch_.x)
         return;
-    uvec2 range = d < args.destinations ? ranges_[d] : uvec2(0u, 0u);
+    uint d = place / args.parts;
+    uint part = place - d * args.parts;
+    uvec2 range = uvec2(0u, 0u);
+    if (d < args.destinations) {
+        uint first = first_from(ranges_[d], part * args.block);
+        range = uvec2(first, first_from(ranges_[d], (part + 1u) * args.block) - first);
+    }
     if (args.begin > 0u && range.y <= args.begin)
         return;
     vec4 sum = vec4(0.0);
     if (args.begin > 0u)
-        sum = totals_[d];
+        sum = totals_[place];
     uint end = min(range.y, args.begin + args.most);
     for (uint r = args.begin; r < end; ++r)
         sum += amounts_[keys_[range.x + r].y];
-    totals_[d] = sum;
+    totals_[place] = sum;
 }

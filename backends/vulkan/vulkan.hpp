@@ -188,11 +188,12 @@ public:
         uint longest = 0;
         recorder_.read(most, &longest, sizeof longest);
         constexpr uint at_once = 4096;
+        const uint parts = route_parts(totals.size(), destinations), block = route_block(l.elements, parts);
         std::uint64_t begin = 0;
         do { // once at least: it also sets the totals of what nothing is destined for to 0
-            own_pass("route_totals", totals.size(), {destinations, static_cast<uint>(begin), at_once}, {keys.memory_, ranges.memory_, amount.memory_, totals.memory_});
+            own_pass("route_totals", totals.size(), {destinations, parts, block, static_cast<uint>(begin), at_once}, {keys.memory_, ranges.memory_, amount.memory_, totals.memory_});
             begin += at_once;
-        } while (begin < longest);
+        } while (begin < std::min(longest, block));
     }
 
     void finish() { recorder_.finish(); }
@@ -234,7 +235,7 @@ private:
         caps_.max_route_slots = 16;
         // lavapipe ends every loop of a group of invocations after so many iterations of all of them, without a word.
         caps_.loop_limit = info.name.find("llvmpipe") != std::string::npos ? 65535u : 0u;
-        if (const char* e = std::getenv("PG_TEXEL"); e ? e[0] == '1' : info.software)
+        if (info.software)
             texel_limit_ = std::uint64_t{context_->properties().limits.maxTexelBufferElements} * sizeof(float);
         std::tie(caps_.exact_division, caps_.exact_sqrt) = test_arithmetic(*this);
     }
@@ -290,7 +291,8 @@ private:
         std::vector<memory> bound_buffers;
         for (const auto& b : buffers)
             bound_buffers.push_back(b ? b : empty_);
-        std::array<uint, 4> params{};
+        std::array<uint, 8> params{};
+        assert(args.size() <= params.size());
         std::copy(args.begin(), args.end(), params.begin());
         if (elements > 0)
             recorder_.dispatch(own_pipeline(name, buffers.size()), bound_buffers, push(launch(elements), groups(elements), 0, params), groups(elements));

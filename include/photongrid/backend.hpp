@@ -159,7 +159,9 @@ namespace detail {
 /// - `count<K>(launch, params, reads(…))`                       how many elements `holds` is true for (occlusion query)
 /// - `route<K>(launch, params, reads, destinations, m, slots, totals)`  many-to-one scatter (2.2.2): with cap =
 ///                           min(m*m, 255), slots[d*cap + r] = payload of the r-th draw (in index order) with destination
-///                           d, for r < cap, the rest 0xFFFFFFFF; totals[d] = sum of all amounts with destination d
+///                           d, for r < cap, the rest 0xFFFFFFFF; totals[d] = sum of all amounts with destination d.
+///                           With room for P totals a destination there are P partial sums: totals[d*P + p] adds up, in
+///                           order, the draws of the p-th of P equal blocks. Shorter sums round less
 /// - `finish()`              waits until all passes are done
 /// - `caps()`, `bytes()`, `peak_bytes()`, `costs()`             what it is, holds, held at most, has spent
 template <class B>
@@ -187,6 +189,17 @@ using buffer_of = typename B::template buffer<T>;
 /// Slots that a routed destination really has: m*m, but 255 at most, since an 8-bit stencil cannot count further
 /// (docs/decisions.md).
 constexpr uint route_capacity(uint m) { return m * m < 255u ? m * m : 255u; }
+
+/// How many partial sums a destination has in route, by the room for them; and how many draws share one.
+constexpr uint route_parts(std::size_t totals, uint destinations)
+{
+    return destinations == 0 ? 1u : static_cast<uint>(totals / destinations);
+}
+constexpr uint route_block(uint draws, uint parts)
+{
+    const uint block = draws / parts + (draws % parts != 0 ? 1u : 0u);
+    return block > 0 ? block : 1u;
+}
 
 /// Marks "no destination" and "no payload" in route.
 inline constexpr uint nowhere = 0xFFFFFFFFu;

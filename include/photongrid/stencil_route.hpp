@@ -29,18 +29,21 @@ routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, 
     const uint capacity = route_capacity(m);
     const uint cells = cell_count(g);
     const uint n = p.size();
+    // Eight partial sums a cell keep the flux of 70,000 equal photons within 1e-4 in single precision.
+    constexpr uint parts = 8;
     const std::uint64_t slots = std::uint64_t{cells} * capacity;
-    if (slots > b.caps().max_elements || slots > 0xFFFFFFFEu)
+    if (std::max(slots, std::uint64_t{cells} * parts) > b.caps().max_elements || slots > 0xFFFFFFFEu)
         throw backend_error(b.caps().backend + ": stencil_route: " + std::to_string(cells) + " cells of " + std::to_string(capacity) + " slots are " + std::to_string(slots)
             + " slots; this device holds " + std::to_string(b.caps().max_elements) + ". Use a coarser grid or a smaller m, or build the map by sorting");
     routed_cells<B> r;
     r.list = b.template make<uint>(slots);
-    r.totals = b.template make<glm::vec4>(cells);
-    b.template route<kernels::route_photon>(n, {.grid = g, .photons = n, .seed = seed}, reads(p.positions, p.powers), cells, m, r.list, r.totals);
+    auto partial_sums = b.template make<glm::vec4>(std::size_t{cells} * parts);
+    b.template route<kernels::route_photon>(n, {.grid = g, .photons = n, .seed = seed}, reads(p.positions, p.powers), cells, m, r.list, partial_sums);
     r.cells = b.template make<glm::uvec2>(cells);
     r.surpluses = b.template make<glm::vec4>(cells);
+    r.totals = b.template make<glm::vec4>(cells);
     auto scales = b.template make<glm::vec4>(cells);
-    b.template run<kernels::routed_cell>(cells, {.capacity = capacity}, reads(r.totals, r.list, p.powers), writes(r.cells, scales, r.surpluses));
+    b.template run<kernels::routed_cell>(cells, {.capacity = capacity, .parts = parts}, reads(partial_sums, r.list, p.powers), writes(r.cells, scales, r.surpluses, r.totals));
     r.powers = b.template make<glm::vec4>(n);
     b.template run<kernels::redistribute_power>(n, {.grid = g}, reads(p.positions, p.powers, scales, r.surpluses), writes(r.powers));
     r.overfull_cells = b.template count<kernels::overfull_cell>(cells, {.capacity = capacity}, reads(r.totals));

@@ -2,18 +2,23 @@
 // of all photons destined for it is conserved per channel (2.2.2, "redistribute the power of the surplus photons").
 struct Params {
     uint capacity; // slots of a cell
+    uint parts;    // partial sums of a cell
 };
 PARAMS(Params)
-INPUT(0, vec4, totals) // rgb: flux destined for the cell, W; w: how many photons
+INPUT(0, vec4, partial_sums) // rgb: flux destined for the cell, W; w: how many photons
 INPUT(1, uint, slots)
 INPUT(2, vec4, powers)
 OUTPUT(0, uvec2, cell)  // x: first slot, y: photons kept
 OUTPUT(1, vec4, scale)  // kept photons' flux is multiplied by this ...
 OUTPUT(2, vec4, surplus) // ... and this is added, W: a channel that no kept photon carries, spread evenly; w: flux moved, all channels, W
+OUTPUT(3, vec4, total)  // all the flux destined for the cell, W; w: how many photons
 
 void kernel(uint i)
 {
-    vec4 total = totals(i);
+    precise vec4 all = partial_sums(i * args.parts);
+    for (uint p = 1u; p < args.parts; ++p)
+        all += partial_sums(i * args.parts + p);
+    total = all;
     uint destined = uint(total.w);
     uint kept = min(destined, args.capacity);
     cell = uvec2(i * args.capacity, kept);
