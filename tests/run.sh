@@ -3,7 +3,7 @@
 #
 #   tests/run.sh [--full] [--device hardware] [--no-install]
 #
-#   --full             adds the long runs, and the sanitizers on every backend instead of on the serial one
+#   --full             adds the long runs and planted faults, and the sanitizers on every backend instead of on the serial one
 #   --device hardware  every backend on a real GPU; software devices are refused (no sanitizers, no clang)
 #   --no-install       only say which Debian packages are missing, do not install them
 #
@@ -88,6 +88,11 @@ else
   configure clang
   cmake --build build-clang --target all_verify_interface_header_sets photongrid_smoke
   run_tests build-clang --tests-regex smoke
+
+  if [[ $full == yes ]]; then
+    echo "== planted faults"
+    tests/planted_faults.sh
+  fi
 fi
 
 echo "== g++, all tests"

@@ -7,6 +7,7 @@
 #include <photongrid/self_test.hpp>
 
 #include <bit>
+#include <cassert>
 #include <chrono>
 
 namespace photongrid {

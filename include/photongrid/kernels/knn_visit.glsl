@@ -5,7 +5,7 @@
 // The order of visits is part of the result: ring by ring, in a ring z, y, x ascending, photons in map order. Skipping
 // rows of cells that cannot reach the radius, and reading a row of a contiguous map as one range, keep that order.
 //
-// Bounded work a pass: drivers cut long loops silently (docs/hard_cases.md, A15). The state between passes is the answer
+// Bounded work a pass: drivers cut long loops silently (docs/decisions.md). The state between passes is the answer
 // so far, so it can be shown at any time (3.4).
 #include "grid.glsl"
 
