@@ -71,12 +71,12 @@ if [[ $device == hardware ]]; then
 else
   echo "== sanitizers"
   if [[ $full == yes ]]; then
-    # Mesa's drivers leak a little at exit. The Vulkan loader unloads its driver, after which a leak has no name to
-    # suppress, so the driver is loaded beforehand (google/sanitizers#1653).
+    # Mesa's drivers and the validation layer leak a little at exit, and are unloaded by then: see keep_loaded.cpp.
     asan=$(readlink -f "$(g++ -print-file-name=libasan.so)")
     lavapipe=$(find /usr/lib -name 'libvulkan_lvp.so' -print -quit)
-    configure asan -DPHOTONGRID_GL=ON -DPHOTONGRID_VULKAN=ON "-DCMAKE_CROSSCOMPILING_EMULATOR=env;LD_PRELOAD=$asan:$lavapipe"
-    printf 'leak:%s\n' libOSMesa libvulkan_lvp libEGL_mesa swrast_dri libLLVM >build-asan/leaks.supp
+    layer=$(find /usr/lib -name 'libVkLayer_khronos_validation.so' -print -quit)
+    configure asan -DPHOTONGRID_GL=ON -DPHOTONGRID_VULKAN=ON "-DCMAKE_CROSSCOMPILING_EMULATOR=env;PHOTONGRID_KEEP_LOADED=$lavapipe:$layer;LD_PRELOAD=$asan:$PWD/build-asan/tests/libkeep_loaded.so"
+    printf 'leak:%s\n' libOSMesa libvulkan_lvp libVkLayer_khronos_validation libEGL_mesa swrast_dri libLLVM >build-asan/leaks.supp
     export LSAN_OPTIONS=suppressions=$PWD/build-asan/leaks.supp:print_suppressions=0
   else
     configure asan

@@ -20,7 +20,7 @@ struct vulkan_options {
     std::string device{};       ///< "": the best (discrete, integrated, virtual, CPU); else an index or a part of the name
     bool hardware_only = false; ///< refuse devices that are a CPU
     bool validation = false;    ///< run the Khronos validation layer (core and synchronization) and collect its messages
-    bool staging = false;       ///< copy through staging buffers even where the host can reach the device's memory
+    bool staging = false;       ///< work as on a discrete GPU even where it is not needed: copy through staging buffers, read inputs as storage buffers
 };
 
 /// A device that the caller has opened, and goes on owning. The instance must be for Vulkan 1.1 or later, the queue of a

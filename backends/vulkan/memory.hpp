@@ -43,6 +43,8 @@ public:
     std::uint32_t family() const { return device_.family(); }
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
     std::vector<std::string> messages() const { return instance_.messages(); }
+    /// True where staging buffers were asked for.
+    bool staging() const { return staging_; }
     std::uint64_t max_buffer_bytes() const { return max_buffer_bytes_; }
     /// Bytes in buffers that somebody can still name.
     std::uint64_t bytes() const { return named_; }
@@ -87,6 +89,7 @@ private:
 
     void look(bool staging)
     {
+        staging_ = staging;
         VkPhysicalDeviceMaintenance3Properties m3{};
         m3.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
         VkPhysicalDeviceProperties2 p2{};
@@ -179,7 +182,7 @@ private:
     logical_device device_;
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceMemoryProperties memory_{};
-    bool unified_ = false;
+    bool staging_ = false, unified_ = false;
     std::uint64_t max_buffer_bytes_ = 0;
     std::map<memory_kind, std::multimap<VkDeviceSize, block>> free_;
     VkDeviceSize free_bytes_ = 0;

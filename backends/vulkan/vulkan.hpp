@@ -236,7 +236,7 @@ private:
         caps_.max_route_slots = 16;
         // lavapipe ends every loop of a group of invocations after so many iterations of all of them, without a word.
         caps_.loop_limit = info.name.find("llvmpipe") != std::string::npos ? 65535u : 0u;
-        if (info.software)
+        if (info.software && !context_->staging())
             texel_limit_ = std::uint64_t{context_->properties().limits.maxTexelBufferElements} * sizeof(float);
         std::tie(caps_.exact_division, caps_.exact_sqrt) = test_arithmetic(*this);
     }
