@@ -13,15 +13,15 @@ tar -c --exclude='./build*' --exclude=./out --exclude=./.git . | tar -x -C "$wor
 
 # name | file | what to replace | by what (plain text, which must be there)
 faults=(
-  "sort loses ties|include/photongrid/kernels/bitonic_step.glsl|(mine.x == partner.x \&\& mine.y < partner.y)|mine.x == partner.x"
-  "sort ignores values|include/photongrid/kernels/bitonic_step.glsl| \|\| (mine.x == partner.x \&\& mine.y < partner.y)|"
+  "sort loses ties|include/photongrid/kernels/bitonic_step.glsl|(mine.x == partner.x && mine.y < partner.y)|mine.x == partner.x"
+  "sort ignores values|include/photongrid/kernels/bitonic_step.glsl| \|\| (mine.x == partner.x && mine.y < partner.y)|"
   "index off by one|include/photongrid/kernels/first_in_cell.glsl|keys_below(i + 1u) - first|keys_below(i + 1u) - first + (first > 3u ? 1u : 0u)"
   "index takes equal keys|include/photongrid/kernels/first_in_cell.glsl|.x < key|.x <= key"
   "routing keeps one less|backends/serial/serial.hpp|arrived[d] < capacity|arrived[d] + 1 < capacity"
   "routing drops surplus power|include/photongrid/kernels/routed_cell.glsl|scale.y = total.y / sum.y|scale.y = 1.0f"
   "routing draws in order of id|include/photongrid/kernels/route_photon.glsl|permuted(i, args.photons, args.seed)|i"
   "search ends a ring early|include/photongrid/kernels/knn_visit.glsl|reach * reach > limit2)|reach * reach > 0.25f * limit2)"
-  "search keeps growing|include/photongrid/kernels/knn_visit.glsl|held < args.wanted \&\& d2 > radius2|d2 > radius2"
+  "search takes all within the maximum radius|include/photongrid/kernels/knn_visit.glsl|d2 <= (held < args.wanted ? args.max_radius2 : radius2)|d2 <= args.max_radius2"
   "search skips the last photon|include/photongrid/kernels/knn_visit.glsl|end = final.x + final.y;|end = final.x + final.y - (final.y > 4u ? 1u : 0u);"
   "cells without clamp at the top|include/photongrid/kernels/grid.glsl|f = f < last ? f : last;|f = f < last + 1.0f ? f : last + 1.0f;"
   "wrong normalisation|include/photongrid/kernels/knn_result.glsl|3.14159265f|3.0f"
@@ -41,11 +41,10 @@ caught=0 missed=0
 for fault in "${faults[@]}"; do
   name=${fault%%|*} rest=${fault#*|}
   file=${rest%%|*} rest=${rest#*|}
-  # The separator is a bar, so bars inside are written \| and ampersands \&.
+  # The separator is a bar, so bars inside are written \|.
   rest=${rest//\\|/$'\001'}
   from=${rest%%|*} to=${rest#*|}
   from=${from//$'\001'/|} to=${to//$'\001'/|}
-  from=${from//\\&/&} to=${to//\\&/&}
   wanted=yes
   for word in "$@"; do
     wanted=no
