@@ -2,6 +2,7 @@
 // backend's picture. Included by each on_<backend>.cpp.
 #pragma once
 
+#include "photon_sets.hpp"
 #include "test_scenes.hpp"
 #include "under_test.hpp"
 
@@ -23,6 +24,17 @@ inline double relative_mse(const image& a, const image& b)
             sum += d * d / (r * r);
         }
     return sum / static_cast<double>(3 * a.pixels.size());
+}
+
+/// What all lights send out, W.
+inline dvec3 power_of_lights(const scene& s)
+{
+    dvec3 total(0);
+    for (const auto& l : s.rectangle_lights)
+        total += l.power;
+    for (const auto& l : s.point_lights)
+        total += l.power;
+    return total;
 }
 
 inline void expect_an_exact_account(const photon_stats& p, std::uint64_t wanted)
@@ -62,15 +74,9 @@ protected:
         if (!this->b().caps().exact_division || !this->b().caps().exact_sqrt)
             GTEST_SKIP() << "this device rounds division or square root loosely; pictures are compared statistically (long_statistics)";
         EXPECT_EQ(std::get<3>(mine), std::get<3>(theirs));
-        const auto equal_bits = [](const auto& a, const auto& b) {
-            std::size_t n = 0;
-            for (std::size_t i = 0; i < a.size(); ++i)
-                n += std::memcmp(&a[i], &b[i], sizeof(a[i])) != 0 ? 1u : 0u;
-            return n;
-        };
-        EXPECT_EQ(equal_bits(std::get<0>(mine), std::get<0>(theirs)), 0u) << "positions of " << settings.photons;
-        EXPECT_EQ(equal_bits(std::get<1>(mine), std::get<1>(theirs)), 0u) << "powers of " << settings.photons;
-        EXPECT_EQ(equal_bits(std::get<2>(mine), std::get<2>(theirs)), 0u) << "directions of " << settings.photons;
+        EXPECT_EQ(count_different_bits(std::get<0>(mine), std::get<0>(theirs)), 0u) << "positions of " << settings.photons;
+        EXPECT_EQ(count_different_bits(std::get<1>(mine), std::get<1>(theirs)), 0u) << "powers of " << settings.photons;
+        EXPECT_EQ(count_different_bits(std::get<2>(mine), std::get<2>(theirs)), 0u) << "directions of " << settings.photons;
 
         for (const auto builder : {map_builder::sort, map_builder::route}) {
             auto with = settings;
@@ -227,11 +233,7 @@ TYPED_TEST_P(pictures, every_photon_and_every_watt_is_accounted_for)
         EXPECT_GT(stats.direct, 0u);
         EXPECT_LT(stats.dropped, s.render.photon_depth);
         // No photon carries more than its light's power over the paths: roulette only takes colour.
-        dvec3 total(0);
-        for (const auto& l : s.rectangle_lights)
-            total += l.power;
-        for (const auto& l : s.point_lights)
-            total += l.power;
+        const dvec3 total = power_of_lights(s);
         for (const auto& p : b.download(t.photons.powers))
             ASSERT_LE(p.x + p.y + p.z, 3.01 * (total.x + total.y + total.z) / static_cast<double>(stats.emitted));
     }
@@ -271,11 +273,7 @@ TYPED_TEST_P(pictures, flux_balances_per_channel)
         }
         mean /= paths;
         const dvec3 error = glm::sqrt(glm::max(dvec3(0), squares / double(paths) - mean * mean) / double(paths));
-        dvec3 power(0);
-        for (const auto& l : s.rectangle_lights)
-            power += l.power;
-        for (const auto& l : s.point_lights)
-            power += l.power;
+        const dvec3 power = power_of_lights(s);
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(mean[c], power[c], 4 * error[c]) << s.name << " channel " << c;
     }

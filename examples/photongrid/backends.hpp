@@ -1,5 +1,5 @@
 // What the program asks of a backend. Each backend is a translation unit of its own (the renderer is compiled once for
-// each), or a stub that says why it is not there; CMake chooses.
+// each), or a function that says why it is not there; CMake chooses.
 #pragma once
 
 #include <photongrid/backend.hpp>

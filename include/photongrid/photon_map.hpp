@@ -29,7 +29,7 @@ using grid = kernels::Grid;
 /// Throws std::invalid_argument for a resolution of 0, more than 2^31 cells, or a box that is not finite.
 inline grid make_grid(glm::vec3 low, glm::vec3 high, glm::uvec3 resolution)
 {
-    const auto cells = std::uint64_t{resolution.x} * resolution.y * (resolution.z > 0 ? resolution.z : 0);
+    const auto cells = std::uint64_t{resolution.x} * resolution.y * resolution.z;
     if (resolution.x < 1 || resolution.y < 1 || resolution.z < 1 || std::uint64_t{resolution.x} * resolution.y > (1u << 31) || cells > (1u << 31))
         throw std::invalid_argument("make_grid: resolution: " + std::to_string(resolution.x) + " x " + std::to_string(resolution.y) + " x " + std::to_string(resolution.z)
             + " cells; each axis needs at least 1, all together at most 2^31");
