@@ -1,11 +1,13 @@
 // What is the Vulkan backend's own: that it equals the serial one bit for bit, that the validation layer (core and
 // synchronization) has nothing to say, and how it fails. What every backend promises is in algorithm_tests.hpp.
+#include "params_layout.hpp"
 #include "photon_sets.hpp"
 #include "under_test.hpp"
 
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/knn_grid_estimate.hpp>
+#include <photongrid/trace_kernels.hpp>
 
 #include <spirv-tools/libspirv.hpp>
 
@@ -473,6 +475,8 @@ template <class... K>
 struct kernel_list {};
 using all_kernels = kernel_list<kernels::arithmetic_probe, kernels::photon_cell, kernels::bitonic_step, kernels::pad_pairs, kernels::pair_value, kernels::first_in_cell, kernels::invalid_photon,
     kernels::route_photon, kernels::routed_cell, kernels::redistribute_power, kernels::overfull_cell, kernels::knn_start, kernels::knn_visit, kernels::knn_result,
+    kernels::emit_photon, kernels::bounce_photon, kernels::path_goes_on, kernels::tally_path, kernels::sum_tallies, kernels::prefix_sum_step, kernels::path_is_emitted, kernels::is_storable,
+    kernels::gather_photon, kernels::divide_power, kernels::eye_ray, kernels::eye_bounce, kernels::direct_light, kernels::no_light, kernels::copy_light, kernels::shade,
     test_kernels::contracts, test_kernels::countdown, test_kernels::eight_states>;
 
 /// Every float operation of a module that lacks NoContraction.
@@ -513,6 +517,33 @@ void expect_valid(vulkan_backend& b, kernel_list<K...>)
 }
 
 TEST_F(vulkan, every_kernel_compiles_to_valid_spirv_without_contraction) { expect_valid(b(), all_kernels{}); }
+
+// Params travel as bytes, to GL too: std140 and std430 place scalars, vectors and structs of whole 16 bytes alike.
+template <class... K>
+void expect_equal_layouts(vulkan_backend& b, kernel_list<K...>)
+{
+    std::size_t compared = 0;
+    const auto one = [&]<class Kernel>(std::type_identity<Kernel>) {
+        const auto in_spirv = testing::offsets_in_spirv(b.spirv<Kernel>(~0u));
+        if (in_spirv.empty())
+            return; // reads no parameter
+        EXPECT_EQ(testing::offsets_in_cpp(typename Kernel::Params{}), in_spirv) << kernel_name<Kernel>();
+        ++compared;
+    };
+    (one(std::type_identity<K>{}), ...);
+    EXPECT_GT(compared, sizeof...(K) / 2);
+}
+
+TEST_F(vulkan, parameters_stand_where_cpp_has_them)
+{
+    expect_equal_layouts(b(), all_kernels{});
+    static_assert(sizeof(kernels::Grid) % 16 == 0 && sizeof(kernels::Scene) % 16 == 0);
+    struct astray { // as it must not be: GLSL aligns uvec2 to 8 bytes, GLM to 4
+        uint a;
+        glm::uvec2 b;
+    };
+    EXPECT_EQ(testing::offsets_in_cpp(astray{}), (std::vector<std::size_t>{0, 4}));
+}
 
 TEST_F(vulkan, a_switch_that_is_off_leaves_no_code)
 {
