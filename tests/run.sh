@@ -7,8 +7,9 @@
 #   --device hardware  every backend on a real GPU; software devices are refused (no sanitizers, no clang)
 #   --no-install       only say which Debian packages are missing, do not install them
 #
-# First the serial backend under the address and undefined behaviour sanitizers (build-asan/), then clang 14 (build-clang/),
-# then everything with g++, assertions on (build-tests/). It stops where something fails and ends with ctest's summary.
+# First the serial backend under the address and undefined behaviour sanitizers (build-asan/), then clang 14 (build-clang/)
+# and its fuzzer on the scene reader for 20 s, in full 300 s (build-fuzz/), then everything with g++, assertions on
+# (build-tests/). It stops where something fails and ends with ctest's summary.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
@@ -27,7 +28,7 @@ while (($# > 0)); do
       shift
       ;;
     -h | --help)
-      sed -n '2,11s/^# \{0,1\}//p' tests/run.sh
+      sed -n '2,12s/^# \{0,1\}//p' tests/run.sh
       exit 0
       ;;
     *)
@@ -37,7 +38,7 @@ while (($# > 0)); do
   esac
   shift
 done
-require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev vulkan-validationlayers clang-14
+require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev vulkan-validationlayers clang-14 libclang-rt-14-dev
 
 export CMAKE_GENERATOR=Ninja          # for the projects that tests configure; a bare Debian has no make
 export NODEVICE_SELECT=1              # the implicit layer crashes processes that start side by side
@@ -61,9 +62,9 @@ run_tests() {
   shift
   ctest --test-dir "$folder" --output-on-failure --no-tests=error -j2 "$@"
 }
-short=(--label-exclude long)
+short=(--label-exclude long) fuzz_seconds=20
 if [[ $full == yes ]]; then
-  short=()
+  short=() fuzz_seconds=300
 fi
 
 if [[ $device == hardware ]]; then
@@ -88,6 +89,13 @@ else
   configure clang
   cmake --build build-clang --target all_verify_interface_header_sets photongrid_smoke
   run_tests build-clang --tests-regex smoke
+
+  echo "== fuzzing"
+  configure fuzz
+  cmake --build build-fuzz --target fuzz_scene
+  # New inputs go to the first folder, one that breaks the reader to build-fuzz/crash-….
+  mkdir -p build-fuzz/corpus
+  build-fuzz/tests/fuzz_scene -verbosity=0 -print_final_stats=1 -max_total_time=$fuzz_seconds -max_len=4096 -dict=tests/scene_corpus.dict -artifact_prefix=build-fuzz/ build-fuzz/corpus tests/scene_corpus
 
   if [[ $full == yes ]]; then
     echo "== planted faults"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -227,7 +228,75 @@ namespace {
             many += ",0";
         EXPECT_NE(refusal(many + "]").find("values"), std::string::npos);
         EXPECT_EQ(refusal(std::string((16u << 20) + 1, ' ')), "s.json: error: larger than 16 MiB; expected a scene file");
+        EXPECT_NE(refusal(std::string(16u << 20, ' ')).find("unexpected end of input"), std::string::npos) << "16 MiB are read";
         EXPECT_THROW(read_scene("/dev/zero"), scene_error);
+    }
+
+    // As many as the limit are taken, one more is refused at its own place. Each part stands on a line of its own.
+    TEST(scene_file, limits_the_number_of_parts)
+    {
+        const auto times = [](std::size_t n, const auto& one) {
+            std::string all;
+            for (std::size_t i = 0; i < n; ++i)
+                all += (i > 0 ? ",\n" : "") + one(i);
+            return all;
+        };
+        const auto shapes = [&](std::size_t n) {
+            auto lines = good;
+            lines[8] = times(n, [](std::size_t) { return std::string(R"({"type":"sphere","center":[0,1,0],"radius":0.5,"material":"clear"})"); }) + "],";
+            lines[9] = "";
+            return refusal(text(lines));
+        };
+        EXPECT_EQ(shapes(65'536), "");
+        expect_refusal(shapes(65'537), "65545:1", {"65537 shapes", "at most 65536"});
+        const auto materials = [&](std::size_t n) { // with the two that are there
+            auto lines = good;
+            lines[4] += times(n - 2, [](std::size_t i) { return "\"m" + std::to_string(i) + R"(": {"type": "mirror"})"; }) + ",";
+            return refusal(text(lines));
+        };
+        EXPECT_EQ(materials(4'096), "");
+        expect_refusal(materials(4'097), "4101:3", {"4097 materials", "at most 4096"});
+        const auto lights = [&](std::size_t n) {
+            auto lines = good;
+            lines[11] = times(n, [](std::size_t) { return std::string(R"({"type": "point", "position": [0, 3, 0], "power": 1})"); }) + "],";
+            return refusal(text(lines));
+        };
+        EXPECT_EQ(lights(1'024), "");
+        expect_refusal(lights(1'025), "1036:1", {"1025 lights", "at most 1024"});
+        const auto vertices = [&](std::size_t n) { // of a regular polygon
+            return refusal(10, "[[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]]", "[" + times(n, [&](std::size_t i) {
+                const double angle = 2 * M_PI * static_cast<double>(i) / static_cast<double>(n);
+                return "[" + std::to_string(100 * std::cos(angle)) + ", 0, " + std::to_string(100 * std::sin(angle)) + "]";
+            }) + "]");
+        };
+        EXPECT_EQ(vertices(1'024), "");
+        expect_refusal(vertices(1'025), "10:35", {"found an array of 1025", "3 to 1024 points"});
+        EXPECT_EQ(refusal(12, "lamp", std::string(100, 'n')), "");
+        expect_refusal(refusal(12, "lamp", std::string(101, 'n')), "12:29", {"a name: text of 1 to 100 bytes"});
+    }
+
+    // Found by fuzzing: a material's name went to the terminal as it was, in "perhaps …".
+    TEST(scene_file, refuses_names_that_upset_a_terminal)
+    {
+        for (const auto* bad : {"wh\x7Fte", "wh\\u001b[2Jte", "", "wh\\nte"}) {
+            expect_refusal(refusal(6, "white", bad), "6:3", {"found the key \"", "a material's name of 1 to 100 bytes without control characters"});
+            expect_refusal(refusal(12, "lamp", bad), "12:29", {"a name"});
+        }
+        expect_refusal(refusal(6, "white", std::string(101, 'w')), "6:3", {"a material's name"});
+    }
+
+    // Found by fuzzing: normals and axes of parts this small came out as no unit vectors.
+    TEST(scene_file, refuses_parts_too_small_to_have_a_direction)
+    {
+        expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)", R"("cylinder", "base": [0, 0, 0], "top": [0, 1e-160, 0], "radius": 0.5)"), "9:3", {"less than 1e-9 m apart"});
+        expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)", R"("cone", "base": [0, 0, 0], "apex": [0, 9e-10, 0], "radius": 0.5)"), "9:3", {"less than 1e-9 m apart"});
+        expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)", R"("paraboloid", "vertex": [0, 0, 0], "rim": [0, 9e-10, 0], "radius": 0.5)"), "9:3", {"less than 1e-9 m apart"});
+        EXPECT_EQ(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)", R"("cone", "base": [0, 0, 0], "apex": [0, 1.1e-9, 0], "radius": 0.5)"), "");
+        expect_refusal(refusal(10, "[1, 0, 0], [1, 0, 1], [0, 0, 1]", "[1e-80, 0, 0], [0, 1e-80, 0]"), "10:3", {"less than 1e-9 m apart"});
+        expect_refusal(refusal(12, R"("point", "name": "lamp", "position": [0, 3, 0])", R"("rectangle", "corner": [0,0,0], "edge_u": [1,0,0], "edge_v": [0,1e-70,0])"), "12:3", {"less than 1e-9 m apart"});
+        expect_refusal(refusal(4, "[0, 0, 0]", "[0, 1, 5.0000000000001]"), "4:12", {"less than 1e-9 m apart"});
+        expect_refusal(refusal(4, "\"vertical_fov\"", "\"up\": [0, 1e-160, 0], \"vertical_fov\""), "4:64", {"a direction shorter than 1e-9"});
+        expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0],)", R"("disk", "center": [0, 1, 0], "normal": [0, 0, 0],)"), "9:51", {"a direction shorter than 1e-9"});
     }
 
     TEST(scene_file, says_why_a_file_cannot_be_read)

@@ -33,6 +33,8 @@ namespace {
 
     // Beyond these, single precision (squares and cubes of lengths, photon power) is no longer safe.
     constexpr double max_length = 1e9, max_power = 1e15;
+    // Below this, squares and cubes of lengths leave even double precision, and normals made of them are no unit vectors.
+    constexpr double min_length = 1e-9;
     constexpr std::size_t max_shapes = 65'536, max_materials = 4'096, max_lights = 1'024, max_vertices = 1'024;
 
     std::string joined(const std::vector<std::string>& words)
@@ -42,6 +44,20 @@ namespace {
             all += (i == 0 ? "\"" : i + 1 == words.size() ? " or \"" : ", \"") + words[i] + "\"";
         return all;
     }
+
+    /// The length (m) that a part must not lack: its axis, its least edge, a polygon's extent. Radii are read with limits.
+    double extent(const cylinder& c) { return glm::length(c.top - c.base); }
+    double extent(const cone& c) { return glm::length(c.apex - c.base); }
+    double extent(const paraboloid& p) { return glm::length(p.rim - p.vertex); }
+    double extent(const polygon& p)
+    {
+        double largest = 0;
+        for (const auto& v : p.vertices)
+            largest = std::max(largest, glm::length(v - p.vertices[0]));
+        return largest;
+    }
+    double extent(const rectangle_light& l) { return std::min(glm::length(l.edge_u), glm::length(l.edge_v)); }
+    double extent(const camera& c) { return glm::length(c.look_at - c.position); }
 
     /// A unit: a value in it is value * multiply / divide in SI. Two whole numbers round better than 0.001 would.
     struct unit {
@@ -147,6 +163,9 @@ namespace {
                 const auto* m = v.find(what.substr(0, what.find_first_of(":, ")));
                 tree_.fail(m ? m->place : v.place, std::string(what));
             }
+            if constexpr (requires { extent(part); })
+                if (extent(part) < min_length)
+                    tree_.fail(v.place, "its points or edges are less than 1e-9 m apart; expected a larger one (are the units right?)");
         }
 
         // --- numbers ---
@@ -177,7 +196,7 @@ namespace {
         }
 
         double length(const json_value& v) const { return in_units(v, length_, -max_length, max_length, "a length of at most 1e9 m"); }
-        double radius(const json_value& v) const { return in_units(v, length_, 1e-9, max_length, "a length from 1e-9 m to 1e9 m"); }
+        double radius(const json_value& v) const { return in_units(v, length_, min_length, max_length, "a length from 1e-9 m to 1e9 m"); }
 
         template <class Element>
         dvec3 three(const json_value& v, const char* expected, Element&& element) const
@@ -195,6 +214,8 @@ namespace {
         dvec3 direction(const json_value& v) const
         {
             const auto d = three(v, "a direction: [x, y, z]", [&](const json_value& c) { return number(c, -1e9, 1e9, "a number from -1e9 to 1e9"); });
+            if (glm::length(d) < 1e-9)
+                tree_.fail(v.place, "found a direction shorter than 1e-9; expected a longer one");
             return d;
         }
 
@@ -215,10 +236,16 @@ namespace {
             return rgb(v, "[red, green, blue] or one number: power", [&](const json_value& c) { return in_units(c, power_, 0, max_power, "a power from 0 to 1e15 W"); });
         }
 
+        /// Names stand in messages, so a terminal must bear them.
+        static bool is_name(const std::string& text)
+        {
+            return !text.empty() && text.size() <= 100 && std::none_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+        }
+
         std::string read_name(const json_value& v) const
         {
-            if (v.kind != json_kind::string || v.text.empty() || v.text.size() > 100 || std::any_of(v.text.begin(), v.text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
-                wrong(v, "a name: text of 1 to 100 bytes");
+            if (v.kind != json_kind::string || !is_name(v.text))
+                wrong(v, "a name: text of 1 to 100 bytes without control characters");
             return v.text;
         }
 
@@ -251,6 +278,8 @@ namespace {
                 tree_.fail(v.items[max_materials].key_place, std::to_string(v.items.size()) + " materials; expected at most " + std::to_string(max_materials));
             for (const auto& m : v.items)
                 if (m.key != "comment") {
+                    if (!is_name(m.key))
+                        tree_.fail(m.key_place, "found the key " + described({.kind = json_kind::string, .text = m.key}).substr(9) + "; expected a material's name of 1 to 100 bytes without control characters");
                     material_index_[m.key] = static_cast<std::uint32_t>(scene_.materials.size());
                     material_names_.push_back(m.key);
                     scene_.materials.push_back(read_material(m));
