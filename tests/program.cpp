@@ -12,6 +12,7 @@
 #include <thread>
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -255,6 +256,23 @@ namespace {
         const auto e = run(arguments);
         EXPECT_EQ(e.code, 0) << e.err;
         EXPECT_NE(e.err.find("--backend auto: "), std::string::npos) << e.err;
+    }
+
+    // A file-size limit stands for a full disk. Of two pictures the first fits.
+    TEST_F(program, a_full_disk_leaves_whole_files_or_none)
+    {
+        rlimit old{};
+        ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
+        const rlimit small_files{.rlim_cur = 4096, .rlim_max = old.rlim_max};
+        ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small_files), 0);
+        const auto child = start(small_with({"-o", "a.png", "-o", "b.pfm", "--stats", "a.json"}));
+        setrlimit(RLIMIT_FSIZE, &old);
+        const auto e = wait(child);
+        EXPECT_EQ(e.code, 5) << e.err;
+        EXPECT_NE(e.err.find("b.pfm: cannot be written: File too large"), std::string::npos) << e.err;
+        EXPECT_EQ(e.out, "a.png\n");
+        EXPECT_TRUE(fs::exists(folder / "a.png"));
+        EXPECT_EQ(files(), 1u);
     }
 
     // A picture that would take minutes, and a signal soon after it began.

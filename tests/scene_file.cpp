@@ -138,6 +138,8 @@ namespace {
         expect_refusal(refusal(4, "[0, 1, 5]", "[0, 1, 5"), "4:44", {"expected ']'"}); // the colon
         expect_refusal(refusal(4, "40", "NaN"), "4:74", {"invalid literal"});
         expect_refusal(refusal("{\"name\": \"\xff\"}"), "1:11", {"UTF-8"});
+        // Found by fuzzing: the text itself holds the words after which nlohmann's message goes on.
+        EXPECT_EQ(refusal("\"'; expected \x7f\x1b"), refusal("\"_; expected \x7f\x1b"));
     }
 
     TEST(scene_file, columns_count_characters)

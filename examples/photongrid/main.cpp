@@ -45,6 +45,8 @@ namespace {
         sigemptyset(&action.sa_mask);
         sigaction(SIGINT, &action, nullptr);
         sigaction(SIGTERM, &action, nullptr);
+        // A file beyond `ulimit -f` is then an error of write(), said as such, and no half-written file stays behind.
+        std::signal(SIGXFSZ, SIG_IGN);
     }
 
     // --- render ---

@@ -150,6 +150,11 @@ namespace detail {
 /// A backend runs kernels over buffers. Work may be deferred; `download` and `finish` wait for it. Every verb throws
 /// backend_error when the device refuses and std::invalid_argument when a buffer is too small.
 ///
+/// After a backend_error every buffer is still freed by its destructor, what the failed verb was to write is undefined, and
+/// the backend may be used again, unless the device was lost: then every verb throws. Algorithms pass exceptions on; what
+/// they took over or were sorting is then undefined. Kernels trust the ids that other passes wrote; host code refuses, by
+/// backend_error, a count from the device that cannot be.
+///
 /// - `make<T>(n)`            a buffer of n elements, n from 0 up, contents undefined
 /// - `upload(span<const T>)` a buffer with these contents
 /// - `download(buffer)`      its contents as std::vector<T>
@@ -181,6 +186,18 @@ concept backend = requires(B& b, const B& cb, typename B::template buffer<uint>&
     { cb.peak_bytes() } -> std::same_as<std::uint64_t>;
     { cb.costs() } -> std::same_as<const std::map<std::string, kernel_cost>&>;
 };
+
+namespace detail {
+    /// How many elements predicate K is true for, as the device says; a backend_error when it says more than there are.
+    template <predicate_kernel K, backend B, class Reads>
+    uint checked_count(B& b, launch l, const typename K::Params& args, Reads reads)
+    {
+        const std::uint64_t n = b.template count<K>(l, args, reads);
+        if (n > l.elements)
+            throw backend_error(b.caps().backend + ": count<" + std::string(kernel_name<K>()) + ">: the device returned " + std::to_string(n) + "; there are " + std::to_string(l.elements) + " elements");
+        return static_cast<uint>(n);
+    }
+} // namespace detail
 
 /// The buffers of backend B.
 template <class B, element T>

@@ -24,7 +24,7 @@ photon_map<B> sorted_map(B& b, photons<B> p, const grid& g)
     map.cells = grid_index(b, pairs, cell_count(g));
     map.list = b.template make<uint>(n);
     b.template run<kernels::pair_value>(n, {}, reads(pairs), writes(map.list));
-    map.invalid = static_cast<uint>(b.template count<kernels::invalid_photon>(n, {}, reads(p.positions, p.powers)));
+    map.invalid = detail::checked_count<kernels::invalid_photon>(b, n, {}, reads(p.positions, p.powers));
     map.photons = std::move(p);
     return map;
 }
@@ -38,7 +38,7 @@ photon_map<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 
     map.cells_of = g;
     map.contiguous = false;
     auto routed = stencil_route(b, p, g, m, seed);
-    map.invalid = static_cast<uint>(b.template count<kernels::invalid_photon>(p.size(), {}, reads(p.positions, p.powers)));
+    map.invalid = detail::checked_count<kernels::invalid_photon>(b, p.size(), {}, reads(p.positions, p.powers));
     map.cells = std::move(routed.cells);
     map.list = std::move(routed.list);
     map.surpluses = std::move(routed.surpluses);

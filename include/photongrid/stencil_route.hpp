@@ -46,7 +46,7 @@ routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, 
     b.template run<kernels::routed_cell>(cells, {.capacity = capacity, .parts = parts}, reads(partial_sums, r.list, p.powers), writes(r.cells, scales, r.surpluses, r.totals));
     r.powers = b.template make<glm::vec4>(n);
     b.template run<kernels::redistribute_power>(n, {.grid = g}, reads(p.positions, p.powers, scales, r.surpluses), writes(r.powers));
-    r.overfull_cells = b.template count<kernels::overfull_cell>(cells, {.capacity = capacity}, reads(r.totals));
+    r.overfull_cells = detail::checked_count<kernels::overfull_cell>(b, cells, {.capacity = capacity}, reads(r.totals));
     return r;
 }
 

@@ -51,7 +51,7 @@ namespace detail {
                 {.scene_layout = about.layout, .paths = paths, .first_path = first, .last_frame = settings.photon_depth, .seed = settings.seed},
                 reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions),
                 writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
-            if (frame % 8 == 0 && b.template count<kernels::path_goes_on>({paths, frame * paths}, {}, reads(f.positions)) == 0)
+            if (frame % 8 == 0 && checked_count<kernels::path_goes_on>(b, {paths, frame * paths}, {}, reads(f.positions)) == 0)
                 return frame + 1;
         }
         return frame;
@@ -127,9 +127,11 @@ traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& dev
         b.template run<kernels::tally_path>(paths, {.paths = paths, .frames = frames}, reads(f.positions), writes(storable, tally.ends, tally.hits));
         const auto sums = detail::prefix_sums(b, storable);
 
-        const uint emitted = static_cast<uint>(b.template count<kernels::path_is_emitted>(paths, {.wanted = wanted - stored}, reads(sums, storable)));
-        const auto found = b.template count<kernels::is_storable>(std::size_t{paths} * frames, {.paths = paths, .emitted = emitted}, reads(f.positions));
-        const uint taken = static_cast<uint>(std::min<std::uint64_t>(found, wanted - stored));
+        const uint emitted = detail::checked_count<kernels::path_is_emitted>(b, paths, {.wanted = wanted - stored}, reads(sums, storable));
+        if (emitted == 0) // the first always is; believing it would mean tracing for ever
+            throw backend_error(b.caps().backend + ": count<path_is_emitted>: the device returned 0; at least 1 of " + std::to_string(paths) + " paths is emitted");
+        const auto found = detail::checked_count<kernels::is_storable>(b, std::size_t{paths} * frames, {.paths = paths, .emitted = emitted}, reads(f.positions));
+        const uint taken = std::min(found, wanted - stored);
         b.template run<kernels::gather_photon>({taken, stored}, {.paths = paths, .frames = frames, .stored_before = stored}, reads(sums, f.positions, f.powers, f.directions),
             writes(t.photons.positions, t.photons.powers, t.photons.directions));
         t.tallies.push_back(detail::sum_tally(b, std::move(tally), emitted));
