@@ -314,6 +314,12 @@ void kernel(uint i) { value = i; }
             if (!shared())
                 GTEST_SKIP() << why();
         }
+        void TearDown() override
+        {
+            if (shared()) {
+                EXPECT_EQ(shared()->take_debug_messages(), "");
+            }
+        }
         static std::optional<gl_backend>& shared()
         {
             static std::optional<gl_backend> b;
@@ -339,6 +345,32 @@ void kernel(uint i) { value = i; }
             EXPECT_EQ(buffer.size(), n);
             EXPECT_TRUE(same_bits(b.download(buffer), data)) << n << " elements of " << sizeof(T) << " bytes";
         }
+    }
+
+    // Without this, silence of the driver would prove nothing.
+    TYPED_TEST(gl_backend_test, hears_the_driver)
+    {
+        auto& b = this->gpu();
+        const auto before = b.upload(view(noise<glm::uvec2>(4, 1)));
+        auto after = b.template make<glm::uvec2>(4);
+        EXPECT_EQ(b.take_debug_messages(), "");
+        gl::functions call; // those of the context that the backend left current
+#ifdef PHOTONGRID_HAS_OSMESA
+        call.load(TypeParam::kind == gl_context_kind::osmesa ? gl::find_by_osmesa : gl::find_by_egl);
+#else
+        call.load(gl::find_by_egl);
+#endif
+        call.Enable(0xDEAD);
+        EXPECT_NE(b.take_debug_messages().find("glEnable"), std::string::npos);
+        call.Enable(0xDEAD);
+        try { // the next pass tells
+            b.template run<test_kernels::next_frame>(4, {.stride = 0u}, reads(before), writes(after));
+            FAIL();
+        } catch (const backend_error& e) {
+            EXPECT_NE(std::string_view(e.what()).find("GL_INVALID_ENUM"), std::string_view::npos) << e.what();
+            EXPECT_NE(std::string_view(e.what()).find("glEnable"), std::string_view::npos) << e.what();
+        }
+        EXPECT_EQ(b.take_debug_messages(), "");
     }
 
     TYPED_TEST(gl_backend_test, says_what_it_is)
@@ -464,6 +496,7 @@ void kernel(uint i) { value = i; }
         EXPECT_NE(syntax.find("tests/misspelt.glsl:7: error:"), std::string::npos) << syntax;
         const std::string layout = message(std::type_identity<test_kernels::wrongly_laid_out>{});
         EXPECT_NE(layout.find("std140"), std::string::npos) << layout;
+        EXPECT_NE(this->gpu().take_debug_messages(), "") << "the compiler's errors are messages too";
         // And goes on as if nothing had happened.
         EXPECT_EQ(this->gpu().template count<test_kernels::is_odd>(1, {}, reads(this->gpu().upload(view(std::vector<uint>{3u})))), 1u);
     }

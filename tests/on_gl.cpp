@@ -1,4 +1,4 @@
-// All backend tests on OpenGL, in an EGL and in an OSMesa context.
+// All backend tests on OpenGL, in an EGL and in an OSMesa context, with the driver's debug output on.
 #include "algorithm_tests.hpp"
 #include "render_tests.hpp"
 #include "scene_picture_tests.hpp"
@@ -10,19 +10,37 @@ namespace photongrid::testing {
 struct egl_tag {
     using type = gl_backend;
     static constexpr const char* name = "egl";
-    static std::unique_ptr<type> make() { return std::make_unique<type>(gl_options{.context = gl_context_kind::egl}); }
+    static std::unique_ptr<type> make() { return std::make_unique<type>(gl_options{.context = gl_context_kind::egl, .debug = true}); }
 };
 struct osmesa_tag {
     using type = gl_backend;
     static constexpr const char* name = "osmesa";
     static constexpr bool software_only = true;
-    static std::unique_ptr<type> make() { return std::make_unique<type>(gl_options{.context = gl_context_kind::osmesa}); }
+    static std::unique_ptr<type> make() { return std::make_unique<type>(gl_options{.context = gl_context_kind::osmesa, .debug = true}); }
 };
 using contexts = ::testing::Types<egl_tag, osmesa_tag>;
 
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, algorithms, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, pictures, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, scene_files, contexts, tag_names);
+
+/// After all other tests of this program: the driver had nothing of high severity to say. That it would is tested in
+/// gl_backend.cpp.
+class no_debug_messages : public ::testing::Environment {
+    template <class Tag>
+    static void look()
+    {
+        std::string reason;
+        if (auto* b = shared_backend<Tag>(reason); b != nullptr)
+            EXPECT_EQ(b->take_debug_messages(), "") << Tag::name;
+    }
+    void TearDown() override
+    {
+        look<egl_tag>();
+        look<osmesa_tag>();
+    }
+};
+const auto* const watched = ::testing::AddGlobalTestEnvironment(new no_debug_messages);
 
 /// Between the first pass and the last nothing comes back to the CPU but the results of occlusion queries.
 template <class Tag>

@@ -10,7 +10,8 @@ namespace photongrid::testing {
 struct vulkan_tag {
     using type = vulkan_backend;
     static constexpr const char* name = "vulkan";
-    static std::unique_ptr<type> make() { return std::make_unique<type>(vulkan_options{.validation = true}); }
+    /// PHOTONGRID_GPU_AV=1 has the layer watch inside the kernels too: tests/run.sh --full.
+    static std::unique_ptr<type> make() { return std::make_unique<type>(vulkan_options{.validation = true, .gpu_assisted = std::getenv("PHOTONGRID_GPU_AV") != nullptr}); }
 };
 
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, algorithms, ::testing::Types<vulkan_tag>, tag_names);

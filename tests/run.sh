@@ -3,7 +3,8 @@
 #
 #   tests/run.sh [--full] [--device hardware] [--no-install]
 #
-#   --full             adds the long runs and planted faults, and the sanitizers on every backend instead of on the serial one
+#   --full             adds the long runs, planted faults and GPU-assisted validation, and the sanitizers on every backend
+#                      instead of on the serial one
 #   --device hardware  every backend on a real GPU; software devices are refused (no sanitizers, no clang)
 #   --no-install       only say which Debian packages are missing, do not install them
 #
@@ -28,7 +29,7 @@ while (($# > 0)); do
       shift
       ;;
     -h | --help)
-      sed -n '2,12s/^# \{0,1\}//p' tests/run.sh
+      sed -n '2,13s/^# \{0,1\}//p' tests/run.sh
       exit 0
       ;;
     *)
@@ -107,3 +108,8 @@ echo "== g++, all tests"
 configure tests
 cmake --build build-tests
 run_tests build-tests "${short[@]}"
+
+if [[ $full == yes && $device == any ]]; then
+  echo "== GPU-assisted validation"
+  PHOTONGRID_GPU_AV=1 run_tests build-tests --tests-regex '^on_vulkan$'
+fi

@@ -661,6 +661,32 @@ TEST_F(vulkan, the_validation_layer_is_listening)
     EXPECT_NE(messages[0].find("SYNC-HAZARD"), std::string::npos) << messages[0];
 }
 
+// A kernel that reads past the end of its input, as texels and (staging) as a storage buffer.
+TEST_F(vulkan, gpu_assisted_validation_sees_a_read_out_of_bounds)
+{
+    for (const bool staging : {false, true}) {
+        SCOPED_TRACE(staging ? "storage buffers" : "texel buffers");
+        std::unique_ptr<vulkan_backend> watched;
+        try {
+            watched = std::make_unique<vulkan_backend>(vulkan_options{.validation = true, .gpu_assisted = true, .staging = staging});
+        } catch (const backend_error& e) {
+            GTEST_SKIP() << e.what();
+        }
+        watched->use_texts(test_kernels::texts);
+        const std::vector<uint> host(16, 7u);
+        const auto input = watched->upload(std::span<const uint>(host));
+        auto output = watched->make<uint>(16);
+        watched->run<test_kernels::next_frame>(16, {.frame = 0u}, reads(input), writes(output));
+        EXPECT_EQ(watched->download(output), std::vector<uint>(16, 15u));
+        EXPECT_EQ(watched->validation_messages(), std::vector<std::string>{});
+        watched->run<test_kernels::next_frame>(16, {.frame = 0u - 1000u}, reads(input), writes(output)); // elements 1000 to 1015
+        watched->finish();
+        const auto messages = watched->validation_messages();
+        ASSERT_FALSE(messages.empty());
+        EXPECT_NE(messages[0].find("out of bounds"), std::string::npos) << messages[0];
+    }
+}
+
 TEST_F(vulkan, works_on_the_callers_device)
 {
     // An application's own instance and device, with the plain API.

@@ -56,6 +56,7 @@ public:
         };
         if (options.debug) {
             device_->call.Enable(GL_DEBUG_OUTPUT);
+            device_->call.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS); // messages come from the call at fault, in its thread
             device_->call.DebugMessageCallback(note_message, device_.get());
         }
         caps_.backend = device_->name();
@@ -293,6 +294,10 @@ public:
 
     /// How often pixels or buffers were read back or mapped: only `download` does.
     std::uint64_t readbacks() const { return device_->call.readbacks(); }
+
+    /// What the driver has said of high severity since the last call, a line each: errors that no exception has told yet,
+    /// and those of its compiler. Always empty unless options.debug.
+    std::string take_debug_messages() { return std::exchange(device_->messages, {}); }
     /// How often the host waited for results of occlusion queries.
     std::uint64_t query_polls() const { return query_polls_; }
 

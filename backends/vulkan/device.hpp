@@ -20,6 +20,7 @@ struct vulkan_options {
     std::string device{};       ///< "": the best (discrete, integrated, virtual, CPU); else an index or a part of the name
     bool hardware_only = false; ///< refuse devices that are a CPU
     bool validation = false;    ///< run the Khronos validation layer (core and synchronization) and collect its messages
+    bool gpu_assisted = false;  ///< with validation: instrument kernels too, so that their accesses past a buffer's end are messages; slow
     bool staging = false;       ///< work as on a discrete GPU even where it is not needed: copy through staging buffers, read inputs as storage buffers
 };
 
@@ -67,7 +68,7 @@ namespace vulkan_detail {
     class instance {
     public:
         /// \throws backend_error when there is no driver, or no validation layer where one is wanted.
-        explicit instance(bool validation)
+        explicit instance(bool validation, bool gpu_assisted = false)
         {
             std::uint32_t version = VK_API_VERSION_1_0;
             if (const auto f = reinterpret_cast<PFN_vkEnumerateInstanceVersion>(vkGetInstanceProcAddr(nullptr, "vkEnumerateInstanceVersion")))
@@ -91,7 +92,9 @@ namespace vulkan_detail {
             constexpr const char* layer = "VK_LAYER_KHRONOS_validation";
             VkDebugUtilsMessengerCreateInfoEXT messenger{};
             VkValidationFeaturesEXT features{};
-            constexpr VkValidationFeatureEnableEXT synchronization = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+            // GPU-assisted validation needs a descriptor set of its own, which it reserves.
+            constexpr VkValidationFeatureEnableEXT enabled[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT, VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT,
+                VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT};
             if (validation) {
                 if (!has_layer(layer))
                     throw backend_error(std::string("vulkan: validation was asked for, but the layer ") + layer + " is not installed (Debian: apt install vulkan-validationlayers)");
@@ -105,8 +108,8 @@ namespace vulkan_detail {
                 messenger.pfnUserCallback = collect_message;
                 messenger.pUserData = log_.get();
                 features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
-                features.enabledValidationFeatureCount = 1;
-                features.pEnabledValidationFeatures = &synchronization;
+                features.enabledValidationFeatureCount = gpu_assisted ? 3 : 1;
+                features.pEnabledValidationFeatures = enabled;
                 features.pNext = &messenger;
                 info.pNext = &features;
                 info.enabledLayerCount = 1;

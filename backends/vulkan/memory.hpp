@@ -23,7 +23,7 @@ struct block {
 class context {
 public:
     explicit context(const vulkan_options& o)
-        : instance_(o.validation), physical_(choose_device(instance_, o)), device_(physical_)
+        : instance_(o.validation, o.gpu_assisted), physical_(choose_device(instance_, o)), device_(physical_)
     {
         look(o.staging);
     }
