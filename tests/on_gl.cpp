@@ -1,5 +1,6 @@
 // All backend tests on OpenGL, in an EGL and in an OSMesa context, with the driver's debug output on.
 #include "algorithm_tests.hpp"
+#include "ray_tests.hpp"
 #include "render_tests.hpp"
 #include "scene_picture_tests.hpp"
 
@@ -7,21 +8,29 @@
 
 namespace photongrid::testing {
 
+inline std::unique_ptr<gl_backend> make_gl(gl_context_kind kind)
+{
+    auto b = std::make_unique<gl_backend>(gl_options{.context = kind, .debug = true});
+    b->add_texts(test_kernel_texts);
+    return b;
+}
+
 struct egl_tag {
     using type = gl_backend;
     static constexpr const char* name = "egl";
-    static std::unique_ptr<type> make() { return std::make_unique<type>(gl_options{.context = gl_context_kind::egl, .debug = true}); }
+    static std::unique_ptr<type> make() { return make_gl(gl_context_kind::egl); }
 };
 struct osmesa_tag {
     using type = gl_backend;
     static constexpr const char* name = "osmesa";
     static constexpr bool software_only = true;
-    static std::unique_ptr<type> make() { return std::make_unique<type>(gl_options{.context = gl_context_kind::osmesa, .debug = true}); }
+    static std::unique_ptr<type> make() { return make_gl(gl_context_kind::osmesa); }
 };
 using contexts = ::testing::Types<egl_tag, osmesa_tag>;
 
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, algorithms, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, pictures, contexts, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, scene_files, contexts, tag_names);
 
 /// After all other tests of this program: the driver had nothing of high severity to say. That it would is tested in

@@ -1,5 +1,6 @@
 // All backend tests on the serial backend.
 #include "algorithm_tests.hpp"
+#include "ray_tests.hpp"
 #include "render_tests.hpp"
 #include "scene_picture_tests.hpp"
 
@@ -13,6 +14,7 @@ struct serial_tag {
 
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, algorithms, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, pictures, ::testing::Types<serial_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(serial, hard_cases, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, scene_files, ::testing::Types<serial_tag>, tag_names);
 
 } // namespace photongrid::testing

@@ -1,5 +1,6 @@
 // All backend tests on Vulkan, with the validation layer watching.
 #include "algorithm_tests.hpp"
+#include "ray_tests.hpp"
 #include "render_tests.hpp"
 #include "scene_picture_tests.hpp"
 
@@ -11,11 +12,17 @@ struct vulkan_tag {
     using type = vulkan_backend;
     static constexpr const char* name = "vulkan";
     /// PHOTONGRID_GPU_AV=1 has the layer watch inside the kernels too: tests/run.sh --full.
-    static std::unique_ptr<type> make() { return std::make_unique<type>(vulkan_options{.validation = true, .gpu_assisted = std::getenv("PHOTONGRID_GPU_AV") != nullptr}); }
+    static std::unique_ptr<type> make()
+    {
+        auto b = std::make_unique<type>(vulkan_options{.validation = true, .gpu_assisted = std::getenv("PHOTONGRID_GPU_AV") != nullptr});
+        b->use_texts(test_kernel_texts);
+        return b;
+    }
 };
 
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, algorithms, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, pictures, ::testing::Types<vulkan_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, scene_files, ::testing::Types<vulkan_tag>, tag_names);
 
 /// After all other tests of this program: the layer had nothing to say.

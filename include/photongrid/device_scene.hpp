@@ -76,7 +76,7 @@ namespace detail {
     /// Writes records; positions are recentred.
     class record_writer {
     public:
-        record_writer(scene_records& out, double scale) : out_(out), edge_margin_(scale * 0x1p-20) {}
+        record_writer(scene_records& out, double scale) : out_(out), edge_margin_(scale * 0x1p-20), doubt_(scale * 0x1p-20) {}
 
         void put(const dvec3& v, double w) { out_.records.emplace_back(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w)); }
         void put_position(const dvec3& v, double w) { put(v - out_.center, w); }
@@ -99,7 +99,10 @@ namespace detail {
         {
             const dvec3 n = glm::normalize(area_vector(p));
             put(n, glm::dot(n, p.vertices[0] - out_.center));
-            put(dvec3(static_cast<double>(p.vertices.size()), p.material, light_tag), 0);
+            double off = 0; // the vertices need lie on one plane only roughly
+            for (const auto& v : p.vertices)
+                off = std::max(off, std::abs(glm::dot(n, v - p.vertices[0])));
+            put(dvec3(static_cast<double>(p.vertices.size()), p.material, light_tag), doubt_ + 2 * off);
             for (std::size_t i = 0; i < p.vertices.size(); ++i) {
                 const auto& a = p.vertices[i];
                 const auto& b = p.vertices[(i + 1) % p.vertices.size()];
@@ -108,18 +111,83 @@ namespace detail {
                 const dvec3 inward = length > 0 ? across / length : dvec3(0);
                 put(inward, glm::dot(inward, a - out_.center) - edge_margin_);
             }
+            for (const auto& v : p.vertices)
+                put_position(v, 0);
         }
 
     private:
         scene_records& out_;
-        double edge_margin_;
+        double edge_margin_; ///< by which polygons are inflated
+        double doubt_;       ///< bound on the rounding of distances from planes and edges
     };
 } // namespace detail
 
-/// Lays a scene out for kernels. \throws std::invalid_argument as check(scene) does, or when no surface is Lambertian.
-inline scene_records lay_out(const scene& s)
+namespace detail {
+    /// The scene moved by -by.
+    inline scene moved_back(scene s, const dvec3& by)
+    {
+        for (auto& x : s.spheres)
+            x.center -= by;
+        for (auto& x : s.cylinders)
+            x.base -= by, x.top -= by;
+        for (auto& x : s.cones)
+            x.base -= by, x.apex -= by;
+        for (auto& x : s.paraboloids)
+            x.vertex -= by, x.rim -= by;
+        for (auto& x : s.disks)
+            x.center -= by;
+        for (auto& x : s.polygons)
+            for (auto& v : x.vertices)
+                v -= by;
+        for (auto& x : s.point_lights)
+            x.position -= by;
+        for (auto& x : s.rectangle_lights)
+            x.corner -= by;
+        s.camera.position -= by;
+        s.camera.look_at -= by;
+        return s;
+    }
+
+    /// A point that moves with the scene exactly: any that its lights name.
+    inline dvec3 anchor(const scene& s) { return s.rectangle_lights.empty() ? s.point_lights.at(0).position : s.rectangle_lights[0].corner; }
+
+    /// How far the coordinates of a round shape's points reach, from the origin of its record: see `clearance` (scene_layout.glsl).
+    inline double reach(const sphere& s) { return 2 * s.radius; }
+    inline double reach(double height, double radius) { return 2 * (height + radius); }
+
+    /// \throws std::invalid_argument when a shape is so small beside the scene that float coordinates cannot resolve it.
+    inline void require_resolvable(const scene& s, double scale)
+    {
+        const auto all = [&](const char* kind, const auto& shapes, auto size) {
+            for (std::size_t i = 0; i < shapes.size(); ++i)
+                require(size(shapes[i]) >= scale * 0x1p-18,
+                    std::string(kind) + "[" + std::to_string(i) + "]: is 2^18 times smaller than the scene or more, which single precision cannot resolve; leave it out, or model the large things smaller");
+        };
+        const auto radius = [](const auto& x) { return x.radius; };
+        all("spheres", s.spheres, radius);
+        all("cylinders", s.cylinders, radius);
+        all("cones", s.cones, radius);
+        all("paraboloids", s.paraboloids, radius);
+        all("disks", s.disks, radius);
+        all("polygons", s.polygons, [](const polygon& p) {
+            double extent = 0;
+            for (const auto& v : p.vertices)
+                extent = std::max(extent, glm::length(v - p.vertices[0]));
+            return extent;
+        });
+        all("rectangle_lights", s.rectangle_lights, [](const rectangle_light& l) { return std::min(glm::length(l.edge_u), glm::length(l.edge_v)); });
+    }
+} // namespace detail
+
+/// Lays a scene out for kernels. \throws std::invalid_argument as check(scene) does, when no surface is Lambertian, or when
+/// a size or a power does not fit single precision.
+inline scene_records lay_out(const scene& original)
 {
-    check(s);
+    check(original);
+    // All sums below are of coordinates relative to a point of the scene: a scene that is moved by an exact amount then
+    // gives the same records, bit for bit.
+    const dvec3 anchor = detail::anchor(original);
+    const scene s = detail::moved_back(original, anchor);
     scene_records out;
     detail::box all, lambertian;
     const auto bound = [&](const auto& shapes) {
@@ -141,11 +209,23 @@ inline scene_records lay_out(const scene& s)
             all.add(corner);
     for (const auto& l : s.point_lights)
         all.add(l.position);
-    out.center = 0.5 * (all.low + all.high);
+    const double scale = 0.5 * glm::length(all.high - all.low);
+    detail::require_resolvable(s, scale);
+    // The middle, rounded to few bits, so that the anchor plus it is exact wherever the anchor is.
+    const double step = std::exp2(std::floor(std::log2(scale)) - 8);
+    out.center = glm::round(0.5 * (all.low + all.high) / step) * step;
     out.low = glm::vec3(lambertian.low - out.center);
     out.high = glm::vec3(lambertian.high - out.center);
-    const double scale = 0.5 * glm::length(all.high - all.low);
-    out.layout.scale.x = static_cast<float>(scale * 0x1p-16);
+    double round = 0;
+    for (const auto& x : s.spheres)
+        round = std::max(round, detail::reach(x));
+    for (const auto& x : s.cylinders)
+        round = std::max(round, detail::reach(glm::length(x.top - x.base), x.radius));
+    for (const auto& x : s.cones)
+        round = std::max(round, detail::reach(glm::length(x.apex - x.base), x.radius));
+    for (const auto& x : s.paraboloids)
+        round = std::max(round, detail::reach(glm::length(x.rim - x.vertex), x.radius));
+    out.layout.scale.x = static_cast<float>(std::max(round * 0x1p-19, scale * 0x1p-26));
 
     detail::record_writer w(out, scale);
     out.layout.round_things = {w.next(), s.spheres.size(), 0, 0};
@@ -157,9 +237,9 @@ inline scene_records lay_out(const scene& s)
     out.layout.round_things.w = static_cast<uint>(s.cylinders.size() + s.cones.size() + s.paraboloids.size());
     for (const auto& x : s.cylinders)
         w.put_quadric(x.base, x.top, 0, 0, -x.radius * x.radius, x.material);
-    for (const auto& x : s.cones) { // radius (1 - z/h)
-        const double h = glm::length(x.apex - x.base), r2 = x.radius * x.radius;
-        w.put_quadric(x.base, x.apex, -r2 / (h * h), 2 * r2 / h, -r2, x.material);
+    for (const auto& x : s.cones) { // radius z/h from the apex on: there the equation has no constants that cancel
+        const double h = glm::length(x.apex - x.base);
+        w.put_quadric(x.apex, x.base, -x.radius * x.radius / (h * h), 0, 0, x.material);
     }
     for (const auto& x : s.paraboloids) // radius^2 z/h
         w.put_quadric(x.vertex, x.rim, 0, -x.radius * x.radius / glm::length(x.rim - x.vertex), 0, x.material);
@@ -226,6 +306,7 @@ inline scene_records lay_out(const scene& s)
     out.features |= s.rectangle_lights.empty() ? 0u : has_area_lights;
     for (const auto& r : out.records)
         detail::require(std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z) && std::isfinite(r.w), "scene: a size or a power is too large for single precision");
+    out.center += anchor;
     return out;
 }
 

@@ -274,6 +274,14 @@ inline void check(const scene& s)
     all("point_lights", s.point_lights);
     all("rectangle_lights", s.rectangle_lights);
     detail::require(!s.point_lights.empty() || !s.rectangle_lights.empty(), "lights: the scene has none");
+    // Glass surfaces have air outside, whatever is there: light is followed through one dielectric at a time.
+    const auto is_glass = [&](const sphere& x) { return s.materials[x.material].kind == material_kind::glass; };
+    for (std::size_t i = 0; i < s.spheres.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            const auto &a = s.spheres[i], &b = s.spheres[j];
+            detail::require(!is_glass(a) || !is_glass(b) || glm::length(a.center - b.center) >= (a.radius + b.radius) * (1 - 1e-9),
+                "spheres[" + std::to_string(i) + "]: overlaps spheres[" + std::to_string(j) + "], and both are glass; light is followed through one glass body at a time, so move them apart");
+        }
     check(s.camera);
     check(s.render);
 }

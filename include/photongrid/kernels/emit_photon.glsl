@@ -38,9 +38,13 @@ void kernel(uint i)
         d = uniform_direction(r.x, r.y);
     if (AREA_LIGHTS && (!POINT_LIGHTS || head.x != 0.0f)) {
         vec3 normal = vec3(scene(at + 4u));
-        origin = along(along(origin, vec3(scene(at + 2u)), r.z), vec3(scene(at + 3u)), r.w);
+        vec3 edge_u = vec3(scene(at + 2u));
+        vec3 edge_v = vec3(scene(at + 3u));
+        // Rounding goes by the terms, which may be large where their sum is small.
+        float off = clearance(abs(origin) + abs(edge_u) + abs(edge_v), args.scene_layout);
+        origin = along(along(origin, edge_u, r.z), edge_v, r.w);
         d = cosine_direction(normal, r.x, r.y);
-        origin = along(origin, normal, args.scene_layout.scale.x);
+        origin = along(origin, normal, off);
     }
     vec4 flux = scene(at + 5u);
     position = vec4(origin.x, origin.y, origin.z, 0.0f);

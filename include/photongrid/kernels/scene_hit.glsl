@@ -3,21 +3,30 @@
 //
 // A shape's function returns the distance along the ray, or `far` where it is not hit nearer than that.
 
-// Closest approach first: the rest is small near it, so nothing cancels (Haines et al., Ray Tracing Gems, 2019, ch. 7).
+// Closest approach first: the rest is small near it, so nothing cancels (Haines et al., Ray Tracing Gems, 2019, ch. 7), unless
+// the chord reaches near the origin or past it. There one root, `far_root`, has terms of one sign, and the other follows
+// from the product of both, |f|^2 - r^2 in factors; the sign of the product says whether the ray starts inside.
 float hit_sphere(uint at, vec3 o, vec3 d, float far)
 {
     vec4 s = scene(at);
     precise vec3 f = o - vec3(s);
     float middle = -dot3(f, d);
     vec3 m = along(f, d, middle);
-    precise float distance2 = s.w * s.w - dot3(m, m);
-    if (!(distance2 >= 0.0f))
+    precise float half_chord2 = s.w * s.w - dot3(m, m);
+    if (!(half_chord2 >= 0.0f))
         return far;
-    precise float half_chord = sqrt(distance2);
-    precise float t0 = middle - half_chord;
-    precise float t1 = middle + half_chord;
-    float t = t0 > 0.0f ? t0 : t1;
-    return t > 0.0f && t < far ? t : far;
+    precise float half_chord = sqrt(half_chord2);
+    precise float enter = middle - half_chord;
+    if (half_chord > 0.5f * middle) {
+        precise float from_middle = sqrt(dot3(f, f));
+        precise float product = (from_middle - s.w) * (from_middle + s.w);
+        precise float far_root = middle < 0.0f ? enter : middle + half_chord;
+        precise float other_root = product / far_root;
+        float leave = middle < 0.0f ? other_root : far_root;
+        enter = middle < 0.0f ? far_root : other_root;
+        enter = enter > 0.0f ? enter : leave;
+    }
+    return enter > 0.0f && enter < far ? enter : far;
 }
 
 // x^2 + y^2 + A z^2 + B z + C = 0 for 0 <= z <= height in a frame of its own: cylinder, cone, paraboloid.
@@ -71,6 +80,13 @@ float hit_plane(vec4 plane, vec3 o, vec3 d, float far)
     return t > 0.0f && t < far ? t : far;
 }
 
+// The foot of p on a plane: along a long ray, p lies off it by the rounding of t.
+vec3 onto_plane(vec4 plane, vec3 p)
+{
+    precise float above = dot3(vec3(plane), p) - plane.w;
+    return along(p, vec3(plane), -above);
+}
+
 float hit_disk(uint at, vec3 o, vec3 d, float far)
 {
     float t = hit_plane(scene(at), o, d, far);
@@ -81,20 +97,69 @@ float hit_disk(uint at, vec3 o, vec3 d, float far)
     return dot3(f, f) <= center.w * center.w ? t : far;
 }
 
+// Does the ray pass a convex polygon on the side of its vertices' images that the polygon is on? The images, along the ray,
+// are one rounding of each vertex, and the comparisons of products are exact, so that of two polygons with a common edge or
+// vertex at least one is hit. Returns the distance along the ray, kept between the nearest and the farthest vertex.
+// After Woop, Benthin and Wald, Watertight Ray/Triangle Intersection, JCGT 2(1), 2013.
+float hit_at_edge(uint vertices, uint edges, vec3 o, vec3 d, float plane_t, float far)
+{
+    vec3 u = from_basis(vec3(1.0f, 0.0f, 0.0f), d);
+    vec3 v = from_basis(vec3(0.0f, 1.0f, 0.0f), d);
+    bool left = false;
+    bool right = false;
+    float nearest = far;
+    float farthest = 0.0f;
+    float x0 = 0.0f;
+    float y0 = 0.0f;
+    for (uint e = 0u; e <= edges; ++e) {
+        precise vec3 f = vec3(scene(vertices + (e == edges ? 0u : e))) - o;
+        float x = dot3(f, u);
+        float y = dot3(f, v);
+        float z = dot3(f, d);
+        precise float xy = x0 * y;
+        precise float yx = y0 * x;
+        left = left || (e > 0u && xy > yx);
+        right = right || (e > 0u && xy < yx);
+        nearest = z < nearest ? z : nearest;
+        farthest = z > farthest ? z : farthest;
+        x0 = x;
+        y0 = y;
+    }
+    if (left == right) // outside, or seen edge on
+        return far;
+    float t = plane_t < nearest ? nearest : plane_t;
+    t = t > farthest ? farthest : t;
+    return t > 0.0f && t < far ? t : far;
+}
+
 // A convex polygon: its plane, then one half-space an edge. Edges lie outside the polygon by a hair (the margin is in
-// their offsets), so that no ray slips between two polygons that share one.
+// their offsets), so that no ray slips between a polygon and what it stands on. Where rounding, larger at grazing
+// incidence, leaves open whether an edge is passed inside, its end points decide.
 float hit_polygon(uint at, uint edges, vec3 o, vec3 d, float far)
 {
-    float t = hit_plane(scene(at), o, d, far);
-    if (!(t < far))
+    vec4 plane = scene(at);
+    float slope = dot3(vec3(plane), d);
+    if (slope == 0.0f)
+        return far;
+    precise float t = (plane.w - dot3(vec3(plane), o)) / slope;
+    bool in_reach = t > 0.0f && t < far;
+    if (!in_reach && abs(slope) > 0.001f) // t may be far off at grazing incidence
         return far;
     vec3 p = along(o, d, t);
+    bool open = false;
     for (uint e = 0u; e < edges; ++e) {
         vec4 edge = scene(at + 2u + e);
-        if (dot3(vec3(edge), p) < edge.w)
-            return far;
+        float inward = dot3(vec3(edge), p);
+        if (inward < edge.w) {
+            precise float outside = (edge.w - inward) * abs(slope);
+            if (outside > scene(at + 1u).w) // bounds the error of distances from the plane and the edges, m
+                return far;
+            open = true;
+        }
     }
-    return t;
+    if (open)
+        return hit_at_edge(at + 2u + edges, edges, o, d, t, far);
+    return in_reach ? t : far;
 }
 
 // The nearest hit, without its normal: t, and through `shape_at` and `shape_kind` which shape.
@@ -150,7 +215,7 @@ Hit nearest_hit(vec3 o, vec3 d)
                 kind = 4u;
                 where = at;
             }
-            at += 2u + edges;
+            at += 2u + 2u * edges;
         }
     }
 
@@ -171,16 +236,25 @@ Hit nearest_hit(vec3 o, vec3 d)
         vec4 v = scene(where + 2u);
         vec4 w = scene(where + 3u);
         vec3 f = hit.position - vec3(base);
-        vec3 gradient = vec3(dot3(f, vec3(u)), dot3(f, vec3(v)), u.w * dot3(f, vec3(w)) + 0.5f * v.w);
+        vec3 p = vec3(dot3(f, vec3(u)), dot3(f, vec3(v)), dot3(f, vec3(w)));
+        vec3 gradient = vec3(p.x, p.y, u.w * p.z + 0.5f * v.w);
+        float steepness = dot3(gradient, gradient);
+        precise float value = p.x * p.x + p.y * p.y + (u.w * p.z + v.w) * p.z + w.w;
         precise vec3 n = vec3(u) * gradient.x + vec3(v) * gradient.y + vec3(w) * gradient.z;
-        hit.normal = dot3(n, n) > 0.0f ? normalized3(n) : vec3(w); // a cone's apex has no gradient
+        hit.normal = steepness > 0.0f ? normalized3(n) : vec3(w); // a cone's apex has no gradient
+        // One step of Newton's back onto the surface, where the surface is flat on the step's scale.
+        precise float newton = -0.5f * value / steepness;
+        if (abs(value) < steepness)
+            hit.position = along(hit.position, n, newton);
         hit.material = uint(scene(where + 4u).x);
     }
     if (DISKS && kind == 3u) {
+        hit.position = onto_plane(scene(where), hit.position);
         hit.normal = vec3(scene(where));
         hit.material = uint(scene(where + 2u).x);
     }
     if (POLYGONS && kind == 4u) {
+        hit.position = onto_plane(scene(where), hit.position);
         hit.normal = vec3(scene(where));
         vec4 tag = scene(where + 1u);
         hit.material = uint(tag.y);
@@ -201,7 +275,7 @@ bool is_blocked(vec3 o, vec3 d, float far)
             uint edges = uint(scene(at + 1u).x);
             if (hit_polygon(at, edges, o, d, far) < far)
                 return true;
-            at += 2u + edges;
+            at += 2u + 2u * edges;
         }
     }
     if (SPHERES) {
@@ -234,7 +308,8 @@ bool is_blocked(vec3 o, vec3 d, float far)
 // Where a ray that leaves the surface at p in direction d starts: off the surface, on the side it goes to.
 vec3 ray_start(vec3 p, vec3 normal, vec3 d)
 {
-    return along(p, normal, dot3(normal, d) >= 0.0f ? args.scene_layout.scale.x : -args.scene_layout.scale.x);
+    float off = clearance(p, args.scene_layout);
+    return along(p, normal, dot3(normal, d) >= 0.0f ? off : -off);
 }
 
 vec3 mirrored(vec3 d, vec3 normal)

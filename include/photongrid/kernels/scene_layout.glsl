@@ -6,7 +6,7 @@ struct Scene {
     uvec4 round_things; // first sphere, how many; first quadric, how many
     uvec4 flat_things;  // first disk, how many; first polygon, how many
     uvec4 rest;         // first material; first light, how many; unused
-    vec4 scale;         // x: distance by which a ray starts off its surface, m
+    vec4 scale;         // x: share of the round shapes in `clearance`, m
 };
 
 // Materials' kinds.
@@ -26,5 +26,13 @@ struct Fresnel {
     float reflected; // share of the light that is reflected, 1 for total internal reflection
     vec3 refracted;  // direction of the rest
 };
+
+// How far off a surface a ray starts, so that the surface is behind it: a bound on what rounding makes of the distance
+// between them. 32 units in the last place of the coordinates' sum, and of the size of the scene's largest round shape.
+inline float clearance(vec3 p, Scene s)
+{
+    precise float bound = (abs(p.x) + abs(p.y) + abs(p.z)) * 1.9073486328125e-6f + s.scale.x;
+    return bound;
+}
 
 #endif
