@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
+
 namespace {
 
 using namespace photongrid;
@@ -65,6 +67,17 @@ TEST(kernel_texts, every_kernel_struct_has_its_text)
     EXPECT_EQ(find_kernel_text(kernels::knn_visit::path).name, "include/photongrid/kernels/knn_visit.glsl");
     EXPECT_NE(find_kernel_text(kernels::shade::path).text.find("void kernel(uint i)"), std::string_view::npos);
     EXPECT_THROW(find_kernel_text("x/none.glsl"), std::runtime_error);
+}
+
+// Hard cases G4, G7: what is fused, cut at NaN, or approximated differently from device to device is not in the dialect.
+TEST(kernel_texts, kernels_call_no_function_that_devices_round_differently)
+{
+    const std::regex comment("//[^\n]*"), forbidden(R"(\b(fma|pow|a?sin|a?cos|a?tan|exp2?|log2?|clamp|max|mix|mod|fract|dot|cross|length|distance|normalize|reflect|refract|inversesqrt) *\()");
+    for (const auto& f : kernel_texts) {
+        const auto code = std::regex_replace(std::string(f.text), comment, "");
+        std::smatch m;
+        EXPECT_FALSE(std::regex_search(code, m, forbidden)) << f.name << " calls " << m[1];
+    }
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 // All backend tests on the serial backend.
 #include "algorithm_tests.hpp"
+#include "double_kernels.hpp"
 #include "ray_tests.hpp"
 #include "render_tests.hpp"
 #include "scene_picture_tests.hpp"
