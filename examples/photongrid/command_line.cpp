@@ -12,12 +12,13 @@ namespace {
   photongrid render examples/scenes/cornell_box.json -o cornell.png
   photongrid render ring.json --backend vulkan --map route -o ring.exr -o ring.png --stats ring-stats.json
   photongrid render ring.json --size 128x96 --photons 4000 --exposure 1 --quiet
+  photongrid reference ring.json -o reference.exr --error error.exr --paths 100000000
   photongrid compare ring.exr reference.exr --max-relmse 1e-3
   photongrid check my_scene.json
 
 Exit codes:
   0    done
-  1    compare: relMSE above --max-relmse; render: the picture could not be made
+  1    compare: relMSE above --max-relmse; render, reference: the picture could not be made
   2    the command line is wrong
   3    the scene file is wrong
   4    the backend or device cannot be had, or failed
@@ -102,6 +103,34 @@ Exit codes:
         to.add_option("--progressive", o.progressive, "folder for numbered pictures of the running estimate")->type_name("DIR");
         to.add_flag("--quiet", o.quiet, "no progress, no remarks");
     }
+
+    void add_reference(CLI::App& to, reference_options& o)
+    {
+        to.add_option("scene", o.scene_path, "scene file")->required()->type_name("SCENE.json");
+        to.add_option("-o,--output", o.outputs, "picture; may be given several times")->required()->allow_extra_args(false)->type_name("OUT.exr|.pfm|.png");
+        to.add_option("--error", o.error, "standard error of each pixel, as a picture")->type_name("OUT.exr|.pfm|.png");
+        add_whole(to, "--spp", o.spp, "eye paths a pixel, at least 2");
+        to.add_option_function<std::string>(
+              "--paths", [&o](const std::string& text) { o.paths = parsed<std::uint64_t>("--paths", text, "a whole number"); }, "light paths, where caustics need bins")
+            ->type_name("N");
+        add_number(to, "--bin", o.bin, "edge of the bins; default: from the diffuse area and the number of light paths", "METRES");
+        to.add_option_function<std::string>(
+              "--caustics", [&o](const std::string& text) { o.caustics = text == "bins" ? caustics_by::bins : caustics_by::paths; }, "how to find caustics of rectangle lights; those of point lights always need bins")
+            ->check(CLI::IsMember({"bins", "paths"}))
+            ->type_name("bins|paths");
+        to.add_option_function<std::string>(
+              "--size", [&o](const std::string& text) { o.size = parsed_list<2>("--size", text, 'x', "width and height: WxH"); }, "pixels")
+            ->type_name("WxH");
+        add_whole(to, "--depth", o.depth, "mirrors and glass surfaces that an eye path passes before a diffuse one");
+        add_whole(to, "--photon-depth", o.photon_depth, "surfaces that light meets at most up to the first diffuse one seen from the eye, that one included");
+        add_whole(to, "--threads", o.threads, "default: all; the picture does not depend on it");
+        add_whole(to, "--seed", o.seed, "same seed, same picture");
+        to.add_option_function<std::string>(
+              "--exposure", [&o](const std::string& text) { o.exposure = parsed_number("--exposure", text, "a number"); }, "PNG: pixel values times 2^EV")
+            ->type_name("EV");
+        to.add_option("--stats", o.stats, "statistics, as JSON")->type_name("OUT.json");
+        to.add_flag("--quiet", o.quiet, "no progress, no remarks");
+    }
 } // namespace
 
 command read_command_line(int argc, char** argv)
@@ -114,6 +143,10 @@ command read_command_line(int argc, char** argv)
     render_options render;
     auto& render_command = *app.add_subcommand("render", "Draws a scene");
     add_render(render_command, render);
+
+    reference_options reference;
+    auto& reference_command = *app.add_subcommand("reference", "Draws a scene without a photon map, by path tracing in double precision: the truth to compare with");
+    add_reference(reference_command, reference);
 
     compare_options compare;
     auto& compare_command = *app.add_subcommand("compare", "MSE, relMSE = mean of (A - B)^2 / (B + 0.01)^2 (pbrt's MRSE), largest difference of two linear pictures");
@@ -139,6 +172,8 @@ command read_command_line(int argc, char** argv)
     }
     if (render_command.parsed())
         return render;
+    if (reference_command.parsed())
+        return reference;
     if (compare_command.parsed())
         return compare;
     if (check_command.parsed())

@@ -1,6 +1,7 @@
 // The command line: what was asked for, as data.
 #pragma once
 
+#include <photongrid/reference/settings.hpp>
 #include <photongrid/scene.hpp>
 
 #include <limits>
@@ -27,6 +28,20 @@ struct render_options {
     bool quiet = false;
 };
 
+/// `reference`. What is empty is as the scene file has it, or as reference_settings has it.
+struct reference_options {
+    std::string scene_path;
+    std::optional<std::uint32_t> spp, threads, depth, photon_depth, seed;
+    std::optional<std::uint64_t> paths;
+    std::optional<glm::uvec2> size;
+    std::optional<double> bin;
+    std::optional<caustics_by> caustics;
+    double exposure = 0; ///< EV, PNG only
+    std::vector<std::string> outputs;
+    std::string error, stats;
+    bool quiet = false;
+};
+
 struct compare_options {
     std::string a, b;
     double max_relmse = std::numeric_limits<double>::infinity();
@@ -39,7 +54,7 @@ struct check_options {
 struct devices_options {};
 
 /// What to do; or the exit code where the command line has been answered already (help, version, mistake).
-using command = std::variant<exit_code, render_options, compare_options, check_options, devices_options>;
+using command = std::variant<exit_code, render_options, reference_options, compare_options, check_options, devices_options>;
 
 command read_command_line(int argc, char** argv);
 

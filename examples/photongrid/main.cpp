@@ -3,6 +3,7 @@
 #include "command_line.hpp"
 #include "image_file.hpp"
 #include "progress_bar.hpp"
+#include "reference_command.hpp"
 #include "scene_file.hpp"
 #include "stats_file.hpp"
 
@@ -161,6 +162,11 @@ namespace {
     }
 
     // --- the other commands ---
+    exit_code run(const reference_options& o)
+    {
+        return run_reference(o, [] { return stop_asked != 0; });
+    }
+
     exit_code run(const compare_options& o)
     {
         const auto a = read_image(o.a), b = read_image(o.b);

@@ -1,0 +1,13 @@
+// The command `reference`: ground truth for a scene, without a photon map.
+#pragma once
+
+#include "command_line.hpp"
+
+#include <functional>
+
+namespace photongrid {
+
+/// Renders, writes the pictures and says what was done. Throws as `render` does.
+exit_code run_reference(const reference_options& o, const std::function<bool()>& cancelled);
+
+} // namespace photongrid

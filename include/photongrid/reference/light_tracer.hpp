@@ -1,0 +1,206 @@
+// Caustics by brute force: light paths from the lights through mirrors and glass to the first diffuse surface, whose bins
+// add up the flux. What a path tracer cannot find, since no eye path hits a point light by chance.
+#pragma once
+
+#include <photongrid/reference/bsdf.hpp>
+#include <photongrid/reference/random_stream.hpp>
+#include <photongrid/reference/settings.hpp>
+#include <photongrid/reference/surface_bins.hpp>
+#include <photongrid/reference/work.hpp>
+
+#include <optional>
+
+namespace photongrid::reference {
+
+/// Light paths come in this many groups, each with bins of its own: the groups are independent, so the spread between
+/// them is the error of whatever was made from them. Each is traced by one thread in path order: sums do not depend on threads.
+constexpr std::uint32_t light_groups = 16;
+
+/// Irradiance that has come through at least one mirror or glass surface, from some lights, straight onto diffuse surfaces.
+class caustic_bins {
+public:
+    caustic_bins() = default;
+
+    /// No bins where no light in question can make a caustic. Throws std::invalid_argument for too many bins, render_cancelled.
+    caustic_bins(const scene& s, const geometry& shapes, const reference_settings& settings, const render_observer& observer, reference_stats& stats)
+    {
+        lights_.reserve(shapes.lights().size());
+        for (const auto& l : shapes.lights())
+            if (!l.is_area || settings.area_light_caustics == caustics_by::bins)
+                lights_.push_back(l);
+        const bool shiny = std::any_of(s.materials.begin(), s.materials.end(), [](const material& m) { return m.kind != material_kind::lambertian; });
+        if (!shiny || lights_.empty())
+            return;
+        paths_a_group_ = (settings.paths + light_groups - 1) / light_groups;
+        cut(s, settings);
+        if (size_ == 0)
+            return;
+        stats.bins = size_;
+        stats.bin_size = bin_;
+        stats.light_paths = paths_a_group_ * light_groups;
+        double total = 0;
+        for (const auto& l : lights_)
+            total += brightness(l);
+        for (auto& l : lights_)
+            l.probability = brightness(l) / total;
+
+        irradiance_.resize(light_groups);
+        std::vector<std::uint64_t> hits(light_groups, 0);
+        share_out(light_groups, threads_for(settings.threads), "light_paths", static_cast<double>(stats.light_paths), observer,
+            [&](std::uint32_t group, watch& w) { hits[group] = trace_group(s, shapes, settings, group, w); });
+        for (const auto h : hits)
+            stats.caustic_hits += h;
+    }
+
+    bool empty() const { return irradiance_.empty(); }
+
+    /// Irradiance on the side from which `h` is seen by a ray of direction d, W/m^2, as group `group` has it.
+    dvec3 irradiance(const hit& h, const dvec3& d, std::uint32_t group) const
+    {
+        if (empty())
+            return dvec3(0);
+        return dvec3(irradiance_[group][bin_at(h, d)]);
+    }
+
+    /// The mean over all groups and its standard error.
+    std::pair<dvec3, dvec3> irradiance(const hit& h, const dvec3& d) const
+    {
+        dvec3 sum(0), squares(0);
+        for (std::uint32_t g = 0; g < light_groups; ++g)
+            sum += irradiance(h, d, g);
+        const dvec3 mean = sum / double{light_groups};
+        for (std::uint32_t g = 0; g < light_groups; ++g)
+            squares += (irradiance(h, d, g) - mean) * (irradiance(h, d, g) - mean);
+        return {mean, glm::sqrt(squares / (light_groups * (light_groups - 1.0)))};
+    }
+
+private:
+    static double brightness(const light_source& l) { return l.power.x + l.power.y + l.power.z; }
+
+    /// Chooses the size of the bins and cuts every diffuse surface.
+    void cut(const scene& s, const reference_settings& settings)
+    {
+        const auto each_shape = [&](auto visit) {
+            const auto all = [&](const auto& shapes) {
+                for (const auto& x : shapes)
+                    visit(x, s.materials[x.material].kind == material_kind::lambertian);
+            };
+            all(s.spheres);
+            all(s.cylinders);
+            all(s.cones);
+            all(s.paraboloids);
+            all(s.disks);
+            all(s.polygons);
+        };
+        double area = 0;
+        each_shape([&](const auto& x, bool diffuse) { area += diffuse ? area_of_shape(x) : 0; });
+        if (!(area > 0))
+            return;
+        // The noise of a bin falls with its edge, blur grows with it: the best edge goes as the fourth root of the paths.
+        bin_ = settings.bin > 0 ? settings.bin : std::sqrt(area) / (8 * std::pow(static_cast<double>(settings.paths), 0.25));
+        each_shape([&](const auto& x, bool diffuse) {
+            surfaces_.emplace_back();
+            if (!diffuse)
+                return;
+            if constexpr (std::is_same_v<std::decay_t<decltype(x)>, polygon>)
+                surfaces_.back().bins.emplace(plane_bins(x, bin_));
+            else
+                surfaces_.back().bins.emplace(ring_bins(x, bin_));
+            surfaces_.back().first = size_;
+            size_ += 2 * std::visit([](const auto& b) { return b.size(); }, *surfaces_.back().bins);
+            require_few_bins(size_, bin_);
+        });
+    }
+    static double area_of_shape(const polygon& p) { return glm::length(area_vector(p)); }
+    template <class Round>
+    static double area_of_shape(const Round& r) { return ring_bins(r, infinity).area_of_all(); }
+
+    /// A bin of the side that faces against d.
+    std::uint32_t bin_at(const hit& h, const dvec3& d) const
+    {
+        const auto& surface = surfaces_[h.shape];
+        const std::uint32_t in_shape = std::visit([&](const auto& b) { return b.at(h.position); }, *surface.bins);
+        return surface.first + 2 * in_shape + (glm::dot(h.normal, d) > 0 ? 1 : 0);
+    }
+
+    std::uint64_t trace_group(const scene& s, const geometry& shapes, const reference_settings& settings, std::uint32_t group, watch& w)
+    {
+        std::vector<dvec3> flux(size_, dvec3(0));
+        random_stream random(settings.seed, 1, group);
+        std::uint64_t hits = 0;
+        constexpr std::uint64_t a_look = 1024;
+        for (std::uint64_t done = 0; done < paths_a_group_;) {
+            const std::uint64_t past = std::min(paths_a_group_, done + a_look);
+            if (!w.goes_on(past - done))
+                return hits;
+            for (; done < past; ++done)
+                hits += trace_path(s, shapes, settings, random, flux);
+        }
+        auto& out = irradiance_[group];
+        out.assign(size_, glm::vec3(0));
+        for (const auto& surface : surfaces_)
+            if (surface.bins)
+                std::visit(
+                    [&](const auto& b) {
+                        for (std::uint32_t i = 0; i < 2 * b.size(); ++i)
+                            if (const double area = b.area(i / 2); area > 0)
+                                out[surface.first + i] = glm::vec3(flux[surface.first + i] / (area * static_cast<double>(paths_a_group_)));
+                    },
+                    *surface.bins);
+        return hits;
+    }
+
+    /// One path, at most to its first diffuse surface; 1 if it left flux there.
+    std::uint64_t trace_path(const scene& s, const geometry& shapes, const reference_settings& settings, random_stream& random, std::vector<dvec3>& flux) const
+    {
+        const auto* light = &lights_.front();
+        if (lights_.size() > 1) {
+            double u = random();
+            for (const auto& l : lights_) {
+                light = &l;
+                if ((u -= l.probability) < 0)
+                    break;
+            }
+        }
+        dvec3 power = light->power / light->probability;
+        const double u = random(), v = random();
+        ray r;
+        if (light->is_area) {
+            r.direction = cosine_direction(light->normal, u, v);
+            const double across_u = random(), across_v = random();
+            r.origin = light->corner + across_u * light->edge_u + across_v * light->edge_v;
+        } else {
+            r.direction = uniform_direction(u, v);
+            r.origin = light->corner;
+        }
+        r.from = light->shape;
+        for (std::uint32_t surface = 1; surface <= settings.photon_depth; ++surface) {
+            const hit h = shapes.nearest(r);
+            if (h.shape == nothing || h.light != nothing)
+                return 0;
+            const auto& m = s.materials[h.material];
+            if (m.kind == material_kind::lambertian) {
+                if (surface == 1)
+                    return 0; // direct light: the path tracer's
+                flux[bin_at(h, r.direction)] += power;
+                return 1;
+            }
+            power *= m.reflectance;
+            r = {h.position, specular(m, r.direction, h.normal, m.kind == material_kind::glass ? random() : 0).direction, h.shape};
+        }
+        return 0;
+    }
+
+    struct binned_surface {
+        std::optional<surface_bins> bins; ///< of a diffuse shape
+        std::uint32_t first = 0;          ///< of its bins; each has two, for the two sides
+    };
+    std::vector<light_source> lights_;
+    std::vector<binned_surface> surfaces_; ///< by shape
+    std::uint32_t size_ = 0;
+    double bin_ = 0;
+    std::uint64_t paths_a_group_ = 0;
+    std::vector<std::vector<glm::vec3>> irradiance_; ///< by group and bin
+};
+
+} // namespace photongrid::reference

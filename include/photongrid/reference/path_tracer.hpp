@@ -1,0 +1,115 @@
+// Path tracing from the eye, with a shadow ray to a light at every diffuse surface.
+#pragma once
+
+#include <photongrid/reference/light_tracer.hpp>
+
+namespace photongrid::reference {
+
+/// Finds the radiance that comes along rays; each call is one sample.
+class path_tracer {
+public:
+    path_tracer(const scene& s, const geometry& shapes, const caustic_bins& caustics, const reference_settings& settings)
+        : scene_(s), shapes_(shapes), caustics_(caustics), settings_(settings) {}
+
+    /// An unbiased estimate of the radiance that arrives along r, W/(m^2 sr), with caustics from group `group`.
+    dvec3 radiance(ray r, random_stream& random, std::uint32_t group) const
+    {
+        dvec3 sum(0), throughput(1);
+        std::uint32_t specular_before = 0; // surfaces before the first diffuse one
+        std::uint32_t surfaces = 0;        // from the first diffuse one on
+        bool through_specular = false;     // since the last diffuse surface
+        double density = 0;                // of the direction in which the ray left that surface
+        for (;;) {
+            const hit h = shapes_.nearest(r);
+            if (h.shape == nothing)
+                return sum;
+            if (h.light != nothing) {
+                const auto& light = shapes_.lights()[h.light];
+                const double cosine = -glm::dot(h.normal, r.direction);
+                if (!(cosine > 0))
+                    return sum;
+                double share = 1;
+                if (surfaces > 0 && through_specular) // a caustic
+                    share = settings_.area_light_caustics == caustics_by::paths ? 1 : 0;
+                else if (surfaces > 0) // the shadow ray could have found it too: balance heuristic (Veach 1997)
+                    share = density / (density + light_density(light, h.t, cosine));
+                return sum + share * throughput * light.radiance();
+            }
+            const auto& m = scene_.materials[h.material];
+            if (m.kind == material_kind::lambertian) {
+                if (++surfaces > settings_.photon_depth)
+                    return sum;
+                const dvec3 normal = glm::dot(h.normal, r.direction) > 0 ? -h.normal : h.normal;
+                throughput *= m.reflectance;
+                sum += throughput / M_PI * (caustics_.irradiance(h, r.direction, group) + direct(h, normal, random));
+                if (surfaces >= 3) { // Russian roulette
+                    const double survival = std::min(1.0, std::max({throughput.x, throughput.y, throughput.z}));
+                    if (!(random() < survival))
+                        return sum;
+                    throughput /= survival;
+                }
+                const double u = random(), v = random();
+                r = {h.position, cosine_direction(normal, u, v), h.shape};
+                density = glm::dot(r.direction, normal) / M_PI;
+                if (!(density > 0))
+                    return sum;
+                through_specular = false;
+            } else {
+                if (surfaces == 0 ? ++specular_before > settings_.depth : ++surfaces > settings_.photon_depth)
+                    return sum;
+                const auto bounce = specular(m, r.direction, h.normal, m.kind == material_kind::glass ? random() : 0);
+                throughput *= m.reflectance;
+                if (surfaces > 0) // before, as in the photon-map renderer, radiance is not scaled
+                    throughput *= bounce.radiance_scale;
+                r = {h.position, bounce.direction, h.shape};
+                through_specular = true;
+            }
+            if (throughput == dvec3(0))
+                return sum;
+        }
+    }
+
+private:
+    /// Density of a shadow ray's direction, per sr: this light, any point of it alike.
+    static double light_density(const light_source& light, double distance, double cosine) { return light.probability * distance * distance / (light.area * cosine); }
+
+    /// Irradiance straight from the lights: one shadow ray to a light chosen by power.
+    dvec3 direct(const hit& h, const dvec3& normal, random_stream& random) const
+    {
+        const auto lights = shapes_.lights();
+        const light_source* light = &lights.front();
+        if (lights.size() > 1) {
+            double u = random();
+            for (const auto& l : lights) {
+                light = &l;
+                if ((u -= l.probability) < 0)
+                    break;
+            }
+        }
+        dvec3 target = light->corner;
+        if (light->is_area) {
+            const double u = random(), v = random();
+            target += u * light->edge_u + v * light->edge_v;
+        }
+        const dvec3 towards = target - h.position;
+        const double distance = glm::length(towards);
+        if (!(distance > 0))
+            return dvec3(0);
+        const dvec3 d = towards / distance;
+        const double cosine = glm::dot(normal, d);
+        const double leaving = light->is_area ? -glm::dot(light->normal, d) : 1;
+        if (!(cosine > 0) || !(leaving > 0) || shapes_.blocked({h.position, d, h.shape}, distance, light->shape))
+            return dvec3(0);
+        if (!light->is_area)
+            return light->power * (cosine / (4 * M_PI * distance * distance * light->probability));
+        const double by_light = light_density(*light, distance, leaving), by_surface = cosine / M_PI;
+        return light->radiance() * (cosine / (by_light + by_surface));
+    }
+
+    const scene& scene_;
+    const geometry& shapes_;
+    const caustic_bins& caustics_;
+    const reference_settings& settings_;
+};
+
+} // namespace photongrid::reference

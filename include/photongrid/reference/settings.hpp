@@ -1,0 +1,66 @@
+// What is asked of the reference renderer, and what it did. <photongrid/reference.hpp> is the header to include.
+#pragma once
+
+#include <photongrid/scene.hpp>
+
+namespace photongrid {
+
+/// How the reference renderer finds the caustics of rectangle lights. Those of point lights can only be had from bins.
+enum class caustics_by { paths, bins };
+
+struct reference_settings {
+    std::uint32_t width = 512, height = 512; ///< pixels
+    std::uint32_t spp = 256;                 ///< eye paths a pixel, at least 2; with bins rounded up to a multiple of 16, the groups of light paths
+    std::uint64_t paths = 1u << 24;          ///< light paths, if bins are needed; rounded up likewise
+    double bin = 0;                          ///< edge of a bin, m; 0: chosen from the diffuse area and the number of paths
+    std::uint32_t threads = 0;               ///< 0: as many as the machine has; the picture does not depend on it
+    std::uint64_t seed = 1;
+    std::uint32_t depth = 8;                 ///< specular surfaces that an eye path passes before the first diffuse one
+    std::uint32_t photon_depth = 32;         ///< surfaces that light meets at most up to the first diffuse one seen from the eye, that one included
+    caustics_by area_light_caustics = caustics_by::paths;
+};
+
+/// The settings that a scene's own render settings ask for.
+inline reference_settings reference_settings_for(const render_settings& s)
+{
+    reference_settings r;
+    r.width = s.width;
+    r.height = s.height;
+    r.seed = s.seed;
+    r.depth = s.depth;
+    r.photon_depth = s.photon_depth;
+    return r;
+}
+
+/// Throws std::invalid_argument "member: what is wrong".
+inline void check(const reference_settings& s)
+{
+    detail::require(s.width >= 1 && s.height >= 1 && s.width <= 16384 && s.height <= 16384, "size: width and height must be from 1 to 16384 pixels");
+    detail::require(s.spp >= 2 && s.spp <= (1u << 24), "spp: must be from 2 to 2^24, since one path has no standard error");
+    detail::require(s.paths >= 1 && s.paths <= (std::uint64_t{1} << 40), "paths: must be from 1 to 2^40");
+    detail::require(std::isfinite(s.bin) && s.bin >= 0, "bin: must be finite and greater than 0");
+    detail::require(s.threads <= 1024, "threads: must be at most 1024");
+    detail::require(s.depth <= 4096, "depth: must be at most 4096");
+    detail::require(s.photon_depth >= 1 && s.photon_depth <= 4096, "photon_depth: must be from 1 to 4096");
+}
+
+/// What a reference render did.
+struct reference_stats {
+    std::uint32_t spp = 0;             ///< eye paths a pixel
+    std::uint32_t threads = 0;
+    std::uint64_t light_paths = 0;     ///< 0: no bins were needed
+    std::uint64_t caustic_hits = 0;    ///< light paths that came to a diffuse surface by way of mirrors or glass
+    std::uint64_t bins = 0;            ///< on both sides of all diffuse surfaces
+    double bin_size = 0;               ///< edge, m: caustics from bins are blurred over this length; 0 without bins
+    double mean_standard_error = 0;    ///< over pixels and channels, W/(m^2 sr)
+    std::uint64_t invalid_samples = 0; ///< NaN or infinite, counted as black
+    double light_seconds = 0, eye_seconds = 0;
+};
+
+/// The mean of the eye paths and its standard error, W/(m^2 sr).
+struct reference_picture {
+    image mean, standard_error;
+    reference_stats stats;
+};
+
+} // namespace photongrid

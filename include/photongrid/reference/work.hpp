@@ -1,0 +1,103 @@
+// Jobs shared out among threads, with someone watching.
+#pragma once
+
+#include <photongrid/render_stats.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+namespace photongrid::reference {
+
+/// What a job of `share_out` calls now and then: goes_on(n) says that n more units of work are done and asks whether to
+/// carry on. Only the calling thread talks to the observer.
+class watch {
+public:
+    watch(const render_observer& observer, std::string_view stage, double units)
+        : observer_(observer), stage_(stage), units_(units) {}
+
+    bool goes_on(std::uint64_t done)
+    {
+        done_ += done;
+        if (std::this_thread::get_id() == caller_)
+            look();
+        return !stop_;
+    }
+    void look()
+    {
+        if (observer_.progress)
+            observer_.progress(stage_, static_cast<double>(done_) / units_);
+        if (observer_.cancelled && observer_.cancelled())
+            stop_ = cancelled_ = true;
+    }
+    void stop() { stop_ = true; }
+    bool was_cancelled() const { return cancelled_; }
+
+private:
+    const render_observer& observer_;
+    std::string_view stage_;
+    double units_;
+    std::thread::id caller_ = std::this_thread::get_id();
+    std::atomic<std::uint64_t> done_{0};
+    std::atomic<bool> stop_{false}, cancelled_{false};
+};
+
+inline std::uint32_t threads_for(std::uint32_t asked) { return asked > 0 ? asked : std::max(1u, std::thread::hardware_concurrency()); }
+
+/// Runs job(i, watch) for i = 0 … n-1, in any order, on `threads` threads of which the caller is one; `units` is the work
+/// of all jobs together. Throws render_cancelled, or what a job throws.
+template <class Job>
+void share_out(std::uint32_t n, std::uint32_t threads, std::string_view stage, double units, const render_observer& observer, Job job)
+{
+    watch w(observer, stage, units);
+    std::atomic<std::uint32_t> next{0}, at_work{0};
+    std::exception_ptr failure;
+    std::mutex failing;
+    const auto work = [&] {
+        try {
+            for (std::uint32_t i = next++; i < n && w.goes_on(0); i = next++)
+                job(i, w);
+        } catch (...) {
+            const std::lock_guard lock(failing);
+            failure = std::current_exception();
+            w.stop();
+        }
+    };
+    {
+        std::vector<std::jthread> others;
+        try {
+            for (std::uint32_t t = 1; t < std::min(threads, n); ++t) {
+                ++at_work;
+                others.emplace_back([&] {
+                    work();
+                    --at_work;
+                });
+            }
+        } catch (const std::system_error&) {
+            --at_work; // no more threads to be had: those that there are do it all
+        }
+        work();
+        while (at_work > 0) {
+            try {
+                w.look();
+            } catch (...) {
+                const std::lock_guard lock(failing);
+                failure = std::current_exception();
+                w.stop();
+                break;
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+    }
+    if (failure)
+        std::rethrow_exception(failure);
+    if (w.was_cancelled())
+        throw render_cancelled();
+}
+
+} // namespace photongrid::reference
