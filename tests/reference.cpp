@@ -288,7 +288,7 @@ namespace {
         int lit = 0, edge = 0;
         for (std::size_t i = 0; i < in_mirror.mean.pixels.size(); ++i) { // the same random numbers: the same eye rays
             EXPECT_NEAR(in_mirror.mean.pixels[i].x, 0.8f * behind.mean.pixels[i].x, 1e-5);
-            lit += std::abs(behind.mean.pixels[i].x - 10) < 1e-4 ? 1 : 0;
+            lit += std::abs(behind.mean.pixels[i].x - 10) < 1e-4f ? 1 : 0;
             edge += behind.standard_error.pixels[i].x > 0 ? 1 : 0;
         }
         EXPECT_GT(lit, 100);

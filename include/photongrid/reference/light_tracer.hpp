@@ -28,8 +28,7 @@ public:
         for (const auto& l : shapes.lights())
             if (!l.is_area || settings.area_light_caustics == caustics_by::bins)
                 lights_.push_back(l);
-        const bool shiny = std::any_of(s.materials.begin(), s.materials.end(), [](const material& m) { return m.kind != material_kind::lambertian; });
-        if (!shiny || lights_.empty())
+        if (lights_.empty())
             return;
         paths_a_group_ = (settings.paths + light_groups - 1) / light_groups;
         cut(s, settings);
@@ -93,8 +92,12 @@ private:
             all(s.polygons);
         };
         double area = 0;
-        each_shape([&](const auto& x, bool diffuse) { area += diffuse ? area_of_shape(x) : 0; });
-        if (!(area > 0))
+        bool shiny = false;
+        each_shape([&](const auto& x, bool diffuse) {
+            area += diffuse ? area_of_shape(x) : 0;
+            shiny = shiny || !diffuse;
+        });
+        if (!shiny || !(area > 0))
             return;
         // The noise of a bin falls with its edge, blur grows with it: the best edge goes as the fourth root of the paths.
         bin_ = settings.bin > 0 ? settings.bin : std::sqrt(area) / (8 * std::pow(static_cast<double>(settings.paths), 0.25));
