@@ -305,8 +305,8 @@ namespace {
         agreement z;
         double difference = 0, variance = 0, n = 0;
         for (std::size_t i = 0; i < a.mean.pixels.size(); ++i) {
-            const double d = double{a.mean.pixels[i].y} - double{b.mean.pixels[i].y};
-            const double v = std::pow(double{a.standard_error.pixels[i].y}, 2) + std::pow(double{b.standard_error.pixels[i].y}, 2);
+            const double d = static_cast<double>(a.mean.pixels[i].y) - static_cast<double>(b.mean.pixels[i].y);
+            const double v = std::pow(static_cast<double>(a.standard_error.pixels[i].y), 2) + std::pow(static_cast<double>(b.standard_error.pixels[i].y), 2);
             difference += d;
             variance += v;
             if (v > 0) {
@@ -408,8 +408,9 @@ namespace {
             // What it says lies on the shape and on the ray; nothing lies before. A pair of roots within one step of brute
             // force is not seen by that, hence no equality.
             EXPECT_LT(std::abs(e.value(rvec(h.position))), 1e-12L);
-            EXPECT_LT(glm::length(rvec(h.position) - at(h.t)), 1e-9L * scale);
-            EXPECT_LT(h.t, root + 1e-9L * scale);
+            const real t = static_cast<real>(h.t);
+            EXPECT_LT(glm::length(rvec(h.position) - at(t)), 1e-9L * scale);
+            EXPECT_LT(t, root + 1e-9L * scale);
             EXPECT_NEAR(glm::length(h.normal), 1, 1e-12);
             // The normal is the equation's gradient, outward.
             const real eps = 1e-6L;
@@ -626,10 +627,10 @@ namespace {
         for (std::size_t p = 0; p < pictures[0].mean.pixels.size(); ++p) {
             double mean = 0, squares = 0;
             for (const auto& x : pictures)
-                mean += double{x.mean.pixels[p].y} / seeds;
+                mean += static_cast<double>(x.mean.pixels[p].y) / seeds;
             for (const auto& x : pictures) {
-                squares += std::pow(double{x.mean.pixels[p].y} - mean, 2);
-                said += std::pow(double{x.standard_error.pixels[p].y}, 2) / seeds;
+                squares += std::pow(static_cast<double>(x.mean.pixels[p].y) - mean, 2);
+                said += std::pow(static_cast<double>(x.standard_error.pixels[p].y), 2) / seeds;
             }
             spread += squares / (seeds - 1);
         }

@@ -73,7 +73,7 @@ inline reference_picture render_reference(const scene& s, const camera& view, co
     for (const auto n : invalid)
         out.stats.invalid_samples += n;
     for (const auto& e : out.standard_error.pixels)
-        out.stats.mean_standard_error += (double{e.x} + double{e.y} + double{e.z}) / (3.0 * static_cast<double>(pixels));
+        out.stats.mean_standard_error += glm::dot(dvec3(e), dvec3(1.0 / 3.0)) / static_cast<double>(pixels);
     return out;
 }
 

@@ -271,6 +271,8 @@ public:
             return h;
         h.position = r.origin + h.t * r.direction;
         with(h.shape, [&](const auto& shape) { h.normal = shape.settle(h.position); });
+        if (!detail::finite(h.position) || !detail::finite(h.normal))
+            return {}; // a shape too small to be told from a point at its distance from the origin
         h.material = materials_[h.shape];
         h.light = h.shape >= first_light_ ? h.shape - first_light_ : nothing;
         return h;

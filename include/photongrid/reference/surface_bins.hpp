@@ -140,9 +140,7 @@ public:
     {
         const dvec3 f = p - origin_;
         const double z = glm::dot(f, axis_), x = glm::dot(f, u_), y = glm::dot(f, v_);
-        const double s = form_ == form::sphere ? std::atan2(std::hypot(x, y), z) : form_ == form::cylinder ? z
-            : form_ == form::cone                                                                         ? std::hypot(x, y, z)
-                                                                                                          : std::hypot(x, y);
+        const double s = profile_coordinate(z, std::hypot(x, y));
         const auto inner = std::upper_bound(edges_.begin() + 1, edges_.end() - 1, s) - edges_.begin();
         const auto ring = static_cast<std::size_t>(inner) - 1;
         const double sectors = first_[ring + 1] - first_[ring];
@@ -178,6 +176,15 @@ private:
         }
     }
 
+    double profile_coordinate(double z, double rho) const
+    {
+        switch (form_) {
+        case form::sphere: return std::atan2(rho, z);
+        case form::cylinder: return z;
+        case form::cone: return std::hypot(rho, z);
+        default: return rho;
+        }
+    }
     /// Distance from the axis at profile coordinate s.
     double radius_at(double s) const
     {
