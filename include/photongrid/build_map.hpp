@@ -4,46 +4,75 @@
 #include <photongrid/bitonic_sort.hpp>
 #include <photongrid/grid_index.hpp>
 #include <photongrid/photon_map.hpp>
+#include <photongrid/prefix_sums.hpp>
 #include <photongrid/stencil_route.hpp>
 
 #include <bit>
 
 namespace photongrid {
 
-/// A photon map by sorting (2.2.1): exact, compact, L(L+1)/2 + 3 passes. Takes the photons over.
+namespace detail {
+    /// Puts photons in the order of `list`, one attribute after the other, so that only one is held twice.
+    template <backend B>
+    void reorder(B& b, photons<B>& p, const buffer_of<B, uint>& list)
+    {
+        const uint n = p.size();
+        for (auto* attribute : {&p.positions, &p.powers, &p.directions, &p.normals}) {
+            if (attribute->size() == 0)
+                continue;
+            auto taken = b.template make<glm::vec4>(n);
+            b.template run<kernels::take_vector>(n, {.photons = n}, reads(list, *attribute), writes(taken));
+            *attribute = std::move(taken);
+        }
+    }
+} // namespace detail
+
+/// A photon map by sorting (2.2.1): exact, L(L+1)/2 + 5 passes and one per attribute. Takes the photons over.
 template <backend B>
 photon_map<B> sorted_map(B& b, photons<B> p, const grid& g)
 {
     const uint n = p.size();
     photon_map<B> map;
     map.cells_of = g;
-    // The pairs are made with their padding, so that the sort need not copy them.
-    auto pairs = b.template make<glm::uvec2>(n == 0 ? 0 : std::bit_ceil(n));
-    b.template run<kernels::photon_cell>(pairs.size(), {.grid = g, .photons = n}, reads(p.positions, p.powers), writes(pairs));
-    bitonic_sort(b, pairs);
-    map.cells = grid_index(b, pairs, cell_count(g));
-    map.list = b.template make<uint>(n);
-    b.template run<kernels::pair_value>(n, {}, reads(pairs), writes(map.list));
     map.invalid = detail::checked_count<kernels::invalid_photon>(b, n, {}, reads(p.positions, p.powers));
+    {
+        // The pairs are made with their padding, so that the sort need not copy them.
+        auto pairs = b.template make<glm::uvec2>(n == 0 ? 0 : std::bit_ceil(n));
+        b.template run<kernels::photon_cell>(pairs.size(), {.grid = g, .photons = n}, reads(p.positions, p.powers), writes(pairs));
+        bitonic_sort(b, pairs);
+        map.cells = grid_index(b, pairs, cell_count(g));
+        map.list = b.template make<uint>(n);
+        b.template run<kernels::pair_value>(n, {}, reads(pairs), writes(map.list));
+    }
+    detail::reorder(b, p, map.list);
     map.photons = std::move(p);
     return map;
 }
 
-/// A photon map by stencil routing with m x m slots a cell (2.2.2): approximate where cells overflow, few passes.
-/// Takes the photons over. `seed` orders the drawing.
+/// A photon map by stencil routing with m x m slots a cell (2.2.2): approximate where cells overflow, few passes. The gaps
+/// that routing leaves between cells are closed afterwards. Takes the photons over. `seed` orders the drawing.
 template <backend B>
 photon_map<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 0)
 {
+    const uint n = p.size();
+    const uint cells = cell_count(g);
     photon_map<B> map;
     map.cells_of = g;
-    map.contiguous = false;
-    auto routed = stencil_route(b, p, g, m, seed);
-    map.invalid = detail::checked_count<kernels::invalid_photon>(b, p.size(), {}, reads(p.positions, p.powers));
-    map.cells = std::move(routed.cells);
-    map.list = std::move(routed.list);
-    map.surpluses = std::move(routed.surpluses);
-    map.overfull_cells = static_cast<uint>(routed.overfull_cells);
-    p.powers = std::move(routed.powers);
+    map.invalid = detail::checked_count<kernels::invalid_photon>(b, n, {}, reads(p.positions, p.powers));
+    {
+        auto routed = stencil_route(b, p, g, m, seed);
+        map.surpluses = std::move(routed.surpluses);
+        map.overfull_cells = static_cast<uint>(routed.overfull_cells);
+        p.powers = std::move(routed.powers);
+        auto kept = b.template make<uint>(cells);
+        b.template run<kernels::pair_value>(cells, {}, reads(routed.cells), writes(kept));
+        const auto sums = prefix_sums(b, kept);
+        map.cells = b.template make<glm::uvec2>(cells);
+        b.template run<kernels::packed_cell>(cells, {}, reads(sums, routed.cells), writes(map.cells));
+        map.list = b.template make<uint>(n);
+        b.template run<kernels::packed_photon>(n, {.cells = cells}, reads(sums, routed.cells, routed.list), writes(map.list));
+    }
+    detail::reorder(b, p, map.list);
     map.photons = std::move(p);
     return map;
 }

@@ -7,6 +7,7 @@ namespace photongrid::kernels {
 
 using namespace glm; // kernels are GLSL: its names are GLM's
 
+#include <photongrid/kernels/distance_key.glsl>
 #include <photongrid/kernels/grid.glsl>
 #include <photongrid/kernels/random.glsl>
 
@@ -30,6 +31,9 @@ struct pair_value {
 struct first_in_cell {
 #include <photongrid/kernels/first_in_cell.glsl>
 };
+struct take_vector {
+#include <photongrid/kernels/take_vector.glsl>
+};
 struct invalid_photon {
 #include <photongrid/kernels/invalid_photon.glsl>
 };
@@ -47,6 +51,15 @@ struct redistribute_power {
 struct overfull_cell {
 #include <photongrid/kernels/overfull_cell.glsl>
 };
+struct prefix_sum_step {
+#include <photongrid/kernels/prefix_sum_step.glsl>
+};
+struct packed_cell {
+#include <photongrid/kernels/packed_cell.glsl>
+};
+struct packed_photon {
+#include <photongrid/kernels/packed_photon.glsl>
+};
 
 // 2.3
 struct knn_start {
@@ -57,6 +70,36 @@ struct knn_visit {
 };
 struct knn_result {
 #include <photongrid/kernels/knn_result.glsl>
+};
+struct kth_guess {
+#include <photongrid/kernels/kth_guess.glsl>
+};
+struct kth_distance {
+#include <photongrid/kernels/kth_distance.glsl>
+};
+struct kth_result {
+#include <photongrid/kernels/kth_result.glsl>
+};
+struct kth_tie {
+#include <photongrid/kernels/kth_tie.glsl>
+};
+struct given_radius {
+#include <photongrid/kernels/given_radius.glsl>
+};
+struct grown_radius {
+#include <photongrid/kernels/grown_radius.glsl>
+};
+struct gather_start {
+#include <photongrid/kernels/gather_start.glsl>
+};
+struct gather_photons {
+#include <photongrid/kernels/gather_photons.glsl>
+};
+struct no_estimate {
+#include <photongrid/kernels/no_estimate.glsl>
+};
+struct irradiance_estimate {
+#include <photongrid/kernels/irradiance_estimate.glsl>
 };
 
 } // namespace photongrid::kernels

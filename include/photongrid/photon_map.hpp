@@ -1,5 +1,6 @@
-// What a photon map is: photons, a uniform grid over them, and per cell where its photons stand in a list. Sorting (2.2.1)
-// and stencil routing (2.2.2) both end in this form, so one estimate serves both.
+// What a photon map is: photons cell by cell, a uniform grid over them, and where each cell's photons begin. Sorting (2.2.1)
+// and stencil routing (2.2.2) both end in this form, so one estimate serves both. Cells follow each other without gaps, x
+// fastest, so the photons of a row of neighbouring cells are one range.
 #pragma once
 
 #include <photongrid/backend.hpp>
@@ -16,7 +17,8 @@ template <backend B>
 struct photons {
     buffer_of<B, glm::vec4> positions;  ///< xyz, m
     buffer_of<B, glm::vec4> powers;     ///< rgb flux, W
-    buffer_of<B, glm::vec4> directions; ///< xyz: unit vector of travel; may be empty where nobody asks for it
+    buffer_of<B, glm::vec4> directions; ///< xyz: unit vector of travel; empty where nobody asks for it
+    buffer_of<B, glm::vec4> normals;    ///< xyz: unit normal of the surface they are on; empty where nobody asks for it
 
     uint size() const { return static_cast<uint>(positions.size()); }
 };
@@ -51,14 +53,14 @@ inline grid make_grid(glm::vec3 low, glm::vec3 high, glm::uvec3 resolution)
 /// How many cells `g` has.
 inline uint cell_count(const grid& g) { return g.resolution.w; }
 
-/// A photon map: see the top of this file. `list` holds photon ids; cell c's are list[cells[c].x] and the next cells[c].y.
+/// A photon map: see the top of this file. Cell c's photons are elements cells[c].x and the next cells[c].y of every buffer
+/// of `photons` and of `list`; past the last cell's stand those that are in no cell.
 template <backend B>
 struct photon_map {
     grid cells_of{};
-    photongrid::photons<B> photons;
+    photongrid::photons<B> photons; ///< cell by cell
     buffer_of<B, glm::uvec2> cells; ///< x: first, y: count
-    buffer_of<B, uint> list;        ///< photon ids by cell, x fastest
-    bool contiguous = true;         ///< cells follow each other in the list without gaps (sorted), so a row is one range
+    buffer_of<B, uint> list;        ///< ids: which of the photons that the map was made from stands here; 0xFFFFFFFF: none
     uint invalid = 0;               ///< photons in no cell: NaN or infinite
     uint overfull_cells = 0;        ///< cells for which more photons were destined than they have slots (routed)
     buffer_of<B, glm::vec4> surpluses; ///< routed: per cell, w: flux of photons not kept, W, given to the kept; empty when sorted

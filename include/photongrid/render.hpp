@@ -186,7 +186,7 @@ image draw(B& b, const built_map<B>& built, const camera& view, const render_set
 
         detail::stage_clock<B> estimating(b, stats.radiance_estimate);
         // Watched, passes are small, and pictures come after 1, 2, 4, 8, … of them; the result is the same.
-        knn_settings wanted{.k = settings.k, .max_radius = static_cast<float>(settings.max_radius)};
+        knn_settings wanted = as_paper({.k = settings.k, .max_radius = static_cast<float>(settings.max_radius)});
         if (observer.intermediate) {
             wanted.visits_per_pass = 256;
             wanted.ranges_per_pass = 64;

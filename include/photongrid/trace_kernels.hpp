@@ -26,9 +26,6 @@ struct tally_path {
 struct sum_tallies {
 #include <photongrid/kernels/sum_tallies.glsl>
 };
-struct prefix_sum_step {
-#include <photongrid/kernels/prefix_sum_step.glsl>
-};
 struct path_is_emitted {
 #include <photongrid/kernels/path_is_emitted.glsl>
 };

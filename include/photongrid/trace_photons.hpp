@@ -4,6 +4,7 @@
 
 #include <photongrid/device_scene.hpp>
 #include <photongrid/photon_map.hpp>
+#include <photongrid/prefix_sums.hpp>
 #include <photongrid/render_stats.hpp>
 #include <photongrid/trace_kernels.hpp>
 
@@ -55,21 +56,6 @@ namespace detail {
                 return frame + 1;
         }
         return frame;
-    }
-
-    /// Inclusive sums of `terms`, by doubling.
-    template <backend B>
-    buffer_of<B, uint> prefix_sums(B& b, const buffer_of<B, uint>& terms)
-    {
-        const auto n = terms.size();
-        auto sums = b.template make<uint>(n);
-        auto next = b.template make<uint>(n);
-        b.template run<kernels::prefix_sum_step>(n, {.stride = 1u}, reads(terms), writes(sums));
-        for (std::size_t stride = 2; stride < n; stride *= 2) {
-            b.template run<kernels::prefix_sum_step>(n, {.stride = static_cast<uint>(stride)}, reads(sums), writes(next));
-            std::swap(sums, next);
-        }
-        return sums;
     }
 
     /// The sums of the first `n` tallies.
@@ -125,7 +111,7 @@ traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& dev
         auto storable = b.template make<uint>(paths);
         path_tally<B> tally{b.template make<glm::uvec4>(paths), b.template make<glm::uvec4>(paths)};
         b.template run<kernels::tally_path>(paths, {.paths = paths, .frames = frames}, reads(f.positions), writes(storable, tally.ends, tally.hits));
-        const auto sums = detail::prefix_sums(b, storable);
+        const auto sums = prefix_sums(b, storable);
 
         const uint emitted = detail::checked_count<kernels::path_is_emitted>(b, paths, {.wanted = wanted - stored}, reads(sums, storable));
         if (emitted == 0) // the first always is; believing it would mean tracing for ever

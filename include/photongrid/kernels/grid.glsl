@@ -39,6 +39,19 @@ inline uint cell_number(Grid grid, uint x, uint y, uint z)
     return (z * grid.resolution.y + y) * grid.resolution.x + x;
 }
 
+// A distance, m, that no photon of the cells from `cell` on can be nearer than along one axis, seen from the query point
+// at u in cell c. The margin covers the rounding of u and of the photons' own (docs/decisions.md).
+inline float gap(float u, uint c, uint cell, float size)
+{
+    float margin = (float(cell) + abs(u) + 2.0f) * 9.5367431640625e-7f;
+    float g = 0.0f;
+    if (cell > c)
+        g = float(cell) - u - margin;
+    if (cell < c)
+        g = u - float(cell + 1u) - margin;
+    return g > 0.0f ? g * size : 0.0f;
+}
+
 // False for NaN and infinity. By the exponent's bits: compilers may turn !(x <= largest) into x > largest, which is false
 // for NaN (Mesa does).
 inline bool is_finite(vec4 p)

@@ -3,7 +3,7 @@
 // the maximum radius are always rejected. The search ends only when no unexplored cell can reach into the radius.
 //
 // The order of visits is part of the result: ring by ring, in a ring z, y, x ascending, photons in map order. Skipping
-// rows of cells that cannot reach the radius, and reading a row of a contiguous map as one range, keep that order.
+// rows of cells that cannot reach the radius, and reading a row of cells as one range, keep that order.
 //
 // Bounded work a pass: drivers cut long loops silently (docs/decisions.md). The state between passes is the answer
 // so far, so it can be shown at any time (3.4).
@@ -11,38 +11,32 @@
 
 struct Params {
     Grid grid;
+    vec4 leaks;         // see photon_distance.glsl
     uint wanted;        // k
     float max_radius2;  // m^2
     uint visits;        // photons examined in a pass at most ...
-    uint ranges;        // ... in this many ranges of the list at most
+    uint ranges;        // ... in this many rows of cells at most
 };
 PARAMS(Params)
-SWITCH(0, CONTIGUOUS)       // cells of a row follow each other in the list without gaps
-INPUT(0, vec4, points)      // xyz: query point, m
-INPUT(1, uvec2, cells)      // x: first, y: count, in the list
-INPUT(2, uint, list)        // photon ids by cell
-INPUT(3, vec4, positions)   // xyz, m
-INPUT(4, vec4, powers)      // rgb, W
+SWITCH(0, SIDE)
+SWITCH(1, NORMALS)
+SWITCH(2, FLATTEN)
+INPUT(0, vec4, points)         // xyz: query point, m
+INPUT(1, vec4, normals)        // xyz: unit normal of the surface there
+INPUT(2, uvec2, cells)         // x: first photon, y: count
+INPUT(3, vec4, positions)      // xyz, m, cell by cell
+INPUT(4, vec4, directions)
+INPUT(5, vec4, photon_normals)
+INPUT(6, vec4, powers)         // rgb, W
 STATE(0, vec4, gathered)    // rgb: flux of the photons held, W; w: squared radius that holds them, m^2
-STATE(1, uvec4, found)      // photons held, photons visited, next and end of the range being read
+STATE(1, uvec4, found)      // photons held, photons visited, next and end of the row being read
 STATE(2, uvec4, cursor)     // ring, z, y, x of the next cell to open; ring 0xFFFFFFFF: done
+
+#include "photon_distance.glsl"
 
 bool done()
 {
     return cursor.x == 0xFFFFFFFFu;
-}
-
-// A distance, m, that no photon of the cells from `cell` on can be nearer than along one axis, seen from the query point
-// at u in cell c. The margin covers the rounding of u and of the photons' own (docs/decisions.md).
-float gap(float u, uint c, uint cell, float size)
-{
-    float margin = (float(cell) + abs(u) + 2.0f) * 9.5367431640625e-7f;
-    float g = 0.0f;
-    if (cell > c)
-        g = float(cell) - u - margin;
-    if (cell < c)
-        g = u - float(cell + 1u) - margin;
-    return g > 0.0f ? g * size : 0.0f;
 }
 
 // The smaller of `reach` and the gap to `cell`, if that cell exists.
@@ -57,6 +51,7 @@ float nearer(float reach, bool exists, float u, uint c, uint cell, float size)
 void kernel(uint i)
 {
     vec4 p = points(i);
+    vec4 n = normals(i);
     uvec4 c = cell_coordinates(args.grid, p);
     float ux = in_cells(p.x, args.grid.origin.x, args.grid.inverse_cell.x);
     float uy = in_cells(p.y, args.grid.origin.y, args.grid.inverse_cell.y);
@@ -96,18 +91,12 @@ void kernel(uint i)
             left -= stop - at;
             visited += stop - at;
             for (; at < stop; ++at) {
-                uint photon = list(at);
-                vec4 q = positions(photon);
-                precise float dx = q.x - p.x;
-                precise float dy = q.y - p.y;
-                precise float dz = q.z - p.z;
-                precise float d2 = dx * dx + dy * dy + dz * dz;
-                d2 = d2 < 1.17549435e-38f ? 0.0f : d2; // denormals are 0 on every backend
+                float d2 = photon_distance2(at, p, n);
                 if (d2 <= (held < args.wanted ? args.max_radius2 : radius2)) {
                     if (held < args.wanted && d2 > radius2)
                         radius2 = d2;
                     ++held;
-                    precise vec4 more = sum + powers(photon);
+                    precise vec4 more = sum + powers(at);
                     sum = more;
                 }
             }
@@ -124,7 +113,7 @@ void kernel(uint i)
                 bool face = y + ring == c.y || y == c.y + ring || z + ring == c.z || z == c.z + ring;
                 bool lower = x + ring == c.x;
                 uint begin_x = face || lower ? x : c.x + ring;
-                uint end_x = face && CONTIGUOUS ? high_x : begin_x;
+                uint end_x = face ? high_x : begin_x;
                 x = !face && lower ? c.x + ring : end_x + 1u;
                 if (begin_x == end_x) {
                     float gap_x = gap(ux, c.x, begin_x, args.grid.cell.x);

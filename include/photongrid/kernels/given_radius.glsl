@@ -1,0 +1,13 @@
+// What a search within a given radius begins with, for gather_photons.glsl: as kth_result.glsl, but nothing is sought.
+struct Params {
+    float radius2; // m^2
+};
+PARAMS(Params)
+OUTPUT(0, vec4, reach)
+OUTPUT(1, uvec4, chosen)
+
+void kernel(uint i)
+{
+    reach = vec4(args.radius2, 0.0f, 0.0f, 0.0f);
+    chosen = uvec4(0u, 0u, 0xFFFFFFFFu, 0u);
+}

@@ -1,0 +1,14 @@
+// Where cell i begins once the gaps between cells are gone.
+struct Params {
+    uint unused;
+};
+PARAMS(Params)
+INPUT(0, uint, sums)   // photons of cells 0 to i
+INPUT(1, uvec2, slots) // x: first slot, y: photons kept
+OUTPUT(0, uvec2, cell) // x: first, y: count
+
+void kernel(uint i)
+{
+    uint count = slots(i).y;
+    cell = uvec2(sums(i) - count, count);
+}
