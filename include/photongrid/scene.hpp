@@ -2,6 +2,8 @@
 // and SI units; nothing here knows a device or a file. docs/scenes.md shows the scene files.
 #pragma once
 
+#include <photongrid/estimate_settings.hpp>
+
 #include <glm/glm.hpp>
 
 #include <cmath>
@@ -88,7 +90,11 @@ struct camera {
 /// How a photon map is built.
 enum class map_builder { sort, route };
 
-/// How to render: the paper's parameters.
+/// Which part of the light a picture shows. The photon map's part is split by the photons' paths: a caustic photon met
+/// mirrors and glass only, an indirect one a diffuse surface too. Lamps that the eye sees count as direct.
+enum class light_part { all, direct, caustic, indirect };
+
+/// How to render: the paper's parameters, and what goes beyond them.
 struct render_settings {
     std::uint32_t width = 512, height = 512; ///< pixels
     std::uint32_t photons = 65000;           ///< photons *stored*
@@ -103,6 +109,12 @@ struct render_settings {
     map_builder builder = map_builder::sort;
     std::uint32_t slots = 4;                 ///< m: routed cells have m x m slots
     double exposure = 0;                     ///< EV for tone-mapped output: pixel values times 2^exposure
+    search_kind search = search_kind::exact_k;
+    filter_kernel kernel = filter_kernel::constant;
+    bias_kind bias = bias_kind::unbiased;
+    leak_policy leaks{.side = true};
+    light_part only = light_part::all;
+    bool aov = false;                        ///< radius, count and relative standard error of the estimate are wanted per pixel
 };
 
 /// A scene. `render` holds the settings that its file asks for; a program may change them.
@@ -121,10 +133,29 @@ struct scene {
     render_settings render;
 };
 
+/// The settings that reproduce the paper's estimate (2.3): at least k, constant kernel, no policy.
+inline render_settings as_paper(render_settings s)
+{
+    s.search = search_kind::at_least_k;
+    s.kernel = filter_kernel::constant;
+    s.bias = bias_kind::paper;
+    s.leaks = {};
+    return s;
+}
+
+/// What the estimates behind a picture say of themselves, means over each pixel's eye rays, row by row from the top left;
+/// 0 where no ray asked for an estimate.
+struct estimate_layers {
+    std::vector<float> radius;         ///< m
+    std::vector<float> count;          ///< photons within it
+    std::vector<float> relative_error; ///< standard error of the irradiance, over the irradiance (sums over channels)
+};
+
 /// A picture: linear radiance, W/(m^2 sr), rgb, row by row from the top left.
 struct image {
     std::uint32_t width = 0, height = 0;
     std::vector<glm::vec3> pixels;
+    estimate_layers layers{}; ///< empty unless render_settings::aov
 };
 
 namespace detail {
@@ -246,6 +277,8 @@ inline void check(const render_settings& s)
     detail::require(s.spp >= 1 && s.spp <= 65536, "spp: must be from 1 to 65536");
     detail::require(s.depth <= 64, "depth: must be at most 64");
     detail::require(s.photon_depth >= 1 && s.photon_depth <= 64, "photon_depth: must be from 1 to 64");
+    detail::require(s.leaks.compression >= 1 && s.leaks.compression <= 1e6f, "leaks: compression must be from 1 to 10^6");
+    detail::require(s.leaks.min_cosine >= -1 && s.leaks.min_cosine <= 1, "leaks: min_cosine must be from -1 to 1");
     detail::require(s.slots >= 1 && s.slots <= 16, "slots: must be from 1 to 16");
     detail::require(detail::finite(s.exposure) && std::abs(s.exposure) <= 64, "exposure: must be from -64 to 64 EV");
 }
