@@ -41,7 +41,7 @@ void measure(B&& b, uint n)
     const auto g = make_grid(glm::vec3(0), glm::vec3(1), {25, 25, 50});
     const photons<std::remove_reference_t<B>> p{b.upload(std::span<const glm::vec4>(positions)), b.upload(std::span<const glm::vec4>(powers)), {}};
     auto keys = b.template make<glm::uvec2>(n);
-    const auto make_keys = [&] { b.template run<kernels::photon_cell>(n, {.grid = g, .photons = n}, reads(p.positions, p.powers), writes(keys)); };
+    const auto make_keys = [&] { b.template run<kernels::photon_cell>(n, {.grid = g, .photons = n, .parts = every_part}, reads(p.positions, p.powers), writes(keys)); };
     sort_report report;
     const double sort = median_ms(b, [&] {
         make_keys();

@@ -369,7 +369,7 @@ TYPED_TEST_P(algorithms, estimate_uses_exactly_the_photons_within_its_radius)
         const auto set = make_photons(d, static_cast<std::size_t>(n), resolution, seed);
         const auto points = make_points(set, 40, seed);
         const auto map = routed ? routed_map(b, upload_photons(b, set), set.g, 16, 3) : sorted_map(b, upload_photons(b, set), set.g);
-        const auto estimates = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), as_paper({.k = k, .max_radius = radius, .visits_per_pass = 64, .ranges_per_pass = 16}));
+        const auto estimates = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), as_paper(knn_settings{.k = k, .max_radius = radius, .visits_per_pass = 64, .ranges_per_pass = 16}));
         const auto irradiance = b.download(estimates.irradiance);
         const auto used = b.download(estimates.used);
 
@@ -422,7 +422,7 @@ TYPED_TEST_P(algorithms, estimate_adds_up_the_flux_it_says)
     const auto set = make_photons(distribution::box_faces, 4000, {10, 10, 20}, 4);
     const auto points = make_points(set, 300, 4);
     const auto map = sorted_map(b, upload_photons(b, set), set.g);
-    const auto estimates = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), as_paper({.k = 60, .max_radius = 0.3f}));
+    const auto estimates = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), as_paper(knn_settings{.k = 60, .max_radius = 0.3f}));
     const auto irradiance = b.download(estimates.irradiance);
     const auto used = b.download(estimates.used);
     for (std::size_t q = 0; q < points.size(); ++q) {
@@ -475,7 +475,7 @@ TYPED_TEST_P(algorithms, coincident_photons_give_a_finite_estimate)
     set.powers.assign(32, vec4(1.0f));
     const auto map = sorted_map(b, upload_photons(b, set), set.g);
     const std::vector<vec4> points(1, vec4(0.5f, 0.5f, 0.5f, 1.0f));
-    const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), as_paper({.k = 32, .max_radius = 1, .min_radius = 0.01f}));
+    const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), as_paper(knn_settings{.k = 32, .max_radius = 1, .min_radius = 0.01f}));
     EXPECT_NEAR(b.download(e.irradiance)[0].x, 32 / (M_PI * 1e-4), 1e-5 * 32 / (M_PI * 1e-4));
     EXPECT_EQ(b.download(e.used)[0], uvec2(32, 32));
 }
@@ -514,7 +514,7 @@ TYPED_TEST_P(algorithms, a_search_can_be_watched_and_resumed)
     const auto points = make_points(set, 500, 2);
     const auto at = b.upload(std::span<const vec4>(points));
     const auto map = sorted_map(b, upload_photons(b, set), set.g);
-    const auto settings = as_paper({.k = 200, .max_radius = 0.3f, .visits_per_pass = 100, .ranges_per_pass = 20});
+    const auto settings = as_paper(knn_settings{.k = 200, .max_radius = 0.3f, .visits_per_pass = 100, .ranges_per_pass = 20});
     const auto whole = knn_grid_estimate(b, map, at, settings);
 
     knn_search<typename TestFixture::B> search(b, map, at, settings);
@@ -552,7 +552,7 @@ TYPED_TEST_P(algorithms, all_photons_in_one_cell_are_all_visited)
     set.powers.assign(70000, vec4(0x1p-20f));
     const auto map = sorted_map(b, upload_photons(b, set), set.g);
     const auto points = std::vector<vec4>(100, vec4(0.51f, 0.5f, 0.5f, 1.0f));
-    const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), as_paper({.k = 100000, .max_radius = 0.5f}));
+    const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), as_paper(knn_settings{.k = 100000, .max_radius = 0.5f}));
     for (const auto& u : b.download(e.used))
         ASSERT_EQ(u, uvec2(70000, 70000));
     const auto irradiance = b.download(e.irradiance);
@@ -574,7 +574,7 @@ TYPED_TEST_P(algorithms, everything_equals_the_serial_backend_bit_for_bit)
                 const auto points = make_points(set, 700, 11);
                 const auto run = [&](auto& device) {
                     const auto map = m == 0 ? sorted_map(device, upload_photons(device, set), set.g) : routed_map(device, upload_photons(device, set), set.g, m, 6);
-                    const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(points)), as_paper({.k = 64, .max_radius = 0.25f}));
+                    const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(points)), as_paper(knn_settings{.k = 64, .max_radius = 0.25f}));
                     return std::tuple{device.download(map.cells), device.download(map.list), device.download(map.photons.powers), device.download(e.irradiance), device.download(e.used)};
                 };
                 const auto [cells, list, powers, irradiance, used] = run(b);

@@ -1,5 +1,6 @@
 // All backend tests on OpenGL, in an EGL and in an OSMesa context, with the driver's debug output on.
 #include "algorithm_tests.hpp"
+#include "estimator_tests.hpp"
 #include "ray_tests.hpp"
 #include "render_tests.hpp"
 #include "scene_picture_tests.hpp"
@@ -29,6 +30,7 @@ struct osmesa_tag {
 using contexts = ::testing::Types<egl_tag, osmesa_tag>;
 
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, algorithms, contexts, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(gl, estimators, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, pictures, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, scene_files, contexts, tag_names);

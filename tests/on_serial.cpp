@@ -1,5 +1,6 @@
 // All backend tests on the serial backend.
 #include "algorithm_tests.hpp"
+#include "estimator_tests.hpp"
 #include "double_kernels.hpp"
 #include "ray_tests.hpp"
 #include "render_tests.hpp"
@@ -14,6 +15,7 @@ struct serial_tag {
 };
 
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, algorithms, ::testing::Types<serial_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(serial, estimators, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, pictures, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, hard_cases, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, scene_files, ::testing::Types<serial_tag>, tag_names);

@@ -27,9 +27,10 @@ namespace detail {
     }
 } // namespace detail
 
-/// A photon map by sorting (2.2.1): exact, L(L+1)/2 + 5 passes and one per attribute. Takes the photons over.
+/// A photon map by sorting (2.2.1): exact, L(L+1)/2 + 5 passes and one per attribute. Takes the photons over. Those that are
+/// not of `parts` are in no cell.
 template <backend B>
-photon_map<B> sorted_map(B& b, photons<B> p, const grid& g)
+photon_map<B> sorted_map(B& b, photons<B> p, const grid& g, uint parts = every_part)
 {
     const uint n = p.size();
     photon_map<B> map;
@@ -38,12 +39,14 @@ photon_map<B> sorted_map(B& b, photons<B> p, const grid& g)
     {
         // The pairs are made with their padding, so that the sort need not copy them.
         auto pairs = b.template make<glm::uvec2>(n == 0 ? 0 : std::bit_ceil(n));
-        b.template run<kernels::photon_cell>(pairs.size(), {.grid = g, .photons = n}, reads(p.positions, p.powers), writes(pairs));
+        b.template run<kernels::photon_cell>(pairs.size(), {.grid = g, .photons = n, .parts = parts}, reads(p.positions, p.powers), writes(pairs));
         bitonic_sort(b, pairs);
         map.cells = grid_index(b, pairs, cell_count(g));
         map.list = b.template make<uint>(n);
         b.template run<kernels::pair_value>(n, {}, reads(pairs), writes(map.list));
     }
+    if (parts != every_part)
+        map.left_out = detail::checked_count<kernels::other_part>(b, n, {.parts = parts}, reads(p.positions));
     detail::reorder(b, p, map.list);
     map.photons = std::move(p);
     return map;
@@ -52,7 +55,7 @@ photon_map<B> sorted_map(B& b, photons<B> p, const grid& g)
 /// A photon map by stencil routing with m x m slots a cell (2.2.2): approximate where cells overflow, few passes. The gaps
 /// that routing leaves between cells are closed afterwards. Takes the photons over. `seed` orders the drawing.
 template <backend B>
-photon_map<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 0)
+photon_map<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 0, uint parts = every_part)
 {
     const uint n = p.size();
     const uint cells = cell_count(g);
@@ -60,7 +63,7 @@ photon_map<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 
     map.cells_of = g;
     map.invalid = detail::checked_count<kernels::invalid_photon>(b, n, {}, reads(p.positions, p.powers));
     {
-        auto routed = stencil_route(b, p, g, m, seed);
+        auto routed = stencil_route(b, p, g, m, seed, parts);
         map.surpluses = std::move(routed.surpluses);
         map.overfull_cells = static_cast<uint>(routed.overfull_cells);
         p.powers = std::move(routed.powers);
@@ -72,6 +75,8 @@ photon_map<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 
         map.list = b.template make<uint>(n);
         b.template run<kernels::packed_photon>(n, {.cells = cells}, reads(sums, routed.cells, routed.list), writes(map.list));
     }
+    if (parts != every_part)
+        map.left_out = detail::checked_count<kernels::other_part>(b, n, {.parts = parts}, reads(p.positions));
     detail::reorder(b, p, map.list);
     map.photons = std::move(p);
     return map;

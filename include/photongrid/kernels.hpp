@@ -34,6 +34,9 @@ struct first_in_cell {
 struct take_vector {
 #include <photongrid/kernels/take_vector.glsl>
 };
+struct other_part {
+#include <photongrid/kernels/other_part.glsl>
+};
 struct invalid_photon {
 #include <photongrid/kernels/invalid_photon.glsl>
 };

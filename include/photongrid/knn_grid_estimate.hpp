@@ -21,7 +21,7 @@ struct knn_settings {
     search_kind search = search_kind::exact_k;
     filter_kernel kernel = filter_kernel::constant;
     bias_kind bias = bias_kind::unbiased;
-    leak_policy leaks;
+    leak_policy leaks{};
     bool errors = false;      ///< standard errors are wanted
     /// Photons that one query examines in a pass at most, and rows of cells that it opens. Any values give the same
     /// result. 16 lanes x (visits + rows) must stay below 65,535, after which llvmpipe and lavapipe end loops in silence.
@@ -171,7 +171,7 @@ private:
         cursor_ = make<glm::uvec4>();
         tally_ = make<glm::uvec4>();
         b_->template run<kernels::kth_guess>(points_->size(),
-            {.grid = map_->cells_of, .wanted = s_.k, .max_radius2 = max_radius2(), .rows = s_.ranges_per_pass, .searching = searching() ? 1u : 0u}, reads(*points_, map_->cells),
+            {.grid = map_->cells_of, .wanted = s_.k, .max_radius2 = max_radius2(), .rows = 1023u, .searching = searching() ? 1u : 0u}, reads(*points_, map_->cells),
             writes(pivots_, counts_, extremes_, bracket_, cursor_, tally_));
     }
 
@@ -263,7 +263,9 @@ private:
         }
         case stage::finished: break;
         }
-        return {.finished = true};
+        progress nothing;
+        nothing.finished = true;
+        return nothing;
     }
 
     float max_radius2() const

@@ -15,13 +15,17 @@ namespace photongrid {
 /// Photons in buffers of backend B, one element each, all of the same length.
 template <backend B>
 struct photons {
-    buffer_of<B, glm::vec4> positions;  ///< xyz, m
+    buffer_of<B, glm::vec4> positions;  ///< xyz, m; w: 1 for caustic photons, else 0
     buffer_of<B, glm::vec4> powers;     ///< rgb flux, W
-    buffer_of<B, glm::vec4> directions; ///< xyz: unit vector of travel; empty where nobody asks for it
-    buffer_of<B, glm::vec4> normals;    ///< xyz: unit normal of the surface they are on; empty where nobody asks for it
+    buffer_of<B, glm::vec4> directions{}; ///< xyz: unit vector of travel; empty where nobody asks for it
+    buffer_of<B, glm::vec4> normals{};    ///< xyz: unit normal of the surface they are on; empty where nobody asks for it
 
     uint size() const { return static_cast<uint>(positions.size()); }
 };
+
+/// Parts of the light that a map may be made of, as bits: photons with 0 and with 1 in the w of their position. The tracer
+/// writes 1 for caustic photons.
+inline constexpr uint other_part = 1u, caustic_part = 2u, every_part = 3u;
 
 /// A uniform grid: origin, cell edges (m) and resolution, as kernels read it.
 using grid = kernels::Grid;
@@ -62,6 +66,7 @@ struct photon_map {
     buffer_of<B, glm::uvec2> cells; ///< x: first, y: count
     buffer_of<B, uint> list;        ///< ids: which of the photons that the map was made from stands here; 0xFFFFFFFF: none
     uint invalid = 0;               ///< photons in no cell: NaN or infinite
+    uint left_out = 0;              ///< photons in no cell: of a part of the light that was not wanted
     uint overfull_cells = 0;        ///< cells for which more photons were destined than they have slots (routed)
     buffer_of<B, glm::vec4> surpluses; ///< routed: per cell, w: flux of photons not kept, W, given to the kept; empty when sorted
 };

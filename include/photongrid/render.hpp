@@ -75,12 +75,14 @@ built_map<B> build_map(B& b, const scene& s, const render_settings& settings, co
     detail::stage_clock<B> building(b, stats.build_map);
     const grid g = make_grid(built.scene.about.low, built.scene.about.high, settings.grid);
     photons<B> p = std::move(built.trace.photons);
-    built.map = settings.builder == map_builder::sort ? sorted_map(b, std::move(p), g) : routed_map(b, std::move(p), g, settings.slots, settings.seed);
+    const uint parts = settings.only == light_part::caustic ? caustic_part : settings.only == light_part::indirect ? other_part : every_part;
+    built.map = settings.builder == map_builder::sort ? sorted_map(b, std::move(p), g, parts) : routed_map(b, std::move(p), g, settings.slots, settings.seed, parts);
     building.stop();
 
     built.about.builder = settings.builder;
     built.about.cells = cell_count(g);
     built.about.overfull_cells = built.map.overfull_cells;
+    built.about.left_out = built.map.left_out;
     stats.map = built.about;
     if (observer.progress)
         observer.progress("build_map", 1);
@@ -136,9 +138,25 @@ namespace detail {
         return light;
     }
 
+    /// What to ask the photon map.
+    inline knn_settings estimate_settings(const render_settings& s)
+    {
+        knn_settings k;
+        k.k = s.k;
+        k.max_radius = static_cast<float>(s.max_radius);
+        k.search = s.search;
+        k.kernel = s.kernel;
+        k.bias = s.bias;
+        k.leaks = s.leaks;
+        k.errors = s.aov;
+        return k;
+    }
+
     inline image to_image(const std::vector<glm::vec4>& pixels, const render_settings& s, std::uint64_t& invalid)
     {
-        image out{s.width, s.height, {}};
+        image out;
+        out.width = s.width;
+        out.height = s.height;
         out.pixels.reserve(pixels.size());
         invalid = 0;
         for (const auto& p : pixels) {
@@ -161,8 +179,11 @@ image draw(B& b, const built_map<B>& built, const camera& view, const render_set
     const auto& about = built.scene.about;
     auto pixels = b.template make<glm::vec4>(n);
     auto searches = b.template make<glm::vec4>(n);
+    auto errors = b.template make<glm::vec4>(settings.aov ? n : 0);
     b.template run<kernels::no_light>(n, {}, reads(), writes(pixels));
     b.template run<kernels::no_light>(n, {}, reads(), writes(searches));
+    b.template run<kernels::no_light>(errors.size(), {}, reads(), writes(errors));
+    const bool with_direct = settings.only == light_part::all || settings.only == light_part::direct;
 
     // Rays split at the first two glass surfaces: 4 branches, each a pass over the picture.
     const uint branchings = (about.features & has_glass) != 0 ? 2u : 0u;
@@ -179,39 +200,66 @@ image draw(B& b, const built_map<B>& built, const camera& view, const render_set
         b.template run_until_done<kernels::eye_bounce>({n, 0u, about.features},
             {.scene_layout = about.layout, .branch = ray % branches, .branchings = branchings, .depth = settings.depth, .sample_id = sample, .seed = settings.seed},
             reads(built.scene.records), writes(hits.points, hits.travels, hits.weights, hits.surfaces, hits.emissions), nowhere);
-        const auto direct = detail::direct_light(b, built.scene, hits, settings, ray);
+        auto direct = b.template make<glm::vec4>(with_direct ? 0 : n);
+        if (with_direct) {
+            direct = detail::direct_light(b, built.scene, hits, settings, ray);
+        } else {
+            b.template run<kernels::no_light>(n, {}, reads(), writes(direct));
+            b.template run<kernels::no_light>(n, {}, reads(), writes(hits.emissions));
+        }
         tracing.stop();
         if (observer.progress)
             observer.progress("trace_rays", static_cast<double>(ray + 1) / (settings.spp * branches));
 
         detail::stage_clock<B> estimating(b, stats.radiance_estimate);
-        // Watched, passes are small, and pictures come after 1, 2, 4, 8, … of them; the result is the same.
-        knn_settings wanted = as_paper({.k = settings.k, .max_radius = static_cast<float>(settings.max_radius)});
-        if (observer.intermediate) {
+        const auto shade = [&](knn_search<B>& search, auto& target, auto& tally) {
+            auto found = search.estimates();
+            b.template run<kernels::shade>(n, {.scene_layout = about.layout, .share = 1.0f / static_cast<float>(settings.spp)},
+                reads(built.scene.records, hits.points, hits.weights, hits.surfaces, hits.emissions, direct, found.irradiance, found.used), writes(target, tally));
+            return found;
+        };
+        // The picture so far, with what this search holds.
+        const auto show = [&](knn_search<B>& search) {
+            auto running = b.template make<glm::vec4>(n);
+            auto ignored = b.template make<glm::vec4>(n);
+            b.template run<kernels::copy_light>(n, {}, reads(pixels), writes(running));
+            b.template run<kernels::no_light>(n, {}, reads(), writes(ignored));
+            shade(search, running, ignored);
+            std::uint64_t invalid = 0;
+            observer.intermediate(detail::to_image(b.download(running), settings, invalid));
+        };
+        knn_settings wanted = detail::estimate_settings(settings);
+        if (settings.only == light_part::direct)
+            wanted.max_radius = 0;
+        const bool grows = wanted.search == search_kind::at_least_k;
+        if (observer.intermediate && !grows)
+            // Quick looks first: fewer photons are noisier, not darker (3.4).
+            for (const uint divisor : {64u, 16u, 4u}) {
+                knn_settings quick = wanted;
+                quick.search = search_kind::exact_k;
+                quick.k = std::max(wanted.k / divisor, 4u);
+                knn_search<B> search(b, built.map, hits.points, hits.surfaces, quick);
+                while (!search.advance(8).finished)
+                    if (observer.cancelled && observer.cancelled())
+                        throw render_cancelled();
+                show(search);
+            }
+        if (observer.intermediate && grows) {
+            // Watched, passes are small, and pictures come after 1, 2, 4, 8, … of them; the result is the same.
             wanted.visits_per_pass = 256;
             wanted.ranges_per_pass = 64;
         }
-        knn_search<B> search(b, built.map, hits.points, wanted);
-        const auto shade = [&](auto& target, auto& tally) {
-            const auto found = search.estimates();
-            b.template run<kernels::shade>(n, {.scene_layout = about.layout, .share = 1.0f / static_cast<float>(settings.spp)},
-                reads(built.scene.records, hits.points, hits.weights, hits.surfaces, hits.emissions, direct, found.irradiance, found.used), writes(target, tally));
-        };
-        uint passes = observer.intermediate ? 1u : observer.cancelled ? 8u : nowhere;
-        for (; !search.advance(passes).finished; passes *= observer.intermediate ? 2u : 1u) {
+        knn_search<B> search(b, built.map, hits.points, hits.surfaces, wanted);
+        uint passes = observer.intermediate && grows ? 1u : observer.cancelled || observer.intermediate ? 8u : nowhere;
+        for (; !search.advance(passes).finished; passes *= observer.intermediate && grows ? 2u : 1u) {
             if (observer.cancelled && observer.cancelled())
                 throw render_cancelled();
-            if (observer.intermediate) {
-                auto running = b.template make<glm::vec4>(n);
-                auto ignored = b.template make<glm::vec4>(n);
-                b.template run<kernels::copy_light>(n, {}, reads(pixels), writes(running));
-                b.template run<kernels::no_light>(n, {}, reads(), writes(ignored));
-                shade(running, ignored);
-                std::uint64_t invalid = 0;
-                observer.intermediate(detail::to_image(b.download(running), settings, invalid));
-            }
+            if (observer.intermediate && grows)
+                show(search);
         }
-        shade(pixels, searches);
+        const auto found = shade(search, pixels, searches);
+        if (settings.aov)
+            b.template run<kernels::tally_error>(n, {}, reads(hits.points, found.irradiance, found.standard_error), writes(errors));
         estimating.stop();
         if (observer.progress)
             observer.progress("radiance_estimate", static_cast<double>(ray + 1) / (settings.spp * branches));
@@ -219,7 +267,8 @@ image draw(B& b, const built_map<B>& built, const camera& view, const render_set
 
     // All passes have run: what is read from here on disturbs none.
     glm::dvec4 sum(0);
-    for (const auto& p : b.download(searches))
+    const auto tallies = b.download(searches);
+    for (const auto& p : tallies)
         sum += glm::dvec4(p);
     stats.estimate.points = static_cast<std::uint64_t>(sum.w);
     const double points = std::max(sum.w, 1.0);
@@ -231,7 +280,17 @@ image draw(B& b, const built_map<B>& built, const camera& view, const render_set
     if (built.about.builder == map_builder::route)
         stats.map.redistributed_flux = redistributed_flux(b, built.map);
     stats.peak_device_bytes = b.peak_bytes();
-    return detail::to_image(b.download(pixels), settings, stats.invalid_pixels);
+    image picture = detail::to_image(b.download(pixels), settings, stats.invalid_pixels);
+    if (settings.aov) {
+        const auto error_sums = b.download(errors);
+        for (std::size_t i = 0; i < n; ++i) {
+            const float mean = tallies[i].w > 0 ? 1.0f / tallies[i].w : 0.0f; // per search
+            picture.layers.radius.push_back(tallies[i].y * mean);
+            picture.layers.count.push_back(tallies[i].x * mean);
+            picture.layers.relative_error.push_back(error_sums[i].x * mean);
+        }
+    }
+    return picture;
 }
 
 /// Both steps at once.

@@ -29,6 +29,7 @@ struct map_stats {
     std::uint64_t overfull_cells = 0;     ///< routed cells with more photons than slots
     double redistributed_flux = 0;        ///< W, rgb together: flux of photons not kept, given to those kept
     std::uint64_t sort_steps = 0;
+    std::uint64_t left_out = 0;           ///< photons stored, but of a part of the light that was not asked for (light_part)
 };
 
 /// One of the four stages of the paper's Table 1.

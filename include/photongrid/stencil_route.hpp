@@ -22,7 +22,7 @@ struct routed_cells {
 /// m is 1 to 16. The paper's "m = 16, about 40^3 cells" in 1024 x 1024 fits 16 slots, m = 4 (docs/decisions.md).
 /// \throws std::invalid_argument for m outside 1 to 16, backend_error when cells x slots exceed the device.
 template <backend B>
-routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, uint seed = 0)
+routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, uint seed = 0, uint parts = every_part)
 {
     if (m < 1 || m > 16)
         throw std::invalid_argument("stencil_route: m: " + std::to_string(m) + "; slots a cell are m x m with m from 1 to 16");
@@ -30,20 +30,20 @@ routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, 
     const uint cells = cell_count(g);
     const uint n = p.size();
     // Eight partial sums a cell keep the flux of 70,000 equal photons within 1e-4 in single precision.
-    constexpr uint parts = 8;
+    constexpr uint sums = 8;
     const std::uint64_t slots = std::uint64_t{cells} * capacity;
-    if (std::max(slots, std::uint64_t{cells} * parts) > b.caps().max_elements || slots > 0xFFFFFFFEu)
+    if (std::max(slots, std::uint64_t{cells} * sums) > b.caps().max_elements || slots > 0xFFFFFFFEu)
         throw backend_error(b.caps().backend + ": stencil_route: " + std::to_string(cells) + " cells of " + std::to_string(capacity) + " slots are " + std::to_string(slots)
             + " slots; this device holds " + std::to_string(b.caps().max_elements) + ". Use a coarser grid or a smaller m, or build the map by sorting");
     routed_cells<B> r;
     r.list = b.template make<uint>(slots);
-    auto partial_sums = b.template make<glm::vec4>(std::size_t{cells} * parts);
-    b.template route<kernels::route_photon>(n, {.grid = g, .photons = n, .seed = seed}, reads(p.positions, p.powers), cells, m, r.list, partial_sums);
+    auto partial_sums = b.template make<glm::vec4>(std::size_t{cells} * sums);
+    b.template route<kernels::route_photon>(n, {.grid = g, .photons = n, .seed = seed, .parts = parts}, reads(p.positions, p.powers), cells, m, r.list, partial_sums);
     r.cells = b.template make<glm::uvec2>(cells);
     r.surpluses = b.template make<glm::vec4>(cells);
     r.totals = b.template make<glm::vec4>(cells);
     auto scales = b.template make<glm::vec4>(cells);
-    b.template run<kernels::routed_cell>(cells, {.capacity = capacity, .parts = parts}, reads(partial_sums, r.list, p.powers), writes(r.cells, scales, r.surpluses, r.totals));
+    b.template run<kernels::routed_cell>(cells, {.capacity = capacity, .parts = sums}, reads(partial_sums, r.list, p.powers), writes(r.cells, scales, r.surpluses, r.totals));
     r.powers = b.template make<glm::vec4>(n);
     b.template run<kernels::redistribute_power>(n, {.grid = g}, reads(p.positions, p.powers, scales, r.surpluses), writes(r.powers));
     r.overfull_cells = detail::checked_count<kernels::overfull_cell>(b, cells, {.capacity = capacity}, reads(r.totals));

@@ -35,6 +35,9 @@ struct is_storable {
 struct gather_photon {
 #include <photongrid/kernels/gather_photon.glsl>
 };
+struct gather_normal {
+#include <photongrid/kernels/gather_normal.glsl>
+};
 struct divide_power {
 #include <photongrid/kernels/divide_power.glsl>
 };
@@ -54,6 +57,9 @@ struct no_light {
 };
 struct copy_light {
 #include <photongrid/kernels/copy_light.glsl>
+};
+struct tally_error {
+#include <photongrid/kernels/tally_error.glsl>
 };
 struct shade {
 #include <photongrid/kernels/shade.glsl>

@@ -86,7 +86,8 @@ namespace detail {
 } // namespace detail
 
 /// Emits paths in id order until settings.photons photons are stored; photon order is (path, bounce). Each photon's power
-/// is the lights' power divided by the paths emitted.
+/// is the lights' power divided by the paths emitted. Positions' w is 1 for caustic photons (light_part). Normals are kept
+/// only where the leak policy asks for them.
 /// \throws std::runtime_error when so few photons are stored that it would not end, naming the lights.
 template <backend B>
 traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings, const render_observer& observer = {})
@@ -95,7 +96,9 @@ traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& dev
     const uint paths = std::clamp(std::bit_ceil(wanted / 2 + 1), 1024u, 32768u);
     const std::uint64_t most_paths = std::min<std::uint64_t>(std::uint64_t{wanted} * 4096 + (1u << 20), 0xFFFF0000u);
     traced_photons<B> t;
-    t.photons = {b.template make<glm::vec4>(wanted), b.template make<glm::vec4>(wanted), b.template make<glm::vec4>(wanted)};
+    t.photons = {b.template make<glm::vec4>(wanted), b.template make<glm::vec4>(wanted), b.template make<glm::vec4>(wanted), {}};
+    if (settings.leaks.needs_normals())
+        t.photons.normals = b.template make<glm::vec4>(wanted);
     detail::photon_frames<B> f(b, std::size_t{paths} * (settings.photon_depth + 1));
 
     uint stored = 0;
@@ -120,6 +123,9 @@ traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& dev
         const uint taken = std::min(found, wanted - stored);
         b.template run<kernels::gather_photon>({taken, stored}, {.paths = paths, .frames = frames, .stored_before = stored}, reads(sums, f.positions, f.powers, f.directions),
             writes(t.photons.positions, t.photons.powers, t.photons.directions));
+        if (settings.leaks.needs_normals())
+            b.template run<kernels::gather_normal>({taken, stored}, {.paths = paths, .frames = frames, .stored_before = stored},
+                reads(sums, f.positions, f.powers, f.next_origins, f.next_directions), writes(t.photons.normals));
         t.tallies.push_back(detail::sum_tally(b, std::move(tally), emitted));
         t.dropped += found - taken;
         t.emitted += emitted;

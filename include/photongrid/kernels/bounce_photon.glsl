@@ -27,7 +27,7 @@ INPUT(3, vec4, directions)
 INPUT(4, vec4, next_origins)
 INPUT(5, vec4, next_directions)
 OUTPUT(0, vec4, position)       // xyz, m; w: event
-OUTPUT(1, vec4, power)          // rgb arriving, W, not yet divided by the number of paths
+OUTPUT(1, vec4, power)          // rgb arriving, W, not yet divided by the number of paths; w, and of the last two: x, y, z of the normal
 OUTPUT(2, vec4, direction)      // xyz of arrival; w: material
 OUTPUT(3, vec4, next_origin)
 OUTPUT(4, vec4, next_direction)
@@ -39,7 +39,7 @@ void kernel(uint i)
     uint frame = i / args.paths;
     uint before = i - args.paths;
     uint path = args.first_path + (i - frame * args.paths);
-    position = vec4(0.0f, 0.0f, 0.0f, event_code(NO_SURFACE, ENDED_BEFORE));
+    position = vec4(0.0f, 0.0f, 0.0f, event_code(NO_SURFACE, ENDED_BEFORE, NOTHING_BEFORE));
     power = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     direction = power;
     next_origin = power;
@@ -47,6 +47,12 @@ void kernel(uint i)
     vec4 last = positions(before);
     if (event_end(last) != GOES_ON)
         return;
+
+    uint met = event_before(last);
+    if (event_kind(last) == SPECULAR_SURFACE && met == NOTHING_BEFORE)
+        met = SPECULAR_BEFORE;
+    if (event_kind(last) == DIFFUSE_SURFACE)
+        met = DIFFUSE_BEFORE;
 
     // What left the last surface: its power there, in the colour of the material, since roulette took the rest.
     vec4 flux = powers(before);
@@ -62,17 +68,17 @@ void kernel(uint i)
     power = flux;
 
     if (!is_finite3(o) || !is_finite3(d) || !is_finite3(vec3(flux))) {
-        position.w = event_code(NO_SURFACE, NOT_A_NUMBER);
+        position.w = event_code(NO_SURFACE, NOT_A_NUMBER, NOTHING_BEFORE);
         return;
     }
     Hit hit = nearest_hit(o, d);
     if (hit.t < 0.0f) {
-        position.w = event_code(NO_SURFACE, ESCAPED);
+        position.w = event_code(NO_SURFACE, ESCAPED, NOTHING_BEFORE);
         return;
     }
-    position = vec4(hit.position.x, hit.position.y, hit.position.z, event_code(NO_SURFACE, ABSORBED));
+    position = vec4(hit.position.x, hit.position.y, hit.position.z, event_code(NO_SURFACE, ABSORBED, met));
     if (!is_finite3(hit.position)) {
-        position.w = event_code(NO_SURFACE, NOT_A_NUMBER);
+        position.w = event_code(NO_SURFACE, NOT_A_NUMBER, NOTHING_BEFORE);
         return;
     }
     if (hit.material == 0xFFFFFFFFu)
@@ -84,12 +90,15 @@ void kernel(uint i)
     vec4 r = random4(uvec4(path, frame, 0u, args.seed));
     uint kind = uint(material.w);
     uint surface = kind == LAMBERTIAN_SURFACE ? DIFFUSE_SURFACE : SPECULAR_SURFACE;
+    vec3 facing = dot3(hit.normal, d) > 0.0f ? -hit.normal : hit.normal;
+    power.w = facing.x;
+    next_origin.w = facing.y;
+    next_direction.w = facing.z;
     if (!(r.x < largest3(vec3(material)))) {
-        position.w = event_code(surface, ABSORBED);
+        position.w = event_code(surface, ABSORBED, met);
         return;
     }
-    position.w = event_code(surface, frame < args.last_frame ? GOES_ON : CUT_OFF);
-    vec3 facing = dot3(hit.normal, d) > 0.0f ? -hit.normal : hit.normal;
+    position.w = event_code(surface, frame < args.last_frame ? GOES_ON : CUT_OFF, met);
     vec3 next = facing;
     if (kind == LAMBERTIAN_SURFACE)
         next = cosine_direction(facing, r.y, r.z);
@@ -102,6 +111,6 @@ void kernel(uint i)
             next = mirrored(d, hit.normal);
     }
     vec3 start = ray_start(hit.position, hit.normal, next);
-    next_origin = vec4(start.x, start.y, start.z, 0.0f);
-    next_direction = vec4(next.x, next.y, next.z, 0.0f);
+    next_origin = vec4(start.x, start.y, start.z, facing.y);
+    next_direction = vec4(next.x, next.y, next.z, facing.z);
 }

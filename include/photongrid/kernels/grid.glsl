@@ -60,4 +60,10 @@ inline bool is_finite(vec4 p)
         && (floatBitsToUint(p.z) & 0x7F800000u) != 0x7F800000u;
 }
 
+// Is a photon of a part of the light that is wanted? Caustic photons have 1 in the w of their position (light_part).
+inline bool is_of_parts(vec4 position, uint parts)
+{
+    return (parts & (position.w == 1.0f ? 2u : 1u)) != 0u;
+}
+
 #endif

@@ -7,6 +7,7 @@ struct Params {
     Grid grid;
     uint photons;
     uint seed;
+    uint parts; // which photons: bit 0 those with w of the position 0, bit 1 those with 1
 };
 PARAMS(Params)
 INPUT(0, vec4, positions)
@@ -23,7 +24,7 @@ void kernel(uint i)
     destination = 0xFFFFFFFFu;
     payload = photon;
     amount = vec4(flux.x, flux.y, flux.z, 1.0f);
-    if (!is_finite(p) || !is_finite(flux))
+    if (!is_finite(p) || !is_finite(flux) || !is_of_parts(p, args.parts))
         return;
     uvec4 c = cell_coordinates(args.grid, p);
     destination = cell_number(args.grid, c.x, c.y, c.z);

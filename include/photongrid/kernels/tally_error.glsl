@@ -1,0 +1,17 @@
+// Adds up how uncertain the estimates of a pixel are, for the picture's layers.
+struct Params {
+    uint unused;
+};
+PARAMS(Params)
+INPUT(0, vec4, points)         // w > 0: an estimate was wanted
+INPUT(1, vec4, irradiances)    // rgb, W/m^2
+INPUT(2, vec4, standard_error) // w: of the sum of the channels
+STATE(0, vec4, errors)         // x: sum of relative standard errors
+
+void kernel(uint i)
+{
+    vec4 e = irradiances(i);
+    float all = e.x + e.y + e.z;
+    if (points(i).w > 0.0f && all > 0.0f)
+        errors.x += standard_error(i).w / all;
+}

@@ -1,0 +1,386 @@
+// What the estimates promise beyond the paper's: exact k, kernels, bias, leak policies, standard errors. References: brute
+// force in double over float distances, FLANN, statistics of uniform fields. Included by each on_<backend>.cpp.
+#pragma once
+
+#include "photon_sets.hpp"
+#include "under_test.hpp"
+
+#include <photongrid/backends/serial/serial.hpp>
+#include <photongrid/knn_grid_estimate.hpp>
+
+#include <flann/flann.hpp>
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+
+namespace photongrid::testing {
+
+using glm::uvec2;
+using glm::uvec3;
+using glm::vec4;
+
+inline constexpr search_kind all_searches[] = {search_kind::at_least_k, search_kind::exact_k, search_kind::fixed_radius};
+inline constexpr filter_kernel all_kernels_of_estimates[] = {filter_kernel::constant, filter_kernel::cone, filter_kernel::epanechnikov, filter_kernel::silverman};
+inline constexpr bias_kind all_biases[] = {bias_kind::paper, bias_kind::unbiased};
+inline const leak_policy all_policies[] = {{}, {.side = true}, {.min_cosine = 0.3f}, {.compression = 3}, {.side = true, .min_cosine = -0.5f, .compression = 1.5f}};
+
+inline std::vector<vec4> random_units(std::size_t n, std::uint64_t seed)
+{
+    random_source u(seed);
+    std::vector<vec4> v;
+    while (v.size() < n) {
+        const glm::vec3 p = 2.0f * glm::vec3(u(), u(), u()) - 1.0f;
+        const float l = glm::length(p);
+        if (l > 0.1f && l < 1)
+            v.emplace_back(p / l, 0.0f);
+    }
+    return v;
+}
+
+/// Photons with directions and normals, points with normals.
+struct oriented_set {
+    photon_set photons;
+    std::vector<vec4> directions, normals, points, point_normals;
+};
+
+inline oriented_set make_oriented(distribution d, std::size_t n, uvec3 resolution, std::size_t points, std::uint64_t seed)
+{
+    oriented_set s;
+    s.photons = make_photons(d, n, resolution, seed);
+    s.directions = random_units(n, seed + 1);
+    s.normals = random_units(n, seed + 2);
+    s.points = make_points(s.photons, points, seed);
+    s.point_normals = random_units(points, seed + 3);
+    return s;
+}
+
+template <backend B>
+photons<B> upload_photons(B& b, const oriented_set& s)
+{
+    auto p = upload_photons(b, s.photons);
+    p.directions = b.upload(std::span<const vec4>(s.directions));
+    p.normals = b.upload(std::span<const vec4>(s.normals));
+    return p;
+}
+
+/// One estimate by brute force.
+struct brute_estimate {
+    std::vector<uint> ids; ///< by (distance, id); those within the radius
+    double radius2 = 0;
+    bool kth = false; ///< a photon set the radius
+    glm::dvec3 irradiance{0};
+};
+
+/// Squared distance as the search measures it, or nothing where a policy rejects the photon. Written out in single precision,
+/// in the order that photon_distance.glsl promises.
+inline std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std::size_t id, const leak_policy& leaks)
+{
+    const vec4 a = s.photons.positions[id], p = s.points[q], n = s.point_normals[q];
+    const float dx = a.x - p.x, dy = a.y - p.y, dz = a.z - p.z;
+    float d2 = dx * dx + dy * dy + dz * dz;
+    if (leaks.compression > 1) {
+        const float h = dx * n.x + dy * n.y + dz * n.z;
+        d2 = d2 + (leaks.compression * leaks.compression - 1.0f) * (h * h);
+    }
+    const auto dot = [](const vec4& x, const vec4& y) { return x.x * y.x + x.y * y.y + x.z * y.z; };
+    if (leaks.side && !(dot(s.directions[id], n) < 0))
+        return {};
+    if (leaks.needs_normals() && !(dot(s.normals[id], n) >= leaks.min_cosine))
+        return {};
+    return d2 < std::numeric_limits<float>::min() ? 0.0f : d2;
+}
+
+/// `at_least_radius2`: what the at-least-k search says it used, since that depends on the order of cells.
+inline brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>& in_map, const std::vector<vec4>& powers, std::size_t q, const knn_settings& k, float at_least_radius2)
+{
+    std::vector<std::pair<float, uint>> near;
+    const float max2 = k.max_radius * k.max_radius;
+    for (const uint id : in_map)
+        if (const auto d2 = policy_distance2(s, q, id, k.leaks); d2 && *d2 <= max2)
+            near.emplace_back(*d2, id);
+    std::sort(near.begin(), near.end());
+    brute_estimate e;
+    e.radius2 = static_cast<double>(max2);
+    if (k.search == search_kind::exact_k && near.size() >= k.k) {
+        near.resize(k.k);
+        e.kth = true;
+        e.radius2 = static_cast<double>(near.back().first);
+    }
+    if (k.search == search_kind::at_least_k && near.size() >= k.k) {
+        std::erase_if(near, [&](const auto& x) { return x.first > at_least_radius2; });
+        e.kth = true;
+        e.radius2 = static_cast<double>(at_least_radius2);
+    }
+    const double min2 = static_cast<double>(k.min_radius) * static_cast<double>(k.min_radius);
+    const double disc2 = std::max(e.radius2, min2);
+    const bool leave_out = k.bias == bias_kind::unbiased && e.kth && e.radius2 >= min2;
+    constexpr double norms[] = {1, 3, 2, 3};
+    for (std::size_t i = 0; i < near.size(); ++i) {
+        e.ids.push_back(near[i].second);
+        if (leave_out && i + 1 == near.size())
+            continue;
+        const double t = static_cast<double>(near[i].first) / disc2;
+        const double w[] = {1, 1 - std::sqrt(t), 1 - t, (1 - t) * (1 - t)};
+        e.irradiance += w[static_cast<int>(k.kernel)] * glm::dvec3(powers[near[i].second]);
+    }
+    e.irradiance *= norms[static_cast<int>(k.kernel)] / (M_PI * disc2);
+    return e;
+}
+
+template <class Tag>
+class estimators : public on_backend<Tag> {
+protected:
+    using B = typename Tag::type;
+
+    /// Runs one search over `s` and compares every point with brute force; returns what differs, or nothing.
+    std::string difference(const oriented_set& s, const knn_settings& settings, bool routed)
+    {
+        auto& b = this->b();
+        const auto map = routed ? routed_map(b, upload_photons(b, s), s.photons.g, 3, 5) : sorted_map(b, upload_photons(b, s), s.photons.g);
+        const auto points = b.upload(std::span<const vec4>(s.points));
+        const auto normals = b.upload(std::span<const vec4>(s.point_normals));
+        const auto e = knn_grid_estimate(b, map, points, normals, settings);
+        const auto irradiance = b.download(e.irradiance);
+        const auto used = b.download(e.used);
+        const auto list = b.download(map.list);
+        const auto stored = b.download(map.photons.powers);
+        std::vector<vec4> powers(s.photons.positions.size());
+        std::vector<uint> ids;
+        for (const auto& c : b.download(map.cells))
+            for (uint at = c.x; at < c.x + c.y; ++at) {
+                ids.push_back(list[at]);
+                powers[list[at]] = stored[at]; // routing has changed them
+            }
+        for (std::size_t q = 0; q < s.points.size(); ++q) {
+            const auto expected = estimate_by_force(s, ids, powers, q, settings, irradiance[q].w);
+            const auto where = " at point " + std::to_string(q);
+            if (used[q].x != expected.ids.size())
+                return "used " + std::to_string(used[q].x) + ", not " + std::to_string(expected.ids.size()) + where;
+            if (static_cast<double>(irradiance[q].w) != expected.radius2)
+                return "squared radius " + std::to_string(irradiance[q].w) + ", not " + std::to_string(expected.radius2) + where;
+            // The sum is zero or tells the set: powers are random.
+            for (int c = 0; c < 3; ++c)
+                if (!(std::abs(static_cast<double>(irradiance[q][c]) - expected.irradiance[c]) <= 4e-6 * expected.irradiance[c] + 1e-6 * expected.irradiance.x))
+                    return "channel " + std::to_string(c) + " is " + std::to_string(irradiance[q][c]) + ", not " + std::to_string(expected.irradiance[c]) + where;
+        }
+        return {};
+    }
+};
+TYPED_TEST_SUITE_P(estimators);
+
+TYPED_TEST_P(estimators, every_combination_equals_brute_force)
+{
+    const auto s = make_oriented(distribution::box_faces, 900, {6, 6, 12}, 60, 3);
+    for (const bool routed : {false, true})
+        for (const auto search : all_searches)
+            for (const auto kernel : all_kernels_of_estimates)
+                for (const auto bias : all_biases)
+                    for (const auto& leaks : all_policies) {
+                        knn_settings k{.k = 30, .max_radius = 0.4f, .min_radius = 1e-6f};
+                        k.search = search;
+                        k.kernel = kernel;
+                        k.bias = bias;
+                        k.leaks = leaks;
+                        ASSERT_EQ(this->difference(s, k, routed), "")
+                            << "search " << int(search) << " kernel " << int(kernel) << " bias " << int(bias) << " side " << leaks.side << " cosine " << leaks.min_cosine << " compression " << leaks.compression;
+                    }
+}
+
+TYPED_TEST_P(estimators, exact_k_finds_flanns_photons_on_every_distribution)
+{
+    auto& b = this->b();
+    EXPECT_TRUE(rc::check("k-th squared distance = FLANN's bit for bit, set = brute force, ties by id", [&] {
+        const auto d = *rc::gen::elementOf(std::vector<distribution>(std::begin(all_distributions), std::end(all_distributions)));
+        const auto resolution = *rc::gen::element(uvec3(1, 1, 1), uvec3(20, 1, 20), uvec3(5, 5, 10), uvec3(1, 1, 40), uvec3(7, 3, 2));
+        const auto n = *rc::gen::element(0, 1, 2, 7, 40, 700);
+        const auto k = *rc::gen::element(1u, 2u, 3u, 8u, 50u, 333u, 5000u);
+        const auto radius = *rc::gen::element(1e-4f, 0.03f, 0.2f, 0.7f, 10.0f);
+        const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1000000);
+        const auto visits = *rc::gen::element(1u, 64u, 3072u);
+        const auto s = make_oriented(d, static_cast<std::size_t>(n), resolution, 30, seed);
+        knn_settings settings{.k = k, .max_radius = radius, .min_radius = 1e-9f};
+        settings.bias = bias_kind::paper;
+        settings.visits_per_pass = visits;
+        settings.ranges_per_pass = visits == 1 ? 2 : 1023;
+        const auto what = this->difference(s, settings, false);
+        if (!what.empty())
+            RC_FAIL(what);
+
+        if (static_cast<uint>(n) >= k) {
+            const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
+            const auto irradiance = b.download(knn_grid_estimate(b, map, b.upload(std::span<const vec4>(s.points)), settings).irradiance);
+            std::vector<float> coordinates;
+            for (const auto& p : s.photons.positions)
+                coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
+            flann::Matrix<float> data(coordinates.data(), static_cast<std::size_t>(n), 3);
+            flann::KDTreeSingleIndex<flann::L2_Simple<float>> tree(data);
+            tree.buildIndex();
+            flann::SearchParams exact(flann::FLANN_CHECKS_UNLIMITED);
+            for (std::size_t q = 0; q < s.points.size(); ++q) {
+                float query[3] = {s.points[q].x, s.points[q].y, s.points[q].z};
+                std::vector<std::vector<std::size_t>> indices;
+                std::vector<std::vector<float>> distances;
+                tree.knnSearch(flann::Matrix<float>(query, 1, 3), indices, distances, k, exact);
+                const float kth = distances[0].back() < std::numeric_limits<float>::min() ? 0.0f : distances[0].back();
+                if (kth <= radius * radius)
+                    RC_ASSERT(irradiance[q].w == kth);
+            }
+        }
+    }));
+}
+
+TYPED_TEST_P(estimators, ties_at_the_kth_distance_go_by_id)
+{
+    // 70,000 photons at one place, 20 nearer: of the k = 520 nearest, 500 are the tied ones with the smallest ids.
+    auto& b = this->b();
+    photon_set set;
+    set.g = make_grid(glm::vec3(0), glm::vec3(1), {3, 3, 3});
+    random_source u(5);
+    for (uint i = 0; i < 70020; ++i) {
+        const bool nearer = i % 3501 == 17;
+        set.positions.emplace_back(nearer ? 0.5f : 0.75f, 0.5f, 0.5f, 0.0f);
+        set.powers.emplace_back(u(), u(), u(), 0.0f);
+    }
+    knn_settings settings{.k = 520, .max_radius = 1};
+    settings.bias = bias_kind::paper;
+    const auto map = sorted_map(b, upload_photons(b, set), set.g);
+    const std::vector<vec4> points(1, vec4(0.5f, 0.5f, 0.5f, 1.0f));
+    const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), settings);
+    glm::dvec3 flux(0);
+    uint tied = 0;
+    for (uint i = 0; i < 70020; ++i) {
+        const bool nearer = i % 3501 == 17;
+        if (nearer || tied++ < 500)
+            flux += glm::dvec3(set.powers[i]);
+    }
+    EXPECT_EQ(b.download(e.used)[0].x, 520u);
+    const auto irradiance = b.download(e.irradiance)[0];
+    EXPECT_EQ(irradiance.w, 0.0625f);
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(irradiance[c], flux[c] / (M_PI * 0.0625), 2e-6 * flux[c] / (M_PI * 0.0625));
+}
+
+TYPED_TEST_P(estimators, no_light_comes_through_a_thin_wall)
+{
+    // A wall 0.01 thick, lit from above; photons on its upper side and on the floor of a corner beside it.
+    auto& b = this->b();
+    random_source u(9);
+    oriented_set s;
+    s.photons.g = make_grid(glm::vec3(0), glm::vec3(1), {10, 10, 10});
+    for (int i = 0; i < 2000; ++i) {
+        s.photons.positions.emplace_back(u(), 0.51f, u(), 0.0f);
+        s.photons.powers.emplace_back(1.0f);
+        s.directions.emplace_back(0.0f, -1.0f, 0.0f, 0.0f);
+        s.normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
+    }
+    s.points = {{0.5f, 0.51f, 0.5f, 1.0f}, {0.5f, 0.5f, 0.5f, 1.0f}};
+    s.point_normals = {{0.0f, 1.0f, 0.0f, 0.0f}, {0.0f, -1.0f, 0.0f, 0.0f}};
+    const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
+    const auto points = b.upload(std::span<const vec4>(s.points)), normals = b.upload(std::span<const vec4>(s.point_normals));
+    for (const auto search : all_searches) {
+        knn_settings k{.k = 50, .max_radius = 0.1f};
+        k.search = search;
+        const auto leaking = b.download(knn_grid_estimate(b, map, points, normals, k).irradiance);
+        EXPECT_GT(leaking[1].x, 0.5f * leaking[0].x);
+        for (const leak_policy& leaks : {leak_policy{.side = true}, leak_policy{.min_cosine = 0.5f}, leak_policy{.compression = 11}}) {
+            k.leaks = leaks;
+            const auto e = knn_grid_estimate(b, map, points, normals, k);
+            const auto kept = b.download(e.irradiance);
+            EXPECT_EQ(kept[0].x, leaking[0].x); // what was right stays
+            EXPECT_EQ(kept[1].x, 0.0f);
+            EXPECT_EQ(b.download(e.used)[1].x, 0u);
+        }
+    }
+}
+
+TYPED_TEST_P(estimators, searches_refuse_what_they_cannot_do)
+{
+    auto& b = this->b();
+    const auto set = make_photons(distribution::uniform, 100, {4, 4, 4}, 1);
+    const auto map = sorted_map(b, upload_photons(b, set), set.g);
+    const auto points = b.upload(std::span<const vec4>(make_points(set, 10, 1)));
+    knn_settings k{.k = 5, .max_radius = 1};
+    k.leaks.side = true;
+    EXPECT_THROW(knn_grid_estimate(b, map, points, k), std::invalid_argument);         // no normals of points
+    EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument); // no directions of photons
+    k.leaks = {.min_cosine = 0.5f};
+    EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument); // no normals of photons
+    k.leaks = {.compression = 0.5f};
+    EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument);
+    k.leaks = {.compression = std::numeric_limits<float>::quiet_NaN()};
+    EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument);
+}
+
+TYPED_TEST_P(estimators, searches_can_be_watched_and_resumed)
+{
+    auto& b = this->b();
+    const auto s = make_oriented(distribution::clustered, 4000, {12, 12, 12}, 300, 2);
+    const auto at = b.upload(std::span<const vec4>(s.points));
+    const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
+    for (const auto search : all_searches) {
+        knn_settings k{.k = 200, .max_radius = 0.3f};
+        k.search = search;
+        k.errors = true;
+        const auto whole = knn_grid_estimate(b, map, at, k);
+        k.visits_per_pass = 100; // another budget, the same result
+        k.ranges_per_pass = 20;
+        knn_search<typename TestFixture::B> watched(b, map, at, k);
+        std::size_t passes = 0;
+        for (bool finished = false; !finished && passes < 100000; ++passes) {
+            const auto p = watched.advance(1);
+            ASSERT_LE(p.passes, 1u);
+            finished = p.finished;
+            for (const auto& e : b.download(watched.estimates().irradiance))
+                ASSERT_TRUE(std::isfinite(e.x) && std::isfinite(e.w));
+        }
+        EXPECT_GT(passes, 4u);
+        EXPECT_EQ(count_different_bits(b.download(watched.estimates().irradiance), b.download(whole.irradiance)), 0u) << int(search);
+        EXPECT_EQ(count_different_bits(b.download(watched.estimates().standard_error), b.download(whole.standard_error)), 0u);
+        EXPECT_EQ(count_different_bits(b.download(watched.estimates().used), b.download(whole.used)), 0u);
+        EXPECT_TRUE(watched.advance(5).finished);
+    }
+}
+
+TYPED_TEST_P(estimators, equal_the_serial_backends_bit_for_bit)
+{
+    auto& b = this->b();
+    serial_backend serial;
+    for (const auto d : all_distributions)
+        for (const auto resolution : {uvec3(1, 1, 1), uvec3(9, 9, 18)})
+            for (const auto search : all_searches) {
+                const auto s = make_oriented(d, 3000, resolution, 300, 11);
+                const auto run = [&](auto& device) {
+                    knn_settings k{.k = 64, .max_radius = 0.25f};
+                    k.search = search;
+                    k.kernel = filter_kernel::epanechnikov;
+                    k.leaks = {.side = true, .compression = 2};
+                    k.errors = true;
+                    const auto map = sorted_map(device, upload_photons(device, s), s.photons.g);
+                    const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(s.points)), device.upload(std::span<const vec4>(s.point_normals)), k);
+                    return std::tuple{device.download(e.irradiance), device.download(e.used), device.download(e.standard_error)};
+                };
+                const auto [irradiance, used, errors] = run(b);
+                const auto [irradiance_s, used_s, errors_s] = run(serial);
+                const auto where = std::string(name_of(d)) + " search " + std::to_string(int(search));
+                // Which photons: the same everywhere. How many were looked at, and their light, where division rounds correctly.
+                for (std::size_t i = 0; i < used.size(); ++i) {
+                    ASSERT_EQ(used[i].x, used_s[i].x) << where;
+                    ASSERT_EQ(irradiance[i].w, irradiance_s[i].w) << where;
+                    ASSERT_NEAR(irradiance[i].x, irradiance_s[i].x, 1e-5f * irradiance_s[i].x) << where;
+                    ASSERT_NEAR(errors[i].w, errors_s[i].w, 1e-5f * errors_s[i].w) << where;
+                }
+                if (b.caps().exact_division && b.caps().exact_sqrt) {
+                    EXPECT_EQ(count_different_bits(irradiance, irradiance_s), 0u) << where;
+                    EXPECT_EQ(count_different_bits(used, used_s), 0u) << where;
+                    EXPECT_EQ(count_different_bits(errors, errors_s), 0u) << where;
+                }
+            }
+}
+
+REGISTER_TYPED_TEST_SUITE_P(estimators, every_combination_equals_brute_force, exact_k_finds_flanns_photons_on_every_distribution, ties_at_the_kth_distance_go_by_id,
+    no_light_comes_through_a_thin_wall, searches_refuse_what_they_cannot_do, searches_can_be_watched_and_resumed, equal_the_serial_backends_bit_for_bit);
+
+} // namespace photongrid::testing
