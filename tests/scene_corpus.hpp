@@ -38,7 +38,7 @@ namespace detail {
         if (!std::isfinite(r.layout.scale.x) || r.layout.scale.x < 0)
             return "the scene's scale is not finite";
         const auto& l = r.layout;
-        const std::size_t edges = [&] {
+        const std::size_t edges = [&] { // each is a record, and so is the vertex it begins at
             std::size_t n = 4 * s.rectangle_lights.size();
             for (const auto& p : s.polygons)
                 n += p.vertices.size();
@@ -46,7 +46,7 @@ namespace detail {
         }();
         const std::size_t lights = s.rectangle_lights.size() + s.point_lights.size();
         if (l.round_things.x != 0 || l.round_things.z != 2 * s.spheres.size() || l.flat_things.x != l.round_things.z + 5 * (s.cylinders.size() + s.cones.size() + s.paraboloids.size())
-            || l.flat_things.z != l.flat_things.x + 3 * s.disks.size() || l.rest.x != l.flat_things.z + 2 * (s.polygons.size() + s.rectangle_lights.size()) + edges
+            || l.flat_things.z != l.flat_things.x + 3 * s.disks.size() || l.rest.x != l.flat_things.z + 2 * (s.polygons.size() + s.rectangle_lights.size()) + 2 * edges
             || l.rest.y != l.rest.x + 2 * s.materials.size() || r.records.size() != l.rest.y + 6 * lights || l.rest.z != lights)
             return "the ranges of the records do not follow each other";
         for (std::size_t i = l.round_things.z; i < l.flat_things.x; i += 5)
@@ -55,7 +55,7 @@ namespace detail {
         for (std::size_t i = l.flat_things.x; i < l.flat_things.z; i += 3)
             if (!unit(r.records[i]))
                 return "the normal of a disk is not a unit vector";
-        for (std::size_t i = l.flat_things.z; i < l.rest.x; i += 2 + static_cast<std::size_t>(r.records[i + 1].x))
+        for (std::size_t i = l.flat_things.z; i < l.rest.x; i += 2 + 2 * static_cast<std::size_t>(r.records[i + 1].x))
             if (!unit(r.records[i]))
                 return "the normal of a polygon is not a unit vector";
         return "";
