@@ -1,6 +1,11 @@
 // Pictures on disk: what is written is read back, and a failed write leaves nothing.
 #include "image_file.hpp"
 
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfStringAttribute.h>
 #include <gtest/gtest.h>
 #include <png.h>
 
@@ -67,6 +72,98 @@ namespace {
             ASSERT_EQ(q.pixels.size(), p.pixels.size());
             EXPECT_EQ(std::memcmp(q.pixels.data(), p.pixels.data(), p.pixels.size() * sizeof(glm::vec3)), 0);
         }
+    }
+
+    image with_layers()
+    {
+        auto p = gradient();
+        for (std::uint32_t i = 0; i < 35; ++i) {
+            p.layers.radius.push_back(0.01f * static_cast<float>(i));
+            p.layers.count.push_back(static_cast<float>(100 + i));
+            p.layers.relative_error.push_back(1 / static_cast<float>(1 + i));
+        }
+        p.layers.relative_error[6] = std::numeric_limits<float>::infinity();
+        return p;
+    }
+
+    std::string bytes(const std::string& path)
+    {
+        std::ifstream in(path, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+
+    /// The channels of an EXR, in the file's order.
+    std::vector<std::string> channels(const std::string& path)
+    {
+        const Imf::InputFile file(path.c_str());
+        std::vector<std::string> names;
+        const auto& all = file.header().channels();
+        for (auto c = all.begin(); c != all.end(); ++c) {
+            names.emplace_back(c.name());
+            EXPECT_EQ(c.channel().type, Imf::FLOAT) << c.name();
+        }
+        return names;
+    }
+
+    /// A channel of an EXR of 7 x 5 pixels.
+    std::vector<float> channel(const std::string& path, const char* name)
+    {
+        Imf::InputFile file(path.c_str());
+        const auto box = file.header().dataWindow();
+        EXPECT_EQ(box, Imath::Box2i({0, 0}, {6, 4}));
+        std::vector<float> values(35, -1.0f);
+        Imf::FrameBuffer frame;
+        frame.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), sizeof(float), 7 * sizeof(float)));
+        file.setFrameBuffer(frame);
+        file.readPixels(0, 4);
+        return values;
+    }
+
+    TEST_F(image_file, exr_holds_layers)
+    {
+        const auto p = with_layers();
+        write_image(path("a.exr"), p, 0, {{"seed", "7"}});
+        EXPECT_EQ(channels(path("a.exr")), (std::vector<std::string>{"B", "G", "R", "estimate.count", "estimate.radius", "estimate.relative_error"}));
+        EXPECT_EQ(channel(path("a.exr"), "estimate.radius"), p.layers.radius);
+        EXPECT_EQ(channel(path("a.exr"), "estimate.count"), p.layers.count);
+        EXPECT_EQ(channel(path("a.exr"), "estimate.relative_error"), p.layers.relative_error);
+        const auto red = channel(path("a.exr"), "R");
+        for (std::size_t i = 0; i < 35; ++i)
+            EXPECT_EQ(red[i], p.pixels[i].x) << i;
+        const Imf::InputFile file(path("a.exr").c_str());
+        const auto* seed = file.header().findTypedAttribute<Imf::StringAttribute>("seed");
+        ASSERT_NE(seed, nullptr);
+        EXPECT_EQ(seed->value(), "7");
+
+        const auto q = read_image(path("a.exr"));
+        ASSERT_EQ(q.pixels.size(), p.pixels.size());
+        EXPECT_EQ(std::memcmp(q.pixels.data(), p.pixels.data(), p.pixels.size() * sizeof(glm::vec3)), 0) << "layers do not disturb the picture";
+        EXPECT_TRUE(q.layers.radius.empty() && q.layers.count.empty() && q.layers.relative_error.empty());
+    }
+
+    TEST_F(image_file, layers_are_written_where_there_are_any)
+    {
+        EXPECT_TRUE(holds_layers("a.exr") && holds_layers("a.EXR"));
+        EXPECT_FALSE(holds_layers("a.png") || holds_layers("a.pfm") || holds_layers("a") || holds_layers("exr"));
+        write_image(path("a.exr"), gradient());
+        EXPECT_EQ(channels(path("a.exr")), (std::vector<std::string>{"B", "G", "R"}));
+        auto p = with_layers();
+        p.layers.count.clear();
+        write_image(path("a.exr"), p);
+        EXPECT_EQ(channels(path("a.exr")), (std::vector<std::string>{"B", "G", "R", "estimate.radius", "estimate.relative_error"}));
+        for (const auto* ending : {".png", ".pfm"}) {
+            write_image(path(std::string("with") + ending), with_layers());
+            write_image(path(std::string("without") + ending), gradient());
+            EXPECT_EQ(bytes(path(std::string("with") + ending)), bytes(path(std::string("without") + ending)));
+        }
+    }
+
+    TEST_F(image_file, refuses_layers_of_another_size)
+    {
+        auto p = with_layers();
+        p.layers.count.pop_back();
+        EXPECT_NE(refusal([&] { write_image(path("a.exr"), p); }).find("the layer estimate.count has 34 values for 35 pixels"), std::string::npos);
+        EXPECT_EQ(files(), 0u);
     }
 
     TEST_F(image_file, pfm_has_the_bottom_row_first)

@@ -92,7 +92,7 @@ namespace {
         const auto render = run({"render", "--help"});
         EXPECT_EQ(render.code, 0);
         for (const auto* option : {"--backend", "--device", "--map", "--slots", "--photons", "--k", "--grid", "--max-radius", "--size", "--spp", "--light-samples", "--depth", "--seed", "--exposure", "-o",
-                 "--stats", "--progressive", "--quiet"})
+                 "--search", "--kernel", "--bias", "--leaks", "--only", "--aov", "--as-paper", "--stats", "--progressive", "--quiet"})
             EXPECT_NE(render.out.find(option), std::string::npos) << option;
         const auto version = run({"--version"});
         EXPECT_EQ(version.code, 0);
@@ -106,7 +106,8 @@ namespace {
         EXPECT_EQ(run({"render"}).code, 2);
         for (const auto& wrong : std::vector<std::vector<std::string>>{{"--backend", "cuda"}, {"--size", "32"}, {"--size", "32x-4"}, {"--size", "0x4"}, {"--grid", "1,2"}, {"--grid", "1,2,3,4"}, {"--grid", "0,1,1"},
                  {"--photons", "1e3"}, {"--photons", "-1"}, {"--photons", "99999999999"}, {"--k", "0"}, {"--max-radius", "nan"}, {"--max-radius", "-1"}, {"--exposure", "inf"}, {"--slots", "17"},
-                 {"--map", "hash"}, {"--device", "0"}, {"--spp", "0"}, {"--nonsense"}}) {
+                 {"--map", "hash"}, {"--device", "0"}, {"--spp", "0"}, {"--nonsense"},
+                 {"--search", "exact"}, {"--kernel", "gauss"}, {"--bias", "none"}, {"--only", "all"}, {"--only", "caustics"}, {"--as-paper", "--as-paper=maybe"}}) {
             const auto e = run([&] {
                 auto all = small;
                 // An option given twice is an error of its own.
@@ -227,6 +228,107 @@ namespace {
             EXPECT_GT(s.at("peak_device_bytes"), 0);
             EXPECT_GT(s.at("total_ms"), 0);
         }
+    }
+
+    TEST_F(program, refuses_wrong_leak_policies)
+    {
+        const std::string list = "expected none, or some of side, normals, normals=COS, disc, disc=C with commas between them";
+        for (const auto& [given, expected] : std::vector<std::pair<std::string, std::string>>{{"walls", "\"walls\" given; " + list}, {"side,", "\"\" given; " + list}, {"", list}, {",side", "\"\" given; " + list},
+                 {"side=1", "\"side=1\" given; " + list}, {"side, disc", "\" disc\" given; " + list}, {"none,side", "expected none alone"}, {"side,none", "expected none alone"}, {"none=0", list},
+                 {"side,side", "has side twice"}, {"disc,disc=4", "has disc twice"}, {"normals=", "expected normals=COS, a cosine from -1 to 1"}, {"normals=1.1", "\"1.1\" given; expected normals=COS"},
+                 {"normals=nan", "expected normals=COS"}, {"normals=half", "expected normals=COS"}, {"disc=0.9", "\"0.9\" given; expected disc=C, a compression from 1 to 1e6"}, {"disc=1e300", "expected disc=C"},
+                 {"disc=4=4", "expected disc=C"}}) {
+            const auto e = run(small_with({"--leaks", given}));
+            EXPECT_EQ(e.code, 2) << given;
+            EXPECT_NE(e.err.find("--leaks"), std::string::npos) << given << ": " << e.err;
+            EXPECT_NE(e.err.find(expected), std::string::npos) << given << ": " << e.err;
+        }
+        EXPECT_EQ(files(), 0u);
+    }
+
+    TEST_F(program, obeys_what_is_said_of_the_estimate)
+    {
+        struct row {
+            std::vector<std::string> options;
+            nlohmann::json settings; ///< some of those in the statistics
+        };
+        using json = nlohmann::json;
+        const json by_default = json::parse(R"({"search": "exact_k", "kernel": "constant", "bias": "unbiased", "leaks": {"side": true}, "only": "all"})");
+        const json paper = json::parse(R"({"search": "at_least_k", "kernel": "constant", "bias": "paper", "leaks": {}, "only": "all"})");
+        const auto but = [](json all, const char* more) {
+            all.update(json::parse(more));
+            return all;
+        };
+        const std::vector<row> rows{
+            {{}, by_default},
+            {{"--search", "at_least_k"}, but(by_default, R"({"search": "at_least_k"})")},
+            {{"--search", "fixed_radius", "--kernel", "cone"}, but(by_default, R"({"search": "fixed_radius", "kernel": "cone"})")},
+            {{"--kernel", "epanechnikov"}, but(by_default, R"({"kernel": "epanechnikov"})")},
+            {{"--kernel", "silverman", "--bias", "paper"}, but(by_default, R"({"kernel": "silverman", "bias": "paper"})")},
+            {{"--leaks", "none"}, but(by_default, R"({"leaks": {}})")},
+            {{"--leaks", "side"}, by_default},
+            {{"--leaks", "normals"}, but(by_default, R"({"leaks": {"normals": 0.5}})")},
+            {{"--leaks", "disc"}, but(by_default, R"({"leaks": {"disc": 4}})")},
+            {{"--leaks", "disc=2.5,side,normals=-0.3"}, but(by_default, R"({"leaks": {"side": true, "normals": -0.3, "disc": 2.5}})")},
+            {{"--leaks", "normals=-1,disc=1"}, but(by_default, R"({"leaks": {}})")},
+            {{"--only", "direct"}, but(by_default, R"({"only": "direct"})")},
+            {{"--only", "caustic"}, but(by_default, R"({"only": "caustic"})")},
+            {{"--only", "indirect"}, but(by_default, R"({"only": "indirect"})")},
+            {{"--as-paper"}, paper},
+            {{"--kernel", "cone", "--as-paper", "--leaks", "side"}, but(paper, R"({"kernel": "cone", "leaks": {"side": true}})")},
+            {{"--as-paper", "--search", "exact_k", "--bias", "unbiased", "--only", "caustic"}, but(paper, R"({"search": "exact_k", "bias": "unbiased", "only": "caustic"})")},
+        };
+        const auto expect = [&](const std::vector<std::string>& arguments, const json& expected) {
+            const auto e = run(arguments);
+            ASSERT_EQ(e.code, 0) << e.err;
+            const auto set = json::parse(contents(folder / "stats.json")).at("settings");
+            for (const auto& [key, value] : expected.items())
+                EXPECT_EQ(set.at(key), value) << key << " of " << json(arguments);
+        };
+        for (const auto& [options, settings] : rows) {
+            auto arguments = small_with({"--stats", "stats.json"});
+            arguments.insert(arguments.end(), options.begin(), options.end());
+            expect(arguments, settings);
+        }
+        // A scene that has wishes of its own; lengths are in m, so its statistics' settings are a scene's again.
+        auto wishes = json::parse(contents(ring), nullptr, true, true);
+        wishes["render"].update(json::parse(R"({"search": "fixed_radius", "kernel": "silverman", "bias": "paper", "leaks": {"normals": 0.25, "disc": 3}})"));
+        std::ofstream(folder / "wishes.json") << wishes;
+        auto arguments = small_with({"--stats", "stats.json", "-o", "a.exr"});
+        arguments[1] = "wishes.json";
+        const auto wished = but(by_default, R"({"search": "fixed_radius", "kernel": "silverman", "bias": "paper", "leaks": {"normals": 0.25, "disc": 3}})");
+        expect(arguments, wished);
+        EXPECT_NE(contents(folder / "a.exr").find(R"("search":"fixed_radius","kernel":"silverman","bias":"paper","leaks":{"normals":0.25,"disc":3.0},"only":"all")"), std::string::npos) << "the EXR's note";
+        arguments.insert(arguments.end(), {"--kernel", "cone", "--leaks", "side"});
+        expect(arguments, but(wished, R"({"kernel": "cone", "leaks": {"side": true}})"));
+        arguments.emplace_back("--as-paper");
+        expect(arguments, but(paper, R"({"kernel": "cone", "leaks": {"side": true}})"));
+    }
+
+    TEST_F(program, layers_need_a_file_that_holds_them)
+    {
+        for (const auto& outputs : std::vector<std::vector<std::string>>{{}, {"-o", "a.png"}, {"-o", "a.pfm", "-o", "exr"}}) {
+            auto arguments = small_with({"--aov"});
+            arguments.insert(arguments.end(), outputs.begin(), outputs.end());
+            const auto e = run(arguments);
+            EXPECT_EQ(e.code, 2);
+            EXPECT_NE(e.err.find("--aov: "), std::string::npos) << e.err;
+            EXPECT_NE(e.err.find("expected an EXR picture with it: -o OUT.exr"), std::string::npos) << e.err;
+        }
+        EXPECT_EQ(files(), 0u);
+        const auto e = run(small_with({"--aov", "-o", "a.png", "-o", "a.EXR"}));
+        EXPECT_EQ(e.code, 0) << e.err;
+        ASSERT_EQ(run(small_with({"-o", "b.png", "-o", "b.exr"})).code, 0);
+        EXPECT_EQ(contents(folder / "a.png"), contents(folder / "b.png")) << "layers do not change the picture";
+        EXPECT_EQ(contents(folder / "b.exr").find("estimate."), std::string::npos);
+    }
+
+    // Enabled once render.hpp fills image::layers.
+    TEST_F(program, DISABLED_writes_layers)
+    {
+        ASSERT_EQ(run(small_with({"--aov", "-o", "a.exr"})).code, 0);
+        for (const auto* channel : {"estimate.radius", "estimate.count", "estimate.relative_error"})
+            EXPECT_NE(contents(folder / "a.exr").find(channel), std::string::npos) << channel;
     }
 
     TEST_F(program, writes_the_running_estimate)

@@ -130,6 +130,60 @@ namespace {
         EXPECT_EQ(s.point_lights[0].power, dvec3(10'000, 20'000, 30'000));
     }
 
+    TEST(scene_file, reads_what_kind_of_estimate_is_wanted)
+    {
+        const auto with = [](const std::string& more) {
+            auto lines = good;
+            lines[12].insert(lines[12].find(", \"k\""), more);
+            return parse_scene("s.json", text(lines)).render;
+        };
+        const auto plain = with("");
+        EXPECT_EQ(plain.search, search_kind::exact_k);
+        EXPECT_EQ(plain.kernel, filter_kernel::constant);
+        EXPECT_EQ(plain.bias, bias_kind::unbiased);
+        EXPECT_TRUE(plain.leaks.side);
+        EXPECT_EQ(plain.leaks.min_cosine, -1);
+        EXPECT_EQ(plain.leaks.compression, 1);
+        EXPECT_EQ(with(R"(, "search": "at_least_k")").search, search_kind::at_least_k);
+        EXPECT_EQ(with(R"(, "search": "exact_k")").search, search_kind::exact_k);
+        EXPECT_EQ(with(R"(, "search": "fixed_radius")").search, search_kind::fixed_radius);
+        EXPECT_EQ(with(R"(, "kernel": "constant")").kernel, filter_kernel::constant);
+        EXPECT_EQ(with(R"(, "kernel": "cone")").kernel, filter_kernel::cone);
+        EXPECT_EQ(with(R"(, "kernel": "epanechnikov")").kernel, filter_kernel::epanechnikov);
+        EXPECT_EQ(with(R"(, "kernel": "silverman")").kernel, filter_kernel::silverman);
+        EXPECT_EQ(with(R"(, "bias": "paper")").bias, bias_kind::paper);
+        EXPECT_EQ(with(R"(, "bias": "unbiased")").bias, bias_kind::unbiased);
+        EXPECT_FALSE(with(R"(, "leaks": {})").leaks.needs_any());
+        EXPECT_FALSE(with(R"(, "leaks": {"comment": 1, "side": false})").leaks.needs_any());
+        const auto all = with(R"(, "leaks": {"side": true, "normals": 0.25, "disc": 4})").leaks;
+        EXPECT_TRUE(all.side);
+        EXPECT_EQ(all.min_cosine, 0.25f);
+        EXPECT_EQ(all.compression, 4);
+        EXPECT_FALSE(with(R"(, "leaks": {"normals": -0.5})").leaks.side) << "what is not named is off";
+        EXPECT_EQ(with(R"(, "leaks": {"normals": 1, "disc": 1e6})").leaks.compression, 1e6f);
+    }
+
+    TEST(scene_file, refuses_unknown_kinds_of_estimates)
+    {
+        const auto said = [](const std::string& more) { return refusal(13, "\"k\": 20", more + ", \"k\": 20"); };
+        expect_refusal(said(R"("search": "exact")"), "13:58", {"found the text \"exact\"", R"(expected "at_least_k", "exact_k" or "fixed_radius")"});
+        expect_refusal(said(R"("search": 1)"), "13:58", {"found the number 1", "\"fixed_radius\""});
+        expect_refusal(said(R"("kernel": "gauss")"), "13:58", {"found the text \"gauss\"", R"(expected "constant", "cone", "epanechnikov" or "silverman")"});
+        expect_refusal(said(R"("bias": true)"), "13:56", {"found true", R"(expected "paper" or "unbiased")"});
+        expect_refusal(said(R"("leaks": "none")"), "13:57", {"found the text \"none\"", R"("side", "normals" or "disc"; {} for no policy)"});
+        expect_refusal(said(R"("leaks": ["side"])"), "13:57", {"found an array of 1", "expected an object"});
+        expect_refusal(said(R"("leaks": {"normal": 0.5})"), "13:58", {"unknown key \"normal\" in \"leaks\"", "expected \"normals\"?"});
+        expect_refusal(said(R"("leaks": {"side": 1})"), "13:66", {"found the number 1", "expected true or false"});
+        expect_refusal(said(R"("leaks": {"normals": 1.01})"), "13:69", {"found the number 1.01", "expected a cosine from -1 to 1"});
+        expect_refusal(said(R"("leaks": {"normals": true})"), "13:69", {"found true"});
+        expect_refusal(said(R"("leaks": {"disc": 0.5})"), "13:66", {"found the number 0.5", "expected a compression from 1 to 1e6"});
+        expect_refusal(said(R"("leaks": {"disc": 1000001})"), "13:66", {"found the number 1000001"});
+        expect_refusal(said(R"("serach": "exact_k")"), "13:48", {"unknown key \"serach\" in \"render\"", "expected \"search\"?"});
+        // What a picture shows is not the scene's.
+        expect_refusal(said(R"("only": "caustic")"), "13:48", {"unknown key \"only\""});
+        expect_refusal(said(R"("aov": true)"), "13:48", {"unknown key \"aov\""});
+    }
+
     TEST(scene_file, says_where_json_is_broken)
     {
         expect_refusal(refusal(""), "1:1", {"unexpected end of input"});
@@ -350,6 +404,9 @@ namespace {
             EXPECT_EQ(s.render.photons, r.photons);
             EXPECT_EQ(s.render.k, r.k);
             EXPECT_EQ(s.render.grid, r.grid);
+            EXPECT_EQ(s.render.search, render_settings().search) << "they leave the kind of estimate to the library";
+            EXPECT_EQ(s.render.bias, render_settings().bias);
+            EXPECT_EQ(s.render.leaks.side, render_settings().leaks.side);
         }
         EXPECT_EQ(read_scene(scenes + "/ring.json").point_lights.size(), 1u);
         const auto box = read_scene(scenes + "/cornell_box.json");

@@ -1,7 +1,11 @@
 #include "command_line.hpp"
 
+#include "image_file.hpp"
+#include "setting_names.hpp"
+
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -12,6 +16,7 @@ namespace {
   photongrid render examples/scenes/cornell_box.json -o cornell.png
   photongrid render ring.json --backend vulkan --map route -o ring.exr -o ring.png --stats ring-stats.json
   photongrid render ring.json --size 128x96 --photons 4000 --exposure 1 --quiet
+  photongrid render ring.json --only caustic --kernel silverman --leaks side,normals=0.7 --aov -o ring.exr
   photongrid reference ring.json -o reference.exr --error error.exr --paths 100000000
   photongrid compare ring.exr reference.exr --max-relmse 1e-3
   photongrid check my_scene.json
@@ -25,6 +30,12 @@ Exit codes:
   5    a picture or statistics file could not be read or written, or pictures of different sizes were compared
   130  interrupted (Ctrl-C); nothing half-written is left
 )";
+
+    // Of --leaks normals and disc where no value is given: 60 degrees, and a disc four times as wide as high.
+    constexpr float usual_cosine = 0.5f, usual_compression = 4;
+
+    /// --only has no word for everything.
+    constexpr named<light_part> drawn_alone[] = {part_names[1], part_names[2], part_names[3]};
 
     // std::from_chars, so that "010" is ten, "-1" no number and "1e9x" an error.
     template <class T>
@@ -60,6 +71,59 @@ Exit codes:
         return v;
     }
 
+    /// A number at or between two limits, as single precision holds it.
+    float parsed_from(const std::string& option, const std::string& text, double low, double high, const char* expected)
+    {
+        const double value = parsed_number(option, text, expected);
+        if (value < low || value > high)
+            throw CLI::ValidationError(option, "\"" + text + "\" given; expected " + expected);
+        return static_cast<float>(value);
+    }
+
+    /// Policies with commas between them, each at most once; or `none`.
+    leak_policy parsed_leaks(const std::string& option, const std::string& text)
+    {
+        if (text == "none")
+            return {};
+        leak_policy leaks;
+        std::vector<std::string> given;
+        for (std::size_t at = 0; at <= text.size();) {
+            const auto end = std::min(text.find(',', at), text.size());
+            const auto policy = text.substr(at, end - at);
+            const auto name = policy.substr(0, policy.find('='));
+            const bool with_value = name.size() < policy.size();
+            const auto value = with_value ? policy.substr(name.size() + 1) : "";
+            if (std::find(given.begin(), given.end(), name) != given.end())
+                throw CLI::ValidationError(option, "\"" + text + "\" has " + name + " twice; expected each policy once");
+            given.push_back(name);
+            if (policy == "side")
+                leaks.side = true;
+            else if (name == "normals")
+                leaks.min_cosine = with_value ? parsed_from(option, value, -1, 1, "normals=COS, a cosine from -1 to 1") : usual_cosine;
+            else if (name == "disc")
+                leaks.compression = with_value ? parsed_from(option, value, 1, 1e6, "disc=C, a compression from 1 to 1e6") : usual_compression;
+            else if (policy == "none")
+                throw CLI::ValidationError(option, "\"" + text + "\" given; expected none alone, or no none");
+            else
+                throw CLI::ValidationError(option, "\"" + policy + "\" given; expected none, or some of side, normals, normals=COS, disc, disc=C with commas between them");
+            at = end + 1;
+        }
+        return leaks;
+    }
+
+    /// An option whose value is one of a setting's words.
+    template <class Target, class Setting, std::size_t N>
+    void add_choice(CLI::App& to, const std::string& option, Target& target, const named<Setting> (&names)[N], const std::string& about)
+    {
+        std::string type;
+        for (const auto& word : words(names))
+            type += (type.empty() ? "" : "|") + word;
+        to.add_option_function<std::string>(
+              option, [&target, &names](const std::string& word) { target = value_of(names, word); }, about)
+            ->check(CLI::IsMember(words(names)))
+            ->type_name(type);
+    }
+
     void add_whole(CLI::App& to, const std::string& option, std::optional<std::uint32_t>& target, const std::string& about)
     {
         to.add_option_function<std::string>(
@@ -79,17 +143,24 @@ Exit codes:
         to.add_option("scene", o.scene_path, "scene file")->required()->type_name("SCENE.json");
         to.add_option("--backend", o.backend, "auto: a hardware Vulkan device, else serial")->check(CLI::IsMember({"auto", "serial", "gl", "gl-osmesa", "vulkan"}))->type_name("auto|serial|gl|gl-osmesa|vulkan");
         to.add_option("--device", o.device, "Vulkan device (with --backend vulkan); see `photongrid devices`")->type_name("NAME|INDEX");
-        to.add_option_function<std::string>(
-              "--map", [&o](const std::string& text) { o.map = text == "sort" ? map_builder::sort : map_builder::route; }, "build the photon map by bitonic sort or stencil routing")
-            ->check(CLI::IsMember({"sort", "route"}))
-            ->type_name("sort|route");
+        add_choice(to, "--map", o.map, map_names, "build the photon map by bitonic sort or stencil routing");
         add_whole(to, "--slots", o.slots, "routed cells have N x N slots, 1 to 16");
         add_whole(to, "--photons", o.photons, "photons stored");
-        add_whole(to, "--k", o.k, "photons sought by an estimate");
+        add_whole(to, "--k", o.k, "photons sought by an estimate; fixed_radius seeks none");
+        add_choice(to, "--search", o.search, search_names, "photons used: k and a few more, as the paper has it; the k nearest; all within --max-radius; default: the scene's, else exact_k");
+        add_choice(to, "--kernel", o.kernel, kernel_names, "weight of a photon by its distance; default: the scene's, else constant");
+        add_choice(to, "--bias", o.bias, bias_names, "the photon that sets the radius counts (paper) or is left out of the sum (unbiased); default: the scene's, else unbiased");
+        to.add_option_function<std::string>(
+              "--leaks", [&o](const std::string& text) { o.leaks = parsed_leaks("--leaks", text); },
+              "photons refused: none, or some of side (came from behind the surface), normals=COS (lie on a surface turned away by more than this cosine; default 0.5), "
+              "disc=C (distances along the normal count C times; default 4), with commas between them; default: the scene's, else side")
+            ->type_name("LIST");
+        add_choice(to, "--only", o.only, drawn_alone, "draw this part of the light alone; default: all of it");
+        to.add_flag("--as-paper", o.as_paper, "the paper's estimate: --search at_least_k --kernel constant --bias paper --leaks none; each gives way to the option itself");
         to.add_option_function<std::string>(
               "--grid", [&o](const std::string& text) { o.grid = parsed_list<3>("--grid", text, ',', "three whole numbers: X,Y,Z"); }, "cells of the photon map")
             ->type_name("X,Y,Z");
-        add_number(to, "--max-radius", o.max_radius, "largest search radius", "METRES");
+        add_number(to, "--max-radius", o.max_radius, "largest search radius; of fixed_radius, the radius", "METRES");
         to.add_option_function<std::string>(
               "--size", [&o](const std::string& text) { o.size = parsed_list<2>("--size", text, 'x', "width and height: WxH"); }, "pixels")
             ->type_name("WxH");
@@ -99,6 +170,7 @@ Exit codes:
         add_whole(to, "--seed", o.seed, "same seed, same picture");
         add_number(to, "--exposure", o.exposure, "PNG: pixel values times 2^EV", "EV");
         to.add_option("-o,--output", o.outputs, "picture; may be given several times; default: the scene's name, .png")->allow_extra_args(false)->type_name("OUT.png|.exr|.pfm");
+        to.add_flag("--aov", o.aov, "EXR: layers estimate.radius (m), estimate.count (photons) and estimate.relative_error (standard error over value) beside the picture");
         to.add_option("--stats", o.stats, "statistics, as JSON")->type_name("OUT.json");
         to.add_option("--progressive", o.progressive, "folder for numbered pictures of the running estimate")->type_name("DIR");
         to.add_flag("--quiet", o.quiet, "no progress, no remarks");
@@ -167,6 +239,8 @@ command read_command_line(int argc, char** argv)
         app.parse(argc, argv);
         if (!render.device.empty() && render.backend != "vulkan")
             throw CLI::ValidationError("--device", "names a Vulkan device; expected --backend vulkan with it");
+        if (render.aov && std::none_of(render.outputs.begin(), render.outputs.end(), holds_layers))
+            throw CLI::ValidationError("--aov", (render.outputs.empty() ? "no output" : "\"" + render.outputs.front() + "\"") + std::string(" given, which has no layers; expected an EXR picture with it: -o OUT.exr"));
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? success : usage_error;
     }
@@ -183,7 +257,7 @@ command read_command_line(int argc, char** argv)
 
 render_settings settings_for(const scene& s, const render_options& o)
 {
-    render_settings r = s.render;
+    render_settings r = o.as_paper ? as_paper(s.render) : s.render;
     if (o.size) {
         r.width = o.size->x;
         r.height = o.size->y;
@@ -199,6 +273,12 @@ render_settings settings_for(const scene& s, const render_options& o)
     r.grid = o.grid.value_or(r.grid);
     r.max_radius = o.max_radius.value_or(r.max_radius);
     r.exposure = o.exposure.value_or(r.exposure);
+    r.search = o.search.value_or(r.search);
+    r.kernel = o.kernel.value_or(r.kernel);
+    r.bias = o.bias.value_or(r.bias);
+    r.leaks = o.leaks.value_or(r.leaks);
+    r.only = o.only;
+    r.aov = o.aov;
     check(r);
     const double cells = static_cast<double>(r.grid.x) * r.grid.y * r.grid.z;
     if (cells > 0x1p31)

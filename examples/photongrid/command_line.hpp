@@ -23,6 +23,12 @@ struct render_options {
     std::optional<glm::uvec3> grid;
     std::optional<glm::uvec2> size;
     std::optional<double> max_radius, exposure;
+    std::optional<search_kind> search;
+    std::optional<filter_kernel> kernel;
+    std::optional<bias_kind> bias;
+    std::optional<leak_policy> leaks;
+    light_part only = light_part::all;
+    bool aov = false, as_paper = false;
     std::vector<std::string> outputs;
     std::string stats, progressive;
     bool quiet = false;
@@ -58,7 +64,8 @@ using command = std::variant<exit_code, render_options, reference_options, compa
 
 command read_command_line(int argc, char** argv);
 
-/// The scene's settings with those of the command line in their place. Throws std::invalid_argument.
+/// The scene's settings, or with --as-paper the paper's estimate in them, with those of the command line in their place.
+/// Throws std::invalid_argument.
 render_settings settings_for(const scene& s, const render_options& o);
 
 } // namespace photongrid

@@ -102,11 +102,34 @@ namespace {
         return frame;
     }
 
+    /// A layer and the channel that it is in an EXR.
+    struct layer_channel {
+        const char* name;
+        const std::vector<float>& values;
+    };
+
+    /// The layers that are there.
+    std::vector<layer_channel> layers_of(const image& picture)
+    {
+        const auto& l = picture.layers;
+        std::vector<layer_channel> all;
+        for (const auto& c : {layer_channel{"estimate.radius", l.radius}, layer_channel{"estimate.count", l.count}, layer_channel{"estimate.relative_error", l.relative_error}})
+            if (!c.values.empty())
+                all.push_back(c);
+        return all;
+    }
+
     std::string exr_bytes(const image& picture, const image_notes& notes)
     {
         Imf::Header header(static_cast<int>(picture.width), static_cast<int>(picture.height));
         for (const auto* c : {"R", "G", "B"})
             header.channels().insert(c, Imf::Channel(Imf::FLOAT));
+        const auto layers = layers_of(picture);
+        for (const auto& l : layers) {
+            if (l.values.size() != picture.pixels.size())
+                throw std::runtime_error(std::string("the layer ") + l.name + " has " + std::to_string(l.values.size()) + " values for " + std::to_string(picture.pixels.size()) + " pixels");
+            header.channels().insert(l.name, Imf::Channel(Imf::FLOAT));
+        }
         header.compression() = Imf::ZIP_COMPRESSION;
         for (const auto& [name, text] : notes)
             header.insert(name, Imf::StringAttribute(text));
@@ -114,7 +137,10 @@ namespace {
         {
             Imf::OutputFile file(stream, header);
             // OpenEXR reads through pointers that are not const.
-            file.setFrameBuffer(rgb_frame(const_cast<glm::vec3*>(picture.pixels.data()), header.dataWindow()));
+            auto frame = rgb_frame(const_cast<glm::vec3*>(picture.pixels.data()), header.dataWindow());
+            for (const auto& l : layers)
+                frame.insert(l.name, Imf::Slice::Make(Imf::FLOAT, const_cast<float*>(l.values.data()), header.dataWindow()));
+            file.setFrameBuffer(frame);
             file.writePixels(static_cast<int>(picture.height));
         }
         return std::move(stream.bytes);
@@ -196,6 +222,8 @@ void check_file_path(const std::string& path)
     if (::access(shown.c_str(), W_OK | X_OK) != 0)
         fail(path, "the folder " + shown.string() + " cannot be written to: " + std::strerror(errno));
 }
+
+bool holds_layers(const std::string& path) { return ending(path) == ".exr"; }
 
 unsigned char tone_mapped(float linear, double exposure)
 {

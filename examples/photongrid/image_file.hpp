@@ -24,11 +24,15 @@ void check_image_path(const std::string& path);
 /// The same for any file, whatever its ending.
 void check_file_path(const std::string& path);
 
+/// Whether the format of `path`'s ending holds image::layers: EXR does.
+bool holds_layers(const std::string& path);
+
 /// Writes a picture in the format of its ending. All or nothing: on an error, or when the program dies, `path` is
-/// what it was before. `exposure` (EV) is used by PNG only. Throws file_error.
+/// what it was before. `exposure` (EV) is used by PNG only. EXR holds the picture's layers too, as single precision channels
+/// estimate.radius (m), estimate.count and estimate.relative_error; PNG and PFM leave them out. Throws file_error.
 void write_image(const std::string& path, const image& picture, double exposure = 0, const image_notes& notes = {});
 
-/// Reads an EXR or PFM file. Throws file_error.
+/// Reads an EXR or PFM file; of an EXR's channels R, G and B alone. Throws file_error.
 image read_image(const std::string& path);
 
 /// Writes bytes by way of a temporary file beside `path`. Throws file_error.

@@ -1,5 +1,7 @@
 #include "scene_file.hpp"
 
+#include "setting_names.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,10 +28,11 @@ namespace {
     constexpr scene_key point_keys[] = {{"type", must}, {"name", may}, {"position", must}, {"power", must}};
     constexpr scene_key rectangle_keys[] = {{"type", must}, {"name", may}, {"corner", must}, {"edge_u", must}, {"edge_v", must}, {"power", must}};
     constexpr scene_key render_keys[] = {{"size", must}, {"photons", must}, {"k", must}, {"grid", must}, {"max_radius", must}, {"light_samples", may}, {"spp", may}, {"depth", may}, {"photon_depth", may}, {"seed", may},
-        {"map", may}, {"slots", may}, {"exposure", may}};
+        {"map", may}, {"slots", may}, {"exposure", may}, {"search", may}, {"kernel", may}, {"bias", may}, {"leaks", may}};
+    constexpr scene_key leaks_keys[] = {{"side", may}, {"normals", may}, {"disc", may}};
     constexpr object_keys objects[] = {{"scene", scene_keys}, {"units", units_keys}, {"camera", camera_keys}, {"lambertian", reflecting_keys}, {"mirror", mirror_keys}, {"metal", reflecting_keys}, {"glass", glass_keys},
         {"sphere", sphere_keys}, {"cylinder", cylinder_keys}, {"cone", cone_keys}, {"paraboloid", paraboloid_keys}, {"disk", disk_keys}, {"triangle", vertices_keys}, {"polygon", vertices_keys}, {"point", point_keys},
-        {"rectangle", rectangle_keys}, {"render", render_keys}};
+        {"rectangle", rectangle_keys}, {"render", render_keys}, {"leaks", leaks_keys}};
 
     // Beyond these, single precision (squares and cubes of lengths, photon power) is no longer safe.
     constexpr double max_length = 1e9, max_power = 1e15;
@@ -369,6 +372,25 @@ namespace {
             }
         }
 
+        /// Policies that are not named are off, those of the default too.
+        leak_policy read_leaks(const json_value& v) const
+        {
+            if (v.kind != json_kind::object)
+                wrong(v, "an object with some of the keys " + joined(names(leaks_keys)) + "; {} for no policy");
+            open(v, "leaks");
+            leak_policy leaks;
+            if (const auto* side = v.find("side")) {
+                if (side->kind != json_kind::boolean)
+                    wrong(*side, "true or false");
+                leaks.side = side->truth;
+            }
+            if (const auto* normals = v.find("normals"))
+                leaks.min_cosine = static_cast<float>(number(*normals, -1, 1, "a cosine from -1 to 1"));
+            if (const auto* disc = v.find("disc"))
+                leaks.compression = static_cast<float>(number(*disc, 1, 1e6, "a compression from 1 to 1e6"));
+            return leaks;
+        }
+
         void read_render(const json_value& v)
         {
             open(v, "render");
@@ -395,8 +417,16 @@ namespace {
             optional("photon_depth", r.photon_depth, 1, 64);
             optional("seed", r.seed, 0, 0xFFFFFFFFu);
             optional("slots", r.slots, 1, 16);
-            if (const auto* map = v.find("map"))
-                r.builder = one_of(*map, {"sort", "route"}) == "sort" ? map_builder::sort : map_builder::route;
+            const auto choice = [&](const char* key, auto& setting, const auto& names) {
+                if (const auto* m = v.find(key))
+                    setting = value_of(names, one_of(*m, words(names)));
+            };
+            choice("map", r.builder, map_names);
+            choice("search", r.search, search_names);
+            choice("kernel", r.kernel, kernel_names);
+            choice("bias", r.bias, bias_names);
+            if (const auto* leaks = v.find("leaks"))
+                r.leaks = read_leaks(*leaks);
             if (const auto* exposure = v.find("exposure"))
                 r.exposure = number(*exposure, -64, 64, "an exposure from -64 to 64 EV");
             checked(v, r);

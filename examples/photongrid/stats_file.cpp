@@ -1,7 +1,10 @@
 #include "stats_file.hpp"
 
+#include "setting_names.hpp"
+
 #include <nlohmann/json.hpp>
 
+#include <charconv>
 #include <fstream>
 
 #include <sys/resource.h>
@@ -11,12 +14,34 @@ namespace photongrid {
 namespace {
     using json = nlohmann::ordered_json;
 
-    const char* name_of(map_builder b) { return b == map_builder::sort ? "sort" : "route"; }
+    /// The double that reads like the float: 0.3f is 0.3, not 0.30000001192092896.
+    double as_written(float v)
+    {
+        char text[32];
+        const auto* end = std::to_chars(text, text + sizeof text, v).ptr;
+        double d = 0;
+        std::from_chars(text, end, d);
+        return d;
+    }
+
+    /// In the form that scene files have: the policies that are in force.
+    json leaks_json(const leak_policy& l)
+    {
+        json leaks = json::object();
+        if (l.side)
+            leaks["side"] = true;
+        if (l.needs_normals())
+            leaks["normals"] = as_written(l.min_cosine);
+        if (l.compression > 1)
+            leaks["disc"] = as_written(l.compression);
+        return leaks;
+    }
 
     json settings_json(const render_settings& s)
     {
         return {{"size", {s.width, s.height}}, {"photons", s.photons}, {"k", s.k}, {"grid", {s.grid.x, s.grid.y, s.grid.z}}, {"max_radius", s.max_radius}, {"light_samples", s.light_samples}, {"spp", s.spp},
-            {"depth", s.depth}, {"photon_depth", s.photon_depth}, {"seed", s.seed}, {"map", name_of(s.builder)}, {"slots", s.slots}, {"exposure", s.exposure}};
+            {"depth", s.depth}, {"photon_depth", s.photon_depth}, {"seed", s.seed}, {"map", name_of(map_names, s.builder)}, {"slots", s.slots}, {"exposure", s.exposure},
+            {"search", name_of(search_names, s.search)}, {"kernel", name_of(kernel_names, s.kernel)}, {"bias", name_of(bias_names, s.bias)}, {"leaks", leaks_json(s.leaks)}, {"only", name_of(part_names, s.only)}};
     }
 
     json stage_json(const stage_stats& s) { return {{"ms", s.ms}, {"passes", s.passes}, {"device_bytes", s.device_bytes}}; }
@@ -32,7 +57,7 @@ std::string stats_json(const scene& s, const render_settings& settings, const re
     const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.name}, {"backend", result.caps.backend}, {"device", result.caps.device}, {"seed", settings.seed}, {"settings", settings_json(settings)},
         {"photons",
             {{"emitted", p.emitted}, {"absorbed", p.absorbed}, {"escaped", p.escaped}, {"cut_off", p.cut_off}, {"invalid", p.invalid}, {"stored", p.stored}, {"direct", p.direct}, {"dropped", p.dropped}}},
-        {"map", {{"builder", name_of(r.map.builder)}, {"cells", r.map.cells}, {"overfull_cells", r.map.overfull_cells}, {"redistributed_flux", r.map.redistributed_flux}}},
+        {"map", {{"builder", name_of(map_names, r.map.builder)}, {"cells", r.map.cells}, {"overfull_cells", r.map.overfull_cells}, {"redistributed_flux", r.map.redistributed_flux}}},
         {"stages",
             {{"trace_photons", stage_json(r.trace_photons)}, {"build_map", stage_json(r.build_map)}, {"trace_rays", stage_json(r.trace_rays)}, {"radiance_estimate", stage_json(r.radiance_estimate)}}},
         {"estimate", {{"mean_count", r.estimate.mean_count}, {"mean_radius", r.estimate.mean_radius}, {"mean_visited", r.estimate.mean_visited}}}, {"kernels", kernels},
