@@ -313,7 +313,7 @@ namespace {
             const auto e = run(arguments);
             EXPECT_EQ(e.code, 2);
             EXPECT_NE(e.err.find("--aov: "), std::string::npos) << e.err;
-            EXPECT_NE(e.err.find("expected an EXR picture with it: -o OUT.exr"), std::string::npos) << e.err;
+            EXPECT_NE(e.err.find("expected an EXR picture, which holds layers: -o OUT.exr"), std::string::npos) << e.err;
         }
         EXPECT_EQ(files(), 0u);
         const auto e = run(small_with({"--aov", "-o", "a.png", "-o", "a.EXR"}));

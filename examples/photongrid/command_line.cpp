@@ -240,7 +240,7 @@ command read_command_line(int argc, char** argv)
         if (!render.device.empty() && render.backend != "vulkan")
             throw CLI::ValidationError("--device", "names a Vulkan device; expected --backend vulkan with it");
         if (render.aov && std::none_of(render.outputs.begin(), render.outputs.end(), holds_layers))
-            throw CLI::ValidationError("--aov", (render.outputs.empty() ? "no output" : "\"" + render.outputs.front() + "\"") + std::string(" given, which has no layers; expected an EXR picture with it: -o OUT.exr"));
+            throw CLI::ValidationError("--aov", (render.outputs.empty() ? "no output" : "\"" + render.outputs.front() + "\"") + std::string(" given; expected an EXR picture, which holds layers: -o OUT.exr"));
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? success : usage_error;
     }
