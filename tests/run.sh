@@ -39,7 +39,7 @@ while (($# > 0)); do
   esac
   shift
 done
-require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev vulkan-validationlayers clang-14 libclang-rt-14-dev
+require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev libnanoflann-dev vulkan-validationlayers clang-14 libclang-rt-14-dev
 
 export CMAKE_GENERATOR=Ninja          # for the projects that tests configure; a bare Debian has no make
 export NODEVICE_SELECT=1              # the implicit layer crashes processes that start side by side
