@@ -42,8 +42,9 @@ class no_debug_messages : public ::testing::Environment {
     static void look()
     {
         std::string reason;
-        if (auto* b = shared_backend<Tag>(reason); b != nullptr)
+        if (auto* b = shared_backend<Tag>(reason); b != nullptr) {
             EXPECT_EQ(b->take_debug_messages(), "") << Tag::name;
+        }
     }
     void TearDown() override
     {

@@ -323,8 +323,7 @@ namespace {
         EXPECT_EQ(contents(folder / "b.exr").find("estimate."), std::string::npos);
     }
 
-    // Enabled once render.hpp fills image::layers.
-    TEST_F(program, DISABLED_writes_layers)
+    TEST_F(program, writes_layers)
     {
         ASSERT_EQ(run(small_with({"--aov", "-o", "a.exr"})).code, 0);
         for (const auto* channel : {"estimate.radius", "estimate.count", "estimate.relative_error"})
