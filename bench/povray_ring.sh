@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# The ring scene's caustic by POV-Ray's photons and by ours: how far the brightest parts overlap. Needs povray (Debian package
+# povray) and the program and bench/povray_ring built (-DPHOTONGRID_BENCH=ON).
+#
+#   bench/povray_ring.sh [BUILD FOLDER]      default: build
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+build=${1:-build}
+for program in "$build/photongrid" "$build/bench/povray_ring"; do
+  [[ -x $program ]] || { echo "bench/povray_ring.sh: $program is not there; build it: cmake --preset release -DPHOTONGRID_BENCH=ON && cmake --build build" >&2; exit 1; }
+done
+command -v povray >/dev/null || { echo "bench/povray_ring.sh: no povray; apt-get install povray" >&2; exit 1; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+scene=examples/scenes/ring.json
+for photons in on off; do
+  "$build/bench/povray_ring" export "$scene" "$photons" >"$work/$photons.pov"
+  povray "+I$work/$photons.pov" "+O$work/$photons.exr" +FE +W512 +H384 -D +A0.1 -GA >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }
+done
+"$build/photongrid" render "$scene" --backend serial --photons 500000 --k 100 --spp 4 --quiet -o "$work/ours.exr" >/dev/null
+if [[ -n ${KEEP:-} ]]; then
+  cp "$work"/*.exr "$work"/*.pov "$KEEP"
+fi
+"$build/bench/povray_ring" compare "$scene" "$work/ours.exr" "$work/on.exr" "$work/off.exr"
