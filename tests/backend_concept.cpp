@@ -54,7 +54,7 @@ static_assert(iterative_kernel<kernels::knn_visit>);
 static_assert(predicate_kernel<kernels::overfull_cell>);
 static_assert(route_kernel<kernels::route_photon> && !route_kernel<kernels::bitonic_step>);
 static_assert(kernel_name<kernels::knn_visit>() == "knn_visit");
-static_assert(input_count<kernels::knn_visit> == 5 && output_count<kernels::knn_visit> == 3);
+static_assert(input_count<kernels::knn_visit> == 7 && output_count<kernels::knn_visit> == 3);
 
 // No word of the dialect survives the headers.
 #if defined(PARAMS) || defined(INPUT) || defined(OUTPUT) || defined(STATE) || defined(SWITCH) || defined(precise)

@@ -81,8 +81,9 @@ public:
             const progress p = run_stage(passes - all.passes);
             all.passes += p.passes;
             all.active.insert(all.active.end(), p.active.begin(), p.active.end());
-            if (p.finished)
-                next_stage();
+            if (!p.finished)
+                break;
+            next_stage();
         }
         all.finished = stage_ == stage::finished;
         return all;
