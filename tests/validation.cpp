@@ -478,11 +478,11 @@ namespace {
             std::printf("facing discs, %.2f m off the axis: known %.4f W/m^2 x reflectance, photon map %.4f %.4f %.4f\n", radii[i], known, mean.x / f.reflectance.x, mean.y / f.reflectance.y,
                 mean.z / f.reflectance.z);
             for (int c = 0; c < 3; ++c) // 0.2 % for the curve of the profile over a disc
-                EXPECT_NEAR(mean[c] / f.reflectance[c], known, (5 / std::sqrt(k * n) + 0.002) * known) << radii[i] << ", channel " << c;
+                EXPECT_NEAR(mean[c] / f.reflectance[c], known, (5 / std::sqrt(static_cast<double>(k) * n) + 0.002) * known) << radii[i] << ", channel " << c;
             ratio += n * mean.x / f.reflectance.x / known;
             count += n;
         }
-        EXPECT_NEAR(ratio / count, 1, 4 / std::sqrt(k * count) + 0.002);
+        EXPECT_NEAR(ratio / count, 1, 4 / std::sqrt(static_cast<double>(k) * count) + 0.002);
     }
 
     // --- convergence ------------------------------------------------------------------------------------------------------
