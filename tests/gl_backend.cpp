@@ -722,7 +722,7 @@ void kernel(uint i) { value = i; }
         const auto sorted = sorted_map(b, std::move(photons_to_sort), g);
         const auto routed = routed_map(b, std::move(photons_to_route), g, 4);
         EXPECT_EQ(b.query_polls() - polls, 3u) << "three counts: invalid photons twice, overfull cells once";
-        knn_search search(b, sorted, queries, {.k = 40, .max_radius = 0.4f, .visits_per_pass = 20, .ranges_per_pass = 20});
+        knn_search search(b, sorted, queries, as_paper(knn_settings{.k = 40, .max_radius = 0.4f, .visits_per_pass = 20, .ranges_per_pass = 20}));
         const auto before = b.query_polls();
         const progress p = search.advance();
         const auto e = search.estimates();
@@ -734,7 +734,7 @@ void kernel(uint i) { value = i; }
         EXPECT_GT(p.active.front(), p.active.back());
         EXPECT_TRUE(std::is_sorted(p.active.rbegin(), p.active.rend()));
         // Pass by pass it comes to the same.
-        knn_search slow(b, sorted, queries, {.k = 40, .max_radius = 0.4f, .visits_per_pass = 20, .ranges_per_pass = 20});
+        knn_search slow(b, sorted, queries, as_paper(knn_settings{.k = 40, .max_radius = 0.4f, .visits_per_pass = 20, .ranges_per_pass = 20}));
         uint passes = 0;
         for (progress one = slow.advance(1);; one = slow.advance(1)) {
             passes += one.passes;
