@@ -253,7 +253,7 @@ namespace {
             nlohmann::json settings; ///< some of those in the statistics
         };
         using json = nlohmann::json;
-        const json by_default = json::parse(R"({"search": "exact_k", "kernel": "constant", "bias": "unbiased", "leaks": {"side": true}, "only": "all"})");
+        const json by_default = json::parse(R"({"search": "exact_k", "kernel": "silverman", "bias": "unbiased", "leaks": {"side": true}, "only": "all"})");
         const json paper = json::parse(R"({"search": "at_least_k", "kernel": "constant", "bias": "paper", "leaks": {}, "only": "all"})");
         const auto but = [](json all, const char* more) {
             all.update(json::parse(more));

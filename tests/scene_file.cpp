@@ -139,7 +139,7 @@ namespace {
         };
         const auto plain = with("");
         EXPECT_EQ(plain.search, search_kind::exact_k);
-        EXPECT_EQ(plain.kernel, filter_kernel::constant);
+        EXPECT_EQ(plain.kernel, filter_kernel::silverman);
         EXPECT_EQ(plain.bias, bias_kind::unbiased);
         EXPECT_TRUE(plain.leaks.side);
         EXPECT_EQ(plain.leaks.min_cosine, -1);

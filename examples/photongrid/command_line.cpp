@@ -148,7 +148,7 @@ Exit codes:
         add_whole(to, "--photons", o.photons, "photons stored");
         add_whole(to, "--k", o.k, "photons sought by an estimate; fixed_radius seeks none");
         add_choice(to, "--search", o.search, search_names, "photons used: k and a few more, as the paper has it; the k nearest; all within --max-radius; default: the scene's, else exact_k");
-        add_choice(to, "--kernel", o.kernel, kernel_names, "weight of a photon by its distance; default: the scene's, else constant");
+        add_choice(to, "--kernel", o.kernel, kernel_names, "weight of a photon by its distance; default: the scene's, else silverman");
         add_choice(to, "--bias", o.bias, bias_names, "the photon that sets the radius counts (paper) or is left out of the sum (unbiased); default: the scene's, else unbiased");
         to.add_option_function<std::string>(
               "--leaks", [&o](const std::string& text) { o.leaks = parsed_leaks("--leaks", text); },

@@ -110,7 +110,7 @@ struct render_settings {
     std::uint32_t slots = 4;                 ///< m: routed cells have m x m slots
     double exposure = 0;                     ///< EV for tone-mapped output: pixel values times 2^exposure
     search_kind search = search_kind::exact_k;
-    filter_kernel kernel = filter_kernel::constant;
+    filter_kernel kernel = filter_kernel::silverman;
     bias_kind bias = bias_kind::unbiased;
     leak_policy leaks{.side = true};
     light_part only = light_part::all;
