@@ -323,6 +323,31 @@ namespace {
         EXPECT_EQ(contents(folder / "b.exr").find("estimate."), std::string::npos);
     }
 
+    TEST_F(program, parts_of_the_light_add_up)
+    {
+        // With a given radius and a constant kernel an estimate is linear in the photons.
+        const std::string box = PHOTONGRID_SCENES "/cornell_box.json";
+        const auto draw = [&](std::vector<std::string> more) {
+            std::vector<std::string> arguments{"render", box, "--backend", "serial", "--size", "32x32", "--photons", "4000", "--search", "fixed_radius", "--max-radius", "0.2", "--kernel", "constant", "--stats", "s.json", "-o", "a.exr"};
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            const auto e = run(arguments);
+            EXPECT_EQ(e.code, 0) << e.err;
+            const auto s = nlohmann::json::parse(contents(folder / "s.json"));
+            return std::pair(read_image(folder / "a.exr"), s.at("map").at("left_out").get<std::uint64_t>());
+        };
+        const auto [all, none_left_out] = draw({});
+        const auto [direct, ignored] = draw({"--only", "direct"});
+        const auto [caustic, others] = draw({"--only", "caustic"});
+        const auto [indirect, caustics] = draw({"--only", "indirect"});
+        EXPECT_EQ(none_left_out, 0u);
+        EXPECT_EQ(others + caustics, 4000u);
+        EXPECT_GT(caustics, 100u);
+        EXPECT_GT(others, 1000u);
+        for (std::size_t i = 0; i < all.pixels.size(); ++i)
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(direct.pixels[i][c] + caustic.pixels[i][c] + indirect.pixels[i][c], all.pixels[i][c], 1e-5f * all.pixels[i][c] + 1e-7f) << i;
+    }
+
     TEST_F(program, writes_layers)
     {
         ASSERT_EQ(run(small_with({"--aov", "-o", "a.exr"})).code, 0);

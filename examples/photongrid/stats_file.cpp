@@ -57,7 +57,7 @@ std::string stats_json(const scene& s, const render_settings& settings, const re
     const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.name}, {"backend", result.caps.backend}, {"device", result.caps.device}, {"seed", settings.seed}, {"settings", settings_json(settings)},
         {"photons",
             {{"emitted", p.emitted}, {"absorbed", p.absorbed}, {"escaped", p.escaped}, {"cut_off", p.cut_off}, {"invalid", p.invalid}, {"stored", p.stored}, {"direct", p.direct}, {"dropped", p.dropped}}},
-        {"map", {{"builder", name_of(map_names, r.map.builder)}, {"cells", r.map.cells}, {"overfull_cells", r.map.overfull_cells}, {"redistributed_flux", r.map.redistributed_flux}}},
+        {"map", {{"builder", name_of(map_names, r.map.builder)}, {"cells", r.map.cells}, {"overfull_cells", r.map.overfull_cells}, {"redistributed_flux", r.map.redistributed_flux}, {"left_out", r.map.left_out}}},
         {"stages",
             {{"trace_photons", stage_json(r.trace_photons)}, {"build_map", stage_json(r.build_map)}, {"trace_rays", stage_json(r.trace_rays)}, {"radiance_estimate", stage_json(r.radiance_estimate)}}},
         {"estimate", {{"mean_count", r.estimate.mean_count}, {"mean_radius", r.estimate.mean_radius}, {"mean_visited", r.estimate.mean_visited}}}, {"kernels", kernels},
