@@ -24,7 +24,7 @@ for scene in glass_ball ring cornell_box; do
   for map in sort route; do
     for backend in "${backends[@]}"; do
       file=$stats/$scene-$map-$backend.json
-      "$program" render "examples/scenes/$scene.json" --backend "$backend" --map "$map" --quiet -o "$stats/picture.pfm" --stats "$file" >/dev/null
+      "$program" render "examples/scenes/$scene.json" --backend "$backend" --map "$map" --as-paper --quiet -o "$stats/picture.pfm" --stats "$file" >/dev/null
       printf '| %s | %s | %s |' "$scene" "$map" "$backend"
       for stage in trace_photons build_map trace_rays radiance_estimate; do
         printf ' %.2f |' "$(awk -v ms="$(figure "$file" "$stage" ms)" 'BEGIN { print ms / 1000 }')"
