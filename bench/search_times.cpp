@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <random>
 
 namespace {
@@ -128,13 +129,18 @@ void measure(B&& b, const data_set& s, uint repetitions)
 
 } // namespace
 
+// search_times [repetitions [backend]]
 int main(int argc, char** argv)
 {
     const uint repetitions = argc > 1 ? static_cast<uint>(std::max(1, std::atoi(argv[1]))) : 3;
     const auto s = s3(65000, 32768);
     std::printf("S3: %zu photons, %zu points, k = %u, maximum radius %.2f m\n", s.positions.size(), s.points.size(), k, static_cast<double>(max_radius));
     std::printf("| backend | grid | at_least_k, 1000/s | exact_k, 1000/s | ratio | used | visited | used | visited | relMSE | relMSE |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
-    measure(serial_backend(), s, repetitions);
-    measure(vulkan_backend(), s, repetitions);
-    measure(gl_backend(), s, repetitions);
+    const auto wanted = [&](const char* name) { return argc < 3 || std::strcmp(argv[2], name) == 0; };
+    if (wanted("serial"))
+        measure(serial_backend(), s, repetitions);
+    if (wanted("vulkan"))
+        measure(vulkan_backend(), s, repetitions);
+    if (wanted("gl"))
+        measure(gl_backend(), s, repetitions);
 }

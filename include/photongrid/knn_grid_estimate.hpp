@@ -167,13 +167,13 @@ private:
         stage_ = stage::distance;
         pivots_ = make<glm::vec4>();
         counts_ = make<glm::uvec4>();
-        extremes_ = make<glm::vec4>();
+        outer_ = make<glm::uvec4>();
         bracket_ = make<glm::uvec4>();
         cursor_ = make<glm::uvec4>();
         tally_ = make<glm::uvec4>();
         b_->template run<kernels::kth_guess>(points_->size(),
             {.grid = map_->cells_of, .wanted = s_.k, .max_radius2 = max_radius2(), .rows = 1023u, .searching = searching() ? 1u : 0u}, reads(*points_, map_->cells),
-            writes(pivots_, counts_, extremes_, bracket_, cursor_, tally_));
+            writes(pivots_, counts_, outer_, bracket_, cursor_, tally_));
     }
 
     void start_gathering()
@@ -211,7 +211,7 @@ private:
             b.template run<kernels::kth_result>(n, {.wanted = s_.k, .photons = map_->photons.size(), .max_radius2 = max_radius2()}, reads(bracket_, tally_), writes(reach_, chosen_, ids, counts_, cursor_));
             bracket_ = std::move(ids);
             pivots_ = {};
-            extremes_ = {};
+            outer_ = {};
             tally_ = {};
             stage_ = stage::tie;
             return;
@@ -249,7 +249,7 @@ private:
         case stage::distance:
             return b.template run_until_done<kernels::kth_distance>(points,
                 {.grid = m.cells_of, .leaks = leaks, .wanted = s_.k, .max_radius2 = max_radius2(), .visits = s_.visits_per_pass, .ranges = s_.ranges_per_pass},
-                reads(*points_, normals, m.cells, m.photons.positions, directions, photon_normals), writes(pivots_, counts_, extremes_, bracket_, cursor_, tally_), passes);
+                reads(*points_, normals, m.cells, m.photons.positions, directions, photon_normals), writes(pivots_, counts_, outer_, bracket_, cursor_, tally_), passes);
         case stage::tie:
             return b.template run_until_done<kernels::kth_tie>(points,
                 {.grid = m.cells_of, .leaks = leaks, .wanted = s_.k, .photons = m.photons.size(), .visits = s_.visits_per_pass, .ranges = s_.ranges_per_pass},
@@ -283,8 +283,8 @@ private:
     knn_settings s_;
     stage stage_ = stage::finished;
     // States; each stage holds its own and gives up the last one's.
-    vectors gathered_, pivots_, extremes_, reach_, sum_, lost_, squares_;
-    buffer_of<B, glm::uvec4> found_, counts_, bracket_, chosen_, cursor_, tally_;
+    vectors gathered_, pivots_, reach_, sum_, lost_, squares_;
+    buffer_of<B, glm::uvec4> found_, counts_, outer_, bracket_, chosen_, cursor_, tally_;
 };
 
 /// The whole search at once.

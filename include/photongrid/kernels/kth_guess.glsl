@@ -13,8 +13,8 @@ PARAMS(Params)
 INPUT(0, vec4, points) // xyz: query point, m; w > 0: wanted
 INPUT(1, uvec2, cells)
 OUTPUT(0, vec4, pivots)   // see kth_distance.glsl, whose states these are
-OUTPUT(1, uvec4, counts)
-OUTPUT(2, vec4, extremes)
+OUTPUT(1, uvec4, inner)
+OUTPUT(2, uvec4, outer)
 OUTPUT(3, uvec4, bracket)
 OUTPUT(4, uvec4, cursor)
 OUTPUT(5, uvec4, tally)
@@ -23,8 +23,8 @@ void kernel(uint i)
 {
     vec4 p = points(i);
     pivots = vec4(0.0f, 0.0f, 0.0f, 0.0f);
-    counts = uvec4(0u, 0u, 0u, 0u);
-    extremes = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    inner = uvec4(0u, 0u, 0u, 0u);
+    outer = uvec4(0u, 0u, 0u, 0u);
     bracket = uvec4(0u, 0u, 0u, 0xFFFFFFFFu);
     cursor = uvec4(0u, 0u, 0u, 0u);
     tally = uvec4(0u, 0u, 0u, 3u); // found: nothing
@@ -35,6 +35,8 @@ void kernel(uint i)
     uvec4 c = cell_coordinates(args.grid, p);
     float guess = args.max_radius2;
     uint half_width = 1u;
+    uint inside = 0u; // photons of the last box, and its area
+    float inside_area = 0.0f;
     bool looking = true;
     while (looking) {
         uint low_x = c.x > half_width ? c.x - half_width : 0u;
@@ -54,20 +56,23 @@ void kernel(uint i)
                     uvec2 last = cells(row + high_x);
                     held += last.x + last.y - cells(row + low_x).x;
                 }
-            // Photons lie on surfaces: as many to the area as the largest section of the box has.
+            // Photons lie on surfaces: as many as the largest section of the box shows area, and between two boxes evenly. A
+            // square with 4/pi k photons has a disc with k inside it, whose squared radius is a quarter of the square.
             float x = float(high_x - low_x + 1u) * args.grid.cell.x;
             float y = float(high_y - low_y + 1u) * args.grid.cell.y;
             float z = float(high_z - low_z + 1u) * args.grid.cell.z;
             precise float area = max(x * y, max(y * z, z * x));
-            precise float wanted_area = area * (float(args.wanted) / float(held));
-            precise float radius2 = wanted_area * 0.318f;
-            if (held > 0u)
+            if (held > inside) {
+                precise float share = (1.2732395f * float(args.wanted) - float(inside)) / float(held - inside);
+                precise float radius2 = 0.25f * (inside_area + (area - inside_area) * share);
                 guess = max(radius2, 1e-30f);
+            }
+            inside = held;
+            inside_area = area;
             bool everything = low_x == 0u && low_y == 0u && low_z == 0u && high_x + 1u == args.grid.resolution.x && high_y + 1u == args.grid.resolution.y && high_z + 1u == args.grid.resolution.z;
-            looking = held < args.wanted && !everything;
+            looking = float(held) < 1.2732395f * float(args.wanted) && !everything;
             half_width *= 2u;
         }
     }
-    precise vec4 first = vec4(0.4f * guess, 0.7f * guess, guess, 1.4f * guess);
-    pivots = vec4(min(first.x, args.max_radius2), min(first.y, args.max_radius2), min(first.z, args.max_radius2), min(first.w, args.max_radius2));
+    pivots = vec4(0.0f, min(guess, args.max_radius2), 0.0f, 0.0f);
 }
