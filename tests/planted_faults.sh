@@ -6,10 +6,8 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 work=$PWD/build-faults
-mkdir -p "$work"
-rm -rf "$work/tree"
-mkdir "$work/tree"
-tar -c --exclude='./build*' --exclude=./out --exclude=./.git . | tar -x -C "$work/tree"
+rm -rf "$work"
+mkdir "$work"
 
 # name | file | what to replace | by what (plain text, which must be there)
 faults=(
@@ -32,40 +30,60 @@ faults=(
   "lamp twice as bright|include/photongrid/kernels/direct_light.glsl|3.18309886e-1f * share|6.36619772e-1f * share"
 )
 
-cmake -S "$work/tree" -B "$work/build" -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DPHOTONGRID_TESTS=ON -DPHOTONGRID_GL=OFF -DPHOTONGRID_VULKAN=OFF
-suite() { cmake --build "$work/build" --target on_serial >"$work/log" 2>&1 && RC_PARAMS=seed=20031 "$work/build/tests/on_serial" --gtest_filter='-*long_*:*scene_files*' >"$work/log" 2>&1; }
-echo "== no fault"
-suite || { tail -n 30 "$work/log"; echo "planted_faults: the tests fail without any fault" >&2; exit 1; }
-
-caught=0 missed=0
-for fault in "${faults[@]}"; do
-  name=${fault%%|*} rest=${fault#*|}
+# Each worker has a copy of the sources and a build of its own, since the tests of one backend are one large file.
+built() { cmake --build "$1/build" --target on_serial >"$1/log" 2>&1; }
+suite() { RC_PARAMS=seed=20031 timeout 900 "$1/build/tests/on_serial" --gtest_filter='-*long_*:*scene_files*' >"$1/log" 2>&1; }
+plant() { # worker's folder, fault
+  local name=${2%%|*} rest=${2#*|} file from to text
   file=${rest%%|*} rest=${rest#*|}
   # The separator is a bar, so bars inside are written \|.
   rest=${rest//\\|/$'\001'}
   from=${rest%%|*} to=${rest#*|}
   from=${from//$'\001'/|} to=${to//$'\001'/|}
-  wanted=yes
-  for word in "$@"; do
-    wanted=no
-    if [[ $name == *$word* ]]; then wanted=yes; break; fi
-  done
-  [[ $wanted == yes ]] || continue
-  text=$(cat "$work/tree/$file")
+  text=$(cat "$1/tree/$file")
   if [[ $text != *"$from"* ]]; then
-    echo "planted_faults: '$name': $file no longer holds: $from" >&2
-    exit 1
+    echo "MISSED  $name: $file no longer holds: $from"
+    return
   fi
-  printf '%s\n' "${text/"$from"/"$to"}" >"$work/tree/$file"
-  if suite; then
+  printf '%s\n' "${text/"$from"/"$to"}" >"$1/tree/$file"
+  if ! built "$1"; then
+    echo "MISSED  $name: does not compile: $(grep -m 1 error "$1/log")"
+  elif suite "$1"; then
     echo "MISSED  $name"
-    missed=$((missed + 1))
   else
-    echo "caught  $name: $(grep -oE '^\[  FAILED  \] [^ ,]+' "$work/log" | sed 's/.*\.//' | sort -u | tr '\n' ' ' | cut -c 1-110)"
-    grep -q '\[  FAILED  \]' "$work/log" || tail -n 3 "$work/log" | sed 's/^/        /'
-    caught=$((caught + 1))
+    echo "caught  $name: $(grep -oE '^\[  FAILED  \] [^ ,]+' "$1/log" | sed 's/.*\.//' | sort -u | tr '\n' ' ' | cut -c 1-110)"
+    grep -q '\[  FAILED  \]' "$1/log" || tail -n 3 "$1/log" | sed 's/^/        /'
   fi
-  printf '%s\n' "$text" >"$work/tree/$file"
+  printf '%s\n' "$text" >"$1/tree/$file"
+}
+
+chosen=()
+for fault in "${faults[@]}"; do
+  wanted=$(($# == 0))
+  for word in "$@"; do
+    if [[ ${fault%%|*} == *$word* ]]; then wanted=1; fi
+  done
+  if ((wanted)); then chosen+=("$fault"); fi
 done
-echo "$caught passed, $missed failed"
-((missed == 0))
+
+workers=$(nproc)
+if ((workers > ${#chosen[@]})); then workers=${#chosen[@]}; fi
+for ((w = 0; w < workers; ++w)); do
+  mkdir "$work/$w" "$work/$w/tree"
+  tar -c --exclude='./build*' --exclude=./out --exclude=./.git . | tar -x -C "$work/$w/tree"
+  cmake -S "$work/$w/tree" -B "$work/$w/build" -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DPHOTONGRID_TESTS=ON -DPHOTONGRID_GL=OFF -DPHOTONGRID_VULKAN=OFF
+done
+echo "== no fault"
+{ built "$work/0" && suite "$work/0"; } || { tail -n 30 "$work/0/log"; echo "planted_faults: the tests fail without any fault" >&2; exit 1; }
+
+running=()
+for ((w = 0; w < workers; ++w)); do
+  for ((f = w; f < ${#chosen[@]}; f += workers)); do
+    plant "$work/$w" "${chosen[f]}" | tee -a "$work/$w/results"
+  done &
+  running+=($!)
+done
+for job in "${running[@]}"; do wait "$job"; done
+caught=$(cat "$work"/*/results | grep -c '^caught' || true)
+echo "$caught of ${#chosen[@]} faults caught"
+((caught == ${#chosen[@]}))
