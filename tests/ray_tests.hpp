@@ -135,15 +135,6 @@ protected:
 
     bool exact() { return this->b().caps().exact_division && this->b().caps().exact_sqrt; }
 
-    /// Says, and records in the test's report, the largest error of a case.
-    void report(const std::string& hard_case, const std::string& what, double value)
-    {
-        char text[64];
-        std::snprintf(text, sizeof text, "%.3g", value);
-        std::printf("hard case %s on %s: %s %s\n", hard_case.c_str(), Tag::name, what.c_str(), text);
-        ::testing::Test::RecordProperty(hard_case, what + " " + text);
-    }
-
     /// Irradiance of the scene's lights at points (recentred) with normals.
     std::vector<glm::vec4> direct_light_at(const scene& s, const std::vector<dvec3>& points, const std::vector<dvec3>& normals, uint samples)
     {

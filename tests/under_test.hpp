@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <string>
@@ -61,6 +62,15 @@ protected:
         GTEST_SKIP() << Tag::name << ": " << reason;
     }
     B& b() { return *instance_; }
+
+    /// Says, and records in the test's report, the largest error of a case of docs/hard_cases.md.
+    void report(const std::string& hard_case, const std::string& what, double value)
+    {
+        char text[64];
+        std::snprintf(text, sizeof text, "%.3g", value);
+        std::printf("hard case %s on %s: %s %s\n", hard_case.c_str(), Tag::name, what.c_str(), text);
+        ::testing::Test::RecordProperty(hard_case, what + " " + text);
+    }
 
 private:
     B* instance_ = nullptr;
