@@ -477,6 +477,22 @@ void kernel(uint i) { value = i; }
         both(std::type_identity<kernels::no_light>{});
         both(std::type_identity<kernels::copy_light>{});
         both(std::type_identity<kernels::shade>{});
+        both(std::type_identity<kernels::take_vector>{});
+        both(std::type_identity<kernels::other_part>{});
+        both(std::type_identity<kernels::packed_cell>{});
+        both(std::type_identity<kernels::packed_photon>{});
+        both(std::type_identity<kernels::kth_guess>{});
+        both(std::type_identity<kernels::kth_distance>{});
+        both(std::type_identity<kernels::kth_result>{});
+        both(std::type_identity<kernels::kth_tie>{});
+        both(std::type_identity<kernels::given_radius>{});
+        both(std::type_identity<kernels::grown_radius>{});
+        both(std::type_identity<kernels::gather_start>{});
+        both(std::type_identity<kernels::gather_photons>{});
+        both(std::type_identity<kernels::no_estimate>{});
+        both(std::type_identity<kernels::irradiance_estimate>{});
+        both(std::type_identity<kernels::gather_normal>{});
+        both(std::type_identity<kernels::tally_error>{});
     }
 
     TYPED_TEST(gl_backend_test, reports_errors_at_the_kernels_own_line)

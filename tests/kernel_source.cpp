@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <map>
 #include <regex>
+#include <sstream>
 
 namespace {
 
@@ -79,6 +83,43 @@ TEST(kernel_texts, kernels_call_no_function_that_devices_round_differently)
         std::smatch m;
         EXPECT_FALSE(std::regex_search(code, m, forbidden)) << f.name << " calls " << m[1];
     }
+}
+
+/// Every file of backends/ without comments, by its path.
+std::map<std::string, std::string> backend_sources()
+{
+    std::map<std::string, std::string> texts;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(PHOTONGRID_BACKENDS)) {
+        if (!entry.is_regular_file())
+            continue;
+        std::ostringstream text;
+        text << std::ifstream(entry.path()).rdbuf();
+        texts[entry.path().string()] = std::regex_replace(text.str(), std::regex("//[^\n]*"), "");
+    }
+    return texts;
+}
+
+// Hard case G3: sums of floats whose order a device chooses. Atomic operations are on whole numbers, and floats are blended
+// in one place, route's sums, where OpenGL keeps the order of the points.
+TEST(backend_texts, no_float_is_added_in_an_order_that_a_device_chooses)
+{
+    std::size_t atomics = 0, blends = 0;
+    for (const auto& [path, text] : backend_sources()) {
+        EXPECT_FALSE(std::regex_search(text, std::regex("shader_atomic_float|imageAtomic|subgroupAdd|subgroupInclusiveAdd"))) << path;
+        const std::regex atomic(R"(\batomic[A-Z]\w*\((\w+))");
+        for (std::sregex_iterator at(text.begin(), text.end(), atomic); at != std::sregex_iterator(); ++at) {
+            ++atomics;
+            EXPECT_TRUE(std::regex_search(text, std::regex("\\buint " + (*at)[1].str() + "\\b"))) << path << ": " << (*at)[0] << ": not on a uint";
+        }
+        const std::regex enabled(R"(Enablei?\(GL_BLEND)");
+        const auto here = std::distance(std::sregex_iterator(text.begin(), text.end(), enabled), std::sregex_iterator());
+        blends += static_cast<std::size_t>(here);
+        EXPECT_TRUE(here == 0 || path.ends_with("routing.hpp")) << path;
+    }
+    EXPECT_GT(atomics, 3u);
+    EXPECT_EQ(blends, 1u);
+    for (const auto& f : kernel_texts)
+        EXPECT_EQ(f.text.find("atomic"), std::string_view::npos) << f.name;
 }
 
 } // namespace
