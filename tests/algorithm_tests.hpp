@@ -355,6 +355,33 @@ TYPED_TEST_P(algorithms, route_is_fair_to_later_photons)
     this->report("A4", "the later light's share of the photons kept:", static_cast<double>(late) / static_cast<double>(kept));
 }
 
+TYPED_TEST_P(algorithms, a_map_of_one_part_of_the_light_holds_that_part)
+{
+    auto& b = this->b();
+    auto set = make_photons(distribution::uniform, 2000, {5, 4, 3}, 6);
+    std::vector<uint> caustic, other;
+    for (uint i = 0; i < 2000; ++i) {
+        const bool focused = i % 7 == 3;
+        set.positions[i].w = focused ? 1.0f : 0.0f;
+        (focused ? caustic : other).push_back(i);
+    }
+    for (const bool routed : {false, true})
+        for (const uint parts : {photongrid::caustic_part, photongrid::other_part, photongrid::every_part}) {
+            const auto map = routed ? routed_map(b, upload_photons(b, set), set.g, 16, 2, parts) : sorted_map(b, upload_photons(b, set), set.g, parts);
+            const auto list = b.download(map.list);
+            std::vector<uint> held;
+            for (const auto& c : b.download(map.cells))
+                held.insert(held.end(), list.begin() + c.x, list.begin() + c.x + c.y);
+            std::sort(held.begin(), held.end());
+            std::vector<uint> expected = parts == photongrid::other_part ? other : caustic;
+            if (parts == photongrid::every_part)
+                expected.insert(expected.end(), other.begin(), other.end());
+            std::sort(expected.begin(), expected.end());
+            EXPECT_EQ(held, expected) << "parts " << parts << " routed " << routed;
+            EXPECT_EQ(map.left_out, 2000 - expected.size()) << "parts " << parts << " routed " << routed;
+        }
+}
+
 TYPED_TEST_P(algorithms, route_says_no_to_what_it_cannot_do)
 {
     auto& b = this->b();
@@ -632,7 +659,7 @@ REGISTER_TYPED_TEST_SUITE_P(algorithms, buffers_keep_every_bit, a_pass_outside_a
     sort_reports_the_papers_numbers_of_passes, long_a_million_pairs_sort_and_index, index_equals_the_histogram,
     route_keeps_the_first_in_draw_order_and_all_the_flux, route_conserves_unequal_powers_and_absent_channels, route_takes_a_hundred_thousand_photons_to_one_cell,
     route_conserves_flux_in_crowded_cells, route_is_fair_to_later_photons,
-    route_says_no_to_what_it_cannot_do, estimate_uses_exactly_the_photons_within_its_radius, estimate_adds_up_the_flux_it_says,
+    a_map_of_one_part_of_the_light_holds_that_part, route_says_no_to_what_it_cannot_do, estimate_uses_exactly_the_photons_within_its_radius, estimate_adds_up_the_flux_it_says,
     estimate_defines_what_has_no_neighbours, coincident_photons_give_a_finite_estimate, poisoned_photons_are_counted_and_harmless,
     a_search_can_be_watched_and_resumed, all_photons_in_one_cell_are_all_visited, everything_equals_the_serial_backend_bit_for_bit);
 

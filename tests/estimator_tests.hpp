@@ -289,6 +289,31 @@ TYPED_TEST_P(estimators, ties_at_the_kth_distance_go_by_id)
     this->report("F3", "relative error of irradiance of the 520 nearest of 70,020, 70,000 of them tied:", largest);
 }
 
+TYPED_TEST_P(estimators, a_radius_holds_the_photons_on_its_rim)
+{
+    // Eight photons at the radius itself, to the bit, one just beyond, one inside.
+    auto& b = this->b();
+    photon_set set;
+    set.g = make_grid(glm::vec3(0), glm::vec3(1), {4, 4, 4});
+    for (int i = 0; i < 8; ++i)
+        set.positions.emplace_back(i < 2 ? 0.5f + (i == 0 ? 0.25f : -0.25f) : 0.5f, i >= 2 && i < 4 ? 0.5f + (i == 2 ? 0.25f : -0.25f) : 0.5f,
+            i >= 4 ? 0.5f + (i % 2 == 0 ? 0.25f : -0.25f) : 0.5f, 0.0f);
+    set.positions.emplace_back(0.75000006f, 0.5f, 0.5f, 0.0f);
+    set.positions.emplace_back(0.5f, 0.5f, 0.5f, 0.0f);
+    set.powers.assign(10, vec4(1.0f));
+    const auto map = sorted_map(b, upload_photons(b, set), set.g);
+    const auto points = b.upload(std::span<const vec4>(std::vector<vec4>(1, {0.5f, 0.5f, 0.5f, 1.0f})));
+    for (const auto search : all_searches)
+        for (const auto bias : all_biases) {
+            knn_settings k{.k = 100, .max_radius = 0.25f};
+            k.search = search;
+            k.bias = bias;
+            const auto e = knn_grid_estimate(b, map, points, k);
+            EXPECT_EQ(b.download(e.used)[0].x, 9u) << int(search);
+            EXPECT_NEAR(b.download(e.irradiance)[0].x, 9 / (M_PI * 0.0625), 1e-4) << int(search); // the radius is given: none is left out
+        }
+}
+
 TYPED_TEST_P(estimators, no_light_comes_through_a_thin_wall)
 {
     // A wall 0.01 thick, lit from above; photons on its upper side and on the floor of a corner beside it.
@@ -410,6 +435,6 @@ TYPED_TEST_P(estimators, equal_the_serial_backends_bit_for_bit)
 }
 
 REGISTER_TYPED_TEST_SUITE_P(estimators, every_combination_equals_brute_force, exact_k_finds_flanns_photons_on_every_distribution, ties_at_the_kth_distance_go_by_id,
-    no_light_comes_through_a_thin_wall, searches_refuse_what_they_cannot_do, searches_can_be_watched_and_resumed, equal_the_serial_backends_bit_for_bit);
+    a_radius_holds_the_photons_on_its_rim, no_light_comes_through_a_thin_wall, searches_refuse_what_they_cannot_do, searches_can_be_watched_and_resumed, equal_the_serial_backends_bit_for_bit);
 
 } // namespace photongrid::testing
