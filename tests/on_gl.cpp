@@ -1,5 +1,6 @@
 // All backend tests on OpenGL, in an EGL and in an OSMesa context, with the driver's debug output on.
 #include "algorithm_tests.hpp"
+#include "edge_tests.hpp"
 #include "estimator_tests.hpp"
 #include "number_tests.hpp"
 #include "ray_tests.hpp"
@@ -35,6 +36,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(gl, estimators, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, pictures, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases_of_numbers, contexts, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(gl, edges, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, scene_files, contexts, tag_names);
 
 /// After all other tests of this program: the driver had nothing of high severity to say. That it would is tested in

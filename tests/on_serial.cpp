@@ -1,5 +1,6 @@
 // All backend tests on the serial backend.
 #include "algorithm_tests.hpp"
+#include "edge_tests.hpp"
 #include "estimator_tests.hpp"
 #include "double_kernels.hpp"
 #include "number_tests.hpp"
@@ -20,6 +21,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(serial, estimators, ::testing::Types<serial_tag>,
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, pictures, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, hard_cases, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, hard_cases_of_numbers, ::testing::Types<serial_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(serial, edges, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, scene_files, ::testing::Types<serial_tag>, tag_names);
 
 } // namespace photongrid::testing

@@ -92,7 +92,7 @@ namespace {
         const auto render = run({"render", "--help"});
         EXPECT_EQ(render.code, 0);
         for (const auto* option : {"--backend", "--device", "--map", "--slots", "--photons", "--k", "--grid", "--max-radius", "--size", "--spp", "--light-samples", "--depth", "--seed", "--exposure", "-o",
-                 "--search", "--kernel", "--bias", "--leaks", "--only", "--aov", "--as-paper", "--stats", "--progressive", "--quiet"})
+                 "--search", "--kernel", "--bias", "--leaks", "--edge-correction", "--only", "--aov", "--as-paper", "--stats", "--progressive", "--quiet"})
             EXPECT_NE(render.out.find(option), std::string::npos) << option;
         const auto version = run({"--version"});
         EXPECT_EQ(version.code, 0);
@@ -107,7 +107,7 @@ namespace {
         for (const auto& wrong : std::vector<std::vector<std::string>>{{"--backend", "cuda"}, {"--size", "32"}, {"--size", "32x-4"}, {"--size", "0x4"}, {"--grid", "1,2"}, {"--grid", "1,2,3,4"}, {"--grid", "0,1,1"},
                  {"--photons", "1e3"}, {"--photons", "-1"}, {"--photons", "99999999999"}, {"--k", "0"}, {"--max-radius", "nan"}, {"--max-radius", "-1"}, {"--exposure", "inf"}, {"--slots", "17"},
                  {"--map", "hash"}, {"--device", "0"}, {"--spp", "0"}, {"--nonsense"},
-                 {"--search", "exact"}, {"--kernel", "gauss"}, {"--bias", "none"}, {"--only", "all"}, {"--only", "caustics"}, {"--as-paper", "--as-paper=maybe"}}) {
+                 {"--search", "exact"}, {"--kernel", "gauss"}, {"--bias", "none"}, {"--edge-correction", "disks"}, {"--edge-correction"}, {"--only", "all"}, {"--only", "caustics"}, {"--as-paper", "--as-paper=maybe"}}) {
             const auto e = run([&] {
                 auto all = small;
                 // An option given twice is an error of its own.
@@ -253,8 +253,8 @@ namespace {
             nlohmann::json settings; ///< some of those in the statistics
         };
         using json = nlohmann::json;
-        const json by_default = json::parse(R"({"search": "exact_k", "kernel": "silverman", "bias": "unbiased", "leaks": {"side": true}, "only": "all"})");
-        const json paper = json::parse(R"({"search": "at_least_k", "kernel": "constant", "bias": "paper", "leaks": {}, "only": "all"})");
+        const json by_default = json::parse(R"({"search": "exact_k", "kernel": "silverman", "bias": "unbiased", "leaks": {"side": true}, "edge_correction": "none", "only": "all"})");
+        const json paper = json::parse(R"({"search": "at_least_k", "kernel": "constant", "bias": "paper", "leaks": {}, "edge_correction": "none", "only": "all"})");
         const auto but = [](json all, const char* more) {
             all.update(json::parse(more));
             return all;
@@ -271,6 +271,9 @@ namespace {
             {{"--leaks", "disc"}, but(by_default, R"({"leaks": {"disc": 4}})")},
             {{"--leaks", "disc=2.5,side,normals=-0.3"}, but(by_default, R"({"leaks": {"side": true, "normals": -0.3, "disc": 2.5}})")},
             {{"--leaks", "normals=-1,disc=1"}, but(by_default, R"({"leaks": {}})")},
+            {{"--edge-correction", "none"}, by_default},
+            {{"--leaks", "normals", "--edge-correction", "polygons"}, but(by_default, R"({"leaks": {"normals": 0.5}, "edge_correction": "polygons"})")},
+            {{"--as-paper", "--edge-correction", "polygons", "--leaks", "side,normals=0.2"}, but(paper, R"({"leaks": {"side": true, "normals": 0.2}, "edge_correction": "polygons"})")},
             {{"--only", "direct"}, but(by_default, R"({"only": "direct"})")},
             {{"--only", "caustic"}, but(by_default, R"({"only": "caustic"})")},
             {{"--only", "indirect"}, but(by_default, R"({"only": "indirect"})")},
@@ -292,15 +295,24 @@ namespace {
         }
         // A scene that has wishes of its own; lengths are in m, so its statistics' settings are a scene's again.
         auto wishes = json::parse(contents(ring), nullptr, true, true);
-        wishes["render"].update(json::parse(R"({"search": "fixed_radius", "kernel": "silverman", "bias": "paper", "leaks": {"normals": 0.25, "disc": 3}})"));
+        wishes["render"].update(json::parse(R"({"search": "fixed_radius", "kernel": "silverman", "bias": "paper", "leaks": {"normals": 0.25, "disc": 3}, "edge_correction": "polygons"})"));
         std::ofstream(folder / "wishes.json") << wishes;
         auto arguments = small_with({"--stats", "stats.json", "-o", "a.exr"});
         arguments[1] = "wishes.json";
-        const auto wished = but(by_default, R"({"search": "fixed_radius", "kernel": "silverman", "bias": "paper", "leaks": {"normals": 0.25, "disc": 3}})");
+        const auto wished = but(by_default, R"({"search": "fixed_radius", "kernel": "silverman", "bias": "paper", "leaks": {"normals": 0.25, "disc": 3}, "edge_correction": "polygons"})");
         expect(arguments, wished);
-        EXPECT_NE(contents(folder / "a.exr").find(R"("search":"fixed_radius","kernel":"silverman","bias":"paper","leaks":{"normals":0.25,"disc":3.0},"only":"all")"), std::string::npos) << "the EXR's note";
-        arguments.insert(arguments.end(), {"--kernel", "cone", "--leaks", "side"});
-        expect(arguments, but(wished, R"({"kernel": "cone", "leaks": {"side": true}})"));
+        EXPECT_NE(contents(folder / "a.exr").find(R"("search":"fixed_radius","kernel":"silverman","bias":"paper","leaks":{"normals":0.25,"disc":3.0},"edge_correction":"polygons","only":"all")"), std::string::npos) << "the EXR's note";
+        // A policy taken away that the scene's correction needs is refused, with the way out; nothing is drawn.
+        auto torn = arguments;
+        torn.back() = "torn.exr";
+        torn.insert(torn.end(), {"--leaks", "side"});
+        const auto refused = run(torn);
+        EXPECT_EQ(refused.code, 2);
+        EXPECT_NE(refused.err.find("on the command line: edge_correction: photons of adjoining walls would count"), std::string::npos) << refused.err;
+        EXPECT_NE(refused.err.find("needs the leak policy normals with a cosine above 0"), std::string::npos) << refused.err;
+        EXPECT_FALSE(fs::exists(folder / "torn.exr"));
+        arguments.insert(arguments.end(), {"--kernel", "cone", "--leaks", "side", "--edge-correction", "none"});
+        expect(arguments, but(wished, R"({"kernel": "cone", "leaks": {"side": true}, "edge_correction": "none"})"));
         arguments.emplace_back("--as-paper");
         expect(arguments, but(paper, R"({"kernel": "cone", "leaks": {"side": true}})"));
     }

@@ -141,6 +141,7 @@ namespace {
         EXPECT_EQ(plain.search, search_kind::exact_k);
         EXPECT_EQ(plain.kernel, filter_kernel::silverman);
         EXPECT_EQ(plain.bias, bias_kind::unbiased);
+        EXPECT_EQ(plain.edges, edge_correction::none);
         EXPECT_TRUE(plain.leaks.side);
         EXPECT_EQ(plain.leaks.min_cosine, -1);
         EXPECT_EQ(plain.leaks.compression, 1);
@@ -153,6 +154,8 @@ namespace {
         EXPECT_EQ(with(R"(, "kernel": "silverman")").kernel, filter_kernel::silverman);
         EXPECT_EQ(with(R"(, "bias": "paper")").bias, bias_kind::paper);
         EXPECT_EQ(with(R"(, "bias": "unbiased")").bias, bias_kind::unbiased);
+        EXPECT_EQ(with(R"(, "edge_correction": "none")").edges, edge_correction::none);
+        EXPECT_EQ(with(R"(, "edge_correction": "polygons", "leaks": {"normals": 0.5})").edges, edge_correction::polygons);
         EXPECT_FALSE(with(R"(, "leaks": {})").leaks.needs_any());
         EXPECT_FALSE(with(R"(, "leaks": {"comment": 1, "side": false})").leaks.needs_any());
         const auto all = with(R"(, "leaks": {"side": true, "normals": 0.25, "disc": 4})").leaks;
@@ -170,6 +173,9 @@ namespace {
         expect_refusal(said(R"("search": 1)"), "13:58", {"found the number 1", "\"fixed_radius\""});
         expect_refusal(said(R"("kernel": "gauss")"), "13:58", {"found the text \"gauss\"", R"(expected "constant", "cone", "epanechnikov" or "silverman")"});
         expect_refusal(said(R"("bias": true)"), "13:56", {"found true", R"(expected "paper" or "unbiased")"});
+        expect_refusal(said(R"("edge_correction": "disks")"), "13:67", {"found the text \"disks\"", R"(expected "none" or "polygons")"});
+        expect_refusal(said(R"("edge_correction": "polygons")"), "13:67", {"edge_correction: photons of adjoining walls would count", "needs the leak policy normals with a cosine above 0"});
+        expect_refusal(said(R"("edge_correction": "polygons", "leaks": {"side": true, "normals": 0})"), "13:67", {"needs the leak policy normals"});
         expect_refusal(said(R"("leaks": "none")"), "13:57", {"found the text \"none\"", R"("side", "normals" or "disc"; {} for no policy)"});
         expect_refusal(said(R"("leaks": ["side"])"), "13:57", {"found an array of 1", "expected an object"});
         expect_refusal(said(R"("leaks": {"normal": 0.5})"), "13:58", {"unknown key \"normal\" in \"leaks\"", "expected \"normals\"?"});
@@ -406,6 +412,7 @@ namespace {
             EXPECT_EQ(s.render.grid, r.grid);
             EXPECT_EQ(s.render.search, render_settings().search) << "they leave the kind of estimate to the library";
             EXPECT_EQ(s.render.bias, render_settings().bias);
+            EXPECT_EQ(s.render.edges, render_settings().edges);
             EXPECT_EQ(s.render.leaks.side, render_settings().leaks.side);
         }
         EXPECT_EQ(read_scene(scenes + "/ring.json").point_lights.size(), 1u);

@@ -12,6 +12,9 @@ struct ray_probe {
 struct glass_probe {
 #include "kernels/glass_probe.glsl"
 };
+struct angle_probe {
+#include "kernels/angle_probe.glsl"
+};
 struct random_probe {
 #include "kernels/random_probe.glsl"
 };

@@ -155,8 +155,10 @@ Exit codes:
               "photons refused: none, or some of side (came from behind the surface), normals=COS (lie on a surface turned away by more than this cosine; default 0.5), "
               "disc=C (distances along the normal count C times; default 4), with commas between them; default: the scene's, else side")
             ->type_name("LIST");
+        add_choice(to, "--edge-correction", o.edges, edge_names,
+            "polygons: divide estimates by the share of their disc that lies on the surface, so that polygons do not darken towards their edges; needs normals among --leaks; default: the scene's, else none");
         add_choice(to, "--only", o.only, drawn_alone, "draw this part of the light alone; default: all of it");
-        to.add_flag("--as-paper", o.as_paper, "the paper's estimate: --search at_least_k --kernel constant --bias paper --leaks none; each gives way to the option itself");
+        to.add_flag("--as-paper", o.as_paper, "the paper's estimate: --search at_least_k --kernel constant --bias paper --leaks none --edge-correction none; each gives way to the option itself");
         to.add_option_function<std::string>(
               "--grid", [&o](const std::string& text) { o.grid = parsed_list<3>("--grid", text, ',', "three whole numbers: X,Y,Z"); }, "cells of the photon map")
             ->type_name("X,Y,Z");
@@ -277,6 +279,7 @@ render_settings settings_for(const scene& s, const render_options& o)
     r.kernel = o.kernel.value_or(r.kernel);
     r.bias = o.bias.value_or(r.bias);
     r.leaks = o.leaks.value_or(r.leaks);
+    r.edges = o.edges.value_or(r.edges);
     r.only = o.only;
     r.aov = o.aov;
     check(r);

@@ -27,6 +27,7 @@ struct render_options {
     std::optional<filter_kernel> kernel;
     std::optional<bias_kind> bias;
     std::optional<leak_policy> leaks;
+    std::optional<edge_correction> edges;
     light_part only = light_part::all;
     bool aov = false, as_paper = false;
     std::vector<std::string> outputs;

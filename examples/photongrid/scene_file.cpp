@@ -28,7 +28,7 @@ namespace {
     constexpr scene_key point_keys[] = {{"type", must}, {"name", may}, {"position", must}, {"power", must}};
     constexpr scene_key rectangle_keys[] = {{"type", must}, {"name", may}, {"corner", must}, {"edge_u", must}, {"edge_v", must}, {"power", must}};
     constexpr scene_key render_keys[] = {{"size", must}, {"photons", must}, {"k", must}, {"grid", must}, {"max_radius", must}, {"light_samples", may}, {"spp", may}, {"depth", may}, {"photon_depth", may}, {"seed", may},
-        {"map", may}, {"slots", may}, {"exposure", may}, {"search", may}, {"kernel", may}, {"bias", may}, {"leaks", may}};
+        {"map", may}, {"slots", may}, {"exposure", may}, {"search", may}, {"kernel", may}, {"bias", may}, {"leaks", may}, {"edge_correction", may}};
     constexpr scene_key leaks_keys[] = {{"side", may}, {"normals", may}, {"disc", may}};
     constexpr object_keys objects[] = {{"scene", scene_keys}, {"units", units_keys}, {"camera", camera_keys}, {"lambertian", reflecting_keys}, {"mirror", mirror_keys}, {"metal", reflecting_keys}, {"glass", glass_keys},
         {"sphere", sphere_keys}, {"cylinder", cylinder_keys}, {"cone", cone_keys}, {"paraboloid", paraboloid_keys}, {"disk", disk_keys}, {"triangle", vertices_keys}, {"polygon", vertices_keys}, {"point", point_keys},
@@ -425,6 +425,7 @@ namespace {
             choice("search", r.search, search_names);
             choice("kernel", r.kernel, kernel_names);
             choice("bias", r.bias, bias_names);
+            choice("edge_correction", r.edges, edge_names);
             if (const auto* leaks = v.find("leaks"))
                 r.leaks = read_leaks(*leaks);
             if (const auto* exposure = v.find("exposure"))

@@ -22,6 +22,7 @@ inline constexpr named<search_kind> search_names[] = {{"at_least_k", search_kind
 inline constexpr named<filter_kernel> kernel_names[]
     = {{"constant", filter_kernel::constant}, {"cone", filter_kernel::cone}, {"epanechnikov", filter_kernel::epanechnikov}, {"silverman", filter_kernel::silverman}};
 inline constexpr named<bias_kind> bias_names[] = {{"paper", bias_kind::paper}, {"unbiased", bias_kind::unbiased}};
+inline constexpr named<edge_correction> edge_names[] = {{"none", edge_correction::none}, {"polygons", edge_correction::polygons}};
 inline constexpr named<light_part> part_names[] = {{"all", light_part::all}, {"direct", light_part::direct}, {"caustic", light_part::caustic}, {"indirect", light_part::indirect}};
 
 template <class Setting, std::size_t N>

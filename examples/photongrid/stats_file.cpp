@@ -41,7 +41,8 @@ namespace {
     {
         return {{"size", {s.width, s.height}}, {"photons", s.photons}, {"k", s.k}, {"grid", {s.grid.x, s.grid.y, s.grid.z}}, {"max_radius", s.max_radius}, {"light_samples", s.light_samples}, {"spp", s.spp},
             {"depth", s.depth}, {"photon_depth", s.photon_depth}, {"seed", s.seed}, {"map", name_of(map_names, s.builder)}, {"slots", s.slots}, {"exposure", s.exposure},
-            {"search", name_of(search_names, s.search)}, {"kernel", name_of(kernel_names, s.kernel)}, {"bias", name_of(bias_names, s.bias)}, {"leaks", leaks_json(s.leaks)}, {"only", name_of(part_names, s.only)}};
+            {"search", name_of(search_names, s.search)}, {"kernel", name_of(kernel_names, s.kernel)}, {"bias", name_of(bias_names, s.bias)}, {"leaks", leaks_json(s.leaks)}, {"edge_correction", name_of(edge_names, s.edges)},
+            {"only", name_of(part_names, s.only)}};
     }
 
     json stage_json(const stage_stats& s) { return {{"ms", s.ms}, {"passes", s.passes}, {"device_bytes", s.device_bytes}}; }

@@ -28,6 +28,12 @@ enum class bias_kind : std::uint8_t {
               ///< or the maximum was reached. With at_least_k a remainder is left, up to +1.7 % at k = 32
 };
 
+/// What to do about the part of an estimate's disc that hangs over the edge of its surface, where no photon can be.
+enum class edge_correction : std::uint8_t {
+    none,     ///< nothing: an estimate at a straight edge reads half of the truth, in a right corner a quarter
+    polygons, ///< on polygons, divide by the share of the disc that is surface, weighed by the kernel (edge_correction.hpp)
+};
+
 /// Policies against light that leaks through walls and round corners. A photon that one of them rejects neither counts
 /// towards k nor shrinks the radius.
 struct leak_policy {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <photongrid/build_map.hpp>
+#include <photongrid/edge_correction.hpp>
 #include <photongrid/knn_grid_estimate.hpp>
 #include <photongrid/render_stats.hpp>
 #include <photongrid/trace_photons.hpp>
@@ -152,6 +153,13 @@ namespace detail {
         return k;
     }
 
+    /// m; discs of estimates are never smaller: 2^-20 of the map's largest extent.
+    inline float least_radius(const grid& g)
+    {
+        const auto extent = glm::vec3(g.cell) * glm::vec3(g.resolution);
+        return std::max({extent.x, extent.y, extent.z}) * 0x1p-20f;
+    }
+
     inline image to_image(const std::vector<glm::vec4>& pixels, const render_settings& s, std::uint64_t& invalid)
     {
         image out;
@@ -212,8 +220,13 @@ image draw(B& b, const built_map<B>& built, const camera& view, const render_set
             observer.progress("trace_rays", static_cast<double>(ray + 1) / (settings.spp * branches));
 
         detail::stage_clock<B> estimating(b, stats.radiance_estimate);
+        knn_settings wanted = detail::estimate_settings(settings);
+        const float least_radius = detail::least_radius(built.map.cells_of);
+        wanted.min_radius = least_radius;
         const auto shade = [&](knn_search<B>& search, auto& target, auto& tally) {
             auto found = search.estimates();
+            if (settings.edges != edge_correction::none)
+                correct_edges(b, built.scene, hits.points, hits.surfaces, found, settings.kernel, least_radius);
             b.template run<kernels::shade>(n, {.scene_layout = about.layout, .share = 1.0f / static_cast<float>(settings.spp)},
                 reads(built.scene.records, hits.points, hits.weights, hits.surfaces, hits.emissions, direct, found.irradiance, found.used), writes(target, tally));
             return found;
@@ -228,7 +241,6 @@ image draw(B& b, const built_map<B>& built, const camera& view, const render_set
             std::uint64_t invalid = 0;
             observer.intermediate(detail::to_image(b.download(running), settings, invalid));
         };
-        knn_settings wanted = detail::estimate_settings(settings);
         if (settings.only == light_part::direct)
             wanted.max_radius = 0;
         const bool grows = wanted.search == search_kind::at_least_k;

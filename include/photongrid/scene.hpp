@@ -113,6 +113,7 @@ struct render_settings {
     filter_kernel kernel = filter_kernel::silverman;
     bias_kind bias = bias_kind::unbiased;
     leak_policy leaks{.side = true};
+    edge_correction edges = edge_correction::none;
     light_part only = light_part::all;
     bool aov = false;                        ///< radius, count and relative standard error of the estimate are wanted per pixel
 };
@@ -133,13 +134,14 @@ struct scene {
     render_settings render;
 };
 
-/// The settings that reproduce the paper's estimate (2.3): at least k, constant kernel, no policy.
+/// The settings that reproduce the paper's estimate (2.3): at least k, constant kernel, no policy, no correction.
 inline render_settings as_paper(render_settings s)
 {
     s.search = search_kind::at_least_k;
     s.kernel = filter_kernel::constant;
     s.bias = bias_kind::paper;
     s.leaks = {};
+    s.edges = edge_correction::none;
     return s;
 }
 
@@ -279,6 +281,8 @@ inline void check(const render_settings& s)
     detail::require(s.photon_depth >= 1 && s.photon_depth <= 64, "photon_depth: must be from 1 to 64");
     detail::require(s.leaks.compression >= 1 && s.leaks.compression <= 1e6f, "leaks: compression must be from 1 to 10^6");
     detail::require(s.leaks.min_cosine >= -1 && s.leaks.min_cosine <= 1, "leaks: min_cosine must be from -1 to 1");
+    detail::require(s.edges == edge_correction::none || s.leaks.min_cosine > 0,
+        "edge_correction: photons of adjoining walls would count, though their area does not; it needs the leak policy normals with a cosine above 0, for example 0.5 (or edge_correction none)");
     detail::require(s.slots >= 1 && s.slots <= 16, "slots: must be from 1 to 16");
     detail::require(detail::finite(s.exposure) && std::abs(s.exposure) <= 64, "exposure: must be from -64 to 64 EV");
 }

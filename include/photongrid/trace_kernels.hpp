@@ -6,6 +6,7 @@
 
 namespace photongrid::kernels {
 
+#include <photongrid/kernels/natural_log.glsl>
 #include <photongrid/kernels/photon_event.glsl>
 #include <photongrid/kernels/scene_layout.glsl>
 #include <photongrid/kernels/vector.glsl>
@@ -60,6 +61,12 @@ struct copy_light {
 };
 struct tally_error {
 #include <photongrid/kernels/tally_error.glsl>
+};
+struct covered_share {
+#include <photongrid/kernels/covered_share.glsl>
+};
+struct divide_by_share {
+#include <photongrid/kernels/divide_by_share.glsl>
 };
 struct shade {
 #include <photongrid/kernels/shade.glsl>

@@ -26,25 +26,10 @@ STATE(0, vec4, irradiance)
 
 #include "scene_hit.glsl"
 
-// The angle whose sine is to its cosine as y to x, for y >= 0: a polynomial for atan(t) / t in t^2 on [0, 1], interpolated at
-// Chebyshev's points, error below 1e-7 with float's rounding.
-float angle_of(float y, float x)
-{
-    float ax = abs(x);
-    float larger = y > ax ? y : ax;
-    precise float t = (y > ax ? ax : y) / larger;
-    precise float q = t * t;
-    precise float high = 0.10618370642f + q * (-0.07456854839f + q * (0.04213762375f + q * (-0.01573124922f + q * 0.00276628353f)));
-    precise float ratio = 0.99999998179f + q * (-0.33333036709f + q * (0.19991872029f + q * (-0.14197797795f + q * high)));
-    precise float angle = t * ratio;
-    precise float acute = y > ax ? 1.57079633f - angle : angle;
-    return x < 0.0f ? 3.14159265f - acute : acute;
-}
-
 // One edge of Lambert's formula: the angle that it subtends, projected.
 float edge_term(vec3 a, vec3 b, vec3 n)
 {
-    precise vec3 c = vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+    vec3 c = cross3(a, b);
     precise float s = sqrt(dot3(c, c));
     if (!(s > 0.0f))
         return 0.0f;
