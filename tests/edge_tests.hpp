@@ -350,6 +350,40 @@ TYPED_TEST_P(edges, thousands_of_polygons_take_several_passes)
     }
 }
 
+TYPED_TEST_P(edges, shares_are_bounded_before_they_divide)
+{
+    // A square drawn twice, a needle of half a degree, and a ball.
+    auto& b = this->b();
+    auto s = empty_scene({0.5, 2, 0.5});
+    s.camera = {{0, 1, -3}, {0, 0, 0}, {0, 1, 0}, 45};
+    const polygon square{{{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}}, 0};
+    s.polygons = {square, square, {{{2, 0, 0}, {3, 0, std::tan(glm::radians(0.5))}, {3, 0, 0}}, 0}};
+    s.spheres = {{{4, 0.5, 0}, 0.5, 0}};
+    const auto scene = upload_scene(b, s);
+    discs d;
+    d.add({0.5, 0, 0.5}, {0, 1, 0}, 0.4); // share 2
+    d.add({0, 0, 0.5}, {0, 1, 0}, 0.4);   // 1/2 twice
+    d.add({2, 0, 0}, {0, 1, 0}, 0.4);     // 1/720
+    d.add({4, 1, 0}, {0, 1, 0}, 0.4);     // on the ball
+    d.add({3, 0, 0}, {0, 1, 0}, 0);       // the needle's right corner; radius 0: the least one counts
+    for (auto& p : d.points)
+        p = glm::vec4(glm::vec3(dvec3(p) - scene.about.center), p.w);
+    for (auto& e : d.estimates)
+        e = glm::vec4(1, 2, 3, e.w);
+    const auto p = b.upload(std::span<const glm::vec4>(d.points)), n = b.upload(std::span<const glm::vec4>(d.normals));
+    const std::vector<glm::uvec2> used(d.points.size(), glm::uvec2(7, 9));
+    const std::vector<glm::vec4> errors(d.points.size(), glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
+    knn_estimates<typename TestFixture::B> e{b.upload(std::span<const glm::vec4>(d.estimates)), b.upload(std::span<const glm::uvec2>(used)), b.upload(std::span<const glm::vec4>(errors))};
+    correct_edges(b, scene, p, n, e, filter_kernel::silverman, 1e-3f);
+    const auto irradiance = b.download(e.irradiance), error = b.download(e.standard_error);
+    constexpr double factors[] = {1, 1, 256, 1, 4}, tolerances[] = {0, 1e-5, 0, 0, 0.02};
+    for (std::size_t i = 0; i < d.points.size(); ++i) {
+        EXPECT_NEAR(irradiance[i].y / 2, factors[i], tolerances[i]) << i;
+        EXPECT_NEAR(error[i].w / 0.4f, factors[i], tolerances[i] + 1e-6 * factors[i]) << i;
+        EXPECT_EQ(irradiance[i].w, d.estimates[i].w) << i;
+    }
+}
+
 TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
 {
     auto& b = this->b();
@@ -504,7 +538,7 @@ TYPED_TEST_P(edges, correction_needs_the_normals_policy)
 }
 
 REGISTER_TYPED_TEST_SUITE_P(edges, angles_and_logarithms_are_those_of_the_library, shares_equal_integration_over_lines, shares_have_the_known_values_of_a_square,
-    bent_walls_hold_together_up_to_two_degrees_and_a_half, thousands_of_polygons_take_several_passes, uniform_squares_read_one_up_to_their_corners,
+    bent_walls_hold_together_up_to_two_degrees_and_a_half, thousands_of_polygons_take_several_passes, shares_are_bounded_before_they_divide, uniform_squares_read_one_up_to_their_corners,
     a_floor_lit_by_a_mirror_is_right_up_to_its_rim, pictures_equal_the_serial_backends, correction_needs_the_normals_policy);
 
 } // namespace photongrid::testing
