@@ -365,7 +365,7 @@ TYPED_TEST_P(edges, shares_are_bounded_before_they_divide)
     d.add({0, 0, 0.5}, {0, 1, 0}, 0.4);   // 1/2 twice
     d.add({2, 0, 0}, {0, 1, 0}, 0.4);     // 1/720
     d.add({4, 1, 0}, {0, 1, 0}, 0.4);     // on the ball
-    d.add({3, 0, 0}, {0, 1, 0}, 0);       // the needle's right corner; radius 0: the least one counts
+    d.add({2.9995, 0, 0.0005}, {0, 1, 0}, 0); // close to the needle's right corner; radius 0: the least one counts
     for (auto& p : d.points)
         p = glm::vec4(glm::vec3(dvec3(p) - scene.about.center), p.w);
     for (auto& e : d.estimates)
@@ -376,7 +376,9 @@ TYPED_TEST_P(edges, shares_are_bounded_before_they_divide)
     knn_estimates<typename TestFixture::B> e{b.upload(std::span<const glm::vec4>(d.estimates)), b.upload(std::span<const glm::uvec2>(used)), b.upload(std::span<const glm::vec4>(errors))};
     correct_edges(b, scene, p, n, e, filter_kernel::silverman, 1e-3f);
     const auto irradiance = b.download(e.irradiance), error = b.download(e.standard_error);
-    constexpr double factors[] = {1, 1, 256, 1, 4}, tolerances[] = {0, 1e-5, 0, 0, 0.02};
+    const double corner = share_by_lines({{-1, 0}, {0, 0}, {0, std::tan(glm::radians(0.5))}}, {-0.0005, 0.0005}, 1e-3)[3];
+    ASSERT_NEAR(corner, 0.8, 0.1);
+    const double factors[] = {1, 1, 256, 1, 1 / corner}, tolerances[] = {0, 1e-5, 0, 0, 2e-3};
     for (std::size_t i = 0; i < d.points.size(); ++i) {
         EXPECT_NEAR(irradiance[i].y / 2, factors[i], tolerances[i]) << i;
         EXPECT_NEAR(error[i].w / 0.4f, factors[i], tolerances[i] + 1e-6 * factors[i]) << i;
@@ -389,7 +391,7 @@ TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
     auto& b = this->b();
     const squares all;
     const auto scene = upload_scene(b, all.s);
-    const uint n = all.rows * all.rows, photons_each = 400;
+    const uint n = all.rows * all.rows, photons_each = 200;
     random_source u(5);
     photon_set set;
     set.g = make_grid(scene.about.low, scene.about.high, {96, 1, 96});
@@ -408,7 +410,7 @@ TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
     const auto p = b.upload(std::span<const glm::vec4>(points)), np = b.upload(std::span<const glm::vec4>(normals));
     for (const auto search : {search_kind::exact_k, search_kind::fixed_radius})
         for (const auto kernel : kernels_over_discs) {
-            knn_settings k{.k = 24, .max_radius = search == search_kind::exact_k ? 0.5f : 0.24f, .min_radius = 1e-6f};
+            knn_settings k{.k = 16, .max_radius = search == search_kind::exact_k ? 0.5f : 0.3f, .min_radius = 1e-6f};
             k.search = search;
             k.kernel = kernel;
             k.errors = true;
@@ -435,7 +437,7 @@ TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
                 EXPECT_NEAR(mean, 1, 4 * spread / std::sqrt(m)) << where;
                 EXPECT_NEAR(without / m, known, 4 * known * spread / std::sqrt(m)) << where;
                 EXPECT_NEAR(error / m, spread, 0.15 * spread) << where << ": standard error reported";
-                EXPECT_LE(4 * spread / std::sqrt(m), place == 0 ? 0.1 : 0.06) << "the test sees enough";
+                EXPECT_LE(4 * spread / std::sqrt(m), place == 0 ? 0.12 : 0.06) << "the test sees enough";
             }
         }
 }
@@ -450,16 +452,17 @@ TYPED_TEST_P(edges, a_floor_lit_by_a_mirror_is_right_up_to_its_rim)
     const double height = 1.5, power = 100;
     s.point_lights = {{"bulb", {0, 1, 0}, dvec3(power)}};
     s.camera = {{0, 1.2, 0}, {0, 0, 0}, {0, 0, -1}, glm::degrees(2 * std::atan(0.5 / 1.2)) - 0.01};
-    s.render = {.width = 48, .height = 48, .photons = 30000, .k = 200, .grid = {40, 1, 40}, .max_radius = 0.2};
+    s.render = {.width = 48, .height = 48, .photons = 15000, .k = 100, .grid = {40, 1, 40}, .max_radius = 0.2};
     s.render.only = light_part::caustic;
     s.render.leaks = {.side = true, .min_cosine = 0.5f};
     s.render.aov = true;
     image pictures[2];
     render_stats stats[2];
+    const auto built = build_map(this->b(), s, s.render, {}, stats[0]);
     for (const bool corrected : {false, true}) {
         auto settings = s.render;
         settings.edges = corrected ? edge_correction::polygons : edge_correction::none;
-        pictures[corrected] = render(this->b(), s, settings, {}, stats[corrected]);
+        pictures[corrected] = draw(this->b(), built, s.camera, settings, {}, stats[corrected]);
         double sums[3] = {}, counts[3] = {};
         for (uint y = 0; y < 48; ++y)
             for (uint x = 0; x < 48; ++x) {
@@ -478,8 +481,8 @@ TYPED_TEST_P(edges, a_floor_lit_by_a_mirror_is_right_up_to_its_rim)
         // Discs have some 0.045 m radius, pixels of the rim lie 0.01 m inside.
         EXPECT_NEAR(sums[0], 1, 0.05);
         if (corrected) {
-            EXPECT_NEAR(sums[1], 1, 0.07); // 200 photons see to 10 %, and some fifty discs lie along the rim
-            EXPECT_NEAR(sums[2], 1, 0.2);
+            EXPECT_NEAR(sums[1], 1, 0.09); // four standard errors: a disc sees to 14 %, and some fifty lie along the rim
+            EXPECT_NEAR(sums[2], 1, 0.28);
         } else {
             EXPECT_LT(sums[1], 0.8);
             EXPECT_LT(sums[2], 0.65);
@@ -499,6 +502,7 @@ TYPED_TEST_P(edges, pictures_equal_the_serial_backends)
     for (auto s : {small_cornell(), all_shapes()})
         for (const auto search : {search_kind::at_least_k, search_kind::exact_k}) {
             s.render.width = s.render.height = 32;
+            s.render.photons = 2000;
             s.render.edges = edge_correction::polygons;
             s.render.leaks.min_cosine = 0.5f;
             s.render.search = search;
