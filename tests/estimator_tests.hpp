@@ -290,6 +290,36 @@ TYPED_TEST_P(estimators, ties_at_the_kth_distance_go_by_id)
     this->report("F3", "relative error of irradiance of the 520 nearest of 70,020, 70,000 of them tied:", largest);
 }
 
+TYPED_TEST_P(estimators, a_photon_on_a_face_is_found_from_any_distance)
+{
+    // One photon on a face between cells, points on its axis: its distance and the cell that the radius reaches round apart.
+    auto& b = this->b();
+    for (const int axis : {0, 1, 2})
+        for (const int face : {13, 22, 37}) {
+            photon_set set;
+            uvec3 resolution(1);
+            resolution[axis] = 40;
+            set.g = make_grid(glm::vec3(0), glm::vec3(1), resolution);
+            glm::vec3 p(0.5f);
+            p[axis] = static_cast<float>(face) / 40.0f;
+            set.positions.emplace_back(p, 0.0f);
+            set.powers.emplace_back(1.0f);
+            random_source u(static_cast<std::uint64_t>(face));
+            std::vector<vec4> points;
+            for (int i = 0; i < 5000; ++i) {
+                p[axis] = 6 * u() - 3;
+                points.emplace_back(p, 1.0f);
+            }
+            knn_settings k{.k = 1, .max_radius = 10};
+            k.bias = bias_kind::paper;
+            const auto map = sorted_map(b, upload_photons(b, set), set.g);
+            std::size_t lost = 0;
+            for (const auto& n : b.download(knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), k).used))
+                lost += n.x != 1 ? 1u : 0u;
+            EXPECT_EQ(lost, 0u) << "axis " << axis << " face " << face;
+        }
+}
+
 TYPED_TEST_P(estimators, a_radius_holds_the_photons_on_its_rim)
 {
     // Eight photons at the radius itself, to the bit, one just beyond, one inside.
@@ -436,6 +466,6 @@ TYPED_TEST_P(estimators, equal_the_serial_backends_bit_for_bit)
 }
 
 REGISTER_TYPED_TEST_SUITE_P(estimators, every_combination_equals_brute_force, exact_k_finds_flanns_photons_on_every_distribution, ties_at_the_kth_distance_go_by_id,
-    a_radius_holds_the_photons_on_its_rim, no_light_comes_through_a_thin_wall, searches_refuse_what_they_cannot_do, searches_can_be_watched_and_resumed, equal_the_serial_backends_bit_for_bit);
+    a_photon_on_a_face_is_found_from_any_distance, a_radius_holds_the_photons_on_its_rim, no_light_comes_through_a_thin_wall, searches_refuse_what_they_cannot_do, searches_can_be_watched_and_resumed, equal_the_serial_backends_bit_for_bit);
 
 } // namespace photongrid::testing
