@@ -282,6 +282,8 @@ image draw(B& b, const built_map<B>& built, const camera& view, const render_set
     const auto tallies = b.download(searches);
     for (const auto& p : tallies)
         sum += glm::dvec4(p);
+    if (!(sum.w >= 0) || !(sum.w <= static_cast<double>(n) * settings.spp * branches))
+        throw backend_error(b.caps().backend + ": shade: the device says that " + std::to_string(sum.w) + " points were searched for; there are " + std::to_string(n * settings.spp * branches));
     stats.estimate.points = static_cast<std::uint64_t>(sum.w);
     const double points = std::max(sum.w, 1.0);
     stats.estimate.mean_count = sum.x / points;

@@ -12,6 +12,6 @@ void kernel(uint i)
 {
     vec4 e = irradiances(i);
     float all = e.x + e.y + e.z;
-    if (points(i).w > 0.0f && all > 0.0f)
+    if (points(i).w > 0.0f && all > 0.0f && all <= 3.4028234e38f) // an infinite pixel is counted and black
         errors.x += standard_error(i).w / all;
 }
