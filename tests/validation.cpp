@@ -635,25 +635,36 @@ namespace {
         settings.max_radius = 0.5;
         serial_backend b;
         const int seeds = 8;
-        std::vector<convergence_row> rows, smooth_rows;
+        std::vector<convergence_row> rows, smooth_rows, corrected_rows;
+        const auto row = [&](std::vector<std::vector<double>> values, bool only_smooth) {
+            if (only_smooth)
+                for (auto& v : values)
+                    v = smooth_ones(v);
+            auto r = split_error(values, only_smooth ? smooth_ones(known) : known, only_smooth ? smooth_ones(known_error) : known_error, 0.01);
+            r.photons = settings.photons;
+            r.k = settings.k;
+            return r;
+        };
         for (const uint n : {2000u, 8000u, 32000u, 128000u}) {
             settings.photons = n;
             settings.k = static_cast<uint>(std::lround(30 * std::pow(n / 2000.0, 2.0 / 3)));
-            std::vector<std::vector<double>> values;
+            std::vector<std::vector<double>> values, corrected;
             for (uint seed = 1; seed <= seeds; ++seed) {
                 settings.seed = seed;
                 render_stats stats;
                 values.push_back(spread_out(render(b, s, settings, {}, stats)));
+                auto with_edges = settings;
+                with_edges.leaks.min_cosine = 0.5f;
+                with_edges.edges = edge_correction::polygons;
+                corrected.push_back(spread_out(render(b, s, with_edges, {}, stats)));
             }
-            rows.push_back(split_error(values, known, known_error, 0.01));
-            for (auto& v : values)
-                v = smooth_ones(v);
-            smooth_rows.push_back(split_error(values, smooth_ones(known), smooth_ones(known_error), 0.01));
-            rows.back().photons = smooth_rows.back().photons = n;
-            rows.back().k = smooth_rows.back().k = settings.k;
+            rows.push_back(row(values, false));
+            corrected_rows.push_back(row(corrected, false));
+            smooth_rows.push_back(row(values, true));
         }
         std::printf("%zu of %zu pixels lie within one shape, %td of them %.1f m from any edge\n", whole.size(), truth.mean.pixels.size(), std::count(smooth.begin(), smooth.end(), true), clear);
         print("cornell_blocks", rows);
+        print("cornell_blocks, edges corrected", corrected_rows);
         print("cornell_blocks, far from edges", smooth_rows);
         expect_falling(rows);
         // Near edges discs reach over them and the bias is of order 1 in a strip as wide as the radius, N^(-1/6): bias^2 of a
