@@ -3,8 +3,8 @@
 #
 #   tests/run.sh [--full] [--device hardware] [--no-install]
 #
-#   --full             adds the long runs, planted faults and GPU-assisted validation, and the sanitizers on every backend
-#                      instead of on the serial one
+#   --full             adds the long runs, planted faults and GPU-assisted validation, and the sanitizers over all tests
+#                      on every backend instead of the quick ones on the serial one
 #   --device hardware  every backend on a real GPU; software devices are refused (no sanitizers, no clang)
 #   --no-install       only say which Debian packages are missing, do not install them
 #
@@ -63,9 +63,9 @@ run_tests() {
   shift
   ctest --test-dir "$folder" --output-on-failure --no-tests=error -j2 "$@"
 }
-short=(--label-exclude long) fuzz_seconds=20
+short=(--label-exclude long) sanitized=(--label-exclude "long|heavy") fuzz_seconds=20
 if [[ $full == yes ]]; then
-  short=() fuzz_seconds=300
+  short=() sanitized=(--label-exclude long) fuzz_seconds=300
 fi
 
 if [[ $device == hardware ]]; then
@@ -84,7 +84,7 @@ else
     configure asan
   fi
   cmake --build build-asan
-  run_tests build-asan --label-exclude long --exclude-regex consumer
+  run_tests build-asan "${sanitized[@]}" --exclude-regex consumer
 
   echo "== clang"
   configure clang
@@ -111,5 +111,5 @@ run_tests build-tests "${short[@]}"
 
 if [[ $full == yes && $device == any ]]; then
   echo "== GPU-assisted validation"
-  PHOTONGRID_GPU_AV=1 run_tests build-tests --tests-regex '^on_vulkan$'
+  PHOTONGRID_GPU_AV=1 run_tests build-tests --tests-regex '^on_vulkan(_scenes)?$'
 fi

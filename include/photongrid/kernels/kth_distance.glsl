@@ -82,7 +82,7 @@ void kernel(uint i)
     uint within = tally.x;
     uint visited = tally.y;
     uint scans = tally.z;
-    uint phase = tally.w;
+    uint phase = tally.w <= CLOSING_IN ? tally.w : FOUND;
 
     uint left = args.visits;
     uint steps = args.ranges;
@@ -170,11 +170,12 @@ void kernel(uint i)
                 between = narrowed(between, pivot_7, beyond.w);
                 if (between.w == 0xFFFFFFFFu) {
                     // Fewer than k so beyond. Wider, unless that was the widest: then these are all.
-                    phase = pivot_7 >= args.max_radius2 ? FOUND : COUNTING;
+                    phase = pivot_7 < args.max_radius2 ? COUNTING : FOUND;
                     within = beyond.w;
                     scans = 0u;
                     precise float growth = 1.1f * (float(args.wanted) / float(max(beyond.w, 1u)));
-                    pivot = vec4(pivot_7, pivot_7 * (min(growth, 16.0f) - 1.0f), 0.0f, 0.0f);
+                    float base = max(pivot_7, 0.0f);
+                    pivot = vec4(base, max(base * (min(growth, 16.0f) - 1.0f), 1e-30f), 0.0f, 0.0f);
                 } else {
                     phase = CLOSING_IN;
                 }
@@ -205,7 +206,7 @@ void kernel(uint i)
                 }
             }
             if (phase == CLOSING_IN) {
-                if (between.y <= between.x + 1u) {
+                if (between.y <= between.x || between.y - between.x == 1u) {
                     // Photons at one distance only: perhaps several, of which kth_tie.glsl takes the first.
                     phase = FOUND;
                     within = between.w;
