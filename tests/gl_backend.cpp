@@ -493,6 +493,8 @@ void kernel(uint i) { value = i; }
         both(std::type_identity<kernels::irradiance_estimate>{});
         both(std::type_identity<kernels::gather_normal>{});
         both(std::type_identity<kernels::tally_error>{});
+        both(std::type_identity<kernels::covered_share>{});
+        both(std::type_identity<kernels::divide_by_share>{});
     }
 
     TYPED_TEST(gl_backend_test, reports_errors_at_the_kernels_own_line)

@@ -63,9 +63,9 @@ run_tests() {
   shift
   ctest --test-dir "$folder" --output-on-failure --no-tests=error -j2 "$@"
 }
-short=(--label-exclude long) sanitized=(--label-exclude "long|heavy") fuzz_seconds=20
+short=(--label-exclude long) sanitized=(--label-exclude "long|heavy") sanitized_target=photongrid_quick_tests fuzz_seconds=20
 if [[ $full == yes ]]; then
-  short=() sanitized=(--label-exclude long) fuzz_seconds=300
+  short=() sanitized=(--label-exclude long) sanitized_target=all fuzz_seconds=300
 fi
 
 if [[ $device == hardware ]]; then
@@ -83,7 +83,7 @@ else
   else
     configure asan
   fi
-  cmake --build build-asan
+  cmake --build build-asan --target "$sanitized_target"
   run_tests build-asan "${sanitized[@]}" --exclude-regex consumer
 
   echo "== clang"

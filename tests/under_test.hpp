@@ -50,8 +50,8 @@ protected:
     using B = typename Tag::type;
     void SetUp() override
     {
-        if constexpr (requires { Tag::software_only; })
-            if (hardware_wanted())
+        if constexpr (requires { Tag::never_hardware(); })
+            if (hardware_wanted() && Tag::never_hardware())
                 GTEST_SKIP() << Tag::name << " is never hardware";
         std::string reason;
         instance_ = shared_backend<Tag>(reason);
