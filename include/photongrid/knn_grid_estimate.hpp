@@ -29,6 +29,13 @@ struct knn_settings {
     uint ranges_per_pass = 1023;
 };
 
+/// The radius, m, below which the disc of an estimate never shrinks where the caller names none: 2^-20 of the largest extent.
+inline float least_radius(const grid& g)
+{
+    const auto extent = glm::vec3(g.cell) * glm::vec3(g.resolution);
+    return std::max({extent.x, extent.y, extent.z}) * 0x1p-20f;
+}
+
 /// The paper's own choice (2.3).
 inline knn_settings as_paper(knn_settings s)
 {
@@ -132,10 +139,8 @@ private:
             throw std::invalid_argument("knn_search: leaks: side needs the photons' directions, which this map does not keep");
         if (s.leaks.needs_normals() && map.photons.size() > 0 && map.photons.normals.size() == 0)
             throw std::invalid_argument("knn_search: leaks: min_cosine needs the photons' surface normals, which this map does not keep");
-        if (!(s_.min_radius > 0)) {
-            const auto extent = glm::vec3(map.cells_of.cell) * glm::vec3(map.cells_of.resolution);
-            s_.min_radius = std::max(extent.x, std::max(extent.y, extent.z)) * 0x1p-20f;
-        }
+        if (!(s_.min_radius > 0))
+            s_.min_radius = least_radius(map.cells_of);
         switch (s_.search) {
         case search_kind::at_least_k: start_growing(); break;
         case search_kind::exact_k: start_distances(); break;

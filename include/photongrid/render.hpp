@@ -153,13 +153,6 @@ namespace detail {
         return k;
     }
 
-    /// m; discs of estimates are never smaller: 2^-20 of the map's largest extent.
-    inline float least_radius(const grid& g)
-    {
-        const auto extent = glm::vec3(g.cell) * glm::vec3(g.resolution);
-        return std::max({extent.x, extent.y, extent.z}) * 0x1p-20f;
-    }
-
     inline image to_image(const std::vector<glm::vec4>& pixels, const render_settings& s, std::uint64_t& invalid)
     {
         image out;
@@ -221,12 +214,11 @@ image draw(B& b, const built_map<B>& built, const camera& view, const render_set
 
         detail::stage_clock<B> estimating(b, stats.radiance_estimate);
         knn_settings wanted = detail::estimate_settings(settings);
-        const float least_radius = detail::least_radius(built.map.cells_of);
-        wanted.min_radius = least_radius;
+        wanted.min_radius = least_radius(built.map.cells_of);
         const auto shade = [&](knn_search<B>& search, auto& target, auto& tally) {
             auto found = search.estimates();
             if (settings.edges != edge_correction::none)
-                correct_edges(b, built.scene, hits.points, hits.surfaces, found, settings.kernel, least_radius);
+                correct_edges(b, built.scene, hits.points, hits.surfaces, found, settings.kernel, wanted.min_radius);
             b.template run<kernels::shade>(n, {.scene_layout = about.layout, .share = 1.0f / static_cast<float>(settings.spp)},
                 reads(built.scene.records, hits.points, hits.weights, hits.surfaces, hits.emissions, direct, found.irradiance, found.used), writes(target, tally));
             return found;

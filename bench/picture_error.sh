@@ -1,0 +1,29 @@
+# The error and the cost of a picture, for the scripts beside this one, which source it from the repository's root after
+# ./examples/run.sh. PHOTONGRID names another program than build/photongrid. Needs /usr/bin/time (Debian: time).
+# shellcheck shell=bash
+program=${PHOTONGRID:-build/photongrid}
+[[ -x $program ]] || { echo "$0: $program is not there; run ./examples/run.sh first" >&2; exit 1; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+size=128x96
+
+# reference SCENE [OPTION...]: draws what pictures are compared with
+reference() {
+  local scene=$1
+  shift
+  "$program" reference "examples/scenes/$scene.json" --size $size "$@" -o "$work/reference.exr" --quiet >/dev/null
+}
+# cpu_seconds SCENE SPP OPTIONS: draws the picture on the serial backend and prints its CPU seconds
+cpu_seconds() {
+  # shellcheck disable=SC2086
+  /usr/bin/time -f %U -o "$work/time" "$program" render "examples/scenes/$1.json" --backend serial --size $size --spp "$2" $3 -o "$work/picture.exr" --quiet >/dev/null
+  cat "$work/time"
+}
+# median_cpu_seconds SCENE SPP OPTIONS: of three
+median_cpu_seconds() {
+  for _ in 1 2 3; do cpu_seconds "$@"; done | sort -n | sed -n 2p
+}
+# relmse: of the picture drawn last
+relmse() {
+  "$program" compare "$work/picture.exr" "$work/reference.exr" | awk '$1 == "relMSE" { print $2 }'
+}
