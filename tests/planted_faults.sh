@@ -58,9 +58,10 @@ faults=(
   "lamp twice as bright|include/photongrid/kernels/direct_light.glsl|3.18309886e-1f * share|6.36619772e-1f * share"
 )
 
-# Each worker has a copy of the sources and a build of its own, since the tests of one backend are one large file.
+# Each worker has a copy of the sources and a build of its own, since the tests of one backend are one large file. A run
+# ends at the first test that fails.
 built() { cmake --build "$1/build" --target on_serial >"$1/log" 2>&1; }
-suite() { RC_PARAMS=seed=20031 timeout 900 "$1/build/tests/on_serial" --gtest_filter='-*long_*:*scene_files*' >"$1/log" 2>&1; }
+suite() { RC_PARAMS=seed=20031 timeout 900 "$1/build/tests/on_serial" --gtest_fail_fast --gtest_filter='-*long_*:*scene_files*' >"$1/log" 2>&1; }
 plant() { # worker's folder, fault
   local name=${2%%|*} rest=${2#*|} file from to text
   file=${rest%%|*} rest=${rest#*|}

@@ -460,7 +460,7 @@ TYPED_TEST_P(pictures, a_light_that_stores_no_photon_is_named)
     s.polygons = {{{{-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}}, 0}};
     s.point_lights = {{"the bulb", {0, 1, 0}, dvec3(1)}};
     s.camera = {{0, 1, -3}, {0, 0, 0}, {0, 1, 0}, 45};
-    s.render.photons = 1000;
+    s.render.photons = 50000; // long batches
     s.render.photon_depth = 2;
     render_stats stats;
     try {
