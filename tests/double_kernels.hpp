@@ -441,6 +441,7 @@ TEST(double_oracle, estimates)
             nearest_spread_limit = std::max(nearest_spread_limit, spread_error * 0x1p24 / spread_limit);
             spread_errors.push_back(spread_error);
         }
+        ASSERT_FALSE(errors.empty()) << r.name << ": no point has the photons it should";
         report_errors((std::string("relative error of irradiance, ") + r.name).c_str(), errors);
         report_errors((std::string("relative error of its standard error, ") + r.name).c_str(), spread_errors);
         std::printf("double oracle: %s: at most %.2g and %.2g of the limits\n", r.name, nearest_limit, nearest_spread_limit);
