@@ -112,5 +112,5 @@ run_tests build-tests "${short[@]}"
 
 if [[ $full == yes && $device == any ]]; then
   echo "== GPU-assisted validation"
-  PHOTONGRID_GPU_AV=1 run_tests build-tests --tests-regex '^on_vulkan(_scenes)?$'
+  PHOTONGRID_GPU_AV=1 run_tests build-tests --tests-regex '^on_vulkan(_heavy)?$'
 fi
