@@ -80,7 +80,7 @@ plant() { # worker's folder, fault
   elif suite "$1"; then
     echo "MISSED  $name"
   else
-    echo "caught  $name: $(grep -oE '^\[  FAILED  \] [^ ,]+' "$1/log" | sed 's/.*\.//' | sort -u | tr '\n' ' ' | cut -c 1-110)"
+    echo "caught  $name: $(grep -oE '^\[  FAILED  \] [^ ,]+\.[^ ,]+' "$1/log" | sed 's/.*\.//' | sort -u | tr '\n' ' ' | cut -c 1-110)"
     grep -q '\[  FAILED  \]' "$1/log" || tail -n 3 "$1/log" | sed 's/^/        /'
   fi
   printf '%s\n' "$text" >"$1/tree/$file"
