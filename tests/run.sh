@@ -10,7 +10,7 @@
 #
 # First the serial backend under the address and undefined behaviour sanitizers (build-asan/), then clang 14 (build-clang/)
 # and its fuzzer on the scene reader for 20 s, in full 300 s (build-fuzz/), then everything with g++, assertions on
-# (build-tests/). It stops where something fails and ends with ctest's summary.
+# (build-tests/); in full then GPU-assisted validation and the planted faults. It stops where something fails.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
@@ -98,11 +98,6 @@ else
   # New inputs go to the first folder, one that breaks the reader to build-fuzz/crash-….
   mkdir -p build-fuzz/corpus
   build-fuzz/tests/fuzz_scene -verbosity=0 -print_final_stats=1 -max_total_time=$fuzz_seconds -max_len=4096 -dict=tests/scene_corpus.dict -artifact_prefix=build-fuzz/ build-fuzz/corpus tests/scene_corpus
-
-  if [[ $full == yes ]]; then
-    echo "== planted faults"
-    tests/planted_faults.sh
-  fi
 fi
 
 echo "== g++, all tests"
@@ -113,4 +108,7 @@ run_tests build-tests "${short[@]}"
 if [[ $full == yes && $device == any ]]; then
   echo "== GPU-assisted validation"
   PHOTONGRID_GPU_AV=1 run_tests build-tests --tests-regex '^on_vulkan(_heavy)?$'
+
+  echo "== planted faults"
+  tests/planted_faults.sh
 fi
