@@ -34,7 +34,7 @@ faults=(
   "given radius leaves out its rim|include/photongrid/kernels/given_radius.glsl|0xFFFFFFFFu|0u"
   "k-th photon is not left out|include/photongrid/kernels/gather_photons.glsl|LEAVE_OUT && reach.y > 0.0f|LEAVE_OUT && reach.y > 1.0f"
   "wrong norm of the cone|include/photongrid/knn_grid_estimate.hpp|norms[] = {1, 3, 2, 3}|norms[] = {1, 2, 2, 3}"
-  "sums without compensation|include/photongrid/kernels/gather_photons.glsl|term = flux - rest|term = flux - 0.0f * rest"
+  "sums without compensation|include/photongrid/kernels/gather_photons.glsl|term = flux - rest|term = flux - (rest - rest)"
   "side reversed|include/photongrid/kernels/photon_distance.glsl|!(arrival < 0.0f)|arrival < 0.0f"
   "normals reversed|include/photongrid/kernels/photon_distance.glsl|agreement >= args.leaks.x|agreement <= args.leaks.x"
   "flattening ignored|include/photongrid/kernels/photon_distance.glsl|longer = d2 + args.leaks.y * (h * h)|longer = d2 + 0.0f * args.leaks.y * (h * h)"
