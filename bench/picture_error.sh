@@ -19,9 +19,11 @@ cpu_seconds() {
   /usr/bin/time -f %U -o "$work/time" "$program" render "examples/scenes/$1.json" --backend serial --size $size --spp "$2" $3 -o "$work/picture.exr" --quiet >/dev/null
   cat "$work/time"
 }
-# median_cpu_seconds SCENE SPP OPTIONS: of three
+# median_of_three: of the numbers on standard input, one a line
+median_of_three() { sort -n | sed -n 2p; }
+# median_cpu_seconds SCENE SPP OPTIONS
 median_cpu_seconds() {
-  for _ in 1 2 3; do cpu_seconds "$@"; done | sort -n | sed -n 2p
+  for _ in 1 2 3; do cpu_seconds "$@"; done | median_of_three
 }
 # relmse: of the picture drawn last
 relmse() {
