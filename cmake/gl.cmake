@@ -9,7 +9,7 @@ if(NOT TARGET OpenGL::EGL OR NOT PHOTONGRID_GLCOREARB_DIR)
   return()
 endif()
 
-file(GLOB gl_texts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/backends/gl/*.glsl)
+file(GLOB gl_texts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/backends/gl/*.glsl ${PROJECT_SOURCE_DIR}/backends/gl/overrides/*.glsl)
 photongrid_backend(gl TEXTS ${gl_texts})
 target_include_directories(photongrid_gl INTERFACE $<BUILD_INTERFACE:${PHOTONGRID_GLCOREARB_DIR}>)
 target_link_libraries(photongrid_gl INTERFACE OpenGL::EGL)

@@ -27,7 +27,7 @@ if(missing)
   message(STATUS "photongrid: the Vulkan backend is switched off; missing: ${missing} (Debian package names)")
   set(PHOTONGRID_VULKAN OFF)
 else()
-  file(GLOB vulkan_shaders CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/backends/vulkan/*.glsl)
+  file(GLOB vulkan_shaders CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/backends/vulkan/*.glsl ${PROJECT_SOURCE_DIR}/backends/vulkan/overrides/*.glsl)
   photongrid_backend(vulkan TEXTS ${vulkan_shaders})
   set(spirv_tools $<IF:$<TARGET_EXISTS:SPIRV-Tools-static>,SPIRV-Tools-static,SPIRV-Tools>)
   # Static archives, named in the order in which they need each other.

@@ -486,10 +486,11 @@ TYPED_TEST_P(estimators, equal_the_serial_backends_bit_for_bit)
                 for (std::size_t i = 0; i < used.size(); ++i) {
                     ASSERT_EQ(used[i].x, used_s[i].x) << where;
                     ASSERT_EQ(irradiance[i].w, irradiance_s[i].w) << where;
-                    ASSERT_NEAR(irradiance[i].x, irradiance_s[i].x, 1e-5f * irradiance_s[i].x) << where;
-                    ASSERT_NEAR(errors[i].w, errors_s[i].w, 1e-5f * errors_s[i].w) << where;
+                    const float tolerance = adds_as_serial<TypeParam>() ? 1e-5f : 1e-6f;
+                    ASSERT_NEAR(irradiance[i].x, irradiance_s[i].x, tolerance * irradiance_s[i].x) << where;
+                    ASSERT_NEAR(errors[i].w, errors_s[i].w, tolerance * errors_s[i].w) << where;
                 }
-                if (b.caps().exact_division && b.caps().exact_sqrt) {
+                if (b.caps().exact_division && b.caps().exact_sqrt && (adds_as_serial<TypeParam>() || search == search_kind::at_least_k)) {
                     EXPECT_EQ(count_different_bits(irradiance, irradiance_s), 0u) << where;
                     EXPECT_EQ(count_different_bits(used, used_s), 0u) << where;
                     EXPECT_EQ(count_different_bits(errors, errors_s), 0u) << where;

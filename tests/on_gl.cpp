@@ -1,4 +1,6 @@
-// All backend tests on OpenGL, in an EGL or in an OSMesa context, with the driver's debug output on.
+// All backend tests on OpenGL with its overrides, in an EGL or in an OSMesa context, with the driver's debug output on.
+#include <photongrid/backends/gl/overrides/all.hpp>
+
 #include "algorithm_tests.hpp"
 #include "edge_tests.hpp"
 #include "estimator_tests.hpp"
@@ -19,6 +21,7 @@ struct gl_tag {
         const char* context = std::getenv("PHOTONGRID_GL_CONTEXT");
         return context != nullptr && std::string_view(context) == "osmesa";
     }
+    static constexpr bool sorts_by_network = false; // up to three steps of it a pass
     static inline const char* const name = on_osmesa() ? "osmesa" : "egl";
     static bool never_hardware() { return on_osmesa(); }
     static std::unique_ptr<type> make()

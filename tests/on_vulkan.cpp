@@ -1,4 +1,6 @@
-// All backend tests on Vulkan, with the validation layer watching.
+// All backend tests on Vulkan with its overrides, with the validation layer watching.
+#include <photongrid/backends/vulkan/overrides/all.hpp>
+
 #include "algorithm_tests.hpp"
 #include "edge_tests.hpp"
 #include "estimator_tests.hpp"
@@ -14,6 +16,7 @@ namespace photongrid::testing {
 struct vulkan_tag {
     using type = vulkan_backend;
     static constexpr const char* name = "vulkan";
+    static constexpr bool sorts_by_network = false; // up to four steps of it a pass
     /// PHOTONGRID_GPU_AV=1 has the layer watch inside the kernels too: tests/run.sh --full.
     static std::unique_ptr<type> make()
     {
@@ -42,6 +45,29 @@ class no_validation_messages : public ::testing::Environment {
     }
 };
 const auto* const watched = ::testing::AddGlobalTestEnvironment(new no_validation_messages);
+
+TEST(bitonic_sort_on_vulkan, takes_one_to_four_steps_a_pass)
+{
+    std::string reason;
+    auto* b = shared_backend<vulkan_tag>(reason);
+    if (b == nullptr)
+        GTEST_SKIP() << reason;
+    for (const uint steps : {1u, 2u, 3u, 4u})
+        for (const std::size_t n : {2u, 4u, 8u, 15u, 16u, 1000u, 4096u}) {
+            random_source u(n);
+            std::vector<uvec2> pairs;
+            for (std::size_t i = 0; i < n; ++i)
+                pairs.emplace_back(u.below(50), u.below(50));
+            auto buffer = b->upload(std::span<const uvec2>(pairs));
+            const auto report = bitonic_sort(*b, buffer, steps);
+            EXPECT_LE(report.passes, report.steps);
+            std::sort(pairs.begin(), pairs.end(), [](uvec2 x, uvec2 y) { return x.x != y.x ? x.x < y.x : x.y < y.y; });
+            EXPECT_EQ(b->download(buffer), pairs) << n << " pairs, " << steps << " steps";
+        }
+    auto buffer = b->make<uvec2>(8);
+    EXPECT_THROW((void)bitonic_sort(*b, buffer, 0), std::invalid_argument);
+    EXPECT_THROW((void)bitonic_sort(*b, buffer, 5), std::invalid_argument);
+}
 
 /// The kernels of a scene hold code only for what the scene has.
 TEST(specialisation, a_scene_without_glass_and_lamps_has_smaller_kernels)

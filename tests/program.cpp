@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -177,6 +178,42 @@ namespace {
         EXPECT_EQ(e.out, "ring.png\n");
         EXPECT_TRUE(fs::exists(folder / "ring.png"));
         EXPECT_EQ(files(), 1u);
+    }
+
+    TEST_F(program, fits_the_grid_when_asked)
+    {
+        auto fitted = small_with({"--stats", "stats.json", "-o", "a.pfm"});
+        std::replace(fitted.begin(), fitted.end(), std::string("32,1,32"), std::string("auto"));
+        ASSERT_EQ(run(fitted).code, 0);
+        const auto s = nlohmann::json::parse(contents(folder / "stats.json"));
+        EXPECT_EQ(s.at("settings").at("grid"), "auto");
+        const auto& resolution = s.at("map").at("resolution");
+        ASSERT_EQ(resolution.size(), 3u);
+        EXPECT_EQ(resolution[0].get<unsigned>() * resolution[1].get<unsigned>() * resolution[2].get<unsigned>(), s.at("map").at("cells"));
+        EXPECT_GT(s.at("map").at("cells"), 1);
+        ASSERT_EQ(run(small_with({"-o", "b.pfm"})).code, 0);
+        EXPECT_EQ(run({"compare", "a.pfm", "b.pfm", "--max-relmse", "1e-6"}).code, 0) << "the grid does not change what exact_k finds";
+    }
+
+    TEST_F(program, renders_on_threads)
+    {
+        auto with_backend = [&](std::vector<std::string> more) {
+            auto all = small_with(std::move(more));
+            for (auto& word : all)
+                if (word == "serial")
+                    word = "cpu";
+            return all;
+        };
+        const auto e = run(with_backend({"-o", "one.pfm", "--threads", "1"}));
+        if (e.code == 4 && e.err.find("built without the cpu backend") != std::string::npos)
+            GTEST_SKIP() << e.err;
+        ASSERT_EQ(e.code, 0) << e.err;
+        ASSERT_EQ(run(with_backend({"-o", "three.pfm", "--threads", "3", "--stats", "stats.json"})).code, 0);
+        EXPECT_EQ(contents(folder / "one.pfm"), contents(folder / "three.pfm"));
+        EXPECT_EQ(nlohmann::json::parse(contents(folder / "stats.json")).at("backend"), "cpu");
+        ASSERT_EQ(run(small_with({"-o", "serial.pfm"})).code, 0);
+        EXPECT_EQ(run({"compare", "one.pfm", "serial.pfm", "--max-relmse", "1e-10"}).code, 0);
+        EXPECT_EQ(run(with_backend({"--threads", "5000"})).code, 2);
     }
 
     TEST_F(program, refuses_outputs_before_rendering)

@@ -68,6 +68,14 @@ namespace {
             EXPECT_NE(said.find(w), std::string::npos) << "\"" << w << "\" in: " << said;
     }
 
+    TEST(scene_file, takes_a_grid_that_fits_the_photons)
+    {
+        auto lines = good;
+        auto& render = lines[12];
+        render.replace(render.find("[4, 1, 4]"), 9, "\"auto\"");
+        EXPECT_EQ(parse_scene("s.json", text(lines)).render.grid, glm::uvec3(0));
+    }
+
     TEST(scene_file, reads_every_part)
     {
         const auto s = parse_scene("s.json", text(good));
@@ -248,6 +256,7 @@ namespace {
         expect_refusal(refusal(13, "1000", "99999999999999999999"), "13:42", {"expected a whole number from 1 to 134217728"});
         expect_refusal(refusal(13, "1000", "-1"), "13:42", {"found the number -1"});
         expect_refusal(refusal(13, "[4, 1, 4]", "[100000, 1000, 1000]"), "13:65", {"2^31 cells"});
+        expect_refusal(refusal(13, "[4, 1, 4]", "\"fit\""), "13:65", {"a grid: [x, y, z] cells, or \"auto\""});
         expect_refusal(refusal(4, "40", "180"), "4:74", {"degrees"});
     }
 

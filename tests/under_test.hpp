@@ -29,7 +29,7 @@ typename Tag::type* shared_backend(std::string& reason)
     static const std::unique_ptr<typename Tag::type> instance = []() -> std::unique_ptr<typename Tag::type> {
         try {
             auto b = Tag::make();
-            if (hardware_wanted() && b->caps().software && b->caps().backend != "serial") {
+            if (hardware_wanted() && b->caps().software && b->caps().backend != "serial" && b->caps().backend != "cpu") {
                 why = "hardware was asked for, but this device is software: " + b->caps().device;
                 return nullptr;
             }
@@ -75,6 +75,23 @@ protected:
 private:
     B* instance_ = nullptr;
 };
+
+/// What is so unless a tag says otherwise: sorts take the network's passes, and sums of light equal serial's to the bit where
+/// division rounds correctly.
+template <class Tag>
+constexpr bool sorts_by_network()
+{
+    if constexpr (requires { Tag::sorts_by_network; })
+        return Tag::sorts_by_network;
+    return true;
+}
+template <class Tag>
+constexpr bool adds_as_serial()
+{
+    if constexpr (requires { Tag::adds_as_serial; })
+        return Tag::adds_as_serial;
+    return true;
+}
 
 struct tag_names {
     template <class Tag>

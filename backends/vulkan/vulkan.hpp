@@ -203,6 +203,16 @@ public:
     std::uint64_t peak_bytes() const { return context_->peak_bytes(); }
     const std::map<std::string, kernel_cost>& costs() const { return costs_; }
 
+    // --- for overrides ------------------------------------------------------------------------------------------------
+    /// One pass of a shader of the backend's or an override's own: `elements` invocations, the buffers bound from 0 up. The
+    /// same shader with other defines is another. Counted under the shader's name.
+    template <class... Buffers>
+    void own_pass(const std::string& name, const std::string& more_defines, std::uint64_t elements, std::initializer_list<uint> args, Buffers&... buffers)
+    {
+        own_pass(name, elements, args, {buffers.memory_...}, more_defines);
+        ++costs_[name].passes;
+    }
+
     /// What the validation layer has said so far; always empty unless options.validation.
     std::vector<std::string> validation_messages() const { return context_->messages(); }
 
@@ -287,7 +297,7 @@ private:
     }
 
     /// One pass of a shader that is the backend's own.
-    void own_pass(const std::string& name, std::uint64_t elements, std::initializer_list<uint> args, std::initializer_list<memory> buffers)
+    void own_pass(const std::string& name, std::uint64_t elements, std::initializer_list<uint> args, std::initializer_list<memory> buffers, const std::string& more_defines = {})
     {
         std::vector<memory> bound_buffers;
         for (const auto& b : buffers)
@@ -296,7 +306,7 @@ private:
         assert(args.size() <= params.size());
         std::copy(args.begin(), args.end(), params.begin());
         if (elements > 0)
-            recorder_.dispatch(own_pipeline(name, buffers.size()), bound_buffers, push(launch(elements), groups(elements), 0, params), groups(elements));
+            recorder_.dispatch(own_pipeline(name, buffers.size(), more_defines), bound_buffers, push(launch(elements), groups(elements), 0, params), groups(elements));
     }
 
     void prepare_indirect(const memory& control, uint pass)
@@ -386,12 +396,12 @@ private:
         return *p;
     }
 
-    const vulkan_detail::pipeline& own_pipeline(const std::string& name, std::size_t buffers)
+    const vulkan_detail::pipeline& own_pipeline(const std::string& name, std::size_t buffers, const std::string& more_defines)
     {
-        auto& p = own_pipelines_[name];
+        auto& p = own_pipelines_[name + more_defines];
         if (p)
             return *p;
-        const auto source = splice(own_text("compute_prelude"), defines(0, 0, false, false), own_text(name), text_file{name + " (end)", ""}, {});
+        const auto source = splice(own_text("compute_prelude"), defines(0, 0, false, false) + more_defines, own_text(name), text_file{name + " (end)", ""}, {});
         std::vector<vulkan_detail::binding> bindings;
         for (std::uint32_t b = 0; b < buffers; ++b)
             bindings.push_back({b});

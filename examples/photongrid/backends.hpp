@@ -29,6 +29,9 @@ struct render_result {
 };
 
 render_result render_serial(const render_job& job);
+/// `threads`: 0 for all. Throws backend_error where the program was built without this backend, as has_cpu() tells.
+render_result render_cpu(const render_job& job, unsigned threads);
+bool has_cpu();
 /// `osmesa`: on OSMesa, else on EGL. Throws backend_error when the context cannot be had.
 render_result render_gl(const render_job& job, bool osmesa);
 /// Throws backend_error when there is no such device.
@@ -46,6 +49,7 @@ struct device_report {
 };
 
 device_report serial_device();
+std::vector<device_report> cpu_devices();
 std::vector<device_report> gl_devices();
 std::vector<device_report> vulkan_devices_report();
 

@@ -71,6 +71,17 @@ Exit codes:
         return v;
     }
 
+    /// Cells along each axis; all 0 for `auto`.
+    glm::uvec3 parsed_grid(const std::string& option, const std::string& text)
+    {
+        if (text == "auto")
+            return glm::uvec3(0);
+        const auto grid = parsed_list<3>(option, text, ',', "three whole numbers, X,Y,Z, or auto");
+        if (grid.x < 1 || grid.y < 1 || grid.z < 1)
+            throw CLI::ValidationError(option, "\"" + text + "\" given; each axis needs at least one cell");
+        return grid;
+    }
+
     /// A number at or between two limits, as single precision holds it.
     float parsed_from(const std::string& option, const std::string& text, double low, double high, const char* expected)
     {
@@ -141,7 +152,8 @@ Exit codes:
     void add_render(CLI::App& to, render_options& o)
     {
         to.add_option("scene", o.scene_path, "scene file")->required()->type_name("SCENE.json");
-        to.add_option("--backend", o.backend, "auto: a hardware Vulkan device, else serial")->check(CLI::IsMember({"auto", "serial", "gl", "gl-osmesa", "vulkan"}))->type_name("auto|serial|gl|gl-osmesa|vulkan");
+        to.add_option("--backend", o.backend, "auto: a hardware Vulkan device, else cpu")->check(CLI::IsMember({"auto", "serial", "cpu", "gl", "gl-osmesa", "vulkan"}))->type_name("auto|serial|cpu|gl|gl-osmesa|vulkan");
+        add_whole(to, "--threads", o.threads, "of the cpu backend; default: all; the picture does not depend on it");
         to.add_option("--device", o.device, "Vulkan device (with --backend vulkan); see `photongrid devices`")->type_name("NAME|INDEX");
         add_choice(to, "--map", o.map, map_names, "build the photon map by bitonic sort or stencil routing");
         add_whole(to, "--slots", o.slots, "routed cells have N x N slots, 1 to 16");
@@ -160,8 +172,9 @@ Exit codes:
         add_choice(to, "--only", o.only, drawn_alone, "draw this part of the light alone; default: all of it");
         to.add_flag("--as-paper", o.as_paper, "the paper's estimate: --search at_least_k --kernel constant --bias paper --leaks none --edge-correction none; each gives way to the option itself");
         to.add_option_function<std::string>(
-              "--grid", [&o](const std::string& text) { o.grid = parsed_list<3>("--grid", text, ',', "three whole numbers: X,Y,Z"); }, "cells of the photon map")
-            ->type_name("X,Y,Z");
+              "--grid", [&o](const std::string& text) { o.grid = parsed_grid("--grid", text); },
+              "cells of the photon map over the scene, or fitted to the photons and k")
+            ->type_name("X,Y,Z|auto");
         add_number(to, "--max-radius", o.max_radius, "largest search radius; of fixed_radius, the radius", "METRES");
         to.add_option_function<std::string>(
               "--size", [&o](const std::string& text) { o.size = parsed_list<2>("--size", text, 'x', "width and height: WxH"); }, "pixels")

@@ -19,7 +19,7 @@ enum exit_code { success = 0, failure = 1, usage_error = 2, scene_file_error = 3
 struct render_options {
     std::string scene_path, backend = "auto", device;
     std::optional<map_builder> map;
-    std::optional<std::uint32_t> slots, photons, k, spp, light_samples, depth, seed;
+    std::optional<std::uint32_t> slots, photons, k, spp, light_samples, depth, seed, threads;
     std::optional<glm::uvec3> grid;
     std::optional<glm::uvec2> size;
     std::optional<double> max_radius, exposure;

@@ -61,9 +61,11 @@ namespace {
                 return render_vulkan(job);
             }
             if (!o.quiet)
-                std::cerr << "photongrid: --backend auto: serial (no hardware Vulkan device)\n";
-            return render_serial(job);
+                std::cerr << "photongrid: --backend auto: " << (has_cpu() ? "cpu" : "serial") << " (no hardware Vulkan device)\n";
+            return has_cpu() ? render_cpu(job, o.threads.value_or(0)) : render_serial(job);
         }
+        if (o.backend == "cpu")
+            return render_cpu(job, o.threads.value_or(0));
         if (o.backend == "serial")
             return render_serial(job);
         if (o.backend == "vulkan")
@@ -123,6 +125,8 @@ namespace {
         render_settings settings;
         try {
             settings = settings_for(s, o);
+            if (o.threads.value_or(0) > 4096)
+                throw std::invalid_argument("--threads " + std::to_string(*o.threads) + ": at most 4,096; 0: all");
         } catch (const std::invalid_argument& e) {
             std::cerr << "photongrid: error: on the command line: " << e.what() << '\n';
             return usage_error;
@@ -198,7 +202,7 @@ namespace {
     exit_code run(const devices_options&)
     {
         std::vector<device_report> all{serial_device()};
-        for (auto&& more : {gl_devices(), vulkan_devices_report()})
+        for (auto&& more : {cpu_devices(), gl_devices(), vulkan_devices_report()})
             all.insert(all.end(), more.begin(), more.end());
         for (const auto& d : all) {
             std::cout << d.backend << "  " << (d.works ? d.device : d.device.empty() ? "not available" : d.device + "  not usable") << '\n';

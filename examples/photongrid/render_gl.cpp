@@ -1,3 +1,5 @@
+#include <photongrid/backends/gl/overrides/all.hpp>
+
 #include "render_on.hpp"
 
 #include <photongrid/backends/gl/gl.hpp>

@@ -1,6 +1,6 @@
-#include "render_on.hpp"
+#include <photongrid/backends/vulkan/overrides/all.hpp>
 
-#include <photongrid/backends/vulkan/vulkan.hpp>
+#include "render_on.hpp"
 
 namespace photongrid {
 

@@ -404,10 +404,14 @@ namespace {
                 wrong(size, "a size: [width, height] in pixels");
             r.width = whole(size.items[0], 1, 16384);
             r.height = whole(size.items[1], 1, 16384);
-            const auto cells = three(at(v, "grid"), "a grid: [x, y, z] cells", [&](const json_value& c) { return static_cast<double>(whole(c, 1, 1u << 20)); });
-            if (cells.x * cells.y * cells.z > 0x1p31)
-                wrong(at(v, "grid"), "at most 2^31 cells");
-            r.grid = glm::uvec3(cells);
+            if (const auto& grid = at(v, "grid"); grid.kind == json_kind::string && grid.text == "auto") {
+                r.grid = glm::uvec3(0);
+            } else {
+                const auto cells = three(grid, "a grid: [x, y, z] cells, or \"auto\"", [&](const json_value& c) { return static_cast<double>(whole(c, 1, 1u << 20)); });
+                if (cells.x * cells.y * cells.z > 0x1p31)
+                    wrong(grid, "at most 2^31 cells");
+                r.grid = glm::uvec3(cells);
+            }
             r.max_radius = radius(at(v, "max_radius"));
             optional("photons", r.photons, 1, 1u << 27);
             optional("k", r.k, 1, 1u << 24);

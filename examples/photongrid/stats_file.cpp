@@ -39,7 +39,7 @@ namespace {
 
     json settings_json(const render_settings& s)
     {
-        return {{"size", {s.width, s.height}}, {"photons", s.photons}, {"k", s.k}, {"grid", {s.grid.x, s.grid.y, s.grid.z}}, {"max_radius", s.max_radius}, {"light_samples", s.light_samples}, {"spp", s.spp},
+        return {{"size", {s.width, s.height}}, {"photons", s.photons}, {"k", s.k}, {"grid", s.grid == glm::uvec3(0) ? json("auto") : json{s.grid.x, s.grid.y, s.grid.z}}, {"max_radius", s.max_radius}, {"light_samples", s.light_samples}, {"spp", s.spp},
             {"depth", s.depth}, {"photon_depth", s.photon_depth}, {"seed", s.seed}, {"map", name_of(map_names, s.builder)}, {"slots", s.slots}, {"exposure", s.exposure},
             {"search", name_of(search_names, s.search)}, {"kernel", name_of(kernel_names, s.kernel)}, {"bias", name_of(bias_names, s.bias)}, {"leaks", leaks_json(s.leaks)}, {"edge_correction", name_of(edge_names, s.edges)},
             {"only", name_of(part_names, s.only)}};
@@ -58,7 +58,7 @@ std::string stats_json(const scene& s, const render_settings& settings, const re
     const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.name}, {"backend", result.caps.backend}, {"device", result.caps.device}, {"seed", settings.seed}, {"settings", settings_json(settings)},
         {"photons",
             {{"emitted", p.emitted}, {"absorbed", p.absorbed}, {"escaped", p.escaped}, {"cut_off", p.cut_off}, {"invalid", p.invalid}, {"stored", p.stored}, {"direct", p.direct}, {"dropped", p.dropped}}},
-        {"map", {{"builder", name_of(map_names, r.map.builder)}, {"cells", r.map.cells}, {"overfull_cells", r.map.overfull_cells}, {"redistributed_flux", r.map.redistributed_flux}, {"left_out", r.map.left_out}}},
+        {"map", {{"builder", name_of(map_names, r.map.builder)}, {"cells", r.map.cells}, {"resolution", {r.map.resolution.x, r.map.resolution.y, r.map.resolution.z}}, {"overfull_cells", r.map.overfull_cells}, {"redistributed_flux", r.map.redistributed_flux}, {"left_out", r.map.left_out}}},
         {"stages",
             {{"trace_photons", stage_json(r.trace_photons)}, {"build_map", stage_json(r.build_map)}, {"trace_rays", stage_json(r.trace_rays)}, {"radiance_estimate", stage_json(r.radiance_estimate)}}},
         {"estimate", {{"mean_count", r.estimate.mean_count}, {"mean_radius", r.estimate.mean_radius}, {"mean_visited", r.estimate.mean_visited}}}, {"kernels", kernels},

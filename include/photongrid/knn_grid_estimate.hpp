@@ -46,6 +46,44 @@ inline knn_settings as_paper(knn_settings s)
     return s;
 }
 
+namespace detail {
+    /// `s` with the least radius filled in, or an exception that says what is wrong with it for this map and these points.
+    template <backend B>
+    knn_settings checked(knn_settings s, const photon_map<B>& map, std::size_t points, std::size_t normals)
+    {
+        if (std::isnan(s.max_radius) || std::isnan(s.min_radius))
+            throw std::invalid_argument("knn_search: max_radius, min_radius: NaN");
+        if (s.visits_per_pass < 1 || s.ranges_per_pass < 2)
+            throw std::invalid_argument("knn_search: visits_per_pass, ranges_per_pass: need at least 1 and 2, or a pass gets nowhere");
+        if (!(s.leaks.compression >= 1) || !(s.leaks.compression <= 1e6f) || !(s.leaks.min_cosine >= -1) || !(s.leaks.min_cosine <= 1))
+            throw std::invalid_argument("knn_search: leaks: compression must be from 1 to 10^6, min_cosine from -1 to 1");
+        if (s.leaks.needs_any() && normals < points)
+            throw std::invalid_argument("knn_search: leaks: a policy needs the surface normal of every query point");
+        if (s.leaks.side && map.photons.size() > 0 && map.photons.directions.size() == 0)
+            throw std::invalid_argument("knn_search: leaks: side needs the photons' directions, which this map does not keep");
+        if (s.leaks.needs_normals() && map.photons.size() > 0 && map.photons.normals.size() == 0)
+            throw std::invalid_argument("knn_search: leaks: min_cosine needs the photons' surface normals, which this map does not keep");
+        if (!(s.min_radius > 0))
+            s.min_radius = least_radius(map.cells_of);
+        return s;
+    }
+    /// True when something can be found at all.
+    inline bool is_searching(const knn_settings& s, uint photons) { return photons > 0 && s.max_radius > 0 && (s.k > 0 || s.search == search_kind::fixed_radius); }
+    /// The squares that kernels take, m^2.
+    inline float max_radius2(const knn_settings& s)
+    {
+        const float r = s.max_radius;
+        return r > 0 ? std::min(r * r, 1e38f) : 0.0f;
+    }
+    inline float min_radius2(const knn_settings& s) { return std::max(s.min_radius * s.min_radius, 1e-36f); }
+    /// 1 / mean of the kernel over its disc.
+    constexpr float norm_of(filter_kernel k)
+    {
+        constexpr float norms[] = {1, 3, 2, 3};
+        return norms[static_cast<int>(k)];
+    }
+} // namespace detail
+
 /// Estimates per query point, in buffers.
 template <backend B>
 struct knn_estimates {
@@ -63,20 +101,20 @@ struct knn_estimates {
 /// photon_distance.glsl writes it, so that every backend finds the same set. With fewer than k, r is max_radius. Radiance of
 /// a Lambertian surface is irradiance x reflectance / pi.
 template <backend B>
-class knn_search {
+class knn_search_by_kernels {
 public:
     using vectors = buffer_of<B, glm::vec4>;
 
     /// Points: xyz in m; w > 0 marks a point that wants an estimate. `map` and `points` must outlive the search.
     /// \throws std::invalid_argument for a radius that is NaN, and for leak policies, which need normals of the points.
-    knn_search(B& b, const photon_map<B>& map, const vectors& points, const knn_settings& s)
-        : knn_search(b, map, points, nullptr, s)
+    knn_search_by_kernels(B& b, const photon_map<B>& map, const vectors& points, const knn_settings& s)
+        : knn_search_by_kernels(b, map, points, nullptr, s)
     {
     }
     /// With the unit normals of the surfaces that the points lie on, towards the side that is looked at. They must outlive
     /// the search too.
-    knn_search(B& b, const photon_map<B>& map, const vectors& points, const vectors& normals, const knn_settings& s)
-        : knn_search(b, map, points, &normals, s)
+    knn_search_by_kernels(B& b, const photon_map<B>& map, const vectors& points, const vectors& normals, const knn_settings& s)
+        : knn_search_by_kernels(b, map, points, &normals, s)
     {
     }
 
@@ -111,10 +149,9 @@ public:
             b.template run<kernels::no_estimate>(n, {.radius2 = max_radius2()}, reads(stage_ == stage::tie ? chosen_ : tally_), writes(e.irradiance, e.used));
             return e;
         }
-        constexpr float norms[] = {1, 3, 2, 3}; // 1 / mean of the kernel over a disc
         auto errors = s_.errors ? std::move(e.standard_error) : b.template make<glm::vec4>(n);
         b.template run<kernels::irradiance_estimate>(n,
-            {.norm = norms[static_cast<int>(s_.kernel)], .min_radius2 = min_radius2(), .left_out = s_.bias == bias_kind::unbiased ? 1u : 0u},
+            {.norm = detail::norm_of(s_.kernel), .min_radius2 = min_radius2(), .left_out = s_.bias == bias_kind::unbiased ? 1u : 0u},
             reads(reach_, sum_, squares_, tally_), writes(e.irradiance, e.used, errors));
         if (s_.errors)
             e.standard_error = std::move(errors);
@@ -124,23 +161,9 @@ public:
 private:
     enum class stage { grow, distance, tie, gather, finished };
 
-    knn_search(B& b, const photon_map<B>& map, const vectors& points, const vectors* normals, const knn_settings& s)
-        : b_(&b), map_(&map), points_(&points), normals_(normals), s_(s)
+    knn_search_by_kernels(B& b, const photon_map<B>& map, const vectors& points, const vectors* normals, const knn_settings& s)
+        : b_(&b), map_(&map), points_(&points), normals_(normals), s_(detail::checked(s, map, points.size(), normals != nullptr ? normals->size() : 0))
     {
-        if (std::isnan(s.max_radius) || std::isnan(s.min_radius))
-            throw std::invalid_argument("knn_search: max_radius, min_radius: NaN");
-        if (s.visits_per_pass < 1 || s.ranges_per_pass < 2)
-            throw std::invalid_argument("knn_search: visits_per_pass, ranges_per_pass: need at least 1 and 2, or a pass gets nowhere");
-        if (!(s.leaks.compression >= 1) || !(s.leaks.compression <= 1e6f) || !(s.leaks.min_cosine >= -1) || !(s.leaks.min_cosine <= 1))
-            throw std::invalid_argument("knn_search: leaks: compression must be from 1 to 10^6, min_cosine from -1 to 1");
-        if (s.leaks.needs_any() && (normals == nullptr || normals->size() < points.size()))
-            throw std::invalid_argument("knn_search: leaks: a policy needs the surface normal of every query point");
-        if (s.leaks.side && map.photons.size() > 0 && map.photons.directions.size() == 0)
-            throw std::invalid_argument("knn_search: leaks: side needs the photons' directions, which this map does not keep");
-        if (s.leaks.needs_normals() && map.photons.size() > 0 && map.photons.normals.size() == 0)
-            throw std::invalid_argument("knn_search: leaks: min_cosine needs the photons' surface normals, which this map does not keep");
-        if (!(s_.min_radius > 0))
-            s_.min_radius = least_radius(map.cells_of);
         switch (s_.search) {
         case search_kind::at_least_k: start_growing(); break;
         case search_kind::exact_k: start_distances(); break;
@@ -156,7 +179,7 @@ private:
     template <class T>
     buffer_of<B, T> make() { return b_->template make<T>(points_->size()); }
 
-    bool searching() const { return map_->photons.size() > 0 && s_.max_radius > 0 && (s_.k > 0 || s_.search == search_kind::fixed_radius); }
+    bool searching() const { return detail::is_searching(s_, map_->photons.size()); }
 
     void start_growing()
     {
@@ -274,12 +297,8 @@ private:
         return nothing;
     }
 
-    float max_radius2() const
-    {
-        const float r = s_.max_radius;
-        return r > 0 ? std::min(r * r, 1e38f) : 0.0f;
-    }
-    float min_radius2() const { return std::max(s_.min_radius * s_.min_radius, 1e-36f); }
+    float max_radius2() const { return detail::max_radius2(s_); }
+    float min_radius2() const { return detail::min_radius2(s_); }
 
     B* b_;
     const photon_map<B>* map_;
@@ -291,6 +310,15 @@ private:
     vectors gathered_, pivots_, reach_, sum_, lost_, squares_;
     buffer_of<B, glm::uvec4> found_, counts_, outer_, bracket_, chosen_, cursor_, tally_;
 };
+
+/// The search of backend B: by kernels, unless the backend has another (backends/<name>/overrides/).
+template <backend B>
+class knn_search : public knn_search_by_kernels<B> {
+public:
+    using knn_search_by_kernels<B>::knn_search_by_kernels;
+};
+template <backend B, class... Rest>
+knn_search(B&, const photon_map<B>&, const Rest&...) -> knn_search<B>;
 
 /// The whole search at once.
 template <backend B>

@@ -5,6 +5,7 @@
 
 #include <photongrid/build_map.hpp>
 #include <photongrid/edge_correction.hpp>
+#include <photongrid/fitting_grid.hpp>
 #include <photongrid/knn_grid_estimate.hpp>
 #include <photongrid/render_stats.hpp>
 #include <photongrid/trace_photons.hpp>
@@ -74,14 +75,15 @@ built_map<B> build_map(B& b, const scene& s, const render_settings& settings, co
     tracing.stop();
 
     detail::stage_clock<B> building(b, stats.build_map);
-    const grid g = make_grid(built.scene.about.low, built.scene.about.high, settings.grid);
     photons<B> p = std::move(built.trace.photons);
+    const grid g = settings.grid == glm::uvec3(0) ? fitting_grid(b, p, settings.k) : make_grid(built.scene.about.low, built.scene.about.high, settings.grid);
     const uint parts = settings.only == light_part::caustic ? caustic_part : settings.only == light_part::indirect ? other_part : every_part;
     built.map = settings.builder == map_builder::sort ? sorted_map(b, std::move(p), g, parts) : routed_map(b, std::move(p), g, settings.slots, settings.seed, parts);
     building.stop();
 
     built.about.builder = settings.builder;
     built.about.cells = cell_count(g);
+    built.about.resolution = glm::uvec3(g.resolution);
     built.about.overfull_cells = built.map.overfull_cells;
     built.about.left_out = built.map.left_out;
     stats.map = built.about;

@@ -26,6 +26,7 @@ struct photon_stats {
 struct map_stats {
     map_builder builder = map_builder::sort;
     std::uint64_t cells = 0;
+    glm::uvec3 resolution{0};             ///< cells along each axis
     std::uint64_t overfull_cells = 0;     ///< routed cells with more photons than slots
     double redistributed_flux = 0;        ///< W, rgb together: flux of photons not kept, given to those kept
     std::uint64_t sort_steps = 0;

@@ -99,7 +99,7 @@ struct render_settings {
     std::uint32_t width = 512, height = 512; ///< pixels
     std::uint32_t photons = 65000;           ///< photons *stored*
     std::uint32_t k = 500;                   ///< photons sought by an estimate
-    glm::uvec3 grid{25, 25, 50};             ///< cells of the photon map
+    glm::uvec3 grid{25, 25, 50};             ///< cells of the photon map over the scene; 0, 0, 0: fitted to photons and k (fitting_grid.hpp)
     double max_radius = 0.1;                 ///< m
     std::uint32_t light_samples = 32;        ///< shadow rays a light, pixel and eye ray; a point light needs one
     std::uint32_t spp = 1;                   ///< eye rays a pixel
@@ -273,7 +273,7 @@ inline void check(const render_settings& s)
     detail::require(s.width >= 1 && s.height >= 1 && s.width <= 16384 && s.height <= 16384, "size: width and height must be from 1 to 16384 pixels");
     detail::require(s.photons >= 1 && s.photons <= (1u << 27), "photons: must be from 1 to 2^27");
     detail::require(s.k >= 1 && s.k <= (1u << 24), "k: must be from 1 to 2^24");
-    detail::require(s.grid.x >= 1 && s.grid.y >= 1 && s.grid.z >= 1, "grid: each axis needs at least one cell");
+    detail::require(s.grid == glm::uvec3(0) || (s.grid.x >= 1 && s.grid.y >= 1 && s.grid.z >= 1), "grid: each axis needs at least one cell (or all three 0: fitted to the photons)");
     detail::require(detail::finite(s.max_radius) && s.max_radius > 0, "max_radius: must be finite and greater than 0");
     detail::require(s.light_samples >= 1 && s.light_samples <= 65536, "light_samples: must be from 1 to 65536");
     detail::require(s.spp >= 1 && s.spp <= 65536, "spp: must be from 1 to 65536");

@@ -1,0 +1,28 @@
+// The cpu backend's way to do what bitonic_sort does: a radix sort.
+#pragma once
+
+#include <photongrid/backends/cpu/cpu.hpp>
+#include <photongrid/backends/cpu/overrides/radix_sort.hpp>
+#include <photongrid/bitonic_sort.hpp>
+
+namespace photongrid {
+
+/// Same pairs in the same order as the generic bitonic_sort. `steps` is the network's, `passes` is the radix sort's.
+inline sort_report bitonic_sort(cpu_backend& b, cpu_backend::buffer<glm::uvec2>& pairs)
+{
+    const std::size_t n = pairs.size();
+    sort_report report;
+    if (n < 2)
+        return report;
+    const auto levels = static_cast<uint>(std::countr_zero(std::bit_ceil(n)));
+    report.steps = levels * (levels + 1) / 2;
+    auto scratch = b.make<glm::uvec2>(n);
+    const auto sorted = cpu::radix_sort(b.threads(), b.rows_to_write(pairs).data(), b.rows_to_write(scratch).data(), n);
+    if (sorted.in_scratch)
+        std::swap(pairs, scratch);
+    report.passes = sorted.passes;
+    b.count_passes("radix_sort", report.passes);
+    return report;
+}
+
+} // namespace photongrid

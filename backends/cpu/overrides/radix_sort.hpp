@@ -1,0 +1,211 @@
+// Sorting pairs by their bits: stable, by as many digits as the bits that differ need; least significant digit first, but where
+// there are too many pairs for a cache.
+#pragma once
+
+#include <photongrid/backends/cpu/buffer.hpp>
+#include <photongrid/backends/cpu/overrides/simd.hpp>
+#include <photongrid/backends/cpu/pool.hpp>
+
+#include <array>
+#include <bit>
+#include <utility>
+#include <vector>
+
+namespace photongrid::cpu {
+
+/// What a sort did.
+struct radix_report {
+    uint passes = 0;
+    bool in_scratch = false; ///< the sorted pairs lie in the second range
+};
+
+/// Pairs that fit a core's own cache twice.
+inline constexpr std::size_t in_cache = 65536;
+
+/// As few digits as 11 bits each allow: 2,048 counters fit the first-level cache.
+constexpr uint digits_for(uint bits) { return (bits + 10) / 11; }
+
+/// Adds up how often a digit has each value in pairs first to past - 1. The digit is a copy, which counts cannot overwrite.
+inline void count_digits(digit by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* counts)
+{
+    if (by.of_value)
+        for (std::size_t i = first; i < past; ++i)
+            ++counts[from[i].y >> by.shift & by.mask];
+    else
+        for (std::size_t i = first; i < past; ++i)
+            ++counts[from[i].x >> by.shift & by.mask];
+}
+
+/// Moves n pairs to where a digit puts them, one after the other.
+inline void scatter_in_cache(digit by, const glm::uvec2* from, glm::uvec2* to, std::size_t n)
+{
+    for (std::size_t i = 0; i < n; i += pairs_a_line)
+        __builtin_prefetch(to + i, 1);
+    std::array<uint, digit::most> next; // the first mask + 1 of them
+    std::fill_n(next.begin(), by.mask + 1, 0u);
+    count_digits(by, from, 0, n, next.data());
+    uint sum = 0;
+    for (uint value = 0; value <= by.mask; ++value)
+        sum += std::exchange(next[value], sum);
+    for (std::size_t i = 0; i < n; ++i)
+        to[next[by.of(from[i])]++] = from[i];
+}
+
+using counters = std::vector<std::array<uint, digit::most>>; ///< of each part
+
+/// As scatter_in_cache() for any number of pairs, by all threads, each of which takes `part`. `next` holds how often each part
+/// has each digit, and is overwritten. Returns where each digit's pairs begin, and n.
+inline std::vector<uint> scatter_counted(pool& threads, const digit& by, const glm::uvec2* from, glm::uvec2* to, std::size_t n, std::size_t part, counters& next)
+{
+    std::vector<uint> begin(std::size_t{by.mask} + 2);
+    uint sum = 0;
+    for (uint value = 0; value <= by.mask; ++value) {
+        begin[value] = sum;
+        for (auto& of_part : next)
+            sum += std::exchange(of_part[value], sum);
+    }
+    begin.back() = sum;
+    if (n <= in_cache) {
+        threads.for_blocks(n, part, [&](std::size_t first, std::size_t past) {
+            auto& mine = next[first / part];
+            for (std::size_t i = first; i < past; ++i)
+                to[mine[by.of(from[i])]++] = from[i];
+        });
+        return begin;
+    }
+    constexpr std::size_t line_pairs = digit::most * pairs_a_line;
+    storage line_memory(next.size() * line_pairs * sizeof(glm::uvec2));
+    auto* const lines = reinterpret_cast<glm::uvec2*>(line_memory.begin());
+    threads.for_blocks(n, part, [&](std::size_t first, std::size_t past) {
+        const std::size_t p = first / part;
+        scatter_pairs(by, from, first, past, next[p].data(), to, lines + p * line_pairs);
+    });
+    return begin;
+}
+
+/// Which bits differ in some pairs, and whether their values ascend, as ids do: then a stable sort by key is enough.
+struct look {
+    glm::uvec2 any{0u}, all{~0u};
+    uint descents = 0;
+
+    glm::uvec2 varying() const { return any ^ all; }
+    look& operator|=(const look& other)
+    {
+        any |= other.any;
+        all &= other.all;
+        descents |= other.descents;
+        return *this;
+    }
+};
+inline look look_at(const glm::uvec2* pairs, std::size_t first, std::size_t past)
+{
+    uint any_x = 0, all_x = ~0u, any_y = 0, all_y = ~0u; // plain numbers, of which compilers make vectors
+    for (std::size_t i = first; i < past; ++i) {
+        any_x |= pairs[i].x;
+        all_x &= pairs[i].x;
+        any_y |= pairs[i].y;
+        all_y &= pairs[i].y;
+    }
+    uint descents = 0;
+    for (std::size_t i = std::max<std::size_t>(first, 1); i < past; ++i)
+        descents |= pairs[i - 1].y > pairs[i].y ? 1u : 0u;
+    return {{any_x, any_y}, {all_x, all_y}, descents};
+}
+/// The same for a few pairs from all over.
+inline look sample(const glm::uvec2* pairs, std::size_t n)
+{
+    look l;
+    for (std::size_t i = 0; i < n; i += n / 256 + 1)
+        l |= look_at(pairs, i, i + 1);
+    return l;
+}
+
+/// Bits `low` and up of a key or a value.
+struct bit_range {
+    uint low = 0, bits = 0;
+    explicit bit_range(uint varying)
+        : low(varying != 0 ? static_cast<uint>(std::countr_zero(varying)) : 0), bits(32 - static_cast<uint>(std::countl_zero(varying)) - low) {}
+};
+
+/// The most significant digit of keys, by which many pairs are parted so that the rest of the work fits a cache.
+inline digit first_digit(const bit_range& r)
+{
+    const uint width = std::min(r.bits, std::clamp(r.bits, 19u, 21u) - 11u);
+    return {false, r.low + r.bits - width, (1u << width) - 1};
+}
+
+/// Sorts n pairs by (x, y). Both ranges have room for n and begin on cache lines; which one the result is in is reported.
+inline radix_report radix_sort(pool& threads, glm::uvec2* pairs, glm::uvec2* scratch, std::size_t n)
+{
+    radix_report report;
+    if (n < 2)
+        return report;
+    // A part a thread, so that counts need no sharing; the result does not depend on their number.
+    const std::size_t parts = n < 16384 ? 1 : threads.threads(), part = (n + parts - 1) / parts;
+    counters counts((n + part - 1) / part);
+    std::vector<look> seen(counts.size());
+
+    // While all pairs are looked at, digits are counted that a few of them make probable.
+    const digit probable = first_digit(bit_range(sample(pairs, n).varying().x));
+    constexpr std::size_t block = 2048; // is still in the cache the second time
+    threads.for_blocks(n, part, [&](std::size_t first, std::size_t past) {
+        auto& mine = counts[first / part];
+        mine.fill(0);
+        for (std::size_t b = first; b < past; b += block) {
+            const std::size_t end = std::min(past, b + block);
+            seen[first / part] |= look_at(pairs, b, end);
+            if (n > in_cache)
+                count_digits(probable, pairs, b, end, mine.data());
+        }
+    });
+    look whole;
+    for (const auto& l : seen)
+        whole |= l;
+
+    glm::uvec2 *from = pairs, *to = scratch;
+    const auto count = [&](const digit& by) {
+        threads.for_blocks(n, part, [&](std::size_t first, std::size_t past) {
+            auto& mine = counts[first / part];
+            mine.fill(0);
+            count_digits(by, from, first, past, mine.data());
+        });
+    };
+    const auto least_digit_first = [&](bool values, const bit_range& r) {
+        const uint digits = digits_for(r.bits), width = (r.bits + digits - 1) / std::max(digits, 1u);
+        for (uint d = 0; d < digits; ++d) {
+            const digit by{values, r.low + d * width, (1u << width) - 1};
+            count(by);
+            scatter_counted(threads, by, from, to, n, part, counts);
+            std::swap(from, to);
+        }
+        report.passes += digits;
+    };
+    const bit_range keys(whole.varying().x);
+    if (whole.descents != 0)
+        least_digit_first(true, bit_range(whole.varying().y));
+    if (n <= in_cache || digits_for(keys.bits) < 2) {
+        least_digit_first(false, keys);
+    } else {
+        const digit by = first_digit(keys);
+        if (!(by == probable) || whole.descents != 0)
+            count(by);
+        const auto begin = scatter_counted(threads, by, from, to, n, part, counts);
+        const uint rest = by.shift - keys.low, digits = digits_for(rest), width = (rest + digits - 1) / digits;
+        threads.for_blocks(begin.size() - 1, 8, [&](std::size_t first, std::size_t past) {
+            for (std::size_t bucket = first; bucket < past; ++bucket) {
+                glm::uvec2 *here = to + begin[bucket], *there = from + begin[bucket];
+                for (uint d = 0; d < digits; ++d) {
+                    scatter_in_cache({false, keys.low + d * width, (1u << width) - 1}, here, there, begin[bucket + 1] - begin[bucket]);
+                    std::swap(here, there);
+                }
+            }
+        });
+        if (digits % 2 == 0)
+            std::swap(from, to);
+        report.passes += 1 + digits;
+    }
+    report.in_scratch = from != pairs;
+    return report;
+}
+
+} // namespace photongrid::cpu

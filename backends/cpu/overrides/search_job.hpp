@@ -1,0 +1,41 @@
+// What the search's SIMD code is given: plain pointers, so that it can be compiled once for each instruction set.
+#pragma once
+
+#include <photongrid/backends/cpu/buffer.hpp>
+#include <photongrid/estimate_settings.hpp>
+#include <photongrid/photon_map.hpp>
+
+#include <span>
+
+namespace photongrid::cpu {
+
+/// A search for many points, and where its results go. Lengths are those of the buffers they come from.
+struct search_job {
+    grid cells_of{};
+    std::span<const glm::uvec2> cells;
+    planes<const float> positions, powers, directions, normals; ///< the last two only where a policy needs them
+    const uint* list = nullptr;
+    const glm::vec4* points = nullptr;
+    const glm::vec4* point_normals = nullptr; ///< only where a policy needs them
+    const uint* order = nullptr;              ///< of the points: neighbours in it should be neighbours in space
+
+    bool exact = true;       ///< exact_k, else fixed_radius
+    bool searching = true;   ///< false: nothing can be found
+    uint wanted = 0;         ///< k
+    float max_radius2 = 0;   ///< m^2
+    float min_radius2 = 0;   ///< m^2
+    bool side = false;       ///< leak policies
+    bool agreement = false;
+    float min_cosine = -1;
+    float flattening = 0;    ///< c^2 - 1, see photon_distance.glsl
+    filter_kernel kernel = filter_kernel::constant;
+    float norm = 1;          ///< of the kernel
+    bool leave_out = false;
+    bool errors = false;
+
+    glm::vec4* irradiance = nullptr;
+    glm::uvec2* used = nullptr;
+    glm::vec4* standard_error = nullptr; ///< only with errors
+};
+
+} // namespace photongrid::cpu

@@ -1,0 +1,45 @@
+// SIMD code of the cpu backend's overrides, compiled for every instruction set that the compiler knows; the best one that the
+// machine has is chosen when it runs (Highway).
+#pragma once
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "photongrid/backends/cpu/overrides/for_each_target.hpp"
+#include <hwy/foreach_target.h>
+
+#include <photongrid/backends/cpu/overrides/for_each_target.hpp>
+
+namespace photongrid::cpu {
+
+HWY_EXPORT(find_cells);
+HWY_EXPORT(scatter_photons);
+HWY_EXPORT(order_bucket);
+HWY_EXPORT(scatter_pairs);
+HWY_EXPORT(search_block);
+
+/// See map_simd.hpp.
+inline void find_cells(const map_job& j, std::size_t first, std::size_t past, uint* in_bucket, uint& invalid, uint& left_out)
+{
+    HWY_DYNAMIC_DISPATCH(find_cells)(j, first, past, in_bucket, invalid, left_out);
+}
+inline void scatter_photons(const map_job& j, std::size_t first, std::size_t past, uint* next, scatter_lines& lines)
+{
+    HWY_DYNAMIC_DISPATCH(scatter_photons)(j, first, past, next, lines);
+}
+inline void order_bucket(const map_job& j, uint bucket, std::size_t begin, std::size_t end, bucket_scratch& s)
+{
+    HWY_DYNAMIC_DISPATCH(order_bucket)(j, bucket, begin, end, s);
+}
+
+/// See scatter_simd.hpp.
+inline void scatter_pairs(const digit& by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* next, glm::uvec2* to, glm::uvec2* lines)
+{
+    HWY_DYNAMIC_DISPATCH(scatter_pairs)(by, from, first, past, next, to, lines);
+}
+
+/// See search_simd.hpp.
+inline void search_block(const search_job& j, std::size_t begin, std::size_t end)
+{
+    HWY_DYNAMIC_DISPATCH(search_block)(j, begin, end);
+}
+
+} // namespace photongrid::cpu

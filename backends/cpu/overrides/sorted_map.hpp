@@ -1,0 +1,115 @@
+// The cpu backend's way to build a map by sorting: photons go to runs of cells, and within these to their cells, into planes,
+// as the search reads them (map_simd.hpp).
+#pragma once
+
+#include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>
+#include <photongrid/backends/cpu/overrides/grid_index.hpp>
+#include <photongrid/backends/cpu/overrides/simd.hpp>
+#include <photongrid/build_map.hpp>
+
+namespace photongrid {
+
+namespace cpu {
+    /// What turns an attribute's order into that of the cells.
+    inline cpu_backend::buffer<glm::vec4> in_order_of(cpu_backend& b, std::span<const uint> list, const cpu_backend::buffer<glm::vec4>& attribute)
+    {
+        const std::size_t n = list.size();
+        const auto from = b.rows(attribute);
+        auto taken = b.make<glm::vec4>(n);
+        const auto to = b.planes_to_write(taken);
+        b.threads().for_blocks(n, 4096, [&](std::size_t first, std::size_t past) {
+            constexpr std::size_t ahead = 16; // reads are all over memory
+            for (std::size_t i = first; i < past; ++i) {
+                if (i + ahead < n)
+                    __builtin_prefetch(&from[list[i + ahead]]);
+                const glm::vec4& v = from[list[i]];
+                to.x[i] = v.x;
+                to.y[i] = v.y;
+                to.z[i] = v.z;
+                to.w[i] = v.w;
+            }
+        });
+        return taken;
+    }
+} // namespace cpu
+
+/// Same map as the generic sorted_map, which also builds those of more than 2^26 cells. Scratch: 44 bytes a photon.
+inline photon_map<cpu_backend> sorted_map(cpu_backend& b, photons<cpu_backend> p, const grid& g, uint parts = every_part)
+{
+    const uint n = p.size();
+    cpu::map_job j;
+    j.cells_of = g;
+    j.cells = cell_count(g);
+    j.parts = parts;
+    j.large = n > 131072;
+    // Buckets of some 1,000 photons or more, and not more cells in one than have room for counters in a cache.
+    const uint buckets = std::clamp(n / 1024u, 1u, cpu::map_job::most_buckets);
+    while (j.shift < cpu::map_job::most_shift && j.buckets() > buckets)
+        ++j.shift;
+    while (j.shift < cpu::map_job::most_shift && j.buckets() > cpu::map_job::most_buckets)
+        ++j.shift;
+    if (j.buckets() > cpu::map_job::most_buckets)
+        return sorted_map<cpu_backend>(b, std::move(p), g, parts);
+
+    photon_map<cpu_backend> map;
+    map.cells_of = g;
+    map.cells = b.make<glm::uvec2>(j.cells);
+    map.list = b.make<uint>(n);
+    auto positions = b.make<glm::vec4>(n), powers = b.make<glm::vec4>(n);
+    {
+        // A part a thread, so that counts need no sharing; the result does not depend on their number.
+        const std::size_t threads = n < 16384 ? 1 : b.threads().threads(), part = std::max<std::size_t>((n + threads - 1) / threads, 1);
+        std::vector<std::array<uint, cpu::map_job::most_buckets>> next(threads);
+        auto keys = b.make<uint>(n);
+        auto records = b.make<glm::vec4>(std::size_t{2} * n);
+        auto pairs = b.make<glm::uvec2>(n);
+        j.positions = b.rows(p.positions).data();
+        j.powers = b.rows(p.powers).data();
+        j.keys = b.rows_to_write(keys).data();
+        j.records = reinterpret_cast<cpu::photon_record*>(b.rows_to_write(records).data());
+        j.pairs = b.rows_to_write(pairs).data();
+        j.index = b.rows_to_write(map.cells).data();
+        j.list = b.rows_to_write(map.list).data();
+        j.out_positions = b.planes_to_write(positions);
+        j.out_powers = b.planes_to_write(powers);
+
+        std::atomic<uint> invalid = 0, left_out = 0;
+        b.threads().for_blocks(n, part, [&](std::size_t first, std::size_t past) {
+            uint bad = 0, other = 0;
+            next[first / part].fill(0);
+            cpu::find_cells(j, first, past, next[first / part].data(), bad, other);
+            invalid += bad;
+            left_out += other;
+        });
+        map.invalid = invalid;
+        map.left_out = parts != every_part ? left_out.load() : 0u;
+
+        std::vector<uint> begin(std::size_t{j.buckets()} + 1);
+        uint sum = 0;
+        for (uint v = 0; v < j.buckets(); ++v) {
+            begin[v] = sum;
+            for (auto& of_part : next)
+                sum += std::exchange(of_part[v], sum);
+        }
+        begin[j.buckets()] = sum;
+        b.threads().for_blocks(n, part, [&](std::size_t first, std::size_t past) {
+            const auto lines = std::make_unique_for_overwrite<cpu::scatter_lines>();
+            cpu::scatter_photons(j, first, past, next[first / part].data(), *lines);
+        });
+        b.threads().for_blocks(j.buckets(), std::max(1u, j.buckets() / (8 * b.threads().threads())), [&](std::size_t first, std::size_t past) {
+            cpu::bucket_scratch scratch;
+            for (std::size_t v = first; v < past; ++v)
+                cpu::order_bucket(j, static_cast<uint>(v), begin[v], begin[v + 1], scratch);
+        });
+    }
+    p.positions = std::move(positions);
+    p.powers = std::move(powers);
+    for (auto* attribute : {&p.directions, &p.normals})
+        if (attribute->size() != 0)
+            *attribute = cpu::in_order_of(b, b.rows(map.list), *attribute);
+    map.photons = std::move(p);
+    b.count_passes("sorted_map", 1);
+    return map;
+}
+
+} // namespace photongrid

@@ -1,0 +1,5 @@
+// Everything that the Vulkan backend does faster than by kernels. Include it before the algorithms are used with a
+// vulkan_backend.
+#pragma once
+
+#include <photongrid/backends/vulkan/overrides/bitonic_sort.hpp>

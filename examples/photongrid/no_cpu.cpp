@@ -1,0 +1,16 @@
+// Stands for render_cpu.cpp where CMake found no oneTBB or no Highway.
+#include "backends.hpp"
+
+namespace photongrid {
+
+namespace {
+    const char* const reason = "cpu: this photongrid was built without the cpu backend; install libtbb-dev and libhwy-dev, then configure with -DPHOTONGRID_CPU=ON";
+}
+
+render_result render_cpu(const render_job&, unsigned) { throw backend_error(reason); }
+
+std::vector<device_report> cpu_devices() { return {{.backend = "cpu", .about = reason}}; }
+
+bool has_cpu() { return false; }
+
+} // namespace photongrid
