@@ -56,6 +56,8 @@ faults=(
   "share of the outer edges added|include/photongrid/kernels/covered_share.glsl|d < 0.0f ? -rim : rim|rim"
   "edges of estimates not corrected|include/photongrid/render.hpp|settings.edges != edge_correction::none|settings.edges == edge_correction::none"
   "lamp twice as bright|include/photongrid/kernels/direct_light.glsl|3.18309886e-1f * share|6.36619772e-1f * share"
+  'shafts forget the margin of the light|include/photongrid/kernels/scene_hit.glsl|precise float reach = (s.w + radius) * 1.00001f;|precise float reach = s.w * 1.00001f;'
+  'shafts look at one corner|include/photongrid/kernels/scene_hit.glsl|+ (by_u < 0.0f ? by_u : 0.0f) + (by_v < 0.0f ? by_v : 0.0f);|+ 0.0f;'
 )
 
 # Each worker has a copy of the sources and a build of its own, since the tests of one backend are one large file. A run

@@ -9,6 +9,9 @@ namespace photongrid::kernels {
 struct ray_probe {
 #include "kernels/ray_probe.glsl"
 };
+struct shaft_probe {
+#include "kernels/shaft_probe.glsl"
+};
 struct glass_probe {
 #include "kernels/glass_probe.glsl"
 };

@@ -29,5 +29,5 @@ void kernel(uint i)
     place = vec4(hit.position.x, hit.position.y, hit.position.z, hit.t);
     facing = vec4(hit.normal.x, hit.normal.y, hit.normal.z, hit.material == 0xFFFFFFFFu ? -1.0f : float(hit.material));
     vec3 s = ray_start(hit.position, hit.normal, vec3(leavings(i)));
-    start = vec4(s.x, s.y, s.z, is_blocked(o, d, 3.0e38f) ? 1.0f : 0.0f);
+    start = vec4(s.x, s.y, s.z, is_blocked(o, d, 3.0e38f, everything()) ? 1.0f : 0.0f);
 }

@@ -105,6 +105,7 @@ void kernel(uint i)
         precise float size2 = dot3(edge_u, edge_u) + dot3(edge_v, edge_v);
         bool some_close = false;
         precise vec3 off_light = vec3(0.0f, 0.0f, 0.0f);
+        Candidates between = everything();
         if (area) {
             vec3 all_u = vec3(scene(at + 2u));
             vec3 all_v = vec3(scene(at + 3u));
@@ -112,6 +113,7 @@ void kernel(uint i)
             some_close = dot3(middle, middle) < 32.0f * size2 + dot3(all_u, all_u) + dot3(all_v, all_v);
             // Rays end off the light, as they start off the surface, so that neither is in its own way.
             off_light = vec3(normal) * clearance(abs(corner) + abs(all_u) + abs(all_v), args.scene_layout);
+            between = shaft(origin, along(corner, off_light, 1.0f), all_u, all_v);
         }
         uint past = area ? args.past : 1u; // a point light's samples would all be the same
         for (uint s = args.first; s < past; ++s) {
@@ -160,7 +162,7 @@ void kernel(uint i)
             precise float reach = sqrt(length2);
             precise vec3 ray_d = ray / reach;
             // Of a stratum partly below the horizon, the rest counts as seen; a point light may touch a surface.
-            if (cosine > 0.0f && is_blocked(origin, ray_d, area ? reach : reach * 0.9999f))
+            if (cosine > 0.0f && is_blocked(origin, ray_d, area ? reach : reach * 0.9999f, between))
                 continue;
             precise vec3 more = sum + flux * factor;
             sum = more;

@@ -266,22 +266,86 @@ Hit nearest_hit(vec3 o, vec3 d)
     return hit;
 }
 
-// Does anything stand on the ray before `far`?
-bool is_blocked(vec3 o, vec3 d, float far)
+// Some of the polygons and spheres, a bit each in the order of the scene; those from the 32nd on share a bit.
+struct Candidates {
+    uint polygons;
+    uint spheres;
+};
+
+uint bit_of(uint n)
 {
+    return 1u << (n < 31u ? n : 31u);
+}
+
+// Shaft culling (Haines and Wallace, Shaft Culling for Efficient Ray-Traced Radiosity, 1991): what can come between a point and
+// a parallelogram. Not a polygon that has both on one side, farther away than rounding; not a sphere that is farther from the
+// line to the parallelogram's middle than both radii together.
+Candidates shaft(vec3 from, vec3 corner, vec3 edge_u, vec3 edge_v)
+{
+    Candidates c;
+    c.polygons = 0u;
+    c.spheres = 0u;
     if (POLYGONS) {
         uint at = args.scene_layout.flat_things.z;
         for (uint n = 0u; n < args.scene_layout.flat_things.w; ++n) {
+            vec3 normal = vec3(scene(at));
+            vec4 tag = scene(at + 1u);
+            precise float offset = scene(at).w;
+            precise float here = dot3(normal, from) - offset;
+            precise float there = dot3(normal, corner) - offset;
+            float by_u = dot3(normal, edge_u);
+            float by_v = dot3(normal, edge_v);
+            precise float highest = there + (by_u > 0.0f ? by_u : 0.0f) + (by_v > 0.0f ? by_v : 0.0f);
+            precise float lowest = there + (by_u < 0.0f ? by_u : 0.0f) + (by_v < 0.0f ? by_v : 0.0f);
+            if (!(here > tag.w && lowest > tag.w) && !(here < -tag.w && highest < -tag.w))
+                c.polygons |= bit_of(n);
+            at += 2u + 2u * uint(tag.x);
+        }
+    }
+    if (SPHERES) {
+        precise vec3 line = along(along(corner, edge_u, 0.5f), edge_v, 0.5f) - from;
+        float length2 = dot3(line, line);
+        precise float radius = 0.5f * (sqrt(dot3(edge_u, edge_u)) + sqrt(dot3(edge_v, edge_v)));
+        uint at = args.scene_layout.round_things.x;
+        for (uint n = 0u; n < args.scene_layout.round_things.y; ++n) {
+            vec4 s = scene(at);
+            precise vec3 f = vec3(s) - from;
+            precise float t = length2 > 0.0f ? dot3(f, line) / length2 : 0.0f;
+            t = t > 0.0f ? t : 0.0f;
+            vec3 off = along(f, line, t < 1.0f ? -t : -1.0f);
+            precise float reach = (s.w + radius) * 1.00001f;
+            if (!(dot3(off, off) > reach * reach))
+                c.spheres |= bit_of(n);
+            at += 2u;
+        }
+    }
+    return c;
+}
+
+Candidates everything()
+{
+    Candidates c;
+    c.polygons = 0xFFFFFFFFu;
+    c.spheres = 0xFFFFFFFFu;
+    return c;
+}
+
+// Does anything stand on the ray before `far`? Of polygons and spheres, the candidates are asked.
+bool is_blocked(vec3 o, vec3 d, float far, Candidates c)
+{
+    if (POLYGONS && c.polygons != 0u) {
+        uint at = args.scene_layout.flat_things.z;
+        for (uint n = 0u; n < args.scene_layout.flat_things.w; ++n) {
             uint edges = uint(scene(at + 1u).x);
-            if (hit_polygon(at, edges, o, d, far) < far)
+            if ((c.polygons & bit_of(n)) != 0u && hit_polygon(at, edges, o, d, far) < far)
                 return true;
             at += 2u + 2u * edges;
         }
     }
-    if (SPHERES) {
+    if (SPHERES && c.spheres != 0u) {
         uint at = args.scene_layout.round_things.x;
         for (uint n = 0u; n < args.scene_layout.round_things.y; ++n) {
-            if (hit_sphere(at, o, d, far) < far)
+            if ((c.spheres & bit_of(n)) != 0u && hit_sphere(at, o, d, far) < far)
                 return true;
             at += 2u;
         }

@@ -1,0 +1,34 @@
+// A ray from a point to a place on a parallelogram, for tests: is it blocked by what can come between the two, and by anything?
+#include "vector.glsl"
+#include "scene_layout.glsl"
+
+struct Params {
+    Scene scene_layout;
+};
+PARAMS(Params)
+SWITCH(0, SPHERES)
+SWITCH(1, QUADRICS)
+SWITCH(2, DISKS)
+SWITCH(3, POLYGONS)
+SWITCH(7, AREA_LIGHTS)
+INPUT(0, vec4, scene)
+INPUT(1, vec4, points)   // xyz: where the ray begins; w: the place, a share of edge u
+INPUT(2, vec4, corners)  // xyz: the parallelogram's corner; w: the place, a share of edge v
+INPUT(3, vec4, edges_u)
+INPUT(4, vec4, edges_v)
+OUTPUT(0, uvec4, answer) // blocked by the candidates, by anything; candidates: polygons, spheres
+
+#include "scene_hit.glsl"
+
+void kernel(uint i)
+{
+    vec3 from = vec3(points(i));
+    vec3 corner = vec3(corners(i));
+    vec3 u = vec3(edges_u(i));
+    vec3 v = vec3(edges_v(i));
+    precise vec3 ray = along(along(corner, u, points(i).w), v, corners(i).w) - from;
+    precise float reach = sqrt(dot3(ray, ray));
+    precise vec3 d = ray / reach;
+    Candidates c = shaft(from, corner, u, v);
+    answer = uvec4(is_blocked(from, d, reach, c) ? 1u : 0u, is_blocked(from, d, reach, everything()) ? 1u : 0u, c.polygons, c.spheres);
+}
