@@ -93,7 +93,7 @@ namespace {
         const auto render = run({"render", "--help"});
         EXPECT_EQ(render.code, 0);
         for (const auto* option : {"--backend", "--device", "--map", "--slots", "--photons", "--k", "--grid", "--max-radius", "--size", "--spp", "--light-samples", "--depth", "--seed", "--exposure", "-o",
-                 "--search", "--kernel", "--bias", "--leaks", "--edge-correction", "--only", "--aov", "--as-paper", "--stats", "--progressive", "--quiet"})
+                 "--search", "--kernel", "--bias", "--leaks", "--edge-correction", "--only", "--aov", "--as-paper", "--stats", "--shader-cache", "--time-passes", "--progressive", "--quiet"})
             EXPECT_NE(render.out.find(option), std::string::npos) << option;
         const auto version = run({"--version"});
         EXPECT_EQ(version.code, 0);
@@ -107,7 +107,7 @@ namespace {
         EXPECT_EQ(run({"render"}).code, 2);
         for (const auto& wrong : std::vector<std::vector<std::string>>{{"--backend", "cuda"}, {"--size", "32"}, {"--size", "32x-4"}, {"--size", "0x4"}, {"--grid", "1,2"}, {"--grid", "1,2,3,4"}, {"--grid", "0,1,1"},
                  {"--photons", "1e3"}, {"--photons", "-1"}, {"--photons", "99999999999"}, {"--k", "0"}, {"--max-radius", "nan"}, {"--max-radius", "-1"}, {"--exposure", "inf"}, {"--slots", "17"},
-                 {"--map", "hash"}, {"--device", "0"}, {"--spp", "0"}, {"--nonsense"},
+                 {"--map", "hash"}, {"--device", "0"}, {"--time-passes"}, {"--spp", "0"}, {"--nonsense"},
                  {"--search", "exact"}, {"--kernel", "gauss"}, {"--bias", "none"}, {"--edge-correction", "disks"}, {"--edge-correction"}, {"--only", "all"}, {"--only", "caustics"}, {"--as-paper", "--as-paper=maybe"}}) {
             const auto e = run([&] {
                 auto all = small;
@@ -216,6 +216,33 @@ namespace {
         EXPECT_EQ(run(with_backend({"--threads", "5000"})).code, 2);
     }
 
+    TEST_F(program, keeps_compiled_kernels_where_asked)
+    {
+        auto on_vulkan = [&](std::vector<std::string> more) {
+            auto all = small_with(std::move(more));
+            for (auto& word : all)
+                if (word == "serial")
+                    word = "vulkan";
+            return run(all);
+        };
+        const auto kept = [&] { return fs::exists(folder / "cache") ? std::distance(fs::directory_iterator(folder / "cache"), fs::directory_iterator()) : 0; };
+        const auto e = on_vulkan({"-o", "none.pfm", "--shader-cache", "none"});
+        if (e.code == 4 && std::getenv("PHOTONGRID_REQUIRE_BACKENDS") == nullptr)
+            GTEST_SKIP() << e.err;
+        ASSERT_EQ(e.code, 0) << e.err;
+        EXPECT_EQ(files(), 1u);
+        ASSERT_EQ(on_vulkan({"-o", "first.pfm", "--shader-cache", "cache"}).code, 0);
+        const auto files_then = kept();
+        EXPECT_GT(files_then, 10);
+        ASSERT_EQ(on_vulkan({"-o", "second.pfm", "--shader-cache", "cache", "--time-passes", "--stats", "stats.json"}).code, 0);
+        EXPECT_EQ(kept(), files_then); // nothing was compiled anew
+        const auto stats = nlohmann::json::parse(contents(folder / "stats.json"));
+        EXPECT_TRUE(stats.contains("compile_ms"));
+        EXPECT_GT(stats.at("kernels").at("bounce_photon").at("ms"), 0);
+        EXPECT_EQ(contents(folder / "none.pfm"), contents(folder / "first.pfm"));
+        EXPECT_EQ(contents(folder / "none.pfm"), contents(folder / "second.pfm"));
+    }
+
     TEST_F(program, refuses_outputs_before_rendering)
     {
         EXPECT_EQ(run(small_with({"-o", "a.jpg"})).code, 5);
@@ -260,7 +287,7 @@ namespace {
             EXPECT_GE(s.at("estimate").at("mean_visited"), s.at("estimate").at("mean_count"));
             EXPECT_FALSE(s.at("kernels").empty());
             for (const auto& [name, k] : s.at("kernels").items())
-                EXPECT_TRUE(k.contains("instructions") && k.contains("compile_ms") && k.contains("passes")) << name;
+                EXPECT_TRUE(k.contains("instructions") && k.contains("compile_ms") && k.contains("ms") && k.contains("passes")) << name;
             EXPECT_GT(s.at("peak_memory_bytes"), 1 << 20);
             EXPECT_GT(s.at("peak_device_bytes"), 0);
             EXPECT_GT(s.at("total_ms"), 0);

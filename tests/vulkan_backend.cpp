@@ -11,7 +11,10 @@
 
 #include <spirv-tools/libspirv.hpp>
 
+#include <filesystem>
+#include <fstream>
 #include <numeric>
+#include <random>
 
 // Kernels of this test: one text, read as C++ here and kept for glslang.
 #include <photongrid/kernels/begin.hpp>
@@ -743,6 +746,112 @@ TEST_F(vulkan, works_on_the_callers_device)
     vkDestroyDevice(h.device, nullptr);
     vkDestroyInstance(h.instance, nullptr);
     EXPECT_THROW(vulkan_backend{vulkan_handles{}}, std::invalid_argument);
+}
+
+// --- the cache of compiled kernels --------------------------------------------------------------------------------------
+
+/// A folder of this process's own that goes with it.
+struct own_folder {
+    std::filesystem::path path = std::filesystem::temp_directory_path() / ("photongrid-cache-test-" + std::to_string(std::random_device()()));
+    ~own_folder()
+    {
+        std::error_code failed;
+        std::filesystem::remove_all(path, failed);
+    }
+};
+
+TEST(file_cache, finds_what_it_kept_and_nothing_else)
+{
+    const own_folder folder;
+    vulkan_detail::file_cache cache(folder.path.string()), none("");
+    EXPECT_FALSE(cache.find("a"));
+    const std::string binary("\0\1\xFF\n", 4);
+    cache.keep("a", binary);
+    cache.keep("b", "");
+    cache.keep("b", "newer");
+    none.keep("a", "x");
+    EXPECT_FALSE(none.find("a"));
+    const auto text = [](const auto& found) { return found ? std::string(found->begin(), found->end()) : std::string("none"); };
+    EXPECT_EQ(text(vulkan_detail::file_cache(folder.path.string()).find("a")), binary);
+    EXPECT_EQ(text(cache.find("b")), "newer");
+    EXPECT_FALSE(cache.find("c"));
+    // A folder that cannot be made: nothing kept, no error.
+    vulkan_detail::file_cache nowhere_to_go((folder.path / "0").string());
+    std::ofstream(folder.path / "0") << "a file";
+    nowhere_to_go.keep("a", "x");
+    EXPECT_FALSE(nowhere_to_go.find("a"));
+}
+
+TEST(file_cache, a_damaged_file_counts_as_not_there)
+{
+    const own_folder folder;
+    vulkan_detail::file_cache cache(folder.path.string());
+    cache.keep("key", "some value");
+    const auto file = std::filesystem::directory_iterator(folder.path)->path();
+    std::ifstream in(file, std::ios::binary);
+    const std::string whole{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    const auto found_with = [&](const std::string& contents) {
+        std::ofstream(file, std::ios::binary) << contents;
+        return cache.find("key").has_value();
+    };
+    EXPECT_TRUE(found_with(whole));
+    for (std::size_t size = 0; size < whole.size(); ++size)
+        EXPECT_FALSE(found_with(whole.substr(0, size))) << size << " bytes of it";
+    EXPECT_FALSE(found_with(whole + "x"));
+    for (std::size_t at = 0; at < whole.size(); ++at) {
+        auto damaged = whole;
+        damaged[at] = static_cast<char>(damaged[at] ^ 4);
+        EXPECT_FALSE(found_with(damaged)) << "byte " << at;
+    }
+}
+
+TEST(file_cache, too_many_files_lose_the_oldest)
+{
+    const own_folder folder;
+    std::filesystem::create_directories(folder.path);
+    for (int i = 0; i < 1200; ++i) {
+        char name[32];
+        std::snprintf(name, sizeof name, "%016x.bin", i);
+        std::ofstream(folder.path / name) << "old";
+    }
+    std::ofstream(folder.path / "another's file") << "stays";
+    vulkan_detail::file_cache cache(folder.path.string());
+    cache.keep("key", "value");
+    std::size_t files = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path))
+        ++files;
+    EXPECT_EQ(files, 600u + 2u);
+    EXPECT_TRUE(cache.find("key"));
+    EXPECT_TRUE(std::filesystem::exists(folder.path / "another's file"));
+}
+
+TEST_F(vulkan, the_second_start_finds_its_kernels_compiled)
+{
+    const own_folder folder;
+    const auto sorted = [&] {
+        vulkan_backend b({.validation = true, .cache_folder = folder.path.string()});
+        std::vector<uvec2> pairs;
+        for (uint i = 0; i < 100; ++i)
+            pairs.emplace_back(i * 37 % 101, i);
+        auto buffer = b.upload(std::span<const uvec2>(pairs));
+        bitonic_sort(b, buffer);
+        const auto result = b.download(buffer);
+        const auto messages = b.validation_messages();
+        EXPECT_TRUE(messages.empty()) << messages.front();
+        return std::tuple(result, b.kernels_found(), b.spirv<kernels::bitonic_step>());
+    };
+    const auto [first, found_first, words_first] = sorted();
+    const auto [second, found_second, words_second] = sorted();
+    EXPECT_EQ(found_first, 1u); // spirv() asks for one that bitonic_sort had compiled
+    EXPECT_GT(found_second, 2u);
+    EXPECT_EQ(first, second);
+    EXPECT_EQ(words_first, words_second);
+    // All files spoilt: compiled again, with the same result.
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path))
+        std::filesystem::resize_file(entry.path(), std::filesystem::file_size(entry.path()) / 2);
+    const auto [third, found_third, words_third] = sorted();
+    EXPECT_EQ(found_third, 1u);
+    EXPECT_EQ(first, third);
 }
 
 TEST_F(vulkan, knows_what_its_device_is)

@@ -9,6 +9,7 @@
 #include <photongrid/kernel_source.hpp>
 
 #include <atomic>
+#include <chrono>
 #include <mutex>
 
 namespace photongrid {
@@ -67,6 +68,7 @@ public:
     void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
     {
         detail::check_call<K>("run", l, reads, writes);
+        const stopwatch watch;
         const K prepared = prepare<K>(l, args, reads);
         const auto out = rows_of<K>(writes);
         pool_.for_blocks(l.elements, block, [&](std::size_t first, std::size_t past) {
@@ -77,13 +79,14 @@ public:
                 store(k, i, out);
             }
         });
-        count_passes(kernel_name<K>(), 1);
+        count_passes(kernel_name<K>(), 1, watch);
     }
 
     template <iterative_kernel K, class Reads, class Writes>
     progress run_until_done(launch l, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
     {
         detail::check_call<K>("run_until_done", l, reads, writes);
+        const stopwatch watch;
         const K prepared = prepare<K>(l, args, reads);
         const auto out = rows_of<K>(writes);
         std::mutex adding;
@@ -115,7 +118,7 @@ public:
         p.active.assign(p.passes, 0);
         for (std::uint64_t q = p.passes, still = 0; q > 0; --q)
             p.active[q - 1] = still += ended[q];
-        count_passes(kernel_name<K>(), p.passes);
+        count_passes(kernel_name<K>(), p.passes, watch);
         return p;
     }
 
@@ -123,6 +126,7 @@ public:
     std::uint64_t count(launch l, const typename K::Params& args, Reads reads)
     {
         detail::check_call<K>("count", l, reads, std::tuple<>{});
+        const stopwatch watch;
         const K prepared = prepare<K>(l, args, reads);
         std::atomic<std::uint64_t> n = 0;
         pool_.for_blocks(l.elements, block, [&](std::size_t first, std::size_t past) {
@@ -132,7 +136,7 @@ public:
                 mine += k.holds(i) ? 1u : 0u;
             n += mine;
         });
-        count_passes(kernel_name<K>(), 1);
+        count_passes(kernel_name<K>(), 1, watch);
         return n;
     }
 
@@ -141,6 +145,7 @@ public:
     void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots, buffer<glm::vec4>& totals)
     {
         detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
+        const stopwatch watch;
         const K prepared = prepare<K>(l, args, reads);
         struct draw {
             uint destination, payload;
@@ -174,7 +179,7 @@ public:
                 total_rows[std::size_t{d} * parts + (begin + i) / part] += amount;
             }
         }
-        count_passes(kernel_name<K>(), 1);
+        count_passes(kernel_name<K>(), 1, watch);
     }
 
     void finish() {}
@@ -213,8 +218,21 @@ public:
         b.as_planes_ = true;
         return b.in_planes();
     }
-    /// Adds to costs(): a kernel's passes, or an override's under a name of its own.
-    void count_passes(std::string_view name, uint passes) { costs_[std::string(name)].passes += passes; }
+    /// Runs from when it is made.
+    class stopwatch {
+    public:
+        double ms() const { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
+
+    private:
+        std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    };
+    /// Adds to costs(): a kernel's passes, or an override's under a name of its own, and their time.
+    void count_passes(std::string_view name, uint passes, const stopwatch& watch)
+    {
+        auto& cost = costs_[std::string(name)];
+        cost.passes += passes;
+        cost.ms += watch.ms();
+    }
 
 private:
     static constexpr std::size_t block = 2048, iterative_block = 256; // elements that a thread takes at a time

@@ -22,6 +22,8 @@ struct vulkan_options {
     bool validation = false;    ///< run the Khronos validation layer (core and synchronization) and collect its messages
     bool gpu_assisted = false;  ///< with validation: instrument kernels too, so that their accesses past a buffer's end are messages; slow
     bool staging = false;       ///< work as on a discrete GPU even where it is not needed: copy through staging buffers, read inputs as storage buffers
+    bool time_passes = false;   ///< measure each pass by the device's clock, for costs(); a little slower
+    std::string cache_folder{}; ///< keep compiled kernels in this folder, so that the next start is quick; "": nowhere
 };
 
 /// A device that the caller has opened, and goes on owning. The instance must be for Vulkan 1.1 or later, the queue of a
@@ -204,6 +206,16 @@ namespace vulkan_detail {
             if ((families[f].queueFlags & VK_QUEUE_COMPUTE_BIT) != 0 && families[f].queueCount > 0)
                 return f;
         return std::nullopt;
+    }
+
+    /// Ticks of its clock that a family's timestamps hold: 0 bits where it has none.
+    inline std::uint32_t timestamp_bits(VkPhysicalDevice d, std::uint32_t family)
+    {
+        std::uint32_t n = 0;
+        vkGetPhysicalDeviceQueueFamilyProperties(d, &n, nullptr);
+        std::vector<VkQueueFamilyProperties> families(n);
+        vkGetPhysicalDeviceQueueFamilyProperties(d, &n, families.data());
+        return families[family].timestampValidBits;
     }
 
     /// 3 for a discrete device down to 0 for a CPU.

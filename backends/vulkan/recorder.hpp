@@ -19,7 +19,8 @@ struct binding {
 /// A compute pipeline and the bindings it expects, in the order in which buffers are handed to it.
 class pipeline {
 public:
-    pipeline(const context& c, std::span<const std::uint32_t> spirv, std::vector<binding> bindings, const std::string& name)
+    /// `cache` may be null.
+    pipeline(const context& c, VkPipelineCache cache, std::span<const std::uint32_t> spirv, std::vector<binding> bindings, const std::string& name)
         : device_(c.device()), bindings_(std::move(bindings))
     {
         const auto limit = c.properties().limits.maxPerStageDescriptorStorageBuffers;
@@ -27,7 +28,7 @@ public:
         if (needed > limit)
             throw backend_error("vulkan: kernel '" + name + "' needs " + std::to_string(needed) + " storage buffers in one pass; this device (" + c.properties().deviceName + ") binds " + std::to_string(limit) + " at most");
         try {
-            create(spirv, name);
+            create(cache, spirv, name);
         } catch (...) {
             destroy();
             throw;
@@ -46,7 +47,7 @@ public:
     static constexpr std::uint32_t push_bytes = 128;
 
 private:
-    void create(std::span<const std::uint32_t> spirv, const std::string& name)
+    void create(VkPipelineCache cache, std::span<const std::uint32_t> spirv, const std::string& name)
     {
         std::vector<VkDescriptorSetLayoutBinding> slots;
         for (const auto& b : bindings_) {
@@ -85,7 +86,7 @@ private:
         info.stage.module = module_;
         info.stage.pName = "main";
         info.layout = layout_;
-        const VkResult r = vkCreateComputePipelines(device_, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
+        const VkResult r = vkCreateComputePipelines(device_, cache, 1, &info, nullptr, &pipeline_);
         vkDestroyShaderModule(device_, module_, nullptr);
         check(r, "vkCreateComputePipelines for kernel '" + name + "'");
     }
@@ -105,8 +106,11 @@ private:
 /// Records operations and submits them in batches. Every operation sees what all earlier ones wrote.
 class recorder {
 public:
-    explicit recorder(std::shared_ptr<context> c) : context_(std::move(c))
+    /// `timed`: measure passes. \throws backend_error where the device has no clock.
+    explicit recorder(std::shared_ptr<context> c, bool timed) : context_(std::move(c)), timed_(timed)
     {
+        if (timed && timestamp_bits(context_->physical(), context_->family()) == 0)
+            throw backend_error(std::string("vulkan: time_passes: ") + context_->properties().deviceName + " has no timestamps on its compute queue");
         VkCommandPoolCreateInfo info{};
         info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
         info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
@@ -129,8 +133,9 @@ public:
         vkDestroyCommandPool(context_->device(), commands_, nullptr);
     }
 
-    /// A pass over a number of workgroups known now. `push` is the launch header and the parameters.
-    void dispatch(const pipeline& p, std::span<const memory> buffers, std::span<const std::byte> push, std::uint64_t groups)
+    /// A pass over a number of workgroups known now. `push` is the launch header and the parameters. What it takes is added to
+    /// `ms` when it is done, if passes are timed.
+    void dispatch(const pipeline& p, std::span<const memory> buffers, std::span<const std::byte> push, std::uint64_t groups, double& ms)
     {
         const auto most = context_->properties().limits.maxComputeWorkGroupCount[0];
         const auto rows = (groups + most - 1) / most;
@@ -138,15 +143,19 @@ public:
         if (rows > context_->properties().limits.maxComputeWorkGroupCount[1])
             throw backend_error("vulkan: a pass needs " + std::to_string(groups) + " workgroups; this device dispatches " + std::to_string(std::uint64_t{most} * context_->properties().limits.maxComputeWorkGroupCount[1]) + " at most");
         const auto c = bind(p, buffers, push);
+        const timing t(*this, ms);
         vkCmdDispatch(c, static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows), 1);
+        t.end();
         counted();
     }
 
     /// A pass over as many workgroups as the device wrote at `offset` (bytes) of `groups`.
-    void dispatch_indirect(const pipeline& p, std::span<const memory> buffers, std::span<const std::byte> push, const memory& groups, VkDeviceSize offset)
+    void dispatch_indirect(const pipeline& p, std::span<const memory> buffers, std::span<const std::byte> push, const memory& groups, VkDeviceSize offset, double& ms)
     {
         const auto c = bind(p, buffers, push);
+        const timing t(*this, ms);
         vkCmdDispatchIndirect(c, groups->buffer(), offset);
+        t.end();
         counted();
     }
 
@@ -239,6 +248,29 @@ private:
         VkDescriptorPool sets = VK_NULL_HANDLE;
         std::uint32_t passes = 0;
         std::vector<memory> kept;
+        VkQueryPool clock = VK_NULL_HANDLE; ///< two queries a timed pass
+        std::vector<double*> timed;         ///< where each timed pass's time goes
+    };
+
+    /// The device's clock before a pass and after it.
+    class timing {
+    public:
+        timing(recorder& r, double& ms) : r_(r)
+        {
+            if (!r.timed_)
+                return;
+            r.now_.timed.push_back(&ms);
+            stamp(0);
+        }
+        void end() const
+        {
+            if (r_.timed_)
+                stamp(1);
+        }
+
+    private:
+        void stamp(std::uint32_t which) const { vkCmdWriteTimestamp(r_.now_.commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, r_.now_.clock, 2 * (static_cast<std::uint32_t>(r_.now_.timed.size()) - 1) + which); }
+        recorder& r_;
     };
 
     template <class... M>
@@ -327,6 +359,8 @@ private:
         if (r != VK_SUCCESS)
             destroy(now_);
         check(r, "vkBeginCommandBuffer");
+        if (timed_)
+            vkCmdResetQueryPool(now_.commands, now_.clock, 0, 2 * passes_a_batch);
     }
 
     void create(batch& b) const
@@ -347,11 +381,19 @@ private:
         pool.poolSizeCount = 2;
         pool.pPoolSizes = sizes;
         check(vkCreateDescriptorPool(context_->device(), &pool, nullptr, &b.sets), "vkCreateDescriptorPool");
+        if (timed_) {
+            VkQueryPoolCreateInfo clock{};
+            clock.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+            clock.queryType = VK_QUERY_TYPE_TIMESTAMP;
+            clock.queryCount = 2 * passes_a_batch;
+            check(vkCreateQueryPool(context_->device(), &clock, nullptr, &b.clock), "vkCreateQueryPool");
+        }
     }
 
     void destroy(batch& b) const
     {
         b.kept.clear();
+        vkDestroyQueryPool(context_->device(), b.clock, nullptr);
         vkDestroyDescriptorPool(context_->device(), b.sets, nullptr);
         vkDestroyFence(context_->device(), b.fence, nullptr);
         if (b.commands)
@@ -370,16 +412,23 @@ private:
             r = vkResetFences(device, 1, &b.fence);
         if (r == VK_SUCCESS)
             r = vkResetDescriptorPool(device, b.sets, 0);
+        std::vector<std::uint64_t> ticks(2 * b.timed.size());
+        if (r == VK_SUCCESS && !ticks.empty())
+            r = vkGetQueryPoolResults(device, b.clock, 0, static_cast<std::uint32_t>(ticks.size()), ticks.size() * sizeof(std::uint64_t), ticks.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
         if (r != VK_SUCCESS) {
             destroy(b);
             check(r, "waiting for passes");
         }
+        for (std::size_t t = 0; t < b.timed.size(); ++t)
+            *b.timed[t] += static_cast<double>(ticks[2 * t + 1] - ticks[2 * t]) * static_cast<double>(context_->properties().limits.timestampPeriod) * 1e-6;
+        b.timed.clear();
         b.kept.clear();
         b.passes = 0;
         idle_.push_back(std::move(b));
     }
 
     std::shared_ptr<context> context_;
+    bool timed_;
     VkCommandPool commands_ = VK_NULL_HANDLE;
     bool recording_ = false;
     batch now_;

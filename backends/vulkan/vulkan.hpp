@@ -2,8 +2,8 @@
 #pragma once
 
 #include <photongrid/backend_texts/vulkan.hpp>
+#include <photongrid/backends/vulkan/compiled_kernels.hpp>
 #include <photongrid/backends/vulkan/recorder.hpp>
-#include <photongrid/backends/vulkan/spirv.hpp>
 #include <photongrid/self_test.hpp>
 
 #include <bit>
@@ -56,10 +56,10 @@ public:
 
     /// Opens a device.
     /// \throws backend_error when there is no driver, no such device, or no validation layer where one is asked for.
-    explicit vulkan_backend(const vulkan_options& options = {}) : vulkan_backend(std::make_shared<vulkan_detail::context>(options)) {}
+    explicit vulkan_backend(const vulkan_options& options = {}) : vulkan_backend(std::make_shared<vulkan_detail::context>(options), options.cache_folder, options.time_passes) {}
 
     /// Works on a device that the caller owns and that outlives this backend and its buffers.
-    explicit vulkan_backend(const vulkan_handles& handles) : vulkan_backend(std::make_shared<vulkan_detail::context>(handles)) {}
+    explicit vulkan_backend(const vulkan_handles& handles) : vulkan_backend(std::make_shared<vulkan_detail::context>(handles), {}, false) {}
 
     /// More kernel files than the library's own, as photongrid_embed() made them; they must outlive the backend.
     void use_texts(std::span<const text_file> texts) { texts_.insert(texts_.end(), texts.begin(), texts.end()); }
@@ -117,7 +117,7 @@ public:
         const auto first_extra = buffers.size();
         buffers.insert(buffers.end(), {lists[1], lists[0], control});
         recorder_.fill(control, 0, control->bytes(), 0);
-        recorder_.dispatch(kernel_pipeline<K>(verb::list, l.switches, buffers), buffers, push(l, groups(l.elements), l.first, args), groups(l.elements));
+        recorder_.dispatch(kernel_pipeline<K>(verb::list, l.switches, buffers), buffers, push(l, groups(l.elements), l.first, args), groups(l.elements), cost<K>().ms);
         prepare_indirect(control, 0);
         const auto& iterate = kernel_pipeline<K>(verb::iterate, l.switches, buffers);
         for (;;) {
@@ -125,7 +125,7 @@ public:
             for (uint q = 0; q < now; ++q) {
                 buffers[first_extra] = lists[0];
                 buffers[first_extra + 1] = lists[1];
-                recorder_.dispatch_indirect(iterate, buffers, push(l, q, l.first, args), control, q * slot_bytes);
+                recorder_.dispatch_indirect(iterate, buffers, push(l, q, l.first, args), control, q * slot_bytes, cost<K>().ms);
                 prepare_indirect(control, q + 1);
                 std::swap(lists[0], lists[1]);
             }
@@ -157,7 +157,7 @@ public:
         auto buffers = bound(reads, std::tuple<>{});
         buffers.push_back(held);
         recorder_.fill(held, 0, sizeof(uint), 0);
-        recorder_.dispatch(kernel_pipeline<K>(verb::count, l.switches, buffers), buffers, push(l, groups(l.elements), l.first, args), groups(l.elements));
+        recorder_.dispatch(kernel_pipeline<K>(verb::count, l.switches, buffers), buffers, push(l, groups(l.elements), l.first, args), groups(l.elements), cost<K>().ms);
         uint n = 0;
         recorder_.read(held, &n, sizeof n);
         return n;
@@ -213,6 +213,9 @@ public:
         ++costs_[name].passes;
     }
 
+    /// Kernels that were found compiled in options.cache_folder.
+    std::uint64_t kernels_found() const { return kernels_.found(); }
+
     /// What the validation layer has said so far; always empty unless options.validation.
     std::vector<std::string> validation_messages() const { return context_->messages(); }
 
@@ -232,8 +235,8 @@ public:
 private:
     enum class verb { run, list, iterate, count };
 
-    explicit vulkan_backend(std::shared_ptr<vulkan_detail::context> c)
-        : context_(std::move(c)), texts_(std::begin(kernel_texts), std::end(kernel_texts)), recorder_(context_), empty_(allocate(0))
+    vulkan_backend(std::shared_ptr<vulkan_detail::context> c, const std::string& cache_folder, bool time_passes)
+        : context_(std::move(c)), kernels_(context_, cache_folder), texts_(std::begin(kernel_texts), std::end(kernel_texts)), recorder_(context_, time_passes), empty_(allocate(0))
     {
         const auto info = vulkan_detail::describe(context_->physical(), 0);
         if (!info.unusable.empty())
@@ -293,7 +296,7 @@ private:
     template <class K>
     void gather(const launch& l, uint where, const typename K::Params& args, const std::vector<memory>& buffers)
     {
-        recorder_.dispatch(kernel_pipeline<K>(verb::run, l.switches, buffers), buffers, push(l, groups(l.elements), where, args), groups(l.elements));
+        recorder_.dispatch(kernel_pipeline<K>(verb::run, l.switches, buffers), buffers, push(l, groups(l.elements), where, args), groups(l.elements), cost<K>().ms);
     }
 
     /// One pass of a shader that is the backend's own.
@@ -306,7 +309,7 @@ private:
         assert(args.size() <= params.size());
         std::copy(args.begin(), args.end(), params.begin());
         if (elements > 0)
-            recorder_.dispatch(own_pipeline(name, buffers.size(), more_defines), bound_buffers, push(launch(elements), groups(elements), 0, params), groups(elements));
+            recorder_.dispatch(own_pipeline(name, buffers.size(), more_defines), bound_buffers, push(launch(elements), groups(elements), 0, params), groups(elements), costs_[name].ms);
     }
 
     void prepare_indirect(const memory& control, uint pass)
@@ -364,7 +367,7 @@ private:
         const std::string name(kernel_name<K>());
         const auto source = splice(own_text("compute_prelude"), defines(output_count<K>, switches & known_switches<K>(), v == verb::list, texels),
             find_kernel_text(K::path, texts_), own_text(epilogues[static_cast<int>(v)]), texts_);
-        auto words = vulkan_detail::compile_spirv(source, name);
+        auto words = kernels_.compile(source, name);
         auto& c = costs_[name];
         if (v != verb::list)
             c.instructions = std::max(c.instructions, vulkan_detail::count_instructions(words));
@@ -391,7 +394,7 @@ private:
             bindings.push_back({16 + e});
         const auto words = compile<K>(v, switches, texels);
         const auto begin = std::chrono::steady_clock::now();
-        p = std::make_unique<vulkan_detail::pipeline>(*context_, words, std::move(bindings), std::string(kernel_name<K>()));
+        p = std::make_unique<vulkan_detail::pipeline>(*context_, kernels_.drivers(), words, std::move(bindings), std::string(kernel_name<K>()));
         cost<K>().compile_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
         return *p;
     }
@@ -405,11 +408,14 @@ private:
         std::vector<vulkan_detail::binding> bindings;
         for (std::uint32_t b = 0; b < buffers; ++b)
             bindings.push_back({b});
-        p = std::make_unique<vulkan_detail::pipeline>(*context_, vulkan_detail::compile_spirv(source, name), std::move(bindings), name);
+        const auto begin = std::chrono::steady_clock::now();
+        p = std::make_unique<vulkan_detail::pipeline>(*context_, kernels_.drivers(), kernels_.compile(source, name), std::move(bindings), name);
+        costs_[name].compile_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
         return *p;
     }
 
     std::shared_ptr<vulkan_detail::context> context_;
+    vulkan_detail::compiled_kernels kernels_;
     capabilities caps_;
     std::vector<text_file> texts_;
     std::map<std::string, kernel_cost> costs_;

@@ -18,6 +18,8 @@ struct render_job {
     render_settings settings;
     render_observer observer{};
     std::string device{};
+    bool time_passes = false;   ///< on Vulkan
+    std::string shader_cache{}; ///< folder where Vulkan's compiled kernels are kept; empty: nowhere
 };
 
 /// The picture and what it took.

@@ -32,7 +32,8 @@ struct render_options {
     bool aov = false, as_paper = false;
     std::vector<std::string> outputs;
     std::string stats, progressive;
-    bool quiet = false;
+    std::optional<std::string> shader_cache; ///< "none": none
+    bool time_passes = false, quiet = false;
 };
 
 /// `reference`. What is empty is as the scene file has it, or as reference_settings has it.

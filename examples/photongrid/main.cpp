@@ -119,6 +119,18 @@ namespace {
         int count_ = 0;
     };
 
+    /// Where compiled kernels are kept: "" for nowhere.
+    std::string shader_cache_folder(const render_options& o)
+    {
+        if (o.shader_cache)
+            return *o.shader_cache == "none" ? "" : *o.shader_cache;
+        if (const char* caches = std::getenv("XDG_CACHE_HOME"); caches != nullptr && caches[0] == '/') // else not valid, says its specification
+            return std::string(caches) + "/photongrid";
+        if (const char* home = std::getenv("HOME"); home != nullptr && home[0] == '/')
+            return std::string(home) + "/.cache/photongrid";
+        return "";
+    }
+
     exit_code run(const render_options& o)
     {
         const auto s = read_scene(o.scene_path);
@@ -142,7 +154,7 @@ namespace {
 
         const auto start = std::chrono::steady_clock::now();
         progress_bar bar(o.quiet);
-        render_job job{.scene = s, .settings = settings, .observer = {}, .device = o.device};
+        render_job job{.scene = s, .settings = settings, .observer = {}, .device = o.device, .time_passes = o.time_passes, .shader_cache = shader_cache_folder(o)};
         job.observer.progress = [&](std::string_view stage, double fraction) { bar.show(stage, fraction); };
         job.observer.cancelled = [] { return stop_asked != 0; };
         if (series.wanted())

@@ -6,7 +6,7 @@ namespace photongrid {
 
 render_result render_vulkan(const render_job& job)
 {
-    vulkan_backend b(vulkan_options{.device = job.device});
+    vulkan_backend b(vulkan_options{.device = job.device, .time_passes = job.time_passes, .cache_folder = job.shader_cache});
     return render_on(b, job);
 }
 

@@ -45,7 +45,7 @@ namespace {
             {"only", name_of(part_names, s.only)}};
     }
 
-    json stage_json(const stage_stats& s) { return {{"ms", s.ms}, {"passes", s.passes}, {"device_bytes", s.device_bytes}}; }
+    json stage_json(const stage_stats& s) { return {{"ms", s.ms}, {"compile_ms", s.compile_ms}, {"passes", s.passes}, {"device_bytes", s.device_bytes}}; }
 } // namespace
 
 std::string stats_json(const scene& s, const render_settings& settings, const render_result& result, double total_ms)
@@ -53,8 +53,11 @@ std::string stats_json(const scene& s, const render_settings& settings, const re
     const auto& r = result.stats;
     const auto& p = r.photons;
     json kernels = json::object();
-    for (const auto& [name, cost] : result.costs)
-        kernels[name] = {{"instructions", cost.instructions}, {"compile_ms", cost.compile_ms}, {"passes", cost.passes}};
+    double compile_ms = 0;
+    for (const auto& [name, cost] : result.costs) {
+        compile_ms += cost.compile_ms;
+        kernels[name] = {{"instructions", cost.instructions}, {"compile_ms", cost.compile_ms}, {"ms", cost.ms}, {"passes", cost.passes}};
+    }
     const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.name}, {"backend", result.caps.backend}, {"device", result.caps.device}, {"seed", settings.seed}, {"settings", settings_json(settings)},
         {"photons",
             {{"emitted", p.emitted}, {"absorbed", p.absorbed}, {"escaped", p.escaped}, {"cut_off", p.cut_off}, {"invalid", p.invalid}, {"stored", p.stored}, {"direct", p.direct}, {"dropped", p.dropped}}},
@@ -62,7 +65,7 @@ std::string stats_json(const scene& s, const render_settings& settings, const re
         {"stages",
             {{"trace_photons", stage_json(r.trace_photons)}, {"build_map", stage_json(r.build_map)}, {"trace_rays", stage_json(r.trace_rays)}, {"radiance_estimate", stage_json(r.radiance_estimate)}}},
         {"estimate", {{"mean_count", r.estimate.mean_count}, {"mean_radius", r.estimate.mean_radius}, {"mean_visited", r.estimate.mean_visited}}}, {"kernels", kernels},
-        {"peak_memory_bytes", peak_memory_bytes()}, {"peak_device_bytes", r.peak_device_bytes}, {"total_ms", total_ms}};
+        {"peak_memory_bytes", peak_memory_bytes()}, {"peak_device_bytes", r.peak_device_bytes}, {"compile_ms", compile_ms}, {"total_ms", total_ms}};
     return all.dump(2) + "\n";
 }
 

@@ -22,7 +22,7 @@ namespace detail {
         stage_clock(B& b, stage_stats& out) : b_(b), out_(out)
         {
             b_.finish();
-            passes_ = passes();
+            before_ = spent();
             start_ = std::chrono::steady_clock::now();
         }
         stage_clock(const stage_clock&) = delete;
@@ -31,22 +31,28 @@ namespace detail {
         void stop()
         {
             b_.finish();
-            out_.ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-            out_.passes += passes() - passes_;
+            const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+            const auto now = spent();
+            out_.compile_ms += now.compile_ms - before_.compile_ms;
+            out_.ms += ms - (now.compile_ms - before_.compile_ms);
+            out_.passes += now.passes - before_.passes;
             out_.device_bytes = std::max(out_.device_bytes, b_.bytes());
         }
 
     private:
-        std::uint64_t passes() const
+        /// On all kernels so far.
+        kernel_cost spent() const
         {
-            std::uint64_t n = 0;
-            for (const auto& [name, cost] : b_.costs())
-                n += cost.passes;
-            return n;
+            kernel_cost all;
+            for (const auto& [name, cost] : b_.costs()) {
+                all.passes += cost.passes;
+                all.compile_ms += cost.compile_ms;
+            }
+            return all;
         }
         B& b_;
         stage_stats& out_;
-        std::uint64_t passes_ = 0;
+        kernel_cost before_;
         std::chrono::steady_clock::time_point start_;
     };
 } // namespace detail

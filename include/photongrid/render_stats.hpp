@@ -35,7 +35,8 @@ struct map_stats {
 
 /// One of the four stages of the paper's Table 1.
 struct stage_stats {
-    double ms = 0;
+    double ms = 0;                  ///< without compiling kernels
+    double compile_ms = 0;          ///< compiling those that the stage needed first
     std::uint64_t passes = 0;
     std::uint64_t device_bytes = 0; ///< largest amount held in buffers during the stage
 };

@@ -16,12 +16,13 @@ inline sort_report bitonic_sort(cpu_backend& b, cpu_backend::buffer<glm::uvec2>&
         return report;
     const auto levels = static_cast<uint>(std::countr_zero(std::bit_ceil(n)));
     report.steps = levels * (levels + 1) / 2;
+    const cpu_backend::stopwatch watch;
     auto scratch = b.make<glm::uvec2>(n);
     const auto sorted = cpu::radix_sort(b.threads(), b.rows_to_write(pairs).data(), b.rows_to_write(scratch).data(), n);
     if (sorted.in_scratch)
         std::swap(pairs, scratch);
     report.passes = sorted.passes;
-    b.count_passes("radix_sort", report.passes);
+    b.count_passes("radix_sort", report.passes, watch);
     return report;
 }
 

@@ -9,6 +9,7 @@ namespace photongrid {
 /// Same cells as the generic grid_index.
 inline cpu_backend::buffer<glm::uvec2> grid_index(cpu_backend& b, const cpu_backend::buffer<glm::uvec2>& pairs, uint cells)
 {
+    const cpu_backend::stopwatch watch;
     auto index = b.make<glm::uvec2>(cells);
     const auto from = b.rows(pairs);
     const auto to = b.rows_to_write(index);
@@ -27,7 +28,7 @@ inline cpu_backend::buffer<glm::uvec2> grid_index(cpu_backend& b, const cpu_back
         for (std::size_t c = first; c < past; ++c)
             to[c].y = (c + 1 < cells ? to[c + 1].x : in_cells) - to[c].x;
     });
-    b.count_passes("grid_index", 1);
+    b.count_passes("grid_index", 1, watch);
     return index;
 }
 

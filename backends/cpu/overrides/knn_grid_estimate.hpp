@@ -25,6 +25,7 @@ public:
     {
         if (by_kernels_)
             return by_kernels_->advance(passes);
+        const cpu_backend::stopwatch watch;
         const std::size_t n = points_->size(), begin = done_;
         // Blocks stay the same however many there are to a pass: a block's queries help each other.
         const std::size_t a_pass = block * std::max(1u, s_.visits_per_pass / 128u);
@@ -35,7 +36,7 @@ public:
             const auto job = make_job();
             b_->threads().for_blocks(done_ - begin, block, [&](std::size_t first, std::size_t past) { cpu::search_block(job, begin + first, begin + past); });
         }
-        b_->count_passes("knn_search", now);
+        b_->count_passes("knn_search", now, watch);
         progress p;
         p.passes = now;
         for (uint i = 0; i < now; ++i)
@@ -75,6 +76,7 @@ private:
     /// Orders points along a curve that keeps neighbours together (Morton 1966), 1,024 steps along each axis of the grid.
     void put_in_order()
     {
+        const cpu_backend::stopwatch watch;
         auto& b = *b_;
         const std::size_t n = points_->size();
         auto pairs = b.make<glm::uvec2>(n);
@@ -105,6 +107,7 @@ private:
             for (std::size_t i = first; i < past; ++i)
                 order[i] = from[i].y;
         });
+        b.count_passes("knn_search", 0, watch);
     }
 
     cpu::search_job make_job()

@@ -51,6 +51,7 @@ inline photon_map<cpu_backend> sorted_map(cpu_backend& b, photons<cpu_backend> p
     if (j.buckets() > cpu::map_job::most_buckets)
         return sorted_map<cpu_backend>(b, std::move(p), g, parts);
 
+    const cpu_backend::stopwatch watch;
     photon_map<cpu_backend> map;
     map.cells_of = g;
     map.cells = b.make<glm::uvec2>(j.cells);
@@ -108,7 +109,7 @@ inline photon_map<cpu_backend> sorted_map(cpu_backend& b, photons<cpu_backend> p
         if (attribute->size() != 0)
             *attribute = cpu::in_order_of(b, b.rows(map.list), *attribute);
     map.photons = std::move(p);
-    b.count_passes("sorted_map", 1);
+    b.count_passes("sorted_map", 1, watch);
     return map;
 }
 

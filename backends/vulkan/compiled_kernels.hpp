@@ -1,0 +1,80 @@
+// Compiling kernels, or finding them compiled: their SPIR-V, and what the driver made of it.
+#pragma once
+
+#include <photongrid/backends/vulkan/file_cache.hpp>
+#include <photongrid/backends/vulkan/memory.hpp>
+#include <photongrid/backends/vulkan/spirv.hpp>
+
+#include <glslang/build_info.h>
+#include <spirv-tools/libspirv.h>
+
+namespace photongrid::vulkan_detail {
+
+class compiled_kernels {
+public:
+    /// `folder`: where they are kept from one start to the next; "": nowhere.
+    compiled_kernels(std::shared_ptr<context> c, const std::string& folder) : context_(std::move(c)), cache_(folder)
+    {
+        if (folder.empty())
+            return;
+        const auto& p = context_->properties();
+        drivers_key_ = "pipelines " + std::to_string(p.vendorID) + " " + std::to_string(p.deviceID) + " " + std::to_string(p.driverVersion) + " ";
+        for (const auto byte : p.pipelineCacheUUID)
+            drivers_key_ += std::to_string(byte) + ".";
+        kept_ = cache_.find(drivers_key_).value_or(file_cache::bytes{});
+        VkPipelineCacheCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
+        info.initialDataSize = kept_.size();
+        info.pInitialData = kept_.data();
+        if (vkCreatePipelineCache(context_->device(), &info, nullptr, &drivers_) != VK_SUCCESS)
+            drivers_ = VK_NULL_HANDLE; // without one, then
+    }
+    compiled_kernels(const compiled_kernels&) = delete;
+    compiled_kernels& operator=(const compiled_kernels&) = delete;
+    ~compiled_kernels()
+    {
+        if (drivers_ == VK_NULL_HANDLE)
+            return;
+        std::size_t size = 0;
+        if (vkGetPipelineCacheData(context_->device(), drivers_, &size, nullptr) == VK_SUCCESS) {
+            file_cache::bytes now(size);
+            if (vkGetPipelineCacheData(context_->device(), drivers_, &size, now.data()) == VK_SUCCESS && now != kept_)
+                try {
+                    cache_.keep(drivers_key_, std::string_view(now.data(), size));
+                } catch (const std::bad_alloc&) { // not kept, then
+                }
+        }
+        vkDestroyPipelineCache(context_->device(), drivers_, nullptr);
+    }
+
+    /// As compile_spirv(), unless the very same text was compiled by the same tools before.
+    spirv_words compile(const spliced_source& source, const std::string& name)
+    {
+        static const std::string tools = "SPIR-V by photongrid 1, glslang " + std::to_string(GLSLANG_VERSION_MAJOR) + "." + std::to_string(GLSLANG_VERSION_MINOR) + "." + std::to_string(GLSLANG_VERSION_PATCH) + ", SPIRV-Tools "
+            + spvSoftwareVersionString() + "\n";
+        const std::string key = tools + source.text;
+        if (const auto found = cache_.find(key); found && !found->empty() && found->size() % sizeof(std::uint32_t) == 0) {
+            spirv_words words(found->size() / sizeof(std::uint32_t));
+            std::memcpy(words.data(), found->data(), found->size());
+            ++found_;
+            return words;
+        }
+        const auto words = compile_spirv(source, name);
+        cache_.keep(key, std::string_view(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(std::uint32_t)));
+        return words;
+    }
+
+    /// The driver's own cache, null without a folder.
+    VkPipelineCache drivers() const { return drivers_; }
+    std::uint64_t found() const { return found_; }
+
+private:
+    std::shared_ptr<context> context_;
+    file_cache cache_;
+    std::string drivers_key_;
+    file_cache::bytes kept_;
+    VkPipelineCache drivers_ = VK_NULL_HANDLE;
+    std::uint64_t found_ = 0;
+};
+
+} // namespace photongrid::vulkan_detail

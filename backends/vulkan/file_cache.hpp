@@ -1,0 +1,113 @@
+// A folder of things that take long to make: compiled kernels, from one start of the program to the next.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <random>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace photongrid::vulkan_detail {
+
+/// Keeps bytes under a text, a file each. A cache: what is damaged, another's or cannot be read counts as not there, what
+/// cannot be written is not kept, and nothing is an error. Several programs may use a folder at once.
+class file_cache {
+public:
+    using bytes = std::vector<char>;
+
+    /// "" keeps nothing. The folder is made when something is kept.
+    explicit file_cache(std::string folder) : folder_(std::move(folder)) {}
+
+    std::optional<bytes> find(std::string_view key) const
+    {
+        if (folder_.empty())
+            return std::nullopt;
+        std::ifstream file(path_of(key), std::ios::binary);
+        const bytes all{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+        const std::size_t head = sizeof magic + 3 * sizeof(std::uint64_t);
+        if (all.size() < head + key.size() || std::memcmp(all.data(), magic, sizeof magic) != 0)
+            return std::nullopt;
+        std::uint64_t sizes_and_sum[3];
+        std::memcpy(sizes_and_sum, all.data() + sizeof magic, sizeof sizes_and_sum);
+        const std::string_view contents(all.data() + head, all.size() - head);
+        if (sizes_and_sum[0] != key.size() || sizes_and_sum[1] != contents.size() - key.size() || contents.substr(0, key.size()) != key || sizes_and_sum[2] != hash(contents))
+            return std::nullopt;
+        return bytes(contents.begin() + static_cast<std::ptrdiff_t>(key.size()), contents.end());
+    }
+
+    void keep(std::string_view key, std::string_view value)
+    {
+        if (folder_.empty())
+            return;
+        std::error_code failed;
+        std::filesystem::create_directories(folder_, failed);
+        remove_oldest();
+        const std::string contents = std::string(key) + std::string(value);
+        const std::uint64_t sizes_and_sum[3] = {key.size(), value.size(), hash(contents)};
+        // Written beside and renamed, so that nobody reads half a file.
+        const auto whole = path_of(key), beside = std::filesystem::path(whole.string() + "." + std::to_string(std::random_device()()) + ".new");
+        {
+            std::ofstream file(beside, std::ios::binary);
+            file.write(magic, sizeof magic);
+            file.write(reinterpret_cast<const char*>(sizes_and_sum), sizeof sizes_and_sum);
+            file.write(contents.data(), static_cast<std::streamsize>(contents.size()));
+            file.flush();
+            if (!file)
+                failed = std::make_error_code(std::errc::io_error);
+        }
+        if (!failed)
+            std::filesystem::rename(beside, whole, failed);
+        if (failed)
+            std::filesystem::remove(beside, failed);
+    }
+
+private:
+    static constexpr char magic[8] = {'p', 'h', 'g', 'r', 'i', 'd', '0', '1'};
+    static constexpr std::size_t most_files = 1000; ///< a scene takes some 40
+
+    /// 64-bit FNV-1a (Fowler, Noll, Vo).
+    static std::uint64_t hash(std::string_view text)
+    {
+        std::uint64_t h = 14695981039346656037u;
+        for (const char c : text)
+            h = (h ^ static_cast<unsigned char>(c)) * 1099511628211u;
+        return h;
+    }
+    std::filesystem::path path_of(std::string_view key) const
+    {
+        char name[32];
+        std::snprintf(name, sizeof name, "%016llx.bin", static_cast<unsigned long long>(hash(key)));
+        return std::filesystem::path(folder_) / name;
+    }
+
+    /// What other versions and drivers left behind: half of all files, once there are too many.
+    void remove_oldest()
+    {
+        if (std::exchange(looked_, true))
+            return;
+        std::error_code failed;
+        std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> files;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_, failed))
+            if (const auto name = entry.path().filename().string(); name.size() >= 20 && name.find(".bin") == 16)
+                files.emplace_back(entry.last_write_time(failed), entry.path());
+        if (files.size() <= most_files)
+            return;
+        std::sort(files.begin(), files.end());
+        for (std::size_t i = 0; i < files.size() / 2; ++i)
+            std::filesystem::remove(files[i].second, failed);
+    }
+
+    std::string folder_;
+    bool looked_ = false;
+};
+
+} // namespace photongrid::vulkan_detail
