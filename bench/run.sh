@@ -1,49 +1,112 @@
 #!/usr/bin/env bash
-# Speed against that of others, in one run. Prints Markdown with PASS or FAIL per row and fails where a row does.
+# Speed and error, measured. Prints Markdown; fails where a row misses what it must reach.
 #
-#   bench/run.sh --peers [--no-install]     neighbour searches and sorts against CGAL, FLANN, nanoflann, std::sort, Highway, TBB
-#   bench/run.sh --smoke [--no-install]     the same on the smallest data, to see that it runs; ratios do not count
+#   bench/run.sh [--peers] [--paper] [--error] [--no-install]     some of it, or all
+#   bench/run.sh --gpu [--no-install]                             all of it on a hardware Vulkan device; refuses software
+#   bench/run.sh --smoke [--no-install]                           all of it on little data, to see that it runs
+#
+#   --peers   neighbour searches and sorts against CGAL, FLANN, nanoflann, std::sort, Highway's vqsort, TBB; sorting passes
+#             on vulkan and gl against plain ones; the ring against POV-Ray
+#   --paper   the paper's Tables 1 and 2
+#   --error   time against relMSE of every kind of estimate: CSV and plots in out/error/
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
 
-install=yes what=
+usage() {
+  sed -n '2,12s/^# \{0,1\}//p' bench/run.sh >&2
+  exit 2
+}
+install=yes gpu=no smoke=no parts=()
 for argument in "$@"; do
   case $argument in
-    --peers | --smoke) what=${argument#--} ;;
+    --peers | --paper | --error) parts+=("${argument#--}") ;;
+    --gpu) gpu=yes ;;
+    --smoke) smoke=yes ;;
     --no-install) install=no ;;
-    *)
-      sed -n '2,5s/^# \{0,1\}//p' bench/run.sh >&2
-      exit 2
-      ;;
+    *) usage ;;
   esac
 done
-[[ -n $what ]] || { sed -n '2,5s/^# \{0,1\}//p' bench/run.sh >&2; exit 2; }
-require_packages "$install" "${program_packages[@]}" libcgal-dev libflann-dev libnanoflann-dev
+((${#parts[@]})) || parts=(peers paper error)
+asked() { [[ " ${parts[*]} " == *" $1 "* ]]; }
+packages=("${program_packages[@]}" libcgal-dev libflann-dev libnanoflann-dev gnuplot-nox time)
+[[ $smoke == yes ]] || ! asked peers || packages+=(povray)
+require_packages "$install" "${packages[@]}"
 
-# gl and vulkan take no part, so they need not be there.
-cmake -S . -B build-bench -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release -DPHOTONGRID_BENCH=ON -DPHOTONGRID_TESTS=OFF -DPHOTONGRID_GL=OFF -DPHOTONGRID_VULKAN=OFF >&2
-cmake --build build-bench --target knn_peers knn_peers_portable sort_peers >&2
+export NODEVICE_SELECT=1 # the implicit layer has crashed processes that start side by side
+launcher=()
+if command -v ccache >/dev/null; then
+  launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+fi
+cmake -S . -B build-bench -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release -DPHOTONGRID_BENCH=ON -DPHOTONGRID_TESTS=OFF "${launcher[@]}" >&2
+cmake --build build-bench >&2
 
 version() { dpkg-query --show --showformat '${Package} ${Version}, ' "$@" 2>/dev/null || true; }
-echo "Machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores; $(date +%F); $(g++ --version | head -n 1); $(version libcgal-dev libflann-dev libnanoflann-dev libhwy-dev libtbb-dev)photongrid $(git rev-parse --short HEAD 2>/dev/null || echo "of no repository")"
-echo
-failed=0
-if [[ $what == smoke ]]; then
-  build-bench/bench/knn_peers --sets 1 --seconds 0.05 || failed=$?
-  build-bench/bench/sort_peers 1 65536 || failed=$((failed > $? ? failed : $?))
-  # 1 is too slow; anything else is wrong or broken.
-  exit $((failed > 1 ? failed : 0))
-fi
+machine() {
+  echo "Machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores; $(date +%F); $(g++ --version | head -n 1); $(version libcgal-dev libflann-dev libnanoflann-dev libhwy-dev libtbb-dev mesa-vulkan-drivers povray)photongrid $(git rev-parse --short HEAD 2>/dev/null || echo "of no repository")"
+}
 title() { printf '\n### %s\n\n' "$1"; }
-title "Nearest neighbours, one thread"
-build-bench/bench/knn_peers || failed=1
-title "Nearest neighbours, two threads"
-build-bench/bench/knn_peers --threads 2 || failed=1
-title "Nearest neighbours, points in random order, half of each ratio wanted"
-build-bench/bench/knn_peers --shuffle || failed=1
-title "Nearest neighbours, a plain build (-O2, no -march): both sides, run-time dispatch on ours"
-build-bench/bench/knn_peers_portable || failed=1
-title "Sorting pairs, one thread"
-build-bench/bench/sort_peers 1 || failed=1
+failed=0
+# must COMMAND...: an exit status of 1 is a row that is too slow; more is something broken
+must() {
+  local status=0
+  "$@" || status=$?
+  if [[ $smoke == yes && $status == 1 ]]; then
+    status=0 # times do not count
+  fi
+  failed=$((failed > status ? failed : status))
+}
+
+machine
+if [[ $gpu == yes ]]; then
+  device=$(build-bench/photongrid devices | grep '^vulkan' | grep -v '(cpu' | head -n 1 || true)
+  if [[ -z $device ]]; then
+    echo "bench/run.sh --gpu: no hardware Vulkan device here; \`photongrid devices\` lists what there is" >&2
+    exit 2
+  fi
+  title "On $device"
+  must build-bench/bench/sort_passes
+  must build-bench/bench/kernel_costs
+  for scene in cornell_box ring glass_ball; do
+    for run in first second third; do
+      build-bench/photongrid render "examples/scenes/$scene.json" --backend vulkan --time-passes --stats build-bench/stats.json -o build-bench/picture.pfm --quiet >/dev/null
+      echo "$scene, $run run: $(sed -n 's/^ *"device": *//p' build-bench/stats.json | head -n 1) $(awk '/"(trace_photons|build_map|trace_rays|radiance_estimate)":/ { name = $1 } $1 == "\"ms\":" && name != "" { gsub(",", "", $2); printf "%s %.2f ms; ", name, $2; name = "" }' build-bench/stats.json)"
+    done
+  done
+  exit $failed
+fi
+if [[ $smoke == yes ]]; then
+  must build-bench/bench/knn_peers --sets 1 --seconds 0.05
+  must build-bench/bench/sort_peers 1 65536
+  must build-bench/bench/sort_passes 4096
+  must build-bench/bench/kernel_costs
+  must bench/error.sh --quick
+  exit $failed
+fi
+if asked peers; then
+  title "Nearest neighbours, one thread"
+  must build-bench/bench/knn_peers
+  title "Nearest neighbours, two threads"
+  must build-bench/bench/knn_peers --threads 2
+  title "Nearest neighbours, points in random order, half of each ratio wanted"
+  must build-bench/bench/knn_peers --shuffle
+  title "Nearest neighbours, a plain build (-O2, no -march): both sides, run-time dispatch on ours"
+  must build-bench/bench/knn_peers_portable
+  title "Sorting pairs, one thread"
+  must build-bench/bench/sort_peers 1
+  title "Sorting passes on vulkan and gl"
+  must build-bench/bench/sort_passes
+  title "The ring's caustic against POV-Ray"
+  must env PHOTONGRID=build-bench/photongrid bench/povray_ring.sh
+fi
+if asked paper; then
+  title "Table 1"
+  must env PHOTONGRID=build-bench/photongrid bench/table1.sh cpu serial vulkan gl
+  title "Table 2"
+  must build-bench/bench/kernel_costs
+fi
+if asked error; then
+  title "Time against error"
+  must bench/error.sh
+fi
 exit $failed

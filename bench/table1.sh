@@ -4,7 +4,7 @@
 #   bench/table1.sh [BACKEND...]      default: serial vulkan gl
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-program=build/photongrid
+program=${PHOTONGRID:-build/photongrid}
 [[ -x $program ]] || { echo "bench/table1.sh: build the program first: examples/run.sh" >&2; exit 1; }
 backends=("$@")
 ((${#backends[@]})) || backends=(serial vulkan gl)

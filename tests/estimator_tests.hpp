@@ -434,7 +434,7 @@ TYPED_TEST_P(estimators, searches_refuse_what_they_cannot_do)
 TYPED_TEST_P(estimators, searches_can_be_watched_and_resumed)
 {
     auto& b = this->b();
-    const auto s = make_oriented(distribution::clustered, 4000, {12, 12, 12}, 300, 2);
+    const auto s = make_oriented(distribution::clustered, 4000, {12, 12, 12}, 1200, 2);
     const auto at = b.upload(std::span<const vec4>(s.points));
     const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
     for (const auto search : all_searches) {

@@ -3,14 +3,14 @@
 #
 #   tests/run.sh [--full] [--device hardware] [--no-install]
 #
-#   --full             adds the long runs, planted faults and GPU-assisted validation, and the sanitizers over all tests
-#                      on every backend instead of the quick ones on the serial one
+#   --full             adds the long runs, the benches on little data, planted faults and GPU-assisted validation, and the
+#                      sanitizers over all tests on every backend instead of the quick ones on the serial one
 #   --device hardware  every backend on a real GPU; software devices are refused (no sanitizers, no clang)
 #   --no-install       only say which Debian packages are missing, do not install them
 #
 # First the serial backend under the address and undefined behaviour sanitizers (build-asan/), then clang 14 (build-clang/)
 # and its fuzzer on the scene reader for 20 s, in full 300 s (build-fuzz/), then everything with g++, assertions on
-# (build-tests/); in full then GPU-assisted validation and the planted faults. It stops where something fails.
+# (build-tests/); in full then GPU-assisted validation, the benches and the planted faults. It stops where something fails.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
@@ -108,6 +108,11 @@ run_tests build-tests "${short[@]}"
 if [[ $full == yes && $device == any ]]; then
   echo "== GPU-assisted validation"
   PHOTONGRID_GPU_AV=1 run_tests build-tests --tests-regex '^on_vulkan(_heavy)?$'
+
+  echo "== benches, briefly"
+  arguments=(--smoke)
+  [[ $install == yes ]] || arguments+=(--no-install)
+  bench/run.sh "${arguments[@]}"
 
   echo "== planted faults"
   tests/planted_faults.sh

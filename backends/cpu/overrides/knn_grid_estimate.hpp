@@ -53,7 +53,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t block = 64; // points that follow each other on one thread
+    static constexpr std::size_t block = 256; // points that follow each other on one thread
 
     knn_search(cpu_backend& b, const photon_map<cpu_backend>& map, const vectors& points, const vectors* normals, const knn_settings& s)
         : b_(&b), map_(&map), points_(&points), normals_(normals)
