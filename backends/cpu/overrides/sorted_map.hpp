@@ -33,7 +33,7 @@ namespace cpu {
     }
 } // namespace cpu
 
-/// Same map as the generic sorted_map, which also builds those of more than 2^26 cells. Scratch: 44 bytes a photon.
+/// Same map as the generic sorted_map, which also builds those of 2^27 cells and more. Scratch: 44 bytes a photon.
 inline photon_map<cpu_backend> sorted_map(cpu_backend& b, photons<cpu_backend> p, const grid& g, uint parts = every_part)
 {
     const uint n = p.size();
@@ -45,8 +45,6 @@ inline photon_map<cpu_backend> sorted_map(cpu_backend& b, photons<cpu_backend> p
     // Buckets of some 1,000 photons or more, and not more cells in one than have room for counters in a cache.
     const uint buckets = std::clamp(n / 1024u, 1u, cpu::map_job::most_buckets);
     while (j.shift < cpu::map_job::most_shift && j.buckets() > buckets)
-        ++j.shift;
-    while (j.shift < cpu::map_job::most_shift && j.buckets() > cpu::map_job::most_buckets)
         ++j.shift;
     if (j.buckets() > cpu::map_job::most_buckets)
         return sorted_map<cpu_backend>(b, std::move(p), g, parts);
