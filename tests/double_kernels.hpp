@@ -28,6 +28,7 @@ using photongrid::uint;
 
 /// For is_finite3: infinite and NaN stay so.
 inline uint floatBitsToUint(double x) { return glm::floatBitsToUint(static_cast<float>(x)); }
+inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintBitsToFloat(bits)); }
 
 #include <photongrid/kernels/begin.hpp>
 #define float double
@@ -182,7 +183,7 @@ TEST(double_oracle, photons_after_eight_bounces)
     serial_backend b;
     const auto device = upload_scene(b, s);
     detail::photon_frames<serial_backend> f(b, std::size_t{paths} * frames);
-    detail::trace_batch(b, device, f, paths, 0, s.render);
+    trace_batch(b, device, f, paths, 0, s.render);
     const auto positions = b.download(f.positions);
 
     std::vector<glm::dvec4> p(std::size_t{paths} * frames), power(p), direction(p), origin(p), next(p);

@@ -468,7 +468,7 @@ void kernel(uint i) { value = i; }
         both(std::type_identity<kernels::sum_tallies>{});
         both(std::type_identity<kernels::prefix_sum_step>{});
         both(std::type_identity<kernels::path_is_emitted>{});
-        both(std::type_identity<kernels::is_storable>{});
+        both(std::type_identity<kernels::is_found>{});
         both(std::type_identity<kernels::gather_photon>{});
         both(std::type_identity<kernels::divide_power>{});
         both(std::type_identity<kernels::eye_ray>{});

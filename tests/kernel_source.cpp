@@ -105,7 +105,10 @@ TEST(backend_texts, no_float_is_added_in_an_order_that_a_device_chooses)
 {
     std::size_t atomics = 0, blends = 0;
     for (const auto& [path, text] : backend_sources()) {
-        EXPECT_FALSE(std::regex_search(text, std::regex("shader_atomic_float|imageAtomic|subgroupAdd|subgroupInclusiveAdd"))) << path;
+        EXPECT_FALSE(std::regex_search(text, std::regex("shader_atomic_float|imageAtomic|subgroupAdd|subgroupExclusiveAdd"))) << path;
+        const std::regex running(R"(.*\bsubgroupInclusiveAdd\b.*)"), of_uint(R"(uint \w+\(uint (\w+)\) \{ return subgroupInclusiveAdd\(\1\); \})");
+        for (std::sregex_iterator at(text.begin(), text.end(), running); at != std::sregex_iterator(); ++at)
+            EXPECT_TRUE(std::regex_match((*at)[0].str(), of_uint)) << path << ": " << (*at)[0] << ": not of a uint";
         const std::regex atomic(R"(\batomic[A-Z]\w*\((\w+))");
         for (std::sregex_iterator at(text.begin(), text.end(), atomic); at != std::sregex_iterator(); ++at) {
             ++atomics;

@@ -45,7 +45,7 @@ faults=(
   "rows of a shorter radius|include/photongrid/kernels/search_rows.glsl|sqrt(radius2) * 1.00000095f|sqrt(radius2) * 0.99999f"
   "packed cells begin late|include/photongrid/kernels/packed_cell.glsl|sums(i) - count,|sums(i) - count + (count > 3u ? 1u : 0u),"
   "packed photons of the wrong cell|include/photongrid/kernels/packed_photon.glsl|sums(middle) > i|sums(middle) >= i"
-  "running sums skip a step|include/photongrid/prefix_sums.hpp|stride *= 2|stride *= 4"
+  "running sums skip a step|include/photongrid/prefix_sums.hpp|stride *= 4|stride *= 8"
   "parts of the light swapped|include/photongrid/kernels/grid.glsl|position.w == 1.0f ? 2u : 1u|position.w == 1.0f ? 1u : 2u"
   "photons left out counted wrongly|include/photongrid/kernels/other_part.glsl|!is_of_parts|is_of_parts"
   "rays start on the surface|include/photongrid/kernels/scene_layout.glsl|* 1.9073486328125e-6f + s.scale.x|* 0.0f + 0.0f * s.scale.x"

@@ -248,7 +248,7 @@ TYPED_TEST_P(pictures, flux_balances_per_channel)
         const auto device = upload_scene(b, s);
         const uint paths = 16384;
         detail::photon_frames<typename TestFixture::B> f(b, std::size_t{paths} * 7);
-        const uint frames = detail::trace_batch(b, device, f, paths, 0, s.render);
+        const uint frames = trace_batch(b, device, f, paths, 0, s.render);
         const auto positions = b.download(f.positions), powers = b.download(f.powers), directions = b.download(f.directions);
         dvec3 mean(0), squares(0);
         for (uint p = 0; p < paths; ++p) {

@@ -46,6 +46,28 @@ TEST_KERNEL(countdown,
     bool done() { return state.x == 0u; }
     void kernel(uint i) { state = uvec2(state.x - args.step, state.y + i); })
 
+// What the elements of a group tell each other, for as many passes as the state says.
+TEST_KERNEL(group_probe,
+    struct Params { uint unused; };
+    PARAMS(Params)
+    IN_GROUPS(3)
+    INPUT(0, uint, numbers)
+    STATE(0, uvec2, state)
+    OUTPUT(1, uvec4, over_all)
+    OUTPUT(2, uvec4, of_lanes)
+    bool done() { return state.x == 0u; }
+    uint weighed;
+    uint number;
+    void weigh(uint lane) { weighed += from_lane(number, lane) * (lane + 1u); }
+    void kernel(uint i) {
+        number = numbers(i);
+        weighed = 0u;
+        EACH_LANE(weigh)
+        over_all = uvec4(group_min(number), group_max(number), group_sum_up_to(number), group_any(number % 5u == 0u) ? 1u : 0u);
+        of_lanes = uvec4(GROUP_LANES, group_lane(), lane_value(number, GROUP_LANES / 2u), weighed);
+        state = uvec2(state.x - min(state.x, 1u), state.y + 1u);
+    })
+
 TEST_KERNEL(switched,
     struct Params { uint factor; };
     PARAMS(Params)
@@ -118,7 +140,7 @@ void kernel(uint i) {
 }
 )"};
 
-inline constexpr text_file texts[] = {next_frame_text, countdown_text, switched_text, contracts_text, sends_text, eight_states_text, broken_text};
+inline constexpr text_file texts[] = {next_frame_text, countdown_text, group_probe_text, switched_text, contracts_text, sends_text, eight_states_text, broken_text};
 } // namespace photongrid::test_kernels
 #include <photongrid/kernels/end.hpp>
 
@@ -350,6 +372,120 @@ TEST_F(vulkan, passes_over_unfinished_elements_fall_and_can_be_resumed)
     }
 }
 
+/// Neighbours of a subgroup tell each other the truth, in all of `run` and `run_until_done`, of any number of elements, done or
+/// not; and a group is one element where the switch is off or subgroups are.
+TEST_F(vulkan, elements_of_a_group_hear_of_each_other)
+{
+    uint most_lanes = 1;
+    for (const bool staging : {false, true})
+        for (const bool subgroups : {true, false})
+            for (const uint switches : {0u, 8u})
+                for (const uint n : {1u, 7u, 64u, 1003u}) {
+                    vulkan_options o;
+                    o.validation = true;
+                    o.staging = staging;
+                    o.subgroups = subgroups;
+                    vulkan_backend device(o);
+                    device.use_texts(test_kernels::texts);
+                    random_source u(n);
+                    std::vector<uint> numbers(n);
+                    std::vector<uvec2> states(n);
+                    for (uint i = 0; i < n; ++i) {
+                        numbers[i] = u.below(1000000);
+                        states[i] = {1 + u.below(11), 0};
+                    }
+                    const auto input = up(device, numbers);
+                    auto state = up(device, states);
+                    auto over_all = device.make<uvec4>(n), of_lanes = device.make<uvec4>(n);
+                    const auto check = [&](bool whole) {
+                        const auto all = device.download(over_all), lanes = device.download(of_lanes);
+                        const uint width = lanes[0].x;
+                        ASSERT_TRUE(width >= 1 && width <= 64 && 64 % width == 0) << width;
+                        EXPECT_TRUE(width == 1 || (switches != 0 && subgroups)) << width;
+                        most_lanes = std::max(most_lanes, width);
+                        for (uint i = 0; i < n; ++i) {
+                            const uint first = i - i % width, past = std::min(first + width, n);
+                            uint low = ~0u, high = 0, up_to = 0, weighed = 0;
+                            bool any = false;
+                            for (uint j = first; j < past; ++j) {
+                                low = std::min(low, numbers[j]);
+                                high = std::max(high, numbers[j]);
+                                up_to += j <= i ? numbers[j] : 0;
+                                weighed += numbers[j] * (j - first + 1);
+                                any = any || numbers[j] % 5 == 0;
+                            }
+                            ASSERT_EQ(all[i], uvec4(low, high, up_to, any ? 1 : 0)) << i << " of " << n << ", groups of " << width;
+                            ASSERT_EQ(lanes[i].y, i - first);
+                            if (whole && past - first == width) {
+                                ASSERT_EQ(lanes[i].z, numbers[first + width / 2]);
+                                ASSERT_EQ(lanes[i].w, weighed);
+                            }
+                        }
+                    };
+                    device.run<test_kernels::group_probe>({n, 0u, switches}, {}, reads(input), writes(state, over_all, of_lanes));
+                    check(true);
+                    state = up(device, states);
+                    const auto p = device.run_until_done<test_kernels::group_probe>({n, 0u, switches}, {}, reads(input), writes(state, over_all, of_lanes), nowhere);
+                    const auto ends = device.download(state);
+                    uint longest = 0;
+                    for (uint i = 0; i < n; ++i) {
+                        ASSERT_EQ(ends[i], uvec2(0, states[i].x)) << i;
+                        longest = std::max(longest, states[i].x);
+                    }
+                    EXPECT_EQ(p.passes, longest);
+                    ASSERT_EQ(p.active.size(), longest);
+                    for (uint q = 0; q < longest; ++q)
+                        EXPECT_EQ(p.active[q], static_cast<std::uint64_t>(std::count_if(states.begin(), states.end(), [&](uvec2 s) { return s.x > q; })));
+                    check(true);
+                    EXPECT_EQ(device.validation_messages(), std::vector<std::string>{});
+                }
+    RecordProperty("lanes", static_cast<int>(most_lanes));
+    std::printf("groups of up to %u elements\n", most_lanes);
+}
+
+/// Points that search together find what each finds alone, bit for bit: close to each other, far apart, or at one place.
+TEST_F(vulkan, points_that_search_together_find_what_each_finds_alone)
+{
+    vulkan_options apart;
+    apart.subgroups = false;
+    vulkan_options loops;
+    loops.staging = true;
+    vulkan_backend alone(apart), looping(loops);
+    for (const auto d : all_distributions)
+        for (const float step : {1e-5f, 0.003f, 0.05f, 2.0f}) {
+            const auto s = make_photons(d, 3000, uvec3(9, 7, 5), 5);
+            random_source u(7);
+            std::vector<vec4> points;
+            const auto somewhere = make_points(s, 40, 3);
+            for (const auto& p : somewhere)
+                for (int i = 0; i < 25; ++i) // runs of neighbours that begin anywhere in a group; some unwanted
+                    points.emplace_back(p.x + step * u(), p.y + step * u(), p.z + step * u(), i % 9 == 4 ? 0.0f : 1.0f);
+            for (const auto search : {search_kind::exact_k, search_kind::fixed_radius})
+                for (const uint visits : {3072u, 50u}) {
+                    const auto run = [&](vulkan_backend& device) {
+                        knn_settings k{.k = 50, .max_radius = 0.4f};
+                        k.search = search;
+                        k.errors = true;
+                        k.visits_per_pass = visits;
+                        const auto map = sorted_map(device, upload_photons(device, s), s.g);
+                        const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(points)), k);
+                        return std::tuple(device.download(e.irradiance), device.download(e.standard_error), device.download(e.used));
+                    };
+                    const auto [light, error, used] = run(alone);
+                    for (auto* device : {&b(), &looping}) {
+                        const auto [light_too, error_too, used_too] = run(*device);
+                        EXPECT_EQ(count_different_bits(light, light_too), 0u);
+                        EXPECT_EQ(count_different_bits(error, error_too), 0u);
+                        std::size_t differ = 0;
+                        for (std::size_t i = 0; i < used.size(); ++i)
+                            differ += used[i].x != used_too[i].x ? 1u : 0u;
+                        EXPECT_EQ(differ, 0u);
+                        EXPECT_EQ(count_different_bits(used_too, std::get<2>(run(*device))), 0u); // also what they visited, run to run
+                    }
+                }
+        }
+}
+
 TEST_F(vulkan, unfinished_elements_of_a_part_of_a_buffer)
 {
     const std::vector<uvec2> host(1000, uvec2(12u, 0u));
@@ -478,7 +614,7 @@ template <class... K>
 struct kernel_list {};
 using all_kernels = kernel_list<kernels::arithmetic_probe, kernels::photon_cell, kernels::bitonic_step, kernels::pad_pairs, kernels::pair_value, kernels::first_in_cell, kernels::invalid_photon,
     kernels::route_photon, kernels::routed_cell, kernels::redistribute_power, kernels::overfull_cell, kernels::knn_start, kernels::knn_visit, kernels::knn_result,
-    kernels::emit_photon, kernels::bounce_photon, kernels::path_goes_on, kernels::tally_path, kernels::sum_tallies, kernels::prefix_sum_step, kernels::path_is_emitted, kernels::is_storable,
+    kernels::emit_photon, kernels::bounce_photon, kernels::path_goes_on, kernels::tally_path, kernels::sum_tallies, kernels::prefix_sum_step, kernels::path_is_emitted, kernels::is_found,
     kernels::gather_photon, kernels::divide_power, kernels::eye_ray, kernels::eye_bounce, kernels::direct_light, kernels::no_light, kernels::copy_light, kernels::shade,
     kernels::take_vector, kernels::other_part, kernels::packed_cell, kernels::packed_photon, kernels::kth_guess, kernels::kth_distance, kernels::kth_result, kernels::kth_tie, kernels::given_radius,
     kernels::grown_radius, kernels::gather_start, kernels::gather_photons, kernels::no_estimate, kernels::irradiance_estimate, kernels::gather_normal, kernels::tally_error, kernels::covered_share, kernels::divide_by_share,

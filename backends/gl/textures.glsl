@@ -22,5 +22,16 @@ ivec2 texel_(uint i) { return ivec2(int(i & 2047u), int(i >> 11u)); }
 #define inline
 #define PARAMS(P) layout(std140, binding = 0) uniform args_block_ { P args; };
 #define SWITCH(B, NAME) const bool NAME = ((SWITCHES_ >> B) & 1u) != 0u;
+// A group is one element.
+#define IN_GROUPS(B)
+#define GROUP_LANES 1u
+#define EACH_LANE(F) F(0u);
+uint group_lane() { return 0u; }
+bool group_any(bool b) { return b; }
+uint group_min(uint v) { return v; }
+uint group_max(uint v) { return v; }
+uint group_sum_up_to(uint v) { return v; }
+#define lane_value(V, LANE) (V)
+#define from_lane(V, LANE) (V)
 layout(location = 0) uniform uvec4 launch_; // first element, how many; unused
 #endif

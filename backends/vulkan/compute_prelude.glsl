@@ -2,9 +2,16 @@
 // The kernel dialect read as a Vulkan compute shader: one invocation an element. The backend defines, before this file,
 //   GROUP      invocations in a workgroup      SWITCHES   the bits of launch.switches
 //   OUTPUTS    how many OUTPUTs and STATEs the kernel has
+//   LANES      elements to a group of those kernels that are IN_GROUPS: a subgroup's invocations, or 1
+//   LANE_LOOPS 1: what is said of each lane is a loop, 0: written out, which lets lavapipe know the lane
 //   TEXELS     1: inputs are read as texel buffers, 0: as storage buffers
 // Bindings: 0 to 7 inputs, 8 to 15 outputs and states, 16 up the verb's own. No buffer is `restrict`: a pass may read
 // one frame of a buffer and write another.
+#if LANES > 1
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#endif
 #define inline
 // Every float operation is marked NoContraction in the SPIR-V (spirv.hpp), so the word adds nothing; and glslang 12 loops
 // for ever, out of memory, where precise values depend on each other in a circle (eye_bounce.glsl).
@@ -45,6 +52,64 @@ layout(local_size_x = GROUP) in;
     void store_##B(uint i) { NAME##_data_[i] = NAME; }
 
 #define SWITCH(B, NAME) const bool NAME = ((SWITCHES >> B) & 1u) != 0u;
+
+#define IN_GROUPS(B)
+#if LANES > 1
+const uint GROUP_LANES = uint(LANES);
+uint group_lane() { return gl_SubgroupInvocationID; }
+#define lane_value(V, LANE) subgroupShuffle(V, LANE)
+#define from_lane(V, LANE) subgroupShuffle(V, LANE)
+#if LANE_LOOPS
+uint group_min(uint v) { return subgroupMin(v); }
+uint group_max(uint v) { return subgroupMax(v); }
+uint group_sum_up_to(uint v) { return subgroupInclusiveAdd(v); }
+#define EACH_LANE(F) for (uint lane_ = 0u; lane_ < GROUP_LANES; ++lane_) { F(lane_); }
+#else
+// lavapipe shuffles by one instruction where it knows the places, and does all else lane by lane.
+uint from_xor_(uint v, uint places) { return subgroupShuffle(v, gl_SubgroupInvocationID ^ places); }
+uint from_below_(uint v, uint places)
+{
+    uint below = subgroupShuffle(v, max(gl_SubgroupInvocationID, places) - places);
+    return gl_SubgroupInvocationID < places ? 0u : below;
+}
+uint group_min(uint v)
+{
+    v = min(v, from_xor_(v, 1u));
+    v = min(v, from_xor_(v, 2u));
+#if LANES == 8
+    v = min(v, from_xor_(v, 4u));
+#endif
+    return v;
+}
+uint group_max(uint v) { return ~group_min(~v); }
+uint group_sum_up_to(uint v)
+{
+    v += from_below_(v, 1u);
+    v += from_below_(v, 2u);
+#if LANES == 8
+    v += from_below_(v, 4u);
+#endif
+    return v;
+}
+#define EACH_LANE_4(F, L) F(L); F(L + 1u); F(L + 2u); F(L + 3u);
+#if LANES == 8
+#define EACH_LANE(F) EACH_LANE_4(F, 0u) EACH_LANE_4(F, 4u)
+#else
+#define EACH_LANE(F) EACH_LANE_4(F, 0u)
+#endif
+#endif
+bool group_any(bool b) { return group_max(b ? 1u : 0u) != 0u; }
+#else
+#define GROUP_LANES 1u
+#define EACH_LANE(F) F(0u);
+uint group_lane() { return 0u; }
+bool group_any(bool b) { return b; }
+uint group_min(uint v) { return v; }
+uint group_max(uint v) { return v; }
+uint group_sum_up_to(uint v) { return v; }
+#define lane_value(V, LANE) (V)
+#define from_lane(V, LANE) (V)
+#endif
 
 #if OUTPUTS > 8
 #error a kernel has more than 8 outputs and states

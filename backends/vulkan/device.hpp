@@ -22,6 +22,7 @@ struct vulkan_options {
     bool validation = false;    ///< run the Khronos validation layer (core and synchronization) and collect its messages
     bool gpu_assisted = false;  ///< with validation: instrument kernels too, so that their accesses past a buffer's end are messages; slow
     bool staging = false;       ///< work as on a discrete GPU even where it is not needed: copy through staging buffers, read inputs as storage buffers
+    bool subgroups = true;      ///< let neighbouring points search together where the device can
     bool time_passes = false;   ///< measure each pass by the device's clock, for costs(); a little slower
     std::string cache_folder{}; ///< keep compiled kernels in this folder, so that the next start is quick; "": nowhere
 };
@@ -216,6 +217,26 @@ namespace vulkan_detail {
         std::vector<VkQueueFamilyProperties> families(n);
         vkGetPhysicalDeviceQueueFamilyProperties(d, &n, families.data());
         return families[family].timestampValidBits;
+    }
+
+    /// Invocations to a subgroup, where that is the same for every shader and they can count votes, add up and hand values around;
+    /// else 1.
+    inline std::uint32_t lanes_of_subgroups(VkPhysicalDevice d)
+    {
+        VkPhysicalDeviceSubgroupProperties subgroup{};
+        subgroup.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
+        VkPhysicalDeviceSubgroupSizeControlPropertiesEXT sizes{};
+        sizes.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_PROPERTIES_EXT;
+        subgroup.pNext = &sizes;
+        if (!device_has_extension(d, VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME))
+            return 1;
+        VkPhysicalDeviceProperties2 p{};
+        p.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+        p.pNext = &subgroup;
+        vkGetPhysicalDeviceProperties2(d, &p);
+        constexpr VkSubgroupFeatureFlags needed = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+        const bool can = (subgroup.supportedOperations & needed) == needed && (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0;
+        return can && sizes.minSubgroupSize == sizes.maxSubgroupSize ? subgroup.subgroupSize : 1;
     }
 
     /// 3 for a discrete device down to 0 for a CPU.

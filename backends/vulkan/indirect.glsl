@@ -1,4 +1,4 @@
-// Turns the number of elements of a pass into the workgroups of its indirect dispatch.
+// Turns the length of the list of a pass into the workgroups of its indirect dispatch.
 struct Params {
     uint pass_number;
     uint most; // workgroups in one dimension
@@ -10,7 +10,7 @@ void main()
 {
     if (element_() != 0u)
         return;
-    uint at = args.pass_number * 4u;
+    uint at = args.pass_number * 8u;
     uint groups = (control_[at + 3u] + uint(GROUP) - 1u) / uint(GROUP);
     uint rows = (groups + args.most - 1u) / args.most;
     uint columns = rows == 0u ? 0u : (groups + rows - 1u) / rows;

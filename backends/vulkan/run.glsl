@@ -2,10 +2,23 @@
 void main()
 {
     uint at = element_();
+#if LANES > 1
+    // All of a group work; those beyond the last element do again what it does, which is dropped.
+    uint end = group_() < launch_.z ? launch_.x : 0u;
+    if (at - group_lane() < end) {
+        uint element = min(at, end - 1u);
+        LOAD_ALL(launch_.w + element)
+        kernel(launch_.y + element);
+        if (at < end) {
+            STORE_ALL(launch_.w + at)
+        }
+    }
+#else
     if (group_() < launch_.z && at < launch_.x) {
         uint where = launch_.w + at;
         LOAD_ALL(where)
         kernel(launch_.y + at);
         STORE_ALL(where)
     }
+#endif
 }

@@ -56,10 +56,10 @@ public:
 
     /// Opens a device.
     /// \throws backend_error when there is no driver, no such device, or no validation layer where one is asked for.
-    explicit vulkan_backend(const vulkan_options& options = {}) : vulkan_backend(std::make_shared<vulkan_detail::context>(options), options.cache_folder, options.time_passes) {}
+    explicit vulkan_backend(const vulkan_options& options = {}) : vulkan_backend(std::make_shared<vulkan_detail::context>(options), options) {}
 
     /// Works on a device that the caller owns and that outlives this backend and its buffers.
-    explicit vulkan_backend(const vulkan_handles& handles) : vulkan_backend(std::make_shared<vulkan_detail::context>(handles), {}, false) {}
+    explicit vulkan_backend(const vulkan_handles& handles) : vulkan_backend(std::make_shared<vulkan_detail::context>(handles), vulkan_options{}) {}
 
     /// More kernel files than the library's own, as photongrid_embed() made them; they must outlive the backend.
     void use_texts(std::span<const text_file> texts) { texts_.insert(texts_.end(), texts.begin(), texts.end()); }
@@ -102,48 +102,7 @@ public:
     template <iterative_kernel K, class Reads, class Writes>
     progress run_until_done(launch l, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
     {
-        detail::check_call<K>("run_until_done", l, reads, writes);
-        progress p;
-        p.finished = true;
-        if (l.elements == 0)
-            return p;
-
-        // Four words a pass: the workgroups of its dispatch, and how many elements it takes. The host looks at them once in
-        // `together` passes.
-        constexpr uint together = 8, slot_bytes = 16;
-        const auto control = allocate((together + 1) * slot_bytes);
-        std::array<memory, 2> lists{allocate(l.elements * sizeof(uint)), allocate(l.elements * sizeof(uint))};
-        auto buffers = bound(reads, writes);
-        const auto first_extra = buffers.size();
-        buffers.insert(buffers.end(), {lists[1], lists[0], control});
-        recorder_.fill(control, 0, control->bytes(), 0);
-        recorder_.dispatch(kernel_pipeline<K>(verb::list, l.switches, buffers), buffers, push(l, groups(l.elements), l.first, args), groups(l.elements), cost<K>().ms);
-        prepare_indirect(control, 0);
-        const auto& iterate = kernel_pipeline<K>(verb::iterate, l.switches, buffers);
-        for (;;) {
-            const uint now = std::min(together, max_passes - p.passes);
-            for (uint q = 0; q < now; ++q) {
-                buffers[first_extra] = lists[0];
-                buffers[first_extra + 1] = lists[1];
-                recorder_.dispatch_indirect(iterate, buffers, push(l, q, l.first, args), control, q * slot_bytes, cost<K>().ms);
-                prepare_indirect(control, q + 1);
-                std::swap(lists[0], lists[1]);
-            }
-            std::array<glm::uvec4, together + 1> seen{};
-            recorder_.read(control, seen.data(), sizeof seen);
-            for (uint q = 0; q < now && seen[q].w > 0; ++q) {
-                p.active.push_back(seen[q].w);
-                ++p.passes;
-            }
-            p.finished = seen[now].w == 0;
-            if (p.finished || p.passes == max_passes)
-                break;
-            // now == together: the next pass goes on from where the last one ended.
-            recorder_.copy(control, together * slot_bytes, control, 0, slot_bytes);
-            recorder_.fill(control, slot_bytes, together * slot_bytes, 0);
-        }
-        cost<K>().passes += p.passes;
-        return p;
+        return run_frames<K>(l, 0, args, reads, writes, max_passes);
     }
 
     template <predicate_kernel K, class Reads>
@@ -213,6 +172,69 @@ public:
         ++costs_[name].passes;
     }
 
+    /// As run_until_done, but pass q of element i, from 0, computes element i + q * stride: a frame a pass, of those elements
+    /// whose last frame was not done(). Before the first pass none is done if the kernel has no states.
+    template <iterative_kernel K, class Reads, class Writes>
+    progress run_frames(launch l, uint stride, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
+    {
+        detail::check_call<K>("run_until_done", l, reads, writes);
+        progress p;
+        p.finished = true;
+        if (l.elements == 0)
+            return p;
+
+        // Eight words a pass: the workgroups of its dispatch, the length of its list, and how many elements are not done. The
+        // host looks at them once in `together` passes.
+        struct pass_slot {
+            glm::uvec4 dispatch;
+            glm::uvec4 unfinished;
+        };
+        constexpr uint together = 8, slot_bytes = sizeof(pass_slot);
+        const auto control = allocate((together + 1) * slot_bytes);
+        const auto list_bytes = groups(l.elements) * group_ * sizeof(uint);
+        std::array<memory, 2> lists{allocate(list_bytes), allocate(list_bytes)};
+        auto buffers = bound(reads, writes);
+        const auto first_extra = buffers.size();
+        buffers.insert(buffers.end(), {lists[1], lists[0], control});
+        recorder_.fill(control, 0, control->bytes(), 0);
+        recorder_.dispatch(kernel_pipeline<K>(verb::list, l.switches, buffers), buffers, push(l, groups(l.elements), l.first, args), groups(l.elements), cost<K>().ms);
+        prepare_indirect(control, 0);
+        const auto& iterate = kernel_pipeline<K>(verb::iterate, l.switches, buffers);
+        for (;;) {
+            const uint now = std::min(together, max_passes - p.passes);
+            for (uint q = 0; q < now; ++q) {
+                buffers[first_extra] = lists[0];
+                buffers[first_extra + 1] = lists[1];
+                recorder_.dispatch_indirect(iterate, buffers, push(l, q, (p.passes + q) * stride, args), control, q * slot_bytes, cost<K>().ms);
+                prepare_indirect(control, q + 1);
+                std::swap(lists[0], lists[1]);
+            }
+            std::array<pass_slot, together + 1> seen{};
+            recorder_.read(control, seen.data(), sizeof seen);
+            for (uint q = 0; q < now && seen[q].unfinished.x > 0; ++q) {
+                p.active.push_back(seen[q].unfinished.x);
+                ++p.passes;
+            }
+            p.finished = seen[now].unfinished.x == 0;
+            if (p.finished || p.passes == max_passes)
+                break;
+            // now == together: the next pass goes on from where the last one ended.
+            recorder_.copy(control, together * slot_bytes, control, 0, slot_bytes);
+            recorder_.fill(control, slot_bytes, together * slot_bytes, 0);
+        }
+        cost<K>().passes += p.passes;
+        return p;
+    }
+
+    /// Sets n elements from `first` on to words of one value.
+    template <element T>
+    void fill(buffer<T>& b, std::size_t first, std::size_t n, uint word)
+    {
+        assert(first + n <= b.n_);
+        if (n > 0)
+            recorder_.fill(b.memory_, first * sizeof(T), n * sizeof(T), word);
+    }
+
     /// Kernels that were found compiled in options.cache_folder.
     std::uint64_t kernels_found() const { return kernels_.found(); }
 
@@ -235,13 +257,15 @@ public:
 private:
     enum class verb { run, list, iterate, count };
 
-    vulkan_backend(std::shared_ptr<vulkan_detail::context> c, const std::string& cache_folder, bool time_passes)
-        : context_(std::move(c)), kernels_(context_, cache_folder), texts_(std::begin(kernel_texts), std::end(kernel_texts)), recorder_(context_, time_passes), empty_(allocate(0))
+    vulkan_backend(std::shared_ptr<vulkan_detail::context> c, const vulkan_options& options)
+        : context_(std::move(c)), kernels_(context_, options.cache_folder), texts_(std::begin(kernel_texts), std::end(kernel_texts)), recorder_(context_, options.time_passes), empty_(allocate(0))
     {
         const auto info = vulkan_detail::describe(context_->physical(), 0);
         if (!info.unusable.empty())
             throw backend_error("vulkan: " + info.name + " cannot be used: " + info.unusable);
         group_ = std::min(64u, context_->properties().limits.maxComputeWorkGroupInvocations);
+        if (const uint lanes = vulkan_detail::lanes_of_subgroups(context_->physical()); options.subgroups && lanes >= 4 && group_ % lanes == 0)
+            lanes_ = lanes;
         caps_.backend = "vulkan";
         caps_.device = info.name + ", " + info.driver;
         caps_.software = info.software;
@@ -351,9 +375,9 @@ private:
         }(std::make_index_sequence<32>{});
     }
 
-    std::string defines(std::size_t outputs, uint switches, bool listing, bool texels) const
+    std::string defines(std::size_t outputs, uint switches, bool listing, bool texels, uint lanes) const
     {
-        return "#define GROUP " + std::to_string(group_) + "\n#define OUTPUTS " + std::to_string(outputs) + "\n#define SWITCHES " + std::to_string(switches) + "u\n#define LISTING " + (listing ? "1" : "0")
+        return "#define GROUP " + std::to_string(group_) + "\n#define LANES " + std::to_string(lanes) + "\n#define LANE_LOOPS " + (lanes > 8 || context_->staging() ? "1" : "0") + "\n#define OUTPUTS " + std::to_string(outputs) + "\n#define SWITCHES " + std::to_string(switches) + "u\n#define LISTING " + (listing ? "1" : "0")
             + "\n#define TEXELS " + (texels ? "1" : "0") + "\n";
     }
 
@@ -365,7 +389,11 @@ private:
         constexpr const char* epilogues[] = {"run", "iterate", "iterate", "count"};
         const auto begin = std::chrono::steady_clock::now();
         const std::string name(kernel_name<K>());
-        const auto source = splice(own_text("compute_prelude"), defines(output_count<K>, switches & known_switches<K>(), v == verb::list, texels),
+        uint lanes = 1;
+        if constexpr (requires { K::group_switch; })
+            if (v != verb::count && (switches >> K::group_switch & 1u) != 0)
+                lanes = lanes_;
+        const auto source = splice(own_text("compute_prelude"), defines(output_count<K>, switches & known_switches<K>(), v == verb::list, texels, lanes),
             find_kernel_text(K::path, texts_), own_text(epilogues[static_cast<int>(v)]), texts_);
         auto words = kernels_.compile(source, name);
         auto& c = costs_[name];
@@ -404,7 +432,7 @@ private:
         auto& p = own_pipelines_[name + more_defines];
         if (p)
             return *p;
-        const auto source = splice(own_text("compute_prelude"), defines(0, 0, false, false) + more_defines, own_text(name), text_file{name + " (end)", ""}, {});
+        const auto source = splice(own_text("compute_prelude"), defines(0, 0, false, false, 1) + more_defines, own_text(name), text_file{name + " (end)", ""}, {});
         std::vector<vulkan_detail::binding> bindings;
         for (std::uint32_t b = 0; b < buffers; ++b)
             bindings.push_back({b});
@@ -420,6 +448,7 @@ private:
     std::vector<text_file> texts_;
     std::map<std::string, kernel_cost> costs_;
     uint group_ = 64;
+    uint lanes_ = 1; ///< elements that kernels IN_GROUPS compute together
     std::uint64_t texel_limit_ = 0; ///< bytes of the largest buffer that is read as texels; 0: none is
     // Declared before the recorder, so that they outlive its last batch.
     std::map<std::tuple<std::string, verb, uint, bool>, std::unique_ptr<vulkan_detail::pipeline>> pipelines_;

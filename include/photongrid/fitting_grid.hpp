@@ -44,14 +44,14 @@ namespace detail {
     }
 } // namespace detail
 
-/// A grid for estimates from k of these photons: cells about as wide as the distance to the k-th nearest, half as wide along
-/// x, where rows are cut off at the radius; at most 5/4 cells a photon. The box is that of the photons but for one in 500 at
+/// A grid for estimates from k of these photons: `cells_a_radius` cells to the distance of the k-th nearest (see
+/// capabilities), twice as many along x, where rows are cut off at the radius; at most 5/4 cells a photon. The box is that of the photons but for one in 500 at
 /// either end of each axis, so that a stray one does not make all cells useless; what lies outside belongs to border cells.
 ///
 /// How photons fill space is measured on a sample of 16,384: the cubes of some edge h that hold any number h^-D, with D = 2
 /// for photons on surfaces (box counting; Mandelbrot 1982). Same photons, same grid, on every backend.
 template <backend B>
-grid fitting_grid(B& b, const photons<B>& p, uint k)
+grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_a_radius = 1)
 {
     auto sample = detail::sample_positions(b, p, 16384);
     if (sample.empty())
@@ -86,6 +86,7 @@ grid fitting_grid(B& b, const photons<B>& p, uint k)
     // of edge 2 r. So many are k at
     const double in_ball = 0.785 * static_cast<double>(p.size()) / cubes;
     double radius = 0.5 * edge * std::pow(static_cast<double>(std::max(k, 1u)) / in_ball, 1 / dimension);
+    radius /= static_cast<double>(cells_a_radius);
     const double most = std::max(1.25 * static_cast<double>(p.size()), 64.0);
     for (;; radius *= 1.05) {
         glm::dvec3 cells;

@@ -76,6 +76,19 @@ namespace detail {
         return r > 0 ? std::min(r * r, 1e38f) : 0.0f;
     }
     inline float min_radius2(const knn_settings& s) { return std::max(s.min_radius * s.min_radius, 1e-36f); }
+    /// Do points lie so close to each other that neighbours should search together? Where the radius that is to be expected is
+    /// eight times their distance; both are of as many as lie on the largest side of the grid's box, evenly.
+    template <backend B>
+    bool are_close(const knn_settings& s, const photon_map<B>& map, std::size_t points)
+    {
+        const auto e = glm::dvec3(map.cells_of.cell) * glm::dvec3(map.cells_of.resolution);
+        const double area = std::max({e.x * e.y, e.y * e.z, e.z * e.x});
+        const double photons = std::max(1.0, static_cast<double>(map.photons.size()));
+        double disc = 3.14159265 * static_cast<double>(max_radius2(s));
+        if (s.search != search_kind::fixed_radius)
+            disc = std::min(disc, area * static_cast<double>(s.k) / photons);
+        return disc / 3.14159265 * static_cast<double>(points) >= 64 * area;
+    }
     /// 1 / mean of the kernel over its disc.
     constexpr float norm_of(filter_kernel k)
     {
@@ -199,7 +212,7 @@ private:
         bracket_ = make<glm::uvec4>();
         cursor_ = make<glm::uvec4>();
         tally_ = make<glm::uvec4>();
-        b_->template run<kernels::kth_guess>(points_->size(),
+        b_->template run<kernels::kth_guess>({points_->size(), 0u, detail::are_close(s_, *map_, points_->size()) ? 1u << kernels::kth_guess::group_switch : 0u},
             {.grid = map_->cells_of, .wanted = s_.k, .max_radius2 = max_radius2(), .rows = 1023u, .searching = searching() ? 1u : 0u}, reads(*points_, map_->cells),
             writes(pivots_, counts_, outer_, bracket_, cursor_, tally_));
     }
@@ -268,7 +281,8 @@ private:
         const vectors& photon_normals = s_.leaks.needs_normals() ? m.photons.normals : m.photons.positions;
         const glm::vec4 leaks(s_.leaks.min_cosine, s_.leaks.compression * s_.leaks.compression - 1.0f, 0.0f, 0.0f);
         const uint policies = (s_.leaks.side ? 1u : 0u) | (s_.leaks.needs_normals() ? 2u : 0u) | (s_.leaks.compression > 1 ? 4u : 0u);
-        const launch points(points_->size(), 0u, policies);
+        const bool together = detail::are_close(s_, m, points_->size());
+        const launch points(points_->size(), 0u, policies | (together ? 1u << kernels::kth_distance::group_switch : 0u));
         switch (stage_) {
         case stage::grow:
             return b.template run_until_done<kernels::knn_visit>(points,
@@ -284,7 +298,7 @@ private:
                 reads(*points_, normals, m.cells, m.photons.positions, directions, photon_normals, m.list, reach_), writes(chosen_, bracket_, counts_, cursor_), passes);
         case stage::gather: {
             const uint kernel = s_.kernel == filter_kernel::constant ? 0u : 4u << static_cast<uint>(s_.kernel); // SWITCHes 3 to 5
-            const uint how = policies | kernel | (s_.bias == bias_kind::unbiased ? 1u << 6 : 0u) | (s_.errors ? 1u << 7 : 0u);
+            const uint how = policies | kernel | (s_.bias == bias_kind::unbiased ? 1u << 6 : 0u) | (s_.errors ? 1u << 7 : 0u) | (together ? 1u << kernels::gather_photons::group_switch : 0u);
             return b.template run_until_done<kernels::gather_photons>({points_->size(), 0u, how},
                 {.grid = m.cells_of, .leaks = leaks, .min_radius2 = min_radius2(), .visits = s_.visits_per_pass, .ranges = s_.ranges_per_pass},
                 reads(*points_, normals, m.cells, m.photons.positions, directions, photon_normals, m.list, m.photons.powers),

@@ -1,4 +1,4 @@
-// Running sums by doubling (Hillis and Steele 1986): gather passes only.
+// Running sums (Hillis and Steele 1986, by fours in place of twos): gather passes only.
 #pragma once
 
 #include <photongrid/backend.hpp>
@@ -8,7 +8,7 @@
 
 namespace photongrid {
 
-/// Inclusive sums: element i of the result is terms 0 to i added up, modulo 2^32. ceil(log2 n) passes, one at least.
+/// Inclusive sums: element i of the result is terms 0 to i added up, modulo 2^32. ceil(log4 n) passes, one at least.
 template <backend B>
 buffer_of<B, uint> prefix_sums(B& b, const buffer_of<B, uint>& terms)
 {
@@ -16,7 +16,7 @@ buffer_of<B, uint> prefix_sums(B& b, const buffer_of<B, uint>& terms)
     auto sums = b.template make<uint>(n);
     auto next = b.template make<uint>(n);
     b.template run<kernels::prefix_sum_step>(n, {.stride = 1u}, reads(terms), writes(sums));
-    for (std::size_t stride = 2; stride < n; stride *= 2) {
+    for (std::size_t stride = 4; stride < n; stride *= 4) {
         b.template run<kernels::prefix_sum_step>(n, {.stride = static_cast<uint>(stride)}, reads(sums), writes(next));
         std::swap(sums, next);
     }

@@ -82,7 +82,7 @@ built_map<B> build_map(B& b, const scene& s, const render_settings& settings, co
 
     detail::stage_clock<B> building(b, stats.build_map);
     photons<B> p = std::move(built.trace.photons);
-    const grid g = settings.grid == glm::uvec3(0) ? fitting_grid(b, p, settings.k) : make_grid(built.scene.about.low, built.scene.about.high, settings.grid);
+    const grid g = settings.grid == glm::uvec3(0) ? fitting_grid(b, p, settings.k, b.caps().cells_a_radius) : make_grid(built.scene.about.low, built.scene.about.high, settings.grid);
     const uint parts = settings.only == light_part::caustic ? caustic_part : settings.only == light_part::indirect ? other_part : every_part;
     built.map = settings.builder == map_builder::sort ? sorted_map(b, std::move(p), g, parts) : routed_map(b, std::move(p), g, settings.slots, settings.seed, parts);
     building.stop();

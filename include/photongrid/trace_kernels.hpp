@@ -30,8 +30,8 @@ struct sum_tallies {
 struct path_is_emitted {
 #include <photongrid/kernels/path_is_emitted.glsl>
 };
-struct is_storable {
-#include <photongrid/kernels/is_storable.glsl>
+struct is_found {
+#include <photongrid/kernels/is_found.glsl>
 };
 struct gather_photon {
 #include <photongrid/kernels/gather_photon.glsl>

@@ -39,25 +39,6 @@ namespace detail {
               next_origins(b.template make<glm::vec4>(n)), next_directions(b.template make<glm::vec4>(n)) {}
     };
 
-    /// Traces `paths` paths from id `first` on; returns the frames used. Asks now and then whether any path goes on.
-    template <backend B>
-    uint trace_batch(B& b, const device_scene<B>& s, photon_frames<B>& f, uint paths, uint first, const render_settings& settings)
-    {
-        const auto& about = s.about;
-        b.template run<kernels::emit_photon>({paths, 0u, about.features}, {.scene_layout = about.layout, .first_path = first, .seed = settings.seed}, reads(s.records),
-            writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
-        uint frame = 1;
-        for (; frame <= settings.photon_depth; ++frame) {
-            b.template run<kernels::bounce_photon>({paths, frame * paths, about.features},
-                {.scene_layout = about.layout, .paths = paths, .first_path = first, .last_frame = settings.photon_depth, .seed = settings.seed},
-                reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions),
-                writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
-            if (frame % 8 == 0 && checked_count<kernels::path_goes_on>(b, {paths, frame * paths}, {}, reads(f.positions)) == 0)
-                return frame + 1;
-        }
-        return frame;
-    }
-
     /// The sums of the first `n` tallies.
     template <backend B>
     path_tally<B> sum_tally(B& b, path_tally<B> t, uint n)
@@ -85,6 +66,25 @@ namespace detail {
     }
 } // namespace detail
 
+/// Traces `paths` paths from id `first` on; returns the frames used. Asks now and then whether any path goes on.
+template <backend B>
+uint trace_batch(B& b, const device_scene<B>& s, detail::photon_frames<B>& f, uint paths, uint first, const render_settings& settings)
+{
+    const auto& about = s.about;
+    b.template run<kernels::emit_photon>({paths, 0u, about.features}, {.scene_layout = about.layout, .first_path = first, .seed = settings.seed}, reads(s.records),
+        writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
+    uint frame = 1;
+    for (; frame <= settings.photon_depth; ++frame) {
+        b.template run<kernels::bounce_photon>({paths, frame * paths, about.features},
+            {.scene_layout = about.layout, .paths = paths, .first_path = first, .last_frame = settings.photon_depth, .seed = settings.seed},
+            reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions),
+            writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
+        if (frame % 8 == 0 && detail::checked_count<kernels::path_goes_on>(b, {paths, frame * paths}, {}, reads(f.positions)) == 0)
+            return frame + 1;
+    }
+    return frame;
+}
+
 /// Emits paths in id order until settings.photons photons are stored; photon order is (path, bounce). Each photon's power
 /// is the lights' power divided by the paths emitted. Positions' w is 1 for caustic photons (light_part). Normals are kept
 /// only where the leak policy asks for them.
@@ -109,7 +109,7 @@ traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& dev
             throw std::runtime_error("trace_photons: " + std::to_string(t.emitted) + " paths from " + detail::light_names(s) + " stored " + std::to_string(stored) + " of the "
                 + std::to_string(wanted) + " photons asked for. Stored are diffuse hits that come not straight from a light: does the light reach a mirror, glass, or a second diffuse surface?");
         const uint first = static_cast<uint>(t.emitted);
-        const uint frames = detail::trace_batch(b, device, f, paths, first, settings);
+        const uint frames = trace_batch(b, device, f, paths, first, settings);
 
         auto storable = b.template make<uint>(paths);
         path_tally<B> tally{b.template make<glm::uvec4>(paths), b.template make<glm::uvec4>(paths)};
@@ -119,7 +119,8 @@ traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& dev
         const uint emitted = detail::checked_count<kernels::path_is_emitted>(b, paths, {.wanted = wanted - stored}, reads(sums, storable));
         if (emitted == 0) // the first always is; believing it would mean tracing for ever
             throw backend_error(b.caps().backend + ": count<path_is_emitted>: the device returned 0; at least 1 of " + std::to_string(paths) + " paths is emitted");
-        const auto found = detail::checked_count<kernels::is_storable>(b, std::size_t{paths} * frames, {.paths = paths, .emitted = emitted}, reads(f.positions));
+        // No path stores more photons than it takes bounces, and the last of these is the first to have stored what is wanted.
+        const auto found = detail::checked_count<kernels::is_found>(b, std::size_t{wanted} - stored + settings.photon_depth, {.emitted = emitted}, reads(sums));
         const uint taken = std::min(found, wanted - stored);
         b.template run<kernels::gather_photon>({taken, stored}, {.paths = paths, .frames = frames, .stored_before = stored}, reads(sums, f.positions, f.powers, f.directions),
             writes(t.photons.positions, t.photons.powers, t.photons.directions));

@@ -3,3 +3,4 @@
 #pragma once
 
 #include <photongrid/backends/vulkan/overrides/bitonic_sort.hpp>
+#include <photongrid/backends/vulkan/overrides/trace_batch.hpp>

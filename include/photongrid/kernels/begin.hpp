@@ -8,6 +8,11 @@
 //   OUTPUT(B, T, NAME)    the variable NAME is written to element i of the buffer at output slot B
 //   STATE(B, T, NAME)     like OUTPUT, but NAME holds the element's old value before `kernel` runs: in place
 //   SWITCH(B, NAME)       a bool, constant while a pass runs; compiled in on GPUs, so that `if (NAME)` costs nothing
+//   IN_GROUPS(B)          elements may be computed GROUP_LANES at a time, in step, and tell each other what they hold, where
+//                         the device can and switch B is on; else, and always here and on GL, one by one. group_lane() is this element's place among them; group_any(b), group_min(v),
+//                         group_max(v) are over all, group_sum_up_to(v) over the places up to this one; lane_value(v, place)
+//                         is v there; EACH_LANE(F) says F(0u) to F(GROUP_LANES - 1u), and from_lane(v, LANE) is for its LANE.
+//                         Some of a group may be the same element; what is asked of others must be asked by all.
 //
 // No include guard: this file is meant to be read again by every header that holds kernels.
 #include <cassert>
@@ -52,6 +57,19 @@
 #define SWITCH(B, NAME)                                                                                                \
     bool NAME = true;                                                                                                  \
     void turn(::photongrid::slot<B>, bool on) { NAME = on; }
+
+#define GROUP_LANES 1u
+#define EACH_LANE(F) F(0u);
+#define IN_GROUPS(B)                                                                                                   \
+    static constexpr ::photongrid::uint group_switch = B;                                                              \
+    void turn(::photongrid::slot<B>, bool) {}                                                                          \
+    static constexpr ::photongrid::uint group_lane() { return 0; }                                                     \
+    static constexpr bool group_any(bool b) { return b; }                                                              \
+    static constexpr ::photongrid::uint group_min(::photongrid::uint v) { return v; }                                  \
+    static constexpr ::photongrid::uint group_max(::photongrid::uint v) { return v; }                                  \
+    static constexpr ::photongrid::uint group_sum_up_to(::photongrid::uint v) { return v; }                            \
+    static constexpr auto lane_value(const auto& v, ::photongrid::uint) { return v; }                                  \
+    static constexpr auto from_lane(const auto& v, ::photongrid::uint) { return v; }
 
 #define precise
 // NOLINTEND

@@ -34,6 +34,12 @@ OUTPUT(4, vec4, next_direction)
 
 #include "scene_hit.glsl"
 
+// Nothing is left to do for this path in frames beyond this one.
+bool done()
+{
+    return event_end(position) != GOES_ON;
+}
+
 void kernel(uint i)
 {
     uint frame = i / args.paths;

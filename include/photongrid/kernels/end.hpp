@@ -5,6 +5,10 @@
 #undef OUTPUT
 #undef STATE
 #undef SWITCH
+#undef GROUP_LANES
+#undef EACH_LANE
+#undef IN_GROUPS
+#undef PHOTON_OF
 #undef precise
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop

@@ -21,6 +21,7 @@ SWITCH(4, EPANECHNIKOV) // 1 - d^2 / r^2
 SWITCH(5, SILVERMAN)    // (1 - d^2 / r^2)^2; none of the three: 1
 SWITCH(6, LEAVE_OUT)
 SWITCH(7, ERRORS)       // squares are wanted
+IN_GROUPS(8)
 INPUT(0, vec4, points)         // xyz: query point, m
 INPUT(1, vec4, normals)        // xyz: unit normal of the surface there
 INPUT(2, uvec2, cells)         // x: first photon, y: count
@@ -34,11 +35,15 @@ STATE(1, uvec4, chosen)
 STATE(2, vec4, sum)            // rgb: weighted flux, W
 STATE(3, vec4, lost)           // rgb: what rounding took from it
 STATE(4, vec4, squares)        // rgb: squares of the weighted fluxes; w: of their sums over channels
-STATE(5, uvec4, cursor)        // y, z of the next row; next and end of the row being read
+STATE(5, uvec4, cursor)        // y, z of the row to go on with; the first photon not yet visited
 STATE(6, uvec4, tally)         // photons held, photons visited, place + 1 of the one left out, done
 
 #include "photon_distance.glsl"
 #include "search_rows.glsl"
+#include "photon_walk.glsl"
+
+uint chunk_id;
+vec4 chunk_power;
 
 bool done()
 {
@@ -57,80 +62,86 @@ void kernel(uint i)
     vec4 total = sum;
     vec4 rest = lost;
     vec4 square = squares;
-    uint y = cursor.x;
-    uint z = cursor.y;
-    uint at = cursor.z;
-    uint end = cursor.w;
+    uvec4 place = cursor;
     uint held = tally.x;
     uint visited = tally.y;
     uint left_out = tally.z;
-    float radius = wider(radius2);
-    uvec2 rows_y = cells_within(p.y, radius, args.grid.origin.y, args.grid.inverse_cell.y, args.grid.resolution.y);
-    uvec2 rows_z = cells_within(p.z, radius, args.grid.origin.z, args.grid.inverse_cell.z, args.grid.resolution.z);
-    y = max(y, rows_y.x);
-    z = max(z, rows_z.x);
+    uint left_id = 0u;
+    vec4 left_power = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    if (left_out != 0u) {
+        left_id = list(left_out - 1u);
+        left_power = powers(left_out - 1u);
+    }
+    bool finished = tally.w != 0u;
 
-    uint left = args.visits;
-    uint steps = args.ranges;
-    while (steps > 0u && (at < end || z <= rows_z.y)) {
-        --steps;
-        uint stop = end - at > left ? at + left : end;
-        left -= stop - at;
-        visited += stop - at;
-        for (; at < stop; ++at) {
-            float d2 = photon_distance2(at, p, n);
-            if (d2 < radius2 || (d2 == radius2 && list(at) <= last_id)) {
-                ++held;
-                // Of several photons at the radius itself, the one with the largest id is left out.
-                uint adding = at + 1u;
-                if (apart && d2 == radius2) {
-                    adding = left_out;
-                    left_out = at + 1u;
-                    if (adding != 0u && list(adding - 1u) > list(at)) {
-                        left_out = adding;
-                        adding = at + 1u;
-                    }
-                }
-                if (adding != 0u) {
-                    float weight = 1.0f;
-                    float t = d2 * inverse_disc2;
-                    t = t < 1.0f ? t : 1.0f;
-                    if (CONE)
-                        weight = 1.0f - sqrt(t);
-                    if (EPANECHNIKOV)
-                        weight = 1.0f - t;
-                    if (SILVERMAN)
-                        weight = (1.0f - t) * (1.0f - t);
-                    precise vec4 flux = powers(adding - 1u) * weight;
-                    precise vec4 term = flux - rest;
-                    precise vec4 more = total + term;
-                    precise vec4 error = (more - total) - term;
-                    total = more;
-                    rest = error;
-                    if (ERRORS) {
-                        float all = flux.x + flux.y + flux.z;
-                        square += vec4(flux.x * flux.x, flux.y * flux.y, flux.z * flux.z, all * all);
-                    }
-                }
+    walk_visits = args.visits;
+    walk_steps = args.ranges;
+    while (walk_steps > 0u && group_any(!finished)) {
+        bool mine = joins_walk(!finished, p, c, radius2, place);
+        vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the others find nothing
+        while (walks_on()) {
+            uint photons = next_rows();
+            visited += mine ? photons : 0u;
+            // Of several photons at the radius itself, the one with the largest id is left out.
+#define VISIT(LANE)                                                                                 \
+    {                                                                                               \
+        float d2 = distance2_of(PHOTON_OF(LANE), from, n);                                          \
+        if (GROUP_LANES > 1u || d2 <= radius2) {                                                    \
+            uint at = from_lane(chunk_place, LANE);                                                 \
+            uint id = from_lane(chunk_id, LANE);                                                    \
+            vec4 power = from_lane(chunk_power, LANE);                                              \
+            bool at_radius = d2 == radius2 && id <= last_id;                                        \
+            bool counts = d2 < radius2 || at_radius;                                                \
+            held += counts ? 1u : 0u;                                                               \
+            bool swaps = apart && at_radius && (left_out == 0u || id > left_id);                    \
+            counts = counts && !(swaps && left_out == 0u);                                          \
+            vec4 added = swaps ? left_power : power;                                                \
+            left_out = swaps ? at + 1u : left_out;                                                  \
+            left_id = swaps ? id : left_id;                                                         \
+            left_power = swaps ? power : left_power;                                                \
+            float t = d2 * inverse_disc2;                                                           \
+            t = t < 1.0f ? t : 1.0f;                                                                \
+            float weight = 1.0f;                                                                    \
+            if (CONE)                                                                               \
+                weight = 1.0f - sqrt(t);                                                            \
+            if (EPANECHNIKOV)                                                                       \
+                weight = 1.0f - t;                                                                  \
+            if (SILVERMAN)                                                                          \
+                weight = (1.0f - t) * (1.0f - t);                                                   \
+            precise vec4 flux = added * weight;                                                     \
+            precise vec4 term = flux - rest;                                                        \
+            precise vec4 more = total + term;                                                       \
+            precise vec4 error = (more - total) - term;                                             \
+            total = counts ? more : total;                                                          \
+            rest = counts ? error : rest;                                                           \
+            if (ERRORS) {                                                                           \
+                float all = flux.x + flux.y + flux.z;                                               \
+                vec4 flux2 = vec4(flux.x * flux.x, flux.y * flux.y, flux.z * flux.z, all * all);    \
+                square = counts ? square + flux2 : square;                                          \
+            }                                                                                       \
+        }                                                                                           \
+    }
+            if (photons > 0u) {
+                uint nth = 0u;
+                do {
+                    take_chunk(nth, photons);
+                    chunk_id = list(chunk_place);
+                    chunk_power = powers(chunk_place);
+                    EACH_LANE(VISIT)
+                    nth += GROUP_LANES;
+                } while (nth < photons);
             }
+#undef VISIT
         }
-        if (at < end) {
-            steps = 0u; // budget spent
-        } else if (z <= rows_z.y) {
-            uvec2 row = photons_of_row(p, y, z, c, radius2);
-            at = row.x;
-            end = row.y;
-            ++y;
-            if (y > rows_y.y) {
-                y = rows_y.x;
-                ++z;
-            }
+        if (mine) {
+            place = uvec4(walk.x, walk.y, walk.z, 0u);
+            finished = has_walked();
         }
     }
 
     sum = total;
     lost = rest;
     squares = square;
-    cursor = uvec4(y, z, at, end);
-    tally = uvec4(held, visited, left_out, at < end || z <= rows_z.y ? 0u : 1u);
+    cursor = place;
+    tally = uvec4(held, visited, left_out, finished ? 1u : 0u);
 }

@@ -20,6 +20,7 @@ PARAMS(Params)
 SWITCH(0, SIDE)
 SWITCH(1, NORMALS)
 SWITCH(2, FLATTEN)
+IN_GROUPS(3)
 INPUT(0, vec4, points)         // xyz: query point, m
 INPUT(1, vec4, normals)        // xyz: unit normal of the surface there
 INPUT(2, uvec2, cells)         // x: first photon, y: count
@@ -30,11 +31,12 @@ STATE(0, vec4, pivots)   // m^2; counting: x + y times each of the eight below; 
 STATE(1, uvec4, inner)   // counting: photons within the first four pivots; closing in: keys of the four next to the pivot, descending
 STATE(2, uvec4, outer)   // counting: within the last four; closing in: keys of the four beyond the pivot, ascending
 STATE(3, uvec4, bracket) // the k-th key lies above x and is y at most; z and w photons lie within x and y, w: 0xFFFFFFFF: unknown
-STATE(4, uvec4, cursor)  // y, z of the next row; next and end of the row being read
+STATE(4, uvec4, cursor)  // y, z of the row to go on with; the first photon not yet visited
 STATE(5, uvec4, tally)   // photons within the pivot or, found, within y: more than k where several share that distance; photons visited; scans; phase
 
 #include "photon_distance.glsl"
 #include "search_rows.glsl"
+#include "photon_walk.glsl"
 
 // Phases
 const uint COUNTING = 0u;
@@ -66,6 +68,22 @@ float within_limit(float radius2)
     return min(radius2, args.max_radius2);
 }
 
+// Counts of photons within four pivots.
+uvec4 counted(float d2, vec4 pivots)
+{
+    return uvec4(d2 <= pivots.x ? 1u : 0u, d2 <= pivots.y ? 1u : 0u, d2 <= pivots.z ? 1u : 0u, d2 <= pivots.w ? 1u : 0u);
+}
+
+// The four largest of a key and the four largest so far, descending, and the four smallest, ascending.
+uvec4 largest(uvec4 so_far, uint key)
+{
+    return uvec4(max(so_far.x, key), max(so_far.y, min(so_far.x, key)), max(so_far.z, min(so_far.y, key)), max(so_far.w, min(so_far.z, key)));
+}
+uvec4 smallest(uvec4 so_far, uint key)
+{
+    return uvec4(min(so_far.x, key), min(so_far.y, max(so_far.x, key)), min(so_far.z, max(so_far.y, key)), min(so_far.w, max(so_far.z, key)));
+}
+
 void kernel(uint i)
 {
     vec4 p = points(i);
@@ -75,106 +93,91 @@ void kernel(uint i)
     uvec4 below = inner;
     uvec4 beyond = outer;
     uvec4 between = bracket;
-    uint y = cursor.x;
-    uint z = cursor.y;
-    uint at = cursor.z;
-    uint end = cursor.w;
+    uvec4 place = cursor;
     uint within = tally.x;
     uint visited = tally.y;
     uint scans = tally.z;
     uint phase = tally.w <= CLOSING_IN ? tally.w : FOUND;
 
-    uint left = args.visits;
-    uint steps = args.ranges;
-    while (steps > 0u && phase != FOUND) {
+    walk_visits = args.visits;
+    walk_steps = args.ranges;
+    while (walk_steps > 0u && group_any(phase != FOUND)) {
         // The guess is a little low more often than high (kth_guess.glsl).
-        precise float pivot_0 = within_limit(pivot.x + 0.6f * pivot.y);
-        precise float pivot_1 = within_limit(pivot.x + 0.8f * pivot.y);
-        precise float pivot_2 = within_limit(pivot.x + 0.92f * pivot.y);
-        precise float pivot_3 = within_limit(pivot.x + 1.04f * pivot.y);
-        precise float pivot_4 = within_limit(pivot.x + 1.16f * pivot.y);
-        precise float pivot_5 = within_limit(pivot.x + 1.3f * pivot.y);
-        precise float pivot_6 = within_limit(pivot.x + 1.48f * pivot.y);
-        precise float pivot_7 = within_limit(pivot.x + 1.7f * pivot.y);
+        precise vec4 near_pivots = vec4(pivot.x + 0.6f * pivot.y, pivot.x + 0.8f * pivot.y, pivot.x + 0.92f * pivot.y, pivot.x + 1.04f * pivot.y);
+        precise vec4 far_pivots = vec4(pivot.x + 1.16f * pivot.y, pivot.x + 1.3f * pivot.y, pivot.x + 1.48f * pivot.y, pivot.x + 1.7f * pivot.y);
+        near_pivots = vec4(within_limit(near_pivots.x), within_limit(near_pivots.y), within_limit(near_pivots.z), within_limit(near_pivots.w));
+        far_pivots = vec4(within_limit(far_pivots.x), within_limit(far_pivots.y), within_limit(far_pivots.z), within_limit(far_pivots.w));
         uint middle = key_of(pivot.x);
         float high = distance_of(between.y);
-        float scan2 = phase == COUNTING ? pivot_7 : high;
-        float radius = wider(scan2);
-        uvec2 rows_y = cells_within(p.y, radius, args.grid.origin.y, args.grid.inverse_cell.y, args.grid.resolution.y);
-        uvec2 rows_z = cells_within(p.z, radius, args.grid.origin.z, args.grid.inverse_cell.z, args.grid.resolution.z);
-        y = max(y, rows_y.x);
-        z = max(z, rows_z.x);
-        while (steps > 0u && (at < end || z <= rows_z.y)) {
-            --steps;
-            uint stop = end - at > left ? at + left : end;
-            left -= stop - at;
-            visited += stop - at;
-            if (phase == COUNTING) {
-                // No branches: they are mispredicted on a CPU and diverge on a GPU.
-                for (; at < stop; ++at) {
-                    float d2 = photon_distance2(at, p, n);
-                    below.x += d2 <= pivot_0 ? 1u : 0u;
-                    below.y += d2 <= pivot_1 ? 1u : 0u;
-                    below.z += d2 <= pivot_2 ? 1u : 0u;
-                    below.w += d2 <= pivot_3 ? 1u : 0u;
-                    beyond.x += d2 <= pivot_4 ? 1u : 0u;
-                    beyond.y += d2 <= pivot_5 ? 1u : 0u;
-                    beyond.z += d2 <= pivot_6 ? 1u : 0u;
-                    beyond.w += d2 <= pivot_7 ? 1u : 0u;
-                }
-            } else {
-                for (; at < stop; ++at) {
-                    float d2 = photon_distance2(at, p, n);
-                    uint key = key_of(d2);
-                    if (d2 <= high && key > between.x) {
-                        uint in_key = key <= middle ? key : 0u;
-                        within += key <= middle ? 1u : 0u;
-                        below.w = max(below.w, min(below.z, in_key));
-                        below.z = max(below.z, min(below.y, in_key));
-                        below.y = max(below.y, min(below.x, in_key));
-                        below.x = max(below.x, in_key);
-                        uint out_key = key <= middle ? 0xFFFFFFFFu : key;
-                        beyond.w = min(beyond.w, max(beyond.z, out_key));
-                        beyond.z = min(beyond.z, max(beyond.y, out_key));
-                        beyond.y = min(beyond.y, max(beyond.x, out_key));
-                        beyond.x = min(beyond.x, out_key);
-                    }
-                }
+        float scan2 = phase == COUNTING ? far_pivots.w : high;
+        bool mine = joins_walk(phase != FOUND, p, c, scan2, uvec4(place.x, place.y, place.z, phase));
+        vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the others count nothing
+        while (walk.w == COUNTING && walks_on()) {
+            uint photons = next_rows();
+            visited += mine ? photons : 0u;
+            // No branches: they are mispredicted on a CPU and diverge on a GPU.
+#define VISIT(LANE)                                           \
+    {                                                         \
+        float d2 = distance2_of(PHOTON_OF(LANE), from, n);    \
+        below += counted(d2, near_pivots);                    \
+        beyond += counted(d2, far_pivots);                    \
+    }
+            if (photons > 0u) {
+                uint nth = 0u;
+                do {
+                    take_chunk(nth, photons);
+                    EACH_LANE(VISIT)
+                    nth += GROUP_LANES;
+                } while (nth < photons);
             }
-            if (at < end) {
-                steps = 0u; // budget spent
-            } else if (z <= rows_z.y) {
-                uvec2 row = photons_of_row(p, y, z, c, scan2);
-                at = row.x;
-                end = row.y;
-                ++y;
-                if (y > rows_y.y) {
-                    y = rows_y.x;
-                    ++z;
-                }
-            }
+#undef VISIT
         }
+        while (walk.w != COUNTING && walks_on()) {
+            uint photons = next_rows();
+            visited += mine ? photons : 0u;
+#define VISIT(LANE)                                                                   \
+    {                                                                                 \
+        float d2 = distance2_of(PHOTON_OF(LANE), from, n);                            \
+        uint key = key_of(d2);                                                        \
+        bool inside = d2 <= high && key > between.x;                                  \
+        if (GROUP_LANES > 1u || inside) {                                             \
+            within += inside && key <= middle ? 1u : 0u;                              \
+            below = largest(below, inside && key <= middle ? key : 0u);               \
+            beyond = smallest(beyond, inside && key > middle ? key : 0xFFFFFFFFu);    \
+        }                                                                             \
+    }
+            if (photons > 0u) {
+                uint nth = 0u;
+                do {
+                    take_chunk(nth, photons);
+                    EACH_LANE(VISIT)
+                    nth += GROUP_LANES;
+                } while (nth < photons);
+            }
+#undef VISIT
+        }
+        if (mine)
+            place = uvec4(walk.x, walk.y, walk.z, 0u);
 
-        if (steps > 0u) {
+        if (mine && has_walked()) {
             // The scan is whole: what does it say about the k-th?
-            --steps;
             ++scans;
             if (phase == COUNTING) {
-                between = narrowed(between, pivot_0, below.x);
-                between = narrowed(between, pivot_1, below.y);
-                between = narrowed(between, pivot_2, below.z);
-                between = narrowed(between, pivot_3, below.w);
-                between = narrowed(between, pivot_4, beyond.x);
-                between = narrowed(between, pivot_5, beyond.y);
-                between = narrowed(between, pivot_6, beyond.z);
-                between = narrowed(between, pivot_7, beyond.w);
+                between = narrowed(between, near_pivots.x, below.x);
+                between = narrowed(between, near_pivots.y, below.y);
+                between = narrowed(between, near_pivots.z, below.z);
+                between = narrowed(between, near_pivots.w, below.w);
+                between = narrowed(between, far_pivots.x, beyond.x);
+                between = narrowed(between, far_pivots.y, beyond.y);
+                between = narrowed(between, far_pivots.z, beyond.z);
+                between = narrowed(between, far_pivots.w, beyond.w);
                 if (between.w == 0xFFFFFFFFu) {
                     // Fewer than k so beyond. Wider, unless that was the widest: then these are all.
-                    phase = pivot_7 < args.max_radius2 ? COUNTING : FOUND;
+                    phase = far_pivots.w < args.max_radius2 ? COUNTING : FOUND;
                     within = beyond.w;
                     scans = 0u;
                     precise float growth = 1.1f * (float(args.wanted) / float(max(beyond.w, 1u)));
-                    float base = max(pivot_7, 0.0f);
+                    float base = max(far_pivots.w, 0.0f);
                     pivot = vec4(base, max(base * (min(growth, 16.0f) - 1.0f), 1e-30f), 0.0f, 0.0f);
                 } else {
                     phase = CLOSING_IN;
@@ -225,10 +228,7 @@ void kernel(uint i)
                 below = uvec4(0u, 0u, 0u, 0u);
                 beyond = below;
             }
-            y = 0u;
-            z = 0u;
-            at = 0u;
-            end = 0u;
+            place = uvec4(0u, 0u, 0u, 0u);
         }
     }
 
@@ -236,6 +236,6 @@ void kernel(uint i)
     inner = below;
     outer = beyond;
     bracket = between;
-    cursor = uvec4(y, z, at, end);
+    cursor = place;
     tally = uvec4(within, visited, scans, phase);
 }

@@ -10,6 +10,7 @@ struct Params {
     uint searching;    // 0: no search can find anything (no photons, none wanted, no radius)
 };
 PARAMS(Params)
+IN_GROUPS(0)
 INPUT(0, vec4, points) // xyz: query point, m; w > 0: wanted
 INPUT(1, uvec2, cells)
 OUTPUT(0, vec4, pivots)   // see kth_distance.glsl, whose states these are
@@ -19,48 +20,53 @@ OUTPUT(3, uvec4, bracket)
 OUTPUT(4, uvec4, cursor)
 OUTPUT(5, uvec4, tally)
 
-void kernel(uint i)
-{
-    vec4 p = points(i);
-    pivots = vec4(0.0f, 0.0f, 0.0f, 0.0f);
-    inner = uvec4(0u, 0u, 0u, 0u);
-    outer = uvec4(0u, 0u, 0u, 0u);
-    bracket = uvec4(0u, 0u, 0u, 0xFFFFFFFFu);
-    cursor = uvec4(0u, 0u, 0u, 0u);
-    tally = uvec4(0u, 0u, 0u, 3u); // found: nothing
-    if (args.searching == 0u || !(p.w > 0.0f) || !is_finite(p))
-        return;
-    tally.w = 0u; // counting
+#include "group_middle.glsl"
 
-    uvec4 c = cell_coordinates(args.grid, p);
+// Photons in the cells of a box. Points of a group take its rows in turn.
+uint photons_inside(uvec4 low, uvec4 high)
+{
+    uint held = 0u;
+    uint y = low.y + group_lane();
+    uint z = low.z;
+    bool counting = true;
+    while (counting) {
+        while (y > high.y && z <= high.z) {
+            y -= high.y - low.y + 1u;
+            ++z;
+        }
+        counting = z <= high.z;
+        if (counting) {
+            uint row = cell_number(args.grid, 0u, y, z);
+            uvec2 last = cells(row + high.x);
+            held += last.x + last.y - cells(row + low.x).x;
+        }
+        y += GROUP_LANES;
+    }
+    return lane_value(group_sum_up_to(held), GROUP_LANES - 1u);
+}
+
+// The guess for a point in cell c.
+float guessed(uvec4 c)
+{
+    uvec4 largest = uvec4(args.grid.resolution.x - 1u, args.grid.resolution.y - 1u, args.grid.resolution.z - 1u, 0u);
     float guess = args.max_radius2;
     uint half_width = 1u;
     uint inside = 0u; // photons of the last box, and its area
     float inside_area = 0.0f;
     bool looking = true;
     while (looking) {
-        uint low_x = c.x > half_width ? c.x - half_width : 0u;
-        uint low_y = c.y > half_width ? c.y - half_width : 0u;
-        uint low_z = c.z > half_width ? c.z - half_width : 0u;
-        uint high_x = min(c.x + half_width, args.grid.resolution.x - 1u);
-        uint high_y = min(c.y + half_width, args.grid.resolution.y - 1u);
-        uint high_z = min(c.z + half_width, args.grid.resolution.z - 1u);
-        uint rows = high_y - low_y + 1u;
-        rows = rows > args.rows ? rows : rows * (high_z - low_z + 1u);
+        uvec4 low = uvec4(c.x - min(c.x, half_width), c.y - min(c.y, half_width), c.z - min(c.z, half_width), 0u);
+        uvec4 high = uvec4(min(c.x + half_width, largest.x), min(c.y + half_width, largest.y), min(c.z + half_width, largest.z), 0u);
+        uint rows = high.y - low.y + 1u;
+        rows = rows > args.rows ? rows : rows * (high.z - low.z + 1u);
         looking = rows <= args.rows;
         if (looking) {
-            uint held = 0u;
-            for (uint z = low_z; z <= high_z; ++z)
-                for (uint y = low_y; y <= high_y; ++y) {
-                    uint row = cell_number(args.grid, 0u, y, z);
-                    uvec2 last = cells(row + high_x);
-                    held += last.x + last.y - cells(row + low_x).x;
-                }
+            uint held = photons_inside(low, high);
             // Photons lie on surfaces: as many as the largest section of the box shows area, and between two boxes evenly. A
             // square with 4/pi k photons has a disc with k inside it, whose squared radius is a quarter of the square.
-            float x = float(high_x - low_x + 1u) * args.grid.cell.x;
-            float y = float(high_y - low_y + 1u) * args.grid.cell.y;
-            float z = float(high_z - low_z + 1u) * args.grid.cell.z;
+            float x = float(high.x - low.x + 1u) * args.grid.cell.x;
+            float y = float(high.y - low.y + 1u) * args.grid.cell.y;
+            float z = float(high.z - low.z + 1u) * args.grid.cell.z;
             precise float area = max(x * y, max(y * z, z * x));
             if (held > inside) {
                 precise float share = (1.2732395f * float(args.wanted) - float(inside)) / float(held - inside);
@@ -69,10 +75,38 @@ void kernel(uint i)
             }
             inside = held;
             inside_area = area;
-            bool everything = low_x == 0u && low_y == 0u && low_z == 0u && high_x + 1u == args.grid.resolution.x && high_y + 1u == args.grid.resolution.y && high_z + 1u == args.grid.resolution.z;
+            bool everything = low == uvec4(0u, 0u, 0u, 0u) && high == largest;
             looking = float(held) < 1.2732395f * float(args.wanted) && !everything;
             half_width *= 2u;
         }
     }
-    pivots = vec4(0.0f, min(guess, args.max_radius2), 0.0f, 0.0f);
+    return min(guess, args.max_radius2);
+}
+
+void kernel(uint i)
+{
+    vec4 p = points(i);
+    pivots = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    inner = uvec4(0u, 0u, 0u, 0u);
+    outer = uvec4(0u, 0u, 0u, 0u);
+    bracket = uvec4(0u, 0u, 0u, 0xFFFFFFFFu);
+    cursor = uvec4(0u, 0u, 0u, 0u);
+    bool wanted = args.searching != 0u && p.w > 0.0f && is_finite(p);
+    tally = uvec4(0u, 0u, 0u, wanted ? 0u : 3u); // counting; found: nothing
+
+    uvec4 c = cell_coordinates(args.grid, p);
+    bool looking = wanted;
+    while (group_any(looking)) {
+        // What holds for one holds for those close to it.
+        uint middle = group_middle(looking);
+        vec4 there = lane_value(p, middle);
+        float guess = guessed(lane_value(c, middle));
+        float x = p.x - there.x;
+        float y = p.y - there.y;
+        float z = p.z - there.z;
+        bool mine = looking && !(x * x + y * y + z * z > 0.0625f * guess);
+        if (mine)
+            pivots.y = guess;
+        looking = looking && !mine;
+    }
 }

@@ -14,6 +14,7 @@ PARAMS(Params)
 SWITCH(0, SIDE)
 SWITCH(1, NORMALS)
 SWITCH(2, FLATTEN)
+IN_GROUPS(3)
 INPUT(0, vec4, points)         // xyz: query point, m
 INPUT(1, vec4, normals)        // xyz: unit normal of the surface there
 INPUT(2, uvec2, cells)         // x: first photon, y: count
@@ -25,10 +26,13 @@ INPUT(7, vec4, reach)          // x: squared distance of the k-th photon, m^2
 STATE(0, uvec4, chosen)        // see kth_result.glsl; z: the last id, once found
 STATE(1, uvec4, bracket)       // the id lies above x - 1 and is y - 1 at most; z: photons of this scan that are nearer; w: done
 STATE(2, uvec4, counts)        // photons of this scan within each pivot
-STATE(3, uvec4, cursor)        // y, z of the next row; next and end of the row being read
+STATE(3, uvec4, cursor)        // y, z of the row to go on with; the first photon not yet visited
 
 #include "photon_distance.glsl"
 #include "search_rows.glsl"
+#include "photon_walk.glsl"
+
+uint chunk_id;
 
 bool done()
 {
@@ -43,51 +47,41 @@ void kernel(uint i)
     float radius2 = reach(i).x;
     uvec4 between = bracket;
     uvec4 count = counts;
-    uint y = cursor.x;
-    uint z = cursor.y;
-    uint at = cursor.z;
-    uint end = cursor.w;
+    uvec4 place = cursor;
     uint visited = chosen.y;
-    float radius = wider(radius2);
-    uvec2 rows_y = cells_within(p.y, radius, args.grid.origin.y, args.grid.inverse_cell.y, args.grid.resolution.y);
-    uvec2 rows_z = cells_within(p.z, radius, args.grid.origin.z, args.grid.inverse_cell.z, args.grid.resolution.z);
 
-    uint left = args.visits;
-    uint steps = args.ranges;
-    while (steps > 0u && between.w == 0u) {
-        y = max(y, rows_y.x);
-        z = max(z, rows_z.x);
+    walk_visits = args.visits;
+    walk_steps = args.ranges;
+    while (walk_steps > 0u && group_any(between.w == 0u)) {
         uint fifth = max((between.y - between.x) / 5u, 1u);
         uvec4 pivot = uvec4(between.x + fifth, between.x + 2u * fifth, between.x + 3u * fifth, between.x + 4u * fifth);
-        while (steps > 0u && (at < end || z <= rows_z.y)) {
-            --steps;
-            uint stop = end - at > left ? at + left : end;
-            left -= stop - at;
-            visited += stop - at;
-            for (; at < stop; ++at) {
-                float d2 = photon_distance2(at, p, n);
-                if (d2 < radius2)
-                    ++between.z;
-                if (d2 == radius2) {
-                    uint key = list(at) + 1u;
-                    count += uvec4(key <= pivot.x ? 1u : 0u, key <= pivot.y ? 1u : 0u, key <= pivot.z ? 1u : 0u, key <= pivot.w ? 1u : 0u);
-                }
+        bool mine = joins_walk(between.w == 0u, p, c, radius2, place);
+        vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the others count nothing
+        while (walks_on()) {
+            uint photons = next_rows();
+            visited += mine ? photons : 0u;
+#define VISIT(LANE)                                                                                                                \
+    {                                                                                                                              \
+        float d2 = distance2_of(PHOTON_OF(LANE), from, n);                                                                         \
+        between.z += d2 < radius2 ? 1u : 0u;                                                                                       \
+        uint id = from_lane(chunk_id, LANE);                                                                                       \
+        uint key = d2 == radius2 ? id + 1u : 0xFFFFFFFFu;                                                                          \
+        count += uvec4(key <= pivot.x ? 1u : 0u, key <= pivot.y ? 1u : 0u, key <= pivot.z ? 1u : 0u, key <= pivot.w ? 1u : 0u);    \
+    }
+            if (photons > 0u) {
+                uint nth = 0u;
+                do {
+                    take_chunk(nth, photons);
+                    chunk_id = list(chunk_place);
+                    EACH_LANE(VISIT)
+                    nth += GROUP_LANES;
+                } while (nth < photons);
             }
-            if (at < end) {
-                steps = 0u; // budget spent
-            } else if (z <= rows_z.y) {
-                uvec2 row = photons_of_row(p, y, z, c, radius2);
-                at = row.x;
-                end = row.y;
-                ++y;
-                if (y > rows_y.y) {
-                    y = rows_y.x;
-                    ++z;
-                }
-            }
+#undef VISIT
         }
-        if (steps > 0u) {
-            --steps;
+        if (mine)
+            place = uvec4(walk.x, walk.y, walk.z, 0u);
+        if (mine && has_walked()) {
             uint wanted = args.wanted - between.z;
             uvec2 range = uvec2(between.x, between.y);
             if (count.w >= wanted)
@@ -108,15 +102,12 @@ void kernel(uint i)
                 range.x = max(range.x, pivot.x);
             between = uvec4(range.x, range.y, 0u, range.y <= range.x + 1u ? 1u : 0u);
             count = uvec4(0u, 0u, 0u, 0u);
-            y = 0u;
-            z = 0u;
-            at = 0u;
-            end = 0u;
+            place = uvec4(0u, 0u, 0u, 0u);
         }
     }
 
     chosen = uvec4(between.w != 0u ? args.wanted : chosen.x, visited, between.w != 0u ? between.y - 1u : chosen.z, chosen.w);
     bracket = between;
     counts = count;
-    cursor = uvec4(y, z, at, end);
+    cursor = place;
 }

@@ -6,9 +6,10 @@
 //
 // args.leaks: x: NORMALS: smallest cosine between the photon's surface normal and the query's; y: FLATTEN: c^2 - 1, where
 // distances along the normal count c times.
-float photon_distance2(uint at, vec4 p, vec4 n)
+//
+// q: the photon's position, w: its direction of travel, m: its surface normal; p, n: the query's position and normal.
+float distance2_of(vec4 q, vec4 w, vec4 m, vec4 p, vec4 n)
 {
-    vec4 q = positions(at);
     precise float dx = q.x - p.x;
     precise float dy = q.y - p.y;
     precise float dz = q.z - p.z;
@@ -21,16 +22,26 @@ float photon_distance2(uint at, vec4 p, vec4 n)
     d2 = d2 < 1.17549435e-38f ? 0.0f : d2; // denormals are 0 on every backend
     if (SIDE) {
         // Light that arrives from behind the surface.
-        vec4 w = directions(at);
         precise float arrival = w.x * n.x + w.y * n.y + w.z * n.z;
         if (!(arrival < 0.0f))
             d2 = 3.4028234e38f;
     }
     if (NORMALS) {
-        vec4 m = photon_normals(at);
         precise float agreement = m.x * n.x + m.y * n.y + m.z * n.z;
         if (!(agreement >= args.leaks.x))
             d2 = 3.4028234e38f;
     }
     return d2;
+}
+
+float photon_distance2(uint at, vec4 p, vec4 n)
+{
+    vec4 q = positions(at);
+    vec4 w = q;
+    if (SIDE)
+        w = directions(at);
+    vec4 m = q;
+    if (NORMALS)
+        m = photon_normals(at);
+    return distance2_of(q, w, m, p, n);
 }

@@ -1,7 +1,7 @@
-// One step of an inclusive prefix sum by doubling (Hillis and Steele 1986): after steps 1, 2, 4, … element i holds the sum
-// of elements 0 to i.
+// One step of an inclusive prefix sum (Hillis and Steele 1986, by fours in place of twos): after steps 1, 4, 16, … element i
+// holds the sum of elements 0 to i.
 struct Params {
-    uint stride;
+    uint stride; // below 2^30
 };
 PARAMS(Params)
 INPUT(0, uint, terms)
@@ -12,4 +12,8 @@ void kernel(uint i)
     sum = terms(i);
     if (i >= args.stride)
         sum += terms(i - args.stride);
+    if (i >= 2u * args.stride)
+        sum += terms(i - 2u * args.stride);
+    if (i >= 3u * args.stride)
+        sum += terms(i - 3u * args.stride);
 }
