@@ -92,12 +92,15 @@ if asked peers; then
   must build-bench/bench/knn_peers --shuffle
   title "Nearest neighbours, a plain build (-O2, no -march): both sides, run-time dispatch on ours"
   must build-bench/bench/knn_peers_portable
+  title "Nearest neighbours on vulkan and gl, S3, two threads"
+  must build-bench/bench/knn_peers --backend vulkan --threads 2 --sets 3
+  must build-bench/bench/knn_peers --backend gl --threads 2 --sets 3
   title "Sorting pairs, one thread"
   must build-bench/bench/sort_peers 1
   title "Sorting passes on vulkan and gl"
   must build-bench/bench/sort_passes
   title "The ring's caustic against POV-Ray"
-  must env PHOTONGRID=build-bench/photongrid bench/povray_ring.sh
+  must bench/povray_ring.sh build-bench
 fi
 if asked paper; then
   title "Table 1"

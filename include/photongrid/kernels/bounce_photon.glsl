@@ -34,12 +34,6 @@ OUTPUT(4, vec4, next_direction)
 
 #include "scene_hit.glsl"
 
-// Nothing is left to do for this path in frames beyond this one.
-bool done()
-{
-    return event_end(position) != GOES_ON;
-}
-
 void kernel(uint i)
 {
     uint frame = i / args.paths;
@@ -119,4 +113,10 @@ void kernel(uint i)
     vec3 start = ray_start(hit.position, hit.normal, next);
     next_origin = vec4(start.x, start.y, start.z, facing.y);
     next_direction = vec4(next.x, next.y, next.z, facing.z);
+}
+
+// Nothing is left to do for this path in frames beyond this one.
+bool done()
+{
+    return event_end(position) != GOES_ON;
 }

@@ -3,17 +3,17 @@
 // at once, each read by one point and handed to all. Included by kernels after search_rows.glsl and photon_distance.glsl.
 #include "group_middle.glsl"
 
-vec4 walk_center; // a ball about all these points' own
+vec4 walk_center; // of a ball that holds these points' own; its cell, squared radius, and rows of cells, first and last
 uvec4 walk_cell;
 float walk_radius2;
-uvec2 walk_y;     // its rows, first and last
+uvec2 walk_y;
 uvec2 walk_z;
-uvec4 walk;       // y, z of the next row; photons before this one are not visited (again); phase of the points' search
-uint walk_visits; // what is left of this pass
-uint walk_steps;
-uint rows_end;    // photons of the rows at hand, up to and with this point's; and of what is to be added for a photon's place
-uint rows_shift;
-uint chunk_place; // the photon that this point reads for all
+uvec4 walk;            // y, z of the next row; photons before this one are not visited again; phase of the points' search
+uint walk_visits = 0u; // what is left of this pass: photons, and rows
+uint walk_steps = 0u;
+uint rows_end = 0u;    // photons of the rows at hand up to this point's row, and that row's; and what a place there is ahead by
+uint rows_shift = 0u;
+uint chunk_place = 0u; // the photon that this point reads for all
 vec4 chunk_position;
 vec4 chunk_direction;
 vec4 chunk_normal;
