@@ -1,6 +1,7 @@
-// The ring scene in POV-Ray's language, and how far POV-Ray's caustic lies over ours. bench/povray_ring.sh runs it.
+// The ring and the glass ball in POV-Ray's language, and how far POV-Ray's caustic in the ring lies over ours. Run by
+// bench/povray_ring.sh and bench/pictures.sh.
 //
-//   povray_ring export SCENE.json on|off         prints a .pov file, with photons or without
+//   povray_ring export SCENE.json PHOTONS        prints a .pov file with so many photons, 0 for none
 //   povray_ring compare SCENE.json OURS.exr POV.exr POV_WITHOUT.exr
 #include <photongrid/reference.hpp>
 
@@ -23,31 +24,40 @@ std::string vec(const dvec3& v)
     return text;
 }
 
-/// What the ring scene is made of and no more: polygons and open cylinders, matte or metal, under point lights. POV-Ray's own
-/// brightness has other units; only shapes are compared. POV-Ray's axes are left-handed: a negative `right` mirrors them back.
-void print_pov(const scene& s, bool photons)
+/// What those two are made of and no more: polygons, open cylinders and spheres, matte, metal or glass, under point lights and
+/// rectangles. POV-Ray's own brightness has other units; only shapes are compared. POV-Ray's axes are left-handed: a negative `right` mirrors them back.
+void print_pov(const scene& s, long photons)
 {
-    if (!s.spheres.empty() || !s.cones.empty() || !s.paraboloids.empty() || !s.disks.empty() || !s.rectangle_lights.empty())
-        throw std::invalid_argument("povray_ring: only polygons, cylinders and point lights are exported");
+    if (!s.cones.empty() || !s.paraboloids.empty() || !s.disks.empty())
+        throw std::invalid_argument("povray_ring: only polygons, cylinders and spheres are exported");
     const auto surface = [&](std::uint32_t id) {
         const auto& m = s.materials[id];
         if (m.kind == material_kind::glass)
-            throw std::invalid_argument("povray_ring: glass is not exported");
-        if (m.kind == material_kind::lambertian)
+            std::cout << "  pigment { rgb " << vec(m.reflectance) << " transmit 1 } finish { ambient 0 diffuse 0 specular 0 reflection { 0, 1 fresnel } conserve_energy }\n  interior { ior "
+                      << m.index_of_refraction << " }\n  photons { target reflection on refraction on collect off }\n";
+        else if (m.kind == material_kind::lambertian)
             std::cout << "  pigment { rgb " << vec(m.reflectance) << " } finish { ambient 0 diffuse 1 }\n";
         else // reflects photons, keeps none
             std::cout << "  pigment { rgb 0 } finish { ambient 0 diffuse 0 specular 0 reflection { rgb " << vec(m.reflectance)
                       << " } }\n  photons { target reflection on collect off }\n";
     };
     std::cout << "#version 3.7;\nglobal_settings { assumed_gamma 1 max_trace_level 8";
-    if (photons)
-        std::cout << " photons { count 2000000 max_trace_level 8 gather 20, 100 autostop 0 }";
+    if (photons > 0)
+        std::cout << " photons { count " << photons << " max_trace_level 8 gather 20, 100 autostop 0 }";
     const auto& c = s.camera;
     const double aspect = static_cast<double>(s.render.width) / s.render.height, half = std::tan(glm::radians(0.5 * c.vertical_fov));
     std::cout << " }\ncamera { perspective location " << vec(c.position) << " up y right " << -aspect << "*x angle " << 2 * glm::degrees(std::atan(half * aspect)) << " sky " << vec(c.up)
               << " look_at " << vec(c.look_at) << " }\n";
     for (const auto& l : s.point_lights)
         std::cout << "light_source { " << vec(l.position) << " rgb 1 }\n";
+    const auto side = static_cast<int>(std::lround(std::sqrt(std::max(1u, s.render.light_samples))));
+    for (const auto& l : s.rectangle_lights)
+        std::cout << "light_source { " << vec(l.corner + 0.5 * (l.edge_u + l.edge_v)) << " rgb 1 area_light " << vec(l.edge_u) << ", " << vec(l.edge_v) << ", " << side << ", " << side << " jitter }\n";
+    for (const auto& x : s.spheres) {
+        std::cout << "sphere { " << vec(x.center) << ", " << x.radius << "\n";
+        surface(x.material);
+        std::cout << "}\n";
+    }
     for (const auto& p : s.polygons) {
         std::cout << "polygon { " << p.vertices.size() + 1 << "\n";
         for (std::size_t i = 0; i <= p.vertices.size(); ++i)
@@ -139,11 +149,11 @@ int main(int argc, char** argv)
     try {
         const std::vector<std::string> words(argv + 1, argv + argc);
         if (words.size() == 3 && words[0] == "export")
-            print_pov(read_scene(words[1]), words[2] == "on");
+            print_pov(read_scene(words[1]), std::stol(words[2]));
         else if (words.size() == 5 && words[0] == "compare")
             compare(read_scene(words[1]), read_image(words[2]), read_image(words[3]), read_image(words[4]));
         else
-            throw std::invalid_argument("povray_ring: expected export SCENE.json on|off, or compare SCENE.json OURS.exr POV.exr POV_WITHOUT.exr");
+            throw std::invalid_argument("povray_ring: expected export SCENE.json PHOTONS, or compare SCENE.json OURS.exr POV.exr POV_WITHOUT.exr");
     } catch (const std::exception& e) {
         std::cerr << "povray_ring: " << e.what() << "\n";
         return 1;

@@ -6,7 +6,7 @@
 #   bench/run.sh --smoke [--no-install]                           all of it on little data, to see that it runs
 #
 #   --peers   neighbour searches and sorts against CGAL, FLANN, nanoflann, std::sort, Highway's vqsort, TBB; sorting passes
-#             on vulkan and gl against plain ones; the ring against POV-Ray
+#             on vulkan and gl against plain ones; whole pictures, the ring and the ball against POV-Ray
 #   --paper   the paper's Tables 1 and 2
 #   --error   time against relMSE of every kind of estimate: CSV and plots in out/error/
 set -euo pipefail
@@ -99,6 +99,8 @@ if asked peers; then
   must build-bench/bench/sort_peers 1
   title "Sorting passes on vulkan and gl"
   must build-bench/bench/sort_passes
+  title "Whole pictures"
+  must bench/pictures.sh build-bench
   title "The ring's caustic against POV-Ray"
   must bench/povray_ring.sh build-bench
 fi

@@ -52,7 +52,7 @@ faults=(
   "samples not shared out|include/photongrid/kernels/shade.glsl|light.y * args.share|light.y"
   "NaN pixels shown|include/photongrid/render.hpp|good ? glm::vec3(p) : glm::vec3(0)|glm::vec3(p)"
   "ties of the k-th unseen|include/photongrid/kernels/kth_distance.glsl|before > 0u && component(below, before - 1u) == kth ? 1u : 0u|before > 9u ? 1u : 0u"
-  "photon at the pivot on the far side|include/photongrid/kernels/kth_distance.glsl|within += key <= middle ? 1u : 0u|within += key < middle ? 1u : 0u"
+  "photon at the pivot on the far side|include/photongrid/kernels/kth_distance.glsl|inside && key <= middle ? 1u : 0u|inside && key < middle ? 1u : 0u"
   "share of the outer edges added|include/photongrid/kernels/covered_share.glsl|d < 0.0f ? -rim : rim|rim"
   "edges of estimates not corrected|include/photongrid/render.hpp|settings.edges != edge_correction::none|settings.edges == edge_correction::none"
   "lamp twice as bright|include/photongrid/kernels/direct_light.glsl|3.18309886e-1f * share|6.36619772e-1f * share"

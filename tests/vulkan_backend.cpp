@@ -451,39 +451,41 @@ TEST_F(vulkan, points_that_search_together_find_what_each_finds_alone)
     vulkan_options loops;
     loops.staging = true;
     vulkan_backend alone(apart), looping(loops);
-    for (const auto d : all_distributions)
-        for (const float step : {1e-5f, 0.003f, 0.05f, 2.0f}) {
-            const auto s = make_photons(d, 3000, uvec3(9, 7, 5), 5);
-            random_source u(7);
-            std::vector<vec4> points;
-            const auto somewhere = make_points(s, 40, 3);
-            for (const auto& p : somewhere)
-                for (int i = 0; i < 25; ++i) // runs of neighbours that begin anywhere in a group; some unwanted
-                    points.emplace_back(p.x + step * u(), p.y + step * u(), p.z + step * u(), i % 9 == 4 ? 0.0f : 1.0f);
-            for (const auto search : {search_kind::exact_k, search_kind::fixed_radius})
-                for (const uint visits : {3072u, 50u}) {
-                    const auto run = [&](vulkan_backend& device) {
-                        knn_settings k{.k = 50, .max_radius = 0.4f};
-                        k.search = search;
-                        k.errors = true;
-                        k.visits_per_pass = visits;
-                        const auto map = sorted_map(device, upload_photons(device, s), s.g);
-                        const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(points)), k);
-                        return std::tuple(device.download(e.irradiance), device.download(e.standard_error), device.download(e.used));
-                    };
-                    const auto [light, error, used] = run(alone);
-                    for (auto* device : {&b(), &looping}) {
-                        const auto [light_too, error_too, used_too] = run(*device);
-                        EXPECT_EQ(count_different_bits(light, light_too), 0u);
-                        EXPECT_EQ(count_different_bits(error, error_too), 0u);
-                        std::size_t differ = 0;
-                        for (std::size_t i = 0; i < used.size(); ++i)
-                            differ += used[i].x != used_too[i].x ? 1u : 0u;
-                        EXPECT_EQ(differ, 0u);
-                        EXPECT_EQ(count_different_bits(used_too, std::get<2>(run(*device))), 0u); // also what they visited, run to run
-                    }
+    std::size_t number = 0;
+    for (const auto d : all_distributions) {
+        constexpr float steps[] = {0.003f, 0.05f, 1e-5f, 2.0f};
+        const float step = steps[number++ % 4];
+        const auto s = make_photons(d, 3000, uvec3(9, 7, 5), 5);
+        random_source u(7);
+        std::vector<vec4> points;
+        for (const auto& p : make_points(s, 40, 3))
+            for (int i = 0; i < 25; ++i) // runs of neighbours that begin anywhere in a group; some unwanted
+                points.emplace_back(p.x + step * u(), p.y + step * u(), p.z + step * u(), i % 9 == 4 ? 0.0f : 1.0f);
+        // Many of many, so that guesses fail for some of a group and not for others; few, to the radius; in small passes.
+        for (auto k : {knn_settings{.k = 50, .max_radius = 0.4f}, knn_settings{.k = 50, .max_radius = 0.4f, .search = search_kind::fixed_radius}, knn_settings{.k = 1000, .max_radius = 50}})
+            for (const uint visits : {3072u, 50u}) {
+                k.errors = true;
+                k.visits_per_pass = k.k < 1000 ? visits : 20 * visits / 3;
+                const auto run = [&](vulkan_backend& device) {
+                    const auto map = sorted_map(device, upload_photons(device, s), s.g);
+                    const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(points)), k);
+                    return std::tuple(device.download(e.irradiance), device.download(e.standard_error), device.download(e.used));
+                };
+                const auto [light, error, used] = run(alone);
+                for (auto* device : {&b(), &looping}) {
+                    const auto [light_too, error_too, used_too] = run(*device);
+                    EXPECT_EQ(count_different_bits(light, light_too), 0u);
+                    EXPECT_EQ(count_different_bits(error, error_too), 0u);
+                    std::size_t differ = 0;
+                    for (std::size_t i = 0; i < used.size(); ++i)
+                        differ += used[i].x != used_too[i].x ? 1u : 0u;
+                    EXPECT_EQ(differ, 0u);
+                    if (device == &looping)
+                        continue;
+                    EXPECT_EQ(count_different_bits(used_too, std::get<2>(run(*device))), 0u); // also what they visited, run to run
                 }
-        }
+            }
+    }
 }
 
 TEST_F(vulkan, unfinished_elements_of_a_part_of_a_buffer)

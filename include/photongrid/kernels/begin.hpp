@@ -12,7 +12,8 @@
 //                         the device can and switch B is on; else, and always here and on GL, one by one. group_lane() is this element's place among them; group_any(b), group_min(v),
 //                         group_max(v) are over all, group_sum_up_to(v) over the places up to this one; lane_value(v, place)
 //                         is v there; EACH_LANE(F) says F(0u) to F(GROUP_LANES - 1u), and from_lane(v, LANE) is for its LANE.
-//                         Some of a group may be the same element; what is asked of others must be asked by all.
+//                         Some of a group may be the same element. Ask others only where all of a group do: not in a
+//                         branch, nor in an arm of ?:, that some of them do not take.
 //
 // No include guard: this file is meant to be read again by every header that holds kernels.
 #include <cassert>
