@@ -24,9 +24,10 @@ struct knn_settings {
     leak_policy leaks{};
     bool errors = false;      ///< standard errors are wanted
     /// Photons that one query examines in a pass at most, and rows of cells that it opens. Any values give the same
-    /// result. 16 lanes x (visits + rows) must stay below 65,535, after which llvmpipe and lavapipe end loops in silence.
+    /// result. 16 lanes x (visits + rows) must stay well below 65,535, after which llvmpipe and lavapipe end loops in silence:
+    /// some loops more go round once a scan.
     uint visits_per_pass = 3072;
-    uint ranges_per_pass = 1023;
+    uint ranges_per_pass = 896;
 };
 
 /// The radius, m, below which the disc of an estimate never shrinks where the caller names none: 2^-20 of the largest extent.

@@ -26,21 +26,23 @@ OUTPUT(5, uvec4, tally)
 uint photons_inside(uvec4 low, uvec4 high)
 {
     uint held = 0u;
-    uint y = low.y + group_lane();
+    uint rows_y = high.y - low.y + 1u;
+    uint rows = rows_y * (high.z - low.z + 1u);
+    uint y = low.y;
     uint z = low.z;
-    bool counting = true;
-    while (counting) {
-        while (y > high.y && z <= high.z) {
-            y -= high.y - low.y + 1u;
+    for (uint row = group_lane(); row < rows; row += GROUP_LANES) {
+        if (GROUP_LANES > 1u) {
+            y = low.y + row % rows_y;
+            z = low.z + row / rows_y;
+        }
+        uint first = cell_number(args.grid, 0u, y, z);
+        uvec2 last = cells(first + high.x);
+        held += last.x + last.y - cells(first + low.x).x;
+        ++y;
+        if (y > high.y) {
+            y = low.y;
             ++z;
         }
-        counting = z <= high.z;
-        if (counting) {
-            uint row = cell_number(args.grid, 0u, y, z);
-            uvec2 last = cells(row + high.x);
-            held += last.x + last.y - cells(row + low.x).x;
-        }
-        y += GROUP_LANES;
     }
     return lane_value(group_sum_up_to(held), GROUP_LANES - 1u);
 }

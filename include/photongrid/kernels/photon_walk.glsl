@@ -68,13 +68,15 @@ uint place_of(uint nth)
 uint next_rows()
 {
     --walk_steps;
-    uint y = walk.x + group_lane();
+    uint y = walk.x;
     uint z = walk.y;
-    while (y > walk_y.y && z <= walk_z.y) {
-        y -= walk_y.y - walk_y.x + 1u;
-        ++z;
+    if (GROUP_LANES > 1u) { // no loop: drivers that end loops count all of them
+        uint rows = walk_y.y - walk_y.x + 1u;
+        uint on = y - walk_y.x + group_lane();
+        z += on / rows;
+        y = walk_y.x + on % rows;
     }
-    uvec2 row = photons_of_row(walk_center, min(y, walk_y.y), min(z, walk_z.y), walk_cell, walk_radius2);
+    uvec2 row = photons_of_row(walk_center, y, min(z, walk_z.y), walk_cell, walk_radius2);
     uint first = max(row.x, walk.z);
     uint held = z <= walk_z.y && first < row.y ? row.y - first : 0u;
     rows_end = group_sum_up_to(held);
