@@ -233,7 +233,7 @@ int measure(B& b, int number, const arguments& a)
     const double ours = median(searches), theirs = median(peer_rates[best]), ratio = ours / theirs;
     const double least = wanted(a, number);
     const bool pass = ratio >= least && wrong == 0;
-    std::printf("| %s | %s | %u | %u x %u x %u | %.0f | %.1f | %s | %.1f | %.0f | %.1f | %.1f | %.0f | %zu | %s |\n", s.name.c_str(), s.what.c_str(), s.k, g.resolution.x, g.resolution.y, g.resolution.z, ours / 1000, theirs / 1000,
+    std::printf("| %s | %s | %u | %u x %u x %u | %.0f | %.1f | %s | %.1f | %g | %.1f | %.1f | %.0f | %zu | %s |\n", s.name.c_str(), s.what.c_str(), s.k, g.resolution.x, g.resolution.y, g.resolution.z, ours / 1000, theirs / 1000,
         peers[best].name.c_str(), ratio, least, median(builds) * 1000, best_build / median(builds), static_cast<double>(after - 16 * s.points.size()) / static_cast<double>(s.positions.size()), wrong, pass ? "PASS" : "FAIL");
     std::fflush(stdout);
     return wrong > 0 ? 3 : pass ? 0 : 1;
