@@ -2,16 +2,16 @@
 // bit. Included by each on_<backend>.cpp, which instantiates the suite for its tags.
 #pragma once
 
+#include "known_answers.hpp"
 #include "photon_sets.hpp"
+#include "serial_algorithms.hpp"
 #include "under_test.hpp"
 
-#include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/build_map.hpp>
 #include <photongrid/fitting_grid.hpp>
 #include <photongrid/knn_grid_estimate.hpp>
 #include <photongrid/self_test.hpp>
 
-#include <flann/flann.hpp>
 #include <rapidcheck.h>
 
 #include <algorithm>
@@ -460,21 +460,14 @@ TYPED_TEST_P(algorithms, estimate_uses_exactly_the_photons_within_its_radius)
 
         // FLANN: the k-th nearest lies inside the radius used, if it lies inside the maximum.
         if (ids.size() >= k) {
-            std::vector<float> coordinates;
+            std::vector<vec4> in_map;
             for (const uint id : ids)
-                coordinates.insert(coordinates.end(), {set.positions[id].x, set.positions[id].y, set.positions[id].z});
-            flann::Matrix<float> data(coordinates.data(), ids.size(), 3);
-            flann::KDTreeSingleIndex<flann::L2_Simple<float>> tree(data);
-            tree.buildIndex();
-            flann::SearchParams exact(flann::FLANN_CHECKS_UNLIMITED);
+                in_map.push_back(set.positions[id]);
+            const auto kth = kth_by_flann(in_map, points, k);
             for (std::size_t q = 0; q < points.size(); ++q) {
-                float query[3] = {points[q].x, points[q].y, points[q].z};
-                std::vector<std::vector<std::size_t>> indices;
-                std::vector<std::vector<float>> distances;
-                tree.knnSearch(flann::Matrix<float>(query, 1, 3), indices, distances, k, exact);
-                RC_ASSERT(distances[0].size() == k);
-                if (distances[0].back() <= radius * radius) {
-                    RC_ASSERT(distances[0].back() <= irradiance[q].w);
+                RC_ASSERT(kth[q].has_value());
+                if (*kth[q] <= radius * radius) {
+                    RC_ASSERT(*kth[q] <= irradiance[q].w);
                 }
             }
         }

@@ -5,8 +5,8 @@
 #include <photongrid/backends/cpu/overrides/all.hpp>
 
 #include "photon_sets.hpp"
+#include "serial_algorithms.hpp"
 
-#include <photongrid/backends/serial/serial.hpp>
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

@@ -2,6 +2,7 @@
 // uniform fields and a picture whose light is known up to the rim. Included by each on_<backend>.cpp.
 #pragma once
 
+#include "known_answers.hpp"
 #include "ray_tests.hpp"
 
 #include <photongrid/edge_correction.hpp>
@@ -32,59 +33,6 @@ inline drawing_board random_board(random_source& u)
     d.right = glm::normalize(glm::cross(n, std::abs(n.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
     d.up = glm::cross(n, d.right);
     return d;
-}
-
-/// What each kernel, over pi times its mean, adds up to over the part of the unit disc where |y| is fixed and x from a to b:
-/// Gauss' five points on 16 pieces either side of x = 0.
-inline glm::dvec4 weight_of_line(double y, double a, double b)
-{
-    constexpr double nodes[5] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
-    constexpr double weights[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
-    const double half = std::sqrt(std::max(0.0, 1 - y * y));
-    glm::dvec4 sum(0);
-    for (const auto& [from, to] : {std::pair{std::max(a, -half), std::min(b, 0.0)}, std::pair{std::max(a, 0.0), std::min(b, half)}}) {
-        const double step = (to - from) / 16;
-        if (!(step > 0))
-            continue;
-        for (int piece = 0; piece < 16; ++piece)
-            for (int g = 0; g < 5; ++g) {
-                const double x = from + (piece + 0.5 + 0.5 * nodes[g]) * step, t = x * x + y * y;
-                sum += 0.5 * step * weights[g] * glm::dvec4(1, 3 * (1 - std::sqrt(t)), 2 * (1 - t), 3 * (1 - t) * (1 - t)) / M_PI;
-            }
-    }
-    return sum;
-}
-
-/// The share of a disc on a convex polygon of the same plane, by kernel: lines across the disc, each cut by all edges. Lines
-/// are laid between the heights of the polygon's corners, evenly in the arc sine of their height.
-inline glm::dvec4 share_by_lines(const std::vector<glm::dvec2>& corners, glm::dvec2 center, double radius)
-{
-    std::vector<glm::dvec2> c;
-    std::vector<double> heights{-1, 1};
-    for (const auto& p : corners) {
-        c.push_back((p - center) / radius);
-        heights.push_back(std::clamp(c.back().y, -1.0, 1.0));
-    }
-    std::sort(heights.begin(), heights.end());
-    glm::dvec4 sum(0);
-    constexpr int lines = 1200;
-    for (std::size_t h = 0; h + 1 < heights.size(); ++h) {
-        const double low = std::asin(heights[h]), step = (std::asin(heights[h + 1]) - low) / lines;
-        for (int line = 0; line < lines && step > 0; ++line) {
-            const double angle = low + (line + 0.5) * step, y = std::sin(angle);
-            double from = 2, to = -2;
-            for (std::size_t e = 0; e < c.size(); ++e) {
-                const auto &p = c[e], &q = c[(e + 1) % c.size()];
-                if ((p.y <= y) == (q.y <= y))
-                    continue;
-                const double x = p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y);
-                from = std::min(from, x);
-                to = std::max(to, x);
-            }
-            sum += step * std::cos(angle) * weight_of_line(y, from, to);
-        }
-    }
-    return sum;
 }
 
 /// Points on the surfaces of a scene, with their discs.

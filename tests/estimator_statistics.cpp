@@ -1,8 +1,8 @@
 // What estimates are worth on the average: the expectation of every kernel on a uniform field, and whether the standard error
 // that an estimate reports is the spread that estimates have. On the serial backend; the others equal it bit for bit.
 #include "photon_sets.hpp"
+#include "serial_algorithms.hpp"
 
-#include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/knn_grid_estimate.hpp>
 
 #include <gtest/gtest.h>

@@ -2,13 +2,13 @@
 // force in double over float distances, FLANN, statistics of uniform fields. Included by each on_<backend>.cpp.
 #pragma once
 
+#include "known_answers.hpp"
 #include "photon_sets.hpp"
+#include "serial_algorithms.hpp"
 #include "under_test.hpp"
 
-#include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/knn_grid_estimate.hpp>
 
-#include <flann/flann.hpp>
 #include <rapidcheck.h>
 
 #include <algorithm>
@@ -27,36 +27,6 @@ inline constexpr filter_kernel all_kernels_of_estimates[] = {filter_kernel::cons
 inline constexpr bias_kind all_biases[] = {bias_kind::paper, bias_kind::unbiased};
 inline const leak_policy all_policies[] = {{}, {.side = true}, {.min_cosine = 0.3f}, {.compression = 3}, {.side = true, .min_cosine = -0.5f, .compression = 1.5f}};
 
-inline std::vector<vec4> random_units(std::size_t n, std::uint64_t seed)
-{
-    random_source u(seed);
-    std::vector<vec4> v;
-    while (v.size() < n) {
-        const glm::vec3 p = 2.0f * glm::vec3(u(), u(), u()) - 1.0f;
-        const float l = glm::length(p);
-        if (l > 0.1f && l < 1)
-            v.emplace_back(p / l, 0.0f);
-    }
-    return v;
-}
-
-/// Photons with directions and normals, points with normals.
-struct oriented_set {
-    photon_set photons;
-    std::vector<vec4> directions, normals, points, point_normals;
-};
-
-inline oriented_set make_oriented(distribution d, std::size_t n, uvec3 resolution, std::size_t points, std::uint64_t seed)
-{
-    oriented_set s;
-    s.photons = make_photons(d, n, resolution, seed);
-    s.directions = random_units(n, seed + 1);
-    s.normals = random_units(n, seed + 2);
-    s.points = make_points(s.photons, points, seed);
-    s.point_normals = random_units(points, seed + 3);
-    return s;
-}
-
 template <backend B>
 photons<B> upload_photons(B& b, const oriented_set& s)
 {
@@ -64,79 +34,6 @@ photons<B> upload_photons(B& b, const oriented_set& s)
     p.directions = b.upload(std::span<const vec4>(s.directions));
     p.normals = b.upload(std::span<const vec4>(s.normals));
     return p;
-}
-
-/// One estimate by brute force.
-struct brute_estimate {
-    std::vector<uint> ids; ///< by (distance, id); those within the radius
-    double radius2 = 0;
-    bool kth = false; ///< a photon set the radius
-    glm::dvec3 irradiance{0};
-    glm::dvec4 standard_error{0}; ///< w: of the sum of the channels
-};
-
-/// Squared distance as the search measures it, or nothing where a policy rejects the photon. Written out in single precision,
-/// in the order that photon_distance.glsl promises.
-inline std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std::size_t id, const leak_policy& leaks)
-{
-    const vec4 a = s.photons.positions[id], p = s.points[q], n = s.point_normals[q];
-    const float dx = a.x - p.x, dy = a.y - p.y, dz = a.z - p.z;
-    float d2 = dx * dx + dy * dy + dz * dz;
-    if (leaks.compression > 1) {
-        const float h = dx * n.x + dy * n.y + dz * n.z;
-        d2 = d2 + (leaks.compression * leaks.compression - 1.0f) * (h * h);
-    }
-    const auto dot = [](const vec4& x, const vec4& y) { return x.x * y.x + x.y * y.y + x.z * y.z; };
-    if (leaks.side && !(dot(s.directions[id], n) < 0))
-        return {};
-    if (leaks.needs_normals() && !(dot(s.normals[id], n) >= leaks.min_cosine))
-        return {};
-    return d2 < std::numeric_limits<float>::min() ? 0.0f : d2;
-}
-
-/// `at_least_radius2`: what the at-least-k search says it used, since that depends on the order of cells.
-inline brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>& in_map, const std::vector<vec4>& powers, std::size_t q, const knn_settings& k, float at_least_radius2)
-{
-    std::vector<std::pair<float, uint>> near;
-    const float max2 = k.max_radius * k.max_radius;
-    for (const uint id : in_map)
-        if (const auto d2 = policy_distance2(s, q, id, k.leaks); d2 && *d2 <= max2)
-            near.emplace_back(*d2, id);
-    std::sort(near.begin(), near.end());
-    brute_estimate e;
-    e.radius2 = static_cast<double>(max2);
-    if (k.search == search_kind::exact_k && near.size() >= k.k) {
-        near.resize(k.k);
-        e.kth = true;
-        e.radius2 = static_cast<double>(near.back().first);
-    }
-    if (k.search == search_kind::at_least_k && near.size() >= k.k) {
-        std::erase_if(near, [&](const auto& x) { return x.first > at_least_radius2; });
-        e.kth = true;
-        e.radius2 = static_cast<double>(at_least_radius2);
-    }
-    const double min2 = static_cast<double>(k.min_radius) * static_cast<double>(k.min_radius);
-    const double disc2 = std::max(e.radius2, min2);
-    const bool leave_out = k.bias == bias_kind::unbiased && e.kth && e.radius2 >= min2;
-    constexpr double norms[] = {1, 3, 2, 3};
-    for (std::size_t i = 0; i < near.size(); ++i) {
-        e.ids.push_back(near[i].second);
-        if (leave_out && i + 1 == near.size())
-            continue;
-        const double t = static_cast<double>(near[i].first) / disc2;
-        const double w[] = {1, 1 - std::sqrt(t), 1 - t, (1 - t) * (1 - t)};
-        const glm::dvec3 flux = w[static_cast<int>(k.kernel)] * glm::dvec3(powers[near[i].second]);
-        const double all = flux.x + flux.y + flux.z;
-        e.irradiance += flux;
-        e.standard_error += glm::dvec4(flux * flux, all * all);
-    }
-    const double per_area = norms[static_cast<int>(k.kernel)] / (M_PI * disc2);
-    e.irradiance *= per_area;
-    // Of n photons of which the n-th set the radius, n / (pi r^2) varies by 1 / (n - 2) of itself, squared, when all have one power.
-    const double n = static_cast<double>(near.size());
-    const double spread = e.kth && n > 2 ? (k.bias == bias_kind::unbiased ? n - 1 : n) / (n - 2) : 1;
-    e.standard_error = per_area * glm::sqrt(spread * e.standard_error);
-    return e;
 }
 
 template <class Tag>
@@ -246,19 +143,10 @@ TYPED_TEST_P(estimators, exact_k_finds_flanns_photons_on_every_distribution)
         if (static_cast<uint>(n) >= k) {
             const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
             const auto irradiance = b.download(knn_grid_estimate(b, map, b.upload(std::span<const vec4>(s.points)), settings).irradiance);
-            std::vector<float> coordinates;
-            for (const auto& p : s.photons.positions)
-                coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
-            flann::Matrix<float> data(coordinates.data(), static_cast<std::size_t>(n), 3);
-            flann::KDTreeSingleIndex<flann::L2_Simple<float>> tree(data);
-            tree.buildIndex();
-            flann::SearchParams exact(flann::FLANN_CHECKS_UNLIMITED);
+            const auto known = kth_by_flann(s.photons.positions, s.points, k);
             for (std::size_t q = 0; q < s.points.size(); ++q) {
-                float query[3] = {s.points[q].x, s.points[q].y, s.points[q].z};
-                std::vector<std::vector<std::size_t>> indices;
-                std::vector<std::vector<float>> distances;
-                tree.knnSearch(flann::Matrix<float>(query, 1, 3), indices, distances, k, exact);
-                const float kth = distances[0].back() < std::numeric_limits<float>::min() ? 0.0f : distances[0].back();
+                RC_ASSERT(known[q].has_value());
+                const float kth = *known[q] < std::numeric_limits<float>::min() ? 0.0f : *known[q];
                 if (kth <= radius * radius)
                     RC_ASSERT(irradiance[q].w == kth);
             }

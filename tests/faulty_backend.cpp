@@ -3,9 +3,9 @@
 #include "faulty_backend.hpp"
 #include "image_file.hpp"
 #include "photon_sets.hpp"
+#include "serial_algorithms.hpp"
 #include "test_scenes.hpp"
 
-#include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/render.hpp>
 
 #include <gtest/gtest.h>

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "photon_sets.hpp"
+#include "serial_algorithms.hpp"
 #include "test_scenes.hpp"
 #include "under_test.hpp"
 
-#include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/render.hpp>
 
 #include <cstring>

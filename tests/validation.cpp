@@ -1,9 +1,9 @@
 // The photon mapper against answers from outside: caustics of mirrors and glass from geometrical optics, irradiance by
 // quadrature, two libraries' nearest neighbours, and the rates at which density estimates converge. Prints its numbers.
 #include "photon_sets.hpp"
+#include "serial_algorithms.hpp"
 #include "test_scenes.hpp"
 
-#include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/reference.hpp>
 #include <photongrid/render.hpp>
 

@@ -2,9 +2,9 @@
 // synchronization) has nothing to say, and how it fails. What every backend promises is in algorithm_tests.hpp.
 #include "params_layout.hpp"
 #include "photon_sets.hpp"
+#include "serial_algorithms.hpp"
 #include "under_test.hpp"
 
-#include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/knn_grid_estimate.hpp>
 #include <photongrid/trace_kernels.hpp>

@@ -1,0 +1,173 @@
+#include "known_answers.hpp"
+
+#include <flann/flann.hpp>
+
+#include <algorithm>
+
+namespace photongrid::testing {
+
+using glm::uvec3;
+using glm::vec4;
+
+namespace {
+
+std::vector<vec4> random_units(std::size_t n, std::uint64_t seed)
+{
+    random_source u(seed);
+    std::vector<vec4> v;
+    while (v.size() < n) {
+        const glm::vec3 p = 2.0f * glm::vec3(u(), u(), u()) - 1.0f;
+        const float l = glm::length(p);
+        if (l > 0.1f && l < 1)
+            v.emplace_back(p / l, 0.0f);
+    }
+    return v;
+}
+
+/// What each kernel, over pi times its mean, adds up to over the part of the unit disc where |y| is fixed and x from a to b:
+/// Gauss' five points on 16 pieces either side of x = 0.
+glm::dvec4 weight_of_line(double y, double a, double b)
+{
+    constexpr double nodes[5] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
+    constexpr double weights[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+    const double half = std::sqrt(std::max(0.0, 1 - y * y));
+    glm::dvec4 sum(0);
+    for (const auto& [from, to] : {std::pair{std::max(a, -half), std::min(b, 0.0)}, std::pair{std::max(a, 0.0), std::min(b, half)}}) {
+        const double step = (to - from) / 16;
+        if (!(step > 0))
+            continue;
+        for (int piece = 0; piece < 16; ++piece)
+            for (int g = 0; g < 5; ++g) {
+                const double x = from + (piece + 0.5 + 0.5 * nodes[g]) * step, t = x * x + y * y;
+                sum += 0.5 * step * weights[g] * glm::dvec4(1, 3 * (1 - std::sqrt(t)), 2 * (1 - t), 3 * (1 - t) * (1 - t)) / M_PI;
+            }
+    }
+    return sum;
+}
+
+} // namespace
+
+oriented_set make_oriented(distribution d, std::size_t n, uvec3 resolution, std::size_t points, std::uint64_t seed)
+{
+    oriented_set s;
+    s.photons = make_photons(d, n, resolution, seed);
+    s.directions = random_units(n, seed + 1);
+    s.normals = random_units(n, seed + 2);
+    s.points = make_points(s.photons, points, seed);
+    s.point_normals = random_units(points, seed + 3);
+    return s;
+}
+
+std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std::size_t id, const leak_policy& leaks)
+{
+    const vec4 a = s.photons.positions[id], p = s.points[q], n = s.point_normals[q];
+    const float dx = a.x - p.x, dy = a.y - p.y, dz = a.z - p.z;
+    float d2 = dx * dx + dy * dy + dz * dz;
+    if (leaks.compression > 1) {
+        const float h = dx * n.x + dy * n.y + dz * n.z;
+        d2 = d2 + (leaks.compression * leaks.compression - 1.0f) * (h * h);
+    }
+    const auto dot = [](const vec4& x, const vec4& y) { return x.x * y.x + x.y * y.y + x.z * y.z; };
+    if (leaks.side && !(dot(s.directions[id], n) < 0))
+        return {};
+    if (leaks.needs_normals() && !(dot(s.normals[id], n) >= leaks.min_cosine))
+        return {};
+    return d2 < std::numeric_limits<float>::min() ? 0.0f : d2;
+}
+
+brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>& in_map, const std::vector<vec4>& powers, std::size_t q, const knn_settings& k, float at_least_radius2)
+{
+    std::vector<std::pair<float, uint>> near;
+    const float max2 = k.max_radius * k.max_radius;
+    for (const uint id : in_map)
+        if (const auto d2 = policy_distance2(s, q, id, k.leaks); d2 && *d2 <= max2)
+            near.emplace_back(*d2, id);
+    std::sort(near.begin(), near.end());
+    brute_estimate e;
+    e.radius2 = static_cast<double>(max2);
+    if (k.search == search_kind::exact_k && near.size() >= k.k) {
+        near.resize(k.k);
+        e.kth = true;
+        e.radius2 = static_cast<double>(near.back().first);
+    }
+    if (k.search == search_kind::at_least_k && near.size() >= k.k) {
+        std::erase_if(near, [&](const auto& x) { return x.first > at_least_radius2; });
+        e.kth = true;
+        e.radius2 = static_cast<double>(at_least_radius2);
+    }
+    const double min2 = static_cast<double>(k.min_radius) * static_cast<double>(k.min_radius);
+    const double disc2 = std::max(e.radius2, min2);
+    const bool leave_out = k.bias == bias_kind::unbiased && e.kth && e.radius2 >= min2;
+    constexpr double norms[] = {1, 3, 2, 3};
+    for (std::size_t i = 0; i < near.size(); ++i) {
+        e.ids.push_back(near[i].second);
+        if (leave_out && i + 1 == near.size())
+            continue;
+        const double t = static_cast<double>(near[i].first) / disc2;
+        const double w[] = {1, 1 - std::sqrt(t), 1 - t, (1 - t) * (1 - t)};
+        const glm::dvec3 flux = w[static_cast<int>(k.kernel)] * glm::dvec3(powers[near[i].second]);
+        const double all = flux.x + flux.y + flux.z;
+        e.irradiance += flux;
+        e.standard_error += glm::dvec4(flux * flux, all * all);
+    }
+    const double per_area = norms[static_cast<int>(k.kernel)] / (M_PI * disc2);
+    e.irradiance *= per_area;
+    // Of n photons of which the n-th set the radius, n / (pi r^2) varies by 1 / (n - 2) of itself, squared, when all have one power.
+    const double n = static_cast<double>(near.size());
+    const double spread = e.kth && n > 2 ? (k.bias == bias_kind::unbiased ? n - 1 : n) / (n - 2) : 1;
+    e.standard_error = per_area * glm::sqrt(spread * e.standard_error);
+    return e;
+}
+
+std::vector<std::optional<float>> kth_by_flann(const std::vector<vec4>& positions, const std::vector<vec4>& points, uint k)
+{
+    std::vector<std::optional<float>> kth(points.size());
+    if (positions.size() < k)
+        return kth;
+    std::vector<float> coordinates;
+    for (const auto& p : positions)
+        coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
+    flann::KDTreeSingleIndex<flann::L2_Simple<float>> tree(flann::Matrix<float>(coordinates.data(), positions.size(), 3));
+    tree.buildIndex();
+    for (std::size_t q = 0; q < points.size(); ++q) {
+        float query[3] = {points[q].x, points[q].y, points[q].z};
+        std::vector<std::vector<std::size_t>> indices;
+        std::vector<std::vector<float>> distances;
+        tree.knnSearch(flann::Matrix<float>(query, 1, 3), indices, distances, k, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+        if (distances[0].size() == k)
+            kth[q] = distances[0].back();
+    }
+    return kth;
+}
+
+glm::dvec4 share_by_lines(const std::vector<glm::dvec2>& corners, glm::dvec2 center, double radius)
+{
+    std::vector<glm::dvec2> c;
+    std::vector<double> heights{-1, 1};
+    for (const auto& p : corners) {
+        c.push_back((p - center) / radius);
+        heights.push_back(std::clamp(c.back().y, -1.0, 1.0));
+    }
+    std::sort(heights.begin(), heights.end());
+    glm::dvec4 sum(0);
+    constexpr int lines = 1200;
+    for (std::size_t h = 0; h + 1 < heights.size(); ++h) {
+        const double low = std::asin(heights[h]), step = (std::asin(heights[h + 1]) - low) / lines;
+        for (int line = 0; line < lines && step > 0; ++line) {
+            const double angle = low + (line + 0.5) * step, y = std::sin(angle);
+            double from = 2, to = -2;
+            for (std::size_t e = 0; e < c.size(); ++e) {
+                const auto &p = c[e], &q = c[(e + 1) % c.size()];
+                if ((p.y <= y) == (q.y <= y))
+                    continue;
+                const double x = p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y);
+                from = std::min(from, x);
+                to = std::max(to, x);
+            }
+            sum += step * std::cos(angle) * weight_of_line(y, from, to);
+        }
+    }
+    return sum;
+}
+
+} // namespace photongrid::testing

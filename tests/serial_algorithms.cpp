@@ -1,0 +1,2 @@
+#define PHOTONGRID_COMPILED_HERE
+#include "serial_algorithms.hpp"
