@@ -1,6 +1,7 @@
 // The OpenGL backend against the serial one, bit for bit, on every kind of context that this machine has.
+#include "serial_algorithms.hpp"
+
 #include <photongrid/backends/gl/gl.hpp>
-#include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/bitonic_sort.hpp>
 #include <photongrid/build_map.hpp>
 #include <photongrid/grid_index.hpp>
@@ -9,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstring>
 #include <numeric>
 #include <optional>
@@ -792,6 +794,23 @@ void kernel(uint i) { value = i; }
         EXPECT_EQ(cost.passes, report.passes);
         EXPECT_GT(cost.compile_ms, 0);
         EXPECT_EQ(cost.instructions, 0u);
+        EXPECT_EQ(cost.ms, 0);
+    }
+
+    TYPED_TEST(gl_backend_test, times_verbs_by_the_devices_clock_when_asked)
+    {
+        gl_backend b({.context = TypeParam::kind, .time_passes = true});
+        const auto start = std::chrono::steady_clock::now();
+        const auto c = clouds(5000)[0];
+        // All verbs: sorts, routes, counts and searches.
+        map_and_search(b, c, make_grid(glm::vec3(0), glm::vec3(1), glm::uvec3(8)), 2, query_points(5000), {.k = 20, .max_radius = 1});
+        const double all = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        double sum = 0;
+        for (const auto& [name, cost] : b.costs()) {
+            EXPECT_GT(cost.ms, 0) << name;
+            sum += cost.ms;
+        }
+        EXPECT_LT(sum, all);
     }
 
     // Several contexts in one process, used in turn, and a buffer that outlives its backend.

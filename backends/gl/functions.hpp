@@ -50,8 +50,8 @@ struct counted {
     X(CREATEBUFFERS, CreateBuffers) X(DELETEBUFFERS, DeleteBuffers) X(NAMEDBUFFERDATA, NamedBufferData)                \
     X(BINDBUFFER, BindBuffer) X(BINDBUFFERBASE, BindBufferBase)                                                        \
     X(CREATEQUERIES, CreateQueries) X(DELETEQUERIES, DeleteQueries) X(BEGINQUERY, BeginQuery) X(ENDQUERY, EndQuery)    \
-    X(GETQUERYOBJECTUI64V, GetQueryObjectui64v) X(BEGINCONDITIONALRENDER, BeginConditionalRender)                      \
-    X(ENDCONDITIONALRENDER, EndConditionalRender)                                                                      \
+    X(QUERYCOUNTER, QueryCounter) X(GETQUERYOBJECTUI64V, GetQueryObjectui64v)                                          \
+    X(BEGINCONDITIONALRENDER, BeginConditionalRender) X(ENDCONDITIONALRENDER, EndConditionalRender)                    \
     X(CREATESHADER, CreateShader) X(DELETESHADER, DeleteShader) X(SHADERSOURCE, ShaderSource)                          \
     X(COMPILESHADER, CompileShader) X(GETSHADERIV, GetShaderiv) X(GETSHADERINFOLOG, GetShaderInfoLog)                  \
     X(CREATEPROGRAM, CreateProgram) X(DELETEPROGRAM, DeleteProgram) X(ATTACHSHADER, AttachShader)                      \

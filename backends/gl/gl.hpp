@@ -11,6 +11,7 @@ struct gl_options {
     gl_context_kind context = gl_context_kind::any;
     gl::loader find = nullptr; ///< for gl_context_kind::current: finds OpenGL functions; null: EGL's or OSMesa's own
     uint tile = 64;            ///< run_until_done skips finished tiles of tile x tile elements (3.3); 1 to 2048
+    bool time_passes = false;  ///< measure each verb by the device's clock, for costs(), and wait for it; slower
     bool debug = false;        ///< check for errors after every pass, with the driver's own messages; slow
 };
 
@@ -80,6 +81,7 @@ public:
         try {
             device_->use();
             device_->call.DeleteQueries(static_cast<GLsizei>(queries_.size()), queries_.data());
+            device_->call.DeleteQueries(static_cast<GLsizei>(clock_.size()), clock_.data());
             if (options_.debug)
                 device_->call.DebugMessageCallback(nullptr, nullptr);
         } catch (const backend_error&) { // the caller's context is gone, and its queries with it
@@ -142,11 +144,12 @@ public:
         count_passes<K>(1);
         if (l.elements == 0)
             return;
+        start_clock();
         bind<K>(args, reads, writes);
         if (target<K>(reads, writes))
             device_->call.TextureBarrier();
         draw(program, l);
-        check<K>("run");
+        finish_verb<K>("run");
     }
 
     /// Tiles with occlusion queries (3.3): each tile of a pass is drawn only if the pass before found an element of it
@@ -163,6 +166,7 @@ public:
             return p;
         }
         functions_t& gl = device_->call;
+        start_clock();
         bind<K>(args, reads, writes);
         target<K>(reads, writes);
         std::vector<region> tiles = tiles_of(l);
@@ -222,7 +226,7 @@ public:
         }
         p.passes = static_cast<uint>(p.active.size());
         count_passes<K>(p.passes);
-        check<K>("run_until_done");
+        finish_verb<K>("run_until_done");
         return p;
     }
 
@@ -238,11 +242,13 @@ public:
         if (std::uint64_t{l.first} + l.elements > caps_.max_elements)
             throw backend_error(device_->name() + ": count: elements up to " + std::to_string(std::uint64_t{l.first} + l.elements) + "; the limit of this device is " + std::to_string(caps_.max_elements));
         make_queries(1);
+        start_clock();
         bind<K>(args, reads, std::tuple<>{});
         draw_counted(program, l, queries_[0]);
-        check<K>("count");
         ++query_polls_;
-        return result(queries_[0]);
+        const std::uint64_t n = result(queries_[0]);
+        finish_verb<K>("count");
+        return n;
     }
 
     template <route_kernel K, class Reads>
@@ -254,12 +260,13 @@ public:
         device_->use();
         gl::routing pass{*device_, *made_, made_->get<K>(gl::verb::route_payload, l.switches), made_->get<K>(gl::verb::route_amount, l.switches), l, destinations, m};
         count_passes<K>(1);
+        start_clock();
         bind<K>(args, reads, std::tuple<>{});
         if (totals.size() > 0)
             pass.sum(totals.texture_, route_parts(totals.size(), destinations));
         if (slots.size() > 0)
             pass.fill(slots.texture_, slots.size());
-        check<K>("route");
+        finish_verb<K>("route");
     }
 
     /// Compiles kernel K for every verb that it serves, without running it. \throws backend_error with the compiler's log.
@@ -421,9 +428,22 @@ private:
     {
         made_->costs[std::string(kernel_name<K>())].passes += passes;
     }
-    template <class K>
-    void check(const char* verb)
+    void start_clock()
     {
+        if (!options_.time_passes)
+            return;
+        if (clock_[0] == 0)
+            device_->call.CreateQueries(GL_TIMESTAMP, 2, clock_.data());
+        device_->call.QueryCounter(clock_[0], GL_TIMESTAMP);
+    }
+    template <class K>
+    void finish_verb(const char* verb)
+    {
+        if (options_.time_passes) {
+            device_->call.QueryCounter(clock_[1], GL_TIMESTAMP);
+            const std::uint64_t start = result(clock_[0]), end = result(clock_[1]); // ns
+            made_->costs[std::string(kernel_name<K>())].ms += 1e-6 * static_cast<double>(end - std::min(start, end));
+        }
         if (options_.debug)
             device_->check_errors(std::string(verb) + "<" + std::string(kernel_name<K>()) + ">");
     }
@@ -438,6 +458,7 @@ private:
     std::unique_ptr<gl::programs> made_;
     capabilities caps_;
     std::vector<GLuint> queries_;
+    std::array<GLuint, 2> clock_{}; ///< timestamps of a verb's start and end
     std::uint64_t query_polls_ = 0;
 };
 

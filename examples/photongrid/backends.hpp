@@ -18,7 +18,7 @@ struct render_job {
     render_settings settings;
     render_observer observer{};
     std::string device{};
-    bool time_passes = false;   ///< on Vulkan
+    bool time_passes = false;   ///< on Vulkan and OpenGL
     std::string shader_cache{}; ///< folder where Vulkan's compiled kernels are kept; empty: nowhere
 };
 

@@ -8,7 +8,7 @@ namespace photongrid {
 
 render_result render_gl(const render_job& job, bool osmesa)
 {
-    gl_backend b(gl_options{.context = osmesa ? gl_context_kind::osmesa : gl_context_kind::egl});
+    gl_backend b(gl_options{.context = osmesa ? gl_context_kind::osmesa : gl_context_kind::egl, .time_passes = job.time_passes});
     return render_on(b, job);
 }
 

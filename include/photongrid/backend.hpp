@@ -60,7 +60,7 @@ struct progress {
 struct kernel_cost {
     std::uint64_t instructions = 0; ///< SPIR-V instructions, 0 where the backend compiles none
     double compile_ms = 0;          ///< all specialisations together
-    double ms = 0;                  ///< its passes, where the backend times them: cpu always, vulkan with time_passes
+    double ms = 0;                  ///< its passes, where the backend times them: cpu always, vulkan and gl with time_passes
     std::uint64_t passes = 0;       ///< passes run so far
 };
 
