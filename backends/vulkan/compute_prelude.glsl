@@ -8,7 +8,6 @@
 // Bindings: 0 to 7 inputs, 8 to 15 outputs and states, 16 up the verb's own. No buffer is `restrict`: a pass may read
 // one frame of a buffer and write another.
 #if LANES > 1
-#extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif

@@ -234,7 +234,7 @@ namespace vulkan_detail {
         p.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
         p.pNext = &subgroup;
         vkGetPhysicalDeviceProperties2(d, &p);
-        constexpr VkSubgroupFeatureFlags needed = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+        constexpr VkSubgroupFeatureFlags needed = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
         const bool can = (subgroup.supportedOperations & needed) == needed && (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0;
         return can && sizes.minSubgroupSize == sizes.maxSubgroupSize ? subgroup.subgroupSize : 1;
     }

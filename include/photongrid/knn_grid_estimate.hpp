@@ -341,14 +341,14 @@ knn_estimates<B> knn_grid_estimate(B& b, const photon_map<B>& map, const buffer_
 {
     knn_search<B> search(b, map, points, settings);
     search.advance();
-    return search.estimates();
+    return std::move(search).estimates();
 }
 template <backend B>
 knn_estimates<B> knn_grid_estimate(B& b, const photon_map<B>& map, const buffer_of<B, glm::vec4>& points, const buffer_of<B, glm::vec4>& normals, const knn_settings& settings)
 {
     knn_search<B> search(b, map, points, normals, settings);
     search.advance();
-    return search.estimates();
+    return std::move(search).estimates();
 }
 
 } // namespace photongrid

@@ -9,6 +9,7 @@
 #undef EACH_LANE
 #undef IN_GROUPS
 #undef PHOTON_OF
+#undef EACH_PHOTON
 #undef precise
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop

@@ -44,6 +44,12 @@ STATE(6, uvec4, tally)         // photons held, photons visited, place + 1 of th
 
 uint chunk_id;
 vec4 chunk_power;
+void take_flux(uint nth, uint all)
+{
+    take_chunk(nth, all);
+    chunk_id = list(chunk_place);
+    chunk_power = powers(chunk_place);
+}
 
 bool done()
 {
@@ -121,16 +127,8 @@ void kernel(uint i)
             }                                                                                       \
         }                                                                                           \
     }
-            if (photons > 0u) {
-                uint nth = 0u;
-                do {
-                    take_chunk(nth, photons);
-                    chunk_id = list(chunk_place);
-                    chunk_power = powers(chunk_place);
-                    EACH_LANE(VISIT)
-                    nth += GROUP_LANES;
-                } while (nth < photons);
-            }
+            if (photons > 0u)
+                EACH_PHOTON(photons, take_flux, VISIT)
 #undef VISIT
         }
         if (mine) {

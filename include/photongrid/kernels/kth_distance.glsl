@@ -122,14 +122,8 @@ void kernel(uint i)
         below += counted(d2, near_pivots);                    \
         beyond += counted(d2, far_pivots);                    \
     }
-            if (photons > 0u) {
-                uint nth = 0u;
-                do {
-                    take_chunk(nth, photons);
-                    EACH_LANE(VISIT)
-                    nth += GROUP_LANES;
-                } while (nth < photons);
-            }
+            if (photons > 0u)
+                EACH_PHOTON(photons, take_chunk, VISIT)
 #undef VISIT
         }
         while (walk.w != COUNTING && walks_on()) {
@@ -146,14 +140,8 @@ void kernel(uint i)
             beyond = smallest(beyond, inside && key > middle ? key : 0xFFFFFFFFu);    \
         }                                                                             \
     }
-            if (photons > 0u) {
-                uint nth = 0u;
-                do {
-                    take_chunk(nth, photons);
-                    EACH_LANE(VISIT)
-                    nth += GROUP_LANES;
-                } while (nth < photons);
-            }
+            if (photons > 0u)
+                EACH_PHOTON(photons, take_chunk, VISIT)
 #undef VISIT
         }
         if (mine)

@@ -33,6 +33,11 @@ STATE(3, uvec4, cursor)        // y, z of the row to go on with; the first photo
 #include "photon_walk.glsl"
 
 uint chunk_id;
+void take_ids(uint nth, uint all)
+{
+    take_chunk(nth, all);
+    chunk_id = list(chunk_place);
+}
 
 bool done()
 {
@@ -68,15 +73,8 @@ void kernel(uint i)
         uint key = d2 == radius2 ? id + 1u : 0xFFFFFFFFu;                                                                          \
         count += uvec4(key <= pivot.x ? 1u : 0u, key <= pivot.y ? 1u : 0u, key <= pivot.z ? 1u : 0u, key <= pivot.w ? 1u : 0u);    \
     }
-            if (photons > 0u) {
-                uint nth = 0u;
-                do {
-                    take_chunk(nth, photons);
-                    chunk_id = list(chunk_place);
-                    EACH_LANE(VISIT)
-                    nth += GROUP_LANES;
-                } while (nth < photons);
-            }
+            if (photons > 0u)
+                EACH_PHOTON(photons, take_ids, VISIT)
 #undef VISIT
         }
         if (mine)

@@ -114,3 +114,13 @@ void take_chunk(uint nth, uint all)
         chunk_normal = photon_normals(chunk_place);
 }
 #define PHOTON_OF(LANE) from_lane(chunk_position, LANE), from_lane(chunk_direction, LANE), from_lane(chunk_normal, LANE)
+// VISIT(LANE) for each of the PHOTONS, one at least, in the rows at hand; TAKE is take_chunk or what reads more than that.
+#define EACH_PHOTON(PHOTONS, TAKE, VISIT)    \
+    {                                        \
+        uint nth = 0u;                       \
+        do {                                 \
+            TAKE(nth, PHOTONS);              \
+            EACH_LANE(VISIT)                 \
+            nth += GROUP_LANES;              \
+        } while (nth < PHOTONS);             \
+    }
