@@ -11,11 +11,10 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 quick=no
 [[ ${1:-} == --quick ]] && quick=yes
-program=build-bench/photongrid
-fields=build-bench/bench/field_errors
-for file in $program $fields; do
-  [[ -x $file ]] || { echo "bench/error.sh: $file is not there; bench/run.sh --error builds it" >&2; exit 1; }
-done
+source bench/programs.sh
+need photongrid bench/field_errors
+program=$build/photongrid
+fields=$build/bench/field_errors
 out=out/error
 mkdir -p $out
 work=$(mktemp -d)

@@ -3,20 +3,24 @@
 # ring and the glass ball: same size, as many photons sent at what makes the caustic as we store, two threads on a machine of two cores, no antialiasing.
 # Prints a Markdown table; exits 1 where one is too slow.
 #
-#   bench/pictures.sh [BUILD FOLDER [REPETITIONS]]      default: build-bench, 5
+#   bench/pictures.sh [--quick | REPETITIONS]      default: 5; --quick: small pictures, once, without POV-Ray, to see that it runs
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-build=${1:-build-bench} repetitions=${2:-5}
-for program in "$build/photongrid" "$build/bench/povray_ring"; do
-  [[ -x $program ]] || { echo "bench/pictures.sh: $program is not there; build it: cmake -B $build -G Ninja -DCMAKE_BUILD_TYPE=Release -DPHOTONGRID_BENCH=ON && cmake --build $build" >&2; exit 1; }
-done
-command -v povray >/dev/null || { echo "bench/pictures.sh: no povray; apt-get install povray" >&2; exit 1; }
+source bench/programs.sh
+need photongrid bench/povray_ring
+declare -A photons=([ring]=16000 [glass_ball]=5000)
+repetitions=${1:-5} size=()
+if [[ $repetitions == --quick ]]; then
+  repetitions=1 size=(--size 64x48) photons=()
+else
+  need_povray
+fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 median() { sort -n | awk '{ v[NR] = $1 } END { printf "%.2f", v[int((NR + 1) / 2)] }'; }
 # ours SCENE BACKEND: seconds of one run
 ours() {
-  "$build/photongrid" render "examples/scenes/$1.json" --backend "$2" --shader-cache "$work/cache" --stats "$work/stats.json" --quiet -o "$work/picture.pfm" >/dev/null
+  "$build/photongrid" render "examples/scenes/$1.json" "${size[@]}" --backend "$2" --shader-cache "$work/cache" --stats "$work/stats.json" --quiet -o "$work/picture.pfm" >/dev/null
   awk '$1 == "\"total_ms\":" { total = $2 + 0 } /^  "compile_ms":/ { compile = $2 + 0 } END { printf "%.3f\n", (total - compile) / 1000 }' "$work/stats.json"
 }
 # theirs SCENE PHOTONS: seconds of one run
@@ -26,7 +30,7 @@ theirs() {
   povray "+I$work/$1.pov" "+O$work/$1.exr" +FE +W512 +H384 -D -A -GA +WT2 >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 2; }
   awk -v a="$begin" -v b="$EPOCHREALTIME" 'BEGIN { printf "%.3f\n", b - a }'
 }
-declare -A wanted=([cornell_box,cpu]=2.5 [ring,cpu]=0.4 [glass_ball,cpu]=0.4 [cornell_box,vulkan]=8 [ring,vulkan]=1.5 [glass_ball,vulkan]=1.5) photons=([ring]=16000 [glass_ball]=5000)
+declare -A wanted=([cornell_box,cpu]=2.5 [ring,cpu]=0.4 [glass_ball,cpu]=0.4 [cornell_box,vulkan]=8 [ring,vulkan]=1.5 [glass_ball,vulkan]=1.5)
 failed=0
 echo "| scene | cpu, s | wanted | | vulkan, s | wanted | | POV-Ray, s | over cpu | |"
 echo "|---|---|---|---|---|---|---|---|---|---|"

@@ -1,15 +1,13 @@
 #!/usr/bin/env bash
-# The ring scene's caustic by POV-Ray's photons and by ours: how far the brightest parts overlap. Needs povray (Debian package
-# povray) and the program and bench/povray_ring built (-DPHOTONGRID_BENCH=ON).
+# The ring scene's caustic by POV-Ray's photons and by ours: how far the brightest parts overlap. Needs
+# povray (Debian package povray) and what bench/run.sh builds.
 #
-#   bench/povray_ring.sh [BUILD FOLDER]      default: build
+#   bench/povray_ring.sh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-build=${1:-build}
-for program in "$build/photongrid" "$build/bench/povray_ring"; do
-  [[ -x $program ]] || { echo "bench/povray_ring.sh: $program is not there; build it: cmake --preset release -DPHOTONGRID_BENCH=ON && cmake --build build" >&2; exit 1; }
-done
-command -v povray >/dev/null || { echo "bench/povray_ring.sh: no povray; apt-get install povray" >&2; exit 1; }
+source bench/programs.sh
+need photongrid bench/povray_ring
+need_povray
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 scene=examples/scenes/ring.json

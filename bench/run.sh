@@ -1,45 +1,52 @@
 #!/usr/bin/env bash
 # Speed and error, measured. Prints Markdown; fails where a row misses what it must reach.
 #
-#   bench/run.sh [--peers] [--paper] [--error] [--no-install]     some of it, or all
-#   bench/run.sh --gpu [--no-install]                             all of it on a hardware Vulkan device; refuses software
-#   bench/run.sh --smoke [--no-install]                           all of it on little data, to see that it runs
+#   bench/run.sh [--algorithms] [--peers] [--paper] [--error] [--no-install]     some of it, or all
+#   bench/run.sh --gpu [--no-install]               all of it on a hardware Vulkan device; refuses software
+#   bench/run.sh --smoke [--built] [--no-install]   all of it on little data, to see that it runs
 #
-#   --peers   neighbour searches and sorts against CGAL, FLANN, nanoflann, std::sort, Highway's vqsort, TBB; sorting passes
-#             on vulkan and gl against plain ones; whole pictures, the ring and the ball against POV-Ray
-#   --paper   the paper's Tables 1 and 2
-#   --error   time against relMSE of every kind of estimate: CSV and plots in out/error/
+#   --algorithms  each algorithm on each backend by number of photons and entropy of keys: JSON and plots in out/algorithms/
+#   --peers       neighbour searches and sorts against CGAL, FLANN, nanoflann, std::sort, Highway's vqsort, TBB; sorting passes
+#                 on vulkan and gl against plain ones; whole pictures, the ring and the ball against POV-Ray
+#   --paper       the paper's Tables 1 and 2, time to visual convergence, what leaving out finished elements gains
+#   --error       time against relMSE of every kind of estimate: CSV and plots in out/error/
+#   --built       builds nothing: takes those programs that tests/run.sh has built in build-tests/
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
 
 usage() {
-  sed -n '2,12s/^# \{0,1\}//p' bench/run.sh >&2
+  sed -n '2,14s/^# \{0,1\}//p' bench/run.sh >&2
   exit 2
 }
-install=yes gpu=no smoke=no parts=()
+install=yes gpu=no smoke=no build=build-bench parts=()
 for argument in "$@"; do
   case $argument in
-    --peers | --paper | --error) parts+=("${argument#--}") ;;
+    --algorithms | --peers | --paper | --error) parts+=("${argument#--}") ;;
+    --built) build=build-tests ;;
     --gpu) gpu=yes ;;
     --smoke) smoke=yes ;;
     --no-install) install=no ;;
     *) usage ;;
   esac
 done
-((${#parts[@]})) || parts=(peers paper error)
+((${#parts[@]})) || parts=(algorithms peers paper error)
 asked() { [[ " ${parts[*]} " == *" $1 "* ]]; }
-packages=("${program_packages[@]}" libcgal-dev libflann-dev libnanoflann-dev gnuplot-nox time)
+packages=("${program_packages[@]}" "${smoke_packages[@]}")
+[[ $build == build-tests ]] || packages+=("${bench_packages[@]}")
 [[ $smoke == yes ]] || ! asked peers || packages+=(povray)
 require_packages "$install" "${packages[@]}"
 
 export NODEVICE_SELECT=1 # the implicit layer has crashed processes that start side by side
-launcher=()
-if command -v ccache >/dev/null; then
-  launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+if [[ $build == build-bench ]]; then
+  launcher=()
+  if command -v ccache >/dev/null; then
+    launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  fi
+  cmake -S . -B build-bench -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release -DPHOTONGRID_BENCH=ON -DPHOTONGRID_TESTS=OFF "${launcher[@]}" >&2
+  cmake --build build-bench >&2
 fi
-cmake -S . -B build-bench -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release -DPHOTONGRID_BENCH=ON -DPHOTONGRID_TESTS=OFF "${launcher[@]}" >&2
-cmake --build build-bench >&2
+export PHOTONGRID_BUILD=$build PHOTONGRID=$build/photongrid
 
 version() { dpkg-query --show --showformat '${Package} ${Version}, ' "$@" 2>/dev/null || true; }
 machine() {
@@ -59,56 +66,80 @@ must() {
 
 machine
 if [[ $gpu == yes ]]; then
-  device=$(build-bench/photongrid devices | grep '^vulkan' | grep -v '(cpu' | head -n 1 || true)
+  device=$($build/photongrid devices | grep '^vulkan' | grep -v '(cpu' | head -n 1 || true)
   if [[ -z $device ]]; then
     echo "bench/run.sh --gpu: no hardware Vulkan device here; \`photongrid devices\` lists what there is" >&2
     exit 2
   fi
   title "On $device"
-  must build-bench/bench/sort_passes
-  must build-bench/bench/kernel_costs
+  must bench/algorithms.sh --benchmark_filter=/vulkan/ --benchmark_min_time=0.1
+  must $build/bench/knn_peers --backend vulkan
+  must $build/bench/sort_passes
+  must $build/bench/kernel_costs
+  must $build/bench/unfinished
+  must bench/convergence.sh vulkan
   for scene in cornell_box ring glass_ball; do
     for run in first second third; do
-      build-bench/photongrid render "examples/scenes/$scene.json" --backend vulkan --time-passes --stats build-bench/stats.json -o build-bench/picture.pfm --quiet >/dev/null
-      echo "$scene, $run run: $(sed -n 's/^ *"device": *//p' build-bench/stats.json | head -n 1) $(awk '/"(trace_photons|build_map|trace_rays|radiance_estimate)":/ { name = $1 } $1 == "\"ms\":" && name != "" { gsub(",", "", $2); printf "%s %.2f ms; ", name, $2; name = "" }' build-bench/stats.json)"
+      $build/photongrid render "examples/scenes/$scene.json" --backend vulkan --time-passes --stats $build/stats.json -o $build/picture.pfm --quiet >/dev/null
+      echo "$scene, $run run: $(sed -n 's/^ *"device": *//p' $build/stats.json | head -n 1) $(awk '/"(trace_photons|build_map|trace_rays|radiance_estimate)":/ { name = $1 } $1 == "\"ms\":" && name != "" { gsub(",", "", $2); printf "%s %.2f ms; ", name, $2; name = "" }' $build/stats.json)"
     done
   done
   exit $failed
 fi
 if [[ $smoke == yes ]]; then
-  must build-bench/bench/knn_peers --sets 1 --seconds 0.05
-  must build-bench/bench/sort_peers 1 65536
-  must build-bench/bench/sort_passes 4096
-  must build-bench/bench/kernel_costs
+  must bench/algorithms.sh '--benchmark_filter=photons:4096/ands:0/' --benchmark_min_time=0.001
+  must $build/bench/sort_passes 4096
+  must $build/bench/search_times 1 vulkan 1000
+  must bench/pictures.sh --quick
+  must $build/bench/kernel_costs
+  must $build/bench/unfinished 1 1000
+  must bench/convergence.sh --quick cpu
+  if [[ $build == build-tests ]]; then
+    echo "Not built beside the tests, so not run: knn_peers, sort_peers, field_errors"
+    exit $failed
+  fi
+  must $build/bench/knn_peers --sets 1 --seconds 0.05
+  must $build/bench/knn_peers_portable --sets 1 --seconds 0.05
+  must $build/bench/sort_peers 1 65536
   must bench/error.sh --quick
   exit $failed
 fi
+if asked algorithms; then
+  title "Algorithms"
+  must bench/algorithms.sh --benchmark_min_time=0.1
+fi
 if asked peers; then
   title "Nearest neighbours, one thread"
-  must build-bench/bench/knn_peers
+  must $build/bench/knn_peers
   title "Nearest neighbours, two threads"
-  must build-bench/bench/knn_peers --threads 2
+  must $build/bench/knn_peers --threads 2
   title "Nearest neighbours, points in random order, half of each ratio wanted"
-  must build-bench/bench/knn_peers --shuffle
+  must $build/bench/knn_peers --shuffle
   title "Nearest neighbours, a plain build (-O2, no -march): both sides, run-time dispatch on ours"
-  must build-bench/bench/knn_peers_portable
+  must $build/bench/knn_peers_portable
   title "Nearest neighbours on vulkan and gl, S3, two threads"
-  must build-bench/bench/knn_peers --backend vulkan --threads 2 --sets 3
-  must build-bench/bench/knn_peers --backend gl --threads 2 --sets 3
+  must $build/bench/knn_peers --backend vulkan --threads 2 --sets 3
+  must $build/bench/knn_peers --backend gl --threads 2 --sets 3
+  title "Exact k against at least k, by grid"
+  must $build/bench/search_times
   title "Sorting pairs, one thread"
-  must build-bench/bench/sort_peers 1
+  must $build/bench/sort_peers 1
   title "Sorting passes on vulkan and gl"
-  must build-bench/bench/sort_passes
+  must $build/bench/sort_passes
   title "Whole pictures"
-  must bench/pictures.sh build-bench
+  must bench/pictures.sh
   title "The ring's caustic against POV-Ray"
-  must bench/povray_ring.sh build-bench
+  must bench/povray_ring.sh
 fi
 if asked paper; then
   title "Table 1"
-  must env PHOTONGRID=build-bench/photongrid bench/table1.sh cpu serial vulkan gl
+  must bench/table1.sh cpu serial vulkan gl
   title "Table 2"
-  must build-bench/bench/kernel_costs
+  must $build/bench/kernel_costs
+  title "Finished elements (3.3, 4.3)"
+  must $build/bench/unfinished
+  title "Time to visual convergence (3.1)"
+  must bench/convergence.sh
 fi
 if asked error; then
   title "Time against error"

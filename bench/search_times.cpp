@@ -1,5 +1,9 @@
-// How long the searches take on S3, the faces of a room with two boxes, k = 500: docs/measures.md. Every backend in one run,
-// searches alternating; the estimates are compared with brute force (float distances, sums in double).
+// How long the searches take on S3, the faces of a room with two boxes, k = 500, by grid: docs/measures.md. Every backend in one
+// run, searches alternating; the estimates are compared with brute force (float distances, sums in double).
+//
+//   search_times [REPETITIONS [BACKEND [POINTS]]]
+#include "data_sets.hpp"
+
 #include <photongrid/backends/gl/gl.hpp>
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/backends/vulkan/vulkan.hpp>
@@ -10,62 +14,16 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <random>
 
 namespace {
 
 using namespace photongrid;
-using glm::vec3;
-using glm::vec4;
+using bench::data_set;
+using bench::vec3;
+using bench::vec4;
 
 constexpr float max_radius = 0.5f; // m
 constexpr uint k = 500;
-
-struct data_set {
-    std::vector<vec4> positions, powers, points;
-};
-
-/// 65,000 photons spread evenly over five faces of the unit box and the upper five of two boxes in it; query points on the
-/// same surfaces, in coherent order.
-data_set s3(uint photons, uint points)
-{
-    struct face {
-        vec3 corner, u, v;
-    };
-    const auto add_box = [](std::vector<face>& to, vec3 low, float size) {
-        const vec3 x(size, 0, 0), y(0, size, 0), z(0, 0, size);
-        to.insert(to.end(), {{low + y, x, z}, {low, x, y}, {low + z, x, y}, {low, y, z}, {low + x, y, z}});
-    };
-    std::vector<face> faces;
-    const vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-    faces.insert(faces.end(), {{vec3(0), x, z}, {y, x, z}, {vec3(0), y, z}, {x, y, z}, {z, x, y}});
-    add_box(faces, {0.15f, 0, 0.2f}, 0.3f);
-    add_box(faces, {0.55f, 0, 0.5f}, 0.3f);
-    const auto area_of = [](const face& f) { return static_cast<double>(glm::length(glm::cross(f.u, f.v))); };
-    double area = 0;
-    for (const auto& f : faces)
-        area += area_of(f);
-    std::mt19937 engine(1);
-    const auto random = [&] { return static_cast<float>(engine() >> 8) * 0x1p-24f; };
-    data_set s;
-    for (uint i = 0; i < photons; ++i) {
-        double left = static_cast<double>(random()) * area;
-        std::size_t which = 0;
-        for (; which + 1 < faces.size() && left > area_of(faces[which]); ++which)
-            left -= area_of(faces[which]);
-        const face& f = faces[which];
-        const float u = random(), v = random();
-        s.positions.emplace_back(f.corner + u * f.u + v * f.v, 0.0f);
-        s.powers.emplace_back(random(), random(), random(), 0.0f);
-    }
-    // Rows of each face, as eye rays would meet it.
-    const auto rows = static_cast<uint>(std::sqrt(static_cast<double>(points) / static_cast<double>(faces.size())));
-    for (const auto& f : faces)
-        for (uint r = 0; r < rows; ++r)
-            for (uint c = 0; c < rows; ++c)
-                s.points.emplace_back(f.corner + (static_cast<float>(r) + 0.5f) / static_cast<float>(rows) * f.u + (static_cast<float>(c) + 0.5f) / static_cast<float>(rows) * f.v, 1.0f);
-    return s;
-}
 
 /// relMSE of the red channel against brute force, over some of the points.
 double error(const data_set& s, const std::vector<vec4>& irradiance)
@@ -129,11 +87,13 @@ void measure(B&& b, const data_set& s, uint repetitions)
 
 } // namespace
 
-// search_times [repetitions [backend]]
 int main(int argc, char** argv)
 {
     const uint repetitions = argc > 1 ? static_cast<uint>(std::max(1, std::atoi(argv[1]))) : 3;
-    const auto s = s3(65000, 32768);
+    auto s = bench::make_data_set(3);
+    for (std::size_t i = 0; 6 * i < s.points.size(); ++i) // serial takes its time
+        s.points[i] = s.points[6 * i];
+    s.points.resize(std::min((s.points.size() + 5) / 6, static_cast<std::size_t>(argc > 3 ? std::max(200, std::atoi(argv[3])) : 1 << 30)));
     std::printf("S3: %zu photons, %zu points, k = %u, maximum radius %.2f m\n", s.positions.size(), s.points.size(), k, static_cast<double>(max_radius));
     std::printf("| backend | grid | at_least_k, 1000/s | exact_k, 1000/s | ratio | used | visited | used | visited | relMSE | relMSE |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
     const auto wanted = [&](const char* name) { return argc < 3 || std::strcmp(argv[2], name) == 0; };

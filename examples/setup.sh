@@ -9,6 +9,11 @@ program_packages=(
   libgl-dev libopengl-dev libegl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
   libvulkan-dev mesa-vulkan-drivers glslang-dev glslang-tools spirv-tools
 )
+# What the benches need besides: those that tests/run.sh runs, and the others. POV-Ray only where pictures are compared with its.
+# shellcheck disable=SC2034
+smoke_packages=(libbenchmark-dev gnuplot-nox jq)
+# shellcheck disable=SC2034
+bench_packages=(libcgal-dev libflann-dev libnanoflann-dev)
 # Packages that later Debians no longer have; CMake does without.
 optional_packages=(libosmesa6-dev)
 

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <thread>
 
 #include <fcntl.h>
@@ -438,9 +439,32 @@ namespace {
         ASSERT_EQ(e.code, 0) << e.err;
         ASSERT_TRUE(fs::exists(folder / "steps/ring-0001.png"));
         std::string newest;
+        std::size_t pictures = 0;
         for (const auto& f : fs::directory_iterator(folder / "steps"))
-            newest = std::max(newest, f.path().string());
+            if (f.path().extension() == ".png") {
+                newest = std::max(newest, f.path().string());
+                ++pictures;
+            }
         EXPECT_EQ(contents(newest), contents(folder / "last.png")) << "the last one is the picture";
+
+        // The table: a line a picture, times ascending, the error of the last one 0 and the first one's larger.
+        std::istringstream table(contents(folder / "steps/ring.csv"));
+        std::string line;
+        std::getline(table, line);
+        EXPECT_EQ(line, "picture,ms,relmse");
+        std::vector<double> times, errors;
+        while (std::getline(table, line)) {
+            char name[64];
+            double ms = 0, relmse = 0;
+            ASSERT_EQ(std::sscanf(line.c_str(), "%63[^,],%lf,%lf", name, &ms, &relmse), 3) << line;
+            EXPECT_TRUE(fs::exists(folder / "steps" / name)) << line;
+            times.push_back(ms);
+            errors.push_back(relmse);
+        }
+        ASSERT_EQ(times.size(), pictures);
+        EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
+        EXPECT_GT(errors.front(), 0);
+        EXPECT_EQ(errors.back(), 0);
     }
 
     TEST_F(program, never_replaces_a_backend_asked_for)

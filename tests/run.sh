@@ -10,7 +10,8 @@
 #
 # First the serial backend under the address and undefined behaviour sanitizers (build-asan/), then clang 14 (build-clang/)
 # and its fuzzer on the scene reader for 20 s, in full 300 s (build-fuzz/), then everything with g++, assertions on
-# (build-tests/); in full then GPU-assisted validation, the benches and the planted faults. It stops where something fails.
+# (build-tests/), and some of the benches on little data; in full then GPU-assisted validation, all benches on little data and
+# the planted faults. It stops where something fails.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
@@ -29,7 +30,7 @@ while (($# > 0)); do
       shift
       ;;
     -h | --help)
-      sed -n '2,13s/^# \{0,1\}//p' tests/run.sh
+      sed -n '2,14s/^# \{0,1\}//p' tests/run.sh
       exit 0
       ;;
     *)
@@ -39,7 +40,7 @@ while (($# > 0)); do
   esac
   shift
 done
-require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev libnanoflann-dev vulkan-validationlayers clang-14 libclang-rt-14-dev
+require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev libnanoflann-dev vulkan-validationlayers clang-14 libclang-rt-14-dev "${smoke_packages[@]}"
 
 export CMAKE_GENERATOR=Ninja          # for the projects that tests configure; a bare Debian has no make
 export NODEVICE_SELECT=1              # the implicit layer crashes processes that start side by side
@@ -101,10 +102,14 @@ else
 fi
 
 echo "== g++, all tests"
-configure tests
+configure tests -DPHOTONGRID_BENCH=ON
 cmake --build build-tests
 run_tests build-tests "${short[@]}"
 
+if [[ $device == any && $full == no ]]; then
+  echo "== benches, briefly"
+  bench/run.sh --smoke --built --no-install
+fi
 if [[ $full == yes && $device == any ]]; then
   echo "== GPU-assisted validation"
   PHOTONGRID_GPU_AV=1 run_tests build-tests --tests-regex '^on_vulkan(_heavy)?$'

@@ -187,9 +187,9 @@ Exit codes:
         to.add_option("-o,--output", o.outputs, "picture; may be given several times; default: the scene's name, .png")->allow_extra_args(false)->type_name("OUT.png|.exr|.pfm");
         to.add_flag("--aov", o.aov, "EXR: layers estimate.radius (m), estimate.count (photons) and estimate.relative_error (standard error over value) beside the picture");
         to.add_option("--stats", o.stats, "statistics, as JSON")->type_name("OUT.json");
-        to.add_flag("--time-passes", o.time_passes, "with --backend vulkan and --stats: measure each pass by the device's clock");
+        to.add_flag("--time-passes", o.time_passes, "with --backend vulkan, gl or gl-osmesa, and --stats: measure each pass by the device's clock");
         to.add_option("--shader-cache", o.shader_cache, "folder where Vulkan's compiled kernels are kept for the next start; default: photongrid in $XDG_CACHE_HOME or ~/.cache")->type_name("DIR|none");
-        to.add_option("--progressive", o.progressive, "folder for numbered pictures of the running estimate")->type_name("DIR");
+        to.add_option("--progressive", o.progressive, "folder for numbered pictures of the running estimate, and a table of when each was there and its relMSE to the last")->type_name("DIR");
         to.add_flag("--quiet", o.quiet, "no progress, no remarks");
     }
 
@@ -256,8 +256,8 @@ command read_command_line(int argc, char** argv)
         app.parse(argc, argv);
         if (!render.device.empty() && render.backend != "vulkan")
             throw CLI::ValidationError("--device", "names a Vulkan device; expected --backend vulkan with it");
-        if (render.time_passes && render.backend != "vulkan")
-            throw CLI::ValidationError("--time-passes", "is for --backend vulkan; cpu times its passes always, others never");
+        if (render.time_passes && render.backend != "vulkan" && render.backend != "gl" && render.backend != "gl-osmesa")
+            throw CLI::ValidationError("--time-passes", "is for --backend vulkan, gl and gl-osmesa; cpu times its passes always, serial never");
         if (render.aov && std::none_of(render.outputs.begin(), render.outputs.end(), holds_layers))
             throw CLI::ValidationError("--aov", (render.outputs.empty() ? "no output" : "\"" + render.outputs.front() + "\"") + std::string(" given; expected an EXR picture, which holds layers: -o OUT.exr"));
     } catch (const CLI::ParseError& e) {

@@ -2,6 +2,7 @@
 #include "backends.hpp"
 #include "command_line.hpp"
 #include "image_file.hpp"
+#include "picture_series.hpp"
 #include "progress_bar.hpp"
 #include "reference_command.hpp"
 #include "scene_file.hpp"
@@ -84,41 +85,6 @@ namespace {
         return stem.empty() ? "picture" : stem;
     }
 
-    /// Numbered pictures in a folder.
-    class picture_series {
-    public:
-        picture_series(std::string folder, std::string stem, double exposure)
-            : folder_(std::move(folder))
-            , stem_(std::move(stem))
-            , exposure_(exposure)
-        {
-            if (folder_.empty())
-                return;
-            std::error_code error;
-            std::filesystem::create_directories(folder_, error);
-            if (error)
-                throw file_error(folder_ + ": cannot be made: " + error.message());
-            check_image_path(path(1));
-        }
-        void add(const image& picture)
-        {
-            if (!folder_.empty())
-                write_image(path(++count_), picture, exposure_);
-        }
-        bool wanted() const { return !folder_.empty(); }
-
-    private:
-        std::string path(int number) const
-        {
-            char digits[24];
-            std::snprintf(digits, sizeof digits, "-%04d.png", number);
-            return folder_ + "/" + stem_ + digits;
-        }
-        std::string folder_, stem_;
-        double exposure_ = 0;
-        int count_ = 0;
-    };
-
     /// Where compiled kernels are kept: "" for nowhere.
     std::string shader_cache_folder(const render_options& o)
     {
@@ -167,7 +133,7 @@ namespace {
 
         if (result.stats.invalid_pixels > 0)
             std::cerr << "photongrid: warning: " << result.stats.invalid_pixels << " pixels were NaN or infinite and are black\n";
-        series.add(result.picture);
+        series.finish(result.picture);
         for (const auto& path : outputs) {
             write_image(path, result.picture, settings.exposure, picture_notes(s, settings, result));
             std::cout << path << '\n';

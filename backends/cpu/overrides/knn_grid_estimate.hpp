@@ -45,11 +45,18 @@ public:
         return p;
     }
 
-    knn_estimates<cpu_backend> estimates()
+    knn_estimates<cpu_backend> estimates() &
     {
         if (by_kernels_)
             return by_kernels_->estimates();
         return {copy(e_.irradiance), copy(e_.used), copy(e_.standard_error)};
+    }
+    /// Of a search that goes away: nothing is copied.
+    knn_estimates<cpu_backend> estimates() &&
+    {
+        if (by_kernels_)
+            return by_kernels_->estimates();
+        return std::move(e_);
     }
 
 private:
