@@ -117,6 +117,8 @@ if asked peers; then
   must $build/bench/knn_peers --shuffle
   title "Nearest neighbours, a plain build (-O2, no -march): both sides, run-time dispatch on ours"
   must $build/bench/knn_peers_portable
+  title "Nearest neighbours, the same build without AVX-512, half of each ratio wanted"
+  must $build/bench/knn_peers_portable --avx2
   title "Nearest neighbours on vulkan and gl, S3, two threads"
   must $build/bench/knn_peers --backend vulkan --threads 2 --sets 3
   must $build/bench/knn_peers --backend gl --threads 2 --sets 3

@@ -1,0 +1,23 @@
+// For each mask of a few lanes, the lanes that it has, in order, and then the others: what store_some() permutes by.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace photongrid::cpu {
+
+template <std::size_t LANES>
+inline constexpr auto compress_table = [] {
+    std::array<std::array<std::int32_t, LANES>, std::size_t{1} << LANES> table{};
+    for (std::size_t mask = 0; mask < table.size(); ++mask) {
+        std::size_t to = 0;
+        for (const bool wanted : {true, false})
+            for (std::size_t lane = 0; lane < LANES; ++lane)
+                if ((mask >> lane & 1) == (wanted ? 1u : 0u))
+                    table[mask][to++] = static_cast<std::int32_t>(lane);
+    }
+    return table;
+}();
+
+} // namespace photongrid::cpu
