@@ -89,15 +89,15 @@ fi
 if [[ $smoke == yes ]]; then
   must bench/algorithms.sh '--benchmark_filter=photons:4096/ands:0/' --benchmark_min_time=0.001
   must $build/bench/sort_passes 4096
-  must $build/bench/search_times 1 vulkan 1000
   must bench/pictures.sh --quick
   must $build/bench/kernel_costs
   must $build/bench/unfinished 1 1000
   must bench/convergence.sh --quick cpu
   if [[ $build == build-tests ]]; then
-    echo "Not built beside the tests, so not run: knn_peers, sort_peers, field_errors"
+    echo "Not built beside the tests, so not run: search_times, knn_peers, sort_peers, field_errors"
     exit $failed
   fi
+  must $build/bench/search_times 1 vulkan 1000
   must $build/bench/knn_peers --sets 1 --seconds 0.05
   must $build/bench/knn_peers_portable --sets 1 --seconds 0.05
   must $build/bench/sort_peers 1 65536
