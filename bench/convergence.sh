@@ -6,8 +6,8 @@
 #   bench/convergence.sh [--quick] [BACKEND...]      default: cpu vulkan; --quick: small pictures, to see that it runs
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-program=${PHOTONGRID:-build/photongrid}
-[[ -x $program ]] || { echo "bench/convergence.sh: build the program first: examples/run.sh" >&2; exit 1; }
+source bench/programs.sh
+need photongrid
 size=()
 if [[ ${1:-} == --quick ]]; then
   size=(--size 64x48)
@@ -27,7 +27,7 @@ for scene in glass_ball ring cornell_box; do
       [[ $search == exact_k ]] || options+=(--as-paper)
       for run in compiling measured; do
         rm -rf "$work/steps"
-        "$program" render "examples/scenes/$scene.json" "${options[@]}" --stats "$work/stats.json" >/dev/null
+        "$build/photongrid" render "examples/scenes/$scene.json" "${options[@]}" --stats "$work/stats.json" >/dev/null
       done
       compile=$(awk '/^  "compile_ms":/ { print $2 + 0 }' "$work/stats.json")
       awk -F, -v scene="$scene" -v backend="$backend" -v search="$search" -v compile="${compile:-0}" '

@@ -1,5 +1,7 @@
 // The paper's Table 2 for our kernels: what a pass of each has to do, counted in optimized SPIR-V, beside the figures of 2003;
 // and what integer addresses save (section 4.1): a step of the bitonic sort with float addresses, counted and timed. Prints Markdown.
+#include "median.hpp"
+
 #include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/bitonic_sort.hpp>
 #include <photongrid/trace_kernels.hpp>
@@ -23,6 +25,7 @@ struct bitonic_step_float {
 namespace {
 
 using namespace photongrid;
+using bench::median;
 
 /// Instructions in a module's functions, by what they are for.
 struct tally {
@@ -50,12 +53,6 @@ tally count(const std::vector<std::uint32_t>& words)
 }
 
 void row(const char* name, const tally& t, const char* paper) { std::printf("| `%s` | %llu | %llu | %llu | %llu | %s |\n", name, static_cast<unsigned long long>(t.all), static_cast<unsigned long long>(t.reads), static_cast<unsigned long long>(t.integer), static_cast<unsigned long long>(t.casts), paper); }
-
-double median(std::vector<double> v)
-{
-    std::sort(v.begin(), v.end());
-    return v[v.size() / 2];
-}
 
 } // namespace
 

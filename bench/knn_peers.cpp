@@ -12,6 +12,7 @@
 // photongrid makes whole estimates (it adds up the photons' flux as well); peers only find. A peer takes every n-th run of 64
 // points so that it ends within S seconds; photongrid takes all.
 #include "data_sets.hpp"
+#include "median.hpp"
 
 #include <photongrid/backends/cpu/overrides/all.hpp>
 #include <photongrid/backends/gl/overrides/all.hpp>
@@ -47,12 +48,6 @@ double seconds_of(const std::function<void()>& work)
     work();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
-double median(std::vector<double> v)
-{
-    std::sort(v.begin(), v.end());
-    return v[v.size() / 2];
-}
-
 /// A peer: how long it built, and its search.
 struct peer {
     std::string name;

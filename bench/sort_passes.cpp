@@ -2,6 +2,8 @@
 // one, a step a pass: docs/measures.md. Prints PASS or FAIL per row; exits 1 where one is too slow, 3 where the order differs.
 //
 //   sort_passes [NUMBER OF PAIRS]
+#include "median.hpp"
+
 #include <photongrid/backends/gl/overrides/bitonic_sort.hpp>
 #include <photongrid/backends/vulkan/overrides/bitonic_sort.hpp>
 
@@ -15,6 +17,7 @@
 namespace {
 
 using namespace photongrid;
+using bench::median;
 using pairs_type = std::vector<glm::uvec2>;
 
 template <backend B>
@@ -27,12 +30,6 @@ struct version {
     uint passes = 0;
     bool right = true;
 };
-
-double median(std::vector<double> v)
-{
-    std::sort(v.begin(), v.end());
-    return v[v.size() / 2];
-}
 
 template <backend B>
 int measure(B& b, const pairs_type& pairs, const pairs_type& expected, std::vector<version<B>> versions)

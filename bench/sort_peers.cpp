@@ -3,6 +3,8 @@
 // differs.
 //
 //   sort_peers [THREADS [LARGEST NUMBER OF PAIRS]]
+#include "median.hpp"
+
 #include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>
 
 #include <hwy/contrib/sort/vqsort.h>
@@ -19,6 +21,7 @@
 namespace {
 
 using namespace photongrid;
+using bench::median;
 using pair_bits = std::uint64_t; ///< the key above the value, so that comparing numbers compares pairs
 
 std::vector<pair_bits> make_pairs(std::size_t n, std::uint32_t keys)
@@ -32,11 +35,6 @@ std::vector<pair_bits> make_pairs(std::size_t n, std::uint32_t keys)
     return pairs;
 }
 
-double median(std::vector<double> v)
-{
-    std::sort(v.begin(), v.end());
-    return v[v.size() / 2];
-}
 double ms_of(const std::function<void()>& work)
 {
     const auto start = std::chrono::steady_clock::now();

@@ -4,6 +4,7 @@
 //
 //   unfinished [REPETITIONS [POINTS]]
 #include "data_sets.hpp"
+#include "median.hpp"
 
 #include <photongrid/backends/gl/overrides/all.hpp>
 #include <photongrid/backends/vulkan/overrides/all.hpp>
@@ -20,6 +21,7 @@
 namespace {
 
 using namespace photongrid;
+using bench::median;
 using bench::data_set;
 using bench::vec4;
 
@@ -76,12 +78,6 @@ version with(std::string name, B& b, const data_set& s, uint visits)
                     sum += static_cast<double>(v.x);
                 return std::pair(passes, sum);
             }};
-}
-
-double median(std::vector<double> v)
-{
-    std::sort(v.begin(), v.end());
-    return v[v.size() / 2];
 }
 
 bool measure(const char* backend, const data_set& s, const char* work, std::vector<version> versions, int repetitions)
