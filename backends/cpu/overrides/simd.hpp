@@ -2,6 +2,11 @@
 // machine has is chosen when it runs (Highway).
 #pragma once
 
+// Highway 1.0.3 leaves out its newest instruction set for x86 unless asked, and stops with an error where the compiler may use
+// it everywhere (-march=sapphirerapids).
+#if defined(__AVXVNNI__) && defined(__AVX512VPOPCNTDQ__) && !defined(HWY_WANT_AVX3_DL)
+#define HWY_WANT_AVX3_DL
+#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "photongrid/backends/cpu/overrides/for_each_target.hpp"
 #include <hwy/foreach_target.h>
