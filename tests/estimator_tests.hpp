@@ -190,6 +190,52 @@ TYPED_TEST_P(estimators, ties_at_the_kth_distance_go_by_id)
     this->report("F3", "relative error of irradiance of the 520 nearest of 70,020, 70,000 of them tied:", largest);
 }
 
+TYPED_TEST_P(estimators, ties_in_many_cells_go_by_id)
+{
+    // A lattice has dozens of photons at the same distance, here with ids that have nothing to do with their cells.
+    oriented_set s;
+    s.photons.g = make_grid(glm::vec3(0), glm::vec3(1), {5, 4, 5});
+    for (int i = 0; i < 729; ++i)
+        s.photons.positions.emplace_back(0.125f * static_cast<float>(i % 9), 0.125f * static_cast<float>(i / 9 % 9), 0.125f * static_cast<float>(i / 81), 0.0f);
+    random_source u(8);
+    for (uint i = 728; i > 0; --i)
+        std::swap(s.photons.positions[i], s.photons.positions[u.below(i + 1)]);
+    for (int i = 0; i < 729; ++i)
+        s.photons.powers.emplace_back(u(), u(), u(), 0.0f);
+    for (int i = 0; i < 125; ++i)
+        s.points.emplace_back(0.25f * static_cast<float>(i % 5), 0.25f * static_cast<float>(i / 5 % 5), 0.25f * static_cast<float>(i / 25), 1.0f);
+    s.directions.assign(729, vec4(0, -1, 0, 0));
+    s.normals.assign(729, vec4(0, 1, 0, 0));
+    s.point_normals.assign(125, vec4(0, 1, 0, 0));
+    const auto map = this->known(s, false);
+    for (const uint k : {1u, 4u, 13u, 50u})
+        for (const auto bias : all_biases) {
+            knn_settings settings{.k = k, .max_radius = 2, .min_radius = 1e-3f};
+            settings.bias = bias;
+            EXPECT_EQ(this->difference(s, map, settings), "") << "k " << k << " bias " << int(bias);
+        }
+}
+
+TYPED_TEST_P(estimators, squared_distances_too_small_for_a_float_count_as_zero)
+{
+    // Points that follow each other, so close to a photon that from one to the next its squared distance underflows.
+    oriented_set s;
+    s.photons.g = make_grid(glm::vec3(0), glm::vec3(1), {3, 3, 3});
+    s.photons.positions = {{0.5f, 0, 0, 0}, {1.1e-19f, 0, 0, 0}, {0.25f, 0, 0, 0}, {1.12e-19f, 0, 0, 0}};
+    s.photons.powers = {{1, 2, 3, 0}, {5, 7, 11, 0}, {13, 17, 19, 0}, {23, 29, 31, 0}};
+    for (int i = 0; i < 20; ++i)
+        s.points.emplace_back(static_cast<float>(i) * 5e-21f, 0.0f, 0.0f, 1.0f);
+    s.directions.assign(4, vec4(0, -1, 0, 0));
+    s.normals.assign(4, vec4(0, 1, 0, 0));
+    s.point_normals.assign(20, vec4(0, 1, 0, 0));
+    const auto map = this->known(s, false);
+    for (const uint k : {1u, 2u, 3u}) {
+        knn_settings settings{.k = k, .max_radius = 1, .min_radius = 1e-3f};
+        settings.bias = bias_kind::paper;
+        EXPECT_EQ(this->difference(s, map, settings), "") << "k " << k;
+    }
+}
+
 TYPED_TEST_P(estimators, distances_next_to_each_other_are_told_apart)
 {
     // Squared distances two roundings apart, some of them twice: every pivot of the k-th's search lies at a photon or next to one.
@@ -387,6 +433,6 @@ TYPED_TEST_P(estimators, equal_the_serial_backends_bit_for_bit)
 }
 
 REGISTER_TYPED_TEST_SUITE_P(estimators, every_combination_equals_brute_force, exact_k_finds_flanns_photons_on_every_distribution, ties_at_the_kth_distance_go_by_id,
-    distances_next_to_each_other_are_told_apart, a_photon_on_a_face_is_found_from_any_distance, a_radius_holds_the_photons_on_its_rim, no_light_comes_through_a_thin_wall, searches_refuse_what_they_cannot_do, searches_can_be_watched_and_resumed, equal_the_serial_backends_bit_for_bit);
+    ties_in_many_cells_go_by_id, squared_distances_too_small_for_a_float_count_as_zero, distances_next_to_each_other_are_told_apart, a_photon_on_a_face_is_found_from_any_distance, a_radius_holds_the_photons_on_its_rim, no_light_comes_through_a_thin_wall, searches_refuse_what_they_cannot_do, searches_can_be_watched_and_resumed, equal_the_serial_backends_bit_for_bit);
 
 } // namespace photongrid::testing
