@@ -103,6 +103,17 @@ TYPED_TEST_P(algorithms, the_self_test_of_arithmetic_agrees_with_the_capabilitie
     EXPECT_EQ(square_root, this->b().caps().exact_sqrt);
 }
 
+TYPED_TEST_P(algorithms, no_photon_lies_beyond_the_last_of_more_cells_than_floats_count)
+{
+    auto& b = this->b();
+    const uint cells = (1u << 24) + 4;
+    const std::vector<vec4> positions{{0, 0, 0, 0}, {1, 0, 0, 0}, {1e30f, 0, 0, 0}, {0.5f, 0, 0, 0}}, powers(4, vec4(1));
+    auto pairs = b.template make<uvec2>(4);
+    b.template run<kernels::photon_cell>(4, {.grid = make_grid(glm::vec3(0), glm::vec3(1), {cells, 1, 1}), .photons = 4, .parts = every_part},
+        reads(b.upload(std::span<const vec4>(positions)), b.upload(std::span<const vec4>(powers))), writes(pairs));
+    EXPECT_EQ(b.download(pairs), (std::vector<uvec2>{{0, 0}, {cells - 1, 1}, {cells - 1, 2}, {cells / 2, 3}}));
+}
+
 // --- bitonic_sort -----------------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(algorithms, sort_equals_std_sort_for_any_size_and_keys)
@@ -717,7 +728,7 @@ TYPED_TEST_P(algorithms, a_fitting_grid_suits_any_photons)
 }
 
 REGISTER_TYPED_TEST_SUITE_P(algorithms, a_fitting_grid_suits_any_photons, buffers_keep_every_bit, a_pass_outside_a_buffer_is_refused, memory_is_accounted_for,
-    the_self_test_of_arithmetic_agrees_with_the_capabilities, sort_equals_std_sort_for_any_size_and_keys, sort_handles_the_sizes_where_networks_break,
+    the_self_test_of_arithmetic_agrees_with_the_capabilities, no_photon_lies_beyond_the_last_of_more_cells_than_floats_count, sort_equals_std_sort_for_any_size_and_keys, sort_handles_the_sizes_where_networks_break,
     the_generic_sort_is_right_where_another_stands_for_it, sort_reports_the_papers_numbers_of_passes, long_a_million_pairs_sort_and_index, index_equals_the_histogram,
     route_keeps_the_first_in_draw_order_and_all_the_flux, route_conserves_unequal_powers_and_absent_channels, route_takes_a_hundred_thousand_photons_to_one_cell,
     route_conserves_flux_in_crowded_cells, route_is_fair_to_later_photons,

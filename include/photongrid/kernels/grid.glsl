@@ -23,7 +23,7 @@ inline uint clamped_cell(float u, uint resolution)
     float f = floor(u);
     f = f > 0.0f ? f : 0.0f;
     f = f < last ? f : last;
-    return uint(f);
+    return min(uint(f), resolution - 1u); // above 2^24 cells `last` may have been rounded up
 }
 
 inline uvec4 cell_coordinates(Grid grid, vec4 p)
