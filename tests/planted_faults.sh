@@ -67,7 +67,7 @@ faults=(
   "cpu: a photon of a bucket lost|backends/cpu/overrides/map_simd.hpp|next[v] > begin[v] && next[v] % records|next[v] > begin[v] + 1u && next[v] % records"
   "cpu: parts of the light swapped|backends/cpu/overrides/map_simd.hpp|hn::Eq(w, hn::Set(d, 1.0f))|hn::Ne(w, hn::Set(d, 1.0f))"
   "cpu: the last pair of a digit lost|backends/cpu/overrides/scatter_simd.hpp|p < next[v]; ++p)|p + 1 < next[v]; ++p)"
-  "vulkan: groups hear another lane|backends/vulkan/compute_prelude.glsl|gl_SubgroupInvocationID ^ places)|gl_SubgroupInvocationID ^ (places & 2u))"
+  "vulkan: groups hear another lane|backends/vulkan/compute_prelude.glsl|#define from_lane(V, LANE) subgroupShuffle(V, LANE)|#define from_lane(V, LANE) subgroupShuffle(V, (LANE) & 6u)"
   "vulkan: an element left off the list|backends/vulkan/iterate.glsl|keep = more;|keep = more && (i & 1023u) != 1023u;"
   "vulkan: a stride sorts one way|backends/vulkan/overrides/bitonic_strides.glsl|EXCHANGE(p6, p7, rising)|EXCHANGE(p6, p7, true)"
   "gl: tiles end with one element left|backends/gl/gl.hpp|live[t] = n != 0;|live[t] = n > 1;"
