@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Speed and error, measured. Prints Markdown; fails where a row misses what it must reach.
 #
-#   bench/run.sh [--algorithms] [--peers] [--paper] [--error] [--no-install]     some of it, or all
+#   bench/run.sh [--algorithms] [--peers] [--paper] [--error] [--write] [--no-install]     some of it, or all
 #   bench/run.sh --gpu [--no-install]               all of it on a hardware Vulkan device; refuses software
 #   bench/run.sh --smoke [--built] [--no-install]   all of it on little data, to see that it runs
 #
@@ -10,22 +10,24 @@
 #                 on vulkan and gl against plain ones; whole pictures, the ring and the ball against POV-Ray
 #   --paper       the paper's Tables 1 and 2, time to visual convergence, what leaving out finished elements gains
 #   --error       time against relMSE of every kind of estimate: CSV and plots in out/error/
+#   --write       puts what is printed into docs/measures.md too (bench/write_measures.sh)
 #   --built       builds nothing: takes those programs that tests/run.sh has built in build-tests/
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
 
 usage() {
-  sed -n '2,14s/^# \{0,1\}//p' bench/run.sh >&2
+  sed -n '2,15s/^# \{0,1\}//p' bench/run.sh >&2
   exit 2
 }
-install=yes gpu=no smoke=no build=build-bench parts=()
+install=yes gpu=no smoke=no write=no build=build-bench parts=()
 for argument in "$@"; do
   case $argument in
     --algorithms | --peers | --paper | --error) parts+=("${argument#--}") ;;
     --built) build=build-tests ;;
     --gpu) gpu=yes ;;
     --smoke) smoke=yes ;;
+    --write) write=yes ;;
     --no-install) install=no ;;
     *) usage ;;
   esac
@@ -53,6 +55,16 @@ machine() {
   echo "Machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores; $(date +%F); $(g++ --version | head -n 1); $(version libcgal-dev libflann-dev libnanoflann-dev libhwy-dev libtbb-dev mesa-vulkan-drivers povray)photongrid $(git rev-parse --short HEAD 2>/dev/null || echo "of no repository")"
 }
 title() { printf '\n### %s\n\n' "$1"; }
+if [[ $write == yes ]]; then
+  if [[ $smoke == yes || $gpu == yes ]]; then
+    usage
+  fi
+  mkdir -p out
+  status=0
+  bench/run.sh --no-install "${parts[@]/#/--}" | tee out/measured.md || status=$?
+  bench/write_measures.sh out/measured.md
+  exit $status
+fi
 failed=0
 # must COMMAND...: an exit status of 1 is a row that is too slow; more is something broken
 must() {
@@ -62,6 +74,16 @@ must() {
     status=0 # times do not count
   fi
   failed=$((failed > status ? failed : status))
+}
+# loses_a_quarter_at_most NATIVE PLAIN: what knn_peers and knn_peers_portable printed, set by set
+loses_a_quarter_at_most() {
+  awk -F ' *[|] *' '
+    FNR == 1 { ++file }
+    $2 !~ /^S[1-5]$/ { next }
+    file == 1 { native[$2] = $6; next }
+    file == 2 && !shown++ { print "| set | native, 1000/s | plain, 1000/s | plain over native | wanted | |\n|---|---|---|---|---|---|" }
+    { share = $6 / native[$2]; printf "| %s | %s | %s | %.2f | 0.75 | %s |\n", $2, native[$2], $6, share, share >= 0.75 ? "PASS" : "FAIL"; slow += share < 0.75 }
+    END { exit slow > 0 }' "$1" "$2"
 }
 
 machine
@@ -109,14 +131,20 @@ if asked algorithms; then
   must bench/algorithms.sh --benchmark_min_time=0.1
 fi
 if asked peers; then
+  work=$(mktemp -d)
+  trap 'rm -rf "$work"' EXIT
   title "Nearest neighbours, one thread"
-  must $build/bench/knn_peers
+  must $build/bench/knn_peers >"$work/native"
+  cat "$work/native"
   title "Nearest neighbours, two threads"
   must $build/bench/knn_peers --threads 2
   title "Nearest neighbours, points in random order, half of each ratio wanted"
   must $build/bench/knn_peers --shuffle
   title "Nearest neighbours, a plain build (-O2, no -march): both sides, run-time dispatch on ours"
-  must $build/bench/knn_peers_portable
+  must $build/bench/knn_peers_portable >"$work/plain"
+  cat "$work/plain"
+  title "A plain build against a native one"
+  must loses_a_quarter_at_most "$work/native" "$work/plain"
   title "Nearest neighbours, the same build without AVX-512, half of each ratio wanted"
   must $build/bench/knn_peers_portable --avx2
   title "Nearest neighbours on vulkan and gl, S3, two threads"

@@ -16,7 +16,7 @@ figure() {
   awk -v section="\"$2\":" -v key="\"$3\":" '$1 == section { inside = 1 } inside && $1 == key { gsub(",", "", $2); print $2; exit }' "$1"
 }
 
-echo "Machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores; $(date +%F); seconds"
+echo "Seconds; stages without compiling kernels, totals with it."
 echo
 echo "| scene | map | backend | trace photons | build map | trace rays | radiance estimate | total | mean photons used | peak MB |"
 echo "|---|---|---|---|---|---|---|---|---|---|"

@@ -109,8 +109,10 @@ inline void order_bucket(map_job j, uint bucket, std::size_t begin, std::size_t 
     const uint first_cell = bucket << j.shift, bins = std::min(1u << j.shift, j.cells + 1 - first_cell);
     s.next.assign(bins, 0);
     s.order.resize(end - begin);
-    for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t i = begin; i < end; ++i) {
+        hwy::Prefetch(&j.records[i]); // they are taken out of order below
         ++s.next[j.pairs[i].x - first_cell];
+    }
     auto place = static_cast<uint>(begin);
     for (uint c = 0; c < bins; ++c) {
         const uint count = s.next[c];
