@@ -10,7 +10,7 @@
 #                 on vulkan and gl against plain ones; whole pictures, the ring and the ball against POV-Ray
 #   --paper       the paper's Tables 1 and 2, time to visual convergence, what leaving out finished elements gains
 #   --error       time against relMSE of every kind of estimate: CSV and plots in out/error/
-#   --write       puts what is printed into docs/measures.md too (bench/write_measures.sh)
+#   --write       puts what is printed, and the Cornell box's plot, into docs/ too (bench/write_measures.sh)
 #   --built       builds nothing: takes those programs that tests/run.sh has built in build-tests/
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -63,6 +63,9 @@ if [[ $write == yes ]]; then
   status=0
   bench/run.sh --no-install "${parts[@]/#/--}" | tee out/measured.md || status=$?
   bench/write_measures.sh out/measured.md
+  if asked error; then
+    cp out/error/cornell_box.svg docs/error_cornell_box.svg
+  fi
   exit $status
 fi
 failed=0
