@@ -85,8 +85,8 @@ loses_a_quarter_at_most() {
     $2 !~ /^S[1-5]$/ { next }
     file == 1 { native[$2] = $6; next }
     file == 2 && !shown++ { print "| set | native, 1000/s | plain, 1000/s | plain over native | wanted | |\n|---|---|---|---|---|---|" }
-    { share = $6 / native[$2]; printf "| %s | %s | %s | %.2f | 0.75 | %s |\n", $2, native[$2], $6, share, share >= 0.75 ? "PASS" : "FAIL"; slow += share < 0.75 }
-    END { exit slow > 0 }' "$1" "$2"
+    { share = $6 / native[$2]; printf "| %s | %s | %s | %.2f | 0.75 | %s |\n", $2, native[$2], $6, share, (share >= 0.75 ? "PASS" : "FAIL"); slow += (share < 0.75) }
+    END { exit (slow > 0) }' "$1" "$2"
 }
 
 machine
@@ -152,6 +152,7 @@ if asked peers; then
   must $build/bench/knn_peers_portable --avx2
   title "Nearest neighbours on vulkan and gl, S3, two threads"
   must $build/bench/knn_peers --backend vulkan --threads 2 --sets 3
+  echo
   must $build/bench/knn_peers --backend gl --threads 2 --sets 3
   title "Exact k against at least k, by grid"
   must $build/bench/search_times
