@@ -125,4 +125,8 @@ done
 for field in even ramp waves disc; do
   plot $out/fields.csv $field "$field: 4,096 points, map and search"
 done
+# front CSV: how many rows of each backend and search no other row beats
+front() { awk -F, 'NR > 1 && $NF == 1 { print $2 " `" $4 "`" }' "$1" | sort | uniq -c | sort -rn | awk '{ printf "%s%s %s of %s", separator, $1, $3, $2; separator = ", " }'; }
+echo "On the Pareto fronts of the scenes: $(front $out/scenes.csv). Of the fields: $(front $out/fields.csv)."
+echo
 echo "Rows: $(($(wc -l <$out/scenes.csv) - 1)) in $out/scenes.csv, $(($(wc -l <$out/fields.csv) - 1)) in $out/fields.csv; plots: $out/*.svg, $out/*.png"
