@@ -62,6 +62,9 @@ if [[ $write == yes ]]; then
   mkdir -p out
   status=0
   bench/run.sh --no-install "${parts[@]/#/--}" | tee out/measured.md || status=$?
+  if ((status > 1)); then
+    exit $status # something is broken: what was printed is not whole
+  fi
   bench/write_measures.sh out/measured.md
   if asked error; then
     cp out/error/cornell_box.svg docs/error_cornell_box.svg
