@@ -848,6 +848,29 @@ TEST_F(vulkan, gpu_assisted_validation_sees_a_read_out_of_bounds)
     }
 }
 
+// Instrumenting breaks some loops of optimized kernels: the search's did not compile.
+TEST_F(vulkan, gpu_assisted_validation_takes_the_search)
+{
+    std::unique_ptr<vulkan_backend> watched;
+    try {
+        watched = std::make_unique<vulkan_backend>(vulkan_options{.validation = true, .gpu_assisted = true});
+    } catch (const backend_error& e) {
+        GTEST_SKIP() << e.what();
+    }
+    const auto set = make_photons(distribution::uniform, 200, {3, 3, 3}, 4);
+    const auto points = make_points(set, 20, 4);
+    const auto radii = [&](auto& device) {
+        const auto map = sorted_map(device, upload_photons(device, set), set.g);
+        std::vector<float> found;
+        for (const auto& e : device.download(knn_grid_estimate(device, map, device.upload(std::span<const vec4>(points)), {.k = 10, .max_radius = 1}).irradiance))
+            found.push_back(e.w);
+        return found;
+    };
+    serial_backend serial;
+    EXPECT_EQ(radii(*watched), radii(serial));
+    EXPECT_EQ(watched->validation_messages(), std::vector<std::string>{});
+}
+
 TEST_F(vulkan, works_on_the_callers_device)
 {
     // An application's own instance and device, with the plain API.

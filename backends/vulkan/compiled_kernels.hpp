@@ -12,8 +12,8 @@ namespace photongrid::vulkan_detail {
 
 class compiled_kernels {
 public:
-    /// `folder`: where they are kept from one start to the next; "": nowhere.
-    compiled_kernels(std::shared_ptr<context> c, const std::string& folder) : context_(std::move(c)), cache_(folder)
+    /// `folder`: where they are kept from one start to the next; "": nowhere. `optimized`: by the SPIR-V optimizer.
+    compiled_kernels(std::shared_ptr<context> c, const std::string& folder, bool optimized) : context_(std::move(c)), cache_(folder), optimized_(optimized)
     {
         if (folder.empty())
             return;
@@ -52,14 +52,14 @@ public:
     {
         static const std::string tools = "SPIR-V by photongrid 1, glslang " + std::to_string(GLSLANG_VERSION_MAJOR) + "." + std::to_string(GLSLANG_VERSION_MINOR) + "." + std::to_string(GLSLANG_VERSION_PATCH) + ", SPIRV-Tools "
             + spvSoftwareVersionString() + "\n";
-        const std::string key = tools + source.text;
+        const std::string key = (optimized_ ? tools : "plain " + tools) + source.text;
         if (const auto found = cache_.find(key); found && !found->empty() && found->size() % sizeof(std::uint32_t) == 0) {
             spirv_words words(found->size() / sizeof(std::uint32_t));
             std::memcpy(words.data(), found->data(), found->size());
             ++found_;
             return words;
         }
-        const auto words = compile_spirv(source, name);
+        const auto words = compile_spirv(source, name, optimized_);
         cache_.keep(key, std::string_view(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(std::uint32_t)));
         return words;
     }
@@ -71,6 +71,7 @@ public:
 private:
     std::shared_ptr<context> context_;
     file_cache cache_;
+    bool optimized_;
     std::string drivers_key_;
     file_cache::bytes kept_;
     VkPipelineCache drivers_ = VK_NULL_HANDLE;

@@ -71,9 +71,9 @@ inline spirv_words forbid_contraction(const spirv_words& in)
     return out;
 }
 
-/// Compiles a compute shader to optimized SPIR-V for Vulkan 1.1. `name` is for messages.
+/// Compiles a compute shader to SPIR-V for Vulkan 1.1. `name` is for messages.
 /// \throws backend_error whose text gives file and line in the kernel's own source.
-inline spirv_words compile_spirv(const spliced_source& source, const std::string& name)
+inline spirv_words compile_spirv(const spliced_source& source, const std::string& name, bool optimized)
 {
     // glslang counts its users itself; ours lives until the program ends.
     static const struct process {
@@ -108,6 +108,8 @@ inline spirv_words compile_spirv(const spliced_source& source, const std::string
 
     // Decorated before, or the optimizer folds constants through float arithmetic, and after, for what it made new.
     const auto decorated = forbid_contraction(plain);
+    if (!optimized)
+        return decorated; // what instruments kernels breaks loops of one block, which the optimizer makes
     spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_1);
     std::string complaints;
     optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {

@@ -258,7 +258,7 @@ private:
     enum class verb { run, list, iterate, count };
 
     vulkan_backend(std::shared_ptr<vulkan_detail::context> c, const vulkan_options& options)
-        : context_(std::move(c)), kernels_(context_, options.cache_folder), texts_(std::begin(kernel_texts), std::end(kernel_texts)), recorder_(context_, options.time_passes), empty_(allocate(0))
+        : context_(std::move(c)), kernels_(context_, options.cache_folder, !options.gpu_assisted), texts_(std::begin(kernel_texts), std::end(kernel_texts)), recorder_(context_, options.time_passes), empty_(allocate(0))
     {
         const auto info = vulkan_detail::describe(context_->physical(), 0);
         if (!info.unusable.empty())
