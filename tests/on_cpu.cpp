@@ -6,6 +6,7 @@
 #include "cpu_backend_tests.hpp"
 #include "edge_tests.hpp"
 #include "estimator_tests.hpp"
+#include "map_file_tests.hpp"
 #include "number_tests.hpp"
 #include "ray_tests.hpp"
 #include "render_tests.hpp"
@@ -27,6 +28,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(cpu, pictures, ::testing::Types<cpu_tag>, tag_nam
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, hard_cases, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, hard_cases_of_numbers, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, edges, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, map_files, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, scene_files, ::testing::Types<cpu_tag>, tag_names);
 
 } // namespace photongrid::testing

@@ -4,6 +4,7 @@
 #include "algorithm_tests.hpp"
 #include "edge_tests.hpp"
 #include "estimator_tests.hpp"
+#include "map_file_tests.hpp"
 #include "number_tests.hpp"
 #include "ray_tests.hpp"
 #include "render_tests.hpp"
@@ -39,6 +40,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(gl, pictures, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases_of_numbers, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, edges, contexts, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(gl, map_files, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, scene_files, contexts, tag_names);
 
 /// After all other tests of this program: the driver had nothing of high severity to say. That it would is tested in

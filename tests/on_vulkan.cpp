@@ -4,6 +4,7 @@
 #include "algorithm_tests.hpp"
 #include "edge_tests.hpp"
 #include "estimator_tests.hpp"
+#include "map_file_tests.hpp"
 #include "number_tests.hpp"
 #include "ray_tests.hpp"
 #include "render_tests.hpp"
@@ -32,6 +33,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, pictures, ::testing::Types<vulkan_tag>, t
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases_of_numbers, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, edges, ::testing::Types<vulkan_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, map_files, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, scene_files, ::testing::Types<vulkan_tag>, tag_names);
 
 /// After all other tests of this program: the layer had nothing to say.
