@@ -93,10 +93,11 @@ namespace {
             offsetof(detail::map_file_header, checksum), offsetof(detail::map_file_header, checksum) + 4};
         for (std::size_t at = 8; at < sizeof(detail::map_file_header) + 64; at += 4) {
             const bool is_header = at < sizeof(detail::map_file_header);
-            const bool is_lattice = at >= offsetof(detail::map_file_header, lattice) && at < offsetof(detail::map_file_header, resolution);
+            constexpr std::size_t lattice = offsetof(detail::map_file_header, cells_of), resolution = lattice + offsetof(grid, resolution);
+            const bool is_lattice = at >= lattice && at < resolution;
             if (std::find(std::begin(harmless), std::end(harmless), at) != std::end(harmless))
                 continue;
-            if (is_lattice && (at - offsetof(detail::map_file_header, lattice)) % 16 == 12)
+            if (is_lattice && (at - lattice) % 16 == 12)
                 continue; // fourth components are not read
             const std::uint32_t values[] = {0x7FC00000u, 0xFFFFFFFFu, 0xFFFFFF00u};
             for (const auto value : values) {

@@ -39,8 +39,7 @@ namespace detail {
         std::array<char, 8> magic = map_file_magic;
         std::uint32_t version = map_file_version;
         std::uint32_t byte_order = map_file_byte_order;
-        std::array<float, 12> lattice{};           ///< the grid's origin, inverse_cell, cell
-        std::array<std::uint32_t, 4> resolution{}; ///< and resolution
+        grid cells_of{};
         std::uint32_t photons = 0;
         std::uint32_t cells = 0;
         std::uint32_t surpluses = 0; ///< elements; 0 or as many as cells
@@ -149,13 +148,7 @@ void save_map(B& b, const photon_map<B>& map, const std::filesystem::path& file,
     const auto directions = b.download(map.photons.directions), normals = b.download(map.photons.normals), surpluses = b.download(map.surpluses);
 
     detail::map_file_header header;
-    for (int i = 0; i < 4; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        header.lattice[at] = map.cells_of.origin[i];
-        header.lattice[4 + at] = map.cells_of.inverse_cell[i];
-        header.lattice[8 + at] = map.cells_of.cell[i];
-        header.resolution[at] = map.cells_of.resolution[i];
-    }
+    header.cells_of = map.cells_of;
     header.photons = map.photons.size();
     header.cells = static_cast<std::uint32_t>(cells.size());
     header.surpluses = static_cast<std::uint32_t>(surpluses.size());
@@ -247,12 +240,13 @@ photon_map<B> load_map(B& b, const std::filesystem::path& file, std::string* not
     const auto size_of = [&](std::uint64_t count, std::size_t element) { return detail::map_file_padded(count * element); };
     const std::uint64_t expected = size_of(1, sizeof header) + size_of(cells, sizeof(glm::uvec2)) + size_of(n, sizeof(uint)) + size_of(header.surpluses, sizeof(glm::vec4))
         + size_of(header.note, 1) + size_of(n, sizeof(glm::vec4)) * (2u + (header.attributes & 1u) + (header.attributes >> 1 & 1u));
-    const auto& r = header.resolution;
+    const grid& g = header.cells_of;
+    const auto& r = g.resolution;
     if (header.attributes > 3 || expected != bytes.size() || (header.surpluses != 0 && header.surpluses != cells) || r[0] < 1 || r[1] < 1 || r[2] < 1 || r[3] != cells
         || std::uint64_t{r[0]} * r[1] > cells || std::uint64_t{r[0]} * r[1] * r[2] != cells)
         wrong();
-    for (std::size_t i = 0; i < 12; ++i)
-        if (i % 4 < 3 && (!std::isfinite(header.lattice[i]) || (i >= 4 && !(header.lattice[i] > 0))))
+    for (int axis = 0; axis < 3; ++axis)
+        if (!std::isfinite(g.origin[axis]) || !std::isfinite(g.inverse_cell[axis]) || !std::isfinite(g.cell[axis]) || !(g.inverse_cell[axis] > 0) || !(g.cell[axis] > 0))
             wrong();
 
     const std::byte* at = bytes.data() + sizeof header;
@@ -262,13 +256,7 @@ photon_map<B> load_map(B& b, const std::filesystem::path& file, std::string* not
         return found;
     };
     photon_map<B> map;
-    for (int i = 0; i < 4; ++i) {
-        const auto from = static_cast<std::size_t>(i);
-        map.cells_of.origin[i] = header.lattice[from];
-        map.cells_of.inverse_cell[i] = header.lattice[4 + from];
-        map.cells_of.cell[i] = header.lattice[8 + from];
-        map.cells_of.resolution[i] = header.resolution[from];
-    }
+    map.cells_of = header.cells_of;
     const auto index = next(std::type_identity<glm::uvec2>{}, cells);
     std::uint64_t sum_of_counts = 0;
     for (const auto& cell : index) {
