@@ -531,7 +531,7 @@ TYPED_TEST_P(algorithms, estimate_defines_what_has_no_neighbours)
         return n;
     };
     EXPECT_EQ(counts(map, {.k = 1000, .max_radius = 10}), (std::vector<uint>{100, 0, 0, 0, 0})); // k > n: all of them
-    EXPECT_EQ(counts(map, {.k = 0, .max_radius = 1}), (std::vector<uint>{0, 0, 0, 0, 0}));
+    EXPECT_THROW(counts(map, {.k = 0, .max_radius = 1}), std::invalid_argument);
     EXPECT_EQ(counts(map, {.k = 5, .max_radius = 0}), (std::vector<uint>{0, 0, 0, 0, 0}));
     EXPECT_EQ(counts(map, {.k = 5, .max_radius = -1}), (std::vector<uint>{0, 0, 0, 0, 0}));
     EXPECT_EQ(counts(map, {.k = 1000, .max_radius = inf})[0], 100u);

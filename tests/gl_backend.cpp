@@ -497,6 +497,11 @@ void kernel(uint i) { value = i; }
         both(std::type_identity<kernels::tally_error>{});
         both(std::type_identity<kernels::covered_share>{});
         both(std::type_identity<kernels::divide_by_share>{});
+        both(std::type_identity<kernels::neighbours_start>{});
+        both(std::type_identity<kernels::list_neighbours>{});
+        both(std::type_identity<kernels::neighbour_pair>{});
+        both(std::type_identity<kernels::sort_neighbours>{});
+        both(std::type_identity<kernels::neighbour>{});
     }
 
     TYPED_TEST(gl_backend_test, reports_errors_at_the_kernels_own_line)

@@ -5,6 +5,7 @@
 #include "edge_tests.hpp"
 #include "estimator_tests.hpp"
 #include "map_file_tests.hpp"
+#include "neighbour_tests.hpp"
 #include "number_tests.hpp"
 #include "ray_tests.hpp"
 #include "render_tests.hpp"
@@ -38,6 +39,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(gl, algorithms, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, estimators, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, pictures, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases, contexts, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(gl, neighbours, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases_of_numbers, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, edges, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, map_files, contexts, tag_names);

@@ -1,6 +1,7 @@
 // All backend tests on the serial backend; those of rays and pictures in on_serial_pictures.cpp, so that two cores compile them.
 #include "algorithm_tests.hpp"
 #include "estimator_tests.hpp"
+#include "neighbour_tests.hpp"
 #include "number_tests.hpp"
 #include "on_serial.hpp"
 
@@ -8,6 +9,7 @@ namespace photongrid::testing {
 
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, algorithms, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, estimators, ::testing::Types<serial_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(serial, neighbours, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, hard_cases_of_numbers, ::testing::Types<serial_tag>, tag_names);
 
 } // namespace photongrid::testing

@@ -620,7 +620,7 @@ using all_kernels = kernel_list<kernels::arithmetic_probe, kernels::photon_cell,
     kernels::gather_photon, kernels::divide_power, kernels::eye_ray, kernels::eye_bounce, kernels::direct_light, kernels::no_light, kernels::copy_light, kernels::shade,
     kernels::take_vector, kernels::other_part, kernels::packed_cell, kernels::packed_photon, kernels::kth_guess, kernels::kth_distance, kernels::kth_result, kernels::kth_tie, kernels::given_radius,
     kernels::grown_radius, kernels::gather_start, kernels::gather_photons, kernels::no_estimate, kernels::irradiance_estimate, kernels::gather_normal, kernels::tally_error, kernels::covered_share, kernels::divide_by_share,
-    test_kernels::contracts, test_kernels::countdown, test_kernels::eight_states>;
+    kernels::neighbours_start, kernels::list_neighbours, kernels::neighbour_pair, kernels::sort_neighbours, kernels::neighbour, test_kernels::contracts, test_kernels::countdown, test_kernels::eight_states>;
 
 /// Every float operation of a module that lacks NoContraction.
 std::size_t free_to_contract(const std::vector<std::uint32_t>& words)

@@ -98,6 +98,21 @@ struct gather_start {
 struct gather_photons {
 #include <photongrid/kernels/gather_photons.glsl>
 };
+struct neighbours_start {
+#include <photongrid/kernels/neighbours_start.glsl>
+};
+struct list_neighbours {
+#include <photongrid/kernels/list_neighbours.glsl>
+};
+struct neighbour_pair {
+#include <photongrid/kernels/neighbour_pair.glsl>
+};
+struct sort_neighbours {
+#include <photongrid/kernels/sort_neighbours.glsl>
+};
+struct neighbour {
+#include <photongrid/kernels/neighbour.glsl>
+};
 struct no_estimate {
 #include <photongrid/kernels/no_estimate.glsl>
 };

@@ -4,4 +4,5 @@
 #include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>
 #include <photongrid/backends/cpu/overrides/grid_index.hpp>
 #include <photongrid/backends/cpu/overrides/knn_grid_estimate.hpp>
+#include <photongrid/backends/cpu/overrides/knn_neighbours.hpp>
 #include <photongrid/backends/cpu/overrides/sorted_map.hpp>

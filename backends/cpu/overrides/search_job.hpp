@@ -36,6 +36,9 @@ struct search_job {
     glm::vec4* irradiance = nullptr;
     glm::uvec2* used = nullptr;
     glm::vec4* standard_error = nullptr; ///< only with errors
+
+    uint* ids = nullptr;                 ///< lists are wanted, not estimates: `wanted` entries a point here ...
+    float* distances2 = nullptr;         ///< ... and here
 };
 
 } // namespace photongrid::cpu

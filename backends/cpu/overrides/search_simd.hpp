@@ -17,6 +17,7 @@
 #include <photongrid/backends/cpu/overrides/search_job.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
@@ -165,9 +166,11 @@ public:
                 store_some(d, py, near, of(y) + k);
                 store_some(d, pz, near, of(z) + k);
                 const auto take = [&](plane p, const float* from) HWY_ATTR { store_some(d, hn::LoadU(d, from + i), near, of(p) + k); };
-                take(red, j.powers.x);
-                take(green, j.powers.y);
-                take(blue, j.powers.z);
+                if (j.ids == nullptr) {
+                    take(red, j.powers.x);
+                    take(green, j.powers.y);
+                    take(blue, j.powers.z);
+                }
                 if (j.side) {
                     take(travel_x, j.directions.x);
                     take(travel_y, j.directions.y);
@@ -467,6 +470,37 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
     return g;
 }
 
+/// Lists the photons within the radius, nearest first, by the distances that scan() wrote. `keys` is scratch.
+HWY_INLINE void list(const search_job& j, uint point, chosen_radius r, const packet& near, std::vector<std::uint64_t>& keys)
+{
+    const floats d;
+    const uints du;
+    const std::size_t width = hn::Lanes(d), n = near.size();
+    const float* const distances = near.of(packet::squared_distance);
+    // Where they stand in the packet.
+    auto* const within = reinterpret_cast<uint*>(near.of(packet::kept));
+    const auto radius2 = hn::Set(d, r.radius2);
+    std::size_t held = 0;
+    for (std::size_t i = 0; i < n; i += width) {
+        const auto is_within = hn::And(hn::Le(hn::Load(d, distances + i), radius2), hn::FirstN(d, n - i));
+        held += store_some(du, hn::Add(hn::Set(du, static_cast<uint>(i)), hn::Iota(du, 0)), hn::RebindMask(du, is_within), within + held);
+    }
+    // The bits of squared distances are in their order; the smallest ids come first.
+    keys.resize(held);
+    for (std::size_t i = 0; i < held; ++i)
+        keys[i] = std::uint64_t{std::bit_cast<uint>(distances[within[i]])} << 32 | j.list[near.place(within[i])];
+    std::sort(keys.begin(), keys.end());
+    held = std::min<std::size_t>(held, j.wanted); // more lie at the radius itself
+    uint* const ids = j.ids + std::size_t{point} * j.wanted;
+    float* const distances2 = j.distances2 + std::size_t{point} * j.wanted;
+    for (std::size_t i = 0; i < held; ++i) {
+        ids[i] = static_cast<uint>(keys[i]);
+        distances2[i] = std::bit_cast<float>(static_cast<uint>(keys[i] >> 32));
+    }
+    std::fill(ids + held, ids + j.wanted, nowhere);
+    std::fill(distances2 + held, distances2 + j.wanted, std::numeric_limits<float>::infinity());
+}
+
 /// A first guess at the k-th squared distance, from cell counts.
 inline float guess(const search_job& j, uint point)
 {
@@ -508,6 +542,7 @@ HWY_INLINE void search_points(const search_job& j, std::size_t begin, std::size_
     constexpr float surplus = 0.06f; // that a packet reaches farther than the last query's k-th photon
     packet near;
     std::vector<uint> at_radius;
+    std::vector<std::uint64_t> keys;
     query last;
     float last_radius = -1;     // distance of the last query's k-th photon; none: -1
     float expected = -1;        // this query's, where something better than the last is known
@@ -520,7 +555,12 @@ HWY_INLINE void search_points(const search_job& j, std::size_t begin, std::size_
     for (std::size_t o = begin; o < end;) {
         const uint first = j.order[o];
         if (!is_wanted(first)) {
-            finish(j, first, {j.max_radius2, false}, {}, 0);
+            if (j.ids != nullptr) {
+                std::fill_n(j.ids + std::size_t{first} * j.wanted, j.wanted, nowhere);
+                std::fill_n(j.distances2 + std::size_t{first} * j.wanted, j.wanted, std::numeric_limits<float>::infinity());
+            } else {
+                finish(j, first, {j.max_radius2, false}, {}, 0);
+            }
             ++o;
             continue;
         }
@@ -603,7 +643,10 @@ HWY_INLINE void search_points(const search_job& j, std::size_t begin, std::size_
                     break;
                 }
             }
-            finish(j, point, r, j.errors ? gather<true>(j, r, near, at_radius) : gather<false>(j, r, near, at_radius), visited);
+            if (j.ids != nullptr)
+                list(j, point, r, near, keys);
+            else
+                finish(j, point, r, j.errors ? gather<true>(j, r, near, at_radius) : gather<false>(j, r, near, at_radius), visited);
             visited = 0;
             last_radius = r.by_photon ? std::sqrt(r.radius2) : -1;
             last = q;

@@ -1,0 +1,85 @@
+// What the cpu backend's estimates and lists share: the order in which points are searched for, and the job of the SIMD code.
+#pragma once
+
+#include <photongrid/backends/cpu/cpu.hpp>
+#include <photongrid/backends/cpu/overrides/radix_sort.hpp>
+#include <photongrid/backends/cpu/overrides/simd.hpp>
+#include <photongrid/knn_settings.hpp>
+
+namespace photongrid::cpu {
+
+/// Points that follow each other on one thread. Blocks stay the same however many threads there are: a block's queries help
+/// each other.
+inline constexpr std::size_t search_block_size = 256;
+
+/// Orders points along a curve that keeps neighbours together (Morton 1966), 1,024 steps along each axis of the grid.
+inline buffer<uint> order_along_curve(cpu_backend& b, const grid& g, const buffer<glm::vec4>& points_of)
+{
+    const std::size_t n = points_of.size();
+    auto pairs = b.make<glm::uvec2>(n);
+    auto scratch = b.make<glm::uvec2>(n);
+    const auto points = b.rows(points_of);
+    const auto to = b.rows_to_write(pairs);
+    const glm::vec3 steps = 1024.0f / (glm::vec3(g.cell) * glm::vec3(g.resolution));
+    const auto spread = [](float u) {
+        u = u > 0.0f ? u : 0.0f;
+        auto v = static_cast<uint>(u < 1023.0f ? u : 1023.0f);
+        v = (v | v << 16) & 0x030000FFu;
+        v = (v | v << 8) & 0x0300F00Fu;
+        v = (v | v << 4) & 0x030C30C3u;
+        return (v | v << 2) & 0x09249249u;
+    };
+    b.threads().for_blocks(n, 4096, [&](std::size_t first, std::size_t past) {
+        for (std::size_t i = first; i < past; ++i) {
+            const glm::vec3 u = (glm::vec3(points[i]) - glm::vec3(g.origin)) * steps;
+            to[i] = {spread(u.x) | spread(u.y) << 1 | spread(u.z) << 2, static_cast<uint>(i)};
+        }
+    });
+    const auto sorted = radix_sort(b.threads(), to.data(), b.rows_to_write(scratch).data(), n);
+    const auto from = b.rows(sorted.in_scratch ? scratch : pairs);
+    auto ordered = b.make<uint>(n);
+    const auto order = b.rows_to_write(ordered);
+    b.threads().for_blocks(n, 16384, [&](std::size_t first, std::size_t past) {
+        for (std::size_t i = first; i < past; ++i)
+            order[i] = from[i].y;
+    });
+    return ordered;
+}
+
+/// The search of `in`, but for where its results go.
+inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, const buffer<uint>& order)
+{
+    auto& b = *in.b;
+    const auto& s = in.s;
+    const auto& photons = in.map->photons;
+    search_job j;
+    j.cells_of = in.map->cells_of;
+    j.cells = b.rows(in.map->cells);
+    j.positions = b.planes(photons.positions);
+    j.powers = b.planes(photons.powers);
+    j.side = s.leaks.side;
+    j.agreement = s.leaks.needs_normals();
+    j.min_cosine = s.leaks.min_cosine;
+    j.flattening = s.leaks.compression > 1 ? s.leaks.compression * s.leaks.compression - 1.0f : 0.0f;
+    if (j.side)
+        j.directions = b.planes(photons.directions);
+    if (j.agreement)
+        j.normals = b.planes(photons.normals);
+    j.list = b.rows(in.map->list).data();
+    j.points = b.rows(*in.points).data();
+    if (s.leaks.needs_any())
+        j.point_normals = b.rows(*in.normals).data();
+    j.order = b.rows(order).data();
+    j.exact = s.search == search_kind::exact_k;
+    j.searching = in.searching();
+    j.wanted = s.k;
+    j.max_radius2 = in.max_radius2();
+    j.min_radius2 = in.min_radius2();
+    j.kernel = s.kernel;
+    j.norm = detail::norm_of(s.kernel);
+    j.leave_out = s.bias == bias_kind::unbiased;
+    j.errors = s.errors;
+    return j;
+}
+
+} // namespace photongrid::cpu
