@@ -63,7 +63,7 @@ int main()
         std::ifstream file(PHOTONGRID_BENCH_KERNELS "/bitonic_step_float.glsl");
         const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
         const text_file texts[] = {{"bench/kernels/bitonic_step_float.glsl", text}};
-        b.use_texts(texts);
+        b.add_texts(texts);
         std::printf("| kernel | instructions | buffer reads | integer operations | bit casts | the paper's Inst, TEX, Addr, Pack |\n|---|---|---|---|---|---|\n");
         row("bitonic_step", count(b.spirv<kernels::bitonic_step>(0)), "Bitonic Sort: 52, 2, 13, 0");
         row("bitonic_step_float", count(b.spirv<kernels::bitonic_step_float>(0)), "the same, with float addresses");

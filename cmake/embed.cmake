@@ -1,18 +1,21 @@
-# photongrid_embed(OUTPUT header TABLE name FILES file...)
+# photongrid_embed(OUTPUT header TABLE name [NAMESPACE name] FILES file...)
 #
-# Writes a header that holds the text of each file, byte for byte, as `inline constexpr text_file TABLE[]`, at configure
-# time. Editing a file configures again. Names are shown relative to BASE (in messages of shader compilers).
+# Writes a header that holds the text of each file, byte for byte, as `inline constexpr photongrid::text_file TABLE[]` in NAMESPACE
+# (or photongrid), at configure time. Editing a file configures again. Names are shown relative to BASE (in messages of shader compilers).
 function(photongrid_embed)
-  cmake_parse_arguments(arg "" "OUTPUT;TABLE;BASE" "FILES" ${ARGN})
+  cmake_parse_arguments(arg "" "OUTPUT;TABLE;NAMESPACE;BASE" "FILES" ${ARGN})
+  if(NOT arg_NAMESPACE)
+    set(arg_NAMESPACE photongrid)
+  endif()
   set(entries "")
   foreach(file IN LISTS arg_FILES)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
     file(READ "${file}" text)
     file(RELATIVE_PATH name "${arg_BASE}" "${file}")
-    string(APPEND entries "    text_file{\"${name}\", R\"glsl(${text})glsl\"},\n")
+    string(APPEND entries "    photongrid::text_file{\"${name}\", R\"glsl(${text})glsl\"},\n")
   endforeach()
   list(LENGTH arg_FILES count)
-  set(content "// Made by CMake (cmake/embed.cmake); do not edit.\n#pragma once\n#include <photongrid/text_file.hpp>\nnamespace photongrid {\ninline constexpr text_file ${arg_TABLE}[${count}] = {\n${entries}};\n} // namespace photongrid\n")
+  set(content "// Made by CMake (cmake/embed.cmake); do not edit.\n#pragma once\n#include <photongrid/text_file.hpp>\nnamespace ${arg_NAMESPACE} {\ninline constexpr photongrid::text_file ${arg_TABLE}[${count}] = {\n${entries}};\n} // namespace ${arg_NAMESPACE}\n")
   if(EXISTS "${arg_OUTPUT}")
     file(READ "${arg_OUTPUT}" old)
   endif()

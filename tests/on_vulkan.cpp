@@ -23,7 +23,7 @@ struct vulkan_tag {
     static std::unique_ptr<type> make()
     {
         auto b = std::make_unique<type>(vulkan_options{.validation = true, .gpu_assisted = std::getenv("PHOTONGRID_GPU_AV") != nullptr});
-        b->use_texts(test_kernel_texts);
+        b->add_texts(test_kernel_texts);
         return b;
     }
 };

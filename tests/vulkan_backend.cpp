@@ -161,7 +161,7 @@ struct vulkan_tag {
         try {
             o.validation = true;
             auto b = std::make_unique<type>(o);
-            b->use_texts(test_kernels::texts);
+            b->add_texts(test_kernels::texts);
             return b;
         } catch (const backend_error& e) {
             if (every_backend_required() || std::string(e.what()).find("vulkan-validationlayers") == std::string::npos)
@@ -169,7 +169,7 @@ struct vulkan_tag {
         }
         o.validation = false;
         auto b = std::make_unique<type>(o);
-        b->use_texts(test_kernels::texts);
+        b->add_texts(test_kernels::texts);
         return b;
     }
 };
@@ -386,7 +386,7 @@ TEST_F(vulkan, elements_of_a_group_hear_of_each_other)
                     o.staging = staging;
                     o.subgroups = subgroups;
                     vulkan_backend device(o);
-                    device.use_texts(test_kernels::texts);
+                    device.add_texts(test_kernels::texts);
                     random_source u(n);
                     std::vector<uint> numbers(n);
                     std::vector<uvec2> states(n);
@@ -833,7 +833,7 @@ TEST_F(vulkan, gpu_assisted_validation_sees_a_read_out_of_bounds)
         } catch (const backend_error& e) {
             GTEST_SKIP() << e.what();
         }
-        watched->use_texts(test_kernels::texts);
+        watched->add_texts(test_kernels::texts);
         const std::vector<uint> host(16, 7u);
         const auto input = watched->upload(std::span<const uint>(host));
         auto output = watched->make<uint>(16);

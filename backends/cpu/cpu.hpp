@@ -6,7 +6,6 @@
 #include <photongrid/backend.hpp>
 #include <photongrid/backends/cpu/buffer.hpp>
 #include <photongrid/backends/cpu/pool.hpp>
-#include <photongrid/kernel_source.hpp>
 
 #include <atomic>
 #include <chrono>

@@ -91,16 +91,17 @@ public:
         const auto start = std::chrono::steady_clock::now();
         const std::string name(kernel_name<K>());
         const std::string what = "kernel " + name;
-        const text_file& kernel = find_kernel_text(K::path, library_);
+        const auto texts = texts_of<K>(library_);
+        const text_file& kernel = find_kernel_text(K::path, texts);
         std::string defines = "#define SWITCHES_ " + std::to_string(switches) + "u\n";
         GLuint program = 0;
         if (v == verb::route_payload || v == verb::route_amount) {
-            const GLuint vertex = gl::compile(*device_, GL_VERTEX_SHADER, splice(text("vertex_prelude.glsl"), defines, kernel, text("vertex_epilogue.glsl"), library_), what + " (vertex stage)");
+            const GLuint vertex = gl::compile(*device_, GL_VERTEX_SHADER, splice(text("vertex_prelude.glsl"), defines, kernel, text("vertex_epilogue.glsl"), texts), what + " (vertex stage)");
             program = link(*device_, vertex, compile_own(GL_FRAGMENT_SHADER, v == verb::route_payload ? "route_payload.glsl" : "route_amount.glsl"), what);
         } else {
             constexpr std::array verbs{"RUN_", "UNTIL_DONE_", "NOT_DONE_", "HOLDS_"};
             defines += std::string("#define ") + verbs[static_cast<std::size_t>(v)] + "\n#define LOAD_STATES_(at) " + load_states<K>() + "\n";
-            const GLuint fragment = gl::compile(*device_, GL_FRAGMENT_SHADER, splice(text("fragment_prelude.glsl"), defines, kernel, text("fragment_epilogue.glsl"), library_), what + " (fragment stage)");
+            const GLuint fragment = gl::compile(*device_, GL_FRAGMENT_SHADER, splice(text("fragment_prelude.glsl"), defines, kernel, text("fragment_epilogue.glsl"), texts), what + " (fragment stage)");
             program = link(*device_, compile_own(GL_VERTEX_SHADER, "screen.glsl"), fragment, what);
         }
         kernels_.emplace(key, program);

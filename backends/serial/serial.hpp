@@ -4,7 +4,6 @@
 #pragma once
 
 #include <photongrid/backend.hpp>
-#include <photongrid/kernel_source.hpp>
 
 #include <algorithm>
 #include <memory>

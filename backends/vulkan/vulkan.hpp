@@ -62,7 +62,7 @@ public:
     explicit vulkan_backend(const vulkan_handles& handles) : vulkan_backend(std::make_shared<vulkan_detail::context>(handles), vulkan_options{}) {}
 
     /// More kernel files than the library's own, as photongrid_embed() made them; they must outlive the backend.
-    void use_texts(std::span<const text_file> texts) { texts_.insert(texts_.end(), texts.begin(), texts.end()); }
+    void add_texts(std::span<const text_file> texts) { texts_.insert(texts_.end(), texts.begin(), texts.end()); }
 
     /// A buffer of n elements, contents undefined.
     /// \throws backend_error when n exceeds what the device binds, or its memory.
@@ -393,8 +393,9 @@ private:
         if constexpr (requires { K::group_switch; })
             if (v != verb::count && (switches >> K::group_switch & 1u) != 0)
                 lanes = lanes_;
+        const auto texts = texts_of<K>(texts_);
         const auto source = splice(own_text("compute_prelude"), defines(output_count<K>, switches & known_switches<K>(), v == verb::list, texels, lanes),
-            find_kernel_text(K::path, texts_), own_text(epilogues[static_cast<int>(v)]), texts_);
+            find_kernel_text(K::path, texts), own_text(epilogues[static_cast<int>(v)]), texts);
         auto words = kernels_.compile(source, name);
         auto& c = costs_[name];
         if (v != verb::list)

@@ -99,6 +99,17 @@ inline const text_file& find_kernel_text(std::string_view path, std::span<const 
     throw std::runtime_error("kernel text '" + std::string(path) + "' was not embedded; name it in photongrid_embed() in CMake");
 }
 
+/// The texts that kernel K can be made of: those that it brings along, which photongrid_add_kernels() gives it, before `library`.
+template <class K>
+std::vector<text_file> texts_of(std::span<const text_file> library)
+{
+    std::vector<text_file> texts;
+    if constexpr (requires { K::own_texts(); })
+        texts.assign(K::own_texts().begin(), K::own_texts().end());
+    texts.insert(texts.end(), library.begin(), library.end());
+    return texts;
+}
+
 /// Rewrites a compiler's log so that each message reads `file:line: error: …` with the source line quoted below it.
 /// Understands Mesa's, glslang's and NVIDIA's forms; what matches none is kept as it is.
 inline std::string translate_log(std::string_view log, const spliced_source& source)

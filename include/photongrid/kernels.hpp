@@ -1,15 +1,10 @@
 // The kernels of the four algorithms: every kernel file, read as C++, once.
 #pragma once
 
+#include <photongrid/kernel_helpers.hpp>
 #include <photongrid/kernels/begin.hpp>
 
 namespace photongrid::kernels {
-
-using namespace glm; // kernels are GLSL: its names are GLM's
-
-#include <photongrid/kernels/distance_key.glsl>
-#include <photongrid/kernels/grid.glsl>
-#include <photongrid/kernels/random.glsl>
 
 struct arithmetic_probe {
 #include <photongrid/kernels/arithmetic_probe.glsl>

@@ -1,0 +1,79 @@
+// What photongrid can say of a forest: nothing here is light.
+#pragma once
+
+#include "forest_kernels.hpp"
+
+#include <photongrid/build_map.hpp>
+#include <photongrid/fitting_grid.hpp>
+#include <photongrid/knn_grid_estimate.hpp>
+#include <photongrid/knn_neighbours.hpp>
+#include <photongrid/own_photons.hpp>
+
+#include <vector>
+
+/// A tree as a forester has it.
+struct tree {
+    double east, north; // m
+    float height;       // m
+};
+
+/// How photongrid reads it: as a photon of flux 1, so that an estimate counts trees.
+template <>
+struct photongrid::photon_reader<tree> {
+    static glm::dvec3 position(const tree& t) { return {t.east, t.north, 0}; }
+    static float flux(const tree&) { return 1; }
+};
+
+/// What is found about one place.
+struct survey {
+    float trees_a_hectare = 0;
+    float standard_error = 0; ///< of it
+    float mean_height = 0;    ///< m
+    std::vector<std::uint32_t> nearest; ///< places in the vector of trees
+    std::vector<float> distances;       ///< m
+};
+
+/// Surveys places (m, east and north) from the `k` trees nearest to each, on any backend.
+template <photongrid::backend Device>
+std::vector<survey> survey_forest(Device& device, const std::vector<tree>& trees, const std::vector<glm::vec2>& places, std::uint32_t k)
+{
+    // Trees to the device, into a map; a grid that fits them.
+    auto cloud = photongrid::upload_photons(device, trees);
+    const auto grid = photongrid::fitting_grid(device, cloud, k, device.caps().cells_a_radius);
+    const auto map = photongrid::sorted_map(device, std::move(cloud), grid);
+
+    std::vector<glm::vec4> at; // w > 0: asked for
+    for (const auto& p : places)
+        at.emplace_back(p, 0.0f, 1.0f);
+    const auto points = device.upload(std::span<const glm::vec4>(at));
+    const photongrid::knn_settings settings{.k = k, .max_radius = 1000, .errors = true};
+
+    // Density, with its error: trees a square metre.
+    const auto density = photongrid::knn_grid_estimate(device, map, points, settings);
+
+    // The neighbours themselves.
+    const auto neighbours = photongrid::knn_neighbours(device, map, points, settings);
+
+    // What the library does not know: their mean height, by a kernel of our own.
+    std::vector<float> heights;
+    for (const auto& t : trees)
+        heights.push_back(t.height);
+    const auto all_heights = device.upload(std::span<const float>(heights));
+    auto mean = device.template make<float>(places.size());
+    device.template run<forest::mean_height>(places.size(), {.k = k}, photongrid::reads(neighbours.ids, neighbours.distances2, all_heights), photongrid::writes(mean));
+
+    const auto per_square_metre = device.download(density.irradiance), errors = device.download(density.standard_error);
+    const auto means = device.download(mean), distances2 = device.download(neighbours.distances2);
+    const auto ids = device.download(neighbours.ids);
+    std::vector<survey> found(places.size());
+    for (std::size_t p = 0; p < found.size(); ++p) {
+        found[p].trees_a_hectare = 1e4f * per_square_metre[p].x;
+        found[p].standard_error = 1e4f * errors[p].x;
+        found[p].mean_height = means[p];
+        for (std::size_t n = p * k; n < (p + 1) * k && ids[n] != photongrid::nowhere; ++n) {
+            found[p].nearest.push_back(ids[n]);
+            found[p].distances.push_back(std::sqrt(distances2[n]));
+        }
+    }
+    return found;
+}

@@ -1,0 +1,26 @@
+// The mean height of the trees nearest to each point; those close by count more (inverse distance weighting, Shepard 1968).
+struct Params {
+    uint k; // entries to a list
+};
+PARAMS(Params)
+INPUT(0, uint, ids)         // of trees, k for each point; 0xFFFFFFFF: there are no more
+INPUT(1, float, distances2) // m^2
+INPUT(2, float, heights)    // of all trees, m
+OUTPUT(0, float, mean)      // m; 0 where there is no tree
+
+void kernel(uint i)
+{
+    float sum = 0.0f;
+    float weights = 0.0f;
+    for (uint entry = i * args.k; entry < (i + 1u) * args.k; ++entry) {
+        uint tree = ids(entry);
+        if (tree != 0xFFFFFFFFu) {
+            precise float weight = 1.0f / (1.0f + distances2(entry));
+            precise float more = sum + weight * heights(tree);
+            precise float all = weights + weight;
+            sum = more;
+            weights = all;
+        }
+    }
+    mean = weights > 0.0f ? sum / weights : 0.0f;
+}
