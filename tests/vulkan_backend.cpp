@@ -871,44 +871,6 @@ TEST_F(vulkan, gpu_assisted_validation_takes_the_search)
     EXPECT_EQ(watched->validation_messages(), std::vector<std::string>{});
 }
 
-TEST_F(vulkan, works_on_the_callers_device)
-{
-    // An application's own instance and device, with the plain API.
-    VkApplicationInfo app{};
-    app.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-    app.apiVersion = VK_API_VERSION_1_1;
-    VkInstanceCreateInfo instance_info{};
-    instance_info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
-    instance_info.pApplicationInfo = &app;
-    vulkan_handles h;
-    ASSERT_EQ(vkCreateInstance(&instance_info, nullptr, &h.instance), VK_SUCCESS);
-    std::uint32_t one = 1;
-    ASSERT_GE(vkEnumeratePhysicalDevices(h.instance, &one, &h.physical_device), VK_SUCCESS);
-    h.queue_family = vulkan_detail::compute_family(h.physical_device).value();
-    const float priority = 1;
-    VkDeviceQueueCreateInfo queue{};
-    queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
-    queue.queueFamilyIndex = h.queue_family;
-    queue.queueCount = 1;
-    queue.pQueuePriorities = &priority;
-    VkDeviceCreateInfo device_info{};
-    device_info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-    device_info.queueCreateInfoCount = 1;
-    device_info.pQueueCreateInfos = &queue;
-    ASSERT_EQ(vkCreateDevice(h.physical_device, &device_info, nullptr, &h.device), VK_SUCCESS);
-    vkGetDeviceQueue(h.device, h.queue_family, 0, &h.queue);
-    {
-        vulkan_backend mine(h);
-        const auto s = make_photons(distribution::uniform, 1000, uvec3(5), 1);
-        const auto points = make_points(s, 100, 1);
-        expect_equal(map_and_estimate(mine, s, points, 0, {.k = 20, .max_radius = 1.0f}), map_and_estimate(serial, s, points, 0, {.k = 20, .max_radius = 1.0f}));
-    }
-    EXPECT_EQ(vkDeviceWaitIdle(h.device), VK_SUCCESS); // still the caller's
-    vkDestroyDevice(h.device, nullptr);
-    vkDestroyInstance(h.instance, nullptr);
-    EXPECT_THROW(vulkan_backend{vulkan_handles{}}, std::invalid_argument);
-}
-
 // --- the cache of compiled kernels --------------------------------------------------------------------------------------
 
 /// A folder of this process's own that goes with it.

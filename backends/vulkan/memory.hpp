@@ -71,6 +71,14 @@ public:
         return b;
     }
 
+    /// Somebody else's from now on.
+    void let_go(const block& b)
+    {
+        bytes_ -= b.bytes;
+        if (b.mapped != nullptr)
+            vkUnmapMemory(device(), b.memory);
+    }
+
     void release(const block& b, memory_kind kind)
     {
         bytes_ -= b.bytes;
@@ -197,14 +205,31 @@ public:
         : context_(std::move(c)), kind_(kind), format_(format), bytes_(bytes), block_(context_->acquire(bytes, kind))
     {
     }
+    /// Over a buffer that stays the caller's: its first `bytes` bytes.
+    allocation(std::shared_ptr<context> c, VkBuffer callers, VkDeviceSize bytes, VkFormat format)
+        : context_(std::move(c)), kind_(memory_kind::device), format_(format), bytes_(bytes), named_(false), ours_(false), block_{.buffer = callers, .bytes = bytes}
+    {
+    }
     allocation(const allocation&) = delete;
     allocation& operator=(const allocation&) = delete;
     ~allocation()
     {
         forget();
         vkDestroyBufferView(context_->device(), view_, nullptr);
-        context_->release(block_, kind_);
+        if (ours_)
+            context_->release(block_, kind_);
     }
+
+    /// The caller's from now on, who destroys it when the device is done with it.
+    block give_up()
+    {
+        forget();
+        if (ours_)
+            context_->let_go(block_);
+        ours_ = false;
+        return block_;
+    }
+    bool is_of(const context& c) const { return context_.get() == &c; }
 
     /// Nobody can name it any more; only passes that are not done hold it.
     void forget()
@@ -217,8 +242,8 @@ public:
     VkBuffer buffer() const { return block_.buffer; }
     VkDeviceSize bytes() const { return bytes_; }
     void* mapped() const { return block_.mapped; }
-    /// What a descriptor covers.
-    VkDeviceSize range() const { return std::max<VkDeviceSize>(bytes_, 16); }
+    /// What a descriptor covers: of ours something, even where there are no elements.
+    VkDeviceSize range() const { return ours_ ? std::max<VkDeviceSize>(bytes_, 16) : bytes_; }
     /// The same as a texel buffer.
     VkBufferView view()
     {
@@ -239,7 +264,7 @@ private:
     VkFormat format_;
     VkBufferView view_ = VK_NULL_HANDLE;
     VkDeviceSize bytes_;
-    bool named_ = true;
+    bool named_ = true, ours_ = true;
     block block_;
 };
 

@@ -202,6 +202,20 @@ public:
         std::memcpy(data, seen->mapped(), bytes);
     }
 
+    /// Hands what is recorded to the device, and from now on lets the caller's commands on the queue take turns with ours:
+    /// those submitted later see what ours wrote, and ours see what theirs wrote.
+    void take_turns()
+    {
+        taking_turns_ = true;
+        if (!recording_) {
+            start(); // begins with the barrier
+            recording_ = true;
+        } else {
+            full_barrier();
+        }
+        submit();
+    }
+
     /// Hands what is recorded to the device.
     void submit()
     {
@@ -332,6 +346,16 @@ private:
         vkCmdPipelineBarrier(now_.commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, stages, 0, 1, &b, 0, nullptr, 0, nullptr);
     }
 
+    /// Between ours and whatever the caller does on the queue.
+    void full_barrier()
+    {
+        VkMemoryBarrier b{};
+        b.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+        b.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+        b.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+        vkCmdPipelineBarrier(now_.commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &b, 0, nullptr, 0, nullptr);
+    }
+
     void counted()
     {
         if (++now_.passes >= passes_a_batch)
@@ -359,6 +383,8 @@ private:
         if (r != VK_SUCCESS)
             destroy(now_);
         check(r, "vkBeginCommandBuffer");
+        if (taking_turns_)
+            full_barrier();
         if (timed_)
             vkCmdResetQueryPool(now_.commands, now_.clock, 0, 2 * passes_a_batch);
     }
@@ -431,6 +457,7 @@ private:
     bool timed_;
     VkCommandPool commands_ = VK_NULL_HANDLE;
     bool recording_ = false;
+    bool taking_turns_ = false;
     batch now_;
     std::deque<batch> flying_, idle_;
 };

@@ -58,8 +58,10 @@ public:
     /// \throws backend_error when there is no driver, no such device, or no validation layer where one is asked for.
     explicit vulkan_backend(const vulkan_options& options = {}) : vulkan_backend(std::make_shared<vulkan_detail::context>(options), options) {}
 
-    /// Works on a device that the caller owns and that outlives this backend and its buffers.
-    explicit vulkan_backend(const vulkan_handles& handles) : vulkan_backend(std::make_shared<vulkan_detail::context>(handles), vulkan_options{}) {}
+    /// Works on a device that the caller owns and that outlives this backend and its buffers. It changes nothing that is the
+    /// caller's: it has a command pool, descriptors and pipelines of its own, and submits to the queue. Of the options, those
+    /// about kernels and timing count; device, validation and staging are the caller's affair.
+    explicit vulkan_backend(const vulkan_handles& handles, const vulkan_options& options = {}) : vulkan_backend(std::make_shared<vulkan_detail::context>(handles), options) {}
 
     /// More kernel files than the library's own, as photongrid_embed() made them; they must outlive the backend.
     void add_texts(std::span<const text_file> texts) { texts_.insert(texts_.end(), texts.begin(), texts.end()); }
@@ -85,15 +87,65 @@ public:
     template <element T>
     std::vector<T> download(const buffer<T>& b)
     {
+        check_owner("download: b", b);
         std::vector<T> data(b.n_);
         recorder_.read(b.memory_, data.data(), data.size() * sizeof(T));
         return data;
     }
 
+    /// The Vulkan buffer behind `b`: element i begins at byte i * sizeof(T). It stays this backend's and lives as long as `b`.
+    /// Null for a buffer that was never made. What was asked of this backend so far is submitted. Commands that the caller
+    /// submits to the queue afterwards see its results without a barrier, and what they write is seen by passes asked for after
+    /// they were submitted. Ask again before each of your own submissions that touches a buffer of this backend.
+    template <element T>
+    VkBuffer handle(const buffer<T>& b)
+    {
+        check_owner("handle: b", b);
+        recorder_.take_turns();
+        return b.memory_ ? b.memory_->buffer() : VK_NULL_HANDLE;
+    }
+
+    /// What a Vulkan buffer must be usable for, to be adopted.
+    static constexpr VkBufferUsageFlags adopted_usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+
+    /// A buffer over the first n elements of one that the caller has on the same device, and goes on owning: it must live, and
+    /// keep its memory, until the buffer is gone and finish() has returned. Not counted in bytes(). As with handle(), commands
+    /// on the queue take turns.
+    /// \throws std::invalid_argument for a null handle or more elements than the device binds.
+    template <element T>
+    buffer<T> adopt(VkBuffer callers, std::size_t n)
+    {
+        const auto limit = context_->max_buffer_bytes() / sizeof(T);
+        if (callers == VK_NULL_HANDLE || n < 1 || n > limit)
+            throw std::invalid_argument("vulkan_backend: adopt: callers, n: " + std::to_string(n) + " elements of " + (callers == VK_NULL_HANDLE ? "no buffer" : "a buffer") + " were given; this device binds 1 to "
+                + std::to_string(limit) + " of " + std::to_string(sizeof(T)) + " bytes");
+        recorder_.take_turns();
+        return buffer<T>(std::make_shared<vulkan_detail::allocation>(context_, callers, n * sizeof(T), format_of<T>), n);
+    }
+
+    /// A buffer that is the caller's to destroy, and the memory that it alone is bound to.
+    struct released_buffer {
+        VkBuffer buffer = VK_NULL_HANDLE;
+        VkDeviceMemory memory = VK_NULL_HANDLE; ///< null where the buffer had been adopted
+        VkDeviceSize bytes = 0;
+    };
+    /// Gives a buffer over to the caller, when all passes are done; the caller destroys both.
+    template <element T>
+    released_buffer release(buffer<T>&& b)
+    {
+        check_owner("release: b", b);
+        recorder_.finish();
+        const buffer<T> given = std::move(b);
+        if (!given.memory_)
+            return {};
+        const auto block = given.memory_->give_up();
+        return {block.buffer, block.memory, block.bytes};
+    }
+
     template <gather_kernel K, class Reads, class Writes>
     void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
     {
-        detail::check_call<K>("run", l, reads, writes);
+        detail::check_call<K>("run", l, reads, writes, owns());
         ++cost<K>().passes;
         if (l.elements > 0)
             gather<K>(l, l.first, args, bound(reads, writes));
@@ -108,7 +160,7 @@ public:
     template <predicate_kernel K, class Reads>
     std::uint64_t count(launch l, const typename K::Params& args, Reads reads)
     {
-        detail::check_call<K>("count", l, reads, std::tuple<>{});
+        detail::check_call<K>("count", l, reads, std::tuple<>{}, owns());
         ++cost<K>().passes;
         if (l.elements == 0)
             return 0;
@@ -128,6 +180,9 @@ public:
     void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots, buffer<glm::vec4>& totals)
     {
         detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
+        detail::check_reads<K>("route", reads, owns());
+        check_owner("route: slots", slots);
+        check_owner("route: totals", totals);
         ++cost<K>().passes;
         auto destination = make<uint>(l.elements), payload = make<uint>(l.elements);
         auto amount = make<glm::vec4>(l.elements);
@@ -177,7 +232,7 @@ public:
     template <iterative_kernel K, class Reads, class Writes>
     progress run_frames(launch l, uint stride, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
     {
-        detail::check_call<K>("run_until_done", l, reads, writes);
+        detail::check_call<K>("run_until_done", l, reads, writes, owns());
         progress p;
         p.finished = true;
         if (l.elements == 0)
@@ -300,6 +355,18 @@ private:
         std::apply(add, reads);
         std::apply(add, writes);
         return all;
+    }
+
+    /// Whether a buffer is this backend's, for check_call.
+    auto owns() const
+    {
+        return [this](const auto& b) { return !b.memory_ || b.memory_->is_of(*context_); };
+    }
+    template <element T>
+    void check_owner(const char* what, const buffer<T>& b) const
+    {
+        if (!owns()(b))
+            throw std::invalid_argument(std::string("vulkan_backend: ") + what + ": the buffer belongs to another backend; download it there and upload it here");
     }
 
     std::uint64_t groups(std::uint64_t elements) const { return (elements + group_ - 1) / group_; }

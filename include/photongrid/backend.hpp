@@ -78,21 +78,38 @@ struct capabilities {
 };
 
 namespace detail {
-    /// Checks the arguments of one call against kernel K: types at compile time, sizes at run time.
-    template <kernel_struct K, class Reads, class Writes>
-    void check_call(const char* verb, const launch& l, [[maybe_unused]] const Reads& reads, [[maybe_unused]] const Writes& writes)
+    /// Whose buffers are whose does not matter, or cannot be mistaken.
+    inline constexpr auto any_owner = [](const auto&) { return true; };
+
+    inline void check_owner(bool owned, const char* verb, std::string_view kernel, std::string_view name)
+    {
+        if (!owned)
+            throw std::invalid_argument(std::string(verb) + "<" + std::string(kernel) + ">: buffer '" + std::string(name) + "' belongs to another backend; download it there and upload it here");
+    }
+
+    /// Checks what a call is to read against kernel K: types at compile time, by `owns` at run time whose it is.
+    template <kernel_struct K, class Reads, class Owns>
+    void check_reads([[maybe_unused]] const char* verb, [[maybe_unused]] const Reads& reads, [[maybe_unused]] const Owns& owns)
     {
         static_assert(std::tuple_size_v<Reads> == input_count<K>, "reads(...) must name one buffer per INPUT of the kernel");
+        if constexpr (input_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
+            static_assert((std::same_as<typename std::remove_cvref_t<std::tuple_element_t<I, Reads>>::value_type, input_t<K, I>> && ...),
+                "a buffer's element type differs from the kernel's INPUT");
+            (check_owner(owns(std::get<I>(reads)), verb, kernel_name<K>(), K::input_name(slot<I>{})), ...);
+        }(std::make_index_sequence<input_count<K>>{});
+    }
+
+    /// Checks the arguments of one call against kernel K: types at compile time, sizes and owners at run time.
+    template <kernel_struct K, class Reads, class Writes, class Owns = decltype(any_owner)>
+    void check_call(const char* verb, const launch& l, const Reads& reads, [[maybe_unused]] const Writes& writes, const Owns& owns = any_owner)
+    {
+        check_reads<K>(verb, reads, owns);
         static_assert(std::tuple_size_v<Writes> == output_count<K>, "writes(...) must name one buffer per OUTPUT and STATE");
         [[maybe_unused]] const auto fail = [&](std::string_view name, std::size_t size) {
             throw std::invalid_argument(std::string(verb) + "<" + std::string(kernel_name<K>()) + ">: buffer '" + std::string(name) + "' holds "
                 + std::to_string(size) + " elements; the pass writes elements " + std::to_string(l.first) + " to "
                 + std::to_string(std::uint64_t{l.first} + l.elements) + " (exclusive)");
         };
-        if constexpr (input_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
-            static_assert((std::same_as<typename std::remove_cvref_t<std::tuple_element_t<I, Reads>>::value_type, input_t<K, I>> && ...),
-                "a buffer's element type differs from the kernel's INPUT");
-        }(std::make_index_sequence<input_count<K>>{});
         if constexpr (output_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
             static_assert((std::same_as<typename std::remove_cvref_t<std::tuple_element_t<I, Writes>>::value_type, output_t<K, I>> && ...),
                 "a buffer's element type differs from the kernel's OUTPUT or STATE");
@@ -101,6 +118,7 @@ namespace detail {
                     fail(name, size);
             };
             (check(K::output_name(slot<I>{}), std::get<I>(writes).size()), ...);
+            (check_owner(owns(std::get<I>(writes)), verb, kernel_name<K>(), K::output_name(slot<I>{})), ...);
         }(std::make_index_sequence<output_count<K>>{});
     }
 
