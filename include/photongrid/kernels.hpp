@@ -5,12 +5,6 @@
 
 namespace photongrid::kernels {
 
-using namespace glm; // kernels are GLSL: its names are GLM's
-
-#include <photongrid/kernels/distance_key.glsl>
-#include <photongrid/kernels/grid.glsl>
-#include <photongrid/kernels/random.glsl>
-
 struct arithmetic_probe {
 #include <photongrid/kernels/arithmetic_probe.glsl>
 };
