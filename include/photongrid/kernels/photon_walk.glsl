@@ -34,8 +34,8 @@ bool joins_walk(bool searching, vec4 p, uvec4 c, float radius2, uvec4 place)
     bool mine = searching && !(max(dx, max(dy, dz)) > 0.4f * most) && !(radius > 1.5f * most) && place == walk;
     walk_radius2 = radius2;
     if (GROUP_LANES > 1u) {
-        float reach = mine ? (sqrt(dx * dx + dy * dy + dz * dz) + radius) * 1.000001f : 0.0f;
-        radius = uintBitsToFloat(group_max(floatBitsToUint(reach)));
+        float extent = mine ? (sqrt(dx * dx + dy * dy + dz * dz) + radius) * 1.000001f : 0.0f;
+        radius = uintBitsToFloat(group_max(floatBitsToUint(extent)));
         walk_radius2 = radius * radius * 1.000001f;
     }
     walk_y = cells_within(walk_center.y, radius, args.grid.origin.y, args.grid.inverse_cell.y, args.grid.resolution.y);
