@@ -1,4 +1,4 @@
-# Builds the programs of COMPONENTS as one without CMake does, by what pkg-config says of the installed tree PREFIX, and runs them.
+# Builds the programs of COMPONENTS as one does without CMake, by what pkg-config says of the installed tree PREFIX, and runs them.
 cmake_minimum_required(VERSION 3.25)
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output OUTPUT_STRIP_TRAILING_WHITESPACE)
@@ -21,7 +21,8 @@ foreach(component IN LISTS COMPONENTS)
   if(component MATCHES "serial|cpu" AND NOT "-ffp-contract=off" IN_LIST flags)
     message(FATAL_ERROR "photongrid-${component}.pc lets the compiler contract a*b+c")
   endif()
-  run(${COMPILER} -std=c++20 -Wall -Wextra -Wconversion -Wshadow -pedantic -Werror -o ${WORK}/on_${component} ${CMAKE_CURRENT_LIST_DIR}/on_${component}.cpp ${flags})
+  string(REGEX REPLACE "-.*" "" name ${component})
+  run(${COMPILER} -std=c++20 -Wall -Wextra -Wconversion -Wshadow -pedantic -Werror -o ${WORK}/on_${component} ${CMAKE_CURRENT_LIST_DIR}/on_${name}.cpp ${flags})
   run(${WORK}/on_${component})
   message(STATUS "${component}: ${output}")
 endforeach()
