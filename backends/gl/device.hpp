@@ -115,8 +115,8 @@ public:
     /// The values of a kernel's Params, which std140 lays out as C++ does (docs/design.md).
     void set_uniforms(const void* data, std::size_t size)
     {
-        const auto* bytes = static_cast<const std::byte*>(data);
-        std::vector<std::byte> block(bytes, bytes + size);
+        const auto* first = static_cast<const std::byte*>(data);
+        std::vector<std::byte> block(first, first + size);
         block.resize((size + 15) / 16 * 16);
         if (block == uniform_bytes_)
             return;

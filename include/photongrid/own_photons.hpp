@@ -49,7 +49,7 @@ namespace detail {
     template <class V>
     concept vector_like = has_xyz<V> || has_elements<V>;
     template <class V>
-    concept flux_like = vector_like<V> || std::is_arithmetic_v<V>;
+    concept flux_like = vector_like<V> || std::is_arithmetic_v<std::remove_cvref_t<V>>;
 
     template <class V>
     glm::vec3 to_vec3(const V& v)
