@@ -173,6 +173,8 @@ namespace {
             check("compile of a broken kernel");
             EXPECT_THROW((b->run<test_kernels::broken>(10, {}, std::tuple<>{}, writes(few))), backend_error);
             check("run of a broken kernel");
+            b->run<kernels::pair_value>(10, {}, reads(b->make<glm::uvec2>(0)), writes(few));
+            check("run that reads a buffer without elements");
             gl_texture given = b->texture_of(few);
             check("texture_of");
             given = b->release(std::move(few));
@@ -216,7 +218,7 @@ namespace {
                 for (const auto& [name, values] : then)
                     for (std::size_t v = 0; step == 1 && v < values.size(); ++v)
                         EXPECT_NE(values[v], defaults.at(name)[v]) << name << "[" << v << "] is not set by this test";
-                call_everything([&] { return this->make_backend(debug, debug); }, *this->call, [&](const std::string& what) {
+                call_everything([&] { return this->make_backend(debug, debug); }, *this->call, [&, first = first, step = step](const std::string& what) {
                     expect_same(state.dump(), then, what + (step == 1 ? "" : ", pieces from " + std::to_string(first)));
                     EXPECT_EQ(this->call->GetError(), GLenum(GL_NO_ERROR)) << what;
                 });
@@ -242,6 +244,51 @@ namespace {
         const auto now = state.dump();
         EXPECT_EQ(now.at("GL_STENCIL front")[1], 77);
         EXPECT_EQ(now.at("GL_STENCIL back")[1], 99);
+    }
+
+    // Bound without a range, a buffer has no size that could be given back.
+    TYPED_TEST(gl_callers_context, a_uniform_buffer_bound_whole_stays_bound)
+    {
+        const test_gl& gl = *this->call;
+        GLuint buffer = 0;
+        gl.CreateBuffers(1, &buffer);
+        gl.NamedBufferData(buffer, 256, nullptr, GL_STATIC_DRAW);
+        gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, buffer);
+        std::unique_ptr<gl_backend> b = this->make_backend();
+        GLint bound = 0;
+        GLint64 size = -1;
+        gl.GetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, 0, &bound);
+        gl.GetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, 0, &size);
+        EXPECT_EQ(GLuint(bound), buffer);
+        EXPECT_EQ(size, 0);
+    }
+
+    // In a compatibility context front and back are filled or not each for itself.
+    TEST(gl_callers_compatibility_context, either_side_keeps_its_polygon_mode)
+    {
+        const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+        constexpr std::array<EGLint, 7> wanted{EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT, EGL_NONE};
+        EGLContext context = EGL_NO_CONTEXT;
+        if (display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) && eglBindAPI(EGL_OPENGL_API))
+            context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted.data());
+        if (context == EGL_NO_CONTEXT || !eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
+            GTEST_SKIP() << "no such context can be had here";
+        const test_gl gl(gl::find_by_egl);
+        gl.PolygonMode(GL_FRONT, GL_LINE);
+        gl.PolygonMode(GL_BACK, GL_POINT);
+        {
+            gl_backend b({.context = gl_context_kind::current});
+            const auto data = random_pairs(5000);
+            auto pairs = b.upload(view(data));
+            bitonic_sort(b, pairs);
+            EXPECT_TRUE(same_bits(b.download(pairs), sorted(data)));
+        }
+        std::array<double, 2> modes{};
+        gl.GetDoublev(GL_POLYGON_MODE, modes.data());
+        EXPECT_EQ(modes, (std::array<double, 2>{GL_LINE, GL_POINT}));
+        EXPECT_EQ(gl.GetError(), GLenum(GL_NO_ERROR));
+        eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        eglDestroyContext(display, context);
     }
 
     // A program pipeline is in force again, with the subroutine chosen: what is drawn is blue.
@@ -300,6 +347,7 @@ namespace {
                     EXPECT_NO_THROW(bitonic_sort(*b, pairs));
                     EXPECT_EQ(heard, 0);
                 }
+                EXPECT_TRUE(gl.IsEnabled(GL_DEBUG_OUTPUT));
                 EXPECT_EQ(gl.GetError(), code);
                 EXPECT_EQ(gl.GetError(), GLenum(GL_NO_ERROR));
             }
@@ -309,7 +357,9 @@ namespace {
         gl.TextureStorage2D(gone, 1, GL_RG32UI, 2048, 1);
         auto taken = b->adopt<glm::uvec2>(gone, 100);
         gl.DeleteTextures(1, &gone);
+        auto values = b->make<uint>(100);
         EXPECT_THROW(b->download(taken), backend_error);
+        EXPECT_THROW((b->run<kernels::pair_value>(100, {}, reads(taken), writes(values))), backend_error);
         EXPECT_EQ(gl.GetError(), GLenum(GL_NO_ERROR));
     }
 
@@ -513,9 +563,9 @@ namespace {
         gl.TextureParameteri(odd, GL_TEXTURE_BASE_LEVEL, 1);
         expect_refusal(odd, 5, "GL_TEXTURE_BASE_LEVEL 1");
         gl.TextureParameteri(odd, GL_TEXTURE_BASE_LEVEL, 0);
-        for (const GLenum channel : {GL_TEXTURE_SWIZZLE_R, GL_TEXTURE_SWIZZLE_G, GL_TEXTURE_SWIZZLE_B, GL_TEXTURE_SWIZZLE_A}) {
+        for (const int channel : {GL_TEXTURE_SWIZZLE_R, GL_TEXTURE_SWIZZLE_G, GL_TEXTURE_SWIZZLE_B, GL_TEXTURE_SWIZZLE_A}) {
             GLuint swizzled = make_texture(gl, GL_TEXTURE_2D, GL_RG32F, 8, 1);
-            gl.TextureParameteri(swizzled, channel, GL_ZERO);
+            gl.TextureParameteri(swizzled, GLenum(channel), GL_ZERO);
             expect_refusal(swizzled, 5, "GL_TEXTURE_SWIZZLE");
         }
     }

@@ -17,26 +17,26 @@ namespace photongrid::testing {
 
 // NOLINTBEGIN: a list is written once and read twice
 #define PHOTONGRID_TEST_GL_CALLS(X)                                                                                    \
-    X(ActiveTexture) X(AttachShader) X(BeginConditionalRender) X(BeginQuery) X(BeginTransformFeedback) X(BindBuffer)   \
-    X(BindBufferRange) X(BindFramebuffer) X(BindImageTexture) X(BindProgramPipeline) X(BindRenderbuffer)               \
-    X(BindSampler) X(BindTexture) X(BindTransformFeedback) X(BindVertexArray) X(BlendColor)                            \
-    X(BlendEquationSeparatei) X(BlendFuncSeparatei) X(ClampColor) X(ClearColor) X(ClearDepth) X(ClearStencil)          \
-    X(ClipControl) X(ColorMaski) X(CompileShader) X(CreateBuffers) X(CreateFramebuffers) X(CreateProgram)              \
-    X(CreateProgramPipelines) X(CreateQueries) X(CreateRenderbuffers) X(CreateSamplers) X(CreateShader)                \
-    X(CreateShaderProgramv) X(CreateTextures) X(CreateTransformFeedbacks) X(CreateVertexArrays) X(CullFace)            \
-    X(DebugMessageCallback) X(DeleteProgram) X(DeleteTextures) X(DepthFunc) X(DepthMask) X(DepthRangeIndexed)          \
-    X(Disable) X(Disablei) X(DrawArrays) X(Enable) X(Enablei) X(EndConditionalRender) X(EndQuery)                      \
-    X(EndTransformFeedback) X(FrontFace) X(GetBooleani_v) X(GetDoublei_v) X(GetDoublev) X(GetError)                    \
-    X(GetInteger64i_v) X(GetIntegeri_v) X(GetPointerv) X(GetProgramiv) X(GetQueryiv) X(GetTexImage)                    \
-    X(GetTextureImage) X(GetUniformSubroutineuiv) X(GetVertexAttribdv) X(Hint) X(IsEnabled) X(IsEnabledi) X(IsTexture) \
-    X(LineWidth) X(LinkProgram) X(LogicOp) X(MinSampleShading) X(NamedBufferData) X(NamedFramebufferRenderbuffer)      \
-    X(NamedFramebufferTexture) X(NamedRenderbufferStorage) X(PatchParameterfv) X(PatchParameteri)                      \
-    X(PauseTransformFeedback) X(PixelStorei) X(PointParameterf) X(PointParameteri) X(PointSize) X(PolygonMode)         \
-    X(PolygonOffset) X(PopDebugGroup) X(PrimitiveRestartIndex) X(ProgramUniform1i) X(ProvokingVertex)                  \
-    X(PushDebugGroup) X(ReadPixels) X(ResumeTransformFeedback) X(SampleCoverage) X(SampleMaski) X(ScissorIndexed)      \
-    X(ShaderSource) X(StencilFuncSeparate) X(StencilMaskSeparate) X(StencilOpSeparate) X(TexImage2D)                   \
-    X(TextureParameteri) X(TextureStorage2D) X(TextureStorage3D) X(TextureSubImage2D) X(TransformFeedbackVaryings)     \
-    X(UniformSubroutinesuiv) X(UseProgram) X(UseProgramStages) X(VertexAttrib4f) X(ViewportIndexedf) X(Viewport)
+    X(ActiveTexture) X(AttachShader) X(BeginConditionalRender) X(BeginQuery) X(BeginTransformFeedback)                 \
+    X(BindBuffer) X(BindBufferBase) X(BindBufferRange) X(BindFramebuffer) X(BindImageTexture)                          \
+    X(BindProgramPipeline) X(BindRenderbuffer) X(BindSampler) X(BindTexture) X(BindTransformFeedback)                  \
+    X(BindVertexArray) X(BlendColor) X(BlendEquationSeparatei) X(BlendFuncSeparatei) X(ClampColor) X(ClearColor)       \
+    X(ClearDepth) X(ClearStencil) X(ClipControl) X(ColorMaski) X(CompileShader) X(CreateBuffers)                       \
+    X(CreateFramebuffers) X(CreateProgram) X(CreateProgramPipelines) X(CreateQueries) X(CreateRenderbuffers)           \
+    X(CreateSamplers) X(CreateShader) X(CreateShaderProgramv) X(CreateTextures) X(CreateTransformFeedbacks)            \
+    X(CreateVertexArrays) X(CullFace) X(DebugMessageCallback) X(DeleteProgram) X(DeleteTextures) X(DepthFunc)          \
+    X(DepthMask) X(DepthRangeIndexed) X(Disable) X(DrawArrays) X(Enable) X(Enablei) X(EndConditionalRender)            \
+    X(EndQuery) X(EndTransformFeedback) X(FrontFace) X(GetBooleani_v) X(GetDoublei_v) X(GetDoublev) X(GetError)        \
+    X(GetInteger64i_v) X(GetIntegeri_v) X(GetPointerv) X(GetProgramiv) X(GetQueryiv) X(GetTextureImage)                \
+    X(GetUniformSubroutineuiv) X(GetVertexAttribdv) X(Hint) X(IsEnabled) X(IsEnabledi) X(IsTexture) X(LineWidth)       \
+    X(LinkProgram) X(LogicOp) X(MinSampleShading) X(NamedBufferData) X(NamedFramebufferRenderbuffer)                   \
+    X(NamedRenderbufferStorage) X(PatchParameterfv) X(PatchParameteri) X(PauseTransformFeedback) X(PixelStorei)        \
+    X(PointParameterf) X(PointParameteri) X(PointSize) X(PolygonMode) X(PolygonOffset) X(PrimitiveRestartIndex)        \
+    X(ProgramUniform1i) X(ProvokingVertex) X(PushDebugGroup) X(ReadPixels) X(ResumeTransformFeedback)                  \
+    X(SampleCoverage) X(SampleMaski) X(ScissorIndexed) X(ShaderSource) X(StencilFuncSeparate)                          \
+    X(StencilMaskSeparate) X(StencilOpSeparate) X(TexImage2D) X(TextureParameteri) X(TextureStorage2D)                 \
+    X(TextureStorage3D) X(TextureSubImage2D) X(TransformFeedbackVaryings) X(UniformSubroutinesuiv) X(UseProgram)       \
+    X(UseProgramStages) X(VertexAttrib4f) X(Viewport) X(ViewportIndexedf)
 
 struct test_gl {
 #define X(NAME) decltype(&gl##NAME) NAME = nullptr;
@@ -294,13 +294,13 @@ private:
         add("GL_DRAW_FRAMEBUFFER_BINDING", GL_DRAW_FRAMEBUFFER_BINDING, [this] { gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, draw_target); }, 1, true);
         add("GL_STENCIL front", [this] { gl.StencilFuncSeparate(GL_FRONT, GL_GREATER, 5, 0x1Fu); gl.StencilOpSeparate(GL_FRONT, GL_INVERT, GL_INCR_WRAP, GL_ZERO); gl.StencilMaskSeparate(GL_FRONT, 0x2Fu); }, [this] {
             std::vector<double> v;
-            for (const GLenum what : {GL_STENCIL_FUNC, GL_STENCIL_REF, GL_STENCIL_VALUE_MASK, GL_STENCIL_FAIL, GL_STENCIL_PASS_DEPTH_FAIL, GL_STENCIL_PASS_DEPTH_PASS, GL_STENCIL_WRITEMASK})
-                v.push_back(get(what, 1)[0]);
+            for (const int what : {GL_STENCIL_FUNC, GL_STENCIL_REF, GL_STENCIL_VALUE_MASK, GL_STENCIL_FAIL, GL_STENCIL_PASS_DEPTH_FAIL, GL_STENCIL_PASS_DEPTH_PASS, GL_STENCIL_WRITEMASK})
+                v.push_back(get(GLenum(what), 1)[0]);
             return v; });
         add("GL_STENCIL back", [this] { gl.StencilFuncSeparate(GL_BACK, GL_LESS, 6, 0x3Fu); gl.StencilOpSeparate(GL_BACK, GL_DECR, GL_REPLACE, GL_DECR_WRAP); gl.StencilMaskSeparate(GL_BACK, 0x4Fu); }, [this] {
             std::vector<double> v;
-            for (const GLenum what : {GL_STENCIL_BACK_FUNC, GL_STENCIL_BACK_REF, GL_STENCIL_BACK_VALUE_MASK, GL_STENCIL_BACK_FAIL, GL_STENCIL_BACK_PASS_DEPTH_FAIL, GL_STENCIL_BACK_PASS_DEPTH_PASS, GL_STENCIL_BACK_WRITEMASK})
-                v.push_back(get(what, 1)[0]);
+            for (const int what : {GL_STENCIL_BACK_FUNC, GL_STENCIL_BACK_REF, GL_STENCIL_BACK_VALUE_MASK, GL_STENCIL_BACK_FAIL, GL_STENCIL_BACK_PASS_DEPTH_FAIL, GL_STENCIL_BACK_PASS_DEPTH_PASS, GL_STENCIL_BACK_WRITEMASK})
+                v.push_back(get(GLenum(what), 1)[0]);
             return v; });
     }
 

@@ -15,8 +15,8 @@ namespace photongrid::gl {
 /// Render targets of one pass, texture units for inputs, for states (textures.glsl, fragment_prelude.glsl).
 inline constexpr GLuint max_outputs = 8, max_inputs = 8, state_unit = 8, units = state_unit + max_outputs;
 
-/// What is on or off, as a pass wants it. Blending and the masks of colours are per draw buffer; a pass has one viewport, the
-/// first, and its scissor test.
+/// What has to be off in passes, beside blending and the scissor test, which are so for each draw buffer and each viewport; a
+/// pass has one viewport, the first.
 inline constexpr std::array<GLenum, 22> off_in_passes{GL_CULL_FACE, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_RASTERIZER_DISCARD, GL_COLOR_LOGIC_OP, GL_DEPTH_CLAMP, GL_POLYGON_OFFSET_FILL,
     GL_POLYGON_SMOOTH, GL_SAMPLE_MASK, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE, GL_SAMPLE_COVERAGE, GL_SAMPLE_SHADING, GL_DITHER, GL_CLIP_DISTANCE0, GL_CLIP_DISTANCE1,
     GL_CLIP_DISTANCE2, GL_CLIP_DISTANCE3, GL_CLIP_DISTANCE4, GL_CLIP_DISTANCE5, GL_CLIP_DISTANCE6, GL_CLIP_DISTANCE7};
@@ -43,6 +43,7 @@ namespace detail {
     }
     inline GLuint get_name(functions& gl, GLenum what) { return static_cast<GLuint>(get(gl, what)); }
     inline void turn(functions& gl, GLenum what, bool on) { on ? gl.Enable(what) : gl.Disable(what); }
+    inline void turn(functions& gl, GLenum what, GLuint index, bool on) { on ? gl.Enablei(what, index) : gl.Disablei(what, index); }
 
     /// The program in use, with what glUseProgram forgets: the subroutines chosen, also of a program pipeline.
     class program_in_use {
@@ -123,9 +124,9 @@ namespace detail {
             for (std::size_t c = 0; c < off_in_passes.size(); ++c)
                 turn(gl, off_in_passes[c], on_[c]);
             turn(gl, GL_PROGRAM_POINT_SIZE, point_size_);
-            scissor_test_ ? gl.Enablei(GL_SCISSOR_TEST, 0) : gl.Disablei(GL_SCISSOR_TEST, 0);
+            turn(gl, GL_SCISSOR_TEST, 0, scissor_test_);
             for (GLuint t = 0; t < max_outputs; ++t) {
-                blend_[t] ? gl.Enablei(GL_BLEND, t) : gl.Disablei(GL_BLEND, t);
+                turn(gl, GL_BLEND, t, blend_[t]);
                 gl.ColorMaski(t, masks_[t][0], masks_[t][1], masks_[t][2], masks_[t][3]);
             }
             gl.ViewportIndexedf(0, viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
