@@ -287,6 +287,9 @@ public:
         return given;
     }
 
+    /// Whether it is of this device: of none, if there is no texture.
+    bool is_of(const device& d) const { return device_ == nullptr || device_.get() == &d; }
+
     GLuint id = 0;
     uint width = 0, height = 0;
 

@@ -125,6 +125,7 @@ public:
     template <element T>
     std::vector<T> download(const buffer<T>& b)
     {
+        check_owner("download: b", b);
         const auto scope = device_->use();
         device_->prepare_download();
         std::vector<T> data(b.size());
@@ -142,6 +143,7 @@ public:
     template <element T>
     gl_texture texture_of(const buffer<T>& b) const
     {
+        check_owner("texture_of: b", b);
         return {b.texture_.id, b.texture_.width, b.texture_.height, b.size_ > 0 ? gl::texture_format<T>::internal : 0u};
     }
 
@@ -168,6 +170,7 @@ public:
     template <element T>
     gl_texture release(buffer<T>&& b)
     {
+        check_owner("release: b", b);
         const auto scope = device_->use();
         const gl_texture t = texture_of(b);
         b.texture_.let_go();
@@ -178,7 +181,7 @@ public:
     template <gather_kernel K, class Reads, class Writes>
     void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
     {
-        detail::check_call<K>("run", l, reads, writes);
+        detail::check_call<K>("run", l, reads, writes, owns());
         const auto scope = device_->use();
         const GLuint program = made_->get<K>(gl::verb::run, l.switches);
         count_passes<K>(1);
@@ -197,7 +200,7 @@ public:
     template <iterative_kernel K, class Reads, class Writes>
     progress run_until_done(launch l, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
     {
-        detail::check_call<K>("run_until_done", l, reads, writes);
+        detail::check_call<K>("run_until_done", l, reads, writes, owns());
         const auto scope = device_->use();
         const GLuint program = made_->get<K>(gl::verb::until_done, l.switches);
         progress p;
@@ -273,7 +276,7 @@ public:
     template <predicate_kernel K, class Reads>
     std::uint64_t count(launch l, const typename K::Params& args, Reads reads)
     {
-        detail::check_call<K>("count", l, reads, std::tuple<>{});
+        detail::check_call<K>("count", l, reads, std::tuple<>{}, owns());
         const auto scope = device_->use();
         const GLuint program = made_->get<K>(gl::verb::holds, l.switches);
         count_passes<K>(1);
@@ -295,6 +298,9 @@ public:
     void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots, buffer<glm::vec4>& totals)
     {
         detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
+        detail::check_reads<K>("route", reads, owns());
+        check_owner("route: slots", slots);
+        check_owner("route: totals", totals);
         if (std::uint64_t{l.first} + l.elements > caps_.max_elements)
             throw backend_error(device_->name() + ": route: draws up to " + std::to_string(std::uint64_t{l.first} + l.elements) + "; the limit of this device is " + std::to_string(caps_.max_elements));
         const auto scope = device_->use();
@@ -354,6 +360,18 @@ private:
         GLint x, y;
         GLsizei width, height;
     };
+    /// Whether a buffer is this backend's, for check_call.
+    auto owns() const
+    {
+        return [this](const auto& b) { return b.texture_.is_of(*device_); };
+    }
+    template <element T>
+    void check_owner(const char* what, const buffer<T>& b) const
+    {
+        if (!owns()(b))
+            throw std::invalid_argument(std::string("gl_backend: ") + what + ": the buffer belongs to another backend; download it there and upload it here");
+    }
+
     static constexpr uint query_ring = 8; ///< passes between two looks at the queries
 
     /// Calls f(first element, row, width, rows) for the full rows of a buffer and for its last, shorter one.

@@ -9,7 +9,6 @@ using device_type = photongrid::cpu_backend;
 using device_type = photongrid::serial_backend;
 #endif
 #include <photongrid/build_map.hpp>
-#include <photongrid/fitting_grid.hpp>
 #include <photongrid/knn_grid_estimate.hpp>
 #include <photongrid/own_photons.hpp>
 
@@ -40,16 +39,14 @@ irradiance_source caustics_of(const scene& s, int photons, std::uint64_t seed)
 {
     const auto device = std::make_shared<device_type>();
     const photongrid::knn_settings how{.k = 50, .max_radius = 0.1f, .kernel = photongrid::filter_kernel::silverman, .leaks = {.side = true, .min_cosine = 0.9f}};
-    auto uploaded = photongrid::upload_photons(*device, shoot(s, photons, seed));
-    const auto grid = photongrid::fitting_grid(*device, uploaded, how.k, device->caps().cells_a_radius);
-    const auto map = std::make_shared<const photongrid::photon_map<device_type>>(photongrid::sorted_map(*device, std::move(uploaded), grid));
+    const auto map = std::make_shared<const photongrid::photon_map<device_type>>(photongrid::fitted_map(*device, photongrid::upload_photons(*device, shoot(s, photons, seed)), how.k));
     return [=](const std::vector<gather_point>& points) {
-        std::vector<glm::vec4> at, normals;
+        std::vector<vec3> at, normals;
         for (const auto& p : points) {
-            at.emplace_back(p.where.x, p.where.y, p.where.z, 1); // 1: wanted
-            normals.emplace_back(p.normal.x, p.normal.y, p.normal.z, 0);
+            at.push_back(p.where);
+            normals.push_back(p.normal);
         }
-        const auto found = photongrid::knn_grid_estimate(*device, *map, device->upload(std::span(std::as_const(at))), device->upload(std::span(std::as_const(normals))), how);
+        const auto found = photongrid::knn_grid_estimate(*device, *map, photongrid::upload_points(*device, at), photongrid::upload_normals(*device, normals), how);
         std::vector<vec3> irradiance;
         for (const auto& e : device->download(found.irradiance))
             irradiance.push_back({e.x, e.y, e.z});
