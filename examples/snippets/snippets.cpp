@@ -1,0 +1,291 @@
+// The manual's snippets, run and checked. The parts between "//! [name]" are those that the headers' comments name.
+#include "expect.hpp"
+
+#include <photongrid/backends/serial/serial.hpp>
+#include <photongrid/knn_neighbours.hpp>
+#include <photongrid/map_file.hpp>
+#include <photongrid/own_photons.hpp>
+#include <photongrid/reference.hpp>
+#include <photongrid/render.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <random>
+
+using device_type = photongrid::serial_backend; // or gl_backend, vulkan_backend, cpu_backend
+using vectors = std::vector<glm::vec4>;
+
+/// A photon as a program may have it.
+struct photon {
+    glm::vec3 position; // m
+    glm::vec3 flux;     // W
+};
+
+//! [photon_reader]
+struct particle {
+    double where[3];
+    float mass;
+};
+template <>
+struct photongrid::photon_reader<particle> {
+    static auto position(const particle& p) { return std::span(p.where); }
+    static float flux(const particle& p) { return p.mass; }
+};
+//! [photon_reader]
+
+namespace {
+
+bool is_near(float value, double truth, double tolerance) { return std::abs(static_cast<double>(value) - truth) <= tolerance * truth; }
+
+/// 1 W on a square of 1 m about the origin: 1 W/m^2 everywhere. Spread by multiples of irrational numbers.
+std::vector<photon> photons_on_a_square()
+{
+    std::vector<photon> all;
+    for (int i = 1; i <= 10000; ++i)
+        all.push_back({{std::fmod(i * 0.7548776662, 1.0) - 0.5, 0, std::fmod(i * 0.5698402910, 1.0) - 0.5}, glm::vec3(1e-4f)});
+    return all;
+}
+
+void buffers()
+{
+    //! [serial_backend]
+    photongrid::serial_backend device;
+    const std::vector<float> heights{3, 1, 2};
+    auto buffer = device.upload(std::span(heights));
+    const std::vector<float> back = device.download(buffer);
+    //! [serial_backend]
+    expect(back == heights, "serial_backend");
+
+    //! [upload]
+    const auto ids = photongrid::upload(device, std::array<photongrid::uint, 3>{7, 8, 9}); // any contiguous range
+    //! [upload]
+    expect(device.download(ids) == std::vector<photongrid::uint>{7, 8, 9}, "upload");
+}
+
+void algorithms(device_type& device)
+{
+    //! [bitonic_sort]
+    auto pairs = photongrid::upload(device, std::vector<glm::uvec2>{{30, 0}, {10, 1}, {20, 2}, {10, 3}});
+    photongrid::bitonic_sort(device, pairs); // (10, 1) (10, 3) (20, 2) (30, 0)
+    //! [bitonic_sort]
+    expect(device.download(pairs) == std::vector<glm::uvec2>{{10, 1}, {10, 3}, {20, 2}, {30, 0}}, "bitonic_sort");
+
+    //! [grid_index]
+    const auto first_and_count = photongrid::grid_index(device, pairs, 40); // of the keys 0 to 39
+    const glm::uvec2 tens = device.download(first_and_count)[10];           // (0, 2): two pairs, the first at 0
+    //! [grid_index]
+    expect(tens == glm::uvec2(0, 2), "grid_index");
+
+    //! [prefix_sums]
+    const auto terms = photongrid::upload(device, std::vector<photongrid::uint>{1, 2, 3, 4});
+    const auto sums = photongrid::prefix_sums(device, terms); // 1, 3, 6, 10
+    //! [prefix_sums]
+    expect(device.download(sums) == std::vector<photongrid::uint>{1, 3, 6, 10}, "prefix_sums");
+}
+
+void maps(device_type& device)
+{
+    const std::vector<photon> mine = photons_on_a_square();
+
+    //! [make_grid]
+    // 20 x 1 x 20 cells over a square of 1 m: each is 5 cm wide, and as flat as the photons.
+    const photongrid::grid cells = photongrid::make_grid({-0.5f, 0, -0.5f}, {0.5f, 0, 0.5f}, {20, 1, 20});
+    const photongrid::uint n = photongrid::cell_count(cells); // 400
+    //! [make_grid]
+    expect(n == 400, "make_grid");
+
+    //! [upload_photons]
+    photongrid::photons<device_type> p = photongrid::upload_photons(device, mine); // a vector of { vec3 position; vec3 flux; }
+    //! [upload_photons]
+    expect(p.size() == mine.size() && device.download(p.powers)[0] == glm::vec4(1e-4f, 1e-4f, 1e-4f, 0), "upload_photons");
+
+    const auto particles = photongrid::upload_photons(device, std::vector<particle>{{{1, 2, 3}, 5}});
+    expect(device.download(particles.positions)[0] == glm::vec4(1, 2, 3, 0) && device.download(particles.powers)[0] == glm::vec4(5, 5, 5, 0), "photon_reader");
+
+    //! [fitting_grid]
+    const photongrid::grid fitted = photongrid::fitting_grid(device, p, 50, device.caps().cells_a_radius); // for the 50 nearest
+    //! [fitting_grid]
+    expect(photongrid::cell_count(fitted) > 100 && photongrid::cell_count(fitted) <= 12500, "fitting_grid");
+
+    //! [stencil_route]
+    const auto routed = photongrid::stencil_route(device, p, cells, 4);       // 4 x 4 slots a cell
+    const std::vector<photongrid::uint> slots = device.download(routed.list); // 16 ids a cell, 0xFFFFFFFF where there are no more
+    const glm::uvec2 first_cell = device.download(routed.cells)[0];           // (0, 16): it is full
+    //! [stencil_route]
+    expect(slots.size() == 6400 && first_cell == glm::uvec2(0, 16) && slots[0] < p.size() && routed.overfull_cells > 0, "stencil_route");
+
+    //! [sorted_map]
+    const auto map = photongrid::sorted_map(device, std::move(p), cells);
+    const glm::uvec2 range = device.download(map.cells)[0];         // cell 0 has the photons range.x to range.x + range.y - 1
+    const photongrid::uint id = device.download(map.list)[range.x]; // the first of them is photon `id` of those uploaded
+    //! [sorted_map]
+    expect(range.y > 0 && mine[id].position.x < -0.45f && mine[id].position.z < -0.45f, "sorted_map");
+
+    //! [routed_map]
+    const auto approximate = photongrid::routed_map(device, photongrid::upload_photons(device, mine), cells, 4); // 4 x 4 slots a cell
+    //! [routed_map]
+    expect(approximate.overfull_cells > 0 && device.download(approximate.cells)[0].y == 16, "routed_map");
+
+    //! [redistributed_flux]
+    const double moved = photongrid::redistributed_flux(device, approximate); // W, of 3 W in three channels
+    //! [redistributed_flux]
+    expect(moved > 0.5 && moved < 3 && photongrid::redistributed_flux(device, map) == 0, "redistributed_flux");
+
+    //! [fitted_map]
+    const auto ready = photongrid::fitted_map(device, photongrid::upload_photons(device, mine), 50); // for the 50 nearest
+    //! [fitted_map]
+    expect(ready.photons.size() == mine.size() && ready.invalid == 0, "fitted_map");
+}
+
+void estimates(device_type& device, const photongrid::photon_map<device_type>& map)
+{
+    //! [upload_points]
+    const std::vector<glm::vec3> places{{0, 0, 0}, {0.1f, 0, 0.2f}}; // m
+    const auto points = photongrid::upload_points(device, places);
+    //! [upload_points]
+    expect(device.download(points)[1] == glm::vec4(0.1f, 0, 0.2f, 1), "upload_points");
+
+    //! [knn_grid_estimate]
+    const auto found = photongrid::knn_grid_estimate(device, map, points, {.k = 50, .max_radius = 0.2f, .kernel = photongrid::filter_kernel::silverman, .errors = true});
+    const glm::vec4 light = device.download(found.irradiance)[0];     // rgb: W/m^2, w: squared radius, m^2
+    const glm::vec4 error = device.download(found.standard_error)[0]; // rgb: W/m^2
+    //! [knn_grid_estimate]
+    expect(is_near(light.x, 1, 0.1) && is_near(light.w, 50 / (10000 * M_PI), 0.1) && error.x > 0 && error.x < 0.5f, "knn_grid_estimate");
+
+    //! [upload_normals]
+    const auto normals = photongrid::upload_normals(device, std::vector<glm::vec3>(2, {0, 1, 0}));
+    photongrid::knn_settings flat{.k = 50, .max_radius = 0.2f};
+    flat.leaks.compression = 4; // distances along the normal count four times
+    const auto in_discs = photongrid::knn_grid_estimate(device, map, points, normals, flat);
+    //! [upload_normals]
+    expect(is_near(device.download(in_discs.irradiance)[0].x, 1, 0.1), "upload_normals");
+
+    //! [as_paper]
+    const photongrid::knn_settings paper = photongrid::as_paper({.k = 50, .max_radius = 0.2f, .visits_per_pass = 16});
+    //! [as_paper]
+    expect(paper.search == photongrid::search_kind::at_least_k && paper.bias == photongrid::bias_kind::paper, "as_paper");
+
+    std::vector<vectors> shown;
+    const auto show = [&](const vectors& irradiances) { shown.push_back(irradiances); };
+    //! [knn_search]
+    photongrid::knn_search search(device, map, points, paper);
+    while (!search.advance(1).finished)                       // one pass more
+        show(device.download(search.estimates().irradiance)); // the running estimates (section 3.4)
+    const auto last = device.download(search.estimates().irradiance);
+    //! [knn_search]
+    expect(shown.size() > 1 && shown.front() != last && is_near(last[0].x, 1, 0.1), "knn_search");
+
+    //! [knn_neighbours]
+    const auto lists = photongrid::knn_neighbours(device, map, points, {.k = 8});
+    const auto ids = device.download(lists.ids);            // those of point 1 are ids[8] to ids[15], nearest first
+    const auto squared = device.download(lists.distances2); // m^2
+    //! [knn_neighbours]
+    const auto place = photons_on_a_square()[ids[8]].position - places[1];
+    expect(ids.size() == 16 && is_near(squared[8], static_cast<double>(glm::dot(place, place)), 1e-4) && std::is_sorted(squared.begin() + 8, squared.end()), "knn_neighbours");
+}
+
+void files(device_type& device, const photongrid::photon_map<device_type>& map)
+{
+    const std::filesystem::path file = std::filesystem::temp_directory_path() / ("photongrid-snippets-" + std::to_string(std::random_device()()) + ".map");
+    //! [save_map]
+    photongrid::save_map(device, map, file, "a square, 10000 photons"); // whole, or not there
+    //! [save_map]
+
+    //! [load_map]
+    std::string note;
+    const auto again = photongrid::load_map(device, file, &note); // on any backend; map_file_error where it is damaged
+    //! [load_map]
+    std::filesystem::remove(file);
+    expect(note == "a square, 10000 photons" && device.download(again.list) == device.download(map.list), "load_map");
+}
+
+/// A floor of 1 m about the origin, a wall behind it, a lamp.
+photongrid::scene a_corner()
+{
+    photongrid::scene s;
+    s.camera = {{0, 0.8, 2}, {0, 0.2, 0}, {0, 1, 0}, 45};
+    s.materials = {{.name = "white", .reflectance = glm::dvec3(0.7)}};
+    s.polygons = {{{{-0.5, 0, -0.5}, {-0.5, 0, 0.5}, {0.5, 0, 0.5}, {0.5, 0, -0.5}}, 0}, {{{-0.5, 0, -0.5}, {0.5, 0, -0.5}, {0.5, 1, -0.5}, {-0.5, 1, -0.5}}, 0}};
+    s.point_lights = {{.name = "lamp", .position = {0, 0.6, 0}, .power = glm::dvec3(10)}};
+    return s;
+}
+
+void edges(device_type& device)
+{
+    const photongrid::scene room = a_corner();
+    //! [upload_scene]
+    const auto scene = photongrid::upload_scene(device, room);
+    const glm::vec3 center(scene.about.center); // the origin on the device, m: photons and points are relative to it
+    //! [upload_scene]
+    auto mine = photons_on_a_square();
+    for (auto& p : mine)
+        p.position -= center;
+    const auto map = photongrid::fitted_map(device, photongrid::upload_photons(device, mine), 50);
+    const auto points = photongrid::upload_points(device, std::vector<glm::vec3>{glm::vec3(0.5f, 0, 0) - center});
+    const auto normals = photongrid::upload_normals(device, std::vector<glm::vec3>{{0, 1, 0}});
+    const photongrid::knn_settings settings{.k = 50};
+    auto found = photongrid::knn_grid_estimate(device, map, points, settings);
+    const float before = device.download(found.irradiance)[0].x;
+    //! [correct_edges]
+    // A point on the floor's edge, where half of the disc hangs over: the estimate is half of the truth until this is called.
+    photongrid::correct_edges(device, scene, points, normals, found, settings.kernel, photongrid::least_radius(map.cells_of));
+    //! [correct_edges]
+    expect(is_near(before, 0.5, 0.15) && is_near(device.download(found.irradiance)[0].x, 1, 0.15), "correct_edges");
+}
+
+void pictures(device_type& device)
+{
+    const photongrid::scene room = a_corner();
+    photongrid::render_settings settings = room.render;
+    settings.width = 16;
+    settings.height = 12;
+    settings.photons = 1000;
+    settings.k = 50;
+    settings.max_radius = 0.5;
+    settings.grid = glm::uvec3(0);
+
+    //! [build_map]
+    photongrid::render_stats stats;
+    const auto built = photongrid::build_map(device, room, settings, {}, stats); // again only when the scene changes
+    //! [build_map]
+    expect(stats.map.cells > 0 && built.map.photons.size() == 1000, "build_map");
+
+    //! [draw]
+    const photongrid::camera from_above{.position = {0, 2, 0.5}, .look_at = {0, 0, 0}};
+    const photongrid::image above = photongrid::draw(device, built, from_above, settings, {}, stats); // no photon is traced
+    const glm::vec3 radiance = above.pixels[6 * 16 + 8];                                              // W/(m^2 sr)
+    //! [draw]
+    expect(radiance.x > 0 && stats.invalid_pixels == 0 && above.pixels.size() == 16 * 12, "draw");
+
+    //! [render]
+    const photongrid::image picture = photongrid::render(device, room, settings, {}, stats); // by the scene's own camera
+    //! [render]
+    expect(picture.pixels == photongrid::draw(device, built, room.camera, settings, {}, stats).pixels, "render");
+
+    //! [render_reference]
+    const auto truth = photongrid::render_reference(room, room.camera, {.width = 16, .height = 12, .spp = 64});
+    const glm::vec3 value = truth.mean.pixels[7 * 16 + 8], error = truth.standard_error.pixels[7 * 16 + 8]; // W/(m^2 sr)
+    //! [render_reference]
+    expect(error.x > 0 && std::abs(value.x - picture.pixels[7 * 16 + 8].x) < 0.2f * value.x, "render_reference");
+}
+
+} // namespace
+
+int main()
+try {
+    buffers();
+    device_type device;
+    algorithms(device);
+    maps(device);
+    const auto map = photongrid::fitted_map(device, photongrid::upload_photons(device, photons_on_a_square()), 50);
+    estimates(device, map);
+    files(device, map);
+    edges(device);
+    pictures(device);
+} catch (const std::exception& e) {
+    std::cerr << e.what() << '\n';
+    return 1;
+}
