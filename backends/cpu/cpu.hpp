@@ -15,8 +15,11 @@ namespace photongrid {
 
 /// One thread at a time drives a cpu_backend and its buffers. Results do not depend on how many threads it uses. Up to 128 MiB
 /// of memory that buffers gave back are kept for the next ones, and are not counted in bytes().
+/// \headerfile backends/cpu/cpu.hpp <photongrid/backends/cpu/cpu.hpp>
+/// \snippet snippets_cpu.cpp cpu_backend
 class cpu_backend {
 public:
+    /// Elements in memory: value_type, size(), moved and not copied. It belongs to the thread that drives the backend.
     template <element T>
     using buffer = cpu::buffer<T>;
 
@@ -34,6 +37,10 @@ public:
         static_assert(std::numeric_limits<float>::is_iec559);
     }
 
+    /// \name The verbs of a backend, as backend.hpp describes them
+    /// @{
+
+    /// As the concept photongrid::backend says.
     template <element T>
     buffer<T> make(std::size_t n)
     {
@@ -187,8 +194,10 @@ public:
     std::uint64_t bytes() const { return account_->now; }
     std::uint64_t peak_bytes() const { return account_->peak; }
     const std::map<std::string, kernel_cost>& costs() const { return costs_; }
+    /// @}
 
     // --- for overrides ------------------------------------------------------------------------------------------------
+    /// The threads that passes run on, the caller's among them.
     cpu::pool& threads() { return pool_; }
 
     /// A buffer's elements in a row each.
@@ -199,6 +208,7 @@ public:
             turn_over(b, false);
         return {b.rows(), b.size()};
     }
+    /// The same, to be written; what they hold is kept.
     template <element T>
     std::span<T> rows_to_write(buffer<T>& b)
     {
@@ -219,8 +229,10 @@ public:
         return b.in_planes();
     }
     /// Runs from when it is made.
+    /// \headerfile backends/cpu/cpu.hpp <photongrid/backends/cpu/cpu.hpp>
     class stopwatch {
     public:
+        /// Milliseconds so far.
         double ms() const { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
 
     private:

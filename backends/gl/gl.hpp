@@ -8,8 +8,10 @@
 
 namespace photongrid {
 
+/// Which OpenGL context to work in, and how.
+/// \headerfile backends/gl/gl.hpp <photongrid/backends/gl/gl.hpp>
 struct gl_options {
-    gl_context_kind context = gl_context_kind::any;
+    gl_context_kind context = gl_context_kind::any; ///< where it comes from
     gl::loader find = nullptr; ///< for gl_context_kind::current: finds OpenGL functions; null: EGL's or OSMesa's own
     uint tile = 64;            ///< run_until_done skips finished tiles of tile x tile elements (3.3); 1 to 2048
     bool time_passes = false;  ///< measure each verb by the device's clock, for costs(), and wait for it; slower
@@ -21,11 +23,19 @@ struct gl_options {
 /// an exception: every binding, switch and mask, and the errors that it left to glGetError. Verbs that draw throw
 /// backend_error where they would disturb what nobody can put back: an active query that counts samples or primitives,
 /// active transform feedback, conditional rendering, a program in use that is marked for deletion (docs/embed_in_opengl.md).
+/// \headerfile backends/gl/gl.hpp <photongrid/backends/gl/gl.hpp>
+/// \snippet snippets_gl.cpp gl_backend
 class gl_backend {
 public:
+    /// Elements in a texture, which gl_texture describes.
+    /// \headerfile backends/gl/gl.hpp <photongrid/backends/gl/gl.hpp>
     template <element T>
     class buffer {
     public:
+        /// \name A buffer's members, the same on every backend
+        /// @{
+
+        /// T, and how many of them. Buffers move and are not copied; one that was moved from, or made by default, is empty.
         using value_type = T;
         buffer() = default;
         buffer(buffer&& other) noexcept { swap(other); }
@@ -35,6 +45,7 @@ public:
             return *this;
         }
         std::size_t size() const noexcept { return size_; }
+        /// @}
 
     private:
         friend gl_backend;
@@ -72,6 +83,7 @@ public:
         made_->costs.clear();
         device_->peak_bytes = device_->bytes;
     }
+    /// Buffers of the one that is moved are this one's afterwards.
     gl_backend(gl_backend&&) = default;
     gl_backend& operator=(gl_backend&&) = delete;
     ~gl_backend()
@@ -89,6 +101,10 @@ public:
     /// Kernel texts of your own, embedded by photongrid_embed(); they must outlive the backend.
     void add_texts(std::span<const text_file> texts) { made_->add_texts(texts); }
 
+    /// \name The verbs of a backend, as backend.hpp describes them: buffers
+    /// @{
+
+    /// As the concept photongrid::backend says.
     template <element T>
     buffer<T> make(std::size_t n)
     {
@@ -138,8 +154,12 @@ public:
         return data;
     }
 
+    /// @}
+
     /// The buffer as a texture, to read or write with OpenGL in the order of calls, without a copy. It stays the buffer's.
     /// Who writes it by image stores calls glMemoryBarrier before the buffer is used again.
+    /// \throws std::invalid_argument for a buffer of another backend.
+    /// \snippet snippets_gl.cpp texture_of
     template <element T>
     gl_texture texture_of(const buffer<T>& b) const
     {
@@ -151,6 +171,7 @@ public:
     /// long as the buffer; bytes() does not count it. Texels of level 0 beyond the n elements may be overwritten; its filters
     /// do not matter. A buffer of 0 elements has no texture, whatever is given.
     /// \throws std::invalid_argument for a texture of another kind, format or size.
+    /// \snippet snippets_gl.cpp adopt
     template <element T>
     buffer<T> adopt(GLuint texture, std::size_t n)
     {
@@ -167,6 +188,8 @@ public:
     }
 
     /// Gives the buffer's texture to the caller, who deletes it. bytes() no longer counts it.
+    /// \throws std::invalid_argument for a buffer of another backend.
+    /// \snippet snippets_gl.cpp release
     template <element T>
     gl_texture release(buffer<T>&& b)
     {
@@ -178,6 +201,10 @@ public:
         return t;
     }
 
+    /// \name The verbs of a backend, as backend.hpp describes them: passes
+    /// @{
+
+    /// As the concept photongrid::backend says.
     template <gather_kernel K, class Reads, class Writes>
     void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
     {
@@ -315,6 +342,8 @@ public:
         finish_verb<K>("route");
     }
 
+    /// @}
+
     /// Compiles kernel K for every verb that it serves, without running it. \throws backend_error with the compiler's log.
     template <kernel_struct K>
     void compile(uint switches = ~0u)
@@ -334,6 +363,10 @@ public:
         }
     }
 
+    /// \name The verbs of a backend, as backend.hpp describes them: what it is and has spent
+    /// @{
+
+    /// As the concept photongrid::backend says.
     void finish()
     {
         const auto scope = device_->use();
@@ -344,6 +377,7 @@ public:
     std::uint64_t bytes() const { return device_->bytes; }
     std::uint64_t peak_bytes() const { return device_->peak_bytes; }
     const std::map<std::string, kernel_cost>& costs() const { return made_->costs; }
+    /// @}
 
     /// How often pixels or buffers were read back or mapped: only `download` does.
     std::uint64_t readbacks() const { return device_->call.readbacks(); }

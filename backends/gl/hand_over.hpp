@@ -10,10 +10,12 @@ namespace photongrid {
 /// A buffer as a texture: element i is the texel (i % 2048, i / 2048) of level 0. A buffer of up to 2048 elements is the
 /// beginning of one row, which may be shorter than 2048; all others are 2048 wide, and the last row's rest is undefined.
 /// The format is R32F, RG32F or RGBA32F for float, vec2 and vec4, R32UI, RG32UI or RGBA32UI for uint, uvec2 and uvec4.
+/// \headerfile backends/gl/gl.hpp <photongrid/backends/gl/gl.hpp>
 struct gl_texture {
     GLuint name = 0; ///< 0 for a buffer without elements
-    uint width = 0, height = 0;
-    GLenum internal_format = 0;
+    uint width = 0;             ///< texels
+    uint height = 0;            ///< texels
+    GLenum internal_format = 0; ///< GL_R32F, …; 0 for a buffer without elements
 };
 
 namespace gl {

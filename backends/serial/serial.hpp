@@ -10,15 +10,25 @@
 
 namespace photongrid {
 
+/// Kernels in plain loops on one thread, in single precision as IEEE 754 has it: what the other backends are compared with. It
+/// needs no device. One thread at a time may use a backend and its buffers; a buffer may outlive it.
+/// \headerfile backends/serial/serial.hpp <photongrid/backends/serial/serial.hpp>
+/// \snippet snippets.cpp serial_backend
 class serial_backend {
     struct account {
         std::uint64_t now = 0, peak = 0;
     };
 
 public:
+    /// Elements in memory.
+    /// \headerfile backends/serial/serial.hpp <photongrid/backends/serial/serial.hpp>
     template <element T>
     class buffer {
     public:
+        /// \name A buffer's members, the same on every backend
+        /// @{
+
+        /// T, and how many of them. Buffers move and are not copied; one that was moved from, or made by default, is empty.
         using value_type = T;
         buffer() = default;
         buffer(buffer&& other) noexcept { swap(other); }
@@ -35,6 +45,7 @@ public:
                 account_->now -= data_.size() * sizeof(T);
         }
         std::size_t size() const noexcept { return data_.size(); }
+        /// @}
 
     private:
         friend serial_backend;
@@ -53,6 +64,7 @@ public:
         std::vector<T> data_;
     };
 
+    /// Nothing to be opened.
     serial_backend()
     {
         caps_.backend = "serial";
@@ -64,6 +76,10 @@ public:
         static_assert(std::numeric_limits<float>::is_iec559);
     }
 
+    /// \name The verbs of a backend, as backend.hpp describes them
+    /// @{
+
+    /// As the concept photongrid::backend says.
     template <element T>
     buffer<T> make(std::size_t n)
     {
@@ -162,6 +178,7 @@ public:
     std::uint64_t bytes() const { return account_->now; }
     std::uint64_t peak_bytes() const { return account_->peak; }
     const std::map<std::string, kernel_cost>& costs() const { return costs_; }
+    /// @}
 
 private:
     template <class K, class Reads>

@@ -16,6 +16,7 @@
 namespace photongrid {
 
 /// Which device to open, and how.
+/// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
 struct vulkan_options {
     std::string device{};       ///< "": the best (discrete, integrated, virtual, CPU); else an index or a part of the name
     bool hardware_only = false; ///< refuse devices that are a CPU
@@ -29,23 +30,25 @@ struct vulkan_options {
 
 /// A device that the caller has opened, and goes on owning. The instance must be for Vulkan 1.1 or later, the queue of a
 /// family with compute; nobody else may use the queue at the same time.
+/// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
 struct vulkan_handles {
-    VkInstance instance = VK_NULL_HANDLE;
-    VkPhysicalDevice physical_device = VK_NULL_HANDLE;
-    VkDevice device = VK_NULL_HANDLE;
-    VkQueue queue = VK_NULL_HANDLE;
-    std::uint32_t queue_family = 0;
+    VkInstance instance = VK_NULL_HANDLE;              ///< made for Vulkan 1.1 or later
+    VkPhysicalDevice physical_device = VK_NULL_HANDLE; ///< of that instance
+    VkDevice device = VK_NULL_HANDLE;                  ///< of that physical device
+    VkQueue queue = VK_NULL_HANDLE;                    ///< of that device; passes are submitted here
+    std::uint32_t queue_family = 0;                    ///< that the queue is of
 };
 
 /// A device as `vulkan_devices()` lists it.
+/// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
 struct vulkan_device_info {
-    std::uint32_t index = 0;
-    std::string name;
+    std::uint32_t index = 0; ///< that vulkan_options::device may name
+    std::string name;        ///< the driver's
     std::string type;        ///< "discrete", "integrated", "virtual", "cpu", "other"
     std::string driver;      ///< its name and version
     std::string api_version; ///< "1.3.230"
     bool software = false;   ///< true where the device is a CPU
-    std::uint64_t max_buffer_bytes = 0;
+    std::uint64_t max_buffer_bytes = 0;     ///< of one buffer that a pass binds
     std::uint64_t memory_bytes = 0;         ///< largest device-local heap
     std::uint32_t max_storage_buffers = 0;  ///< that one pass can bind
     std::string unusable;                   ///< why this backend cannot use it; empty: it can

@@ -21,13 +21,21 @@ namespace photongrid {
 ///
 /// costs()[kernel].instructions is the number of SPIR-V instructions in the functions of the kernel's largest
 /// specialisation so far, after optimisation.
+/// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
+/// \snippet snippets_vulkan.cpp vulkan_backend
 class vulkan_backend {
     using memory = vulkan_detail::memory;
 
 public:
+    /// Elements in memory of the device.
+    /// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
     template <element T>
     class buffer {
     public:
+        /// \name A buffer's members, the same on every backend
+        /// @{
+
+        /// T, and how many of them. Buffers move and are not copied; one that was moved from, or made by default, is empty.
         using value_type = T;
         buffer() = default;
         buffer(buffer&& other) noexcept : memory_(std::move(other.memory_)), n_(std::exchange(other.n_, 0)) {}
@@ -46,6 +54,7 @@ public:
                 memory_->forget();
         }
         std::size_t size() const noexcept { return n_; }
+        /// @}
 
     private:
         friend vulkan_backend;
@@ -61,13 +70,17 @@ public:
     /// Works on a device that the caller owns and that outlives this backend and its buffers. It changes nothing that is the
     /// caller's: it has a command pool, descriptors and pipelines of its own, and submits to the queue. Of the options, those
     /// about kernels and timing count; device, validation and staging are the caller's affair.
+    /// \throws backend_error for a device that lacks what the backend needs.
+    /// \snippet snippets_vulkan.cpp callers_device
     explicit vulkan_backend(const vulkan_handles& handles, const vulkan_options& options = {}) : vulkan_backend(std::make_shared<vulkan_detail::context>(handles), options) {}
 
     /// More kernel files than the library's own, as photongrid_embed() made them; they must outlive the backend.
     void add_texts(std::span<const text_file> texts) { texts_.insert(texts_.end(), texts.begin(), texts.end()); }
 
-    /// A buffer of n elements, contents undefined.
-    /// \throws backend_error when n exceeds what the device binds, or its memory.
+    /// \name The verbs of a backend, as backend.hpp describes them: buffers
+    /// @{
+
+    /// As the concept photongrid::backend says.
     template <element T>
     buffer<T> make(std::size_t n)
     {
@@ -93,10 +106,14 @@ public:
         return data;
     }
 
+    /// @}
+
     /// The Vulkan buffer behind `b`: element i begins at byte i * sizeof(T). It stays this backend's and lives as long as `b`.
     /// Null for a buffer that was never made. What was asked of this backend so far is submitted. Commands that the caller
     /// submits to the queue afterwards see its results without a barrier, and what they write is seen by passes asked for after
     /// they were submitted. Ask again before each of your own submissions that touches a buffer of this backend.
+    /// \throws std::invalid_argument for a buffer of another backend.
+    /// \snippet snippets_vulkan.cpp handle
     template <element T>
     VkBuffer handle(const buffer<T>& b)
     {
@@ -111,7 +128,8 @@ public:
     /// A buffer over the first n elements of one that the caller has on the same device, and goes on owning: it must live, and
     /// keep its memory, until the buffer is gone and finish() has returned. Not counted in bytes(). As with handle(), commands
     /// on the queue take turns.
-    /// \throws std::invalid_argument for a null handle or more elements than the device binds.
+    /// \throws std::invalid_argument for a null handle, 0 elements or more than the device binds.
+    /// \snippet snippets_vulkan.cpp adopt
     template <element T>
     buffer<T> adopt(VkBuffer callers, std::size_t n)
     {
@@ -124,12 +142,15 @@ public:
     }
 
     /// A buffer that is the caller's to destroy, and the memory that it alone is bound to.
+    /// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
     struct released_buffer {
-        VkBuffer buffer = VK_NULL_HANDLE;
+        VkBuffer buffer = VK_NULL_HANDLE;       ///< null for a buffer that was never made
         VkDeviceMemory memory = VK_NULL_HANDLE; ///< null where the buffer had been adopted
-        VkDeviceSize bytes = 0;
+        VkDeviceSize bytes = 0;                 ///< of the buffer
     };
     /// Gives a buffer over to the caller, when all passes are done; the caller destroys both.
+    /// \throws std::invalid_argument for a buffer of another backend.
+    /// \snippet snippets_vulkan.cpp release
     template <element T>
     released_buffer release(buffer<T>&& b)
     {
@@ -142,6 +163,10 @@ public:
         return {block.buffer, block.memory, block.bytes};
     }
 
+    /// \name The verbs of a backend, as backend.hpp describes them: passes
+    /// @{
+
+    /// As the concept photongrid::backend says.
     template <gather_kernel K, class Reads, class Writes>
     void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
     {
@@ -216,6 +241,7 @@ public:
     std::uint64_t bytes() const { return context_->bytes(); }
     std::uint64_t peak_bytes() const { return context_->peak_bytes(); }
     const std::map<std::string, kernel_cost>& costs() const { return costs_; }
+    /// @}
 
     // --- for overrides ------------------------------------------------------------------------------------------------
     /// One pass of a shader of the backend's or an override's own: `elements` invocations, the buffers bound from 0 up. The

@@ -13,6 +13,7 @@
 #include <tuple>
 #include <vector>
 
+/// The library. Lengths are in m, flux in W, irradiance in W/m^2, radiance in W/(m^2 sr), linear rgb.
 namespace photongrid {
 
 /// A driver that is missing, a context that cannot be had, a device limit exceeded, a device lost. The text says what
@@ -24,10 +25,11 @@ struct backend_error : std::runtime_error {
 /// Which elements a pass computes: `first`, `first + 1`, … `first + elements - 1`. Bit B of `switches` is the kernel's
 /// SWITCH B. A launch converts from a plain count.
 struct launch {
-    uint elements = 0;
-    uint first = 0;
-    uint switches = ~0u;
+    uint elements = 0;   ///< how many; 0: the pass does nothing
+    uint first = 0;      ///< index of the first
+    uint switches = ~0u; ///< ~0: all on
 
+    /// \throws std::invalid_argument for an index beyond 2^32 - 1.
     constexpr launch(std::size_t elements_, uint first_ = 0, uint switches_ = ~0u)
         : elements(static_cast<uint>(elements_)), first(first_), switches(switches_)
     {
@@ -225,6 +227,8 @@ template <class B, element T>
 using buffer_of = typename B::template buffer<T>;
 
 /// A buffer with the elements of a contiguous range: b.upload() for what is not a std::span.
+/// \throws backend_error where the device has no room.
+/// \snippet snippets.cpp upload
 template <backend B, std::ranges::contiguous_range Range>
     requires std::ranges::sized_range<Range> && element<std::ranges::range_value_t<Range>>
 buffer_of<B, std::ranges::range_value_t<Range>> upload(B& b, const Range& elements)
@@ -236,11 +240,12 @@ buffer_of<B, std::ranges::range_value_t<Range>> upload(B& b, const Range& elemen
 /// (docs/decisions.md).
 constexpr uint route_capacity(uint m) { return m * m < 255u ? m * m : 255u; }
 
-/// How many partial sums a destination has in route, by the room for them; and how many draws share one.
+/// Partial sums that a destination has in route: P where `totals` elements are room for P of each.
 constexpr uint route_parts(std::size_t totals, uint destinations)
 {
     return destinations == 0 ? 1u : static_cast<uint>(totals / destinations);
 }
+/// Draws that share a partial sum in route: `draws` cut into `parts` equal blocks, the last of which may be shorter. 1 at least.
 constexpr uint route_block(uint draws, uint parts)
 {
     const uint block = draws / parts + (draws % parts != 0 ? 1u : 0u);

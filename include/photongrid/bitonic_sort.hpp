@@ -18,6 +18,7 @@ struct sort_report {
 /// Sorts (key, value) pairs ascending, compared whole, in place; any n from 0 up. Equal keys keep every value, ordered.
 /// Scratch: one more buffer of n pairs, both rounded up to a power of two while it runs.
 /// \throws backend_error when the device cannot hold them.
+/// \snippet snippets.cpp bitonic_sort
 template <backend B>
 sort_report bitonic_sort(B& b, buffer_of<B, glm::uvec2>& pairs)
 {

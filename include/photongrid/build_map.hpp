@@ -30,6 +30,8 @@ namespace detail {
 
 /// A photon map by sorting (2.2.1): exact, L(L+1)/2 + 5 passes and one per attribute. Takes the photons over. Those that are
 /// not of `parts` are in no cell.
+/// \throws backend_error when the device cannot hold them.
+/// \snippet snippets.cpp sorted_map
 template <backend B>
 photon_map<B> sorted_map(B& b, photons<B> p, const grid& g, uint parts = every_part)
 {
@@ -55,6 +57,8 @@ photon_map<B> sorted_map(B& b, photons<B> p, const grid& g, uint parts = every_p
 
 /// A photon map by stencil routing with m x m slots a cell (2.2.2): approximate where cells overflow, few passes. The gaps
 /// that routing leaves between cells are closed afterwards. Takes the photons over. `seed` orders the drawing.
+/// \throws std::invalid_argument for m outside 1 to 16, backend_error when cells x slots exceed the device.
+/// \snippet snippets.cpp routed_map
 template <backend B>
 photon_map<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 0, uint parts = every_part)
 {
@@ -84,6 +88,8 @@ photon_map<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 
 }
 
 /// A photon map by sorting, in a grid that fits the photons themselves for estimates from the k nearest (fitting_grid).
+/// \throws backend_error when the device cannot hold it.
+/// \snippet snippets.cpp fitted_map
 template <backend B>
 photon_map<B> fitted_map(B& b, photons<B> p, uint k)
 {

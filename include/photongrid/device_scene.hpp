@@ -25,11 +25,12 @@ enum scene_feature : uint {
 
 /// The records of a scene and where they stand.
 struct scene_records {
-    std::vector<glm::vec4> records;
-    kernels::Scene layout{};
-    uint features = 0;
-    dvec3 center{0};           ///< subtracted from every position, m
-    glm::vec3 low{0}, high{0}; ///< box of the Lambertian surfaces, recentred: where photons can be stored
+    std::vector<glm::vec4> records; ///< as kernels/scene_hit.glsl reads them; positions are recentred
+    kernels::Scene layout{};        ///< where each kind of record begins, and how many there are
+    uint features = 0;              ///< scene_feature bits
+    dvec3 center{0};                ///< subtracted from every position, m
+    glm::vec3 low{0};               ///< m; box of the Lambertian surfaces, recentred: where photons can be stored
+    glm::vec3 high{0};              ///< m; its other corner
 };
 
 namespace detail {
@@ -314,9 +315,12 @@ inline scene_records lay_out(const scene& original)
 template <backend B>
 struct device_scene {
     scene_records about; ///< `records` stay on the host too
-    buffer_of<B, glm::vec4> records;
+    buffer_of<B, glm::vec4> records; ///< as kernels/scene_hit.glsl reads them
 };
 
+/// Lays a scene out and uploads it.
+/// \throws std::invalid_argument as lay_out does, backend_error where the device has no room.
+/// \snippet snippets.cpp upload_scene
 template <backend B>
 device_scene<B> upload_scene(B& b, const scene& s)
 {

@@ -67,6 +67,7 @@ buffer_of<B, glm::vec4> covered_shares(B& b, const device_scene<B>& s, const buf
 /// 2^-8, the tip of a needle of 1.4 degrees. Right where the light that the estimate counts lies on the surface itself: the
 /// search must refuse photons of adjoining surfaces (leak_policy::min_cosine). Radius and counts stay.
 /// \throws std::invalid_argument as covered_shares does.
+/// \snippet snippets.cpp correct_edges
 template <backend B>
 void correct_edges(B& b, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points, const buffer_of<B, glm::vec4>& normals, knn_estimates<B>& estimates, filter_kernel kernel, float min_radius)
 {

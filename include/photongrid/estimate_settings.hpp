@@ -42,7 +42,7 @@ struct leak_policy {
     float compression = 1;    ///< distances along the normal count this many times: the ball becomes a disc; needs normals of points; 1: off
 
     bool needs_normals() const { return min_cosine > -1; }     ///< of photons
-    bool needs_any() const { return side || needs_normals() || compression > 1; }
+    bool needs_any() const { return side || needs_normals() || compression > 1; } ///< of points
 };
 
 } // namespace photongrid

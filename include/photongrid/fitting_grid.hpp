@@ -45,11 +45,15 @@ namespace detail {
 } // namespace detail
 
 /// A grid for estimates from k of these photons: `cells_a_radius` cells to the distance of the k-th nearest (see
-/// capabilities), twice as many along x, where rows are cut off at the radius; at most 5/4 cells a photon. The box is that of the photons but for one in 500 at
-/// either end of each axis, so that a stray one does not make all cells useless; what lies outside belongs to border cells.
+/// capabilities), twice as many along x, where rows are cut off at the radius; at most 5/4 cells a photon. The box
+/// is that of the photons but for one in 500 at either end of each axis, so that a stray one does not make all cells useless; what
+/// lies outside belongs to border cells.
 ///
 /// How photons fill space is measured on a sample of 16,384: the cubes of some edge h that hold any number h^-D, with D = 2
 /// for photons on surfaces (box counting; Mandelbrot 1982). Same photons, same grid, on every backend.
+/// Reads the sample back.
+/// \throws backend_error when the device fails.
+/// \snippet snippets.cpp fitting_grid
 template <backend B>
 grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_a_radius = 1)
 {

@@ -13,6 +13,7 @@
 
 namespace photongrid {
 
+/// 32 bits, as in GLSL.
 using uint = std::uint32_t;
 
 /// The index of an input, output or switch, as a type.
@@ -43,15 +44,17 @@ namespace detail {
     }
 } // namespace detail
 
-/// How many INPUTs and how many OUTPUTs or STATEs kernel K declares; slots are numbered from 0 without gaps.
+/// How many INPUTs kernel K declares; slots are numbered from 0 without gaps.
 template <class K>
 inline constexpr std::size_t input_count = detail::count_inputs<K>();
+/// How many OUTPUTs and STATEs kernel K declares, numbered together.
 template <class K>
 inline constexpr std::size_t output_count = detail::count_outputs<K>();
 
-/// The element type of input or output slot I of kernel K.
+/// The element type of input slot I of kernel K.
 template <class K, std::size_t I>
 using input_t = decltype(K::input_type(slot<I>{}));
+/// The element type of output or state slot I of kernel K.
 template <class K, std::size_t I>
 using output_t = std::remove_reference_t<decltype(std::declval<K&>().output(slot<I>{}))>;
 

@@ -15,10 +15,10 @@
 
 namespace photongrid {
 
-/// A source text made of several files. Line L of file F is numbered (F + 1) * 100000 + L by #line, in one integer,
-/// because drivers lose the file number of `#line L F` (docs/design.md, "Errors that point home").
+/// A source text made of several files. Line L of file F is numbered (F + 1) * 100000 + L by `#line`, in one integer,
+/// because drivers lose the file number of `#line` with two (docs/design.md, "Errors that point home").
 struct spliced_source {
-    std::string text;
+    std::string text;               ///< what the compiler is given
     std::vector<std::string> files; ///< F -> name
     std::vector<std::string> texts; ///< F -> the file's own text, for quoting
 };
@@ -78,7 +78,8 @@ namespace detail {
 } // namespace detail
 
 /// Puts `prelude` before `kernel`, then `epilogue` (a wrapper's main), with every `#include "x.glsl"` replaced by that
-/// file of `library`, each once. Defines go after the prelude's #version line as they are.
+/// file of `library`, each once. Defines go after the prelude's `#version` line as they are.
+/// \throws std::runtime_error that names file and line, where an included file is not in `library`.
 inline spliced_source splice(const text_file& prelude, std::string_view defines, const text_file& kernel, const text_file& epilogue, std::span<const text_file> library = kernel_texts)
 {
     detail::splicer s(library);
@@ -89,7 +90,7 @@ inline spliced_source splice(const text_file& prelude, std::string_view defines,
 }
 
 /// The embedded text of a kernel by the path that its C++ struct carries.
-/// Throws std::runtime_error when no such text was embedded.
+/// \throws std::runtime_error when no such text was embedded.
 inline const text_file& find_kernel_text(std::string_view path, std::span<const text_file> library = kernel_texts)
 {
     const auto base = path.substr(path.find_last_of("/\\") + 1);
@@ -110,7 +111,7 @@ std::vector<text_file> texts_of(std::span<const text_file> library)
     return texts;
 }
 
-/// Rewrites a compiler's log so that each message reads `file:line: error: …` with the source line quoted below it.
+/// Rewrites a compiler's log so that each message reads `kernel.glsl:line: error: …` with the source line quoted below it.
 /// Understands Mesa's, glslang's and NVIDIA's forms; what matches none is kept as it is.
 inline std::string translate_log(std::string_view log, const spliced_source& source)
 {

@@ -33,6 +33,7 @@ struct knn_estimates {
 template <backend B>
 class knn_search_by_kernels {
 public:
+    /// Points, normals and sums.
     using vectors = buffer_of<B, glm::vec4>;
 
     /// Points: xyz in m; w > 0 marks a point that wants an estimate. `map` and `points` must outlive the search.
@@ -48,7 +49,7 @@ public:
     {
     }
 
-    /// Runs at most `passes` more passes over the points not yet done.
+    /// Runs at most `passes` more passes over the points not yet done, each a bounded amount of work for a point.
     progress advance(uint passes = nowhere)
     {
         progress all;
@@ -189,16 +190,20 @@ private:
     buffer_of<B, glm::uvec4> found_, chosen_, cursor_, tally_;
 };
 
-/// The search of backend B: by kernels, unless the backend has another (backends/<name>/overrides/).
+/// The search of backend B: by kernels, unless the backend has another (its folder overrides/).
+/// \snippet snippets.cpp knn_search
 template <backend B>
 class knn_search : public knn_search_by_kernels<B> {
 public:
     using knn_search_by_kernels<B>::knn_search_by_kernels;
 };
+/// The backend is found from the first argument.
 template <backend B, class... Rest>
 knn_search(B&, const photon_map<B>&, const Rest&...) -> knn_search<B>;
 
-/// The whole search at once.
+/// The whole search at once (2.3). Points: xyz in m; w > 0 marks a point that wants an estimate.
+/// \throws std::invalid_argument as knn_search does, backend_error when the device cannot hold the search.
+/// \snippet snippets.cpp knn_grid_estimate
 template <backend B>
 knn_estimates<B> knn_grid_estimate(B& b, const photon_map<B>& map, const buffer_of<B, glm::vec4>& points, const knn_settings& settings)
 {
@@ -206,6 +211,8 @@ knn_estimates<B> knn_grid_estimate(B& b, const photon_map<B>& map, const buffer_
     search.advance();
     return std::move(search).estimates();
 }
+/// With the unit normals of the surfaces that the points lie on, for leak policies.
+/// \snippet snippets.cpp upload_normals
 template <backend B>
 knn_estimates<B> knn_grid_estimate(B& b, const photon_map<B>& map, const buffer_of<B, glm::vec4>& points, const buffer_of<B, glm::vec4>& normals, const knn_settings& settings)
 {

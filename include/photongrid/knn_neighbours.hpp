@@ -79,6 +79,7 @@ namespace detail {
 /// takes 16 bytes an entry, and half of that again, while it runs; k is rounded up to a power of two for that.
 /// \throws std::invalid_argument for k = 0, a radius that is NaN, another search than exact_k, leak policies without normals,
 /// or more entries than the device holds in one buffer.
+/// \snippet snippets.cpp knn_neighbours
 template <backend B>
 neighbour_lists<B> knn_neighbours(B& b, const photon_map<B>& map, const buffer_of<B, glm::vec4>& points, const knn_settings& settings)
 {

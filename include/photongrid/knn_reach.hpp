@@ -45,6 +45,7 @@ public:
         all.finished = finished();
         return all;
     }
+    /// True when the radius of every point is known.
     bool finished() const { return stage_ == stage::finished; }
 
     /// Per point, y: photons looked at so far.

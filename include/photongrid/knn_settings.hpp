@@ -13,16 +13,16 @@ struct knn_settings {
     uint k = 50;              ///< photons wanted; all within max_radius are taken when there are fewer. Not for fixed_radius
     float max_radius = std::numeric_limits<float>::infinity(); ///< m; photons farther away are always rejected. 0 or less: nothing is found. fixed_radius needs one
     float min_radius = 0;     ///< m; the disc of the estimate is never smaller. 0: 2^-20 of the grid's largest extent
-    search_kind search = search_kind::exact_k;
-    filter_kernel kernel = filter_kernel::constant;
-    bias_kind bias = bias_kind::unbiased;
-    leak_policy leaks{};
+    search_kind search = search_kind::exact_k;      ///< which photons count
+    filter_kernel kernel = filter_kernel::constant; ///< their weight by distance
+    bias_kind bias = bias_kind::unbiased;           ///< does the photon that sets the radius count?
+    leak_policy leaks{};                            ///< photons that are refused; none, as it stands
     bool errors = false;      ///< standard errors are wanted
-    /// Photons that one query examines in a pass at most, and rows of cells that it opens. Any values give the same
-    /// result. 16 lanes x (visits + rows) must stay well below 65,535, after which llvmpipe and lavapipe end loops in silence:
+    /// Photons that one query examines in a pass at most, 1 at least. Any value gives the same result, as any of ranges_per_pass
+    /// does. 16 lanes x (visits + ranges) must stay well below 65,535, after which llvmpipe and lavapipe end loops in silence:
     /// some loops more go round once a scan.
     uint visits_per_pass = 3072;
-    uint ranges_per_pass = 896;
+    uint ranges_per_pass = 896; ///< rows of cells that one query opens in a pass at most, 2 at least
 };
 
 /// The radius, m, below which the disc of an estimate never shrinks where the caller names none: 2^-20 of the largest extent.
@@ -32,7 +32,8 @@ inline float least_radius(const grid& g)
     return std::max({extent.x, extent.y, extent.z}) * 0x1p-20f;
 }
 
-/// The paper's own choice (2.3).
+/// The paper's own choice (2.3): at least k, constant kernel, no policy. k, radii and errors stay.
+/// \snippet snippets.cpp as_paper
 inline knn_settings as_paper(knn_settings s)
 {
     s.search = search_kind::at_least_k;

@@ -28,6 +28,7 @@ namespace photongrid {
 /// cannot write. Says which file, what is wrong, and what to do.
 class map_file_error : public std::runtime_error {
 public:
+    /// The message is "file: what".
     map_file_error(const std::filesystem::path& file, const std::string& what) : std::runtime_error(file.string() + ": " + what) {}
 };
 
@@ -138,6 +139,7 @@ namespace detail {
 /// Writes the map to `file`, which afterwards is whole or as it was. The same map gives the same bytes on every backend.
 /// `note`: whatever the caller wants to find again with the map, such as which scene and settings it is of; any bytes.
 /// \throws map_file_error where the file cannot be written.
+/// \snippet snippets.cpp save_map
 template <backend B>
 void save_map(B& b, const photon_map<B>& map, const std::filesystem::path& file, const std::string& note = {})
 {
@@ -209,6 +211,7 @@ void save_map(B& b, const photon_map<B>& map, const std::filesystem::path& file,
 /// Reads a map that save_map() wrote, on whichever backend. Every byte is checked first. `note`: where the caller's note goes.
 /// \throws map_file_error for a file that is damaged, cut short, no photon map, or of another version.
 /// \throws backend_error where the backend has no room for the map.
+/// \snippet snippets.cpp load_map
 template <backend B>
 photon_map<B> load_map(B& b, const std::filesystem::path& file, std::string* note = nullptr)
 {

@@ -20,19 +20,22 @@ struct photons {
     buffer_of<B, glm::vec4> directions{}; ///< xyz: unit vector of travel; empty where nobody asks for it
     buffer_of<B, glm::vec4> normals{};    ///< xyz: unit normal of the surface they are on; empty where nobody asks for it
 
+    /// Photons.
     uint size() const { return static_cast<uint>(positions.size()); }
 };
 
-/// Parts of the light that a map may be made of, as bits: photons with 0 and with 1 in the w of their position. The tracer
-/// writes 1 for caustic photons.
-inline constexpr uint other_part = 1u, caustic_part = 2u, every_part = 3u;
+// Parts of the light that a map may be made of, as bits.
+inline constexpr uint other_part = 1u;   ///< photons with 0 in the w of their position
+inline constexpr uint caustic_part = 2u; ///< photons with 1 there: the tracer's caustic photons
+inline constexpr uint every_part = 3u;   ///< both
 
 /// A uniform grid: origin, cell edges (m) and resolution, as kernels read it.
 using grid = kernels::Grid;
 
 /// A grid of `resolution` cells over the box from `low` to `high` (m). An axis without extent gets a thin one, so that
 /// planar photons need no special care. Points outside belong to the border cells.
-/// Throws std::invalid_argument for a resolution of 0, more than 2^31 cells, or a box that is not finite.
+/// \throws std::invalid_argument for a resolution of 0, more than 2^31 cells, or a box that is not finite.
+/// \snippet snippets.cpp make_grid
 inline grid make_grid(glm::vec3 low, glm::vec3 high, glm::uvec3 resolution)
 {
     const auto cells = std::uint64_t{resolution.x} * resolution.y * resolution.z;
@@ -61,7 +64,7 @@ inline uint cell_count(const grid& g) { return g.resolution.w; }
 /// of `photons` and of `list`; past the last cell's stand those that are in no cell.
 template <backend B>
 struct photon_map {
-    grid cells_of{};
+    grid cells_of{};                ///< the grid that the cells are of
     photongrid::photons<B> photons; ///< cell by cell
     buffer_of<B, glm::uvec2> cells; ///< x: first, y: count
     buffer_of<B, uint> list;        ///< ids: which of the photons that the map was made from stands here; 0xFFFFFFFF: none
@@ -72,7 +75,9 @@ struct photon_map {
 };
 
 /// Flux (W, all channels together) that stencil routing took from photons it could not keep and gave to the others of
-/// their cells; 0 for a sorted map. Reads the cells back.
+/// their cells; 0 for a sorted map (2.2.2). Reads the surpluses back.
+/// \throws backend_error when the device fails.
+/// \snippet snippets.cpp redistributed_flux
 template <backend B>
 double redistributed_flux(B& b, const photon_map<B>& map)
 {

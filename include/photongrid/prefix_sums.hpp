@@ -9,6 +9,9 @@
 namespace photongrid {
 
 /// Inclusive sums: element i of the result is terms 0 to i added up, modulo 2^32. ceil(log4 n) passes, one at least.
+/// (Hillis and Steele 1986, by fours in place of twos.)
+/// \throws backend_error when the device cannot hold two more buffers of n.
+/// \snippet snippets.cpp prefix_sums
 template <backend B>
 buffer_of<B, uint> prefix_sums(B& b, const buffer_of<B, uint>& terms)
 {

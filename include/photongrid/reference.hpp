@@ -10,6 +10,7 @@ namespace photongrid {
 /// Renders a view without a photon map. The same scene, settings and seed give the same bytes on any number of threads.
 /// Unbiased but for the bins, which blur caustics over their own size (stats.bin_size), and for the depths of the settings.
 /// \throws std::invalid_argument for a scene, camera or settings that check() refuses, render_cancelled.
+/// \snippet snippets.cpp render_reference
 inline reference_picture render_reference(const scene& s, const camera& view, const reference_settings& settings, const render_observer& observer = {})
 {
     using clock = std::chrono::steady_clock;

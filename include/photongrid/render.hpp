@@ -60,15 +60,16 @@ namespace detail {
 /// What build_map leaves for draw: the scene on the device and its photon map.
 template <backend B>
 struct built_map {
-    device_scene<B> scene;
-    photon_map<B> map;
+    device_scene<B> scene;   ///< recentred
+    photon_map<B> map;       ///< in the coordinates of `scene`
     traced_photons<B> trace; ///< its photons have moved to `map`
-    map_stats about;
+    map_stats about;         ///< what draw repeats in its statistics
 };
 
 /// Traces photons and builds the map (figure 1, left). Needed again only when geometry, materials or lights change.
 /// \throws std::invalid_argument for a scene or settings that check() refuses, std::runtime_error when the lights store
 ///         too few photons, backend_error when the device refuses, render_cancelled.
+/// \snippet snippets.cpp build_map
 template <backend B>
 built_map<B> build_map(B& b, const scene& s, const render_settings& settings, const render_observer& observer, render_stats& stats)
 {
@@ -180,6 +181,7 @@ namespace detail {
 /// Draws a view with a map that is there already (figure 1, right): no photon pass runs. Pixels that are NaN or infinite
 /// are set to 0 and counted in stats.invalid_pixels.
 /// \throws std::invalid_argument for a camera or settings that check() refuses, backend_error, render_cancelled.
+/// \snippet snippets.cpp draw
 template <backend B>
 image draw(B& b, const built_map<B>& built, const camera& view, const render_settings& settings, const render_observer& observer, render_stats& stats)
 {
@@ -307,7 +309,9 @@ image draw(B& b, const built_map<B>& built, const camera& view, const render_set
     return picture;
 }
 
-/// Both steps at once.
+/// Both steps at once, seen by the scene's own camera.
+/// \throws what build_map and draw throw.
+/// \snippet snippets.cpp render
 template <backend B>
 image render(B& b, const scene& s, const render_settings& settings, const render_observer& observer, render_stats& stats)
 {

@@ -14,6 +14,7 @@
 
 namespace photongrid {
 
+/// Double precision, as all of a scene is: m, W or a direction.
 using glm::dvec3;
 
 /// How a surface answers light. `metal` is a mirror with a colour.
@@ -21,73 +22,82 @@ enum class material_kind { lambertian, mirror, metal, glass };
 
 /// A material. Reflectance per channel (rgb), 0 to 1; for glass it is the transmittance of each crossing (1: clear).
 struct material {
-    std::string name;
-    material_kind kind = material_kind::lambertian;
-    dvec3 reflectance{0.5};
-    double index_of_refraction = 1.5; ///< glass only
+    std::string name;                               ///< for messages
+    material_kind kind = material_kind::lambertian; ///< what `reflectance` means
+    dvec3 reflectance{0.5};                         ///< rgb, 0 to 1: see above
+    double index_of_refraction = 1.5; ///< glass only, 1 to 10; air, 1, is outside
 };
 
 /// A sphere. Lengths in m here and below; `material` is an index into scene::materials.
 struct sphere {
-    dvec3 center{0};
-    double radius = 1;
-    std::uint32_t material = 0;
+    dvec3 center{0};            ///< m
+    double radius = 1;          ///< m, above 0
+    std::uint32_t material = 0; ///< index into scene::materials
 };
 
 /// The side of a cylinder, open at both ends.
 struct cylinder {
-    dvec3 base{0}, top{0, 1, 0};
-    double radius = 1;
-    std::uint32_t material = 0;
+    dvec3 base{0};              ///< m; the middle of one end
+    dvec3 top{0, 1, 0};         ///< m; the middle of the other
+    double radius = 1;          ///< m, above 0
+    std::uint32_t material = 0; ///< index into scene::materials
 };
 
 /// The side of a cone, open at its base.
 struct cone {
-    dvec3 base{0}, apex{0, 1, 0};
-    double radius = 1; ///< at the base
-    std::uint32_t material = 0;
+    dvec3 base{0};              ///< m; the middle of the open end
+    dvec3 apex{0, 1, 0};        ///< m
+    double radius = 1;          ///< m, above 0; at the base
+    std::uint32_t material = 0; ///< index into scene::materials
 };
 
 /// A paraboloid of revolution from its vertex to its rim, open at the rim.
 struct paraboloid {
-    dvec3 vertex{0}, rim{0, 1, 0}; ///< rim: centre of the rim
-    double radius = 1;             ///< of the rim
-    std::uint32_t material = 0;
+    dvec3 vertex{0};            ///< m; the deepest point
+    dvec3 rim{0, 1, 0};         ///< m; centre of the rim
+    double radius = 1;          ///< m, above 0; of the rim
+    std::uint32_t material = 0; ///< index into scene::materials
 };
 
+/// A flat disk, with both of its sides.
 struct disk {
-    dvec3 center{0}, normal{0, 1, 0};
-    double radius = 1;
-    std::uint32_t material = 0;
+    dvec3 center{0};            ///< m
+    dvec3 normal{0, 1, 0};      ///< of any length above 0
+    double radius = 1;          ///< m, above 0
+    std::uint32_t material = 0; ///< index into scene::materials
 };
 
 /// A convex polygon (a triangle has three vertices), planar, vertices in order round it.
 struct polygon {
-    std::vector<dvec3> vertices;
-    std::uint32_t material = 0;
+    std::vector<dvec3> vertices; ///< m; 3 or more
+    std::uint32_t material = 0;  ///< index into scene::materials
 };
 
 /// A point light: power (W, rgb) sent out evenly in all directions.
 struct point_light {
-    std::string name;
-    dvec3 position{0};
-    dvec3 power{1};
+    std::string name;  ///< for messages
+    dvec3 position{0}; ///< m
+    dvec3 power{1};    ///< W, rgb; no channel below 0, one above
 };
 
 /// A rectangle that sends power (W, rgb) out diffusely on the side of cross(edge_u, edge_v); its own surface is black.
 struct rectangle_light {
-    std::string name;
-    dvec3 corner{0}, edge_u{1, 0, 0}, edge_v{0, 0, 1};
-    dvec3 power{1};
+    std::string name;      ///< for messages
+    dvec3 corner{0};       ///< m
+    dvec3 edge_u{1, 0, 0}; ///< m; from the corner
+    dvec3 edge_v{0, 0, 1}; ///< m; from the corner, at a right angle to edge_u
+    dvec3 power{1};        ///< W, rgb; no channel below 0, one above
 };
 
 /// A pinhole camera.
 struct camera {
-    dvec3 position{0}, look_at{0, 0, -1}, up{0, 1, 0};
-    double vertical_fov = 45; ///< degrees
+    dvec3 position{0};        ///< m
+    dvec3 look_at{0, 0, -1};  ///< m; the point in the middle of the picture
+    dvec3 up{0, 1, 0};        ///< a direction that is up in the picture; not along the line of sight
+    double vertical_fov = 45; ///< degrees from the picture's lower edge to its upper one, above 0 and below 179
 };
 
-/// How a photon map is built.
+/// How a photon map is built: sorted_map (2.2.1) or routed_map (2.2.2).
 enum class map_builder { sort, route };
 
 /// Which part of the light a picture shows. The photon map's part is split by the photons' paths: a caustic photon met
@@ -96,7 +106,8 @@ enum class light_part { all, direct, caustic, indirect };
 
 /// How to render: the paper's parameters, and what goes beyond them.
 struct render_settings {
-    std::uint32_t width = 512, height = 512; ///< pixels
+    std::uint32_t width = 512;               ///< pixels, 1 to 16384
+    std::uint32_t height = 512;              ///< pixels, 1 to 16384
     std::uint32_t photons = 65000;           ///< photons *stored*
     std::uint32_t k = 500;                   ///< photons sought by an estimate
     glm::uvec3 grid{25, 25, 50};             ///< cells of the photon map over the scene; 0, 0, 0: fitted to photons and k (fitting_grid.hpp)
@@ -105,36 +116,37 @@ struct render_settings {
     std::uint32_t spp = 1;                   ///< eye rays a pixel
     std::uint32_t depth = 8;                 ///< reflections and refractions an eye ray follows
     std::uint32_t photon_depth = 32;         ///< surfaces a photon path meets at most
-    std::uint32_t seed = 1;
-    map_builder builder = map_builder::sort;
+    std::uint32_t seed = 1;                  ///< of all random numbers; the same seed gives the same picture
+    map_builder builder = map_builder::sort; ///< sorted or routed
     std::uint32_t slots = 4;                 ///< m: routed cells have m x m slots
     double exposure = 0;                     ///< EV for tone-mapped output: pixel values times 2^exposure
-    search_kind search = search_kind::exact_k;
-    filter_kernel kernel = filter_kernel::silverman;
-    bias_kind bias = bias_kind::unbiased;
-    leak_policy leaks{.side = true};
-    edge_correction edges = edge_correction::none;
-    light_part only = light_part::all;
+    search_kind search = search_kind::exact_k;       ///< which photons an estimate uses
+    filter_kernel kernel = filter_kernel::silverman; ///< their weight by distance
+    bias_kind bias = bias_kind::unbiased;            ///< does the photon that sets the radius count?
+    leak_policy leaks{.side = true};                 ///< photons that are refused
+    edge_correction edges = edge_correction::none;   ///< polygons: needs leak_policy::min_cosine above 0
+    light_part only = light_part::all;               ///< what of the light is drawn
     bool aov = false;                        ///< radius, count and relative standard error of the estimate are wanted per pixel
 };
 
 /// A scene. `render` holds the settings that its file asks for; a program may change them.
 struct scene {
-    std::string name;
-    photongrid::camera camera;
-    std::vector<material> materials;
-    std::vector<sphere> spheres;
-    std::vector<cylinder> cylinders;
-    std::vector<cone> cones;
-    std::vector<paraboloid> paraboloids;
-    std::vector<disk> disks;
-    std::vector<polygon> polygons;
-    std::vector<point_light> point_lights;
-    std::vector<rectangle_light> rectangle_lights;
-    render_settings render;
+    std::string name;                              ///< for messages
+    photongrid::camera camera;                     ///< the view that render() draws
+    std::vector<material> materials;               ///< shapes name them by index; one at least that is Lambertian
+    std::vector<sphere> spheres;                   ///< balls of glass must not overlap
+    std::vector<cylinder> cylinders;               ///< open
+    std::vector<cone> cones;                       ///< open
+    std::vector<paraboloid> paraboloids;           ///< open
+    std::vector<disk> disks;                       ///< seen from both sides
+    std::vector<polygon> polygons;                 ///< seen from both sides
+    std::vector<point_light> point_lights;         ///< a scene has one light at least, of either kind
+    std::vector<rectangle_light> rectangle_lights; ///< the eye sees them
+    render_settings render;                        ///< what the scene's file asks for
 };
 
-/// The settings that reproduce the paper's estimate (2.3): at least k, constant kernel, no policy, no correction.
+/// The settings that reproduce the paper's estimate (2.3): at least k, constant kernel, no policy, no correction. The rest stays.
+/// \snippet snippets.cpp as_paper
 inline render_settings as_paper(render_settings s)
 {
     s.search = search_kind::at_least_k;
@@ -155,8 +167,9 @@ struct estimate_layers {
 
 /// A picture: linear radiance, W/(m^2 sr), rgb, row by row from the top left.
 struct image {
-    std::uint32_t width = 0, height = 0;
-    std::vector<glm::vec3> pixels;
+    std::uint32_t width = 0;       ///< pixels
+    std::uint32_t height = 0;      ///< pixels
+    std::vector<glm::vec3> pixels; ///< width x height of them
     estimate_layers layers{}; ///< empty unless render_settings::aov
 };
 
@@ -178,6 +191,7 @@ namespace detail {
 
 // Each `check` throws std::invalid_argument "member: what is wrong" for a part that cannot be rendered.
 
+/// \throws std::invalid_argument for a reflectance outside 0 to 1, or glass with an index of refraction outside 1 to 10.
 inline void check(const material& m)
 {
     const auto& r = m.reflectance;
@@ -185,26 +199,31 @@ inline void check(const material& m)
     if (m.kind == material_kind::glass)
         detail::require(detail::finite(m.index_of_refraction) && m.index_of_refraction >= 1 && m.index_of_refraction <= 10, "index_of_refraction: must be from 1 to 10");
 }
+/// \throws std::invalid_argument for a centre that is not finite, or a radius that is not above 0.
 inline void check(const sphere& s)
 {
     detail::require(detail::finite(s.center), "center: must be finite");
     detail::require_radius(s.radius);
 }
+/// \throws std::invalid_argument for ends in one place or not finite, or a radius that is not above 0.
 inline void check(const cylinder& c)
 {
     detail::require_axis(c.base, c.top, "base and top");
     detail::require_radius(c.radius);
 }
+/// \throws std::invalid_argument for a base and an apex in one place or not finite, or a radius that is not above 0.
 inline void check(const cone& c)
 {
     detail::require_axis(c.base, c.apex, "base and apex");
     detail::require_radius(c.radius);
 }
+/// \throws std::invalid_argument for a vertex and a rim in one place or not finite, or a radius that is not above 0.
 inline void check(const paraboloid& p)
 {
     detail::require_axis(p.vertex, p.rim, "vertex and rim");
     detail::require_radius(p.radius);
 }
+/// \throws std::invalid_argument for a centre or normal that is not finite, a normal of length 0, or a radius that is not above 0.
 inline void check(const disk& d)
 {
     detail::require(detail::finite(d.center), "center: must be finite");
@@ -212,7 +231,7 @@ inline void check(const disk& d)
     detail::require_radius(d.radius);
 }
 
-/// The area vector of a polygon: its normal, as long as its area (Newell's method).
+/// The area vector of a polygon: its normal, as long as its area, m^2 (Newell's method).
 inline dvec3 area_vector(const polygon& p)
 {
     dvec3 sum(0);
@@ -221,6 +240,8 @@ inline dvec3 area_vector(const polygon& p)
     return 0.5 * sum;
 }
 
+/// \throws std::invalid_argument for fewer than 3 vertices, one that is not finite or is off the plane by more than 1e-5 of the
+///         polygon's extent, a polygon without area, or one that is not convex.
 inline void check(const polygon& p)
 {
     detail::require(p.vertices.size() >= 3, "vertices: a polygon has at least 3");
@@ -242,16 +263,19 @@ inline void check(const polygon& p)
     }
 }
 
+/// \throws std::invalid_argument for a power (W, rgb) with a channel that is not finite or below 0, or with no light.
 inline void check_power(const dvec3& power)
 {
     detail::require(detail::finite(power) && power.x >= 0 && power.y >= 0 && power.z >= 0, "power: each channel must be finite and not negative");
     detail::require(power.x + power.y + power.z > 0, "power: the light is black");
 }
+/// \throws std::invalid_argument for a position that is not finite, or a power as in check_power.
 inline void check(const point_light& l)
 {
     detail::require(detail::finite(l.position), "position: must be finite");
     check_power(l.power);
 }
+/// \throws std::invalid_argument for what is not finite, edges without area or not at right angles, or a power as in check_power.
 inline void check(const rectangle_light& l)
 {
     detail::require(detail::finite(l.corner) && detail::finite(l.edge_u) && detail::finite(l.edge_v), "corner, edge_u, edge_v: must be finite");
@@ -260,6 +284,7 @@ inline void check(const rectangle_light& l)
     detail::require(std::abs(glm::dot(l.edge_u, l.edge_v)) <= 1e-6 * u * v, "edge_u, edge_v: must be at right angles");
     check_power(l.power);
 }
+/// \throws std::invalid_argument for a camera that looks nowhere, stands on its own line of sight, or opens by 0, 179 degrees or more.
 inline void check(const camera& c)
 {
     detail::require(detail::finite(c.position) && detail::finite(c.look_at), "position and look_at: must be finite");
@@ -268,6 +293,7 @@ inline void check(const camera& c)
         "up: must be finite, not zero, and not along the line of sight");
     detail::require(detail::finite(c.vertical_fov) && c.vertical_fov > 0 && c.vertical_fov < 179, "vertical_fov: must be between 0 and 179 degrees");
 }
+/// \throws std::invalid_argument for a setting out of its range, which the message gives.
 inline void check(const render_settings& s)
 {
     detail::require(s.width >= 1 && s.height >= 1 && s.width <= 16384 && s.height <= 16384, "size: width and height must be from 1 to 16384 pixels");
@@ -288,6 +314,7 @@ inline void check(const render_settings& s)
 }
 
 /// Checks a whole scene, its parts and their references. A scene file's reader checks part by part and adds the place.
+/// \throws std::invalid_argument "part[index].member: what is wrong"; also for a scene without lights, or balls of glass that overlap.
 inline void check(const scene& s)
 {
     const auto all = [&](const char* kind, const auto& parts) {

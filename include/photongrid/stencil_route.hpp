@@ -14,13 +14,15 @@ struct routed_cells {
     buffer_of<B, glm::vec4> powers;      ///< per photon, W: with the surplus of its cell shared out
     buffer_of<B, glm::vec4> totals;      ///< per cell: flux destined for it, W, and how many photons
     buffer_of<B, glm::vec4> surpluses;   ///< per cell: rgb W added to each kept photon, w flux moved, W
-    std::uint64_t overfull_cells = 0;
+    std::uint64_t overfull_cells = 0;    ///< cells that more photons were destined for than they have slots
 };
 
 /// Routes photons to m x m slots a cell. Kept are the first min(m*m, 255) of each cell in *draw order*, a permutation of
-/// the ids by `seed` (on every backend the same); each cell's flux is conserved per channel.
+/// the ids by `seed` (on every backend the same); each cell's flux is conserved per channel. Photons that are not of `parts` go
+/// nowhere.
 /// m is 1 to 16. The paper's "m = 16, about 40^3 cells" in 1024 x 1024 fits 16 slots, m = 4 (docs/decisions.md).
 /// \throws std::invalid_argument for m outside 1 to 16, backend_error when cells x slots exceed the device.
+/// \snippet snippets.cpp stencil_route
 template <backend B>
 routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, uint seed = 0, uint parts = every_part)
 {

@@ -5,9 +5,10 @@
 
 namespace photongrid {
 
+/// What photongrid_embed() of CMake makes of a file.
 struct text_file {
     std::string_view name; ///< path relative to the repository, "kernels/bitonic_step.glsl"
-    std::string_view text;
+    std::string_view text; ///< the whole file
 };
 
 } // namespace photongrid

@@ -22,10 +22,10 @@ struct path_tally {
 /// Photons stored, and what became of every path.
 template <backend B>
 struct traced_photons {
-    photongrid::photons<B> photons;
-    std::uint64_t emitted = 0;
-    std::uint64_t dropped = 0; ///< diffuse hits of the last path beyond the photons asked for
-    std::vector<path_tally<B>> tallies;
+    photongrid::photons<B> photons;     ///< in the order of (path, bounce)
+    std::uint64_t emitted = 0;          ///< paths, from the lights
+    std::uint64_t dropped = 0;          ///< diffuse hits of the last path beyond the photons asked for
+    std::vector<path_tally<B>> tallies; ///< one a batch of paths, of one element each
 };
 
 namespace detail {

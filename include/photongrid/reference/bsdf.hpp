@@ -5,7 +5,7 @@
 
 namespace photongrid::reference {
 
-/// A direction about n with density cos / pi.
+/// A direction about the unit vector n with density cos / pi; u and v in [0, 1).
 inline dvec3 cosine_direction(const dvec3& n, double u, double v)
 {
     const double r = std::sqrt(u), phi = 2 * M_PI * v;
@@ -13,7 +13,7 @@ inline dvec3 cosine_direction(const dvec3& n, double u, double v)
     return glm::normalize(r * std::cos(phi) * x + r * std::sin(phi) * y + std::sqrt(1 - u) * n);
 }
 
-/// A direction with density 1 / (4 pi).
+/// A direction with density 1 / (4 pi); u and v in [0, 1).
 inline dvec3 uniform_direction(double u, double v)
 {
     const double z = 1 - 2 * u, r = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * M_PI * v;
@@ -30,7 +30,7 @@ inline double fresnel_reflectance(double cos_i, double n_i, double cos_t, double
 
 /// Where a ray goes on from a mirror, metal or glass.
 struct specular_bounce {
-    dvec3 direction{0, 0, 1};
+    dvec3 direction{0, 0, 1}; ///< unit
     /// What a ray traced against the light multiplies radiance with: (n of the side it comes from / n of the side it goes
     /// to)^2 through glass, since radiance / n^2 is what stays constant; 1 where it is reflected. Flux traced with the light
     /// is not scaled.

@@ -12,19 +12,22 @@
 #include <limits>
 #include <span>
 
+/// The parts of the reference renderer (docs/reference.md): double precision, m, W, a right-handed world.
 namespace photongrid::reference {
 
-constexpr std::uint32_t nothing = 0xFFFFFFFFu;
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t nothing = 0xFFFFFFFFu;                          ///< no shape, no material, no light
+constexpr double infinity = std::numeric_limits<double>::infinity(); ///< the distance of what is not met
 
-/// Direction has length 1.
+/// Where a ray begins and where it goes.
 struct ray {
-    dvec3 origin{0}, direction{0, 0, 1};
+    dvec3 origin{0};              ///< m
+    dvec3 direction{0, 0, 1};     ///< unit
     std::uint32_t from = nothing; ///< the shape on which the origin lies
 };
 
+/// What a ray meets first.
 struct hit {
-    double t = infinity;              ///< along the ray, m
+    double t = infinity;              ///< along the ray, m; infinity: nothing is met
     std::uint32_t shape = nothing;    ///< number in `geometry`
     std::uint32_t material = nothing; ///< index into scene::materials; `nothing` for a light's surface
     std::uint32_t light = nothing;    ///< index into geometry::lights()
@@ -56,14 +59,18 @@ inline std::array<double, 2> real_roots(double a, double b, double c, bool start
 
 /// A surface of revolution about an axis from z = 0 at `base` to z = height.
 struct turned_shape {
-    enum class profile { cylinder, cone, paraboloid } kind = profile::cylinder;
-    dvec3 base{0}, axis{0, 0, 1};
-    double height = 1, radius = 1; ///< radius of a cone at z = 0, of a paraboloid at z = height
+    /// How the radius changes along the axis.
+    enum class profile { cylinder, cone, paraboloid } kind = profile::cylinder; ///< which of them it is
+    dvec3 base{0};       ///< m; where z is 0
+    dvec3 axis{0, 0, 1}; ///< unit
+    double height = 1;   ///< m
+    double radius = 1;   ///< m; of a cone at z = 0, of a paraboloid at z = height
 
+    /// Along the axis from `from` to `to`, m; they differ.
     turned_shape(profile k, const dvec3& from, const dvec3& to, double r)
         : kind(k), base(from), axis(glm::normalize(to - from)), height(glm::length(to - from)), radius(r) {}
 
-    /// Distance from the axis at height z.
+    /// Distance from the axis at height z, both in m.
     double radius_at(double z) const
     {
         switch (kind) {
@@ -73,6 +80,7 @@ struct turned_shape {
         }
     }
 
+    /// As geometry::nearest measures it, m; infinity where r misses. `starts_on`: r begins on this shape.
     double distance(const ray& r, bool starts_on) const
     {
         // Seen from the point of the ray nearest the middle, so that squares of long distances do not cancel.
@@ -121,13 +129,16 @@ struct turned_shape {
 
 /// A convex polygon and its edges; also a rectangle light's surface.
 struct flat_shape {
-    dvec3 normal{0, 0, 1}, corner{0};
+    dvec3 normal{0, 0, 1}; ///< unit, by the order of the vertices
+    dvec3 corner{0};       ///< m; the first vertex
+    /// A half plane: points p with dot(inward, p - corner) at least `offset` are inside.
     struct edge {
-        dvec3 inward;
-        double offset;
+        dvec3 inward;  ///< unit, in the plane
+        double offset; ///< m
     };
-    std::vector<edge> edges;
+    std::vector<edge> edges; ///< without those of length 0
 
+    /// Of a polygon that check() accepts.
     explicit flat_shape(const polygon& p)
         : normal(glm::normalize(area_vector(p))), corner(p.vertices[0])
     {
@@ -142,6 +153,7 @@ struct flat_shape {
         }
     }
 
+    /// As turned_shape::distance.
     double distance(const ray& r, bool starts_on) const
     {
         if (starts_on)
@@ -155,6 +167,7 @@ struct flat_shape {
                 return infinity;
         return t;
     }
+    /// Moves p onto the plane; returns the normal.
     dvec3 settle(dvec3& p) const
     {
         p -= glm::dot(p - corner, normal) * normal;
@@ -162,10 +175,12 @@ struct flat_shape {
     }
 };
 
+/// A sphere.
 struct ball_shape {
-    dvec3 center{0};
-    double radius = 1;
+    dvec3 center{0};   ///< m
+    double radius = 1; ///< m
 
+    /// As turned_shape::distance.
     double distance(const ray& r, bool starts_on) const
     {
         const dvec3 f = r.origin - center;
@@ -179,6 +194,7 @@ struct ball_shape {
         const double half = std::sqrt(half2);
         return -b - half > 0 ? -b - half : -b + half > 0 ? -b + half : infinity;
     }
+    /// Moves p onto the sphere; returns the outward normal there.
     dvec3 settle(dvec3& p) const
     {
         const dvec3 n = glm::normalize(p - center);
@@ -187,10 +203,13 @@ struct ball_shape {
     }
 };
 
+/// A disk.
 struct disk_shape {
-    dvec3 center{0}, normal{0, 0, 1};
-    double radius = 1;
+    dvec3 center{0};       ///< m
+    dvec3 normal{0, 0, 1}; ///< unit
+    double radius = 1;     ///< m
 
+    /// As turned_shape::distance.
     double distance(const ray& r, bool starts_on) const
     {
         if (starts_on)
@@ -201,6 +220,7 @@ struct disk_shape {
         const dvec3 p = r.origin + t * r.direction - center;
         return glm::dot(p, p) <= radius * radius ? t : infinity;
     }
+    /// Moves p onto the plane; returns the normal.
     dvec3 settle(dvec3& p) const
     {
         p -= glm::dot(p - center, normal) * normal;
@@ -210,12 +230,15 @@ struct disk_shape {
 
 /// A light, ready to be sampled. Lights are chosen in proportion to their power, rgb together.
 struct light_source {
-    bool is_area = false;
-    dvec3 corner{0}, edge_u{0}, edge_v{0}, normal{0}; ///< corner: a point light's position
-    dvec3 power{0};                                   ///< W
-    double area = 0;                                  ///< m^2
-    double probability = 0;
-    std::uint32_t shape = nothing;
+    bool is_area = false;          ///< a rectangle, else a point
+    dvec3 corner{0};               ///< m; a point light's position
+    dvec3 edge_u{0};               ///< m
+    dvec3 edge_v{0};               ///< m
+    dvec3 normal{0};               ///< unit; a rectangle sends light out on this side
+    dvec3 power{0};                ///< W, rgb
+    double area = 0;               ///< m^2
+    double probability = 0;        ///< of being chosen; those of all lights add up to 1
+    std::uint32_t shape = nothing; ///< a rectangle's own surface, as geometry numbers it
 
     /// Radiance of an area light's front, W/(m^2 sr).
     dvec3 radiance() const { return power / (M_PI * area); }
@@ -224,6 +247,7 @@ struct light_source {
 /// The scene's shapes, numbered: spheres, cylinders, cones, paraboloids, disks, polygons, rectangle lights.
 class geometry {
 public:
+    /// Of a scene that check() accepts; it is copied.
     explicit geometry(const scene& s)
     {
         for (const auto& x : s.spheres)
@@ -257,6 +281,7 @@ public:
             l.probability = (l.power.x + l.power.y + l.power.z) / total;
     }
 
+    /// What r meets first; its shape is `nothing` where there is none.
     hit nearest(const ray& r) const
     {
         hit h;
@@ -278,7 +303,7 @@ public:
         return h;
     }
 
-    /// Does anything but shape `target` stand on the ray before `far`?
+    /// Does anything but shape `target` stand on the ray before `far`, m?
     bool blocked(const ray& r, double far, std::uint32_t target) const
     {
         bool found = false;
@@ -289,6 +314,7 @@ public:
         return found;
     }
 
+    /// Rectangles first, then points, each in the scene's order.
     std::span<const light_source> lights() const { return lights_; }
 
 private:

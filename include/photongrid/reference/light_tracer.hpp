@@ -19,9 +19,10 @@ constexpr std::uint32_t light_groups = 16;
 /// Irradiance that has come through at least one mirror or glass surface, from some lights, straight onto diffuse surfaces.
 class caustic_bins {
 public:
+    /// No bins.
     caustic_bins() = default;
 
-    /// No bins where no light in question can make a caustic. Throws std::invalid_argument for too many bins, render_cancelled.
+    /// No bins where no light in question can make a caustic. \throws std::invalid_argument for too many bins, render_cancelled.
     caustic_bins(const scene& s, const geometry& shapes, const reference_settings& settings, const render_observer& observer, reference_stats& stats)
     {
         lights_.reserve(shapes.lights().size());
@@ -51,6 +52,7 @@ public:
             stats.caustic_hits += h;
     }
 
+    /// True when no caustic needs bins: there is nothing specular, or eye paths find the light.
     bool empty() const { return irradiance_.empty(); }
 
     /// Irradiance on the side from which `h` is seen by a ray of direction d, W/m^2, as group `group` has it.

@@ -8,6 +8,7 @@ namespace photongrid::reference {
 /// Finds the radiance that comes along rays; each call is one sample.
 class path_tracer {
 public:
+    /// All four must outlive the tracer.
     path_tracer(const scene& s, const geometry& shapes, const caustic_bins& caustics, const reference_settings& settings)
         : scene_(s), shapes_(shapes), caustics_(caustics), settings_(settings) {}
 

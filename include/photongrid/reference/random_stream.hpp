@@ -10,6 +10,7 @@ namespace photongrid::reference {
 /// Pseudorandom Number Generators, ACM TOMS 47(4), 2021).
 class random_stream {
 public:
+    /// `purpose` keeps streams with the same seed and id apart: 1 is for groups of light paths, 2 for pixels.
     random_stream(std::uint64_t seed, std::uint64_t purpose, std::uint64_t id)
     {
         std::uint64_t x = mixed(mixed(mixed(seed) ^ purpose) ^ id);

@@ -6,21 +6,26 @@
 namespace photongrid {
 
 /// How the reference renderer finds the caustics of rectangle lights. Those of point lights can only be had from bins.
-enum class caustics_by { paths, bins };
+enum class caustics_by {
+    paths, ///< eye paths that meet the light by chance: unbiased
+    bins,  ///< light paths into bins: less noise, blurred over a bin
+};
 
+/// What is asked of the reference renderer.
 struct reference_settings {
-    std::uint32_t width = 512, height = 512; ///< pixels
+    std::uint32_t width = 512;               ///< pixels, 1 to 16384
+    std::uint32_t height = 512;              ///< pixels, 1 to 16384
     std::uint32_t spp = 256;                 ///< eye paths a pixel, at least 2; with bins rounded up to a multiple of 16, the groups of light paths
     std::uint64_t paths = 1u << 24;          ///< light paths, if bins are needed; rounded up likewise
     double bin = 0;                          ///< edge of a bin, m; 0: chosen from the diffuse area and the number of paths
     std::uint32_t threads = 0;               ///< 0: as many as the machine has; the picture does not depend on it
-    std::uint64_t seed = 1;
+    std::uint64_t seed = 1;                  ///< of all random numbers
     std::uint32_t depth = 8;                 ///< specular surfaces that an eye path passes before the first diffuse one
     std::uint32_t photon_depth = 32;         ///< surfaces that light meets at most up to the first diffuse one seen from the eye, that one included
-    caustics_by area_light_caustics = caustics_by::paths;
+    caustics_by area_light_caustics = caustics_by::paths; ///< of rectangle lights
 };
 
-/// The settings that a scene's own render settings ask for.
+/// The settings that a scene's own render settings ask for: size, seed and depths; the others as they stand.
 inline reference_settings reference_settings_for(const render_settings& s)
 {
     reference_settings r;
@@ -32,7 +37,7 @@ inline reference_settings reference_settings_for(const render_settings& s)
     return r;
 }
 
-/// Throws std::invalid_argument "member: what is wrong".
+/// \throws std::invalid_argument "member: what is wrong" for a setting out of its range, which the message gives.
 inline void check(const reference_settings& s)
 {
     detail::require(s.width >= 1 && s.height >= 1 && s.width <= 16384 && s.height <= 16384, "size: width and height must be from 1 to 16384 pixels");
@@ -47,20 +52,22 @@ inline void check(const reference_settings& s)
 /// What a reference render did.
 struct reference_stats {
     std::uint32_t spp = 0;             ///< eye paths a pixel
-    std::uint32_t threads = 0;
+    std::uint32_t threads = 0;         ///< that it ran on
     std::uint64_t light_paths = 0;     ///< 0: no bins were needed
     std::uint64_t caustic_hits = 0;    ///< light paths that came to a diffuse surface by way of mirrors or glass
     std::uint64_t bins = 0;            ///< on both sides of all diffuse surfaces
     double bin_size = 0;               ///< edge, m: caustics from bins are blurred over this length; 0 without bins
     double mean_standard_error = 0;    ///< over pixels and channels, W/(m^2 sr)
     std::uint64_t invalid_samples = 0; ///< NaN or infinite, counted as black
-    double light_seconds = 0, eye_seconds = 0;
+    double light_seconds = 0;          ///< for the light paths
+    double eye_seconds = 0;            ///< for the eye paths
 };
 
 /// The mean of the eye paths and its standard error, W/(m^2 sr).
 struct reference_picture {
-    image mean, standard_error;
-    reference_stats stats;
+    image mean;            ///< W/(m^2 sr)
+    image standard_error;  ///< of each pixel and channel, W/(m^2 sr)
+    reference_stats stats; ///< what it took
 };
 
 } // namespace photongrid

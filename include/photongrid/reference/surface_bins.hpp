@@ -12,6 +12,7 @@ namespace photongrid::reference {
 /// Bins of all surfaces of a scene together are at most this many.
 constexpr double most_bins = 0x1p23;
 
+/// \throws std::invalid_argument for more bins than most_bins; `size`, m, is for the message.
 inline void require_few_bins(double count, double size)
 {
     if (!(count <= most_bins))
@@ -34,6 +35,7 @@ inline std::vector<glm::dvec2> clipped(const std::vector<glm::dvec2>& p, int axi
     return out;
 }
 
+/// The area of a convex polygon.
 inline double area_of(const std::vector<glm::dvec2>& p)
 {
     double twice = 0;
@@ -48,6 +50,7 @@ inline double area_of(const std::vector<glm::dvec2>& p)
 /// joined to a neighbour, since little area means much noise.
 class plane_bins {
 public:
+    /// `size`: m. \throws std::invalid_argument for more bins than most_bins.
     plane_bins(const polygon& p, double size)
         : corner_(p.vertices[0]), u_(across(glm::normalize(area_vector(p)))), v_(glm::cross(glm::normalize(area_vector(p)), u_))
     {
@@ -73,8 +76,11 @@ public:
         join(cut);
     }
 
+    /// Bins, those without area included.
     std::uint32_t size() const { return columns_ * rows_; }
+    /// m^2; 0 for one that was joined to a neighbour.
     double area(std::uint32_t bin) const { return areas_[bin]; }
+    /// The bin of a point of the polygon, m.
     std::uint32_t at(const dvec3& p) const
     {
         const glm::dvec2 cell = glm::clamp(glm::floor((flat(p) - low_) / step_), glm::dvec2(0), glm::dvec2(columns_ - 1, rows_ - 1));
@@ -118,6 +124,10 @@ private:
 /// Bins of a surface of revolution: rings along its profile, each in as many sectors as keep bins about square.
 class ring_bins {
 public:
+    /// \name Bins of about `size`, m
+    /// @{
+
+    /// \throws std::invalid_argument for more bins than most_bins.
     ring_bins(const sphere& s, double size)
         : ring_bins(form::sphere, s.center, dvec3(0, 0, 1), s.radius, 0, M_PI, size) {}
     ring_bins(const disk& d, double size)
@@ -128,14 +138,19 @@ public:
         : ring_bins(form::cone, c.apex, glm::normalize(c.base - c.apex), c.radius, glm::length(c.base - c.apex), std::hypot(glm::length(c.base - c.apex), c.radius), size) {}
     ring_bins(const paraboloid& p, double size)
         : ring_bins(form::paraboloid, p.vertex, glm::normalize(p.rim - p.vertex), p.radius, glm::length(p.rim - p.vertex), p.radius, size) {}
+    /// @}
 
+    /// Bins.
     std::uint32_t size() const { return first_.back(); }
+    /// m^2
     double area(std::uint32_t bin) const
     {
         const auto ring = static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), bin) - first_.begin()) - 1;
         return (area_within(edges_[ring + 1]) - area_within(edges_[ring])) / (first_[ring + 1] - first_[ring]);
     }
+    /// m^2, of the whole surface.
     double area_of_all() const { return area_within(edges_.back()); }
+    /// The bin of a point of the surface, m.
     std::uint32_t at(const dvec3& p) const
     {
         const dvec3 f = p - origin_;
@@ -217,6 +232,7 @@ private:
     std::vector<std::uint32_t> first_; ///< first bin of each ring, and how many bins there are
 };
 
+/// The bins of any surface.
 using surface_bins = std::variant<ring_bins, plane_bins>;
 
 } // namespace photongrid::reference

@@ -18,9 +18,11 @@ namespace photongrid::reference {
 /// carry on. Only the calling thread talks to the observer.
 class watch {
 public:
+    /// Of the stage `stage`, of `units` of work in all; the thread that makes it is the one that calls the observer.
     watch(const render_observer& observer, std::string_view stage, double units)
         : observer_(observer), stage_(stage), units_(units) {}
 
+    /// Adds `done` units; false: stop now.
     bool goes_on(std::uint64_t done)
     {
         done_ += done;
@@ -28,6 +30,7 @@ public:
             look();
         return !stop_;
     }
+    /// Tells the observer how far the work is, and asks whether it is cancelled. The calling thread only.
     void look()
     {
         if (observer_.progress)
@@ -35,7 +38,9 @@ public:
         if (observer_.cancelled && observer_.cancelled())
             stop_ = cancelled_ = true;
     }
+    /// Makes goes_on false from now on, on every thread.
     void stop() { stop_ = true; }
+    /// True when it was the observer who wanted to stop.
     bool was_cancelled() const { return cancelled_; }
 
 private:
@@ -47,10 +52,11 @@ private:
     std::atomic<bool> stop_{false}, cancelled_{false};
 };
 
+/// `asked`, or for 0 as many threads as the machine has, 1 at least.
 inline std::uint32_t threads_for(std::uint32_t asked) { return asked > 0 ? asked : std::max(1u, std::thread::hardware_concurrency()); }
 
 /// Runs job(i, watch) for i = 0 … n-1, in any order, on `threads` threads of which the caller is one; `units` is the work
-/// of all jobs together. Throws render_cancelled, or what a job throws.
+/// of all jobs together. \throws render_cancelled, or what a job throws.
 template <class Job>
 void share_out(std::uint32_t n, std::uint32_t threads, std::string_view stage, double units, const render_observer& observer, Job job)
 {
