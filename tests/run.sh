@@ -3,7 +3,7 @@
 #
 #   tests/run.sh [--full] [--device hardware] [--no-install]
 #
-#   --full             adds the long runs, the benches on little data, planted faults and GPU-assisted validation, and the
+#   --full             adds the long runs, the manual, the benches on little data, planted faults and GPU-assisted validation, and the
 #                      sanitizers over all tests on every backend instead of the quick ones on the serial one, and users'
 #                      projects with clang
 #   --device hardware  every backend on a real GPU; software devices are refused (no sanitizers, no clang)
@@ -41,7 +41,11 @@ while (($# > 0)); do
   esac
   shift
 done
-require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev libnanoflann-dev vulkan-validationlayers clang-14 libclang-rt-14-dev dpkg-dev file "${smoke_packages[@]}"
+manual_packages=()
+if [[ $full == yes ]]; then
+  manual_packages=(doxygen)
+fi
+require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev libnanoflann-dev vulkan-validationlayers clang-14 libclang-rt-14-dev dpkg-dev file "${smoke_packages[@]}" "${manual_packages[@]}"
 
 export CMAKE_GENERATOR=Ninja          # for the projects that tests configure; a bare Debian has no make
 export NODEVICE_SELECT=1              # the implicit layer crashes processes that start side by side
