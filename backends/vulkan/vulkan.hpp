@@ -70,7 +70,7 @@ public:
     /// Works on a device that the caller owns and that outlives this backend and its buffers. It changes nothing that is the
     /// caller's: it has a command pool, descriptors and pipelines of its own, and submits to the queue. Of the options, those
     /// about kernels and timing count; device, validation and staging are the caller's affair.
-    /// \throws backend_error for a device that lacks what the backend needs.
+    /// \throws backend_error for a device that lacks what the backend needs, std::invalid_argument for a null handle.
     /// \snippet snippets_vulkan.cpp callers_device
     explicit vulkan_backend(const vulkan_handles& handles, const vulkan_options& options = {}) : vulkan_backend(std::make_shared<vulkan_detail::context>(handles), options) {}
 

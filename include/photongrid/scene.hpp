@@ -22,7 +22,7 @@ enum class material_kind { lambertian, mirror, metal, glass };
 
 /// A material. Reflectance per channel (rgb), 0 to 1; for glass it is the transmittance of each crossing (1: clear).
 struct material {
-    std::string name;                               ///< for messages
+    std::string name;                               ///< free; in a scene file, the key that shapes name it by
     material_kind kind = material_kind::lambertian; ///< what `reflectance` means
     dvec3 reflectance{0.5};                         ///< rgb, 0 to 1: see above
     double index_of_refraction = 1.5; ///< glass only, 1 to 10; air, 1, is outside
@@ -131,15 +131,15 @@ struct render_settings {
 
 /// A scene. `render` holds the settings that its file asks for; a program may change them.
 struct scene {
-    std::string name;                              ///< for messages
+    std::string name;                              ///< free; the program names pictures after it
     photongrid::camera camera;                     ///< the view that render() draws
     std::vector<material> materials;               ///< shapes name them by index; one at least that is Lambertian
     std::vector<sphere> spheres;                   ///< balls of glass must not overlap
     std::vector<cylinder> cylinders;               ///< open
     std::vector<cone> cones;                       ///< open
     std::vector<paraboloid> paraboloids;           ///< open
-    std::vector<disk> disks;                       ///< seen from both sides
-    std::vector<polygon> polygons;                 ///< seen from both sides
+    std::vector<disk> disks;                       ///< Lambertian ones are so on both sides
+    std::vector<polygon> polygons;                 ///< Lambertian ones are so on both sides
     std::vector<point_light> point_lights;         ///< a scene has one light at least, of either kind
     std::vector<rectangle_light> rectangle_lights; ///< the eye sees them
     render_settings render;                        ///< what the scene's file asks for
@@ -284,7 +284,7 @@ inline void check(const rectangle_light& l)
     detail::require(std::abs(glm::dot(l.edge_u, l.edge_v)) <= 1e-6 * u * v, "edge_u, edge_v: must be at right angles");
     check_power(l.power);
 }
-/// \throws std::invalid_argument for a camera that looks nowhere, stands on its own line of sight, or opens by 0, 179 degrees or more.
+/// \throws std::invalid_argument for a camera that looks nowhere, whose `up` is along its line of sight, or that opens by 0, 179 degrees or more.
 inline void check(const camera& c)
 {
     detail::require(detail::finite(c.position) && detail::finite(c.look_at), "position and look_at: must be finite");

@@ -12,7 +12,7 @@
 #include <limits>
 #include <span>
 
-/// The parts of the reference renderer (docs/reference.md): double precision, m, W, a right-handed world.
+/// The parts of the reference renderer (docs/reference.md): double precision, m, W.
 namespace photongrid::reference {
 
 constexpr std::uint32_t nothing = 0xFFFFFFFFu;                          ///< no shape, no material, no light

@@ -52,7 +52,7 @@ public:
             stats.caustic_hits += h;
     }
 
-    /// True when no caustic needs bins: there is nothing specular, or eye paths find the light.
+    /// True when there are no bins: nothing is specular, nothing diffuse, or eye paths find every light's caustics.
     bool empty() const { return irradiance_.empty(); }
 
     /// Irradiance on the side from which `h` is seen by a ray of direction d, W/m^2, as group `group` has it.

@@ -78,7 +78,7 @@ public:
 
     /// Bins, those without area included.
     std::uint32_t size() const { return columns_ * rows_; }
-    /// m^2; 0 for one that was joined to a neighbour.
+    /// m^2; 0 for one outside the polygon, or joined to a neighbour.
     double area(std::uint32_t bin) const { return areas_[bin]; }
     /// The bin of a point of the polygon, m.
     std::uint32_t at(const dvec3& p) const
