@@ -35,7 +35,7 @@ public:
         /// \name A buffer's members, the same on every backend
         /// @{
 
-        /// T, and how many of them. Buffers move and are not copied; one that was moved from, or made by default, is empty.
+        /// A buffer holds size() elements T. It is moved, never copied; one that was moved from, or made by default, is empty.
         using value_type = T;
         buffer() = default;
         buffer(buffer&& other) noexcept : memory_(std::move(other.memory_)), n_(std::exchange(other.n_, 0)) {}
