@@ -1,4 +1,5 @@
-# Installs the build BUILD into WORK/prefix, then configures, builds and runs the project SOURCE against it.
+# Installs the build BUILD into WORK/prefix, then configures and builds the project SOURCE against it and runs its PROGRAM with
+# ARGUMENTS.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
@@ -10,4 +11,4 @@ file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_BUILD_TYPE=Release)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
-run(${WORK}/build/consumer)
+run(${WORK}/build/${PROGRAM} ${ARGUMENTS})
