@@ -42,7 +42,7 @@ function(photongrid_add_kernels target)
 #pragma once
 
 #include <${arg_NAMESPACE}_kernel_text.hpp>
-#include <photongrid/kernel_helpers.hpp>
+#include <photongrid/kernel.hpp>
 
 #include <span>
 

@@ -13,20 +13,11 @@ file(CREATE_LINK ${PROJECT_SOURCE_DIR}/tests/backend_tests.hpp ${root}/photongri
 add_library(photongrid_backend_tests INTERFACE)
 add_library(photongrid::backend_tests ALIAS photongrid_backend_tests)
 set_target_properties(photongrid_backend_tests PROPERTIES EXPORT_NAME backend_tests)
-target_include_directories(photongrid_backend_tests INTERFACE $<BUILD_INTERFACE:${root}> $<BUILD_INTERFACE:${CMAKE_CURRENT_BINARY_DIR}/generated>)
-# What the tests compare with is compiled once here, and once by each user.
+set(headers algorithm_tests estimator_tests known_answers map_file_tests neighbour_tests number_tests photon_sets serial_algorithms test_scenes under_test verb_kernels verb_tests)
+list(TRANSFORM headers PREPEND ${root}/photongrid/backend_tests/)
+list(TRANSFORM headers APPEND .hpp)
+target_sources(photongrid_backend_tests INTERFACE FILE_SET HEADERS BASE_DIRS ${root} ${CMAKE_CURRENT_BINARY_DIR}/generated FILES ${root}/photongrid/backend_tests.hpp ${headers} ${verb_kernel_text})
+# What the tests compare with is compiled once here, and by each user of the installed tests (cmake/install.cmake).
 set(installed ${CMAKE_INSTALL_INCLUDEDIR}/photongrid/backend_tests)
-set(references known_answers.cpp serial_algorithms.cpp)
-foreach(file IN LISTS references)
-  target_sources(photongrid_backend_tests INTERFACE $<INSTALL_INTERFACE:${installed}/${file}>)
-endforeach()
+target_sources(photongrid_backend_tests INTERFACE $<INSTALL_INTERFACE:${installed}/known_answers.cpp> $<INSTALL_INTERFACE:${installed}/serial_algorithms.cpp>)
 target_link_libraries(photongrid_backend_tests INTERFACE photongrid_serial $<BUILD_INTERFACE:test_references> rapidcheck flann::flann_cpp GTest::gtest_main)
-
-# A file of its own, so that the package asks for these libraries only where the component is wanted and was built.
-set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/photongrid)
-install(TARGETS photongrid_backend_tests EXPORT photongrid-backend-tests)
-install(EXPORT photongrid-backend-tests NAMESPACE photongrid:: DESTINATION ${config_dir} FILE photongrid-backend-tests-targets.cmake)
-install(FILES backend_tests.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/photongrid)
-install(FILES algorithm_tests.hpp estimator_tests.hpp known_answers.hpp map_file_tests.hpp neighbour_tests.hpp number_tests.hpp photon_sets.hpp serial_algorithms.hpp test_scenes.hpp under_test.hpp
-  verb_kernels.hpp verb_tests.hpp ${verb_kernel_text} ${references} DESTINATION ${installed})
-install(DIRECTORY kernels/verbs DESTINATION ${installed}/kernels)

@@ -10,13 +10,6 @@
 #pragma GCC diagnostic ignored "-Wdouble-promotion" // literals keep their suffix f
 #endif
 
-// The guards of files that the float kernels have included already.
-#undef PHOTONGRID_GRID
-#undef PHOTONGRID_VECTOR
-#undef PHOTONGRID_RANDOM
-#undef PHOTONGRID_SCENE_LAYOUT
-#undef PHOTONGRID_PHOTON_EVENT
-
 namespace photongrid::double_kernels {
 
 using glm::abs, glm::floor, glm::max, glm::min, glm::sqrt;
@@ -33,11 +26,14 @@ inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintB
 #include <photongrid/kernels/begin.hpp>
 #define float double
 
+// What kernels share, too.
+#undef PHOTONGRID_SHARED_IS_READ
 #include <photongrid/kernels/grid.glsl>
 #include <photongrid/kernels/photon_event.glsl>
 #include <photongrid/kernels/random.glsl>
 #include <photongrid/kernels/scene_layout.glsl>
 #include <photongrid/kernels/vector.glsl>
+#define PHOTONGRID_SHARED_IS_READ
 
 struct ray_probe {
 #include "kernels/ray_probe.glsl"

@@ -862,8 +862,8 @@ void kernel(uint i) { value = i; }
             const auto first = b.download(pairs);
             // The caller leaves state behind that would spoil every pass.
             call.Enable(GL_SCISSOR_TEST);
-            call.Scissor(0, 0, 1, 1);
-            call.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+            call.ScissorIndexed(0, 0, 0, 1, 1);
+            call.ColorMaski(0, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
             call.Enable(GL_BLEND);
             call.Enable(GL_CULL_FACE);
             call.Enable(GL_RASTERIZER_DISCARD);

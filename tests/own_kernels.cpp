@@ -55,7 +55,7 @@ std::vector<tree> random_trees(std::size_t n)
 }
 
 /// All trees, nearest first: squared distance in double, place.
-std::vector<std::pair<double, std::size_t>> by_distance(const std::vector<tree>& trees, glm::vec2 place)
+std::vector<std::pair<double, std::size_t>> by_distance(const std::vector<tree>& trees, glm::vec3 place)
 {
     std::vector<std::pair<double, std::size_t>> all;
     for (std::size_t i = 0; i < trees.size(); ++i) {
@@ -69,7 +69,7 @@ std::vector<std::pair<double, std::size_t>> by_distance(const std::vector<tree>&
 TYPED_TEST(own_kernels, survey_a_forest)
 {
     const auto trees = random_trees(3000);
-    const std::vector<glm::vec2> places{{50, 50}, {1, 99}, {80, 20}, {-5, 50}};
+    const std::vector<glm::vec3> places{{50, 50, 0}, {1, 99, 0}, {80, 20, 0}, {-5, 50, 0}};
     constexpr uint k = 37;
     const auto surveys = survey_forest(this->b(), trees, places, k);
     ASSERT_EQ(surveys.size(), places.size());
@@ -91,9 +91,9 @@ TYPED_TEST(own_kernels, survey_a_forest)
 
 TYPED_TEST(own_kernels, say_so_where_there_are_fewer_neighbours_than_wanted)
 {
-    const auto surveys = survey_forest(this->b(), random_trees(3), {{50, 50}}, 8);
+    const auto surveys = survey_forest(this->b(), random_trees(3), {{50, 50, 0}}, 8);
     EXPECT_EQ(surveys[0].nearest.size(), 3u);
-    const auto none = survey_forest(this->b(), {}, {{50, 50}}, 8);
+    const auto none = survey_forest(this->b(), {}, {{50, 50, 0}}, 8);
     EXPECT_EQ(none[0].nearest.size(), 0u);
     EXPECT_EQ(none[0].mean_height, 0.0f);
 }

@@ -28,6 +28,11 @@ struct particle {
     double where[3];
     float mass;
 };
+/// One number in place of three.
+struct grey {
+    float position[3];
+    float flux;
+};
 struct stranger {
     int i;
 };
@@ -42,7 +47,7 @@ struct photongrid::photon_reader<foreign::particle> {
 
 namespace photongrid::testing {
 
-static_assert(own_photon<foreign::hit> && own_photon<foreign::particle>);
+static_assert(own_photon<foreign::hit> && own_photon<foreign::particle> && own_photon<foreign::grey>);
 static_assert(!own_photon<foreign::stranger> && !own_photon<int> && !own_photon<std::string>);
 
 TEST(own_photons, keep_every_attribute_in_its_place)

@@ -4,7 +4,8 @@
 #   tests/run.sh [--full] [--device hardware] [--no-install]
 #
 #   --full             adds the long runs, the benches on little data, planted faults and GPU-assisted validation, and the
-#                      sanitizers over all tests on every backend instead of the quick ones on the serial one
+#                      sanitizers over all tests on every backend instead of the quick ones on the serial one, and users'
+#                      projects with clang
 #   --device hardware  every backend on a real GPU; software devices are refused (no sanitizers, no clang)
 #   --no-install       only say which Debian packages are missing, do not install them
 #
@@ -30,7 +31,7 @@ while (($# > 0)); do
       shift
       ;;
     -h | --help)
-      sed -n '2,14s/^# \{0,1\}//p' tests/run.sh
+      sed -n '2,15s/^# \{0,1\}//p' tests/run.sh
       exit 0
       ;;
     *)
@@ -40,7 +41,7 @@ while (($# > 0)); do
   esac
   shift
 done
-require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev libnanoflann-dev vulkan-validationlayers clang-14 libclang-rt-14-dev "${smoke_packages[@]}"
+require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev libnanoflann-dev vulkan-validationlayers clang-14 libclang-rt-14-dev dpkg-dev file "${smoke_packages[@]}"
 
 export CMAKE_GENERATOR=Ninja          # for the projects that tests configure; a bare Debian has no make
 export NODEVICE_SELECT=1              # the implicit layer crashes processes that start side by side
@@ -86,12 +87,16 @@ else
   fi
   cmake --build build-asan --target "$sanitized_target"
   # OSMesa's run differs from EGL's by its context only, which gl_backend tests with both.
-  run_tests build-asan "${sanitized[@]}" --exclude-regex "consumer|on_gl_osmesa"
+  run_tests build-asan "${sanitized[@]}" --exclude-regex on_gl_osmesa
 
   echo "== clang"
   configure clang
   cmake --build build-clang --target all_verify_interface_header_sets photongrid_smoke
-  run_tests build-clang --tests-regex smoke
+  if [[ $full == yes ]]; then
+    run_tests build-clang --tests-regex "smoke|consumer"
+  else
+    run_tests build-clang --tests-regex smoke
+  fi
 
   echo "== fuzzing"
   configure fuzz

@@ -1,6 +1,7 @@
 // A context with its limits and the account of its memory, and buffers as textures on it.
 #pragma once
 
+#include <photongrid/backends/gl/callers_state.hpp>
 #include <photongrid/backends/gl/context.hpp>
 
 #include <algorithm>
@@ -14,9 +15,6 @@ namespace photongrid::gl {
 /// Elements in a row of a buffer's texture; textures.glsl knows it as 2047u and 11u.
 inline constexpr uint row_width = 2048;
 
-/// Render targets of one pass, texture units for inputs, for states (textures.glsl, fragment_prelude.glsl).
-inline constexpr std::size_t max_outputs = 8, max_inputs = 8, state_unit = 8;
-
 /// How element type T is stored.
 template <element T>
 struct texture_format {
@@ -24,6 +22,7 @@ struct texture_format {
     static constexpr GLenum type = is_integer ? GL_UNSIGNED_INT : GL_FLOAT;
     static constexpr GLenum format = sizeof(T) == 4 ? (is_integer ? GL_RED_INTEGER : GL_RED) : sizeof(T) == 8 ? (is_integer ? GL_RG_INTEGER : GL_RG) : (is_integer ? GL_RGBA_INTEGER : GL_RGBA);
     static constexpr GLenum internal = sizeof(T) == 4 ? (is_integer ? GL_R32UI : GL_R32F) : sizeof(T) == 8 ? (is_integer ? GL_RG32UI : GL_RG32F) : (is_integer ? GL_RGBA32UI : GL_RGBA32F);
+    static constexpr const char* internal_name = sizeof(T) == 4 ? (is_integer ? "GL_R32UI" : "GL_R32F") : sizeof(T) == 8 ? (is_integer ? "GL_RG32UI" : "GL_RG32F") : (is_integer ? "GL_RGBA32UI" : "GL_RGBA32F");
 };
 
 class texture;
@@ -31,7 +30,8 @@ class texture;
 /// What a backend, its buffers and its programs share. Buffers may outlive the backend.
 class device : public std::enable_shared_from_this<device> {
 public:
-    explicit device(std::shared_ptr<context> c) : context_(std::move(c)), call(context_->call)
+    /// `debug`: hear what the driver says of high severity.
+    device(std::shared_ptr<context> c, bool debug) : context_(std::move(c)), call(context_->call)
     {
         std::array<GLint, 2> viewport{};
         GLint size = 0;
@@ -46,7 +46,20 @@ public:
         call.CreateFramebuffers(1, &blank_);
         call.CreateBuffers(1, &uniforms_);
         call.NamedFramebufferParameteri(blank_, GL_FRAMEBUFFER_DEFAULT_WIDTH, static_cast<GLint>(row_width));
+        // What kernels read is not filtered, whatever a texture of the caller's says of itself.
+        call.CreateSamplers(1, &sampler_);
+        call.SamplerParameteri(sampler_, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        call.SamplerParameteri(sampler_, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        if (context_->is_callers()) {
+            call.CreateQueries(GL_SAMPLES_PASSED, 1, &question_);
+            callers_.emplace(call, question_, debug ? note_message : nullptr, this);
+            return;
+        }
+        if (debug)
+            detail::hear_driver(call, note_message, this);
         set_state();
+        for (GLuint unit = 0; unit < units; ++unit)
+            call.BindSampler(unit, sampler_);
     }
     device(const device&) = delete;
     device& operator=(const device&) = delete;
@@ -61,18 +74,72 @@ public:
         call.DeleteFramebuffers(1, &targets_);
         call.DeleteFramebuffers(1, &blank_);
         call.DeleteBuffers(1, &uniforms_);
+        call.DeleteSamplers(1, &sampler_);
+        if (callers_)
+            call.DeleteQueries(1, &question_);
+        else
+            call.DebugMessageCallback(nullptr, nullptr); // it may be this that hears
     }
 
-    /// To be called first by every verb: makes the context current.
-    void use()
+    /// To be called first by every call of the backend and held to its end: makes the context current, and a caller's state
+    /// as it was in the end.
+    [[nodiscard]] call_scope use()
     {
-        context_->use();
-        if (context_->is_callers())
+        make_current();
+        return call_scope(callers_ ? &*callers_ : nullptr);
+    }
+    /// Enough for what changes no state, such as deleting objects.
+    void make_current() { context_->use(); }
+    bool is_callers() const { return callers_.has_value(); }
+
+    /// To be called before the first pass of a verb, before an upload, a download.
+    void prepare_passes()
+    {
+        if (callers_ && callers_->save_passes())
             set_state();
+    }
+    void prepare_upload()
+    {
+        if (callers_)
+            callers_->set_transfer(detail::pixel_state::unpack);
+    }
+    void prepare_download()
+    {
+        if (callers_)
+            callers_->set_transfer(detail::pixel_state::pack);
+    }
+    /// To be called before these are changed. The stencil's: with an 8-bit stencil buffer bound.
+    void keep_stencil()
+    {
+        if (callers_)
+            callers_->save_stencil();
+    }
+    void keep_blending()
+    {
+        if (callers_)
+            callers_->save_blending();
+    }
+    /// A pass reads `texture` from this unit; 0: none.
+    void bind_texture(GLuint unit, GLuint texture)
+    {
+        if (callers_ && callers_->save_unit(unit))
+            call.BindSampler(unit, sampler_);
+        if (texture != 0) {
+            call.BindTextureUnit(unit, texture);
+        } else { // as a unit, 0 would mean no texture of any target
+            call.ActiveTexture(GL_TEXTURE0 + unit);
+            call.BindTexture(GL_TEXTURE_2D, 0);
+        }
+    }
+    void set_viewport(GLint x, GLint y, GLsizei width, GLsizei height)
+    {
+        call.ViewportIndexedf(0, static_cast<GLfloat>(x), static_cast<GLfloat>(y), static_cast<GLfloat>(width), static_cast<GLfloat>(height));
     }
 
     /// An uninitialised texture. \throws backend_error with the numbers when the device refuses.
     texture make(GLenum internal, uint width, uint height, std::size_t texel_bytes, const std::string& what);
+    /// A texture of the caller's, which stays that.
+    texture adopt(GLuint id, uint width, uint height);
 
     /// Binds a framebuffer whose colour targets are `textures`.
     void draw_into(std::span<const GLuint> textures)
@@ -115,8 +182,8 @@ public:
     /// The values of a kernel's Params, which std140 lays out as C++ does (docs/design.md).
     void set_uniforms(const void* data, std::size_t size)
     {
-        const auto* bytes = static_cast<const std::byte*>(data);
-        std::vector<std::byte> block(bytes, bytes + size);
+        const auto* first = static_cast<const std::byte*>(data);
+        std::vector<std::byte> block(first, first + size);
         block.resize((size + 15) / 16 * 16);
         if (block == uniform_bytes_)
             return;
@@ -131,14 +198,7 @@ public:
         if (code == GL_NO_ERROR)
             return;
         while (call.GetError() != GL_NO_ERROR) { }
-        const char* text = code == GL_OUT_OF_MEMORY ? "GL_OUT_OF_MEMORY: the device has no memory left for it"
-            : code == GL_INVALID_ENUM               ? "GL_INVALID_ENUM"
-            : code == GL_INVALID_VALUE              ? "GL_INVALID_VALUE"
-            : code == GL_INVALID_OPERATION          ? "GL_INVALID_OPERATION"
-            : code == GL_INVALID_FRAMEBUFFER_OPERATION ? "GL_INVALID_FRAMEBUFFER_OPERATION"
-            : code == GL_CONTEXT_LOST               ? "GL_CONTEXT_LOST: the device was reset"
-                                                    : "an unknown OpenGL error";
-        throw backend_error(name() + ": " + what + ": " + text + (messages.empty() ? "" : "\n" + std::exchange(messages, {})));
+        throw backend_error(name() + ": " + what + ": " + error_name(code) + (messages.empty() ? "" : "\n" + std::exchange(messages, {})));
     }
 
     const std::string& name() const { return context_->name; }
@@ -154,28 +214,27 @@ private:
                 attached_[t] = 0;
             }
     }
-    /// Everything that the passes rely on. A context of our own keeps it; a caller's may come back changed.
+    /// Everything that the passes rely on, saved by pass_state (callers_state.hpp). A context of our own keeps it.
     void set_state()
     {
-        for (const int off : {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_RASTERIZER_DISCARD, GL_COLOR_LOGIC_OP, GL_DEPTH_CLAMP, GL_POLYGON_OFFSET_FILL,
-                 GL_SAMPLE_MASK, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE, GL_DITHER})
-            call.Disable(static_cast<GLenum>(off));
-        for (GLenum plane = 0; plane < 8; ++plane)
-            call.Disable(GL_CLIP_DISTANCE0 + plane);
+        for (const GLenum off : off_in_passes)
+            call.Disable(off);
         call.Enable(GL_PROGRAM_POINT_SIZE);
-        call.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-        call.StencilMask(0xFFu);
+        call.Disablei(GL_SCISSOR_TEST, 0);
+        for (GLuint t = 0; t < max_outputs; ++t) {
+            call.Disablei(GL_BLEND, t);
+            call.ColorMaski(t, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        }
         call.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
         call.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
         call.BindVertexArray(vertices_);
+        call.BindBuffer(GL_QUERY_BUFFER, 0); // results of queries would go there
         call.BindBufferBase(GL_UNIFORM_BUFFER, 0, uniforms_);
-        for (GLuint unit = 0; unit < max_inputs + max_outputs; ++unit)
-            call.BindSampler(unit, 0);
-        call.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-        call.BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
-        for (const auto& [name, value] : {std::pair<GLenum, GLint>{GL_PACK_ALIGNMENT, 4}, {GL_PACK_ROW_LENGTH, 0}, {GL_PACK_SKIP_ROWS, 0}, {GL_PACK_SKIP_PIXELS, 0}, {GL_PACK_SWAP_BYTES, 0},
-                 {GL_UNPACK_ALIGNMENT, 4}, {GL_UNPACK_ROW_LENGTH, 0}, {GL_UNPACK_SKIP_ROWS, 0}, {GL_UNPACK_SKIP_PIXELS, 0}, {GL_UNPACK_SWAP_BYTES, 0}})
-            call.PixelStorei(name, value);
+    }
+    static void APIENTRY note_message(GLenum, GLenum, GLuint, GLenum severity, GLsizei length, const GLchar* text, const void* user)
+    {
+        if (severity == GL_DEBUG_SEVERITY_HIGH)
+            static_cast<device*>(const_cast<void*>(user))->messages += std::string(text, static_cast<std::size_t>(std::max(length, 0))) + "\n";
     }
 
     std::shared_ptr<context> context_;
@@ -188,7 +247,8 @@ public:
     std::string messages; ///< from the driver, in debug contexts
 
 private:
-    GLuint vertices_ = 0, targets_ = 0, blank_ = 0, uniforms_ = 0;
+    std::optional<callers_state> callers_; ///< none in contexts of our own
+    GLuint vertices_ = 0, targets_ = 0, blank_ = 0, uniforms_ = 0, sampler_ = 0, question_ = 0;
     std::array<GLuint, max_outputs> attached_{};
     std::size_t target_count_ = 1;
     uint blank_height_ = 0;
@@ -209,16 +269,26 @@ public:
     texture& operator=(const texture&) = delete;
     ~texture()
     {
-        if (id == 0)
-            return;
-        device_->bytes -= bytes_;
         try {
-            device_->use();
-            device_->forget(id);
-            device_->call.DeleteTextures(1, &id);
+            if (const GLuint mine = let_go(); mine != 0 && !adopted_)
+                device_->call.DeleteTextures(1, &mine);
         } catch (const backend_error&) { // the caller's context is not current: its textures die with it
         }
     }
+    /// Gives the texture away: it is the caller's now. 0 for none.
+    GLuint let_go()
+    {
+        if (id == 0)
+            return 0;
+        device_->bytes -= std::exchange(bytes_, 0);
+        const GLuint given = std::exchange(id, 0);
+        device_->make_current();
+        device_->forget(given);
+        return given;
+    }
+
+    /// Whether it is of this device: of none, if there is no texture.
+    bool is_of(const device& d) const { return device_ == nullptr || device_.get() == &d; }
 
     GLuint id = 0;
     uint width = 0, height = 0;
@@ -231,9 +301,11 @@ private:
         std::swap(width, other.width);
         std::swap(height, other.height);
         std::swap(bytes_, other.bytes_);
+        std::swap(adopted_, other.adopted_);
         std::swap(device_, other.device_);
     }
     std::uint64_t bytes_ = 0;
+    bool adopted_ = false; ///< the caller's: neither counted nor deleted
     std::shared_ptr<device> device_;
 };
 
@@ -255,6 +327,17 @@ inline texture device::make(GLenum internal, uint width, uint height, std::size_
     call.TextureParameteri(t.id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     check_errors(text() + ", " + std::to_string(t.bytes_) + " bytes beside " + std::to_string(bytes - t.bytes_) + " held");
     peak_bytes = std::max(peak_bytes, bytes);
+    return t;
+}
+
+inline texture device::adopt(GLuint id, uint width, uint height)
+{
+    texture t;
+    t.id = id;
+    t.width = width;
+    t.height = height;
+    t.adopted_ = true;
+    t.device_ = shared_from_this();
     return t;
 }
 

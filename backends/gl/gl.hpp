@@ -2,6 +2,7 @@
 // compute shaders, no storage buffers, and nothing is read back between passes but occlusion queries.
 #pragma once
 
+#include <photongrid/backends/gl/hand_over.hpp>
 #include <photongrid/backends/gl/routing.hpp>
 #include <photongrid/self_test.hpp>
 
@@ -16,7 +17,10 @@ struct gl_options {
 };
 
 /// A backend on an OpenGL context. It and its buffers belong to one thread at a time. Every call makes its context
-/// current and leaves it so; with gl_context_kind::current the caller does, and finds OpenGL state changed.
+/// current and leaves it so. With gl_context_kind::current the caller does, and finds its OpenGL state as it was, also after
+/// an exception: every binding, switch and mask, and the errors that it left to glGetError. Verbs that draw throw
+/// backend_error where they would disturb what nobody can put back: an active query that counts samples or primitives,
+/// active transform feedback, conditional rendering, a program in use that is marked for deletion (docs/embed_in_opengl.md).
 class gl_backend {
 public:
     template <element T>
@@ -49,17 +53,13 @@ public:
     {
         if (options.tile < 1 || options.tile > gl::row_width)
             throw std::invalid_argument("gl_options: tile: " + std::to_string(options.tile) + "; it must be from 1 to " + std::to_string(gl::row_width));
-        device_ = std::make_shared<gl::device>(gl::make_context(options.context, options.debug, options.find));
+        device_ = std::make_shared<gl::device>(gl::make_context(options.context, options.debug, options.find), options.debug);
+        const auto scope = device_->use();
         made_ = std::make_unique<gl::programs>(device_);
         const auto text = [&](GLenum what) {
             const auto* s = reinterpret_cast<const char*>(device_->call.GetString(what));
             return std::string(s != nullptr ? s : "unknown");
         };
-        if (options.debug) {
-            device_->call.Enable(GL_DEBUG_OUTPUT);
-            device_->call.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS); // messages come from the call at fault, in its thread
-            device_->call.DebugMessageCallback(note_message, device_.get());
-        }
         caps_.backend = device_->name();
         const std::string renderer = text(GL_RENDERER);
         caps_.device = renderer + ", OpenGL " + text(GL_VERSION);
@@ -79,11 +79,9 @@ public:
         if (!device_)
             return;
         try {
-            device_->use();
+            device_->make_current();
             device_->call.DeleteQueries(static_cast<GLsizei>(queries_.size()), queries_.data());
             device_->call.DeleteQueries(static_cast<GLsizei>(clock_.size()), clock_.data());
-            if (options_.debug)
-                device_->call.DebugMessageCallback(nullptr, nullptr);
         } catch (const backend_error&) { // the caller's context is gone, and its queries with it
         }
     }
@@ -100,7 +98,7 @@ public:
         buffer<T> b;
         if (n == 0)
             return b;
-        device_->use();
+        const auto scope = device_->use();
         const uint width = std::min(gl::row_width, std::bit_ceil(static_cast<uint>(n)));
         const auto rows = static_cast<uint>((n + gl::row_width - 1) / gl::row_width);
         b.texture_ = device_->make(gl::texture_format<T>::internal, width, rows, sizeof(T), "a buffer of " + std::to_string(n) + " elements");
@@ -111,20 +109,25 @@ public:
     template <element T, std::size_t E>
     buffer<T> upload(std::span<const T, E> data)
     {
+        if (data.empty())
+            return {};
+        const auto scope = device_->use();
         auto b = make<T>(data.size());
+        device_->prepare_upload();
         using format = gl::texture_format<T>;
         for_blocks(data.size(), [&](std::size_t first, GLint y, GLsizei width, GLsizei rows) {
             device_->call.TextureSubImage2D(b.texture_.id, 0, 0, y, width, rows, format::format, format::type, data.data() + first);
         });
-        if (!data.empty())
-            device_->check_errors("upload");
+        device_->check_errors("upload");
         return b;
     }
 
     template <element T>
     std::vector<T> download(const buffer<T>& b)
     {
-        device_->use();
+        check_owner("download: b", b);
+        const auto scope = device_->use();
+        device_->prepare_download();
         std::vector<T> data(b.size());
         using format = gl::texture_format<T>;
         for_blocks(data.size(), [&](std::size_t first, GLint y, GLsizei width, GLsizei rows) {
@@ -135,11 +138,51 @@ public:
         return data;
     }
 
+    /// The buffer as a texture, to read or write with OpenGL in the order of calls, without a copy. It stays the buffer's.
+    /// Who writes it by image stores calls glMemoryBarrier before the buffer is used again.
+    template <element T>
+    gl_texture texture_of(const buffer<T>& b) const
+    {
+        check_owner("texture_of: b", b);
+        return {b.texture_.id, b.texture_.width, b.texture_.height, b.size_ > 0 ? gl::texture_format<T>::internal : 0u};
+    }
+
+    /// A buffer over a texture of the caller's, laid out as gl_texture says. The texture stays the caller's and must live as
+    /// long as the buffer; bytes() does not count it. Texels of level 0 beyond the n elements may be overwritten; its filters
+    /// do not matter. A buffer of 0 elements has no texture, whatever is given.
+    /// \throws std::invalid_argument for a texture of another kind, format or size.
+    template <element T>
+    buffer<T> adopt(GLuint texture, std::size_t n)
+    {
+        buffer<T> b;
+        if (n == 0)
+            return b;
+        if (n > caps_.max_elements)
+            throw std::invalid_argument("gl_backend::adopt: n: " + std::to_string(n) + " elements; the limit of this device is " + std::to_string(caps_.max_elements));
+        const auto scope = device_->use();
+        const gl_texture t = gl::check_adoptable(device_->call, texture, n, gl::texture_format<T>::internal, gl::texture_format<T>::internal_name);
+        b.texture_ = device_->adopt(t.name, t.width, t.height);
+        b.size_ = n;
+        return b;
+    }
+
+    /// Gives the buffer's texture to the caller, who deletes it. bytes() no longer counts it.
+    template <element T>
+    gl_texture release(buffer<T>&& b)
+    {
+        check_owner("release: b", b);
+        const auto scope = device_->use();
+        const gl_texture t = texture_of(b);
+        b.texture_.let_go();
+        b = {};
+        return t;
+    }
+
     template <gather_kernel K, class Reads, class Writes>
     void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
     {
-        detail::check_call<K>("run", l, reads, writes);
-        device_->use();
+        detail::check_call<K>("run", l, reads, writes, owns());
+        const auto scope = device_->use();
         const GLuint program = made_->get<K>(gl::verb::run, l.switches);
         count_passes<K>(1);
         if (l.elements == 0)
@@ -157,8 +200,8 @@ public:
     template <iterative_kernel K, class Reads, class Writes>
     progress run_until_done(launch l, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
     {
-        detail::check_call<K>("run_until_done", l, reads, writes);
-        device_->use();
+        detail::check_call<K>("run_until_done", l, reads, writes, owns());
+        const auto scope = device_->use();
         const GLuint program = made_->get<K>(gl::verb::until_done, l.switches);
         progress p;
         if (l.elements == 0) {
@@ -178,7 +221,7 @@ public:
         while (!p.finished && p.passes < max_passes) {
             const uint begin = p.passes;
             const uint end = begin + std::min(query_ring, max_passes - begin);
-            gl.Enable(GL_SCISSOR_TEST);
+            gl.Enablei(GL_SCISSOR_TEST, 0);
             for (uint pass = begin; pass < end; ++pass) {
                 gl.TextureBarrier(); // states are read where the last pass wrote them
                 for (std::size_t t = 0; t < tiles.size(); ++t) {
@@ -187,14 +230,14 @@ public:
                     if (pass > begin)
                         gl.BeginConditionalRender(query(pass - 1, t), GL_QUERY_WAIT);
                     gl.BeginQuery(GL_SAMPLES_PASSED, query(pass, t));
-                    gl.Scissor(tiles[t].x, tiles[t].y, tiles[t].width, tiles[t].height);
+                    gl.ScissorIndexed(0, tiles[t].x, tiles[t].y, tiles[t].width, tiles[t].height);
                     gl.DrawArrays(GL_TRIANGLES, 0, 3);
                     gl.EndQuery(GL_SAMPLES_PASSED);
                     if (pass > begin)
                         gl.EndConditionalRender();
                 }
             }
-            gl.Disable(GL_SCISSOR_TEST);
+            gl.Disablei(GL_SCISSOR_TEST, 0);
             p.passes = end;
             // Asked for few passes: is everything done after the last of them?
             const GLuint rest = end == max_passes ? query(end - 1, tiles.size()) : 0;
@@ -233,8 +276,8 @@ public:
     template <predicate_kernel K, class Reads>
     std::uint64_t count(launch l, const typename K::Params& args, Reads reads)
     {
-        detail::check_call<K>("count", l, reads, std::tuple<>{});
-        device_->use();
+        detail::check_call<K>("count", l, reads, std::tuple<>{}, owns());
+        const auto scope = device_->use();
         const GLuint program = made_->get<K>(gl::verb::holds, l.switches);
         count_passes<K>(1);
         if (l.elements == 0)
@@ -255,9 +298,12 @@ public:
     void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots, buffer<glm::vec4>& totals)
     {
         detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
+        detail::check_reads<K>("route", reads, owns());
+        check_owner("route: slots", slots);
+        check_owner("route: totals", totals);
         if (std::uint64_t{l.first} + l.elements > caps_.max_elements)
             throw backend_error(device_->name() + ": route: draws up to " + std::to_string(std::uint64_t{l.first} + l.elements) + "; the limit of this device is " + std::to_string(caps_.max_elements));
-        device_->use();
+        const auto scope = device_->use();
         gl::routing pass{*device_, *made_, made_->get<K>(gl::verb::route_payload, l.switches), made_->get<K>(gl::verb::route_amount, l.switches), l, destinations, m};
         count_passes<K>(1);
         start_clock();
@@ -273,7 +319,7 @@ public:
     template <kernel_struct K>
     void compile(uint switches = ~0u)
     {
-        device_->use();
+        const auto scope = device_->use();
         if constexpr (gather_kernel<K>)
             made_->get<K>(gl::verb::run, switches);
         if constexpr (iterative_kernel<K>) {
@@ -290,7 +336,7 @@ public:
 
     void finish()
     {
-        device_->use();
+        const auto scope = device_->use();
         device_->call.Finish();
         device_->check_errors("finish");
     }
@@ -314,6 +360,18 @@ private:
         GLint x, y;
         GLsizei width, height;
     };
+    /// Whether a buffer is this backend's, for check_call.
+    auto owns() const
+    {
+        return [this](const auto& b) { return b.texture_.is_of(*device_); };
+    }
+    template <element T>
+    void check_owner(const char* what, const buffer<T>& b) const
+    {
+        if (!owns()(b))
+            throw std::invalid_argument(std::string("gl_backend: ") + what + ": the buffer belongs to another backend; download it there and upload it here");
+    }
+
     static constexpr uint query_ring = 8; ///< passes between two looks at the queries
 
     /// Calls f(first element, row, width, rows) for the full rows of a buffer and for its last, shorter one.
@@ -354,13 +412,13 @@ private:
     void bind(const typename K::Params& args, const Reads& reads, const Writes& writes)
     {
         static_assert(input_count<K> <= gl::max_inputs && output_count<K> <= gl::max_outputs, "OpenGL passes have at most 8 inputs and 8 outputs");
-        functions_t& gl = device_->call;
+        device_->prepare_passes();
         device_->set_uniforms(&args, sizeof args);
         if constexpr (input_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
-            (gl.BindTextureUnit(I, std::get<I>(reads).texture_.id), ...);
+            (device_->bind_texture(I, std::get<I>(reads).texture_.id), ...);
         }(std::make_index_sequence<input_count<K>>{});
         if constexpr (std::tuple_size_v<Writes> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
-            ((K::is_state(slot<I>{}) ? gl.BindTextureUnit(gl::state_unit + I, std::get<I>(writes).texture_.id) : void()), ...);
+            ((K::is_state(slot<I>{}) ? device_->bind_texture(gl::state_unit + I, std::get<I>(writes).texture_.id) : void()), ...);
         }(std::make_index_sequence<output_count<K>>{});
     }
     /// Makes the written buffers the render targets. True when the pass also reads one of them.
@@ -384,7 +442,7 @@ private:
         // The triangle covers the viewport exactly, so no fragment outside the launch's rectangle is computed;
         // gl_FragCoord counts from the target's corner and is the texel.
         const region r = region_of(l);
-        device_->call.Viewport(r.x, r.y, r.width, r.height);
+        device_->set_viewport(r.x, r.y, r.width, r.height);
         device_->call.UseProgram(program);
         device_->call.ProgramUniform4ui(program, 0, l.first, l.elements, 0, 0);
     }
@@ -444,15 +502,9 @@ private:
             const std::uint64_t start = result(clock_[0]), end = result(clock_[1]); // ns
             made_->costs[std::string(kernel_name<K>())].ms += 1e-6 * static_cast<double>(end - std::min(start, end));
         }
-        if (options_.debug)
+        if (options_.debug || device_->is_callers()) // whose glGetError must not find ours
             device_->check_errors(std::string(verb) + "<" + std::string(kernel_name<K>()) + ">");
     }
-    static void APIENTRY note_message(GLenum, GLenum, GLuint, GLenum severity, GLsizei length, const GLchar* text, const void* user)
-    {
-        if (severity == GL_DEBUG_SEVERITY_HIGH)
-            static_cast<gl::device*>(const_cast<void*>(user))->messages += std::string(text, static_cast<std::size_t>(std::max(length, 0))) + "\n";
-    }
-
     gl_options options_;
     std::shared_ptr<gl::device> device_;
     std::unique_ptr<gl::programs> made_;

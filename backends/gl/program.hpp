@@ -67,7 +67,7 @@ public:
     ~programs()
     {
         try {
-            device_->use();
+            device_->make_current();
         } catch (const backend_error&) {
             return;
         }

@@ -32,7 +32,9 @@ struct routing {
         const GLuint framebuffer = make_framebuffer(drawn, stencil, what);
         try {
             gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-            gl.Viewport(0, 0, static_cast<GLsizei>(drawn.width), static_cast<GLsizei>(drawn.height));
+            on.keep_stencil();
+            on.set_viewport(0, 0, static_cast<GLsizei>(drawn.width), static_cast<GLsizei>(drawn.height));
+            gl.StencilMask(0xFFu);
             constexpr GLint zero = 0;
             constexpr std::array<GLuint, 4> empty{nowhere, 0, 0, 0};
             gl.ClearNamedFramebufferuiv(framebuffer, GL_COLOR, 0, empty.data());
@@ -44,16 +46,14 @@ struct routing {
             gl.DeleteFramebuffers(1, &framebuffer);
             throw;
         }
-        gl.StencilMask(0xFFu);
-        gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
         gl.Disable(GL_STENCIL_TEST);
 
         on.draw_into(std::array{slots.id});
         const GLuint gather = made.own("route_gather.glsl");
         gl.UseProgram(gather);
         gl.ProgramUniform4ui(gather, 0, columns, destinations, m, capacity);
-        gl.BindTextureUnit(0, drawn.id);
-        gl.Viewport(0, 0, static_cast<GLsizei>(slots.width), static_cast<GLsizei>((n + row_width - 1) / row_width));
+        on.bind_texture(0, drawn.id);
+        on.set_viewport(0, 0, static_cast<GLsizei>(slots.width), static_cast<GLsizei>((n + row_width - 1) / row_width));
         gl.DrawArrays(GL_TRIANGLES, 0, 3);
         gl.DeleteFramebuffers(1, &framebuffer);
     }
@@ -64,18 +64,19 @@ struct routing {
         functions& gl = on.call;
         constexpr std::array<GLfloat, 4> zero{};
         on.draw_into(std::array{totals.id});
-        gl.Viewport(0, 0, static_cast<GLsizei>(totals.width), static_cast<GLsizei>(totals.height));
+        on.set_viewport(0, 0, static_cast<GLsizei>(totals.width), static_cast<GLsizei>(totals.height));
         on.clear_targets(zero);
         if (draws.elements == 0)
             return;
         gl.UseProgram(amount);
         gl.ProgramUniform4ui(amount, 1, totals.width, destinations, 1, totals.height);
         gl.ProgramUniform4ui(amount, 2, parts, route_block(draws.elements, parts), draws.first, 0);
-        gl.Enable(GL_BLEND);
-        gl.BlendEquation(GL_FUNC_ADD);
-        gl.BlendFunc(GL_ONE, GL_ONE);
+        on.keep_blending();
+        gl.Enablei(GL_BLEND, 0);
+        gl.BlendEquationi(0, GL_FUNC_ADD);
+        gl.BlendFunci(0, GL_ONE, GL_ONE);
         gl.DrawArrays(GL_POINTS, static_cast<GLint>(draws.first), static_cast<GLsizei>(draws.elements));
-        gl.Disable(GL_BLEND);
+        gl.Disablei(GL_BLEND, 0);
     }
 
 private:
@@ -106,7 +107,7 @@ private:
         functions& gl = on.call;
         const GLuint pattern = made.own("route_pattern.glsl");
         gl.UseProgram(pattern);
-        gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        gl.ColorMaski(0, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
         gl.StencilFunc(GL_ALWAYS, 0xFF, 0xFFu);
         gl.StencilOp(GL_REPLACE, GL_REPLACE, GL_REPLACE);
         const uint largest = m * m > capacity ? 255u : capacity - 1;
@@ -115,6 +116,8 @@ private:
             gl.ProgramUniform4ui(pattern, 0, m, capacity, bit, 0);
             gl.DrawArrays(GL_TRIANGLES, 0, 3);
         }
+        gl.StencilMask(0xFFu);
+        gl.ColorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     }
 
     void draw_points(uint capacity, uint columns, uint rows)
@@ -125,8 +128,6 @@ private:
         gl.UseProgram(payload);
         gl.ProgramUniform4ui(payload, 1, columns, destinations, m, rows);
         gl.ProgramUniform4ui(payload, 2, 1, draws.elements, draws.first, 0);
-        gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-        gl.StencilMask(0xFFu);
         // GL_INCR stops at 255, beyond every reference value: a full destination stays full (docs/decisions.md).
         gl.StencilFunc(GL_EQUAL, static_cast<GLint>(capacity - 1), 0xFFu);
         gl.StencilOp(GL_INCR, GL_INCR, GL_INCR);

@@ -19,7 +19,7 @@ int main()
             trees.push_back({t.east, t.north, static_cast<float>(west ? 12 + 4 * unit(random) : 22 + 8 * unit(random))});
     }
     photongrid::serial_backend device; // change this line to survey it on another backend
-    const std::vector<glm::vec2> places{{400, 1200}, {1100, 300}, {2000, 700}};
+    const std::vector<glm::vec3> places{{400, 1200, 0}, {1100, 300, 0}, {2000, 700, 0}};
     const auto surveys = survey_forest(device, trees, places, 200);
     for (std::size_t p = 0; p < places.size(); ++p) {
         const auto& s = surveys[p];

@@ -4,7 +4,6 @@
 #include "forest_kernels.hpp"
 
 #include <photongrid/build_map.hpp>
-#include <photongrid/fitting_grid.hpp>
 #include <photongrid/knn_grid_estimate.hpp>
 #include <photongrid/knn_neighbours.hpp>
 #include <photongrid/own_photons.hpp>
@@ -33,20 +32,14 @@ struct survey {
     std::vector<float> distances;       ///< m
 };
 
-/// Surveys places (m, east and north) from the `k` trees nearest to each, on any backend.
+/// Surveys places (m: east, north, 0) from the `k` trees nearest to each, on any backend.
 template <photongrid::backend Device>
-std::vector<survey> survey_forest(Device& device, const std::vector<tree>& trees, const std::vector<glm::vec2>& places, std::uint32_t k)
+std::vector<survey> survey_forest(Device& device, const std::vector<tree>& trees, const std::vector<glm::vec3>& places, std::uint32_t k)
 {
-    // Trees to the device, into a map; a grid that fits them.
-    auto cloud = photongrid::upload_photons(device, trees);
-    const auto grid = photongrid::fitting_grid(device, cloud, k, device.caps().cells_a_radius);
-    const auto map = photongrid::sorted_map(device, std::move(cloud), grid);
-
-    std::vector<glm::vec4> at; // w > 0: asked for
-    for (const auto& p : places)
-        at.emplace_back(p, 0.0f, 1.0f);
-    const auto points = device.upload(std::span<const glm::vec4>(at));
-    const photongrid::knn_settings settings{.k = k, .max_radius = 1000, .errors = true};
+    // Trees to the device, into a map of cells that suit them; places too.
+    const auto map = photongrid::fitted_map(device, photongrid::upload_photons(device, trees), k);
+    const auto points = photongrid::upload_points(device, places);
+    const photongrid::knn_settings settings{.k = k, .errors = true};
 
     // Density, with its error: trees a square metre.
     const auto density = photongrid::knn_grid_estimate(device, map, points, settings);
@@ -58,7 +51,7 @@ std::vector<survey> survey_forest(Device& device, const std::vector<tree>& trees
     std::vector<float> heights;
     for (const auto& t : trees)
         heights.push_back(t.height);
-    const auto all_heights = device.upload(std::span<const float>(heights));
+    const auto all_heights = photongrid::upload(device, heights);
     auto mean = device.template make<float>(places.size());
     device.template run<forest::mean_height>(places.size(), {.k = k}, photongrid::reads(neighbours.ids, neighbours.distances2, all_heights), photongrid::writes(mean));
 

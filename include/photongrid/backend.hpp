@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <ranges>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -231,6 +232,14 @@ namespace detail {
 /// The buffers of backend B.
 template <class B, element T>
 using buffer_of = typename B::template buffer<T>;
+
+/// A buffer with the elements of a contiguous range: b.upload() for what is not a std::span.
+template <backend B, std::ranges::contiguous_range Range>
+    requires std::ranges::sized_range<Range> && element<std::ranges::range_value_t<Range>>
+buffer_of<B, std::ranges::range_value_t<Range>> upload(B& b, const Range& elements)
+{
+    return b.upload(std::span<const std::ranges::range_value_t<Range>>(elements));
+}
 
 /// Slots that a routed destination really has: m*m, but 255 at most, since an 8-bit stencil cannot count further
 /// (docs/decisions.md).

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <photongrid/bitonic_sort.hpp>
+#include <photongrid/fitting_grid.hpp>
 #include <photongrid/grid_index.hpp>
 #include <photongrid/photon_map.hpp>
 #include <photongrid/prefix_sums.hpp>
@@ -80,6 +81,14 @@ photon_map<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 
     detail::reorder(b, p, map.list);
     map.photons = std::move(p);
     return map;
+}
+
+/// A photon map by sorting, in a grid that fits the photons themselves for estimates from the k nearest (fitting_grid).
+template <backend B>
+photon_map<B> fitted_map(B& b, photons<B> p, uint k)
+{
+    const grid g = fitting_grid(b, p, k, b.caps().cells_a_radius);
+    return sorted_map(b, std::move(p), g);
 }
 
 } // namespace photongrid

@@ -1,7 +1,6 @@
 // The kernels of the four algorithms: every kernel file, read as C++, once.
 #pragma once
 
-#include <photongrid/kernel_helpers.hpp>
 #include <photongrid/kernels/begin.hpp>
 
 namespace photongrid::kernels {

@@ -4,12 +4,14 @@
 #include <photongrid/estimate_settings.hpp>
 #include <photongrid/photon_map.hpp>
 
+#include <limits>
+
 namespace photongrid {
 
 /// What to search for.
 struct knn_settings {
     uint k = 50;              ///< photons wanted; all within max_radius are taken when there are fewer. Not for fixed_radius
-    float max_radius = 0;     ///< m; photons farther away are always rejected. 0 or less: nothing is found
+    float max_radius = std::numeric_limits<float>::infinity(); ///< m; photons farther away are always rejected. 0 or less: nothing is found. fixed_radius needs one
     float min_radius = 0;     ///< m; the disc of the estimate is never smaller. 0: 2^-20 of the grid's largest extent
     search_kind search = search_kind::exact_k;
     filter_kernel kernel = filter_kernel::constant;
@@ -47,6 +49,8 @@ namespace detail {
     {
         if (std::isnan(s.max_radius) || std::isnan(s.min_radius))
             throw std::invalid_argument("knn_search: max_radius, min_radius: NaN");
+        if (s.search == search_kind::fixed_radius && std::isinf(s.max_radius) && s.max_radius > 0)
+            throw std::invalid_argument("knn_search: max_radius: infinite; search_kind::fixed_radius takes all photons within it, so name one");
         if (s.k < 1 && s.search != search_kind::fixed_radius)
             throw std::invalid_argument("knn_search: k: 0 photons wanted; ask for 1 at least, or for all within a radius (search_kind::fixed_radius)");
         if (s.visits_per_pass < 1 || s.ranges_per_pass < 2)

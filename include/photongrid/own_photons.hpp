@@ -49,7 +49,7 @@ namespace detail {
     template <class V>
     concept vector_like = has_xyz<V> || has_elements<V>;
     template <class V>
-    concept flux_like = vector_like<V> || std::is_arithmetic_v<V>;
+    concept flux_like = vector_like<V> || std::is_arithmetic_v<std::remove_cvref_t<V>>;
 
     template <class V>
     glm::vec3 to_vec3(const V& v)
@@ -102,6 +102,35 @@ photons<B> upload_photons(B& b, const Range& own)
     if constexpr (requires(const P& o) { reader::normal(o); })
         p.normals = upload([](const P& o) { return glm::vec4(detail::to_vec3(reader::normal(o)), 0.0f); });
     return p;
+}
+
+namespace detail {
+    template <backend B, std::ranges::contiguous_range Range>
+    buffer_of<B, glm::vec4> upload_vectors(B& b, const Range& vectors, float w)
+    {
+        std::vector<glm::vec4> staged;
+        staged.reserve(static_cast<std::size_t>(std::ranges::size(vectors)));
+        for (const auto& v : vectors)
+            staged.emplace_back(to_vec3(v), w);
+        return b.upload(std::span<const glm::vec4>(staged));
+    }
+} // namespace detail
+
+/// Query points, m, for a search that wants an estimate at each: a range of the caller's vectors, as in photon_reader.
+/// \throws backend_error where the device has no room.
+template <backend B, std::ranges::contiguous_range Range>
+    requires std::ranges::sized_range<Range> && detail::vector_like<std::ranges::range_value_t<Range>>
+buffer_of<B, glm::vec4> upload_points(B& b, const Range& points)
+{
+    return detail::upload_vectors(b, points, 1.0f); // w > 0: wanted
+}
+
+/// Unit normals of the surfaces that query points lie on.
+template <backend B, std::ranges::contiguous_range Range>
+    requires std::ranges::sized_range<Range> && detail::vector_like<std::ranges::range_value_t<Range>>
+buffer_of<B, glm::vec4> upload_normals(B& b, const Range& normals)
+{
+    return detail::upload_vectors(b, normals, 0.0f);
 }
 
 } // namespace photongrid

@@ -6,10 +6,6 @@
 
 namespace photongrid::kernels {
 
-#include <photongrid/kernels/natural_log.glsl>
-#include <photongrid/kernels/photon_event.glsl>
-#include <photongrid/kernels/scene_layout.glsl>
-
 // 2.1
 struct emit_photon {
 #include <photongrid/kernels/emit_photon.glsl>

@@ -1,5 +1,4 @@
-# Installs the build BUILD into WORK/prefix, then configures and builds the project SOURCE against it and runs its PROGRAM with
-# ARGUMENTS.
+# Configures the project SOURCE in the folder WORK with OPTIONS, builds it and runs its tests.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
@@ -8,7 +7,6 @@ function(run)
 endfunction()
 
 file(REMOVE_RECURSE ${WORK})
-run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_BUILD_TYPE=Release)
-run(${CMAKE_COMMAND} --build ${WORK}/build)
-run(${WORK}/build/${PROGRAM} ${ARGUMENTS})
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK} ${OPTIONS})
+run(${CMAKE_COMMAND} --build ${WORK})
+run(${CMAKE_CTEST_COMMAND} --test-dir ${WORK} --output-on-failure --no-tests=error)

@@ -6,10 +6,17 @@
 // it everywhere (-march=sapphirerapids).
 #if defined(__AVXVNNI__) && defined(__AVX512VPOPCNTDQ__) && !defined(HWY_WANT_AVX3_DL)
 #define HWY_WANT_AVX3_DL
+#define PHOTONGRID_WANTS_AVX3_DL
 #endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "photongrid/backends/cpu/overrides/for_each_target.hpp"
 #include <hwy/foreach_target.h>
+// Read by now; not for the user's own vector code.
+#undef HWY_TARGET_INCLUDE
+#if defined(PHOTONGRID_WANTS_AVX3_DL)
+#undef HWY_WANT_AVX3_DL
+#undef PHOTONGRID_WANTS_AVX3_DL
+#endif
 
 #include <photongrid/backends/cpu/overrides/for_each_target.hpp>
 

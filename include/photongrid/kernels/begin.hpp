@@ -21,6 +21,7 @@
 #include <glm/glm.hpp>
 #include <glm/integer.hpp>
 #include <photongrid/kernel.hpp>
+#include <photongrid/kernels/shared.hpp>
 #include <span>
 #include <string_view>
 
@@ -31,6 +32,9 @@
 #endif
 
 // NOLINTBEGIN
+// GLSL has the files that kernels share spliced in once (kernel_source.hpp); C++ has them from kernels/shared.hpp.
+#define PHOTONGRID_SHARED_IS_READ
+
 #define PARAMS(P)                                                                                                       \
     P args{};                                                                                                          \
     static constexpr std::string_view path = __FILE__;

@@ -38,7 +38,7 @@ void kernel(uint i)
 {
     uint frame = i / args.paths;
     uint before = i - args.paths;
-    uint path = args.first_path + (i - frame * args.paths);
+    uint id = args.first_path + (i - frame * args.paths);
     position = vec4(0.0f, 0.0f, 0.0f, event_code(NO_SURFACE, ENDED_BEFORE, NOTHING_BEFORE));
     power = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     direction = power;
@@ -87,7 +87,7 @@ void kernel(uint i)
     vec4 material = scene(args.scene_layout.rest.x + 2u * hit.material);
     vec4 optics = scene(args.scene_layout.rest.x + 2u * hit.material + 1u);
     direction.w = float(hit.material);
-    vec4 r = random4(uvec4(path, frame, 0u, args.seed));
+    vec4 r = random4(uvec4(id, frame, 0u, args.seed));
     uint kind = uint(material.w);
     uint surface = kind == LAMBERTIAN_SURFACE ? DIFFUSE_SURFACE : SPECULAR_SURFACE;
     vec3 facing = dot3(hit.normal, d) > 0.0f ? -hit.normal : hit.normal;

@@ -1,6 +1,5 @@
 // Squared distances as whole numbers in the same order, 0 below all of them; no denormals lie between 0 and the rest.
-#ifndef PHOTONGRID_DISTANCE_KEY
-#define PHOTONGRID_DISTANCE_KEY
+#ifndef PHOTONGRID_SHARED_IS_READ // kernels/begin.hpp
 
 inline uint key_of(float d2)
 {

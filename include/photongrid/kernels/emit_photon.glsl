@@ -20,9 +20,9 @@ OUTPUT(4, vec4, next_direction) // ... and where to
 
 void kernel(uint i)
 {
-    uint path = args.first_path + i;
-    vec4 r = random4(uvec4(path, 0u, 0u, args.seed));
-    vec4 s = random4(uvec4(path, 0u, 1u, args.seed));
+    uint id = args.first_path + i;
+    vec4 r = random4(uvec4(id, 0u, 0u, args.seed));
+    vec4 s = random4(uvec4(id, 0u, 1u, args.seed));
 
     // The light, chosen in proportion to its power.
     uint at = args.scene_layout.rest.y;

@@ -1,4 +1,5 @@
 // Takes the dialect of kernels/begin.hpp back, so that no word of it reaches a user's code.
+#undef PHOTONGRID_SHARED_IS_READ
 #undef PARAMS
 #undef INPUT
 #undef PHOTONGRID_VARIABLE

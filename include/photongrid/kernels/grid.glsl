@@ -1,6 +1,5 @@
 // The uniform grid (2.2): which cell a point lies in. Build and search call the same function, so they agree bit for bit.
-#ifndef PHOTONGRID_GRID
-#define PHOTONGRID_GRID
+#ifndef PHOTONGRID_SHARED_IS_READ // kernels/begin.hpp
 
 struct Grid {
     vec4 origin;       // lowest corner, m

@@ -69,9 +69,9 @@ float within_limit(float radius2)
 }
 
 // Counts of photons within four pivots.
-uvec4 counted(float d2, vec4 pivots)
+uvec4 counted(float d2, vec4 limits)
 {
-    return uvec4(d2 <= pivots.x ? 1u : 0u, d2 <= pivots.y ? 1u : 0u, d2 <= pivots.z ? 1u : 0u, d2 <= pivots.w ? 1u : 0u);
+    return uvec4(d2 <= limits.x ? 1u : 0u, d2 <= limits.y ? 1u : 0u, d2 <= limits.z ? 1u : 0u, d2 <= limits.w ? 1u : 0u);
 }
 
 // The four largest of a key and the four largest so far, descending, and the four smallest, ascending.

@@ -1,7 +1,6 @@
 // What happened to a photon path at one surface, as the w of its position in a frame: kind + 4 * end
 // + 32 * what it had met before.
-#ifndef PHOTONGRID_PHOTON_EVENT
-#define PHOTONGRID_PHOTON_EVENT
+#ifndef PHOTONGRID_SHARED_IS_READ // kernels/begin.hpp
 
 // Kinds of surface
 const uint NO_SURFACE = 0u;

@@ -19,23 +19,23 @@ vec4 chunk_direction;
 vec4 chunk_normal;
 
 // Does this point search along with the one in the middle of those in its group that are not done? If it lies close by and has
-// come as far; `cursor`: y, z, next photon, phase. Begins the walk of those that do.
-bool joins_walk(bool searching, vec4 p, uvec4 c, float radius2, uvec4 cursor)
+// come as far; `place`: y, z, next photon, phase. Begins the walk of those that do.
+bool joins_walk(bool searching, vec4 p, uvec4 c, float radius2, uvec4 place)
 {
     uint middle = group_middle(searching);
     float radius = wider(radius2);
     walk_center = lane_value(p, middle);
     walk_cell = lane_value(c, middle);
-    walk = lane_value(cursor, middle);
+    walk = lane_value(place, middle);
     float most = lane_value(radius, middle);
     float dx = abs(p.x - walk_center.x);
     float dy = abs(p.y - walk_center.y);
     float dz = abs(p.z - walk_center.z);
-    bool mine = searching && !(max(dx, max(dy, dz)) > 0.4f * most) && !(radius > 1.5f * most) && cursor == walk;
+    bool mine = searching && !(max(dx, max(dy, dz)) > 0.4f * most) && !(radius > 1.5f * most) && place == walk;
     walk_radius2 = radius2;
     if (GROUP_LANES > 1u) {
-        float reach = mine ? (sqrt(dx * dx + dy * dy + dz * dz) + radius) * 1.000001f : 0.0f;
-        radius = uintBitsToFloat(group_max(floatBitsToUint(reach)));
+        float extent = mine ? (sqrt(dx * dx + dy * dy + dz * dz) + radius) * 1.000001f : 0.0f;
+        radius = uintBitsToFloat(group_max(floatBitsToUint(extent)));
         walk_radius2 = radius * radius * 1.000001f;
     }
     walk_y = cells_within(walk_center.y, radius, args.grid.origin.y, args.grid.inverse_cell.y, args.grid.resolution.y);

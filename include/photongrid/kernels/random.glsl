@@ -1,7 +1,6 @@
 // Counter-based random numbers: a hash of (what, where, when, seed), so that every backend, order and thread count draws
 // the same ones. Jarzynski and Olano, Hash Functions for GPU Rendering, JCGT 9(3), 2020 (pcg4d).
-#ifndef PHOTONGRID_RANDOM
-#define PHOTONGRID_RANDOM
+#ifndef PHOTONGRID_SHARED_IS_READ // kernels/begin.hpp
 
 inline uvec4 hash4(uvec4 key)
 {

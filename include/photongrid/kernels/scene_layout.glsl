@@ -1,6 +1,5 @@
 // Where things stand in the scene buffer (include/photongrid/device_scene.hpp writes it).
-#ifndef PHOTONGRID_SCENE_LAYOUT
-#define PHOTONGRID_SCENE_LAYOUT
+#ifndef PHOTONGRID_SHARED_IS_READ // kernels/begin.hpp
 
 struct Scene {
     uvec4 round_things; // first sphere, how many; first quadric, how many

@@ -1,7 +1,6 @@
 // Vector arithmetic written out. GLSL's dot, length and normalize sum and round differently from device to device; these
 // do not.
-#ifndef PHOTONGRID_VECTOR
-#define PHOTONGRID_VECTOR
+#ifndef PHOTONGRID_SHARED_IS_READ // kernels/begin.hpp
 
 inline float dot3(vec3 a, vec3 b)
 {

@@ -1,0 +1,56 @@
+// All that the host needs for caustics: photons of its own, and photongrid to make light of them.
+#include "caustics.hpp"
+
+#if __has_include(<photongrid/backends/cpu/cpu.hpp>) // CMakeLists.txt links photongrid::cpu, or without it photongrid::serial
+#include <photongrid/backends/cpu/overrides/all.hpp>
+using device_type = photongrid::cpu_backend;
+#else
+#include <photongrid/backends/serial/serial.hpp>
+using device_type = photongrid::serial_backend;
+#endif
+#include <photongrid/build_map.hpp>
+#include <photongrid/knn_grid_estimate.hpp>
+#include <photongrid/own_photons.hpp>
+
+namespace host {
+struct photon { vec3 position, flux, direction, normal; }; // m, W, unit vectors; photongrid reads members of these names
+
+/// The photons that meet only mirrors and glass on their way from the lamp to a diffuse surface.
+static std::vector<photon> shoot(const scene& s, int count, std::uint64_t seed)
+{
+    std::vector<photon> landed;
+    for (int i = 0; i < count; ++i) {
+        random_stream random(seed, static_cast<std::uint64_t>(i));
+        ray r{s.lamp.point(random), cosine_direction(s.lamp.normal(), random)};
+        vec3 flux = (pi * s.lamp.area() / count) * s.lamp.of.colour;
+        for (int bounces = 0; const auto h = s.nearest(r); ++bounces) {
+            if (h->of.kind == surface::diffuse && bounces > 0)
+                landed.push_back({h->where, flux, r.along, h->normal});
+            if (!h->of.is_specular() || bounces == 50)
+                break;
+            flux = flux * h->of.colour;
+            r = specular_bounce(r, *h, random);
+        }
+    }
+    return landed;
+}
+
+irradiance_source caustics_of(const scene& s, int photons, std::uint64_t seed)
+{
+    const auto device = std::make_shared<device_type>();
+    const photongrid::knn_settings how{.k = 50, .max_radius = 0.1f, .kernel = photongrid::filter_kernel::silverman, .leaks = {.side = true, .min_cosine = 0.9f}};
+    const auto map = std::make_shared<const photongrid::photon_map<device_type>>(photongrid::fitted_map(*device, photongrid::upload_photons(*device, shoot(s, photons, seed)), how.k));
+    return [=](const std::vector<gather_point>& points) {
+        std::vector<vec3> at, normals;
+        for (const auto& p : points) {
+            at.push_back(p.where);
+            normals.push_back(p.normal);
+        }
+        const auto found = photongrid::knn_grid_estimate(*device, *map, photongrid::upload_points(*device, at), photongrid::upload_normals(*device, normals), how);
+        std::vector<vec3> irradiance;
+        for (const auto& e : device->download(found.irradiance))
+            irradiance.push_back({e.x, e.y, e.z});
+        return irradiance;
+    };
+}
+} // namespace host

@@ -1,0 +1,11 @@
+// Caustics for the host; caustics.cpp gets them from photongrid.
+#pragma once
+
+#include "path_tracer.hpp"
+
+namespace host {
+
+/// Caustic light of the scene, from so many photons of the lamp.
+irradiance_source caustics_of(const scene& s, int photons, std::uint64_t seed);
+
+} // namespace host

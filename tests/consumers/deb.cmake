@@ -1,0 +1,37 @@
+# Makes the Debian packages of the build BUILD in the folder WORK and unpacks them into WORK/root. Says what is wrong with them.
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "failed (${status}): ${ARGN}\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+run(${CMAKE_CPACK_COMMAND} -G DEB --config ${BUILD}/CPackConfig.cmake -B ${WORK})
+file(GLOB dev ${WORK}/photongrid-dev_${VERSION}_all.deb)
+file(GLOB program ${WORK}/photongrid_${VERSION}_*.deb)
+if(NOT dev OR NOT program)
+  message(FATAL_ERROR "cpack made no photongrid-dev_${VERSION}_all.deb or no photongrid_${VERSION}_*.deb")
+endif()
+
+# expect(FIELD pattern): of the package at hand.
+macro(expect field pattern)
+  run(dpkg-deb --field ${package} ${field})
+  if(NOT output MATCHES "${pattern}")
+    message(FATAL_ERROR "${package}: ${field}: ${output}does not match ${pattern}")
+  endif()
+endmacro()
+set(package ${dev})
+expect(Depends "^libglm-dev\n$")
+expect(Suggests "libtbb-dev.*glslang-dev")
+set(package ${program})
+expect(Depends "libc6.*libopenexr.*libpng") # found by dpkg-shlibdeps
+
+run(dpkg-deb --extract ${dev} ${WORK}/root)
+file(GLOB_RECURSE others ${WORK}/root/usr/bin/* ${WORK}/root/usr/lib/*)
+if(others)
+  message(FATAL_ERROR "photongrid-dev has files that depend on the processor: ${others}")
+endif()
+run(dpkg-deb --extract ${program} ${WORK}/root)
+run(${WORK}/root/usr/bin/photongrid check ${WORK}/root/usr/share/photongrid/scenes/ring.json)

@@ -1,0 +1,10 @@
+#include <photongrid/backends/gl/gl.hpp>
+#include <photongrid/backends/gl/overrides/all.hpp>
+
+#include "nearest.hpp"
+
+int main()
+{
+    photongrid::gl_backend device;
+    return consumer::nearest(device);
+}

@@ -1,0 +1,10 @@
+#include <photongrid/backends/vulkan/vulkan.hpp>
+#include <photongrid/backends/vulkan/overrides/all.hpp>
+
+#include "nearest.hpp"
+
+int main()
+{
+    photongrid::vulkan_backend device;
+    return consumer::nearest(device);
+}

@@ -1,0 +1,95 @@
+// One backend object to a thread, all kinds side by side in one process: nothing that they share behind the scenes may be
+// written unguarded. tests/run.sh --full runs this under the thread sanitizer.
+#include "photon_sets.hpp"
+
+#include <photongrid/backends/serial/serial.hpp>
+#include <photongrid/build_map.hpp>
+#include <photongrid/knn_grid_estimate.hpp>
+#include <photongrid/knn_neighbours.hpp>
+
+#ifdef PHOTONGRID_TEST_CPU
+#include <photongrid/backends/cpu/overrides/all.hpp>
+#endif
+#ifdef PHOTONGRID_TEST_GL
+#include <photongrid/backends/gl/overrides/all.hpp>
+#endif
+#ifdef PHOTONGRID_TEST_VULKAN
+#include <photongrid/backends/vulkan/overrides/all.hpp>
+#endif
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace photongrid::testing {
+
+/// What one thread found with backends of its own.
+struct findings {
+    std::vector<std::vector<glm::uvec2>> used; ///< by each of its backends
+    std::vector<std::vector<uint>> nearest;
+    std::string failure;
+};
+
+template <backend B>
+void search(B& b, std::uint64_t seed, findings& f)
+{
+    const auto s = make_photons(distribution::box_faces, 2000, {8, 8, 8}, seed);
+    const auto points = b.upload(std::span<const glm::vec4>(make_points(s, 200, seed)));
+    const auto map = sorted_map(b, upload_photons(b, s), s.g);
+    const knn_settings settings{.k = 20, .max_radius = 1};
+    auto used = b.download(knn_grid_estimate(b, map, points, settings).used);
+    for (auto& u : used)
+        u.y = 0; // how many were looked at is each backend's own affair
+    f.used.push_back(std::move(used));
+    f.nearest.push_back(b.download(knn_neighbours(b, map, points, settings).ids));
+}
+
+findings search_everywhere(std::uint64_t seed)
+{
+    findings f;
+    try {
+        serial_backend serial;
+        search(serial, seed, f);
+#ifdef PHOTONGRID_TEST_CPU
+        cpu_backend cpu(1);
+        search(cpu, seed, f);
+#endif
+#ifdef PHOTONGRID_TEST_GL
+        gl_backend gl;
+        search(gl, seed, f);
+#endif
+#ifdef PHOTONGRID_TEST_VULKAN
+        vulkan_backend vulkan;
+        search(vulkan, seed, f);
+#ifdef PHOTONGRID_TEST_GL
+        search(gl, seed, f); // two live side by side
+#endif
+#endif
+    } catch (const std::exception& e) {
+        f.failure = e.what();
+    }
+    return f;
+}
+
+TEST(threads, each_with_backends_of_its_own_find_what_one_alone_finds)
+{
+    constexpr std::size_t n = 4;
+    std::vector<findings> found(n);
+    {
+        std::vector<std::jthread> threads;
+        for (std::size_t t = 0; t < n; ++t)
+            threads.emplace_back([&found, t] { found[t] = search_everywhere(t); });
+    }
+    for (std::size_t t = 0; t < n; ++t) {
+        ASSERT_EQ(found[t].failure, "");
+        findings alone;
+        serial_backend serial;
+        search(serial, t, alone);
+        for (std::size_t b = 0; b < found[t].used.size(); ++b) {
+            EXPECT_EQ(found[t].used[b], alone.used[0]) << "thread " << t << ", its backend " << b;
+            EXPECT_EQ(found[t].nearest[b], alone.nearest[0]) << "thread " << t << ", its backend " << b;
+        }
+    }
+}
+
+} // namespace photongrid::testing
