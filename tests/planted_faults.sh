@@ -40,7 +40,7 @@ faults=(
   "grown radius forgets its photon|include/photongrid/kernels/grown_radius.glsl|n.x >= args.wanted|n.x > args.wanted"
   "given radius leaves out its rim|include/photongrid/kernels/given_radius.glsl|0xFFFFFFFFu|0u"
   "k-th photon is not left out|include/photongrid/kernels/gather_photons.glsl|LEAVE_OUT && reach.y > 0.0f|LEAVE_OUT && reach.y > 1.0f"
-  "wrong norm of the cone|include/photongrid/knn_grid_estimate.hpp|norms[] = {1, 3, 2, 3}|norms[] = {1, 2, 2, 3}"
+  "wrong norm of the cone|include/photongrid/knn_settings.hpp|norms[] = {1, 3, 2, 3}|norms[] = {1, 2, 2, 3}"
   "sums without compensation|include/photongrid/kernels/gather_photons.glsl|term = flux - rest|term = flux - (rest - rest)"
   "side reversed|include/photongrid/kernels/photon_distance.glsl|!(arrival < 0.0f)|arrival < 0.0f"
   "normals reversed|include/photongrid/kernels/photon_distance.glsl|agreement >= args.leaks.x|agreement <= args.leaks.x"
@@ -65,6 +65,11 @@ faults=(
   "lamp twice as bright|include/photongrid/kernels/direct_light.glsl|3.18309886e-1f * share|6.36619772e-1f * share"
   'shafts forget the margin of the light|include/photongrid/kernels/scene_hit.glsl|precise float reach = (s.w + radius) * 1.00001f;|precise float reach = s.w * 1.00001f;'
   'shafts look at one corner|include/photongrid/kernels/scene_hit.glsl|+ (by_u < 0.0f ? by_u : 0.0f) + (by_v < 0.0f ? by_v : 0.0f);|+ 0.0f;'
+  "lists forget ties|include/photongrid/kernels/list_neighbours.glsl|list(at) <= last_id|list(at) < last_id"
+  "lists end a row early|include/photongrid/kernels/list_neighbours.glsl|next = max(next, at);|next = max(next, end);"
+  "lists are not in order|include/photongrid/kernels/sort_neighbours.glsl|(entry & args.run) == 0u|(entry & args.run) == args.run"
+  "lists swap neighbours|include/photongrid/kernels/neighbour.glsl|entry * args.points + point|(entry ^ 1u) * args.points + point"
+  "cpu: lists are not in order|backends/cpu/overrides/search_simd.hpp|std::sort(keys.begin(), keys.end());|std::sort(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(held / 2));"
   "cpu: the k-th is one further|backends/cpu/overrides/search_simd.hpp|near.of(packet::kept), found.y, j.wanted - found.x,|near.of(packet::kept), found.y, j.wanted - found.x + (found.y > j.wanted - found.x ? 1u : 0u),"
   "cpu: packets are trusted too far|backends/cpu/overrides/search_simd.hpp|(reach - distance_between(q.at, center) * 1.000001f)|(reach - 0.5f * distance_between(q.at, center))"
   "cpu: the band is trusted|backends/cpu/overrides/search_simd.hpp|if (found.x >= j.wanted \|\| (found.x + found.y < j.wanted|if ((found.x + found.y < j.wanted"
