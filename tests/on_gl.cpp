@@ -10,6 +10,7 @@
 #include "ray_tests.hpp"
 #include "render_tests.hpp"
 #include "scene_picture_tests.hpp"
+#include "verb_tests.hpp"
 
 #include <photongrid/backends/gl/gl.hpp>
 
@@ -35,6 +36,7 @@ struct gl_tag {
 };
 using contexts = ::testing::Types<gl_tag>;
 
+INSTANTIATE_TYPED_TEST_SUITE_P(gl, verbs, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, algorithms, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, estimators, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, pictures, contexts, tag_names);

@@ -4,9 +4,11 @@
 #include "neighbour_tests.hpp"
 #include "number_tests.hpp"
 #include "on_serial.hpp"
+#include "verb_tests.hpp"
 
 namespace photongrid::testing {
 
+INSTANTIATE_TYPED_TEST_SUITE_P(serial, verbs, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, algorithms, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, estimators, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, neighbours, ::testing::Types<serial_tag>, tag_names);

@@ -10,6 +10,7 @@
 #include "ray_tests.hpp"
 #include "render_tests.hpp"
 #include "scene_picture_tests.hpp"
+#include "verb_tests.hpp"
 
 #include <photongrid/backends/vulkan/vulkan.hpp>
 
@@ -28,6 +29,7 @@ struct vulkan_tag {
     }
 };
 
+INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, verbs, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, algorithms, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, estimators, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, pictures, ::testing::Types<vulkan_tag>, tag_names);

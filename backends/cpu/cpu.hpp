@@ -109,7 +109,8 @@ public:
                     k.kernel(i);
                 if (!k.done())
                     finished = false;
-                store(k, i, out);
+                if (q > 0) // else its outputs are still the last element's
+                    store(k, i, out);
                 if (q >= mine.size())
                     mine.resize(q + std::size_t{1});
                 ++mine[q];

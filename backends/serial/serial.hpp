@@ -125,7 +125,8 @@ public:
             for (; q < max_passes && !k.done(); ++q)
                 k.kernel(i);
             p.finished = k.done() && p.finished;
-            store(k, i, writes);
+            if (q > 0) // else its outputs are still the last element's
+                store(k, i, writes);
             if (q >= ended.size())
                 ended.resize(q + std::size_t{1});
             ++ended[q];

@@ -178,20 +178,29 @@ namespace detail {
 /// they took over or were sorting is then undefined. Kernels trust the ids that other passes wrote; host code refuses, by
 /// backend_error, a count from the device that cannot be.
 ///
+/// A verb sees what all before it wrote. A pass may read a buffer that it also writes, if it reads none of the elements that
+/// it writes (a STATE is its own element's old value); outputs of one pass are different buffers. Elements outside the launch
+/// keep their values.
+///
 /// - `make<T>(n)`            a buffer of n elements, n from 0 up, contents undefined
-/// - `upload(span<const T>)` a buffer with these contents
-/// - `download(buffer)`      its contents as std::vector<T>
+/// - `upload(span<const T>)` a buffer with a copy of these contents, every bit
+/// - `download(buffer)`      its contents as std::vector<T>, every bit
 /// - `run<K>(launch, params, reads(…), writes(…))`             one pass (the paper's screen-sized quad)
 /// - `run_until_done<K>(launch, params, reads, writes, passes)` passes over the elements not yet done (3.3, 4.3), at most
-///                           `passes` of them; may be called again to go on
+///                           `passes` of them; may be called again to go on. Of an element that is done nothing is written
 /// - `count<K>(launch, params, reads(…))`                       how many elements `holds` is true for (occlusion query)
 /// - `route<K>(launch, params, reads, destinations, m, slots, totals)`  many-to-one scatter (2.2.2): with cap =
 ///                           min(m*m, 255), slots[d*cap + r] = payload of the r-th draw (in index order) with destination
-///                           d, for r < cap, the rest 0xFFFFFFFF; totals[d] = sum of all amounts with destination d.
+///                           d, for r < cap, the rest 0xFFFFFFFF; totals[d] = sum of all amounts with destination d, added
+///                           in that order; draws with a destination past the last are dropped.
 ///                           With room for P totals a destination there are P partial sums: totals[d*P + p] adds up, in
 ///                           order, the draws of the p-th of P equal blocks. Shorter sums round less
 /// - `finish()`              waits until all passes are done
-/// - `caps()`, `bytes()`, `peak_bytes()`, `costs()`             what it is, holds, held at most, has spent
+/// - `caps()`, `bytes()`, `peak_bytes()`, `costs()`             what it is, holds, held at most, has spent: costs() counts a
+///                           pass for each run, count and route, and those of run_until_done
+///
+/// A buffer moves and is not copied; one that was moved from has no elements. It may go as soon as the call that names it has
+/// returned, and may outlive the backend.
 template <class B>
 concept backend = requires(B& b, const B& cb, typename B::template buffer<uint>& u, typename B::template buffer<glm::vec4>& v, launch l,
     detail::concept_probe::Params p, std::span<const uint> host) {

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <system_error>
 
 #if __has_include(<sys/mman.h>)
@@ -149,6 +150,8 @@ void save_map(B& b, const photon_map<B>& map, const std::filesystem::path& file,
     const auto positions = b.download(map.photons.positions), powers = b.download(map.photons.powers);
     const auto directions = b.download(map.photons.directions), normals = b.download(map.photons.normals), surpluses = b.download(map.surpluses);
 
+    if (note.size() > std::numeric_limits<std::uint32_t>::max())
+        throw map_file_error(file, "cannot be written: its note of " + std::to_string(note.size()) + " bytes is longer than 2^32 - 1");
     detail::map_file_header header;
     header.cells_of = map.cells_of;
     header.photons = map.photons.size();

@@ -1,0 +1,23 @@
+# photongrid::backend_tests: what every backend promises, as tests for a backend of your own (docs/backend.md). Read where
+# GoogleTest, rapidcheck and FLANN were found, by tests/CMakeLists.txt.
+file(GLOB verb_kernels CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/kernels/verbs/*.glsl)
+set(verb_kernel_text ${CMAKE_CURRENT_BINARY_DIR}/generated/photongrid/backend_tests/verb_kernel_text.hpp)
+photongrid_embed(OUTPUT ${verb_kernel_text} TABLE verb_kernel_texts BASE ${PROJECT_SOURCE_DIR} FILES ${verb_kernels})
+
+# Its headers are <photongrid/backend_tests.hpp> and <photongrid/backend_tests/...>, here as where they are installed.
+set(root ${PROJECT_BINARY_DIR}/backend_tests)
+file(MAKE_DIRECTORY ${root}/photongrid)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/tests ${root}/photongrid/backend_tests SYMBOLIC)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/tests/backend_tests.hpp ${root}/photongrid/backend_tests.hpp SYMBOLIC)
+
+add_library(photongrid_backend_tests INTERFACE)
+add_library(photongrid::backend_tests ALIAS photongrid_backend_tests)
+set_target_properties(photongrid_backend_tests PROPERTIES EXPORT_NAME backend_tests)
+set(headers algorithm_tests estimator_tests known_answers map_file_tests neighbour_tests number_tests photon_sets serial_algorithms test_scenes under_test verb_kernels verb_tests)
+list(TRANSFORM headers PREPEND ${root}/photongrid/backend_tests/)
+list(TRANSFORM headers APPEND .hpp)
+target_sources(photongrid_backend_tests INTERFACE FILE_SET HEADERS BASE_DIRS ${root} ${CMAKE_CURRENT_BINARY_DIR}/generated FILES ${root}/photongrid/backend_tests.hpp ${headers} ${verb_kernel_text})
+# What the tests compare with is compiled once here, and by each user of the installed tests (cmake/install.cmake).
+set(installed ${CMAKE_INSTALL_INCLUDEDIR}/photongrid/backend_tests)
+target_sources(photongrid_backend_tests INTERFACE $<INSTALL_INTERFACE:${installed}/known_answers.cpp> $<INSTALL_INTERFACE:${installed}/serial_algorithms.cpp>)
+target_link_libraries(photongrid_backend_tests INTERFACE photongrid_serial $<BUILD_INTERFACE:test_references> rapidcheck flann::flann_cpp GTest::gtest_main)
