@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Speed and error, measured. Prints Markdown; fails where a row misses what it must reach.
 #
-#   bench/run.sh [--algorithms] [--peers] [--paper] [--error] [--write] [--no-install]     some of it, or all
+#   bench/run.sh [--algorithms] [--peers] [--paper] [--error] [--inclusion] [--write] [--no-install]     some of it, or all
 #   bench/run.sh --gpu [--no-install]               all of it on a hardware Vulkan device; refuses software
 #   bench/run.sh --smoke [--built] [--no-install]   all of it on little data, to see that it runs
 #
@@ -10,6 +10,7 @@
 #                 on vulkan and gl against plain ones; whole pictures, the ring and the ball against POV-Ray
 #   --paper       the paper's Tables 1 and 2, time to visual convergence, what leaving out finished elements gains
 #   --error       time against relMSE of every kind of estimate: CSV and plots in out/error/
+#   --inclusion   what including the headers costs a user's compiler, and the size of the smallest programs
 #   --write       puts what is printed, and the Cornell box's plot, into docs/ too (bench/write_measures.sh)
 #   --built       builds nothing: takes those programs that tests/run.sh has built in build-tests/
 set -euo pipefail
@@ -17,13 +18,13 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
 
 usage() {
-  sed -n '2,15s/^# \{0,1\}//p' bench/run.sh >&2
+  sed -n '2,16s/^# \{0,1\}//p' bench/run.sh >&2
   exit 2
 }
 install=yes gpu=no smoke=no write=no build=build-bench parts=()
 for argument in "$@"; do
   case $argument in
-    --algorithms | --peers | --paper | --error) parts+=("${argument#--}") ;;
+    --algorithms | --peers | --paper | --error | --inclusion) parts+=("${argument#--}") ;;
     --built) build=build-tests ;;
     --gpu) gpu=yes ;;
     --smoke) smoke=yes ;;
@@ -32,7 +33,7 @@ for argument in "$@"; do
     *) usage ;;
   esac
 done
-((${#parts[@]})) || parts=(algorithms peers paper error)
+((${#parts[@]})) || parts=(algorithms peers paper error inclusion)
 asked() { [[ " ${parts[*]} " == *" $1 "* ]]; }
 packages=("${program_packages[@]}" "${smoke_packages[@]}")
 [[ $build == build-tests ]] || packages+=("${bench_packages[@]}")
@@ -121,6 +122,7 @@ if [[ $smoke == yes ]]; then
   must $build/bench/kernel_costs
   must $build/bench/unfinished 1 1000
   must bench/convergence.sh --quick cpu
+  must bench/inclusion.sh --smoke
   if [[ $build == build-tests ]]; then
     echo "Not built beside the tests, so not run: search_times, knn_peers, sort_peers, field_errors"
     exit $failed
@@ -131,6 +133,10 @@ if [[ $smoke == yes ]]; then
   must $build/bench/sort_peers 1 65536
   must bench/error.sh --quick
   exit $failed
+fi
+if asked inclusion; then
+  title "What including it costs"
+  must bench/inclusion.sh
 fi
 if asked algorithms; then
   title "Algorithms"
