@@ -58,6 +58,21 @@ public:
         std::size_t size_ = 0;
     };
 
+private:
+    // First, since clang wants to know what `auto` is.
+    /// Whether a buffer is this backend's, for check_call.
+    auto owns() const
+    {
+        return [this](const auto& b) { return b.texture_.is_of(*device_); };
+    }
+    template <element T>
+    void check_owner(const char* what, const buffer<T>& b) const
+    {
+        if (!owns()(b))
+            throw std::invalid_argument(std::string("gl_backend: ") + what + ": the buffer belongs to another backend; download it there and upload it here");
+    }
+
+public:
     /// \throws backend_error that says what was tried, what failed and which package to install;
     /// std::invalid_argument for a tile of 0 or above 2048.
     explicit gl_backend(const gl_options& options = {}) : options_(options)
@@ -394,18 +409,6 @@ private:
         GLint x, y;
         GLsizei width, height;
     };
-    /// Whether a buffer is this backend's, for check_call.
-    auto owns() const
-    {
-        return [this](const auto& b) { return b.texture_.is_of(*device_); };
-    }
-    template <element T>
-    void check_owner(const char* what, const buffer<T>& b) const
-    {
-        if (!owns()(b))
-            throw std::invalid_argument(std::string("gl_backend: ") + what + ": the buffer belongs to another backend; download it there and upload it here");
-    }
-
     static constexpr uint query_ring = 8; ///< passes between two looks at the queries
 
     /// Calls f(first element, row, width, rows) for the full rows of a buffer and for its last, shorter one.

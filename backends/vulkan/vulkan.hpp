@@ -63,6 +63,21 @@ public:
         std::size_t n_ = 0;
     };
 
+private:
+    // First, since clang wants to know what `auto` is.
+    /// Whether a buffer is this backend's, for check_call.
+    auto owns() const
+    {
+        return [this](const auto& b) { return !b.memory_ || b.memory_->is_of(*context_); };
+    }
+    template <element T>
+    void check_owner(const char* what, const buffer<T>& b) const
+    {
+        if (!owns()(b))
+            throw std::invalid_argument(std::string("vulkan_backend: ") + what + ": the buffer belongs to another backend; download it there and upload it here");
+    }
+
+public:
     /// Opens a device.
     /// \throws backend_error when there is no driver, no such device, or no validation layer where one is asked for.
     explicit vulkan_backend(const vulkan_options& options = {}) : vulkan_backend(std::make_shared<vulkan_detail::context>(options), options) {}
@@ -381,18 +396,6 @@ private:
         std::apply(add, reads);
         std::apply(add, writes);
         return all;
-    }
-
-    /// Whether a buffer is this backend's, for check_call.
-    auto owns() const
-    {
-        return [this](const auto& b) { return !b.memory_ || b.memory_->is_of(*context_); };
-    }
-    template <element T>
-    void check_owner(const char* what, const buffer<T>& b) const
-    {
-        if (!owns()(b))
-            throw std::invalid_argument(std::string("vulkan_backend: ") + what + ": the buffer belongs to another backend; download it there and upload it here");
     }
 
     std::uint64_t groups(std::uint64_t elements) const { return (elements + group_ - 1) / group_; }
