@@ -69,9 +69,9 @@ run_tests() {
   shift
   ctest --test-dir "$folder" --output-on-failure --no-tests=error -j2 "$@"
 }
-short=(--label-exclude long) sanitized=(--label-exclude "long|heavy") sanitized_target=photongrid_quick_tests fuzz_seconds=20
+short=(--label-exclude "long|full") sanitized=(--label-exclude "long|heavy|full") sanitized_target=photongrid_quick_tests fuzz_seconds=20 everything=OFF
 if [[ $full == yes ]]; then
-  short=() sanitized=(--label-exclude long) sanitized_target=all fuzz_seconds=300
+  short=() sanitized=(--label-exclude long) sanitized_target=all fuzz_seconds=300 everything=ON
 fi
 
 if [[ $device == hardware ]]; then
@@ -111,7 +111,7 @@ else
 fi
 
 echo "== g++, all tests"
-configure tests -DPHOTONGRID_BENCH=ON
+configure tests -DPHOTONGRID_BENCH=ON -DPHOTONGRID_FULL_TESTS=$everything
 cmake --build build-tests
 run_tests build-tests "${short[@]}"
 
