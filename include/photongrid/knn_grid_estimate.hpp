@@ -52,17 +52,7 @@ public:
     /// Runs at most `passes` more passes over the points not yet done, each a bounded amount of work for a point.
     progress advance(uint passes = nowhere)
     {
-        progress all;
-        while (stage_ != stage::finished && all.passes < passes) {
-            const progress p = run_stage(passes - all.passes);
-            all.passes += p.passes;
-            all.active.insert(all.active.end(), p.active.begin(), p.active.end());
-            if (!p.finished)
-                break;
-            next_stage();
-        }
-        all.finished = stage_ == stage::finished;
-        return all;
+        return detail::run_stages(passes, [this] { return stage_ == stage::finished; }, [this](uint left) { return run_stage(left); }, [this] { next_stage(); });
     }
 
     /// The estimates from what is held now. Final ones when the search has finished; before, at_least_k gives running ones

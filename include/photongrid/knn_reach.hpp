@@ -30,20 +30,7 @@ public:
     /// Runs at most `passes` more passes over the points not yet done.
     progress advance(uint passes = nowhere)
     {
-        progress all;
-        while (stage_ != stage::finished && all.passes < passes) {
-            const progress p = run_stage(passes - all.passes);
-            all.passes += p.passes;
-            all.active.insert(all.active.end(), p.active.begin(), p.active.end());
-            if (!p.finished)
-                break;
-            if (stage_ == stage::distance)
-                start_ties();
-            else
-                finish();
-        }
-        all.finished = finished();
-        return all;
+        return detail::run_stages(passes, [this] { return finished(); }, [this](uint left) { return run_stage(left); }, [this] { stage_ == stage::distance ? start_ties() : finish(); });
     }
     /// True when the radius of every point is known.
     bool finished() const { return stage_ == stage::finished; }

@@ -121,6 +121,23 @@ namespace detail {
         template <class K>
         uint together() const { return are_close(s, *map, points->size()) ? 1u << K::group_switch : 0u; }
     };
+    /// Runs stage after stage, at most `passes` passes in all: `run(left)` some of a stage's, `next()` goes on from one that has
+    /// finished, `finished()` says whether that was the last.
+    template <class Finished, class Run, class Next>
+    progress run_stages(uint passes, Finished finished, Run run, Next next)
+    {
+        progress all;
+        while (!finished() && all.passes < passes) {
+            const progress p = run(passes - all.passes);
+            all.passes += p.passes;
+            all.active.insert(all.active.end(), p.active.begin(), p.active.end());
+            if (!p.finished)
+                break;
+            next();
+        }
+        all.finished = finished();
+        return all;
+    }
     /// 1 / mean of the kernel over its disc.
     constexpr float norm_of(filter_kernel k)
     {

@@ -166,11 +166,9 @@ public:
                 store_some(d, py, near, of(y) + k);
                 store_some(d, pz, near, of(z) + k);
                 const auto take = [&](plane p, const float* from) HWY_ATTR { store_some(d, hn::LoadU(d, from + i), near, of(p) + k); };
-                if (j.ids == nullptr) {
-                    take(red, j.powers.x);
-                    take(green, j.powers.y);
-                    take(blue, j.powers.z);
-                }
+                take(red, j.powers.x); // for lists too: asking here costs estimates more than it saves them
+                take(green, j.powers.y);
+                take(blue, j.powers.z);
                 if (j.side) {
                     take(travel_x, j.directions.x);
                     take(travel_y, j.directions.y);
@@ -470,8 +468,17 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
     return g;
 }
 
-/// Lists the photons within the radius, nearest first, by the distances that scan() wrote. `keys` is scratch.
-HWY_INLINE void list(const search_job& j, uint point, chosen_radius r, const packet& near, std::vector<std::uint64_t>& keys)
+/// Says that the list of a point has no more than its first `held` entries.
+inline void end_list(const search_job& j, uint point, std::size_t held)
+{
+    const std::size_t first = std::size_t{point} * j.wanted;
+    std::fill(j.ids + first + held, j.ids + first + j.wanted, nowhere);
+    std::fill(j.distances2 + first + held, j.distances2 + first + j.wanted, std::numeric_limits<float>::infinity());
+}
+
+/// Lists the photons within the radius, nearest first, by the distances that scan() wrote. `keys` is scratch. Not inlined: sorting
+/// would take registers from the search for estimates.
+HWY_NOINLINE void list(const search_job& j, uint point, chosen_radius r, const packet& near, std::vector<std::uint64_t>& keys)
 {
     const floats d;
     const uints du;
@@ -497,8 +504,7 @@ HWY_INLINE void list(const search_job& j, uint point, chosen_radius r, const pac
         ids[i] = static_cast<uint>(keys[i]);
         distances2[i] = std::bit_cast<float>(static_cast<uint>(keys[i] >> 32));
     }
-    std::fill(ids + held, ids + j.wanted, nowhere);
-    std::fill(distances2 + held, distances2 + j.wanted, std::numeric_limits<float>::infinity());
+    end_list(j, point, held);
 }
 
 /// A first guess at the k-th squared distance, from cell counts.
@@ -555,12 +561,10 @@ HWY_INLINE void search_points(const search_job& j, std::size_t begin, std::size_
     for (std::size_t o = begin; o < end;) {
         const uint first = j.order[o];
         if (!is_wanted(first)) {
-            if (j.ids != nullptr) {
-                std::fill_n(j.ids + std::size_t{first} * j.wanted, j.wanted, nowhere);
-                std::fill_n(j.distances2 + std::size_t{first} * j.wanted, j.wanted, std::numeric_limits<float>::infinity());
-            } else {
+            if (j.ids != nullptr)
+                end_list(j, first, 0);
+            else
                 finish(j, first, {j.max_radius2, false}, {}, 0);
-            }
             ++o;
             continue;
         }
