@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # Speed and error, measured. Prints Markdown; fails where a row misses what it must reach.
 #
-#   bench/run.sh [--algorithms] [--peers] [--paper] [--error] [--inclusion] [--write] [--no-install]     some of it, or all
+#   bench/run.sh [--algorithms] [--peers] [--paper] [--interactive] [--error] [--inclusion] [--write] [--no-install]     some of it, or all
 #   bench/run.sh --gpu [--no-install]               all of it on a hardware Vulkan device; refuses software
 #   bench/run.sh --smoke [--built] [--no-install]   all of it on little data, to see that it runs
 #
 #   --algorithms  each algorithm on each backend by number of photons and entropy of keys: JSON and plots in out/algorithms/
 #   --peers       neighbour searches and sorts against CGAL, FLANN, nanoflann, std::sort, Highway's vqsort, TBB; sorting passes
 #                 on vulkan and gl against plain ones; whole pictures, the ring and the ball against POV-Ray
-#   --paper       the paper's Tables 1 and 2, time to visual convergence, what leaving out finished elements gains
+#   --paper       the paper's Tables 1 and 2, what leaving out finished elements gains
+#   --interactive how soon a change is seen, and when a picture looks converged
 #   --error       time against relMSE of every kind of estimate: CSV and plots in out/error/
 #   --inclusion   what including the headers costs a user's compiler, and the size of the smallest programs
 #   --write       puts what is printed, and the Cornell box's plot, into docs/ too (bench/write_measures.sh)
@@ -18,13 +19,13 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
 
 usage() {
-  sed -n '2,16s/^# \{0,1\}//p' bench/run.sh >&2
+  sed -n '2,17s/^# \{0,1\}//p' bench/run.sh >&2
   exit 2
 }
 install=yes gpu=no smoke=no write=no build=build-bench parts=()
 for argument in "$@"; do
   case $argument in
-    --algorithms | --peers | --paper | --error | --inclusion) parts+=("${argument#--}") ;;
+    --algorithms | --peers | --paper | --interactive | --error | --inclusion) parts+=("${argument#--}") ;;
     --built) build=build-tests ;;
     --gpu) gpu=yes ;;
     --smoke) smoke=yes ;;
@@ -33,7 +34,7 @@ for argument in "$@"; do
     *) usage ;;
   esac
 done
-((${#parts[@]})) || parts=(algorithms peers paper error inclusion)
+((${#parts[@]})) || parts=(algorithms peers paper interactive error inclusion)
 asked() { [[ " ${parts[*]} " == *" $1 "* ]]; }
 packages=("${program_packages[@]}" "${smoke_packages[@]}")
 [[ $build == build-tests ]] || packages+=("${bench_packages[@]}")
@@ -107,6 +108,7 @@ if [[ $gpu == yes ]]; then
   must $build/bench/kernel_costs
   must $build/bench/unfinished
   must bench/convergence.sh vulkan
+  must $build/bench/interactive examples/scenes/cornell_box.json 9 vulkan
   for scene in cornell_box ring glass_ball; do
     for run in first second third; do
       $build/photongrid render "examples/scenes/$scene.json" --backend vulkan --time-passes --stats $build/stats.json -o $build/picture.pfm --quiet >/dev/null
@@ -124,9 +126,10 @@ if [[ $smoke == yes ]]; then
   must bench/convergence.sh --quick cpu
   must bench/inclusion.sh --smoke
   if [[ $build == build-tests ]]; then
-    echo "Not built beside the tests, so not run: search_times, knn_peers, sort_peers, field_errors"
+    echo "Not built beside the tests, so not run: interactive, search_times, knn_peers, sort_peers, field_errors"
     exit $failed
   fi
+  must $build/bench/interactive examples/scenes/cornell_box.json 1 cpu
   must $build/bench/search_times 1 vulkan 1000
   must $build/bench/knn_peers --sets 1 --seconds 0.05
   must $build/bench/knn_peers_portable --sets 1 --seconds 0.05
@@ -181,8 +184,12 @@ if asked paper; then
   must $build/bench/kernel_costs
   title "Finished elements (3.3, 4.3)"
   must $build/bench/unfinished
+fi
+if asked interactive; then
   title "Time to visual convergence (3.1)"
   must bench/convergence.sh
+  title "Waiting (3.4)"
+  must $build/bench/interactive examples/scenes/cornell_box.json 9 cpu vulkan
 fi
 if asked error; then
   title "Time against error"

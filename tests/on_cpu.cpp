@@ -9,6 +9,7 @@
 #include "map_file_tests.hpp"
 #include "neighbour_tests.hpp"
 #include "number_tests.hpp"
+#include "progressive_tests.hpp"
 #include "ray_tests.hpp"
 #include "render_tests.hpp"
 #include "scene_picture_tests.hpp"
@@ -28,6 +29,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(cpu, verbs, ::testing::Types<cpu_tag>, tag_names)
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, algorithms, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, estimators, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, pictures, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, progressive, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, hard_cases, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, neighbours, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, hard_cases_of_numbers, ::testing::Types<cpu_tag>, tag_names);

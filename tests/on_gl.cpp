@@ -7,6 +7,7 @@
 #include "map_file_tests.hpp"
 #include "neighbour_tests.hpp"
 #include "number_tests.hpp"
+#include "progressive_tests.hpp"
 #include "ray_tests.hpp"
 #include "render_tests.hpp"
 #include "scene_picture_tests.hpp"
@@ -40,6 +41,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(gl, verbs, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, algorithms, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, estimators, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, pictures, contexts, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(gl, progressive, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, neighbours, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases_of_numbers, contexts, tag_names);

@@ -7,6 +7,7 @@
 #include "map_file_tests.hpp"
 #include "neighbour_tests.hpp"
 #include "number_tests.hpp"
+#include "progressive_tests.hpp"
 #include "ray_tests.hpp"
 #include "render_tests.hpp"
 #include "scene_picture_tests.hpp"
@@ -33,6 +34,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, verbs, ::testing::Types<vulkan_tag>, tag_
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, algorithms, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, estimators, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, pictures, ::testing::Types<vulkan_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, progressive, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, neighbours, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases_of_numbers, ::testing::Types<vulkan_tag>, tag_names);

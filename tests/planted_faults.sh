@@ -57,11 +57,19 @@ faults=(
   "photons left out counted wrongly|include/photongrid/kernels/other_part.glsl|!is_of_parts|is_of_parts"
   "rays start on the surface|include/photongrid/kernels/scene_layout.glsl|* 1.9073486328125e-6f + s.scale.x|* 0.0f + 0.0f * s.scale.x"
   "samples not shared out|include/photongrid/kernels/shade.glsl|light.y * args.share|light.y"
-  "NaN pixels shown|include/photongrid/render.hpp|good ? glm::vec3(p) : glm::vec3(0)|glm::vec3(p)"
+  "NaN pixels shown|include/photongrid/progressive_view.hpp|finite ? glm::vec3(p) * scale : glm::vec3(0)|glm::vec3(p) * scale"
+  "samples to come are dark|include/photongrid/progressive_view.hpp|static_cast<float>(settings_.spp) / static_cast<float>(samples)|1.0f"
+  "a look keeps its rays for another|include/photongrid/progressive_view.hpp|looks_[look_ + 1].divisor : 1u) == divisor()|looks_[look_ + 1].divisor : 1u) <= divisor()"
+  "a ray is drawn twice|include/photongrid/progressive_view.hpp|ray_ = s.rays;|ray_ = s.rays - 1;"
+  "a moved lamp keeps its map|include/photongrid/scene_map.hpp| && a.rectangle_lights == b.rectangle_lights|"
+  "another seed keeps its map|include/photongrid/scene_map.hpp| && as.seed == bs.seed|"
+  "a moved camera drops the map|include/photongrid/progressive_render.hpp|if (!same_map(|if (scene_.camera != s.camera \|\| !same_map("
+  "the early map stays|include/photongrid/progressive_render.hpp|built_is_early_ = built_with_.photons < settings_.photons;|built_is_early_ = false;"
+  "looks are dark|include/photongrid/progressive_view.hpp|is_look() ? 1.0f : 1.0f / static_cast<float>(settings_.spp), canvas_|is_look() ? 0.8f : 1.0f / static_cast<float>(settings_.spp), canvas_"
   "ties of the k-th unseen|include/photongrid/kernels/kth_distance.glsl|before > 0u && component(below, before - 1u) == kth ? 1u : 0u|before > 9u ? 1u : 0u"
   "photon at the pivot on the far side|include/photongrid/kernels/kth_distance.glsl|inside && key <= middle ? 1u : 0u|inside && key < middle ? 1u : 0u"
   "share of the outer edges added|include/photongrid/kernels/covered_share.glsl|d < 0.0f ? -rim : rim|rim"
-  "edges of estimates not corrected|include/photongrid/render.hpp|settings.edges != edge_correction::none|settings.edges == edge_correction::none"
+  "edges of estimates not corrected|include/photongrid/progressive_view.hpp|settings_.edges != edge_correction::none|settings_.edges == edge_correction::none"
   "lamp twice as bright|include/photongrid/kernels/direct_light.glsl|3.18309886e-1f * share|6.36619772e-1f * share"
   'shafts forget the margin of the light|include/photongrid/kernels/scene_hit.glsl|precise float reach = (s.w + radius) * 1.00001f;|precise float reach = s.w * 1.00001f;'
   'shafts look at one corner|include/photongrid/kernels/scene_hit.glsl|+ (by_u < 0.0f ? by_u : 0.0f) + (by_v < 0.0f ? by_v : 0.0f);|+ 0.0f;'
@@ -92,7 +100,7 @@ tests_of() {
     backends/cpu/*) echo on_cpu ;;
     backends/gl/*) echo on_gl ;;
     backends/vulkan/*) echo on_vulkan ;;
-    */render.hpp | */trace_photons.hpp) echo on_serial_pictures ;;
+    */render.hpp | */progressive_*.hpp | */scene_map.hpp | */eye_rays.hpp | */trace_photons.hpp) echo on_serial_pictures ;;
     */bounce_photon.glsl | */covered_share.glsl | */direct_light.glsl | */scene_*.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
     *) echo on_serial_algorithms ;;
   esac

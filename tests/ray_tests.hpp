@@ -150,7 +150,9 @@ protected:
         hits.surfaces = b.upload(std::span<const glm::vec4>(n));
         auto settings = s.render;
         settings.light_samples = samples;
-        return b.download(detail::direct_light(b, device, hits, settings, 0));
+        auto irradiance = b.template make<glm::vec4>(p.size());
+        detail::direct_light(b, device, hits, settings, 0, p.size(), irradiance);
+        return b.download(irradiance);
     }
 };
 TYPED_TEST_SUITE_P(hard_cases);

@@ -143,7 +143,9 @@ TYPED_TEST_P(pictures, direct_light_of_a_rectangle_equals_the_form_factor)
     detail::eye_hits<typename TestFixture::B> hits(b, points.size());
     hits.points = b.upload(std::span<const glm::vec4>(points));
     hits.surfaces = b.upload(std::span<const glm::vec4>(normals));
-    const auto light = b.download(detail::direct_light(b, device, hits, settings, 0));
+    auto irradiance = b.template make<glm::vec4>(points.size());
+    detail::direct_light(b, device, hits, settings, 0, points.size(), irradiance);
+    const auto light = b.download(irradiance);
     for (std::size_t i = 0; i < points.size(); ++i) {
         dvec3 sum(0);
         for (int e = 0; e < 4; ++e) {

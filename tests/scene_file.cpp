@@ -1,5 +1,6 @@
 // The reader of scene files: what it takes, and the place and words of every kind of refusal.
 #include "scene_file.hpp"
+#include "scene_writer.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -460,6 +461,48 @@ namespace {
             EXPECT_EQ(definition.at("additionalProperties"), false);
         }
         EXPECT_TRUE(objects.empty()) << *objects.begin();
+    }
+
+    TEST(scene_writer, what_it_writes_reads_as_the_same_scene)
+    {
+        std::size_t scenes_read = 0;
+        for (const auto& folder : {scenes, std::string(PHOTONGRID_SCENE_CORPUS)})
+            for (const auto& f : std::filesystem::directory_iterator(folder)) {
+                if (f.path().extension() != ".json" || f.path().filename() == "photongrid-scene.schema.json")
+                    continue;
+                scene s;
+                try {
+                    s = read_scene(f.path().string());
+                } catch (const scene_error&) {
+                    continue;
+                }
+                ++scenes_read;
+                const auto text = scene_text(s, s.render);
+                const auto again = parse_scene("again.json", text);
+                EXPECT_TRUE(again == s) << f.path() << " is written as\n" << text;
+                EXPECT_EQ(scene_text(again, again.render), text);
+            }
+        EXPECT_GE(scenes_read, 20u);
+    }
+
+    TEST(scene_writer, materials_are_told_apart)
+    {
+        auto s = parse_scene("s.json", text(good));
+        s.name.clear();
+        s.materials[0].name.clear();
+        s.materials.push_back(s.materials[1]); // "clear", twice
+        s.materials[2].index_of_refraction = 1.7;
+        s.materials.push_back({"material 2", material_kind::mirror, dvec3(0.1, 1.0 / 3, 0.9)});
+        s.spheres.push_back({{5, 1, 0}, 0.1, 2});
+        s.spheres.push_back({{7, 1, 0}, 0.1, 3});
+        const auto again = parse_scene("again.json", scene_text(s, s.render));
+        ASSERT_EQ(again.materials.size(), 4u);
+        for (std::size_t i = 0; i < 4; ++i) {
+            EXPECT_EQ(again.materials[i].kind, s.materials[i].kind);
+            EXPECT_EQ(again.materials[i].reflectance, s.materials[i].reflectance);
+        }
+        EXPECT_EQ(again.spheres, s.spheres);
+        EXPECT_EQ(again.materials[2].index_of_refraction, 1.7);
     }
 
 } // namespace

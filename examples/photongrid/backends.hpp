@@ -3,41 +3,64 @@
 #pragma once
 
 #include <photongrid/backend.hpp>
+#include <photongrid/render_progress.hpp>
 #include <photongrid/render_stats.hpp>
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace photongrid {
 
-/// A picture to draw. `device`: for Vulkan, an index or a part of a name; empty for the best.
-struct render_job {
-    const photongrid::scene& scene;
-    render_settings settings;
-    render_observer observer{};
-    std::string device{};
-    bool time_passes = false;   ///< on Vulkan and OpenGL
-    std::string shader_cache{}; ///< folder where Vulkan's compiled kernels are kept; empty: nowhere
+/// A progressive_render, whatever its backend. One thread calls; cancel() any.
+class renderer {
+public:
+    renderer() = default;
+    renderer(const renderer&) = delete;
+    renderer& operator=(const renderer&) = delete;
+    virtual ~renderer() = default;
+
+    // See progressive_render.
+    virtual void start(const scene& s, const render_settings& settings, const first_looks& looks) = 0;
+    virtual void resume(view_state state) = 0;
+    virtual view_state state() = 0;
+    virtual bool step(double budget_ms) = 0; ///< infinite: to the end
+    virtual void cancel() = 0;
+    virtual bool finished() const = 0;
+    virtual std::uint64_t pictures() const = 0;
+    virtual image picture() = 0;
+    virtual render_progress progress() const = 0;
+    virtual const render_stats& stats() const = 0;
+    virtual std::uint64_t maps() const = 0;
+
+    // See the backend concept.
+    virtual const capabilities& caps() const = 0;
+    virtual const std::map<std::string, kernel_cost>& costs() const = 0;
 };
 
-/// The picture and what it took.
-struct render_result {
-    image picture;
-    render_stats stats;
-    capabilities caps;
-    std::map<std::string, kernel_cost> costs;
+/// Which backend, and how.
+struct renderer_options {
+    std::string backend = "cpu"; ///< serial, cpu, gl, gl-osmesa or vulkan
+    unsigned threads = 0;        ///< of cpu; 0: all
+    std::string device{};        ///< of vulkan: an index or a part of a name; empty: the best
+    std::string shader_cache{};  ///< folder where Vulkan's compiled kernels are kept; empty: nowhere
+    bool time_passes = false;    ///< on vulkan, gl and gl-osmesa
 };
 
-render_result render_serial(const render_job& job);
-/// `threads`: 0 for all. Throws backend_error where the program was built without this backend, as has_cpu() tells.
-render_result render_cpu(const render_job& job, unsigned threads);
+/// Throws backend_error when the backend or device cannot be had, or the program was built without it. OpenGL's belongs to the
+/// calling thread.
+std::unique_ptr<renderer> make_renderer(const renderer_options& o);
+
+// make_renderer's choices.
+std::unique_ptr<renderer> serial_renderer();
+std::unique_ptr<renderer> cpu_renderer(const renderer_options& o);
+std::unique_ptr<renderer> gl_renderer(const renderer_options& o);
+std::unique_ptr<renderer> vulkan_renderer(const renderer_options& o);
+
+/// Whether the program was built with the cpu backend.
 bool has_cpu();
-/// `osmesa`: on OSMesa, else on EGL. Throws backend_error when the context cannot be had.
-render_result render_gl(const render_job& job, bool osmesa);
-/// Throws backend_error when there is no such device.
-render_result render_vulkan(const render_job& job);
 
 /// The index of the best Vulkan device that is not a CPU, if there is one.
 std::optional<std::string> hardware_vulkan_device();

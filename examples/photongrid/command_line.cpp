@@ -16,6 +16,8 @@ namespace {
   photongrid render examples/scenes/cornell_box.json -o cornell.png
   photongrid render ring.json --backend vulkan --map route -o ring.exr -o ring.png --stats ring-stats.json
   photongrid render ring.json --size 128x96 --photons 4000 --exposure 1 --quiet
+  photongrid render glass_ball.json --progressive steps --every 50 --strip figure8.png --crop 96x96+180+150
+  photongrid render cornell_box.json --spp 256 --resume unfinished -o box.exr
   photongrid render ring.json --only caustic --kernel silverman --leaks side,normals=0.7 --aov -o ring.exr
   photongrid reference ring.json -o reference.exr --error error.exr --paths 100000000
   photongrid compare ring.exr reference.exr --max-relmse 1e-3
@@ -28,7 +30,7 @@ Exit codes:
   3    the scene file is wrong
   4    the backend or device cannot be had, or failed
   5    a picture or statistics file could not be read or written, or pictures of different sizes were compared
-  130  interrupted (Ctrl-C); nothing half-written is left
+  130  interrupted (Ctrl-C); the best picture so far is written, if there is one; nothing half-written is left
 )";
 
     // Of --leaks normals and disc where no value is given: 60 degrees, and a disc four times as wide as high.
@@ -69,6 +71,20 @@ Exit codes:
             text.remove_prefix(std::min(end + 1, text.size()));
         }
         return v;
+    }
+
+    /// Part of a picture, as X11 writes it.
+    crop parsed_crop(const std::string& option, const std::string& text)
+    {
+        const char* const expected = "a part of the picture, WxH+X+Y, with at least one pixel";
+        const auto plus = text.find('+');
+        if (plus == std::string::npos)
+            throw CLI::ValidationError(option, "\"" + text + "\" given; expected " + expected);
+        const auto size = parsed_list<2>(option, std::string_view(text).substr(0, plus), 'x', expected);
+        const auto corner = parsed_list<2>(option, std::string_view(text).substr(plus + 1), '+', expected);
+        if (size.x < 1 || size.y < 1)
+            throw CLI::ValidationError(option, "\"" + text + "\" given; expected " + expected);
+        return {corner.x, corner.y, size.x, size.y};
     }
 
     /// Cells along each axis; all 0 for `auto`.
@@ -190,6 +206,21 @@ Exit codes:
         to.add_flag("--time-passes", o.time_passes, "with --backend vulkan, gl or gl-osmesa, and --stats: measure each pass by the device's clock");
         to.add_option("--shader-cache", o.shader_cache, "folder where Vulkan's compiled kernels are kept for the next start; default: photongrid in $XDG_CACHE_HOME or ~/.cache")->type_name("DIR|none");
         to.add_option("--progressive", o.progressive, "folder for numbered pictures of the running estimate, and a table of when each was there and its relMSE to the last")->type_name("DIR");
+        to.add_option_function<std::string>(
+              "--every",
+              [&o](const std::string& text) {
+                  o.every = parsed_number("--every", text, "a number of ms, above 0");
+                  if (o.every <= 0)
+                      throw CLI::ValidationError("--every", "\"" + text + "\" given; expected a number of ms, above 0");
+              },
+              "of --progressive and --strip: time between pictures; default: a tenth of the time so far")
+            ->type_name("MS");
+        to.add_option("--strip", o.strip, "up to six stages of the running estimate side by side, as the paper's figure 8")->type_name("OUT.png|.exr|.pfm");
+        to.add_option_function<std::string>(
+              "--crop", [&o](const std::string& text) { o.strip_crop = parsed_crop("--crop", text); }, "part of the picture that --strip shows: width, height and the pixels left of and above it")
+            ->type_name("WxH+X+Y");
+        to.add_option("--reference", o.reference, "picture to measure the table's errors against too, such as `photongrid reference` makes")->type_name("REF.exr|.pfm");
+        to.add_option("--resume", o.resume, "file for what there is when the render is interrupted; where it exists, goes on from it, and ends with the same bytes as if never interrupted; removed at the end")->type_name("FILE");
         to.add_flag("--quiet", o.quiet, "no progress, no remarks");
     }
 
@@ -258,6 +289,12 @@ command read_command_line(int argc, char** argv)
             throw CLI::ValidationError("--device", "names a Vulkan device; expected --backend vulkan with it");
         if (render.time_passes && render.backend != "vulkan" && render.backend != "gl" && render.backend != "gl-osmesa")
             throw CLI::ValidationError("--time-passes", "is for --backend vulkan, gl and gl-osmesa; cpu times its passes always, serial never");
+        if (render.strip_crop && render.strip.empty())
+            throw CLI::ValidationError("--crop", "is what --strip shows; expected --strip OUT.png with it");
+        if (render.every > 0 && render.strip.empty() && render.progressive.empty())
+            throw CLI::ValidationError("--every", "is between pictures of --progressive or --strip; expected one of them with it");
+        if (!render.reference.empty() && render.progressive.empty())
+            throw CLI::ValidationError("--reference", "is for the table that --progressive writes; expected --progressive DIR with it");
         if (render.aov && std::none_of(render.outputs.begin(), render.outputs.end(), holds_layers))
             throw CLI::ValidationError("--aov", (render.outputs.empty() ? "no output" : "\"" + render.outputs.front() + "\"") + std::string(" given; expected an EXR picture, which holds layers: -o OUT.exr"));
     } catch (const CLI::ParseError& e) {

@@ -1,6 +1,8 @@
 // The command line: what was asked for, as data.
 #pragma once
 
+#include "picture_series.hpp"
+
 #include <photongrid/reference/settings.hpp>
 #include <photongrid/scene.hpp>
 
@@ -31,7 +33,9 @@ struct render_options {
     light_part only = light_part::all;
     bool aov = false, as_paper = false;
     std::vector<std::string> outputs;
-    std::string stats, progressive;
+    std::string stats, progressive, strip, reference, resume;
+    std::optional<crop> strip_crop;
+    double every = 0; ///< ms
     std::optional<std::string> shader_cache; ///< "none": none
     bool time_passes = false, quiet = false;
 };

@@ -2,18 +2,14 @@
 #include "backends.hpp"
 #include "command_line.hpp"
 #include "image_file.hpp"
-#include "picture_series.hpp"
-#include "progress_bar.hpp"
 #include "reference_command.hpp"
+#include "render_command.hpp"
 #include "scene_file.hpp"
-#include "stats_file.hpp"
 
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <ctime>
-#include <filesystem>
 #include <iostream>
 #include <new>
 
@@ -51,102 +47,12 @@ namespace {
         std::signal(SIGXFSZ, SIG_IGN);
     }
 
-    // --- render ---
-    render_result render_as_asked(const render_options& o, render_job job)
-    {
-        if (o.backend == "auto") {
-            if (const auto device = hardware_vulkan_device()) {
-                job.device = *device;
-                if (!o.quiet)
-                    std::cerr << "photongrid: --backend auto: vulkan, device " << *device << '\n';
-                return render_vulkan(job);
-            }
-            if (!o.quiet)
-                std::cerr << "photongrid: --backend auto: " << (has_cpu() ? "cpu" : "serial") << " (no hardware Vulkan device)\n";
-            return has_cpu() ? render_cpu(job, o.threads.value_or(0)) : render_serial(job);
-        }
-        if (o.backend == "cpu")
-            return render_cpu(job, o.threads.value_or(0));
-        if (o.backend == "serial")
-            return render_serial(job);
-        if (o.backend == "vulkan")
-            return render_vulkan(job);
-        return render_gl(job, o.backend == "gl-osmesa");
-    }
+    bool asked_to_stop() { return stop_asked != 0; }
 
-    /// The scene's name as a file's.
-    std::string file_stem(const std::string& name)
-    {
-        std::string stem;
-        for (const char c : name) {
-            const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
-            stem += plain ? c : '_';
-        }
-        return stem.empty() ? "picture" : stem;
-    }
-
-    /// Where compiled kernels are kept: "" for nowhere.
-    std::string shader_cache_folder(const render_options& o)
-    {
-        if (o.shader_cache)
-            return *o.shader_cache == "none" ? "" : *o.shader_cache;
-        if (const char* caches = std::getenv("XDG_CACHE_HOME"); caches != nullptr && caches[0] == '/') // else not valid, says its specification
-            return std::string(caches) + "/photongrid";
-        if (const char* home = std::getenv("HOME"); home != nullptr && home[0] == '/')
-            return std::string(home) + "/.cache/photongrid";
-        return "";
-    }
-
-    exit_code run(const render_options& o)
-    {
-        const auto s = read_scene(o.scene_path);
-        render_settings settings;
-        try {
-            settings = settings_for(s, o);
-            if (o.threads.value_or(0) > 4096)
-                throw std::invalid_argument("--threads " + std::to_string(*o.threads) + ": at most 4,096; 0: all");
-        } catch (const std::invalid_argument& e) {
-            std::cerr << "photongrid: error: on the command line: " << e.what() << '\n';
-            return usage_error;
-        }
-        auto outputs = o.outputs;
-        if (outputs.empty())
-            outputs.push_back(file_stem(s.name) + ".png");
-        for (const auto& path : outputs)
-            check_image_path(path);
-        if (!o.stats.empty())
-            check_file_path(o.stats);
-        picture_series series(o.progressive, file_stem(s.name), settings.exposure);
-
-        const auto start = std::chrono::steady_clock::now();
-        progress_bar bar(o.quiet);
-        render_job job{.scene = s, .settings = settings, .observer = {}, .device = o.device, .time_passes = o.time_passes, .shader_cache = shader_cache_folder(o)};
-        job.observer.progress = [&](std::string_view stage, double fraction) { bar.show(stage, fraction); };
-        job.observer.cancelled = [] { return stop_asked != 0; };
-        if (series.wanted())
-            job.observer.intermediate = [&](const image& picture) { series.add(picture); };
-        const auto result = render_as_asked(o, job);
-        const double total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-        bar.clear();
-        if (stop_asked != 0)
-            throw render_cancelled();
-
-        if (result.stats.invalid_pixels > 0)
-            std::cerr << "photongrid: warning: " << result.stats.invalid_pixels << " pixels were NaN or infinite and are black\n";
-        series.finish(result.picture);
-        for (const auto& path : outputs) {
-            write_image(path, result.picture, settings.exposure, picture_notes(s, settings, result));
-            std::cout << path << '\n';
-        }
-        if (!o.stats.empty())
-            write_file(o.stats, stats_json(s, settings, result, total_ms));
-        return success;
-    }
-
-    // --- the other commands ---
+    exit_code run(const render_options& o) { return run_render(o, asked_to_stop); }
     exit_code run(const reference_options& o)
     {
-        return run_reference(o, [] { return stop_asked != 0; });
+        return run_reference(o, asked_to_stop);
     }
 
     exit_code run(const compare_options& o)

@@ -7,7 +7,7 @@ namespace {
     const char* const reason = "cpu: this photongrid was built without the cpu backend; install libtbb-dev and libhwy-dev, then configure with -DPHOTONGRID_CPU=ON";
 }
 
-render_result render_cpu(const render_job&, unsigned) { throw backend_error(reason); }
+std::unique_ptr<renderer> cpu_renderer(const renderer_options&) { throw backend_error(reason); }
 
 std::vector<device_report> cpu_devices() { return {{.backend = "cpu", .about = reason}}; }
 

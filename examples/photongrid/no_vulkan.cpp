@@ -7,7 +7,7 @@ namespace {
     const char* const reason = "vulkan: this photongrid was built without the Vulkan backend; install libvulkan-dev, glslang-dev, glslang-tools, spirv-tools and mesa-vulkan-drivers, then configure with -DPHOTONGRID_VULKAN=ON";
 }
 
-render_result render_vulkan(const render_job&) { throw backend_error(reason); }
+std::unique_ptr<renderer> vulkan_renderer(const renderer_options&) { throw backend_error(reason); }
 
 std::optional<std::string> hardware_vulkan_device() { return std::nullopt; }
 

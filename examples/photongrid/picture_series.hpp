@@ -1,60 +1,49 @@
-// The running estimate as files: numbered pictures in a folder, and how far each was from the last one when it came.
+// The running estimate as files: numbered pictures in a folder with a table of their errors, and a strip of some of them.
 #pragma once
 
 #include "image_file.hpp"
 
 #include <chrono>
-#include <cstdio>
-#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace photongrid {
 
-/// Writes pictures STEM-0001.png, STEM-0002.png … as they come and, at the end, STEM.csv with a line for each: its file, when
-/// it was there, in ms since the series began less what writing has taken, and its relMSE to the last picture.
+/// A part of a picture, in pixels from its top left.
+struct crop {
+    std::uint32_t x = 0, y = 0, width = 0, height = 0;
+};
+
+/// What becomes of a picture's course. What is empty is not wanted.
+struct series_options {
+    std::string folder;             ///< for numbered pictures and the table
+    std::string stem;               ///< of their names
+    std::string strip;              ///< a picture of several stages side by side, as the paper's figure 8
+    std::optional<crop> strip_crop; ///< of each; all of it where nothing is given
+    std::string reference;          ///< a picture to measure errors against
+    glm::uvec2 size{0};             ///< of all pictures
+    double exposure = 0;            ///< EV
+    double every_ms = 0;            ///< between pictures; 0: each, but none sooner than a tenth of the time so far
+};
+
+/// Writes pictures STEM-0001.png, STEM-0002.png … as they come and, at the end, STEM.csv with a line for each: its file, when it
+/// was there, in ms since the series began less what writing has taken, its relMSE to the last picture, and to the reference.
 class picture_series {
 public:
-    /// An empty folder: nothing is written. \throws file_error when the folder cannot be made.
-    picture_series(std::string folder, std::string stem, double exposure)
-        : folder_(std::move(folder))
-        , stem_(std::move(stem))
-        , exposure_(exposure)
-    {
-        if (folder_.empty())
-            return;
-        std::error_code error;
-        std::filesystem::create_directories(folder_, error);
-        if (error)
-            throw file_error(folder_ + ": cannot be made: " + error.message());
-        check_image_path(path(1));
-        start_ = clock::now();
-    }
-    bool wanted() const { return !folder_.empty(); }
+    /// \throws file_error when the folder cannot be made or the reference not be read, std::invalid_argument when the reference
+    ///         is of another size or the crop does not lie in the picture.
+    explicit picture_series(series_options o);
 
-    void add(const image& picture)
-    {
-        if (folder_.empty())
-            return;
-        const auto begin = clock::now();
-        steps_.push_back({picture, ms_between(start_, begin) - spent_ms_});
-        write_image(path(steps_.size()), picture, exposure_);
-        spent_ms_ += ms_between(begin, clock::now());
-    }
-    /// Adds the last picture, and writes the table.
-    void finish(const image& picture)
-    {
-        if (folder_.empty())
-            return;
-        add(picture);
-        std::string table = "picture,ms,relmse\n";
-        for (std::size_t i = 0; i < steps_.size(); ++i) {
-            char line[64];
-            std::snprintf(line, sizeof line, ",%.3f,%.6g\n", steps_[i].ms, compare_images(steps_[i].picture, picture).relmse);
-            table += std::filesystem::path(path(i + 1)).filename().string() + line;
-        }
-        write_file(folder_ + "/" + stem_ + ".csv", table);
-    }
+    bool wanted() const { return !options_.folder.empty() || !options_.strip.empty(); }
+    /// Whether it is time for another picture.
+    bool due() const;
+    void add(const image& picture);
+    /// Adds the last picture, and writes table and strip. \throws file_error.
+    void finish(const image& picture);
+
+    /// ms of the stages in the strip.
+    const std::vector<double>& strip_times() const { return strip_times_; }
 
 private:
     using clock = std::chrono::steady_clock;
@@ -62,18 +51,20 @@ private:
         image picture;
         double ms;
     };
-    static double ms_between(clock::time_point from, clock::time_point to) { return std::chrono::duration<double, std::milli>(to - from).count(); }
-    std::string path(std::size_t number) const
-    {
-        char digits[24];
-        std::snprintf(digits, sizeof digits, "-%04zu.png", number);
-        return folder_ + "/" + stem_ + digits;
-    }
-    std::string folder_, stem_;
-    double exposure_ = 0;
-    clock::time_point start_;
+    double elapsed_ms() const { return std::chrono::duration<double, std::milli>(clock::now() - start_).count() - spent_ms_; }
+    std::string path(std::size_t number) const;
+    void write_table() const;
+    void write_strip();
+
+    series_options options_;
+    std::optional<image> reference_;
+    clock::time_point start_ = clock::now();
     std::vector<step> steps_;
     double spent_ms_ = 0;
+    std::vector<double> strip_times_;
 };
+
+/// `steps` pictures of equal height side by side, with a line of white between them.
+image side_by_side(const std::vector<image>& pictures);
 
 } // namespace photongrid

@@ -1,14 +1,10 @@
 #include <photongrid/backends/cpu/overrides/all.hpp>
 
-#include "render_on.hpp"
+#include "renderer_on.hpp"
 
 namespace photongrid {
 
-render_result render_cpu(const render_job& job, unsigned threads)
-{
-    cpu_backend b(threads);
-    return render_on(b, job);
-}
+std::unique_ptr<renderer> cpu_renderer(const renderer_options& o) { return std::make_unique<renderer_on<cpu_backend>>(o.threads); }
 
 std::vector<device_report> cpu_devices()
 {

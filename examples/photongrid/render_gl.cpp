@@ -1,15 +1,14 @@
 #include <photongrid/backends/gl/overrides/all.hpp>
 
-#include "render_on.hpp"
+#include "renderer_on.hpp"
 
 #include <photongrid/backends/gl/gl.hpp>
 
 namespace photongrid {
 
-render_result render_gl(const render_job& job, bool osmesa)
+std::unique_ptr<renderer> gl_renderer(const renderer_options& o)
 {
-    gl_backend b(gl_options{.context = osmesa ? gl_context_kind::osmesa : gl_context_kind::egl, .time_passes = job.time_passes});
-    return render_on(b, job);
+    return std::make_unique<renderer_on<gl_backend>>(gl_options{.context = o.backend == "gl-osmesa" ? gl_context_kind::osmesa : gl_context_kind::egl, .time_passes = o.time_passes});
 }
 
 std::vector<device_report> gl_devices()

@@ -1,14 +1,10 @@
-#include "render_on.hpp"
+#include "renderer_on.hpp"
 
 #include <photongrid/backends/serial/serial.hpp>
 
 namespace photongrid {
 
-render_result render_serial(const render_job& job)
-{
-    serial_backend b;
-    return render_on(b, job);
-}
+std::unique_ptr<renderer> serial_renderer() { return std::make_unique<renderer_on<serial_backend>>(); }
 
 device_report serial_device()
 {

@@ -1,13 +1,12 @@
 #include <photongrid/backends/vulkan/overrides/all.hpp>
 
-#include "render_on.hpp"
+#include "renderer_on.hpp"
 
 namespace photongrid {
 
-render_result render_vulkan(const render_job& job)
+std::unique_ptr<renderer> vulkan_renderer(const renderer_options& o)
 {
-    vulkan_backend b(vulkan_options{.device = job.device, .time_passes = job.time_passes, .cache_folder = job.shader_cache});
-    return render_on(b, job);
+    return std::make_unique<renderer_on<vulkan_backend>>(vulkan_options{.device = o.device, .time_passes = o.time_passes, .cache_folder = o.shader_cache});
 }
 
 std::optional<std::string> hardware_vulkan_device()

@@ -1,10 +1,10 @@
 #include "stats_file.hpp"
 
+#include "scene_writer.hpp"
 #include "setting_names.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include <charconv>
 #include <fstream>
 
 #include <sys/resource.h>
@@ -14,51 +14,20 @@ namespace photongrid {
 namespace {
     using json = nlohmann::ordered_json;
 
-    /// The double that reads like the float: 0.3f is 0.3, not 0.30000001192092896.
-    double as_written(float v)
-    {
-        char text[32];
-        const auto* end = std::to_chars(text, text + sizeof text, v).ptr;
-        double d = 0;
-        std::from_chars(text, end, d);
-        return d;
-    }
-
-    /// In the form that scene files have: the policies that are in force.
-    json leaks_json(const leak_policy& l)
-    {
-        json leaks = json::object();
-        if (l.side)
-            leaks["side"] = true;
-        if (l.needs_normals())
-            leaks["normals"] = as_written(l.min_cosine);
-        if (l.compression > 1)
-            leaks["disc"] = as_written(l.compression);
-        return leaks;
-    }
-
-    json settings_json(const render_settings& s)
-    {
-        return {{"size", {s.width, s.height}}, {"photons", s.photons}, {"k", s.k}, {"grid", s.grid == glm::uvec3(0) ? json("auto") : json{s.grid.x, s.grid.y, s.grid.z}}, {"max_radius", s.max_radius}, {"light_samples", s.light_samples}, {"spp", s.spp},
-            {"depth", s.depth}, {"photon_depth", s.photon_depth}, {"seed", s.seed}, {"map", name_of(map_names, s.builder)}, {"slots", s.slots}, {"exposure", s.exposure},
-            {"search", name_of(search_names, s.search)}, {"kernel", name_of(kernel_names, s.kernel)}, {"bias", name_of(bias_names, s.bias)}, {"leaks", leaks_json(s.leaks)}, {"edge_correction", name_of(edge_names, s.edges)},
-            {"only", name_of(part_names, s.only)}};
-    }
-
     json stage_json(const stage_stats& s) { return {{"ms", s.ms}, {"compile_ms", s.compile_ms}, {"passes", s.passes}, {"device_bytes", s.device_bytes}}; }
 } // namespace
 
-std::string stats_json(const scene& s, const render_settings& settings, const render_result& result, double total_ms)
+std::string stats_json(const scene& s, const render_settings& settings, const renderer& result, double total_ms)
 {
-    const auto& r = result.stats;
+    const auto& r = result.stats();
     const auto& p = r.photons;
     json kernels = json::object();
     double compile_ms = 0;
-    for (const auto& [name, cost] : result.costs) {
+    for (const auto& [name, cost] : result.costs()) {
         compile_ms += cost.compile_ms;
         kernels[name] = {{"instructions", cost.instructions}, {"compile_ms", cost.compile_ms}, {"ms", cost.ms}, {"passes", cost.passes}};
     }
-    const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.name}, {"backend", result.caps.backend}, {"device", result.caps.device}, {"seed", settings.seed}, {"settings", settings_json(settings)},
+    const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.name}, {"backend", result.caps().backend}, {"device", result.caps().device}, {"seed", settings.seed}, {"settings", json::parse(settings_text(settings))},
         {"photons",
             {{"emitted", p.emitted}, {"absorbed", p.absorbed}, {"escaped", p.escaped}, {"cut_off", p.cut_off}, {"invalid", p.invalid}, {"stored", p.stored}, {"direct", p.direct}, {"dropped", p.dropped}}},
         {"map", {{"builder", name_of(map_names, r.map.builder)}, {"cells", r.map.cells}, {"resolution", {r.map.resolution.x, r.map.resolution.y, r.map.resolution.z}}, {"overfull_cells", r.map.overfull_cells}, {"redistributed_flux", r.map.redistributed_flux}, {"left_out", r.map.left_out}}},
@@ -69,9 +38,9 @@ std::string stats_json(const scene& s, const render_settings& settings, const re
     return all.dump(2) + "\n";
 }
 
-image_notes picture_notes(const scene& s, const render_settings& settings, const render_result& result)
+image_notes picture_notes(const scene& s, const render_settings& settings, const renderer& result)
 {
-    return {{"scene", s.name}, {"backend", result.caps.backend}, {"device", result.caps.device}, {"seed", std::to_string(settings.seed)}, {"settings", settings_json(settings).dump()},
+    return {{"scene", s.name}, {"backend", result.caps().backend}, {"device", result.caps().device}, {"seed", std::to_string(settings.seed)}, {"settings", settings_text(settings)},
         {"version", std::string("photongrid ") + PHOTONGRID_VERSION}};
 }
 

@@ -7,10 +7,10 @@
 namespace photongrid {
 
 /// The JSON of --stats. docs/scenes.md lists its fields.
-std::string stats_json(const scene& s, const render_settings& settings, const render_result& result, double total_ms);
+std::string stats_json(const scene& s, const render_settings& settings, const renderer& result, double total_ms);
 
 /// Attributes for an EXR: seed, backend, device, settings, version.
-image_notes picture_notes(const scene& s, const render_settings& settings, const render_result& result);
+image_notes picture_notes(const scene& s, const render_settings& settings, const renderer& result);
 
 /// The largest amount of memory that this process has held, bytes.
 std::uint64_t peak_memory_bytes();

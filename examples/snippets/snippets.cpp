@@ -5,11 +5,13 @@
 #include <photongrid/knn_neighbours.hpp>
 #include <photongrid/map_file.hpp>
 #include <photongrid/own_photons.hpp>
+#include <photongrid/progressive_render.hpp>
 #include <photongrid/reference.hpp>
 #include <photongrid/render.hpp>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -264,6 +266,33 @@ void pictures(device_type& device)
     const photongrid::image picture = photongrid::render(device, room, settings, {}, stats); // by the scene's own camera
     //! [render]
     expect(picture.pixels == photongrid::draw(device, built, room.camera, settings, {}, stats).pixels, "render");
+
+    {
+        using namespace std::chrono_literals;
+        photongrid::scene edited = room;
+        std::vector<photongrid::image> window;
+        const auto show = [&](const photongrid::image& shown) { window.push_back(shown); };
+
+        //! [progressive_render]
+        photongrid::progressive_render drawing(device);
+        drawing.start(room, settings);
+        while (!drawing.step(16ms))       // about; a pass at least
+            if (drawing.pictures() > 0)   // whole ones: first few photons and large pixels, then better
+                show(drawing.picture());
+        show(drawing.picture());          // the bytes of photongrid::render
+
+        edited.camera.position.x += 0.1;  // now something else: the photon map is kept ...
+        drawing.start(edited, settings);
+        while (drawing.pictures() == 0)
+            drawing.step(0ms);
+        show(drawing.picture());          // ... and the first look is there
+
+        edited.point_lights[0].position.x += 0.1; // the light: photons are traced anew
+        drawing.start(edited, settings);
+        //! [progressive_render]
+        expect(drawing.step() && drawing.maps() >= 2, "progressive_render");
+        expect(window.size() >= 2 && window[window.size() - 2].pixels == photongrid::render(device, room, settings, {}, stats).pixels, "its last picture");
+    }
 
     //! [render_reference]
     const auto truth = photongrid::render_reference(room, room.camera, {.width = 16, .height = 12, .spp = 64});

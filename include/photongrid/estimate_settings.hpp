@@ -43,6 +43,8 @@ struct leak_policy {
 
     bool needs_normals() const { return min_cosine > -1; }     ///< of photons
     bool needs_any() const { return side || needs_normals() || compression > 1; } ///< of points
+
+    bool operator==(const leak_policy&) const = default; ///< of every member
 };
 
 } // namespace photongrid

@@ -26,6 +26,8 @@ struct material {
     material_kind kind = material_kind::lambertian; ///< what `reflectance` means
     dvec3 reflectance{0.5};                         ///< rgb, 0 to 1: see above
     double index_of_refraction = 1.5; ///< glass only, 1 to 10; air, 1, is outside
+
+    bool operator==(const material&) const = default; ///< of every member
 };
 
 /// A sphere. Lengths in m here and below; `material` is an index into scene::materials.
@@ -33,6 +35,8 @@ struct sphere {
     dvec3 center{0};            ///< m
     double radius = 1;          ///< m, above 0
     std::uint32_t material = 0; ///< index into scene::materials
+
+    bool operator==(const sphere&) const = default; ///< of every member
 };
 
 /// The side of a cylinder, open at both ends.
@@ -41,6 +45,8 @@ struct cylinder {
     dvec3 top{0, 1, 0};         ///< m; the middle of the other
     double radius = 1;          ///< m, above 0
     std::uint32_t material = 0; ///< index into scene::materials
+
+    bool operator==(const cylinder&) const = default; ///< of every member
 };
 
 /// The side of a cone, open at its base.
@@ -49,6 +55,8 @@ struct cone {
     dvec3 apex{0, 1, 0};        ///< m
     double radius = 1;          ///< m, above 0; at the base
     std::uint32_t material = 0; ///< index into scene::materials
+
+    bool operator==(const cone&) const = default; ///< of every member
 };
 
 /// A paraboloid of revolution from its vertex to its rim, open at the rim.
@@ -57,6 +65,8 @@ struct paraboloid {
     dvec3 rim{0, 1, 0};         ///< m; centre of the rim
     double radius = 1;          ///< m, above 0; of the rim
     std::uint32_t material = 0; ///< index into scene::materials
+
+    bool operator==(const paraboloid&) const = default; ///< of every member
 };
 
 /// A flat disk, with both of its sides.
@@ -65,12 +75,16 @@ struct disk {
     dvec3 normal{0, 1, 0};      ///< of any length above 0
     double radius = 1;          ///< m, above 0
     std::uint32_t material = 0; ///< index into scene::materials
+
+    bool operator==(const disk&) const = default; ///< of every member
 };
 
 /// A convex polygon (a triangle has three vertices), planar, vertices in order round it.
 struct polygon {
     std::vector<dvec3> vertices; ///< m; 3 or more
     std::uint32_t material = 0;  ///< index into scene::materials
+
+    bool operator==(const polygon&) const = default; ///< of every member
 };
 
 /// A point light: power (W, rgb) sent out evenly in all directions.
@@ -78,6 +92,8 @@ struct point_light {
     std::string name;  ///< for messages
     dvec3 position{0}; ///< m
     dvec3 power{1};    ///< W, rgb; no channel below 0, one above
+
+    bool operator==(const point_light&) const = default; ///< of every member
 };
 
 /// A rectangle that sends power (W, rgb) out diffusely on the side of cross(edge_u, edge_v); its own surface is black.
@@ -87,6 +103,8 @@ struct rectangle_light {
     dvec3 edge_u{1, 0, 0}; ///< m; from the corner
     dvec3 edge_v{0, 0, 1}; ///< m; from the corner, at a right angle to edge_u
     dvec3 power{1};        ///< W, rgb; no channel below 0, one above
+
+    bool operator==(const rectangle_light&) const = default; ///< of every member
 };
 
 /// A pinhole camera.
@@ -95,6 +113,8 @@ struct camera {
     dvec3 look_at{0, 0, -1};  ///< m; the point in the middle of the picture
     dvec3 up{0, 1, 0};        ///< a direction that is up in the picture; not along the line of sight
     double vertical_fov = 45; ///< degrees from the picture's lower edge to its upper one, above 0 and below 179
+
+    bool operator==(const camera&) const = default; ///< of every member
 };
 
 /// How a photon map is built: sorted_map (2.2.1) or routed_map (2.2.2).
@@ -127,6 +147,8 @@ struct render_settings {
     edge_correction edges = edge_correction::none;   ///< polygons: needs leak_policy::min_cosine above 0
     light_part only = light_part::all;               ///< what of the light is drawn
     bool aov = false;                        ///< radius, count and relative standard error of the estimate are wanted per pixel
+
+    bool operator==(const render_settings&) const = default; ///< of every member
 };
 
 /// A scene. `render` holds the settings that its file asks for; a program may change them.
@@ -143,6 +165,8 @@ struct scene {
     std::vector<point_light> point_lights;         ///< a scene has one light at least, of either kind
     std::vector<rectangle_light> rectangle_lights; ///< the eye sees them
     render_settings render;                        ///< what the scene's file asks for
+
+    bool operator==(const scene&) const = default; ///< of every member
 };
 
 /// The settings that reproduce the paper's estimate (2.3): at least k, constant kernel, no policy, no correction. The rest stays.

@@ -85,57 +85,102 @@ uint trace_batch(B& b, const device_scene<B>& s, detail::photon_frames<B>& f, ui
     return frame;
 }
 
-/// Emits paths in id order until settings.photons photons are stored; photon order is (path, bounce). Each photon's power
-/// is the lights' power divided by the paths emitted. Positions' w is 1 for caustic photons (light_part). Normals are kept
-/// only where the leak policy asks for them.
-/// \throws std::runtime_error when so few photons are stored that it would not end, naming the lights.
+/// Photon tracing that can be stopped between batches: emits paths in id order until settings.photons photons are stored;
+/// photon order is (path, bounce). Each photon's power is the lights' power divided by the paths emitted. Positions' w is 1
+/// for caustic photons (light_part). Normals are kept only where the leak policy asks for them.
+template <backend B>
+class photon_tracing {
+public:
+    /// Emits nothing yet. `device` must outlive it.
+    photon_tracing(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings)
+        : b_(b)
+        , device_(device)
+        , settings_(settings)
+        , lights_(detail::light_names(s))
+        , paths_(std::clamp(std::bit_ceil(settings.photons / 2 + 1), 1024u, 32768u))
+        , frames_(b, std::size_t{paths_} * (settings.photon_depth + 1))
+    {
+        const auto make = [&] { return b.template make<glm::vec4>(settings.photons); };
+        t_.photons = {make(), make(), make(), {}};
+        if (settings.leaks.needs_normals())
+            t_.photons.normals = make();
+    }
+
+    /// True when all photons are stored.
+    bool finished() const { return stored_ == settings_.photons; }
+    /// Of the photons asked for, those that are stored.
+    double fraction() const { return static_cast<double>(stored_) / settings_.photons; }
+
+    /// Traces one more batch of paths.
+    /// \throws std::runtime_error when so few photons are stored that it would not end, naming the lights.
+    void advance()
+    {
+        if (finished())
+            return;
+        require_hope();
+        const uint wanted = settings_.photons - stored_;
+        const uint frames = trace_batch(b_, device_, frames_, paths_, static_cast<uint>(t_.emitted), settings_);
+
+        auto storable = b_.template make<uint>(paths_);
+        path_tally<B> tally{b_.template make<glm::uvec4>(paths_), b_.template make<glm::uvec4>(paths_)};
+        b_.template run<kernels::tally_path>(paths_, {.paths = paths_, .frames = frames}, reads(frames_.positions), writes(storable, tally.ends, tally.hits));
+        const auto sums = prefix_sums(b_, storable);
+
+        const uint emitted = detail::checked_count<kernels::path_is_emitted>(b_, paths_, {.wanted = wanted}, reads(sums, storable));
+        if (emitted == 0) // the first always is; believing it would mean tracing for ever
+            throw backend_error(b_.caps().backend + ": count<path_is_emitted>: the device returned 0; at least 1 of " + std::to_string(paths_) + " paths is emitted");
+        // No path stores more photons than it takes bounces, and the last of these is the first to have stored what is wanted.
+        const auto found = detail::checked_count<kernels::is_found>(b_, std::size_t{wanted} + settings_.photon_depth, {.emitted = emitted}, reads(sums));
+        const uint taken = std::min(found, wanted);
+        b_.template run<kernels::gather_photon>({taken, stored_}, {.paths = paths_, .frames = frames, .stored_before = stored_},
+            reads(sums, frames_.positions, frames_.powers, frames_.directions), writes(t_.photons.positions, t_.photons.powers, t_.photons.directions));
+        if (settings_.leaks.needs_normals())
+            b_.template run<kernels::gather_normal>({taken, stored_}, {.paths = paths_, .frames = frames, .stored_before = stored_},
+                reads(sums, frames_.positions, frames_.powers, frames_.next_origins, frames_.next_directions), writes(t_.photons.normals));
+        t_.tallies.push_back(detail::sum_tally(b_, std::move(tally), emitted));
+        t_.dropped += found - taken;
+        t_.emitted += emitted;
+        stored_ += taken;
+        if (finished())
+            b_.template run<kernels::divide_power>(settings_.photons, {.share = 1.0f / static_cast<float>(t_.emitted)}, reads(), writes(t_.photons.powers));
+    }
+
+    /// The photons, once finished.
+    traced_photons<B> take() { return std::move(t_); }
+
+private:
+    void require_hope() const
+    {
+        const std::uint64_t most_paths = std::min<std::uint64_t>(std::uint64_t{settings_.photons} * 4096 + (1u << 20), 0xFFFF0000u);
+        if (t_.emitted >= most_paths || (stored_ == 0 && t_.emitted >= (1u << 22)))
+            throw std::runtime_error("trace_photons: " + std::to_string(t_.emitted) + " paths from " + lights_ + " stored " + std::to_string(stored_) + " of the "
+                + std::to_string(settings_.photons) + " photons asked for. Stored are diffuse hits that come not straight from a light: does the light reach a mirror, glass, or a second diffuse surface?");
+    }
+
+    B& b_;
+    const device_scene<B>& device_;
+    render_settings settings_;
+    std::string lights_;
+    uint paths_; // a batch
+    detail::photon_frames<B> frames_;
+    traced_photons<B> t_;
+    uint stored_ = 0;
+};
+
+/// Traces photons to the end (photon_tracing).
+/// \throws std::runtime_error as photon_tracing::advance does, render_cancelled.
 template <backend B>
 traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings, const render_observer& observer = {})
 {
-    const uint wanted = settings.photons;
-    const uint paths = std::clamp(std::bit_ceil(wanted / 2 + 1), 1024u, 32768u);
-    const std::uint64_t most_paths = std::min<std::uint64_t>(std::uint64_t{wanted} * 4096 + (1u << 20), 0xFFFF0000u);
-    traced_photons<B> t;
-    t.photons = {b.template make<glm::vec4>(wanted), b.template make<glm::vec4>(wanted), b.template make<glm::vec4>(wanted), {}};
-    if (settings.leaks.needs_normals())
-        t.photons.normals = b.template make<glm::vec4>(wanted);
-    detail::photon_frames<B> f(b, std::size_t{paths} * (settings.photon_depth + 1));
-
-    uint stored = 0;
-    while (stored < wanted) {
+    photon_tracing<B> tracing(b, s, device, settings);
+    while (!tracing.finished()) {
         if (observer.cancelled && observer.cancelled())
             throw render_cancelled();
-        if (t.emitted >= most_paths || (stored == 0 && t.emitted >= (1u << 22)))
-            throw std::runtime_error("trace_photons: " + std::to_string(t.emitted) + " paths from " + detail::light_names(s) + " stored " + std::to_string(stored) + " of the "
-                + std::to_string(wanted) + " photons asked for. Stored are diffuse hits that come not straight from a light: does the light reach a mirror, glass, or a second diffuse surface?");
-        const uint first = static_cast<uint>(t.emitted);
-        const uint frames = trace_batch(b, device, f, paths, first, settings);
-
-        auto storable = b.template make<uint>(paths);
-        path_tally<B> tally{b.template make<glm::uvec4>(paths), b.template make<glm::uvec4>(paths)};
-        b.template run<kernels::tally_path>(paths, {.paths = paths, .frames = frames}, reads(f.positions), writes(storable, tally.ends, tally.hits));
-        const auto sums = prefix_sums(b, storable);
-
-        const uint emitted = detail::checked_count<kernels::path_is_emitted>(b, paths, {.wanted = wanted - stored}, reads(sums, storable));
-        if (emitted == 0) // the first always is; believing it would mean tracing for ever
-            throw backend_error(b.caps().backend + ": count<path_is_emitted>: the device returned 0; at least 1 of " + std::to_string(paths) + " paths is emitted");
-        // No path stores more photons than it takes bounces, and the last of these is the first to have stored what is wanted.
-        const auto found = detail::checked_count<kernels::is_found>(b, std::size_t{wanted} - stored + settings.photon_depth, {.emitted = emitted}, reads(sums));
-        const uint taken = std::min(found, wanted - stored);
-        b.template run<kernels::gather_photon>({taken, stored}, {.paths = paths, .frames = frames, .stored_before = stored}, reads(sums, f.positions, f.powers, f.directions),
-            writes(t.photons.positions, t.photons.powers, t.photons.directions));
-        if (settings.leaks.needs_normals())
-            b.template run<kernels::gather_normal>({taken, stored}, {.paths = paths, .frames = frames, .stored_before = stored},
-                reads(sums, f.positions, f.powers, f.next_origins, f.next_directions), writes(t.photons.normals));
-        t.tallies.push_back(detail::sum_tally(b, std::move(tally), emitted));
-        t.dropped += found - taken;
-        t.emitted += emitted;
-        stored += taken;
+        tracing.advance();
         if (observer.progress)
-            observer.progress("trace_photons", static_cast<double>(stored) / wanted);
+            observer.progress("trace_photons", tracing.fraction());
     }
-    b.template run<kernels::divide_power>(wanted, {.share = 1.0f / static_cast<float>(t.emitted)}, reads(), writes(t.photons.powers));
-    return t;
+    return tracing.take();
 }
 
 /// The account of all paths and hits, `stored` of which are in the map; reads the tallies back.

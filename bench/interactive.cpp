@@ -1,0 +1,153 @@
+// How soon a change is seen (section 3.4): the Cornell box with the paper's settings, camera and lamp moved again and again, in
+// the loop that the window and the program use. Exit status 1 when a row misses what is wanted of it: docs/measures.md.
+//
+//   interactive SCENE.json [REPETITIONS [BACKEND...]]      BACKEND: cpu (default), serial, vulkan or gl
+#include "median.hpp"
+#include "scene_file.hpp"
+
+#include <photongrid/backends/cpu/overrides/all.hpp>
+#include <photongrid/backends/gl/overrides/all.hpp>
+#include <photongrid/backends/vulkan/overrides/all.hpp>
+
+#include <photongrid/backends/gl/gl.hpp>
+#include <photongrid/backends/serial/serial.hpp>
+#include <photongrid/backends/vulkan/vulkan.hpp>
+#include <photongrid/progressive_render.hpp>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <string>
+
+namespace {
+
+using namespace photongrid;
+
+double ms_of(const std::function<void()>& work)
+{
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// What a user waits for, ms.
+struct waits {
+    double first_picture;     ///< of a program that has just started: from start() to a whole picture on the CPU
+    double camera_picture;    ///< after the camera moved, a whole picture
+    double camera_converged;  ///< … the last one
+    double light_picture;     ///< after the lamp moved, a whole picture
+    double light_converged;   ///< … the last one
+};
+
+template <backend B>
+void first_picture(progressive_render<B>& drawing)
+{
+    while (drawing.pictures() == 0)
+        drawing.step(typename progressive_render<B>::milliseconds(0));
+    (void)drawing.picture();
+}
+
+template <backend B>
+waits measure(B& b, const scene& s, const render_settings& settings, uint repetitions)
+{
+    std::vector<double> first, camera, camera_end, light, light_end;
+    const auto finish = [&](progressive_render<B>& drawing) {
+        drawing.step();
+        (void)drawing.picture();
+    };
+    {
+        progressive_render<B> compiling(b); // kernels, where the backend compiles any; they are kept between starts
+        compiling.start(s, settings);
+        finish(compiling);
+    }
+    for (uint i = 0; i < repetitions; ++i) {
+        progressive_render<B> drawing(b);
+        drawing.start(s, settings);
+        first.push_back(ms_of([&] { first_picture(drawing); }));
+        finish(drawing);
+        auto moved = s;
+        for (int step = 0; step < 8; ++step) {
+            moved.camera.position.x += 0.01;
+            camera.push_back(ms_of([&] {
+                drawing.start(moved, settings);
+                first_picture(drawing);
+            }));
+        }
+        moved.camera.position.x += 0.01;
+        camera_end.push_back(ms_of([&] {
+            drawing.start(moved, settings);
+            finish(drawing);
+        }));
+        for (int step = 0; step < 4; ++step) {
+            moved.rectangle_lights.at(0).corner.x += 0.01;
+            light.push_back(ms_of([&] {
+                drawing.start(moved, settings);
+                first_picture(drawing);
+            }));
+        }
+        moved.rectangle_lights.at(0).corner.x += 0.01;
+        light_end.push_back(ms_of([&] {
+            drawing.start(moved, settings);
+            finish(drawing);
+        }));
+    }
+    using bench::median;
+    return {median(first), median(camera), median(camera_end), median(light), median(light_end)};
+}
+
+/// Prints rows for a backend. Returns whether all are as fast as they should be.
+template <backend B>
+bool report(B&& b, const scene& s, uint repetitions, bool wanted)
+{
+    bool all = true;
+    for (const uint size : {160u, 512u})
+        for (const bool paper : {true, false}) {
+            auto settings = paper ? as_paper(s.render) : s.render;
+            settings.width = settings.height = size;
+            const auto w = measure(b, s, settings, repetitions);
+            const bool fast = size == 160 ? w.first_picture <= 150 && w.camera_picture <= 1000.0 / 15 && w.light_converged <= 700 : w.first_picture <= 400;
+            all = all && (fast || !wanted);
+            std::printf("| %s | %u x %u | %s | %.0f | %.1f | %.0f | %.0f | %.0f | %s |\n", b.caps().backend.c_str(), size, size, paper ? "`at_least_k`, the paper's" : "`exact_k`", w.first_picture,
+                1000 / w.camera_picture, w.camera_converged, w.light_picture, w.light_converged, !wanted ? "" : fast ? "PASS" : "FAIL");
+            std::fflush(stdout);
+        }
+    return all;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    try {
+        if (argc < 2) {
+            std::fprintf(stderr, "interactive: expected SCENE.json [REPETITIONS [BACKEND...]]\n");
+            return 2;
+        }
+        const auto s = read_scene(argv[1]);
+        const uint repetitions = argc > 2 ? static_cast<uint>(std::strtoul(argv[2], nullptr, 10)) : 9;
+        std::vector<std::string> backends(argv + std::min(argc, 3), argv + argc);
+        if (backends.empty())
+            backends = {"cpu"};
+        std::printf("| backend | pixels | estimate | first picture, ms | updates a second, camera moving | camera rests, whole, ms | lamp moved, first picture, ms | lamp moved, whole, ms | wanted |\n|---|---|---|---|---|---|---|---|---|\n");
+        bool fast = true;
+        for (const auto& name : backends) {
+            if (name == "cpu")
+                fast = report(cpu_backend(), s, repetitions, true) && fast;
+            else if (name == "serial")
+                report(serial_backend(), s, repetitions, false);
+            else if (name == "gl")
+                report(gl_backend(gl_options{}), s, repetitions, false);
+            else if (name == "vulkan")
+                report(vulkan_backend(vulkan_options{}), s, repetitions, false);
+            else {
+                std::fprintf(stderr, "interactive: \"%s\" given; expected cpu, serial, vulkan or gl\n", name.c_str());
+                return 2;
+            }
+        }
+        return fast ? 0 : 1;
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "interactive: %s\n", e.what());
+        return 2;
+    }
+}

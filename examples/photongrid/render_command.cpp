@@ -1,0 +1,175 @@
+#include "render_command.hpp"
+
+#include "picture_series.hpp"
+#include "progress_bar.hpp"
+#include "resume_file.hpp"
+#include "scene_file.hpp"
+#include "stats_file.hpp"
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+
+namespace photongrid {
+
+namespace {
+    /// The scene's name as a file's.
+    std::string file_stem(const std::string& name)
+    {
+        std::string stem;
+        for (const char c : name) {
+            const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+            stem += plain ? c : '_';
+        }
+        return stem.empty() ? "picture" : stem;
+    }
+
+    /// Where compiled kernels are kept: "" for nowhere.
+    std::string shader_cache_folder(const render_options& o)
+    {
+        if (o.shader_cache)
+            return *o.shader_cache == "none" ? "" : *o.shader_cache;
+        if (const char* caches = std::getenv("XDG_CACHE_HOME"); caches != nullptr && caches[0] == '/') // else not valid, says its specification
+            return std::string(caches) + "/photongrid";
+        if (const char* home = std::getenv("HOME"); home != nullptr && home[0] == '/')
+            return std::string(home) + "/.cache/photongrid";
+        return "";
+    }
+
+    std::string percent(double fraction) { return std::to_string(static_cast<int>(100 * fraction)) + " %"; }
+
+    /// A picture on its way, and the file that it can go on from.
+    class resumable {
+    public:
+        /// An empty path: there is no file. \throws file_error for a file of another picture.
+        resumable(renderer& drawing, std::string path, const scene& s, const render_settings& settings) : drawing_(drawing), path_(std::move(path))
+        {
+            if (path_.empty())
+                return;
+            check_file_path(path_);
+            identity_ = picture_identity(s, settings, drawing_.caps());
+            if (auto state = read_resume_file(path_, identity_))
+                drawing_.resume(std::move(*state));
+        }
+        /// Keeps what there is, if it is more than nothing. Returns whether there is a file.
+        bool keep()
+        {
+            if (path_.empty())
+                return false;
+            saved_ = clock::now();
+            const auto state = drawing_.state();
+            if (state.rays > 0)
+                write_resume_file(path_, identity_, state);
+            return std::filesystem::exists(path_);
+        }
+        /// The same now and then, so that a machine that fails costs half a minute.
+        void keep_sometimes()
+        {
+            if (!path_.empty() && clock::now() - saved_ > std::chrono::seconds(30))
+                keep();
+        }
+        /// The picture is there: the file has served.
+        void done() const
+        {
+            if (!path_.empty())
+                std::filesystem::remove(path_);
+        }
+
+    private:
+        using clock = std::chrono::steady_clock;
+        renderer& drawing_;
+        std::string path_, identity_;
+        clock::time_point saved_ = clock::now();
+    };
+} // namespace
+
+std::unique_ptr<renderer> renderer_as_asked(const render_options& o)
+{
+    renderer_options r{.backend = o.backend, .threads = o.threads.value_or(0), .device = o.device, .shader_cache = shader_cache_folder(o), .time_passes = o.time_passes};
+    if (o.backend == "auto") {
+        const auto device = hardware_vulkan_device();
+        r.backend = device ? "vulkan" : has_cpu() ? "cpu" : "serial";
+        r.device = device.value_or("");
+        if (!o.quiet)
+            std::cerr << "photongrid: --backend auto: " << r.backend << (device ? ", device " + *device : " (no hardware Vulkan device)") << '\n';
+    }
+    return make_renderer(r);
+}
+
+exit_code run_render(const render_options& o, const std::function<bool()>& stop_asked)
+{
+    const auto s = read_scene(o.scene_path);
+    render_settings settings;
+    std::optional<picture_series> series;
+    auto outputs = o.outputs;
+    try {
+        settings = settings_for(s, o);
+        if (o.threads.value_or(0) > 4096)
+            throw std::invalid_argument("--threads " + std::to_string(*o.threads) + ": at most 4,096; 0: all");
+        if (outputs.empty())
+            outputs.push_back(file_stem(s.name) + ".png");
+        for (const auto& path : outputs)
+            check_image_path(path);
+        if (!o.stats.empty())
+            check_file_path(o.stats);
+        series.emplace(series_options{.folder = o.progressive, .stem = file_stem(s.name), .strip = o.strip, .strip_crop = o.strip_crop, .reference = o.reference,
+            .size = {settings.width, settings.height}, .exposure = settings.exposure, .every_ms = o.every});
+    } catch (const std::invalid_argument& e) {
+        std::cerr << "photongrid: error: on the command line: " << e.what() << '\n';
+        return usage_error;
+    }
+
+    const auto start = std::chrono::steady_clock::now();
+    progress_bar bar(o.quiet);
+    const auto drawing = renderer_as_asked(o);
+    drawing->start(s, settings, {.wanted = series->wanted()});
+    resumable file(*drawing, o.resume, s, settings);
+    for (std::uint64_t seen = 0; !stop_asked() && !drawing->step(series->wanted() ? 0 : 50);) {
+        const auto now = drawing->progress();
+        bar.show(now.stage, now.fraction);
+        if (drawing->pictures() > seen && series->due()) {
+            seen = drawing->pictures();
+            series->add(drawing->picture());
+        }
+        file.keep_sometimes();
+    }
+    bar.clear();
+    const bool finished = drawing->finished();
+    const bool kept = !finished && file.keep();
+    const auto go_on = kept ? "; the same command goes on from " + o.resume : "";
+    if (drawing->pictures() == 0) {
+        std::cerr << "photongrid: interrupted; there is no picture yet" << go_on << '\n';
+        return interrupted;
+    }
+
+    const auto done = drawing->progress().fraction;
+    const auto picture = drawing->picture();
+    const double total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    if (drawing->stats().invalid_pixels > 0)
+        std::cerr << "photongrid: warning: " << drawing->stats().invalid_pixels << " pixels were NaN or infinite and are black\n";
+    series->finish(picture);
+    for (const auto& path : outputs) {
+        write_image(path, picture, settings.exposure, picture_notes(s, settings, *drawing));
+        std::cout << path << '\n';
+    }
+    if (!o.strip.empty()) {
+        std::cout << o.strip << '\n';
+        if (!o.quiet) {
+            std::cerr << "photongrid: --strip, from the left, ms:";
+            for (const double ms : series->strip_times())
+                std::cerr << ' ' << static_cast<long>(ms);
+            std::cerr << '\n';
+        }
+    }
+    if (!finished) {
+        std::cerr << "photongrid: interrupted at " << percent(done) << "; the picture is the best there was" << go_on << '\n';
+        return interrupted;
+    }
+    file.done();
+    if (!o.stats.empty())
+        write_file(o.stats, stats_json(s, settings, *drawing, total_ms));
+    return success;
+}
+
+} // namespace photongrid

@@ -1,0 +1,96 @@
+#include "resume_file.hpp"
+
+#include "scene_writer.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace photongrid {
+
+namespace {
+    using json = nlohmann::ordered_json;
+    constexpr const char* first_line = "photongrid unfinished picture 1";
+
+    /// Fowler, Noll and Vo's hash (FNV-1a).
+    std::uint64_t hash(const std::string& bytes)
+    {
+        std::uint64_t h = 0xCBF29CE484222325u;
+        for (const char c : bytes)
+            h = (h ^ static_cast<unsigned char>(c)) * 0x100000001B3u;
+        return h;
+    }
+
+    std::string bytes_of(const view_state& s)
+    {
+        std::string bytes;
+        for (const auto* part : {&s.pixels, &s.searches, &s.errors})
+            bytes.append(reinterpret_cast<const char*>(part->data()), part->size() * sizeof(glm::vec4));
+        return bytes;
+    }
+} // namespace
+
+std::string picture_identity(const scene& s, const render_settings& settings, const capabilities& caps)
+{
+    const json all = {{"version", PHOTONGRID_VERSION}, {"backend", caps.backend}, {"device", caps.device}, {"scene", json::parse(scene_text(s, {}))},
+        {"set of settings", json::parse(settings_text(settings))}, {"choice of layers", settings.aov}};
+    return all.dump();
+}
+
+void write_resume_file(const std::string& path, const std::string& identity, const view_state& state)
+{
+    const auto bytes = bytes_of(state);
+    const json head = {{"rays", state.rays}, {"pixels", state.pixels.size()}, {"layers", !state.errors.empty()}, {"hash", hash(identity + bytes)}};
+    write_file(path, std::string(first_line) + "\n" + identity + "\n" + head.dump() + "\n" + bytes);
+}
+
+std::optional<view_state> read_resume_file(const std::string& path, const std::string& identity)
+{
+    if (!std::filesystem::exists(path))
+        return std::nullopt;
+    std::ifstream file(path, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (!file.is_open() || file.bad())
+        throw file_error(path + ": cannot be read: " + std::strerror(errno));
+    std::size_t at = 0;
+    const auto line = [&] {
+        const auto end = std::min(text.find('\n', at), text.size());
+        const auto l = text.substr(at, end - at);
+        at = std::min(end + 1, text.size());
+        return l;
+    };
+    const auto first = line(), theirs = line(), head_line = line(), bytes = text.substr(at);
+    const auto fail = [&](const std::string& why) -> void { throw file_error(path + ": " + why + "; remove it to begin the picture anew"); };
+    if (first != first_line)
+        fail("is no unfinished picture of this program");
+    const auto head = json::parse(head_line, nullptr, false);
+    const auto number = [&](const char* key) { return head.is_object() && head.contains(key) && head[key].is_number_unsigned() ? head[key].get<std::uint64_t>() : 0; };
+    const std::size_t pixels = number("pixels");
+    const bool layers = head.is_object() && head.contains("layers") && head["layers"] == true;
+    if (pixels == 0 || pixels > bytes.size() || bytes.size() != pixels * sizeof(glm::vec4) * (layers ? 3u : 2u) || hash(theirs + bytes) != number("hash"))
+        fail("is damaged");
+    if (theirs != identity) {
+        const auto a = json::parse(theirs, nullptr, false), b = json::parse(identity);
+        for (const auto& [key, value] : b.items())
+            if (!a.is_object() || !a.contains(key) || a[key] != value)
+                fail("was begun with a different " + key + (value.is_string() && a.is_object() && a.contains(key) ? " (" + a[key].dump() + ", not " + value.dump() + ")" : ""));
+        fail("was begun by another program");
+    }
+    view_state s;
+    s.rays = static_cast<uint>(number("rays"));
+    const char* from = bytes.data();
+    for (auto* part : {&s.pixels, &s.searches, &s.errors}) {
+        part->resize(part == &s.errors && !layers ? 0 : pixels);
+        if (!part->empty())
+            std::memcpy(part->data(), from, part->size() * sizeof(glm::vec4));
+        from += part->size() * sizeof(glm::vec4);
+    }
+    return s;
+}
+
+} // namespace photongrid

@@ -1,0 +1,24 @@
+// --resume: a picture that is not finished, in a file, to go on with another day.
+#pragma once
+
+#include "image_file.hpp"
+
+#include <photongrid/backend.hpp>
+#include <photongrid/render_progress.hpp>
+
+#include <optional>
+#include <string>
+
+namespace photongrid {
+
+/// What a picture's bytes depend on: program, backend, device, scene and settings. One line of JSON.
+std::string picture_identity(const scene& s, const render_settings& settings, const capabilities& caps);
+
+/// Writes a state, whole or not at all. Throws file_error.
+void write_resume_file(const std::string& path, const std::string& identity, const view_state& state);
+
+/// Reads the state of the picture with this identity; nothing where there is no such file. Throws file_error for a file that is
+/// damaged, or another picture's.
+std::optional<view_state> read_resume_file(const std::string& path, const std::string& identity);
+
+} // namespace photongrid

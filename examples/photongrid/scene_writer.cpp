@@ -1,0 +1,124 @@
+#include "scene_writer.hpp"
+
+#include "setting_names.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <charconv>
+#include <set>
+
+namespace photongrid {
+
+namespace {
+    using json = nlohmann::ordered_json;
+
+    /// The double that reads like the float: 0.3f is 0.3, not 0.30000001192092896.
+    double as_written(float v)
+    {
+        char text[32];
+        const auto* end = std::to_chars(text, text + sizeof text, v).ptr;
+        double d = 0;
+        std::from_chars(text, end, d);
+        return d;
+    }
+
+    /// In the form that scene files have: the policies that are in force.
+    json leaks_json(const leak_policy& l)
+    {
+        json leaks = json::object();
+        if (l.side)
+            leaks["side"] = true;
+        if (l.needs_normals())
+            leaks["normals"] = as_written(l.min_cosine);
+        if (l.compression > 1)
+            leaks["disc"] = as_written(l.compression);
+        return leaks;
+    }
+
+    json settings_json(const render_settings& s)
+    {
+        return {{"size", {s.width, s.height}}, {"photons", s.photons}, {"k", s.k}, {"grid", s.grid == glm::uvec3(0) ? json("auto") : json{s.grid.x, s.grid.y, s.grid.z}}, {"max_radius", s.max_radius}, {"light_samples", s.light_samples}, {"spp", s.spp},
+            {"depth", s.depth}, {"photon_depth", s.photon_depth}, {"seed", s.seed}, {"map", name_of(map_names, s.builder)}, {"slots", s.slots}, {"exposure", s.exposure},
+            {"search", name_of(search_names, s.search)}, {"kernel", name_of(kernel_names, s.kernel)}, {"bias", name_of(bias_names, s.bias)}, {"leaks", leaks_json(s.leaks)}, {"edge_correction", name_of(edge_names, s.edges)},
+            {"only", name_of(part_names, s.only)}};
+    }
+
+    json three(const dvec3& v) { return {v.x, v.y, v.z}; }
+
+    /// A name for each material, all different.
+    std::vector<std::string> names_of(const std::vector<material>& materials)
+    {
+        std::vector<std::string> names;
+        std::set<std::string> taken{"", "comment"};
+        for (const auto& m : materials)
+            taken.insert(m.name);
+        std::set<std::string> used{"", "comment"};
+        for (const auto& m : materials) {
+            auto name = m.name;
+            for (std::size_t n = names.size(); used.count(name) > 0; ++n)
+                if (const auto numbered = "material " + std::to_string(n); taken.count(numbered) == 0)
+                    name = numbered;
+            used.insert(name);
+            taken.insert(name);
+            names.push_back(name);
+        }
+        return names;
+    }
+
+    json material_json(const material& m)
+    {
+        const auto colour = three(m.reflectance);
+        switch (m.kind) {
+        case material_kind::lambertian: return {{"type", "lambertian"}, {"reflectance", colour}};
+        case material_kind::mirror: return {{"type", "mirror"}, {"reflectance", colour}};
+        case material_kind::metal: return {{"type", "metal"}, {"reflectance", colour}};
+        case material_kind::glass: return {{"type", "glass"}, {"index_of_refraction", m.index_of_refraction}, {"transmittance", colour}};
+        }
+        throw std::logic_error("a material without a kind");
+    }
+} // namespace
+
+std::string settings_text(const render_settings& s) { return settings_json(s).dump(); }
+
+std::string scene_text(const scene& s, const render_settings& settings)
+{
+    const auto names = names_of(s.materials);
+    json materials = json::object(), shapes = json::array(), lights = json::array();
+    for (std::size_t i = 0; i < names.size(); ++i)
+        materials[names[i]] = material_json(s.materials[i]);
+    const auto add = [&](json shape, std::uint32_t material) {
+        shape["material"] = names.at(material);
+        shapes.push_back(std::move(shape));
+    };
+    for (const auto& x : s.spheres)
+        add({{"type", "sphere"}, {"center", three(x.center)}, {"radius", x.radius}}, x.material);
+    for (const auto& x : s.cylinders)
+        add({{"type", "cylinder"}, {"base", three(x.base)}, {"top", three(x.top)}, {"radius", x.radius}}, x.material);
+    for (const auto& x : s.cones)
+        add({{"type", "cone"}, {"base", three(x.base)}, {"apex", three(x.apex)}, {"radius", x.radius}}, x.material);
+    for (const auto& x : s.paraboloids)
+        add({{"type", "paraboloid"}, {"vertex", three(x.vertex)}, {"rim", three(x.rim)}, {"radius", x.radius}}, x.material);
+    for (const auto& x : s.disks)
+        add({{"type", "disk"}, {"center", three(x.center)}, {"normal", three(x.normal)}, {"radius", x.radius}}, x.material);
+    for (const auto& x : s.polygons) {
+        json vertices = json::array();
+        for (const auto& v : x.vertices)
+            vertices.push_back(three(v));
+        add({{"type", "polygon"}, {"vertices", std::move(vertices)}}, x.material);
+    }
+    for (const auto& x : s.point_lights)
+        lights.push_back({{"type", "point"}, {"name", x.name}, {"position", three(x.position)}, {"power", three(x.power)}});
+    for (const auto& x : s.rectangle_lights)
+        lights.push_back({{"type", "rectangle"}, {"name", x.name}, {"corner", three(x.corner)}, {"edge_u", three(x.edge_u)}, {"edge_v", three(x.edge_v)}, {"power", three(x.power)}});
+    for (auto& light : lights)
+        if (light["name"] == "")
+            light.erase("name");
+    auto render = settings_json(settings);
+    render.erase("only");
+    const json all = {{"photongrid", 1}, {"name", s.name.empty() ? "scene" : s.name}, {"units", {{"length", "m"}, {"power", "W"}}},
+        {"camera", {{"position", three(s.camera.position)}, {"look_at", three(s.camera.look_at)}, {"up", three(s.camera.up)}, {"vertical_fov", s.camera.vertical_fov}}}, {"materials", materials},
+        {"shapes", shapes}, {"lights", lights}, {"render", render}};
+    return all.dump(2) + "\n";
+}
+
+} // namespace photongrid
