@@ -19,8 +19,8 @@ namespace photongrid {
 template <backend B>
 class progressive_render {
 public:
-    using milliseconds = std::chrono::duration<double, std::milli>;
-    static constexpr milliseconds no_limit{std::numeric_limits<double>::infinity()};
+    using milliseconds = std::chrono::duration<double, std::milli>; ///< of a step
+    static constexpr milliseconds no_limit{std::numeric_limits<double>::infinity()}; ///< a step that ends with the picture
 
     /// `b` must outlive it.
     explicit progressive_render(B& b) : b_(b) {}
