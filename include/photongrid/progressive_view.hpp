@@ -117,8 +117,9 @@ public:
     {
         if (finished() || is_look())
             return finished() ? 1.0 : 0.0;
-        const double of_this_ray = search_ ? 1.0 - static_cast<double>(unfinished_) / (std::size_t{settings_.width} * settings_.height) : 0.0;
-        return (ray_ + of_this_ray) / (std::size_t{settings_.spp} * branches_);
+        const double pixels = static_cast<double>(settings_.width) * settings_.height;
+        const double of_this_ray = search_ ? 1.0 - static_cast<double>(unfinished_) / pixels : 0.0;
+        return (ray_ + of_this_ray) / (static_cast<double>(settings_.spp) * branches_);
     }
     /// Pixels of the look or ray in flight whose estimates are not done.
     std::uint64_t unfinished() const { return unfinished_; }
