@@ -8,6 +8,7 @@ program_packages=(
   libglm-dev libcli11-dev nlohmann-json3-dev libopenexr-dev libpng-dev
   libgl-dev libopengl-dev libegl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
   libvulkan-dev mesa-vulkan-drivers glslang-dev glslang-tools spirv-tools
+  libglfw3-dev libimgui-dev
 )
 # What the benches need besides: those that tests/run.sh runs, and the others. POV-Ray only where pictures are compared with its.
 # shellcheck disable=SC2034

@@ -89,7 +89,7 @@ namespace {
     {
         const auto help = run({"--help"});
         EXPECT_EQ(help.code, 0);
-        for (const auto* word : {"render", "compare", "check", "devices", "Exit codes", "130"})
+        for (const auto* word : {"render", "view", "compare", "check", "devices", "Exit codes", "130"})
             EXPECT_NE(help.out.find(word), std::string::npos) << word;
         const auto render = run({"render", "--help"});
         EXPECT_EQ(render.code, 0);

@@ -45,7 +45,7 @@ manual_packages=()
 if [[ $full == yes ]]; then
   manual_packages=(doxygen)
 fi
-require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev libnanoflann-dev vulkan-validationlayers clang-14 libclang-rt-14-dev dpkg-dev file "${smoke_packages[@]}" "${manual_packages[@]}"
+require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev libnanoflann-dev vulkan-validationlayers clang-14 libclang-rt-14-dev dpkg-dev file xvfb libx11-dev libxtst-dev "${smoke_packages[@]}" "${manual_packages[@]}"
 
 export CMAKE_GENERATOR=Ninja          # for the projects that tests configure; a bare Debian has no make
 export NODEVICE_SELECT=1              # the implicit layer crashes processes that start side by side

@@ -22,6 +22,7 @@ namespace {
   photongrid reference ring.json -o reference.exr --error error.exr --paths 100000000
   photongrid compare ring.exr reference.exr --max-relmse 1e-3
   photongrid check my_scene.json
+  photongrid view cornell_box.json --size 320x320
 
 Exit codes:
   0    done
@@ -165,7 +166,8 @@ Exit codes:
             ->type_name(type);
     }
 
-    void add_render(CLI::App& to, render_options& o)
+    /// Scene, backend and settings: what a picture depends on, in a file or in a window.
+    void add_picture(CLI::App& to, render_options& o)
     {
         to.add_option("scene", o.scene_path, "scene file")->required()->type_name("SCENE.json");
         to.add_option("--backend", o.backend, "auto: a hardware Vulkan device, else cpu")->check(CLI::IsMember({"auto", "serial", "cpu", "gl", "gl-osmesa", "vulkan"}))->type_name("auto|serial|cpu|gl|gl-osmesa|vulkan");
@@ -200,11 +202,17 @@ Exit codes:
         add_whole(to, "--depth", o.depth, "reflections and refractions an eye ray follows");
         add_whole(to, "--seed", o.seed, "same seed, same picture");
         add_number(to, "--exposure", o.exposure, "PNG: pixel values times 2^EV", "EV");
+        to.add_option("--shader-cache", o.shader_cache, "folder where Vulkan's compiled kernels are kept for the next start; default: photongrid in $XDG_CACHE_HOME or ~/.cache")->type_name("DIR|none");
+        to.add_flag("--quiet", o.quiet, "no progress, no remarks");
+    }
+
+    void add_render(CLI::App& to, render_options& o)
+    {
+        add_picture(to, o);
         to.add_option("-o,--output", o.outputs, "picture; may be given several times; default: the scene's name, .png")->allow_extra_args(false)->type_name("OUT.png|.exr|.pfm");
         to.add_flag("--aov", o.aov, "EXR: layers estimate.radius (m), estimate.count (photons) and estimate.relative_error (standard error over value) beside the picture");
         to.add_option("--stats", o.stats, "statistics, as JSON")->type_name("OUT.json");
         to.add_flag("--time-passes", o.time_passes, "with --backend vulkan, gl or gl-osmesa, and --stats: measure each pass by the device's clock");
-        to.add_option("--shader-cache", o.shader_cache, "folder where Vulkan's compiled kernels are kept for the next start; default: photongrid in $XDG_CACHE_HOME or ~/.cache")->type_name("DIR|none");
         to.add_option("--progressive", o.progressive, "folder for numbered pictures of the running estimate, and a table of when each was there and its relMSE to the last")->type_name("DIR");
         to.add_option_function<std::string>(
               "--every",
@@ -221,7 +229,13 @@ Exit codes:
             ->type_name("WxH+X+Y");
         to.add_option("--reference", o.reference, "picture to measure the table's errors against too, such as `photongrid reference` makes")->type_name("REF.exr|.pfm");
         to.add_option("--resume", o.resume, "file for what there is when the render is interrupted; where it exists, goes on from it, and ends with the same bytes as if never interrupted; removed at the end")->type_name("FILE");
-        to.add_flag("--quiet", o.quiet, "no progress, no remarks");
+    }
+
+    void add_view(CLI::App& to, view_options& o)
+    {
+        add_picture(to, o.picture);
+        to.add_option("--reference", o.picture.reference, "picture to measure the error against, such as `photongrid reference` makes")->type_name("REF.exr|.pfm");
+        to.add_option("--journal", o.journal, "file for what happens in the window: a line of JSON for each request, picture and error")->type_name("FILE");
     }
 
     void add_reference(CLI::App& to, reference_options& o)
@@ -264,6 +278,10 @@ command read_command_line(int argc, char** argv)
     auto& render_command = *app.add_subcommand("render", "Draws a scene");
     add_render(render_command, render);
 
+    view_options view;
+    auto& view_command = *app.add_subcommand("view", "Opens a window on a scene: move camera, things and lights, change settings, watch the light settle");
+    add_view(view_command, view);
+
     reference_options reference;
     auto& reference_command = *app.add_subcommand("reference", "Draws a scene without a photon map, by path tracing in double precision: the truth to compare with");
     add_reference(reference_command, reference);
@@ -285,8 +303,9 @@ command read_command_line(int argc, char** argv)
 
     try {
         app.parse(argc, argv);
-        if (!render.device.empty() && render.backend != "vulkan")
-            throw CLI::ValidationError("--device", "names a Vulkan device; expected --backend vulkan with it");
+        for (const auto* picture : {&render, &view.picture})
+            if (!picture->device.empty() && picture->backend != "vulkan")
+                throw CLI::ValidationError("--device", "names a Vulkan device; expected --backend vulkan with it");
         if (render.time_passes && render.backend != "vulkan" && render.backend != "gl" && render.backend != "gl-osmesa")
             throw CLI::ValidationError("--time-passes", "is for --backend vulkan, gl and gl-osmesa; cpu times its passes always, serial never");
         if (render.strip_crop && render.strip.empty())
@@ -302,6 +321,8 @@ command read_command_line(int argc, char** argv)
     }
     if (render_command.parsed())
         return render;
+    if (view_command.parsed())
+        return view;
     if (reference_command.parsed())
         return reference;
     if (compare_command.parsed())

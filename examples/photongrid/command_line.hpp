@@ -40,6 +40,12 @@ struct render_options {
     bool time_passes = false, quiet = false;
 };
 
+/// `view`.
+struct view_options {
+    render_options picture; ///< but for what becomes of it
+    std::string journal;
+};
+
 /// `reference`. What is empty is as the scene file has it, or as reference_settings has it.
 struct reference_options {
     std::string scene_path;
@@ -66,7 +72,7 @@ struct check_options {
 struct devices_options {};
 
 /// What to do; or the exit code where the command line has been answered already (help, version, mistake).
-using command = std::variant<exit_code, render_options, reference_options, compare_options, check_options, devices_options>;
+using command = std::variant<exit_code, render_options, view_options, reference_options, compare_options, check_options, devices_options>;
 
 command read_command_line(int argc, char** argv);
 

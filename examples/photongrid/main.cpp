@@ -5,6 +5,7 @@
 #include "reference_command.hpp"
 #include "render_command.hpp"
 #include "scene_file.hpp"
+#include "viewer/view_command.hpp"
 
 #include <cerrno>
 #include <csignal>
@@ -50,6 +51,7 @@ namespace {
     bool asked_to_stop() { return stop_asked != 0; }
 
     exit_code run(const render_options& o) { return run_render(o, asked_to_stop); }
+    exit_code run(const view_options& o) { return run_view(o, asked_to_stop); }
     exit_code run(const reference_options& o)
     {
         return run_reference(o, asked_to_stop);
@@ -97,14 +99,6 @@ namespace {
 
     exit_code run(exit_code answered) { return answered; }
 } // namespace
-
-std::string limits(const capabilities& c)
-{
-    const auto yes_no = [](bool b) { return b ? "yes" : "no"; };
-    return std::string(c.software ? "software" : "hardware") + ", buffers of up to " + std::to_string(c.max_elements) + " elements, routing with up to " + std::to_string(c.max_route_slots) + " x "
-        + std::to_string(c.max_route_slots) + " slots, division rounds correctly: " + yes_no(c.exact_division) + ", square root: " + yes_no(c.exact_sqrt)
-        + (c.loop_limit > 0 ? ", loops end after " + std::to_string(c.loop_limit) + " iterations" : "");
-}
 
 } // namespace photongrid
 

@@ -14,17 +14,6 @@
 namespace photongrid {
 
 namespace {
-    /// The scene's name as a file's.
-    std::string file_stem(const std::string& name)
-    {
-        std::string stem;
-        for (const char c : name) {
-            const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
-            stem += plain ? c : '_';
-        }
-        return stem.empty() ? "picture" : stem;
-    }
-
     /// Where compiled kernels are kept: "" for nowhere.
     std::string shader_cache_folder(const render_options& o)
     {
@@ -84,8 +73,20 @@ namespace {
     };
 } // namespace
 
-std::unique_ptr<renderer> renderer_as_asked(const render_options& o)
+std::string file_stem(const std::string& name)
 {
+    std::string stem;
+    for (const char c : name) {
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+        stem += plain ? c : '_';
+    }
+    return stem.empty() ? "picture" : stem;
+}
+
+renderer_options renderer_asked(const render_options& o)
+{
+    if (o.threads.value_or(0) > 4096)
+        throw std::invalid_argument("--threads " + std::to_string(*o.threads) + ": at most 4,096; 0: all");
     renderer_options r{.backend = o.backend, .threads = o.threads.value_or(0), .device = o.device, .shader_cache = shader_cache_folder(o), .time_passes = o.time_passes};
     if (o.backend == "auto") {
         const auto device = hardware_vulkan_device();
@@ -94,19 +95,19 @@ std::unique_ptr<renderer> renderer_as_asked(const render_options& o)
         if (!o.quiet)
             std::cerr << "photongrid: --backend auto: " << r.backend << (device ? ", device " + *device : " (no hardware Vulkan device)") << '\n';
     }
-    return make_renderer(r);
+    return r;
 }
 
 exit_code run_render(const render_options& o, const std::function<bool()>& stop_asked)
 {
     const auto s = read_scene(o.scene_path);
     render_settings settings;
+    renderer_options backend;
     std::optional<picture_series> series;
     auto outputs = o.outputs;
     try {
         settings = settings_for(s, o);
-        if (o.threads.value_or(0) > 4096)
-            throw std::invalid_argument("--threads " + std::to_string(*o.threads) + ": at most 4,096; 0: all");
+        backend = renderer_asked(o);
         if (outputs.empty())
             outputs.push_back(file_stem(s.name) + ".png");
         for (const auto& path : outputs)
@@ -122,7 +123,7 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
 
     const auto start = std::chrono::steady_clock::now();
     progress_bar bar(o.quiet);
-    const auto drawing = renderer_as_asked(o);
+    const auto drawing = make_renderer(backend);
     drawing->start(s, settings, {.wanted = series->wanted()});
     resumable file(*drawing, o.resume, s, settings);
     for (std::uint64_t seen = 0; !stop_asked() && !drawing->step(series->wanted() ? 0 : 50);) {

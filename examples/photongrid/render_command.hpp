@@ -13,6 +13,9 @@ namespace photongrid {
 exit_code run_render(const render_options& o, const std::function<bool()>& stop_asked);
 
 /// The renderer that --backend and its companions name; says on stderr what `auto` chose.
-std::unique_ptr<renderer> renderer_as_asked(const render_options& o);
+renderer_options renderer_asked(const render_options& o);
+
+/// A scene's name as a file's.
+std::string file_stem(const std::string& name);
 
 } // namespace photongrid

@@ -1,0 +1,186 @@
+#include "render_thread.hpp"
+
+#include "../image_file.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace photongrid::viewer {
+
+namespace {
+    using clock = std::chrono::steady_clock;
+    double ms_since(clock::time_point t) { return std::chrono::duration<double, std::milli>(clock::now() - t).count(); }
+
+    /// Time that a step may take before it is asked again what to do.
+    constexpr double step_ms = 8;
+} // namespace
+
+render_thread::render_thread(renderer_options options, std::function<void()> wake, journal log)
+    : options_(std::move(options))
+    , wake_(std::move(wake))
+    , log_(std::move(log))
+    , thread_([this] { work(); })
+{
+}
+
+render_thread::~render_thread()
+{
+    {
+        const std::lock_guard lock(guard_);
+        ends_ = true;
+        if (cancellable_ != nullptr)
+            cancellable_->cancel();
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+std::uint64_t render_thread::show(const version& v, bool moving)
+{
+    std::uint64_t number = 0;
+    {
+        const std::lock_guard lock(guard_);
+        number = ++requests_;
+        // Of several that were not taken the last is drawn; one that has waited for a look has waited long enough.
+        const bool waits = moving && (!wanted_ || wanted_->moving);
+        wanted_ = request{v, waits, number, steps_, clock::now()};
+        if (!waits && cancellable_ != nullptr)
+            cancellable_->cancel();
+    }
+    changed_.notify_all();
+    return number;
+}
+
+std::optional<frame> render_thread::newer_than(std::uint64_t seen) const
+{
+    const std::lock_guard lock(guard_);
+    if (newest_.number <= seen)
+        return std::nullopt;
+    return newest_;
+}
+
+render_report render_thread::report() const
+{
+    const std::lock_guard lock(guard_);
+    return report_;
+}
+
+void render_thread::tell(const std::string& event, const std::string& more) const
+{
+    if (log_)
+        log_("{\"ms\": " + std::to_string(ms_since(opened_)) + ", \"event\": \"" + event + "\"" + more + "}");
+}
+
+void render_thread::work()
+{
+    for (;;) {
+        {
+            std::unique_lock lock(guard_);
+            changed_.wait(lock, [&] { return ends_ || wanted_ || drawing_; });
+            if (ends_)
+                break;
+        }
+        try {
+            if (take())
+                draw();
+        } catch (const std::exception& e) {
+            fail(e.what());
+        }
+    }
+    const std::lock_guard lock(guard_);
+    cancellable_ = nullptr;
+    renderer_.reset(); // in this thread: an OpenGL context is its own
+}
+
+/// Begins what is wanted, where it is time to. Returns whether there is something to draw.
+bool render_thread::take()
+{
+    request next;
+    {
+        const std::lock_guard lock(guard_);
+        if (!wanted_ || (wanted_->moving && drawing_ && seen_ == 0))
+            return drawing_;
+        next = std::move(*wanted_);
+        wanted_.reset();
+    }
+    drawing_ = false;
+    seen_ = 0;
+    last_.reset();
+    current_ = std::move(next);
+    const auto passes_waited = steps_ - current_.passes_before;
+    if (!renderer_ || opened_backend_ != current_.what.backend) {
+        {
+            const std::lock_guard lock(guard_);
+            cancellable_ = nullptr;
+        }
+        renderer_.reset();
+        auto o = options_;
+        o.backend = current_.what.backend;
+        renderer_ = make_renderer(o);
+        opened_backend_ = o.backend;
+        const std::lock_guard lock(guard_);
+        cancellable_ = renderer_.get();
+    }
+    begun_ = clock::now();
+    renderer_->start(current_.what.scene, current_.what.settings, {});
+    drawing_ = true;
+    {
+        const std::lock_guard lock(guard_);
+        report_.error.clear();
+    }
+    tell("start", ", \"request\": " + std::to_string(current_.number) + ", \"passes_waited\": " + std::to_string(passes_waited) + ", \"waited_ms\": " + std::to_string(ms_since(current_.made))
+            + ", \"moving\": " + (current_.moving ? "true" : "false"));
+    return true;
+}
+
+void render_thread::draw()
+{
+    ++steps_;
+    const bool whole = renderer_->step(step_ms);
+    const bool news = renderer_->pictures() > seen_;
+    if (news) {
+        seen_ = renderer_->pictures();
+        publish(ms_since(begun_));
+    }
+    drawing_ = !whole;
+    {
+        const std::lock_guard lock(guard_);
+        report_.request = current_.number;
+        report_.progress = renderer_->progress();
+        report_.stats = renderer_->stats();
+        report_.maps = renderer_->maps();
+        report_.passes = steps_;
+        report_.backend = opened_backend_;
+        report_.device = renderer_->caps().device;
+    }
+    if (whole)
+        tell("whole", ", \"request\": " + std::to_string(current_.number) + ", \"maps\": " + std::to_string(renderer_->maps()));
+    if (news || whole)
+        wake_();
+}
+
+void render_thread::publish(double ms)
+{
+    frame f{.request = current_.number, .number = 0, .picture = renderer_->picture(), .ms = ms, .change = 0};
+    if (last_)
+        f.change = compare_images(*last_, f.picture).relmse;
+    last_ = f.picture;
+    tell("picture", ", \"request\": " + std::to_string(current_.number) + ", \"pictures\": " + std::to_string(seen_) + ", \"maps\": " + std::to_string(renderer_->maps())
+            + ", \"stage\": \"" + std::string(renderer_->progress().stage) + "\", \"since_request_ms\": " + std::to_string(ms_since(current_.made)));
+    const std::lock_guard lock(guard_);
+    f.number = newest_.number + 1;
+    newest_ = std::move(f);
+}
+
+void render_thread::fail(const std::string& what)
+{
+    drawing_ = false;
+    tell("error", ", \"what\": " + nlohmann::json(what).dump());
+    {
+        const std::lock_guard lock(guard_);
+        report_.request = current_.number;
+        report_.error = what;
+    }
+    wake_();
+}
+
+} // namespace photongrid::viewer

@@ -1,0 +1,99 @@
+// The window's renderer, in a thread of its own: takes what is to be drawn, gives back pictures as they come.
+#pragma once
+
+#include "../backends.hpp"
+#include "document.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace photongrid::viewer {
+
+/// A picture, and what it took.
+struct frame {
+    std::uint64_t request = 0; ///< which request it answers
+    std::uint64_t number = 0;  ///< pictures since the window opened; 0: none
+    image picture;
+    double ms = 0;             ///< since the request was begun
+    double change = 0;         ///< relMSE of the picture before to this one; 0 of a request's first
+};
+
+/// Where the renderer is.
+struct render_report {
+    std::uint64_t request = 0;  ///< being drawn
+    render_progress progress{};
+    render_stats stats{};
+    std::uint64_t maps = 0;     ///< begun since the backend was opened
+    std::uint64_t passes = 0;   ///< run since the window opened
+    std::string backend{};      ///< as --backend takes it
+    std::string device{};
+    std::string error{};        ///< why the last request is not drawn; empty where it is
+};
+
+/// What happened, for --journal: one line of JSON without its end.
+using journal = std::function<void(const std::string& line)>;
+
+class render_thread {
+public:
+    /// `wake` is called in this object's thread when there is something new; `log` may be empty.
+    render_thread(renderer_options options, std::function<void()> wake, journal log);
+    ~render_thread();
+    render_thread(const render_thread&) = delete;
+    render_thread& operator=(const render_thread&) = delete;
+
+    /// From now on draws `v`. Work in flight ends after its pass; while `moving`, more requests are to follow soon, so it goes on to its
+    /// first look. Returns the request's number.
+    std::uint64_t show(const version& v, bool moving);
+
+    /// The newest picture, if its number is above `seen`.
+    std::optional<frame> newer_than(std::uint64_t seen) const;
+    render_report report() const;
+
+private:
+    struct request {
+        version what;
+        bool moving = false;
+        std::uint64_t number = 0;
+        std::uint64_t passes_before = 0; ///< steps begun when it was made
+        std::chrono::steady_clock::time_point made{};
+    };
+    void work();
+    void draw();
+    bool take();
+    void publish(double ms);
+    void fail(const std::string& what);
+    void tell(const std::string& event, const std::string& more = "") const;
+
+    renderer_options options_;
+    std::function<void()> wake_;
+    journal log_;
+    const std::chrono::steady_clock::time_point opened_ = std::chrono::steady_clock::now();
+
+    mutable std::mutex guard_;
+    std::condition_variable changed_;
+    std::optional<request> wanted_;     ///< not taken yet
+    bool ends_ = false;
+    std::uint64_t requests_ = 0;
+    frame newest_;
+    render_report report_;
+    renderer* cancellable_ = nullptr;   ///< the renderer, while it may be told to stop
+    std::atomic<std::uint64_t> steps_ = 0;
+
+    // The thread's own.
+    std::unique_ptr<renderer> renderer_;
+    std::string opened_backend_;
+    request current_;
+    bool drawing_ = false;
+    std::uint64_t seen_ = 0; ///< pictures of the current request
+    std::optional<image> last_;
+    std::chrono::steady_clock::time_point begun_{};
+
+    std::thread thread_;
+};
+
+} // namespace photongrid::viewer

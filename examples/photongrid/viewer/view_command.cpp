@@ -1,0 +1,30 @@
+#include "view_command.hpp"
+
+#include "../render_command.hpp"
+#include "../scene_file.hpp"
+#include "window.hpp"
+
+#include <iostream>
+
+namespace photongrid {
+
+exit_code run_view(const view_options& o, bool (*stop_asked)())
+{
+    const auto s = read_scene(o.picture.scene_path);
+    viewer::window_options w;
+    try {
+        w.renderer = renderer_asked(o.picture);
+        w.begin = {s, settings_for(s, o.picture), w.renderer.backend};
+    } catch (const std::invalid_argument& e) {
+        std::cerr << "photongrid: error: on the command line: " << e.what() << '\n';
+        return usage_error;
+    }
+    w.stem = file_stem(s.name);
+    w.journal = o.journal;
+    if (!o.picture.reference.empty())
+        w.reference = read_image(o.picture.reference);
+    viewer::show_window(w, stop_asked);
+    return success;
+}
+
+} // namespace photongrid

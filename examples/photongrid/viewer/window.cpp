@@ -1,0 +1,630 @@
+#include "window.hpp"
+
+#include "../image_file.hpp"
+#include "../scene_writer.hpp"
+#include "../setting_names.hpp"
+#include "render_thread.hpp"
+
+#include <photongrid/device_scene.hpp>
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+namespace photongrid::viewer {
+
+namespace {
+    constexpr float panel_width = 330;
+    constexpr GLenum context_lost = 0x0507; // GL_CONTEXT_LOST
+
+    /// GLFW, open for as long as this lives. What it says last is in `said`.
+    class glfw {
+    public:
+        glfw()
+        {
+            glfwSetErrorCallback([](int, const char* text) { said() = text; });
+            if (glfwInit() != GLFW_TRUE)
+                throw backend_error("view: no window can be opened: " + said()
+                    + ". Is there a display (DISPLAY or WAYLAND_DISPLAY set; over ssh: -X)? Without one, `photongrid render --progressive DIR` writes the same pictures to files, and `xvfb-run photongrid view …` opens the window unseen");
+        }
+        glfw(const glfw&) = delete;
+        glfw& operator=(const glfw&) = delete;
+        ~glfw() { glfwTerminate(); }
+        static std::string& said()
+        {
+            static std::string text;
+            return text;
+        }
+    };
+
+    struct window_closer {
+        void operator()(GLFWwindow* w) const { glfwDestroyWindow(w); }
+    };
+
+    /// ImGui on a window.
+    class interface {
+    public:
+        explicit interface(GLFWwindow* w)
+        {
+            IMGUI_CHECKVERSION();
+            ImGui::CreateContext();
+            ImGui::GetIO().IniFilename = nullptr; // nothing of ours is written where nobody asked for it
+            ImGui::StyleColorsDark();
+            ImGui_ImplGlfw_InitForOpenGL(w, true);
+            if (!ImGui_ImplOpenGL3_Init("#version 130"))
+                throw backend_error("view: the panel cannot be drawn: this OpenGL has no shaders (Debian: apt install libgl1-mesa-dri)");
+        }
+        interface(const interface&) = delete;
+        interface& operator=(const interface&) = delete;
+        ~interface()
+        {
+            ImGui_ImplOpenGL3_Shutdown();
+            ImGui_ImplGlfw_Shutdown();
+            ImGui::DestroyContext();
+        }
+    };
+
+    /// What the last item does, where the mouse rests on it.
+    void tip(const char* text)
+    {
+        if (!ImGui::IsItemHovered())
+            return;
+        ImGui::BeginTooltip();
+        ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
+        ImGui::TextUnformatted(text);
+        ImGui::PopTextWrapPos();
+        ImGui::EndTooltip();
+    }
+
+    /// A file's name that is not taken: STEM.png, STEM-2.png, …
+    std::string free_name(const std::string& stem, const std::string& ending)
+    {
+        auto name = stem + ending;
+        for (int n = 2; std::filesystem::exists(name); ++n)
+            name = stem + '-' + std::to_string(n) + ending;
+        return name;
+    }
+
+    /// A rectangle of the picture's pixels.
+    struct frame_box {
+        double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
+    };
+
+    /// Where a part of the scene stands in the picture; nothing where some of it is behind the camera.
+    std::optional<frame_box> box_of(const scene& s, const scene_part& part, double width, double height)
+    {
+        photongrid::detail::box b;
+        for (const auto i : part.spheres)
+            photongrid::detail::add_bounds(b, s.spheres[i]);
+        for (const auto i : part.cylinders)
+            photongrid::detail::add_bounds(b, s.cylinders[i]);
+        for (const auto i : part.cones)
+            photongrid::detail::add_bounds(b, s.cones[i]);
+        for (const auto i : part.paraboloids)
+            photongrid::detail::add_bounds(b, s.paraboloids[i]);
+        for (const auto i : part.disks)
+            photongrid::detail::add_bounds(b, s.disks[i]);
+        for (const auto i : part.polygons)
+            photongrid::detail::add_bounds(b, s.polygons[i]);
+        for (const auto i : part.point_lights)
+            b.add(s.point_lights[i].position);
+        for (const auto i : part.rectangle_lights) {
+            const auto& l = s.rectangle_lights[i];
+            for (const auto& corner : {l.corner, l.corner + l.edge_u, l.corner + l.edge_v, l.corner + l.edge_u + l.edge_v})
+                b.add(corner);
+        }
+        const auto& c = s.camera;
+        const dvec3 forward = glm::normalize(c.look_at - c.position), right = glm::normalize(glm::cross(forward, c.up)), up = glm::cross(right, forward);
+        const double reach = std::tan(glm::radians(c.vertical_fov) / 2);
+        frame_box f;
+        for (int corner = 0; corner < 8; ++corner) {
+            const dvec3 to = dvec3(corner & 1 ? b.high.x : b.low.x, corner & 2 ? b.high.y : b.low.y, corner & 4 ? b.high.z : b.low.z) - c.position;
+            const double depth = glm::dot(to, forward);
+            if (depth <= 0)
+                return std::nullopt;
+            const double x = 0.5 * width + 0.5 * height * glm::dot(to, right) / (depth * reach), y = 0.5 * height - 0.5 * height * glm::dot(to, up) / (depth * reach);
+            f.left = std::min(f.left, x), f.right = std::max(f.right, x), f.top = std::min(f.top, y), f.bottom = std::max(f.bottom, y);
+        }
+        return f;
+    }
+
+    class window {
+    public:
+        window(const window_options& o, bool (*stop_asked)())
+            : options_(o)
+            , stop_asked_(stop_asked)
+            , handle_(open(o.begin.settings))
+            , interface_(handle_.get())
+            , document_(o.begin)
+            , journal_(o.journal.empty() ? std::ofstream() : std::ofstream(o.journal, std::ios::trunc))
+            , renderer_(o.renderer, [] { glfwPostEmptyEvent(); }, o.journal.empty() ? journal() : [this](const std::string& line) { note(line); })
+        {
+            if (!o.journal.empty() && !journal_)
+                throw file_error(o.journal + ": cannot be written");
+            glGenTextures(1, &texture_);
+            glBindTexture(GL_TEXTURE_2D, texture_);
+            for (const auto& [name, value] : {std::pair{GL_TEXTURE_MIN_FILTER, GL_LINEAR}, {GL_TEXTURE_MAG_FILTER, GL_LINEAR}, {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE}, {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE}})
+                glTexParameteri(GL_TEXTURE_2D, static_cast<GLenum>(name), value);
+            glfwSetWindowUserPointer(handle_.get(), this);
+            send(false);
+        }
+        window(const window&) = delete;
+        window& operator=(const window&) = delete;
+
+        void run()
+        {
+            while (glfwWindowShouldClose(handle_.get()) == GLFW_FALSE && !stop_asked_()) {
+                // Events and new pictures wake it at once.
+                glfwWaitEventsTimeout(report_.progress.stage == "finished" ? 0.5 : 0.1);
+                take_news();
+                draw();
+                if (glGetError() == context_lost)
+                    throw backend_error("view: the window's OpenGL context was lost (driver reset); open it again, or take --backend cpu if the GPU is the renderer's too");
+            }
+        }
+
+    private:
+        static std::unique_ptr<GLFWwindow, window_closer> open(const render_settings& s)
+        {
+            const float scale = std::max(1.0f, std::min(3.0f, 640.0f / static_cast<float>(std::max(s.width, s.height))));
+            const int width = static_cast<int>(scale * static_cast<float>(s.width) + panel_width), height = std::max(720, static_cast<int>(scale * static_cast<float>(s.height)));
+            std::unique_ptr<GLFWwindow, window_closer> w(glfwCreateWindow(std::min(width, 1600), std::min(height, 1000), "photongrid", nullptr, nullptr));
+            if (!w)
+                throw backend_error("view: the display gives no OpenGL context: " + glfw::said() + " (Debian: apt install libgl1-mesa-dri libglx-mesa0); `photongrid render --progressive DIR` needs none");
+            glfwMakeContextCurrent(w.get());
+            glfwSwapInterval(1);
+            return w;
+        }
+
+        void note(const std::string& line)
+        {
+            const std::lock_guard lock(journal_guard_);
+            journal_ << line << std::endl; // whole lines, at once: a test reads along
+        }
+
+        // --- what is drawn ---
+        void send(bool moving)
+        {
+            sent_ = document_.now();
+            request_ = renderer_.show(sent_, moving);
+        }
+        void send_changes(bool moving)
+        {
+            auto now = document_.now();
+            const bool other_exposure = now.settings.exposure != sent_.settings.exposure;
+            if (other_exposure)
+                upload();
+            auto before = sent_;
+            before.settings.exposure = now.settings.exposure; // changes the screen, not the picture
+            if (now == before)
+                sent_ = now;
+            else
+                send(moving);
+        }
+
+        void take_news()
+        {
+            report_ = renderer_.report();
+            auto next = renderer_.newer_than(shown_.number);
+            if (!next)
+                return;
+            if (next->request != shown_.request) {
+                changes_.clear();
+                errors_.clear();
+            }
+            shown_ = std::move(*next);
+            if (shown_.change > 0)
+                changes_.push_back(static_cast<float>(std::log10(shown_.change)));
+            if (const auto& r = options_.reference; r && r->width == shown_.picture.width && r->height == shown_.picture.height)
+                errors_.push_back(static_cast<float>(std::log10(std::max(1e-12, compare_images(shown_.picture, *r).relmse))));
+            upload();
+        }
+
+        void upload()
+        {
+            const auto& p = shown_.picture;
+            if (p.pixels.empty())
+                return;
+            bytes_.clear();
+            for (const auto& pixel : p.pixels)
+                for (int c = 0; c < 3; ++c)
+                    bytes_.push_back(tone_mapped(pixel[c], document_.now().settings.exposure));
+            glBindTexture(GL_TEXTURE_2D, texture_);
+            glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+            glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, static_cast<GLsizei>(p.width), static_cast<GLsizei>(p.height), 0, GL_RGB, GL_UNSIGNED_BYTE, bytes_.data());
+        }
+
+        // --- the screen ---
+        void draw()
+        {
+            ImGui_ImplOpenGL3_NewFrame();
+            ImGui_ImplGlfw_NewFrame();
+            ImGui::NewFrame();
+            const auto size = ImGui::GetIO().DisplaySize;
+            constexpr auto fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
+            ImGui::SetNextWindowPos({0, 0});
+            ImGui::SetNextWindowSize({std::max(1.0f, size.x - panel_width), size.y});
+            ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+            ImGui::Begin("picture", nullptr, fixed | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground);
+            ImGui::PopStyleVar();
+            draw_picture();
+            ImGui::End();
+            ImGui::SetNextWindowPos({size.x - panel_width, 0});
+            ImGui::SetNextWindowSize({panel_width, size.y});
+            ImGui::Begin("settings", nullptr, fixed & ~ImGuiWindowFlags_NoScrollbar);
+            draw_panel();
+            ImGui::End();
+            if (!ImGui::GetIO().WantTextInput)
+                keys();
+            send_changes(ImGui::IsAnyMouseDown());
+
+            ImGui::Render();
+            int width = 0, height = 0;
+            glfwGetFramebufferSize(handle_.get(), &width, &height);
+            glViewport(0, 0, width, height);
+            glClearColor(0.08f, 0.08f, 0.08f, 1);
+            glClear(GL_COLOR_BUFFER_BIT);
+            ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+            glfwSwapBuffers(handle_.get());
+        }
+
+        void draw_picture()
+        {
+            const auto& s = document_.now().settings;
+            const auto room = ImGui::GetContentRegionAvail();
+            const float scale = std::max(1e-3f, std::min(room.x / static_cast<float>(s.width), room.y / static_cast<float>(s.height)));
+            const ImVec2 size(scale * static_cast<float>(s.width), scale * static_cast<float>(s.height));
+            const ImVec2 corner(std::max(0.0f, 0.5f * (room.x - size.x)), std::max(0.0f, 0.5f * (room.y - size.y)));
+            if (shown_.number > 0)
+                ImGui::GetWindowDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)), corner, {corner.x + size.x, corner.y + size.y});
+            ImGui::SetCursorPos(corner);
+            ImGui::InvisibleButton("mouse", size, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle | ImGuiButtonFlags_MouseButtonRight);
+            mouse(corner, size);
+            if (const auto part = document_.selected())
+                if (const auto box = box_of(document_.now().scene, document_.parts()[*part], static_cast<double>(size.x), static_cast<double>(size.y)))
+                    ImGui::GetWindowDrawList()->AddRect({corner.x + static_cast<float>(box->left) - 3, corner.y + static_cast<float>(box->top) - 3},
+                        {corner.x + static_cast<float>(box->right) + 3, corner.y + static_cast<float>(box->bottom) + 3}, IM_COL32(255, 200, 60, 200), 4, 0, 1.5f);
+            draw_overlay();
+        }
+
+        void draw_overlay()
+        {
+            const auto& r = report_;
+            char text[512];
+            const auto& st = r.stats;
+            std::snprintf(text, sizeof text, "%s on %s\n%s %.0f %%  pictures %llu  after %.0f ms\nphotons %u  maps %llu  passes %llu  unfinished %llu\ntrace %.0f  build %.0f  rays %.0f  estimate %.0f ms", r.backend.c_str(),
+                r.device.substr(0, 40).c_str(), std::string(r.progress.stage).c_str(), 100 * r.progress.fraction, static_cast<unsigned long long>(shown_.number), shown_.ms, r.progress.photons,
+                static_cast<unsigned long long>(r.maps), static_cast<unsigned long long>(r.passes), static_cast<unsigned long long>(r.progress.unfinished), st.trace_photons.ms, st.build_map.ms, st.trace_rays.ms,
+                st.radiance_estimate.ms);
+            auto* list = ImGui::GetWindowDrawList();
+            if (overlay_) {
+                list->AddText({9, 9}, IM_COL32(0, 0, 0, 255), text);
+                list->AddText({8, 8}, IM_COL32(255, 255, 255, 230), text);
+            }
+            if (!r.error.empty())
+                list->AddText(nullptr, 0, {8, 80}, IM_COL32(255, 120, 90, 255), ("not drawn: " + r.error).c_str(), nullptr, std::max(100.0f, ImGui::GetIO().DisplaySize.x - panel_width - 16));
+        }
+
+        // --- the mouse ---
+        void mouse(const ImVec2& corner, const ImVec2& size)
+        {
+            const auto& io = ImGui::GetIO();
+            const double width = static_cast<double>(size.x), height = static_cast<double>(size.y);
+            const double x = static_cast<double>(io.MousePos.x - corner.x), y = static_cast<double>(io.MousePos.y - corner.y);
+            if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f) {
+                document_.begin("zoom");
+                document_.zoom(std::pow(1.1, static_cast<double>(io.MouseWheel)));
+            }
+            if (ImGui::IsItemActivated()) {
+                pressed_ = pick(document_.now().scene, document_.parts(), width, height, x, y);
+                moved_ = false;
+                moves_part_ = ImGui::IsMouseDown(ImGuiMouseButton_Left) && pressed_ && document_.selected() == pressed_->part;
+            }
+            if (ImGui::IsItemActive()) {
+                const bool left = ImGui::IsMouseDown(ImGuiMouseButton_Left);
+                if (!moved_ && ImGui::IsMouseDragging(left ? ImGuiMouseButton_Left : ImGui::IsMouseDown(ImGuiMouseButton_Middle) ? ImGuiMouseButton_Middle : ImGuiMouseButton_Right, 3.0f)) {
+                    moved_ = true;
+                    document_.begin(moves_part_ ? "move of " + document_.parts()[pressed_->part].name : left && !io.KeyShift ? "turn" : "pan");
+                }
+                if (!moved_)
+                    return;
+                if (moves_part_)
+                    drag(sight_line_at(document_.now().scene.camera, width, height, x, y), io.KeyShift);
+                else if (left && !io.KeyShift)
+                    document_.orbit(180 * static_cast<double>(io.MouseDelta.x) / width, 180 * static_cast<double>(io.MouseDelta.y) / height);
+                else
+                    document_.pan(-static_cast<double>(io.MouseDelta.x) / height, static_cast<double>(io.MouseDelta.y) / height);
+            }
+            if (ImGui::IsItemDeactivated() && !moved_ && ImGui::IsMouseReleased(ImGuiMouseButton_Left))
+                document_.select(pressed_ ? std::optional(pressed_->part) : std::nullopt);
+        }
+
+        void drag(const sight_line& line, bool level)
+        {
+            const auto to = on_plane(document_.now().scene.camera, line, pressed_->position, level);
+            if (!to)
+                return;
+            move(document_.edit().scene, document_.parts()[pressed_->part], *to - pressed_->position);
+            pressed_->position = *to;
+        }
+
+        // --- settings ---
+        /// After an item that changes settings: one step of undo for as long as it is held.
+        bool begun(const char* name)
+        {
+            if (ImGui::IsItemActivated())
+                held_ = document_.now();
+            if (!ImGui::IsItemEdited())
+                return false;
+            if (held_) {
+                document_.begin(name);
+                held_.reset();
+            }
+            return true;
+        }
+
+        /// A setting with a word for each value.
+        template <class Setting, std::size_t N>
+        void choice(const char* label, Setting render_settings::*member, const named<Setting> (&names)[N], const char* about)
+        {
+            const auto value = document_.now().settings.*member;
+            if (ImGui::BeginCombo(label, name_of(names, value))) {
+                for (const auto& n : names)
+                    if (ImGui::Selectable(n.name, n.value == value))
+                        change(label, [&](render_settings& s) { s.*member = n.value; });
+                ImGui::EndCombo();
+            }
+            tip(about);
+        }
+
+        /// A whole number, by a slider whose steps are even in its logarithm.
+        void number(const char* label, std::uint32_t render_settings::*member, int low, int high, const char* about)
+        {
+            int value = static_cast<int>(document_.now().settings.*member);
+            const bool edited = ImGui::SliderInt(label, &value, low, high, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+            if (begun(label) && edited)
+                document_.edit().settings.*member = static_cast<std::uint32_t>(value);
+            tip(about);
+        }
+
+        void measure(const char* label, double render_settings::*member, float low, float high, const char* format, bool logarithmic, const char* about)
+        {
+            float value = static_cast<float>(document_.now().settings.*member);
+            const bool edited = ImGui::SliderFloat(label, &value, low, high, format, (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp);
+            if (begun(label) && edited)
+                document_.edit().settings.*member = static_cast<double>(value);
+            tip(about);
+        }
+
+        template <class Change>
+        void change(const std::string& name, Change apply)
+        {
+            document_.begin(name);
+            apply(document_.edit().settings);
+        }
+
+        void draw_panel()
+        {
+            ImGui::PushItemWidth(170);
+            ImGui::TextUnformatted(document_.now().scene.name.c_str());
+            if (const auto part = document_.selected())
+                ImGui::Text("selected: %s", document_.parts()[*part].name.c_str());
+            else
+                ImGui::TextDisabled("click selects; drag turns");
+            tip("Left button: click selects, a drag moves what is selected (with Shift level with the floor), elsewhere it turns the camera. Right or middle button, or Shift: pans. Wheel: zooms. A moving camera keeps the photon map; "
+                "what moves in the scene needs a new one.");
+            ImGui::Separator();
+            draw_backend();
+            const auto& s = document_.now().settings;
+            number("photons", &render_settings::photons, 256, 4000000, "Photons stored (N, n). Speed: tracing and sorting them takes proportionally longer. Error: noise falls with the square root.");
+            number("k", &render_settings::k, 1, 4000, "Photons in an estimate (K, k). Speed: more take longer. Error: more are smoother, and blur shadows and caustics more.");
+            measure("radius, m", &render_settings::max_radius, 1e-3f, 10.0f, "%.4f", true,
+                "Largest search radius (R, r). Speed: dark places search this far. Error: where fewer than k photons lie within it, estimates are noisier instead of more blurred.");
+            choice("search", &render_settings::search, search_names, "Which photons (s): the k nearest; at least k, as the paper has it, faster on no backend and a little too bright; or all within the radius.");
+            choice("kernel", &render_settings::kernel, kernel_names, "Weight by distance (w). Speed: the same. Error: constant is the least noisy and shows discs; silverman the smoothest.");
+            choice("bias", &render_settings::bias, bias_names, "The photon that sets the radius: paper counts it, k / (k - 1) too bright; unbiased leaves it out.");
+            draw_grid();
+            choice("map", &render_settings::builder, map_names, "How the photon map is built (m). sort is exact; route takes fewer passes and, where cells overflow, is approximate.");
+            if (s.builder == map_builder::route)
+                number("slots", &render_settings::slots, 1, 16, "Cells have slots x slots places. More lose fewer photons and take more memory.");
+            ImGui::Separator();
+            number("eye rays", &render_settings::spp, 1, 64, "Eye rays a pixel. Speed: proportional. Error: smooth edges, less noise of glass and lamps.");
+            number("light samples", &render_settings::light_samples, 1, 256, "Shadow rays a lamp and eye ray. Speed: proportional for direct light. Error: smoother half-shadows.");
+            choice("light", &render_settings::only, part_names, "Which part of the light is shown. Caustics or indirect light alone need a map of their own.");
+            bool side = s.leaks.side;
+            if (ImGui::Checkbox("side", &side))
+                change("side", [&](render_settings& r) { r.leaks.side = side; });
+            tip("Refuse photons that came from behind a surface. Speed: hardly any. Error: no light leaks through walls.");
+            measure("exposure, EV", &render_settings::exposure, -10, 10, "%+.1f", false, "Brightness of the screen and of saved PNGs (E, e). Draws nothing anew.");
+            ImGui::Separator();
+            draw_buttons();
+            draw_curve();
+            ImGui::PopItemWidth();
+        }
+
+        void draw_backend()
+        {
+            const auto& now = document_.now().backend;
+            if (ImGui::BeginCombo("backend", now.c_str())) {
+                for (const auto* name : {"serial", "cpu", "gl", "gl-osmesa", "vulkan"})
+                    if (ImGui::Selectable(name, now == name)) {
+                        document_.begin("backend");
+                        document_.edit().backend = name;
+                    }
+                ImGui::EndCombo();
+            }
+            tip("What draws (b). The same photons give the same picture on all; speed differs. cpu is the fastest without a GPU.");
+        }
+
+        void draw_grid()
+        {
+            auto cells = glm::ivec3(document_.now().settings.grid);
+            bool fitted = cells == glm::ivec3(0);
+            if (ImGui::Checkbox("fitted grid", &fitted))
+                change("grid", [&](render_settings& r) { r.grid = fitted ? glm::uvec3(0) : options_.begin.settings.grid == glm::uvec3(0) ? glm::uvec3(32) : options_.begin.settings.grid; });
+            tip("Cells of the photon map fitted to photons and k (g). Speed: a grid that is too coarse or too fine searches longer. Error: none for the k nearest; `at_least_k` depends on its cells.");
+            if (!fitted) {
+                const bool edited = ImGui::SliderInt3("grid", &cells.x, 1, 256, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+                if (begun("grid") && edited)
+                    document_.edit().settings.grid = glm::uvec3(cells);
+                tip("Cells along x, y and z.");
+            }
+        }
+
+        void draw_buttons()
+        {
+            if (ImGui::Button("undo"))
+                undo();
+            tip("Takes the last change back (Ctrl+Z).");
+            ImGui::SameLine();
+            if (ImGui::Button("redo"))
+                redo();
+            tip("Does it again (Ctrl+Y).");
+            ImGui::SameLine();
+            if (ImGui::Button("save picture"))
+                save_picture();
+            tip("Writes the picture as it is, PNG and EXR, under a name that is free (p).");
+            ImGui::SameLine();
+            if (ImGui::Button("save scene"))
+                save_scene();
+            tip("Writes the scene with its changes and settings as a scene file, under a name that is free (Ctrl+S).");
+            ImGui::Checkbox("numbers over the picture", &overlay_);
+            tip("What runs, for how long, and what is left to do (o).");
+            if (!message_.empty())
+                ImGui::TextWrapped("%s", message_.c_str());
+        }
+
+        void draw_curve()
+        {
+            const auto plot = [](const char* label, const std::vector<float>& values, const char* about) {
+                char last[48] = "";
+                if (!values.empty())
+                    std::snprintf(last, sizeof last, "%.2g", std::pow(10.0, static_cast<double>(values.back())));
+                ImGui::PlotLines(label, values.data(), static_cast<int>(values.size()), 0, last, -8, 2, {170, 60});
+                tip(about);
+            };
+            plot("change", changes_, "relMSE from picture to picture since the last change of yours, logarithmic: from 100 down to 1e-8.");
+            if (options_.reference)
+                plot("error", errors_, "relMSE to the reference, logarithmic: from 100 down to 1e-8.");
+        }
+
+        // --- keys ---
+        void keys()
+        {
+            const auto& io = ImGui::GetIO();
+            const auto pressed = [](int key) { return ImGui::IsKeyPressed(key); };
+            if (io.KeyCtrl) {
+                if (pressed(GLFW_KEY_Z))
+                    io.KeyShift ? redo() : undo();
+                if (pressed(GLFW_KEY_Y))
+                    redo();
+                if (pressed(GLFW_KEY_S))
+                    save_scene();
+                return;
+            }
+            const bool up = io.KeyShift;
+            const auto doubled = [&](int key, const char* name, std::uint32_t render_settings::*member, std::uint32_t high) {
+                if (pressed(key))
+                    change(name, [&](render_settings& s) { s.*member = std::clamp(up ? s.*member * 2 : s.*member / 2, 1u, high); });
+            };
+            const auto next = [&](int key, const char* name, auto member, const auto& names) {
+                if (pressed(key))
+                    change(name, [&](render_settings& s) {
+                        std::size_t i = 0;
+                        while (names[i].value != s.*member)
+                            ++i;
+                        s.*member = names[(i + 1) % std::size(names)].value;
+                    });
+            };
+            doubled(GLFW_KEY_K, "k", &render_settings::k, 1u << 20);
+            doubled(GLFW_KEY_N, "photons", &render_settings::photons, 1u << 26);
+            next(GLFW_KEY_M, "map", &render_settings::builder, map_names);
+            next(GLFW_KEY_S, "search", &render_settings::search, search_names);
+            next(GLFW_KEY_W, "kernel", &render_settings::kernel, kernel_names);
+            if (pressed(GLFW_KEY_R))
+                change("radius", [&](render_settings& s) { s.max_radius *= up ? 1.25 : 0.8; });
+            if (pressed(GLFW_KEY_E))
+                change("exposure", [&](render_settings& s) { s.exposure = std::clamp(s.exposure + (up ? 0.5 : -0.5), -64.0, 64.0); });
+            if (pressed(GLFW_KEY_G))
+                change("grid", [&](render_settings& s) { s.grid = s.grid == glm::uvec3(0) ? options_.begin.settings.grid : glm::uvec3(0); });
+            if (pressed(GLFW_KEY_B)) {
+                document_.begin("backend");
+                auto& b = document_.edit().backend;
+                b = b == "serial" ? "cpu" : b == "cpu" ? "gl" : b == "gl" ? "vulkan" : "serial";
+            }
+            if (pressed(GLFW_KEY_P))
+                save_picture();
+            if (pressed(GLFW_KEY_O))
+                overlay_ = !overlay_;
+            if (pressed(GLFW_KEY_ESCAPE))
+                document_.select(std::nullopt);
+        }
+
+        void undo()
+        {
+            const auto what = document_.undo();
+            message_ = what.empty() ? "nothing to undo" : "undone: " + what;
+        }
+        void redo()
+        {
+            const auto what = document_.redo();
+            message_ = what.empty() ? "nothing to redo" : "done again: " + what;
+        }
+        void save_picture()
+        {
+            try {
+                const auto png = free_name(options_.stem, ".png"), exr = png.substr(0, png.size() - 4) + ".exr";
+                write_image(png, shown_.picture, document_.now().settings.exposure);
+                write_image(exr, shown_.picture);
+                message_ = "saved " + png + " and " + exr;
+            } catch (const file_error& e) {
+                message_ = e.what();
+            }
+        }
+        void save_scene()
+        {
+            try {
+                const auto name = free_name(options_.stem + "-changed", ".json");
+                write_file(name, scene_text(document_.now().scene, document_.now().settings));
+                message_ = "saved " + name;
+            } catch (const file_error& e) {
+                message_ = e.what();
+            }
+        }
+
+        window_options options_;
+        bool (*stop_asked_)();
+        glfw glfw_;
+        std::unique_ptr<GLFWwindow, window_closer> handle_;
+        interface interface_;
+        document document_;
+        std::mutex journal_guard_;
+        std::ofstream journal_;
+
+        GLuint texture_ = 0;
+        std::vector<unsigned char> bytes_;
+        frame shown_;
+        render_report report_;
+        version sent_;
+        std::uint64_t request_ = 0;
+        std::vector<float> changes_, errors_; ///< log10, since the last request
+        std::string message_;
+        bool overlay_ = true;
+        std::optional<grip> pressed_; ///< where a button went down
+        bool moved_ = false, moves_part_ = false;
+        std::optional<version> held_; ///< before the item that is held was edited
+        render_thread renderer_;      ///< last: its thread ends first
+    };
+} // namespace
+
+void show_window(const window_options& o, bool (*stop_asked)()) { window(o, stop_asked).run(); }
+
+} // namespace photongrid::viewer
