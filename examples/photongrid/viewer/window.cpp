@@ -144,10 +144,10 @@ namespace {
             , handle_(open(o.begin.settings))
             , interface_(handle_.get())
             , document_(o.begin)
-            , journal_(o.journal.empty() ? std::ofstream() : std::ofstream(o.journal, std::ios::trunc))
+            , journal_(o.journal)
             , renderer_(o.renderer, [] { glfwPostEmptyEvent(); }, o.journal.empty() ? journal() : [this](const std::string& line) { note(line); })
         {
-            if (!o.journal.empty() && !journal_)
+            if (!o.journal.empty() && !journal_.is_open())
                 throw file_error(o.journal + ": cannot be written");
             glGenTextures(1, &texture_);
             glBindTexture(GL_TEXTURE_2D, texture_);
@@ -161,14 +161,21 @@ namespace {
 
         void run()
         {
+            std::uint64_t turns = 0;
+            double slowest_ms = 0;
             while (glfwWindowShouldClose(handle_.get()) == GLFW_FALSE && !stop_asked_()) {
                 // Events and new pictures wake it at once.
                 glfwWaitEventsTimeout(report_.progress.stage == "finished" ? 0.5 : 0.1);
+                const double begin = glfwGetTime();
                 take_news();
                 draw();
                 if (glGetError() == context_lost)
                     throw backend_error("view: the window's OpenGL context was lost (driver reset); open it again, or take --backend cpu if the GPU is the renderer's too");
+                ++turns;
+                slowest_ms = std::max(slowest_ms, 1000 * (glfwGetTime() - begin));
             }
+            if (journal_.is_open())
+                note("{\"event\": \"closed\", \"turns\": " + std::to_string(turns) + ", \"slowest_turn_ms\": " + std::to_string(slowest_ms) + "}");
         }
 
     private:
@@ -176,6 +183,7 @@ namespace {
         {
             const float scale = std::max(1.0f, std::min(3.0f, 640.0f / static_cast<float>(std::max(s.width, s.height))));
             const int width = static_cast<int>(scale * static_cast<float>(s.width) + panel_width), height = std::max(720, static_cast<int>(scale * static_cast<float>(s.height)));
+            glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET); // so that a loss is said; ignored where it cannot be
             std::unique_ptr<GLFWwindow, window_closer> w(glfwCreateWindow(std::min(width, 1600), std::min(height, 1000), "photongrid", nullptr, nullptr));
             if (!w)
                 throw backend_error("view: the display gives no OpenGL context: " + glfw::said() + " (Debian: apt install libgl1-mesa-dri libglx-mesa0); `photongrid render --progressive DIR` needs none");
