@@ -197,6 +197,24 @@ TYPED_TEST_P(progressive, a_camera_that_moves_while_photons_are_traced_does_not_
     EXPECT_TRUE(same_bytes(drawing.picture(), this->whole(s, s.render)));
 }
 
+TYPED_TEST_P(progressive, who_wants_no_looks_any_more_gets_none)
+{
+    using ms = typename TestFixture::ms;
+    const auto s = this->small_scene();
+    const auto expected = this->whole(s, s.render);
+    for (int steps = 1; steps < 12; ++steps) { // into the early map, the look from it, the map after it
+        typename TestFixture::loop drawing(this->b());
+        drawing.start(s, s.render, {.target_ms = 1e-6});
+        for (int i = 0; i < steps; ++i)
+            drawing.step(ms(0));
+        drawing.start(s, s.render, {.wanted = false});
+        EXPECT_TRUE(drawing.step());
+        EXPECT_EQ(drawing.pictures(), 1u) << "after " << steps << " steps";
+        EXPECT_LE(drawing.maps(), 2u);
+        EXPECT_TRUE(same_bytes(drawing.picture(), expected)) << "after " << steps << " steps";
+    }
+}
+
 TYPED_TEST_P(progressive, a_cancelled_step_ends_after_its_pass)
 {
     const auto s = this->small_scene();
@@ -290,6 +308,6 @@ TYPED_TEST_P(progressive, what_cannot_be_drawn_leaves_the_picture_alone)
 }
 
 REGISTER_TYPED_TEST_SUITE_P(progressive, ends_with_the_bytes_of_render, first_looks_are_as_bright_as_the_picture, a_map_serves_until_the_light_changes,
-    a_camera_that_moves_while_photons_are_traced_does_not_begin_them_anew, a_cancelled_step_ends_after_its_pass, a_picture_goes_on_from_its_state, what_cannot_be_drawn_leaves_the_picture_alone);
+    a_camera_that_moves_while_photons_are_traced_does_not_begin_them_anew, who_wants_no_looks_any_more_gets_none, a_cancelled_step_ends_after_its_pass, a_picture_goes_on_from_its_state, what_cannot_be_drawn_leaves_the_picture_alone);
 
 } // namespace photongrid::testing

@@ -48,6 +48,8 @@ public:
         state_ = {};
         pictures_before_ = 0;
         started_ = true;
+        if (!looks.wanted)
+            drop_early_map();
     }
     /// Goes on from a state() of the same scene, settings and device, without first looks: the picture ends with the same bytes.
     /// To be called after start() and before step(), which throws std::invalid_argument for a state of another size.
@@ -55,6 +57,7 @@ public:
     {
         state_ = std::move(s);
         looks_.wanted = false;
+        drop_early_map();
     }
     /// What the picture has so far, for resume().
     view_state state() { return view_ && !built_is_early_ ? view_->state() : state_; }
@@ -127,6 +130,16 @@ private:
         built_.reset();
         built_is_early_ = false;
         stats_ = {};
+    }
+
+    /// Who wants no looks has no use for a map of fewer photons.
+    void drop_early_map()
+    {
+        if (built_is_early_)
+            built_.reset();
+        built_is_early_ = false;
+        if (building_ && building_with_.photons < settings_.photons)
+            building_.reset();
     }
 
     /// One pass: of the map, or of the picture. The picture waits for a map; the whole map, for a look from an early one.
