@@ -126,10 +126,11 @@ if [[ $smoke == yes ]]; then
   must bench/convergence.sh --quick cpu
   must bench/inclusion.sh --smoke
   if [[ $build == build-tests ]]; then
-    echo "Not built beside the tests, so not run: interactive, search_times, knn_peers, sort_peers, field_errors"
+    echo "Not built beside the tests, so not run: interactive, window.sh, search_times, knn_peers, sort_peers, field_errors"
     exit $failed
   fi
   must $build/bench/interactive examples/scenes/cornell_box.json 1 cpu
+  must bench/window.sh cpu
   must $build/bench/search_times 1 vulkan 1000
   must $build/bench/knn_peers --sets 1 --seconds 0.05
   must $build/bench/knn_peers_portable --sets 1 --seconds 0.05
@@ -190,6 +191,8 @@ if asked interactive; then
   must bench/convergence.sh
   title "Waiting (3.4)"
   must $build/bench/interactive examples/scenes/cornell_box.json 9 cpu vulkan
+  title "The window (3.4)"
+  must bench/window.sh
 fi
 if asked error; then
   title "Time against error"

@@ -14,7 +14,7 @@ program_packages=(
 # shellcheck disable=SC2034
 smoke_packages=(libbenchmark-dev gnuplot-nox jq)
 # shellcheck disable=SC2034
-bench_packages=(libcgal-dev libflann-dev libnanoflann-dev)
+bench_packages=(libcgal-dev libflann-dev libnanoflann-dev xvfb xdotool)
 # Packages that later Debians no longer have; CMake does without.
 optional_packages=(libosmesa6-dev)
 

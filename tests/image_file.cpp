@@ -204,6 +204,19 @@ namespace {
         EXPECT_EQ(tone_mapped(0.5f, -1000), 0);
     }
 
+    TEST(tone_map, equals_tone_mapped_bit_for_bit)
+    {
+        for (const double exposure : {0.0, 1.0, -3.7, 12.25, -64.0, 64.0}) {
+            const tone_map fast(exposure);
+            const float infinite = std::numeric_limits<float>::infinity();
+            for (const float v : {0.0f, -0.0f, -1.0f, 1.0f, infinite, -infinite, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::min(), std::numeric_limits<float>::max()})
+                ASSERT_EQ(fast(v), tone_mapped(v, exposure)) << v << " at " << exposure << " EV";
+            float v = static_cast<float>(std::exp2(-exposure)) * 1e-4f;
+            for (int i = 0; i < 100000; ++i, v *= 1.0001f)
+                ASSERT_EQ(fast(v), tone_mapped(v, exposure)) << v << " at " << exposure << " EV";
+        }
+    }
+
     TEST_F(image_file, refuses_paths_that_cannot_be_written)
     {
         const auto p = gradient();

@@ -17,6 +17,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string_view>
 #include <system_error>
 
@@ -51,11 +52,12 @@ namespace {
     // --- PNG ---
     std::string png_bytes(const image& picture, double exposure)
     {
+        const tone_map to_screen(exposure);
         std::vector<unsigned char> rgb;
         rgb.reserve(picture.pixels.size() * 3);
         for (const auto& p : picture.pixels)
             for (int c = 0; c < 3; ++c)
-                rgb.push_back(tone_mapped(p[c], exposure));
+                rgb.push_back(to_screen(p[c]));
         png_image png{};
         png.version = PNG_IMAGE_VERSION;
         png.width = picture.width;
@@ -233,6 +235,22 @@ unsigned char tone_mapped(float linear, double exposure)
     const double c = std::min(v, 1.0);
     const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
     return static_cast<unsigned char>(std::lround(255 * encoded));
+}
+
+tone_map::tone_map(double exposure)
+{
+    // Positive floats are in the order of their bits.
+    for (unsigned step = 0; step < steps_.size(); ++step) {
+        std::uint32_t low = 0, high = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
+        while (low < high) {
+            const auto middle = low + (high - low) / 2;
+            if (tone_mapped(std::bit_cast<float>(middle), exposure) > step)
+                high = middle;
+            else
+                low = middle + 1;
+        }
+        steps_[step] = std::bit_cast<float>(high);
+    }
 }
 
 void write_file(const std::string& path, const std::string& bytes)

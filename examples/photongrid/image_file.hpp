@@ -3,6 +3,7 @@
 
 #include <photongrid/scene.hpp>
 
+#include <array>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -40,6 +41,24 @@ void write_file(const std::string& path, const std::string& bytes);
 
 /// Linear radiance to an 8-bit sRGB value: clamp(2^exposure * linear, 0, 1) through the sRGB transfer function.
 unsigned char tone_mapped(float linear, double exposure);
+
+/// The same for many values at one exposure, bit for bit, some twenty times as fast: by the values at which it changes.
+class tone_map {
+public:
+    explicit tone_map(double exposure);
+    unsigned char operator()(float linear) const
+    {
+        if (!(linear > 0)) // NaN too
+            return 0;
+        unsigned n = 0; // of the steps, those at or below `linear`
+        for (unsigned half = 128; half > 0; half /= 2)
+            n += steps_[n + half - 1] <= linear ? half : 0;
+        return static_cast<unsigned char>(n);
+    }
+
+private:
+    std::array<float, 255> steps_{}; ///< the smallest value that becomes 1, 2, …
+};
 
 /// How far picture a is from the reference b, over all channels of the pixels that are finite in both.
 struct image_difference {

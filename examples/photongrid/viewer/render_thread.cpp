@@ -4,6 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
 namespace photongrid::viewer {
 
 namespace {
@@ -12,6 +16,12 @@ namespace {
 
     /// Time that a step may take before it is asked again what to do.
     constexpr double step_ms = 8;
+
+    /// Where every core renders, the window comes first: this thread, and those that the backend makes in it, give way to others.
+    void give_way()
+    {
+        (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 5); // of one thread, on Linux; it may be refused
+    }
 } // namespace
 
 render_thread::render_thread(renderer_options options, std::function<void()> wake, journal log)
@@ -72,6 +82,7 @@ void render_thread::tell(const std::string& event, const std::string& more) cons
 
 void render_thread::work()
 {
+    give_way();
     for (;;) {
         {
             std::unique_lock lock(guard_);

@@ -161,7 +161,7 @@ namespace {
 
         void run()
         {
-            std::uint64_t turns = 0;
+            std::uint64_t turns = 0, slow_turns = 0;
             double slowest_ms = 0;
             while (glfwWindowShouldClose(handle_.get()) == GLFW_FALSE && !stop_asked_()) {
                 // Events and new pictures wake it at once.
@@ -172,10 +172,12 @@ namespace {
                 if (glGetError() == context_lost)
                     throw backend_error("view: the window's OpenGL context was lost (driver reset); open it again, or take --backend cpu if the GPU is the renderer's too");
                 ++turns;
-                slowest_ms = std::max(slowest_ms, 1000 * (glfwGetTime() - begin));
+                const double ms = 1000 * (glfwGetTime() - begin);
+                slowest_ms = std::max(slowest_ms, ms);
+                slow_turns += ms > 1000.0 / 30 ? 1u : 0u;
             }
             if (journal_.is_open())
-                note("{\"event\": \"closed\", \"turns\": " + std::to_string(turns) + ", \"slowest_turn_ms\": " + std::to_string(slowest_ms) + "}");
+                note("{\"event\": \"closed\", \"turns\": " + std::to_string(turns) + ", \"turns_above_33_ms\": " + std::to_string(slow_turns) + ", \"slowest_turn_ms\": " + std::to_string(slowest_ms) + "}");
         }
 
     private:
@@ -241,10 +243,11 @@ namespace {
             const auto& p = shown_.picture;
             if (p.pixels.empty())
                 return;
+            const tone_map to_screen(document_.now().settings.exposure);
             bytes_.clear();
             for (const auto& pixel : p.pixels)
                 for (int c = 0; c < 3; ++c)
-                    bytes_.push_back(tone_mapped(pixel[c], document_.now().settings.exposure));
+                    bytes_.push_back(to_screen(pixel[c]));
             glBindTexture(GL_TEXTURE_2D, texture_);
             glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
             glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, static_cast<GLsizei>(p.width), static_cast<GLsizei>(p.height), 0, GL_RGB, GL_UNSIGNED_BYTE, bytes_.data());
