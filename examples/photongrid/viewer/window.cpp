@@ -591,6 +591,10 @@ namespace {
         }
         void save_picture()
         {
+            if (shown_.number == 0) {
+                message_ = "there is no picture yet";
+                return;
+            }
             try {
                 const auto png = free_name(options_.stem, ".png"), exr = png.substr(0, png.size() - 4) + ".exr";
                 write_image(png, shown_.picture, document_.now().settings.exposure);
