@@ -65,7 +65,7 @@ faults=(
   "another seed keeps its map|include/photongrid/scene_map.hpp| && as.seed == bs.seed|"
   "a moved camera drops the map|include/photongrid/progressive_render.hpp|if (!same_map(|if (scene_.camera != s.camera \|\| !same_map("
   "the early map stays|include/photongrid/progressive_render.hpp|built_is_early_ = built_with_.photons < settings_.photons;|built_is_early_ = false;"
-  "looks are dark|include/photongrid/progressive_view.hpp|is_look() ? 1.0f : 1.0f / static_cast<float>(settings_.spp), canvas_|is_look() ? 0.8f : 1.0f / static_cast<float>(settings_.spp), canvas_"
+  "looks are dark|include/photongrid/progressive_view.hpp|looking() ? 1.0f : 1.0f / static_cast<float>(settings_.spp), canvas_|looking() ? 0.8f : 1.0f / static_cast<float>(settings_.spp), canvas_"
   "ties of the k-th unseen|include/photongrid/kernels/kth_distance.glsl|before > 0u && component(below, before - 1u) == kth ? 1u : 0u|before > 9u ? 1u : 0u"
   "photon at the pivot on the far side|include/photongrid/kernels/kth_distance.glsl|inside && key <= middle ? 1u : 0u|inside && key < middle ? 1u : 0u"
   "share of the outer edges added|include/photongrid/kernels/covered_share.glsl|d < 0.0f ? -rim : rim|rim"

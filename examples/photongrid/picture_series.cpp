@@ -22,24 +22,25 @@ namespace {
                 part.pixels.push_back(whole.pixels[std::size_t{c.y + y} * whole.width + c.x + x]);
         return part;
     }
-} // namespace
 
-image side_by_side(const std::vector<image>& pictures)
-{
-    constexpr std::uint32_t gap = 2;
-    image all;
-    all.height = pictures.at(0).height;
-    for (const auto& p : pictures)
-        all.width += p.width + (all.width > 0 ? gap : 0);
-    for (std::uint32_t y = 0; y < all.height; ++y)
-        for (const auto& p : pictures) {
-            if (&p != &pictures.front())
-                all.pixels.insert(all.pixels.end(), gap, glm::vec3(1e6f)); // white at any exposure
-            const auto row = p.pixels.begin() + static_cast<std::ptrdiff_t>(std::size_t{y} * p.width);
-            all.pixels.insert(all.pixels.end(), row, row + p.width);
-        }
-    return all;
-}
+    /// Pictures of equal height side by side, with a line of white between them.
+    image side_by_side(const std::vector<image>& pictures)
+    {
+        constexpr std::uint32_t gap = 2;
+        image all;
+        all.height = pictures.at(0).height;
+        for (const auto& p : pictures)
+            all.width += p.width + (all.width > 0 ? gap : 0);
+        for (std::uint32_t y = 0; y < all.height; ++y)
+            for (const auto& p : pictures) {
+                if (&p != &pictures.front())
+                    all.pixels.insert(all.pixels.end(), gap, glm::vec3(1e6f)); // white at any exposure
+                const auto row = p.pixels.begin() + static_cast<std::ptrdiff_t>(std::size_t{y} * p.width);
+                all.pixels.insert(all.pixels.end(), row, row + p.width);
+            }
+        return all;
+    }
+} // namespace
 
 picture_series::picture_series(series_options o) : options_(std::move(o))
 {

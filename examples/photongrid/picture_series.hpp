@@ -64,7 +64,4 @@ private:
     std::vector<double> strip_times_;
 };
 
-/// `steps` pictures of equal height side by side, with a line of white between them.
-image side_by_side(const std::vector<image>& pictures);
-
 } // namespace photongrid

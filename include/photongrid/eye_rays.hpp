@@ -30,9 +30,7 @@ inline raster raster_of(const render_settings& s, uint divisor) { return {(s.wid
 inline kernels::eye_ray::Params eye_params(const camera& c, const dvec3& center, const render_settings& s, const raster& r, uint sample)
 {
     check(c);
-    const dvec3 forward = glm::normalize(c.look_at - c.position);
-    const dvec3 right = glm::normalize(glm::cross(forward, c.up));
-    const dvec3 up = glm::cross(right, forward);
+    const auto [forward, right, up] = camera_axes(c);
     const double height = 2 * std::tan(glm::radians(c.vertical_fov) / 2);
     const double width = height * s.width / s.height;
     const auto narrow = [](const dvec3& v) { return glm::vec4(glm::vec3(v), 0.0f); };

@@ -115,7 +115,7 @@ public:
     /// Roughly, of the picture's work, looks apart, what is done: 0 to 1.
     double fraction() const
     {
-        if (finished() || is_look())
+        if (finished() || looking())
             return finished() ? 1.0 : 0.0;
         const double pixels = static_cast<double>(settings_.width) * settings_.height;
         const double of_this_ray = search_ ? 1.0 - static_cast<double>(unfinished_) / pixels : 0.0;
@@ -126,9 +126,9 @@ public:
     /// How many pictures there have been so far, each better than the last; 0: picture() has nothing to show.
     std::uint64_t pictures() const { return pictures_; }
     /// True while first looks are drawn.
-    bool looking() const { return is_look(); }
+    bool looking() const { return look_ < looks_.size(); }
     /// What is drawn now: the side of its pixels, in the picture's.
-    uint divisor() const { return is_look() ? looks_[look_].divisor : 1u; }
+    uint divisor() const { return looking() ? looks_[look_].divisor : 1u; }
 
     /// Runs the next pass.
     /// \throws backend_error.
@@ -178,7 +178,7 @@ public:
     {
         if (finished())
             return {settings_.spp * branches_, b_.download(shown_->pixels), b_.download(shown_->searches), b_.download(shown_->errors)};
-        if (is_look() || !canvas_)
+        if (looking() || !canvas_)
             return {};
         return {ray_, b_.download(canvas_->pixels), b_.download(canvas_->searches), b_.download(canvas_->errors)};
     }
@@ -213,11 +213,10 @@ private:
         buffer_of<B, glm::vec4> direct;
     };
 
-    bool is_look() const { return look_ < looks_.size(); }
     /// The paper's search adds light up while it grows, so who looks can look at it while it runs (3.4).
     bool grows() const
     {
-        return !is_look() && !looks_.empty() && settings_.search == search_kind::at_least_k && settings_.kernel == filter_kernel::constant && settings_.bias == bias_kind::paper && !settings_.aov;
+        return !looking() && !looks_.empty() && settings_.search == search_kind::at_least_k && settings_.kernel == filter_kernel::constant && settings_.bias == bias_kind::paper && !settings_.aov;
     }
     /// The first sample's other ways through the scene must be there already.
     bool shows_running_estimate() const { return search_ && grows() && grown_ > 0 && ray_ + 1 == branches_; }
@@ -242,7 +241,7 @@ private:
         const auto r = detail::raster_of(settings_, divisor());
         const std::size_t n = r.size();
         if (!canvas_)
-            canvas_.emplace(canvas{r, dark(n), dark(n), dark(!is_look() && settings_.aov ? n : 0)});
+            canvas_.emplace(canvas{r, dark(n), dark(n), dark(!looking() && settings_.aov ? n : 0)});
         if (ray_ < branches_ && kept_[ray_]) {
             current_ = std::move(kept_[ray_]);
             kept_[ray_].reset();
@@ -278,7 +277,7 @@ private:
     knn_settings wanted() const
     {
         knn_settings k = detail::estimate_settings(settings_, least_radius(built_.map.cells_of));
-        if (is_look()) {
+        if (looking()) {
             k.k = std::min(k.k, std::max(8u, k.k / looks_[look_].fewer));
             k.errors = false;
             if (k.search == search_kind::exact_k)
@@ -319,11 +318,11 @@ private:
 
     void end_search()
     {
-        const auto found = shade(std::move(*search_).estimates(), is_look() ? 1.0f : 1.0f / static_cast<float>(settings_.spp), canvas_->pixels, canvas_->searches);
+        const auto found = shade(std::move(*search_).estimates(), looking() ? 1.0f : 1.0f / static_cast<float>(settings_.spp), canvas_->pixels, canvas_->searches);
         if (canvas_->errors.size() > 0)
             b_.template run<kernels::tally_error>(canvas_->errors.size(), {}, reads(current_->hits.points, found.irradiance, found.standard_error), writes(canvas_->errors));
         search_.reset();
-        if (is_look() && (look_ + 1 < looks_.size() ? looks_[look_ + 1].divisor : 1u) == divisor())
+        if (looking() && (look_ + 1 < looks_.size() ? looks_[look_ + 1].divisor : 1u) == divisor())
             kept_[ray_] = std::move(current_); // the next look sees the same points
         current_.reset();
         ++ray_;
@@ -346,7 +345,7 @@ private:
     {
         ++pictures_;
         const uint samples = ray_ / branches_;
-        if (is_look() || samples == settings_.spp) {
+        if (looking() || samples == settings_.spp) {
             shown_ = std::move(canvas_);
             canvas_.reset();
             ray_ = 0;

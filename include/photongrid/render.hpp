@@ -19,17 +19,15 @@ image draw(B& b, const built_map<B>& built, const camera& view, const render_set
     const std::vector<first_look> looks{{8, 16}, {4, 16}, {2, 16}, {1, 16}, {1, 4}};
     progressive_view<B> drawing(b, built, view, settings, stats, observer.intermediate ? looks : std::vector<first_look>{},
         observer.intermediate || observer.cancelled ? pass_size::small : pass_size::largest);
-    for (std::uint64_t seen = 0; !drawing.finished();) {
-        if (observer.cancelled && observer.cancelled())
-            throw render_cancelled();
-        drawing.advance();
+    std::uint64_t seen = 0;
+    detail::run_to_end(drawing, observer, [&] {
         if (observer.progress)
             observer.progress("radiance_estimate", drawing.fraction());
         if (observer.intermediate && drawing.pictures() > seen && !drawing.finished()) {
             seen = drawing.pictures();
             observer.intermediate(drawing.picture());
         }
-    }
+    });
     return drawing.picture();
 }
 

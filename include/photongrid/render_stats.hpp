@@ -76,4 +76,18 @@ struct render_observer {
     std::function<bool()> cancelled;                                       ///< asked between passes
 };
 
+namespace detail {
+    /// Advances `work` until it is finished; after each pass calls `passed`. \throws render_cancelled.
+    template <class Work, class Passed>
+    void run_to_end(Work& work, const render_observer& observer, Passed passed)
+    {
+        while (!work.finished()) {
+            if (observer.cancelled && observer.cancelled())
+                throw render_cancelled();
+            work.advance();
+            passed();
+        }
+    }
+} // namespace detail
+
 } // namespace photongrid

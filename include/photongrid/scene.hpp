@@ -117,6 +117,15 @@ struct camera {
     bool operator==(const camera&) const = default; ///< of every member
 };
 
+namespace detail {
+    /// The directions of a camera's picture, unit vectors.
+    struct camera_axes {
+        dvec3 forward, right, up;
+
+        explicit camera_axes(const camera& c) : forward(glm::normalize(c.look_at - c.position)), right(glm::normalize(glm::cross(forward, c.up))), up(glm::cross(right, forward)) {}
+    };
+} // namespace detail
+
 /// How a photon map is built: sorted_map (2.2.1) or routed_map (2.2.2).
 enum class map_builder { sort, route };
 

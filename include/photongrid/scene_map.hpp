@@ -111,13 +111,10 @@ template <backend B>
 built_map<B> build_map(B& b, const scene& s, const render_settings& settings, const render_observer& observer, render_stats& stats)
 {
     map_building<B> building(b, s, settings, stats);
-    while (!building.finished()) {
-        if (observer.cancelled && observer.cancelled())
-            throw render_cancelled();
-        building.advance();
+    detail::run_to_end(building, observer, [&] {
         if (observer.progress)
             observer.progress(building.finished() ? "build_map" : "trace_photons", building.fraction());
-    }
+    });
     return building.take();
 }
 

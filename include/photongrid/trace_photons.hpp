@@ -173,13 +173,10 @@ template <backend B>
 traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings, const render_observer& observer = {})
 {
     photon_tracing<B> tracing(b, s, device, settings);
-    while (!tracing.finished()) {
-        if (observer.cancelled && observer.cancelled())
-            throw render_cancelled();
-        tracing.advance();
+    detail::run_to_end(tracing, observer, [&] {
         if (observer.progress)
             observer.progress("trace_photons", tracing.fraction());
-    }
+    });
     return tracing.take();
 }
 

@@ -46,14 +46,6 @@ std::string document::redo()
     return next.name;
 }
 
-void document::give_up()
-{
-    if (past_.empty())
-        return;
-    now_ = std::move(past_.back().before);
-    past_.pop_back();
-}
-
 void document::orbit(double across, double upward)
 {
     auto& c = now_.scene.camera;

@@ -34,8 +34,6 @@ public:
     /// Takes back, or does again, one step; says which, or "" where there is none.
     std::string undo();
     std::string redo();
-    /// Takes back what was done since begin(), where it cannot be drawn.
-    void give_up();
 
     // The camera. Angles in degrees.
     /// Turns about the point that is looked at; up stays up.

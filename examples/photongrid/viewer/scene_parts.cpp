@@ -108,9 +108,7 @@ void move(scene& s, const scene_part& part, const dvec3& by)
 
 sight_line sight_line_at(const camera& c, double width, double height, double x, double y)
 {
-    const dvec3 forward = glm::normalize(c.look_at - c.position);
-    const dvec3 right = glm::normalize(glm::cross(forward, c.up));
-    const dvec3 up = glm::cross(right, forward);
+    const auto [forward, right, up] = photongrid::detail::camera_axes(c);
     const double reach = std::tan(glm::radians(c.vertical_fov) / 2);
     return {c.position, glm::normalize(forward + (2 * x / width - 1) * reach * width / height * right + (1 - 2 * y / height) * reach * up)};
 }

@@ -122,7 +122,7 @@ namespace {
                 b.add(corner);
         }
         const auto& c = s.camera;
-        const dvec3 forward = glm::normalize(c.look_at - c.position), right = glm::normalize(glm::cross(forward, c.up)), up = glm::cross(right, forward);
+        const auto [forward, right, up] = photongrid::detail::camera_axes(c);
         const double reach = std::tan(glm::radians(c.vertical_fov) / 2);
         frame_box f;
         for (int corner = 0; corner < 8; ++corner) {
@@ -204,7 +204,7 @@ namespace {
         void send(bool moving)
         {
             sent_ = document_.now();
-            request_ = renderer_.show(sent_, moving);
+            renderer_.show(sent_, moving);
         }
         void send_changes(bool moving)
         {
@@ -629,7 +629,6 @@ namespace {
         frame shown_;
         render_report report_;
         version sent_;
-        std::uint64_t request_ = 0;
         std::vector<float> changes_, errors_; ///< log10, since the last request
         std::string message_;
         bool overlay_ = true;
