@@ -4,6 +4,8 @@
 //   search_times [REPETITIONS [BACKEND [POINTS]]]
 #include "data_sets.hpp"
 
+#include <photongrid/backends/cpu/cpu.hpp>
+#include <photongrid/backends/cpu/overrides/all.hpp>
 #include <photongrid/backends/gl/gl.hpp>
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/backends/vulkan/vulkan.hpp>
@@ -99,6 +101,8 @@ int main(int argc, char** argv)
     const auto wanted = [&](const char* name) { return argc < 3 || std::strcmp(argv[2], name) == 0; };
     if (wanted("serial"))
         measure(serial_backend(), s, repetitions);
+    if (wanted("cpu"))
+        measure(cpu_backend(), s, repetitions);
     if (wanted("vulkan"))
         measure(vulkan_backend(), s, repetitions);
     if (wanted("gl"))

@@ -49,14 +49,20 @@ public:
     {
     }
 
+    /// Is light added up while a search for `s` still runs, so that estimates() is worth a look before it has finished (3.4)?
+    static bool shows_running_estimate(const knn_settings& s)
+    {
+        return s.search == search_kind::at_least_k && s.kernel == filter_kernel::constant && s.bias == bias_kind::paper && !s.errors;
+    }
+
     /// Runs at most `passes` more passes over the points not yet done, each a bounded amount of work for a point.
     progress advance(uint passes = nowhere)
     {
         return detail::run_stages(passes, [this] { return stage_ == stage::finished; }, [this](uint left) { return run_stage(left); }, [this] { next_stage(); });
     }
 
-    /// The estimates from what is held now. Final ones when the search has finished; before, at_least_k gives running ones
-    /// (3.4), and the other searches what was added up so far, which is too little.
+    /// The estimates from what is held now. Final ones when the search has finished; before, running ones where
+    /// shows_running_estimate(), else what was added up so far, which is too little.
     knn_estimates<B> estimates()
     {
         B& b = *in_.b;
@@ -120,7 +126,7 @@ private:
     {
         switch (stage_) {
         case stage::grow:
-            if (in_.s.kernel == filter_kernel::constant && in_.s.bias == bias_kind::paper && !in_.s.errors) {
+            if (shows_running_estimate(in_.s)) {
                 stage_ = stage::finished; // the growing search has added up the photons
                 return;
             }

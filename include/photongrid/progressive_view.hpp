@@ -213,11 +213,8 @@ private:
         buffer_of<B, glm::vec4> direct;
     };
 
-    /// The paper's search adds light up while it grows, so who looks can look at it while it runs (3.4).
-    bool grows() const
-    {
-        return !looking() && !looks_.empty() && settings_.search == search_kind::at_least_k && settings_.kernel == filter_kernel::constant && settings_.bias == bias_kind::paper && !settings_.aov;
-    }
+    /// Where light is added up while a search runs, who looks can look at it (3.4).
+    bool grows() const { return !looking() && !looks_.empty() && knn_search<B>::shows_running_estimate(detail::estimate_settings(settings_, least_radius(built_.map.cells_of))); }
     /// The first sample's other ways through the scene must be there already.
     bool shows_running_estimate() const { return search_ && grows() && grown_ > 0 && ray_ + 1 == branches_; }
 

@@ -1,5 +1,4 @@
-// The cpu backend's search: exact_k and fixed_radius in vectors, points in an order in which neighbours follow each other.
-// at_least_k, whose result depends on the order of visits, goes by the kernels.
+// The cpu backend's search in vectors, points in an order in which neighbours follow each other.
 #pragma once
 
 #include <photongrid/backends/cpu/overrides/search.hpp>
@@ -19,19 +18,20 @@ public:
     knn_search(cpu_backend& b, const photon_map<cpu_backend>& map, const vectors& points, const vectors& normals, const knn_settings& s)
         : knn_search(b, map, points, &normals, s) {}
 
+    /// A point's estimate is made at once: there is none of it before.
+    static constexpr bool shows_running_estimate(const knn_settings&) { return false; }
+
     progress advance(uint passes = nowhere)
     {
-        if (by_kernels_)
-            return by_kernels_->advance(passes);
-        auto& b = *in_->b;
+        auto& b = *in_.b;
         const cpu_backend::stopwatch watch;
-        const std::size_t n = in_->points->size(), begin = done_;
-        const std::size_t a_pass = cpu::search_block_size * std::max(1u, in_->s.visits_per_pass / 128u);
+        const std::size_t n = in_.points->size(), begin = done_;
+        const std::size_t a_pass = cpu::search_block_size * std::max(1u, in_.s.visits_per_pass / 128u);
         const std::size_t left = (n - begin + a_pass - 1) / a_pass;
         const auto now = static_cast<uint>(std::min<std::size_t>(passes, left));
         done_ = std::min(n, begin + now * a_pass);
         if (done_ > begin) {
-            auto job = cpu::make_search_job(*in_, order_);
+            auto job = cpu::make_search_job(in_, order_);
             job.irradiance = b.rows_to_write(e_.irradiance).data();
             job.used = b.rows_to_write(e_.used).data();
             if (job.errors)
@@ -49,33 +49,27 @@ public:
 
     knn_estimates<cpu_backend> estimates() &
     {
-        if (by_kernels_)
-            return by_kernels_->estimates();
         return {copy(e_.irradiance), copy(e_.used), copy(e_.standard_error)};
     }
     /// Of a search that goes away: nothing is copied.
     knn_estimates<cpu_backend> estimates() &&
     {
-        if (by_kernels_)
-            return by_kernels_->estimates();
         return std::move(e_);
     }
 
 private:
     knn_search(cpu_backend& b, const photon_map<cpu_backend>& map, const vectors& points, const vectors* normals, const knn_settings& s)
+        : in_(b, map, points, normals, s)
     {
-        if (s.search == search_kind::at_least_k) {
-            if (normals != nullptr)
-                by_kernels_.emplace(b, map, points, *normals, s);
-            else
-                by_kernels_.emplace(b, map, points, s);
-            return;
-        }
         const std::size_t n = points.size();
-        in_.emplace(b, map, points, normals, s);
         e_ = {b.make<glm::vec4>(n), b.make<glm::uvec2>(n), b.make<glm::vec4>(s.errors ? n : 0)};
-        const auto unfinished = b.rows_to_write(e_.irradiance);
-        std::fill(unfinished.begin(), unfinished.end(), glm::vec4(0, 0, 0, in_->max_radius2()));
+        const auto unfinished = [&](auto& buffer, const auto& value) {
+            const auto rows = b.rows_to_write(buffer);
+            std::fill(rows.begin(), rows.end(), value);
+        };
+        unfinished(e_.irradiance, glm::vec4(0, 0, 0, in_.max_radius2()));
+        unfinished(e_.used, glm::uvec2(0));
+        unfinished(e_.standard_error, glm::vec4(0));
         const cpu_backend::stopwatch watch;
         order_ = cpu::order_along_curve(b, map.cells_of, points);
         b.count_passes("knn_search", 0, watch);
@@ -84,15 +78,14 @@ private:
     template <element T>
     cpu_backend::buffer<T> copy(const cpu_backend::buffer<T>& from)
     {
-        auto& b = *in_->b;
+        auto& b = *in_.b;
         return b.upload(b.rows(from));
     }
 
-    std::optional<detail::search_inputs<cpu_backend>> in_;
+    detail::search_inputs<cpu_backend> in_;
     knn_estimates<cpu_backend> e_;
     cpu_backend::buffer<uint> order_;
     std::size_t done_ = 0; // in that order
-    std::optional<knn_search_by_kernels<cpu_backend>> by_kernels_;
 };
 
 } // namespace photongrid

@@ -70,7 +70,7 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
     if (s.leaks.needs_any())
         j.point_normals = b.rows(*in.normals).data();
     j.order = b.rows(order).data();
-    j.exact = s.search == search_kind::exact_k;
+    j.search = s.search;
     j.searching = in.searching();
     j.wanted = s.k;
     j.max_radius2 = in.max_radius2();

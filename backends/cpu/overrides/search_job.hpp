@@ -19,7 +19,7 @@ struct search_job {
     const glm::vec4* point_normals = nullptr; ///< only where a policy needs them
     const uint* order = nullptr;              ///< of the points: neighbours in it should be neighbours in space
 
-    bool exact = true;       ///< exact_k, else fixed_radius
+    search_kind search = search_kind::exact_k;
     bool searching = true;   ///< false: nothing can be found
     uint wanted = 0;         ///< k
     float max_radius2 = 0;   ///< m^2

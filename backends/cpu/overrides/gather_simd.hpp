@@ -1,0 +1,205 @@
+// Adding up the photons that a search chose, in vectors, and the estimate made of them. Read once for every instruction set, so
+// no include guard; other files include simd.hpp.
+//
+// Sums have 16 lanes whatever a register's width, so that results are the same to the bit on every machine.
+#include <photongrid/backends/cpu/overrides/packet_simd.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace photongrid::cpu::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// One sum in 16 lanes, whatever a register's width: a few terms in single precision, their sums in double.
+class lane_sums {
+    static constexpr std::size_t width = hn::MaxLanes(floats()), halves = width > 1 ? 2 : 1;
+    using doubles = hn::CappedTag<double, std::max<std::size_t>(1, width / 2)>;
+    vector few_[lanes / width];
+    hn::VFromD<doubles> all_[halves * lanes / width];
+
+public:
+    HWY_INLINE lane_sums()
+    {
+        for (auto& l : few_)
+            l = hn::Zero(floats());
+        for (auto& l : all_)
+            l = hn::Zero(doubles());
+    }
+    /// Adds to the lanes from group * width on.
+    HWY_INLINE void add(std::size_t group, vector term) { few_[group] = hn::Add(few_[group], term); }
+    /// After few terms.
+    HWY_INLINE void flush()
+    {
+        const doubles d;
+        for (std::size_t group = 0; group < lanes / width; ++group) {
+#if HWY_TARGET == HWY_SCALAR // has no halves
+            all_[group] = hn::Add(all_[group], hn::PromoteTo(d, few_[group]));
+#else
+            const hn::Half<floats> h;
+            all_[2 * group] = hn::Add(all_[2 * group], hn::PromoteTo(d, hn::LowerHalf(h, few_[group])));
+            all_[2 * group + 1] = hn::Add(all_[2 * group + 1], hn::PromoteTo(d, hn::UpperHalf(h, few_[group])));
+#endif
+            few_[group] = hn::Zero(floats());
+        }
+    }
+    /// The sum and `more`. Lane l and lane l + 8, then these eight the same way, and so on: the same tree for every width.
+    HWY_INLINE float total(double more) const
+    {
+        hn::VFromD<doubles> t[halves * lanes / width];
+        std::copy(std::begin(all_), std::end(all_), t);
+        for (std::size_t half = halves * lanes / width / 2; half > 0; half /= 2)
+            for (std::size_t v = 0; v < half; ++v)
+                t[v] = hn::Add(t[v], t[v + half]);
+        return static_cast<float>(folded(doubles(), t[0]) + more);
+    }
+
+private:
+    template <class D>
+    static HWY_INLINE double folded([[maybe_unused]] D d, hn::VFromD<D> v)
+    {
+#if HWY_TARGET != HWY_SCALAR // has no halves
+        if constexpr (hn::MaxLanes(d) > 1) {
+            const hn::Half<D> h;
+            return folded(h, hn::Add(hn::LowerHalf(h, v), hn::UpperHalf(h, v)));
+        }
+#endif
+        return hn::GetLane(v);
+    }
+
+};
+
+HWY_INLINE vector weight_of(filter_kernel kernel, vector t)
+{
+    const floats d;
+    const auto one = hn::Set(d, 1.0f);
+    switch (kernel) {
+    case filter_kernel::cone: return hn::Sub(one, hn::Sqrt(t));
+    case filter_kernel::epanechnikov: return hn::Sub(one, t);
+    case filter_kernel::silverman: return hn::Mul(hn::Sub(one, t), hn::Sub(one, t));
+    case filter_kernel::constant: break;
+    }
+    return one;
+}
+inline float weight_of(filter_kernel kernel, float t)
+{
+    switch (kernel) {
+    case filter_kernel::cone: return 1.0f - std::sqrt(t);
+    case filter_kernel::epanechnikov: return 1.0f - t;
+    case filter_kernel::silverman: return (1.0f - t) * (1.0f - t);
+    case filter_kernel::constant: break;
+    }
+    return 1.0f;
+}
+
+/// The radius that a search chose.
+struct chosen_radius {
+    float radius2 = 0;
+    bool by_photon = false; ///< a photon set it; else it was given
+};
+
+/// What was added up.
+struct gathered {
+    glm::vec4 sum{0}, squares{0};
+    uint held = 0;
+};
+
+/// Adds up the photons within the radius, as gather_photons.glsl, by the distances that the packet holds.
+template <bool ERRORS>
+HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& near, std::vector<uint>& at_radius)
+{
+    const floats d;
+    constexpr std::size_t width = hn::MaxLanes(d);
+    constexpr std::size_t few = 8; // terms in single precision: an error of 2^-21 at most
+    const std::size_t n = near.size();
+    const float* const distances = near.of(packet::squared_distance);
+    const float *const p_red = near.of(packet::red), *const p_green = near.of(packet::green), *const p_blue = near.of(packet::blue);
+    const float inverse_disc2 = 1.0f / std::max(r.radius2, j.min_radius2);
+    const auto radius2 = hn::Set(d, r.radius2), inverse = hn::Set(d, inverse_disc2), one = hn::Set(d, 1.0f);
+    const filter_kernel kernel = j.kernel;
+    lane_sums red, green, blue, red2, green2, blue2, all2;
+    std::size_t within = 0, at_most = 0;
+    for (std::size_t i = 0; i < n;) {
+        for (const std::size_t stop = std::min(n, i + few * lanes); i < stop;)
+            for (std::size_t group = 0; group < lanes / width; ++group, i += width) { // unrolled, so that sums stay in registers
+                const auto d2 = hn::Load(d, distances + i);
+                const auto nearer = hn::Lt(d2, radius2);
+                within += hn::CountTrue(d, nearer);
+                at_most += hn::CountTrue(d, hn::Le(d2, radius2));
+                const auto weight = hn::IfThenElseZero(nearer, weight_of(kernel, hn::Min(hn::Mul(d2, inverse), one)));
+                const auto r1 = hn::Mul(hn::Load(d, p_red + i), weight), g1 = hn::Mul(hn::Load(d, p_green + i), weight), b1 = hn::Mul(hn::Load(d, p_blue + i), weight);
+                red.add(group, r1);
+                green.add(group, g1);
+                blue.add(group, b1);
+                if (ERRORS) {
+                    const auto all = hn::Add(hn::Add(r1, g1), b1);
+                    red2.add(group, hn::Mul(r1, r1));
+                    green2.add(group, hn::Mul(g1, g1));
+                    blue2.add(group, hn::Mul(b1, b1));
+                    all2.add(group, hn::Mul(all, all));
+                }
+            }
+        red.flush();
+        green.flush();
+        blue.flush();
+        if (ERRORS) {
+            red2.flush();
+            green2.flush();
+            blue2.flush();
+            all2.flush();
+        }
+    }
+
+    // At the radius itself: all, or of the k nearest as many as are still wanted, the smallest ids first; of these, the one that
+    // set the radius may be left out.
+    std::size_t counted = at_most - within;
+    if (j.search == search_kind::exact_k && r.by_photon && at_most > j.wanted)
+        counted = j.wanted - within;
+    const bool apart = j.leave_out && r.by_photon && r.radius2 >= j.min_radius2;
+    double extra[3] = {}, extra2[4] = {};
+    if (counted > (apart ? 1u : 0u)) {
+        const auto by_id = [&](uint a, uint b) { return j.list[near.place(a)] < j.list[near.place(b)]; };
+        at_radius.clear();
+        for (std::size_t i = 0; i < near.size(); ++i)
+            if (distances[i] == r.radius2)
+                at_radius.push_back(static_cast<uint>(i));
+        std::partial_sort(at_radius.begin(), at_radius.begin() + static_cast<std::ptrdiff_t>(counted), at_radius.end(), by_id);
+        const float at_rim = weight_of(kernel, std::min(r.radius2 * inverse_disc2, 1.0f));
+        for (std::size_t i = 0; i + (apart ? 1 : 0) < counted; ++i) {
+            const float f[3] = {p_red[at_radius[i]] * at_rim, p_green[at_radius[i]] * at_rim, p_blue[at_radius[i]] * at_rim};
+            const float all = f[0] + f[1] + f[2];
+            for (int c = 0; c < 3; ++c) {
+                extra[c] += static_cast<double>(f[c]);
+                extra2[c] += static_cast<double>(f[c] * f[c]);
+            }
+            extra2[3] += static_cast<double>(all * all);
+        }
+    }
+    gathered g;
+    g.sum = {red.total(extra[0]), green.total(extra[1]), blue.total(extra[2]), 0.0f};
+    if (ERRORS)
+        g.squares = {red2.total(extra2[0]), green2.total(extra2[1]), blue2.total(extra2[2]), all2.total(extra2[3])};
+    g.held = static_cast<uint>(within + counted);
+    return g;
+}
+
+/// Does a point want an estimate?
+inline bool is_wanted(const search_job& j, uint point) { return j.searching && j.points[point].w > 0.0f && kernels::is_finite(j.points[point]); }
+
+/// Makes the estimate of what was gathered.
+inline void finish(const search_job& j, uint point, chosen_radius r, const gathered& g, uint visited)
+{
+    const glm::vec4 reach(r.radius2, r.by_photon ? 1.0f : 0.0f, 0, 0);
+    const glm::uvec4 tally(g.held, visited, 0, 0);
+    kernels::irradiance_estimate e;
+    e.args = {.norm = j.norm, .min_radius2 = j.min_radius2, .left_out = j.leave_out ? 1u : 0u};
+    e.bind(slot<0>{}, std::span(&reach, 1));
+    e.bind(slot<1>{}, std::span(&g.sum, 1));
+    e.bind(slot<2>{}, std::span(&g.squares, 1));
+    e.bind(slot<3>{}, std::span(&tally, 1));
+    e.kernel(0);
+    j.irradiance[point] = e.irradiance;
+    j.used[point] = e.used;
+    if (j.errors)
+        j.standard_error[point] = e.standard_error;
+}
+
+} // namespace photongrid::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();

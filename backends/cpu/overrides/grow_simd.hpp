@@ -1,0 +1,255 @@
+// The growing search (2.3, figure 6) in vectors: at_least_k. Read once for every instruction set, so no include guard; other
+// files include simd.hpp.
+//
+// It visits the same photons in the same order as knn_visit.glsl, a register at a time: while fewer than k are held, all within
+// the maximum radius are; the one that makes k sets the radius, and from then on all within that are. So only the register in
+// which the k-th is found has to be looked at photon by photon.
+#include <photongrid/backends/cpu/overrides/gather_simd.hpp>
+
+#include <bit>
+
+HWY_BEFORE_NAMESPACE();
+namespace photongrid::cpu::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The photons that one point holds while it visits others. STORE: their distances are kept, for weights that need the final
+/// radius; else their powers are added up at once.
+template <int POLICIES, bool STORE>
+class growth {
+public:
+    /// Nothing yet. `store` is overwritten.
+    HWY_INLINE growth(const search_job& j, const query& q, packet& store)
+        : job_(j), query_(q), store_(store), limit2_(j.max_radius2)
+    {
+        store_.clear();
+        farthest_ = hn::Zero(floats());
+    }
+
+    /// Squared: photons farther away are rejected.
+    float limit2() const { return limit2_; }
+    uint visited() const { return visited_; }
+    /// What the search has chosen, once it has visited all that can lie within limit2().
+    chosen_radius chosen() const { return {limit2_, enough()}; }
+    /// Not with STORE: what was added up.
+    HWY_INLINE gathered sum()
+    {
+        for (auto& s : sums_)
+            s.flush();
+        gathered g;
+        g.sum = {sums_[0].total(0), sums_[1].total(0), sums_[2].total(0), 0.0f};
+        g.held = static_cast<uint>(held_);
+        return g;
+    }
+
+    /// Visits photons first to past - 1 of the map.
+    HWY_INLINE void visit(std::size_t first, std::size_t past)
+    {
+        const floats d;
+        constexpr std::size_t width = hn::MaxLanes(d);
+        constexpr uint few = 8; // terms in single precision: an error of 2^-21 at most
+        const photon_planes photons{job_.positions, job_.directions, job_.normals};
+        visited_ += static_cast<uint>(past - first);
+        if (STORE)
+            store_.reserve(past - first + lanes);
+        for (std::size_t i = first; i < past;) {
+            for (std::size_t group = 0; group < lanes / width; ++group, i += width) { // unrolled, so that sums stay in registers
+                const auto d2 = squared_distances<POLICIES>(job_, query_, photons, i);
+                auto within = hn::And(hn::Le(d2, hn::Set(d, limit2_)), hn::FirstN(d, i < past ? past - i : 0));
+                if (!enough())
+                    within = grow(d2, within);
+                if (STORE)
+                    store_.add(d2, within, i);
+                else
+                    add(group, within, i);
+                held_ += hn::CountTrue(d, within);
+            }
+            if (!STORE && ++terms_ == few) {
+                terms_ = 0;
+                for (auto& s : sums_)
+                    s.flush();
+            }
+        }
+    }
+
+private:
+    bool enough() const { return held_ >= job_.wanted; }
+
+    /// Of those within, which count.
+    HWY_INLINE hn::Mask<floats> grow(vector distances2, hn::Mask<floats> within)
+    {
+        const floats d;
+        if (held_ + hn::CountTrue(d, within) >= job_.wanted)
+            return end_growth(distances2, within);
+        farthest_ = hn::Max(farthest_, hn::IfThenElseZero(within, distances2));
+        return within;
+    }
+    /// The k-th is among these: the farthest so far is the radius, and what comes after the k-th must not exceed it.
+    HWY_NOINLINE hn::Mask<floats> end_growth(vector distances2, hn::Mask<floats> within)
+    {
+        const floats d;
+        float distance2[lanes];
+        hn::StoreU(hn::IfThenElse(within, distances2, hn::Set(d, std::numeric_limits<float>::infinity())), d, distance2);
+        limit2_ = hn::GetLane(hn::MaxOfLanes(d, farthest_));
+        std::size_t held = held_;
+        for (std::size_t i = 0; held < job_.wanted; ++i) {
+            if (distance2[i] > job_.max_radius2)
+                continue;
+            limit2_ = std::max(limit2_, distance2[i]);
+            ++held;
+        }
+        return hn::Le(hn::LoadU(d, distance2), hn::Set(d, limit2_)); // those before the k-th are no farther either
+    }
+    /// Adds the powers of those within, of photons from i on.
+    HWY_INLINE void add(std::size_t group, hn::Mask<floats> within, std::size_t i)
+    {
+        const floats d;
+        sums_[0].add(group, hn::IfThenElseZero(within, hn::LoadU(d, job_.powers.x + i)));
+        sums_[1].add(group, hn::IfThenElseZero(within, hn::LoadU(d, job_.powers.y + i)));
+        sums_[2].add(group, hn::IfThenElseZero(within, hn::LoadU(d, job_.powers.z + i)));
+    }
+
+    const search_job& job_;
+    query_lanes query_;
+    packet& store_;
+    lane_sums sums_[3]; ///< red, green, blue
+    vector farthest_;   ///< squared distances, while fewer than k are held
+    float limit2_;
+    std::size_t held_ = 0;
+    uint visited_ = 0, terms_ = 0;
+};
+
+/// A box of cells about a point's own, `ring` cells away from it as far as the grid goes. Its surface is the ring of that number.
+struct ring_of_cells {
+    glm::uvec4 c;         ///< the point's own cell
+    glm::vec3 u;          ///< the point, in cells
+    uint ring = 0;
+    glm::uvec3 low, high; ///< both in the box
+};
+
+/// Visits layer z of a ring, row by row: all of a row on a face of the box, else its two ends, of which the grid may lack
+/// either. A register's width of rows is looked at together, by the limit that stands before the first of them; the limit
+/// only shrinks, so what it rules out then stays out, and the others are asked again.
+template <class Growth>
+HWY_INLINE void visit_layer(const search_job& j, const ring_of_cells& r, uint z, Growth& found)
+{
+    const grid& g = j.cells_of;
+    const floats d;
+    const ints di;
+    const uint width = static_cast<uint>(hn::Lanes(d));
+    const auto gap2 = [](float u, uint c, uint cell, float size) {
+        const float gap = kernels::gap(u, c, cell, size);
+        return gap * gap;
+    };
+    const float gap_z2 = gap2(r.u.z, r.c.z, z, g.cell.z);
+    if (gap_z2 > found.limit2())
+        return;
+    const bool face = z + r.ring == r.c.z || z == r.c.z + r.ring, has_low = r.c.x >= r.ring, has_high = r.c.x + r.ring == r.high.x;
+    const auto low_gap_x2 = hn::Set(d, gap2(r.u.x, r.c.x, r.low.x, g.cell.x)), high_gap_x2 = hn::Set(d, gap2(r.u.x, r.c.x, r.high.x, g.cell.x));
+    // Indices within a slab of cells; of two words each, so a slab of 2^29 cells is the largest that a gather reaches.
+    const auto* const slab = reinterpret_cast<const int*>(j.cells.data() + std::size_t{z} * g.resolution.y * g.resolution.x);
+    struct ends { // of the box's rows: photons there, their distance
+        int first[lanes], past[lanes];
+        float away2[lanes];
+        std::uint8_t some[8] = {};
+        bool has(uint i) const { return (some[i / 8] >> i % 8 & 1) != 0; }
+    };
+    for (uint y = r.low.y; y <= r.high.y; y += width) {
+        const auto cell = hn::Add(hn::Set(di, static_cast<int>(y)), hn::Iota(di, 0));
+        const auto gap_y = gaps(cell, r.u.y, r.c.y, g.cell.y);
+        const auto row2 = hn::Add(hn::Mul(gap_y, gap_y), hn::Set(d, gap_z2)), limit2 = hn::Set(d, found.limit2());
+        const auto rows = hn::And(hn::FirstN(d, r.high.y - y + 1), hn::Le(row2, limit2));
+        if (hn::AllFalse(d, rows))
+            continue;
+        auto whole = hn::FirstN(d, face ? width : 0);
+        whole = hn::Or(whole, hn::RebindMask(d, hn::Eq(cell, hn::Set(di, static_cast<int>(r.c.y + r.ring)))));
+        whole = hn::Or(whole, hn::RebindMask(d, hn::Eq(cell, hn::Set(di, static_cast<int>(r.c.y) - static_cast<int>(r.ring)))));
+        const auto row = hn::Mul(hn::Min(cell, hn::Set(di, static_cast<int>(r.high.y))), hn::Set(di, static_cast<int>(g.resolution.x)));
+        const auto low = hn::Add(row, hn::Set(di, static_cast<int>(r.low.x))), high = hn::Add(row, hn::Set(di, static_cast<int>(r.high.x)));
+        const auto look = [&](ends& e, hn::VFromD<ints> from, hn::VFromD<ints> to, vector away2, hn::Mask<floats> wanted) HWY_ATTR {
+            const auto twice_from = hn::Add(from, from), twice_to = hn::Add(to, to);
+            const auto first = hn::GatherIndex(di, slab, twice_from);
+            const auto past = hn::Add(hn::GatherIndex(di, slab, twice_to), hn::GatherIndex(di, slab + 1, twice_to));
+            hn::StoreU(first, di, e.first);
+            hn::StoreU(past, di, e.past);
+            hn::StoreU(away2, d, e.away2);
+            hn::StoreMaskBits(d, hn::And(wanted, hn::And(hn::Le(away2, limit2), hn::RebindMask(d, hn::Lt(first, past)))), e.some);
+        };
+        ends lower, upper;
+        const auto whole_int = hn::RebindMask(di, whole);
+        look(lower, low, hn::IfThenElse(whole_int, high, low), hn::IfThenElse(whole, row2, hn::Add(row2, low_gap_x2)), has_low ? rows : hn::And(rows, whole));
+        if (!face && has_high)
+            look(upper, high, high, hn::Add(row2, high_gap_x2), hn::AndNot(whole, rows));
+        const auto visit = [&](const ends& e, uint i) HWY_ATTR {
+            if (e.has(i) && e.away2[i] <= found.limit2())
+                found.visit(static_cast<uint>(e.first[i]), static_cast<uint>(e.past[i]));
+        };
+        for (uint some = static_cast<uint>(lower.some[0] | upper.some[0] | (lower.some[1] | upper.some[1]) << 8); some != 0; some &= some - 1) {
+            const auto i = static_cast<uint>(std::countr_zero(some));
+            visit(lower, i);
+            visit(upper, i);
+        }
+    }
+}
+
+/// Visits cell after cell in rings about a point, as knn_visit.glsl, until none beyond can reach into the radius.
+template <class Growth>
+HWY_INLINE void visit_rings(const search_job& j, const glm::vec4& point, Growth& found)
+{
+    const grid& g = j.cells_of;
+    const glm::uvec3 last = glm::uvec3(g.resolution) - 1u;
+    ring_of_cells r;
+    r.c = kernels::cell_coordinates(g, point);
+    r.u = {kernels::in_cells(point.x, g.origin.x, g.inverse_cell.x), kernels::in_cells(point.y, g.origin.y, g.inverse_cell.y), kernels::in_cells(point.z, g.origin.z, g.inverse_cell.z)};
+    for (;; ++r.ring) {
+        const glm::uvec3 c(r.c);
+        for (int axis = 0; axis < 3; ++axis) {
+            r.low[axis] = c[axis] > r.ring ? c[axis] - r.ring : 0u;
+            r.high[axis] = std::min(c[axis] + r.ring, last[axis]);
+        }
+        for (uint z = r.low.z; z <= r.high.z; ++z)
+            visit_layer(j, r, z, found);
+        // Can any cell beyond reach into the radius?
+        float reach = std::numeric_limits<float>::max();
+        for (int axis = 0; axis < 3; ++axis) {
+            if (r.high[axis] < last[axis])
+                reach = std::min(reach, kernels::gap(r.u[axis], c[axis], r.high[axis] + 1u, g.cell[axis]));
+            if (r.low[axis] > 0u)
+                reach = std::min(reach, kernels::gap(r.u[axis], c[axis], r.low[axis] - 1u, g.cell[axis]));
+        }
+        const bool everything = r.low == glm::uvec3(0u) && r.high == last;
+        if (everything || reach * reach > found.limit2())
+            return;
+    }
+}
+
+/// Searches for the points order[begin] to order[end - 1].
+template <int POLICIES>
+HWY_NOINLINE void grow_points(const search_job& j, std::size_t begin, std::size_t end)
+{
+    const bool store = j.kernel != filter_kernel::constant || j.leave_out || j.errors;
+    packet held;
+    std::vector<uint> at_radius;
+    for (std::size_t o = begin; o < end; ++o) {
+        const uint point = j.order[o];
+        if (!is_wanted(j, point)) {
+            finish(j, point, {j.max_radius2, false}, {}, 0);
+            continue;
+        }
+        query q{glm::vec3(j.points[point]), glm::vec3(0)};
+        if (POLICIES != 0)
+            q.normal = glm::vec3(j.point_normals[point]);
+        if (!store) {
+            growth<POLICIES, false> found(j, q, held);
+            visit_rings(j, j.points[point], found);
+            finish(j, point, found.chosen(), found.sum(), found.visited());
+            continue;
+        }
+        growth<POLICIES, true> found(j, q, held);
+        visit_rings(j, j.points[point], found);
+        held.fetch_powers(j);
+        finish(j, point, found.chosen(), j.errors ? gather<true>(j, found.chosen(), held, at_radius) : gather<false>(j, found.chosen(), held, at_radius), found.visited());
+    }
+}
+
+} // namespace photongrid::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
