@@ -126,49 +126,57 @@ struct ring_of_cells {
     glm::uvec3 low, high; ///< both in the box
 };
 
-/// Visits layer z of a ring, row by row: all of a row on a face of the box, else its two ends, of which the grid may lack
+/// Visits a ring, row of cells by row of cells: all of a row on a face of the box, else its two ends, of which the grid may lack
 /// either. A register's width of rows is looked at together, by the limit that stands before the first of them; the limit
 /// only shrinks, so what it rules out then stays out, and the others are asked again.
 template <class Growth>
-HWY_INLINE void visit_layer(const search_job& j, const ring_of_cells& r, uint z, Growth& found)
+HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& found)
 {
     const grid& g = j.cells_of;
     const floats d;
     const ints di;
-    const uint width = static_cast<uint>(hn::Lanes(d));
+    const auto every = [&](uint cells) HWY_ATTR { return hn::Set(di, static_cast<int>(cells)); };
     const auto gap2 = [](float u, uint c, uint cell, float size) {
         const float gap = kernels::gap(u, c, cell, size);
         return gap * gap;
     };
-    const float gap_z2 = gap2(r.u.z, r.c.z, z, g.cell.z);
-    if (gap_z2 > found.limit2())
-        return;
-    const bool face = z + r.ring == r.c.z || z == r.c.z + r.ring, has_low = r.c.x >= r.ring, has_high = r.c.x + r.ring == r.high.x;
+    const bool has_low = r.c.x >= r.ring, has_high = r.c.x + r.ring == r.high.x;
     const auto low_gap_x2 = hn::Set(d, gap2(r.u.x, r.c.x, r.low.x, g.cell.x)), high_gap_x2 = hn::Set(d, gap2(r.u.x, r.c.x, r.high.x, g.cell.x));
-    // Indices within a slab of cells; of two words each, so a slab of 2^29 cells is the largest that a gather reaches.
-    const auto* const slab = reinterpret_cast<const int*>(j.cells.data() + std::size_t{z} * g.resolution.y * g.resolution.x);
+    // Gathers reach 2^31 words, and cells are two: rows of several layers go together where fifteen layers are not farther.
+    const std::size_t layer = std::size_t{g.resolution.y} * g.resolution.x;
+    const bool together = layer < 1u << 26;
+    const uint across = r.high.y - r.low.y + 1;
+    const auto of_across = hn::Set(d, 1.0f / static_cast<float>(across));
     struct ends { // of the box's rows: photons there, their distance
         int first[lanes], past[lanes];
         float away2[lanes];
         std::uint8_t some[8] = {};
         bool has(uint i) const { return (some[i / 8] >> i % 8 & 1) != 0; }
     };
-    for (uint y = r.low.y; y <= r.high.y; y += width) {
-        const auto cell = hn::Add(hn::Set(di, static_cast<int>(y)), hn::Iota(di, 0));
-        const auto gap_y = gaps(cell, r.u.y, r.c.y, g.cell.y);
-        const auto row2 = hn::Add(hn::Mul(gap_y, gap_y), hn::Set(d, gap_z2)), limit2 = hn::Set(d, found.limit2());
-        const auto rows = hn::And(hn::FirstN(d, r.high.y - y + 1), hn::Le(row2, limit2));
-        if (hn::AllFalse(d, rows))
+    for (uint z = r.low.z, y = 0; z <= r.high.z;) { // the first row of these; y from the box's lowest
+        const uint left = together ? (r.high.z - z + 1) * across - y : across - y;
+        const uint rows = std::min(left, static_cast<uint>(hn::Lanes(d)));
+        // Rows beyond the last stand for it. Halves are far enough from whole numbers for the reciprocal's rounding.
+        const auto nth = hn::Min(hn::Add(every(y), hn::Iota(di, 0)), every(y + rows - 1));
+        const auto layers = hn::ConvertTo(di, hn::Mul(hn::Add(hn::ConvertTo(d, nth), hn::Set(d, 0.5f)), of_across));
+        const auto cell_y = hn::Add(hn::Sub(nth, hn::Mul(layers, every(across))), every(r.low.y)), cell_z = hn::Add(layers, every(z));
+        const auto* const base = reinterpret_cast<const int*>(j.cells.data() + z * layer);
+        for (y += rows; y >= across && z <= r.high.z; y -= across)
+            ++z;
+
+        const auto gap_y = gaps(cell_y, r.u.y, r.c.y, g.cell.y), gap_z = gaps(cell_z, r.u.z, r.c.z, g.cell.z);
+        const auto row2 = hn::Add(hn::Mul(gap_y, gap_y), hn::Mul(gap_z, gap_z)), limit2 = hn::Set(d, found.limit2());
+        const auto within = hn::And(hn::FirstN(d, rows), hn::Le(row2, limit2));
+        if (hn::AllFalse(d, within))
             continue;
-        auto whole = hn::FirstN(d, face ? width : 0);
-        whole = hn::Or(whole, hn::RebindMask(d, hn::Eq(cell, hn::Set(di, static_cast<int>(r.c.y + r.ring)))));
-        whole = hn::Or(whole, hn::RebindMask(d, hn::Eq(cell, hn::Set(di, static_cast<int>(r.c.y) - static_cast<int>(r.ring)))));
-        const auto row = hn::Mul(hn::Min(cell, hn::Set(di, static_cast<int>(r.high.y))), hn::Set(di, static_cast<int>(g.resolution.x)));
-        const auto low = hn::Add(row, hn::Set(di, static_cast<int>(r.low.x))), high = hn::Add(row, hn::Set(di, static_cast<int>(r.high.x)));
+        const auto at_distance = [&](hn::VFromD<ints> cell, uint c) HWY_ATTR { return hn::RebindMask(d, hn::Eq(hn::Abs(hn::Sub(cell, every(c))), every(r.ring))); };
+        const auto whole = hn::Or(at_distance(cell_y, r.c.y), at_distance(cell_z, r.c.z));
+        const auto row = hn::Mul(hn::Add(hn::Mul(layers, every(g.resolution.y)), cell_y), every(g.resolution.x));
+        const auto low = hn::Add(row, every(r.low.x)), high = hn::Add(row, every(r.high.x));
         const auto look = [&](ends& e, hn::VFromD<ints> from, hn::VFromD<ints> to, vector away2, hn::Mask<floats> wanted) HWY_ATTR {
             const auto twice_from = hn::Add(from, from), twice_to = hn::Add(to, to);
-            const auto first = hn::GatherIndex(di, slab, twice_from);
-            const auto past = hn::Add(hn::GatherIndex(di, slab, twice_to), hn::GatherIndex(di, slab + 1, twice_to));
+            const auto first = hn::GatherIndex(di, base, twice_from);
+            const auto past = hn::Add(hn::GatherIndex(di, base, twice_to), hn::GatherIndex(di, base + 1, twice_to));
             hn::StoreU(first, di, e.first);
             hn::StoreU(past, di, e.past);
             hn::StoreU(away2, d, e.away2);
@@ -176,9 +184,9 @@ HWY_INLINE void visit_layer(const search_job& j, const ring_of_cells& r, uint z,
         };
         ends lower, upper;
         const auto whole_int = hn::RebindMask(di, whole);
-        look(lower, low, hn::IfThenElse(whole_int, high, low), hn::IfThenElse(whole, row2, hn::Add(row2, low_gap_x2)), has_low ? rows : hn::And(rows, whole));
-        if (!face && has_high)
-            look(upper, high, high, hn::Add(row2, high_gap_x2), hn::AndNot(whole, rows));
+        look(lower, low, hn::IfThenElse(whole_int, high, low), hn::IfThenElse(whole, row2, hn::Add(row2, low_gap_x2)), has_low ? within : hn::And(within, whole));
+        if (has_high)
+            look(upper, high, high, hn::Add(row2, high_gap_x2), hn::AndNot(whole, within));
         const auto visit = [&](const ends& e, uint i) HWY_ATTR {
             if (e.has(i) && e.away2[i] <= found.limit2())
                 found.visit(static_cast<uint>(e.first[i]), static_cast<uint>(e.past[i]));
@@ -206,8 +214,12 @@ HWY_INLINE void visit_rings(const search_job& j, const glm::vec4& point, Growth&
             r.low[axis] = c[axis] > r.ring ? c[axis] - r.ring : 0u;
             r.high[axis] = std::min(c[axis] + r.ring, last[axis]);
         }
-        for (uint z = r.low.z; z <= r.high.z; ++z)
-            visit_layer(j, r, z, found);
+        if (r.ring == 0) {
+            const glm::uvec2 own = j.cells[kernels::cell_number(g, c.x, c.y, c.z)];
+            found.visit(own.x, own.x + own.y);
+        } else {
+            visit_ring(j, r, found);
+        }
         // Can any cell beyond reach into the radius?
         float reach = std::numeric_limits<float>::max();
         for (int axis = 0; axis < 3; ++axis) {
