@@ -174,7 +174,7 @@ HWY_INLINE void find_rows(const search_job& j, const glm::vec3& at, float radius
     s.rows = n;
 }
 
-/// The photons near some queries, one after the other.
+/// The photons near some queries, or those that a query holds, one after the other.
 class packet {
 public:
     enum plane { x, y, z, red, green, blue, travel_x, travel_y, travel_z, normal_x, normal_y, normal_z, squared_distance, kept, count };
