@@ -213,8 +213,10 @@ private:
         buffer_of<B, glm::vec4> direct;
     };
 
+    /// The picture's own search, looks apart.
+    knn_settings search_settings() const { return detail::estimate_settings(settings_, least_radius(built_.map.cells_of)); }
     /// Where light is added up while a search runs, who looks can look at it (3.4).
-    bool grows() const { return !looking() && !looks_.empty() && knn_search<B>::shows_running_estimate(detail::estimate_settings(settings_, least_radius(built_.map.cells_of))); }
+    bool grows() const { return !looking() && !looks_.empty() && knn_search<B>::shows_running_estimate(search_settings()); }
     /// The first sample's other ways through the scene must be there already.
     bool shows_running_estimate() const { return search_ && grows() && grown_ > 0 && ray_ + 1 == branches_; }
 
@@ -273,7 +275,7 @@ private:
 
     knn_settings wanted() const
     {
-        knn_settings k = detail::estimate_settings(settings_, least_radius(built_.map.cells_of));
+        knn_settings k = search_settings();
         if (looking()) {
             k.k = std::min(k.k, std::max(8u, k.k / looks_[look_].fewer));
             k.errors = false;

@@ -16,6 +16,9 @@ class lane_sums {
     hn::VFromD<doubles> all_[halves * lanes / width];
 
 public:
+    /// Terms that a lane may take before flush(): an error of 2^-21 at most.
+    static constexpr std::size_t few = 8;
+
     HWY_INLINE lane_sums()
     {
         for (auto& l : few_)
@@ -25,7 +28,7 @@ public:
     }
     /// Adds to the lanes from group * width on.
     HWY_INLINE void add(std::size_t group, vector term) { few_[group] = hn::Add(few_[group], term); }
-    /// After few terms.
+    /// After `few` terms a lane.
     HWY_INLINE void flush()
     {
         const doubles d;
@@ -107,7 +110,6 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
 {
     const floats d;
     constexpr std::size_t width = hn::MaxLanes(d);
-    constexpr std::size_t few = 8; // terms in single precision: an error of 2^-21 at most
     const std::size_t n = near.size();
     const float* const distances = near.of(packet::squared_distance);
     const float *const p_red = near.of(packet::red), *const p_green = near.of(packet::green), *const p_blue = near.of(packet::blue);
@@ -117,7 +119,7 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
     lane_sums red, green, blue, red2, green2, blue2, all2;
     std::size_t within = 0, at_most = 0;
     for (std::size_t i = 0; i < n;) {
-        for (const std::size_t stop = std::min(n, i + few * lanes); i < stop;)
+        for (const std::size_t stop = std::min(n, i + lane_sums::few * lanes); i < stop;)
             for (std::size_t group = 0; group < lanes / width; ++group, i += width) { // unrolled, so that sums stay in registers
                 const auto d2 = hn::Load(d, distances + i);
                 const auto nearer = hn::Lt(d2, radius2);

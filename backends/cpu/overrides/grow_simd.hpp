@@ -46,7 +46,6 @@ public:
     {
         const floats d;
         constexpr std::size_t width = hn::MaxLanes(d);
-        constexpr uint few = 8; // terms in single precision: an error of 2^-21 at most
         const photon_planes photons{job_.positions, job_.directions, job_.normals};
         visited_ += static_cast<uint>(past - first);
         if (STORE)
@@ -63,7 +62,7 @@ public:
                     add(group, within, i);
                 held_ += hn::CountTrue(d, within);
             }
-            if (!STORE && ++terms_ == few) {
+            if (!STORE && ++terms_ == lane_sums::few) {
                 terms_ = 0;
                 for (auto& s : sums_)
                     s.flush();

@@ -62,10 +62,9 @@ void document::orbit(double across, double upward)
 void document::pan(double right, double up)
 {
     auto& c = now_.scene.camera;
-    const dvec3 forward = c.look_at - c.position;
-    const dvec3 x = glm::normalize(glm::cross(forward, c.up)), y = glm::normalize(glm::cross(x, forward));
-    const double height = 2 * glm::length(forward) * std::tan(glm::radians(c.vertical_fov) / 2);
-    const dvec3 by = height * (right * x + up * y);
+    const photongrid::detail::camera_axes axes(c);
+    const double height = 2 * glm::distance(c.position, c.look_at) * std::tan(glm::radians(c.vertical_fov) / 2);
+    const dvec3 by = height * (right * axes.right + up * axes.up);
     c.position += by;
     c.look_at += by;
 }

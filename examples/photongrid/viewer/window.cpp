@@ -102,18 +102,16 @@ namespace {
     std::optional<frame_box> box_of(const scene& s, const scene_part& part, double width, double height)
     {
         photongrid::detail::box b;
-        for (const auto i : part.spheres)
-            photongrid::detail::add_bounds(b, s.spheres[i]);
-        for (const auto i : part.cylinders)
-            photongrid::detail::add_bounds(b, s.cylinders[i]);
-        for (const auto i : part.cones)
-            photongrid::detail::add_bounds(b, s.cones[i]);
-        for (const auto i : part.paraboloids)
-            photongrid::detail::add_bounds(b, s.paraboloids[i]);
-        for (const auto i : part.disks)
-            photongrid::detail::add_bounds(b, s.disks[i]);
-        for (const auto i : part.polygons)
-            photongrid::detail::add_bounds(b, s.polygons[i]);
+        const auto add = [&](const auto& chosen, const auto& shapes) {
+            for (const auto i : chosen)
+                photongrid::detail::add_bounds(b, shapes[i]);
+        };
+        add(part.spheres, s.spheres);
+        add(part.cylinders, s.cylinders);
+        add(part.cones, s.cones);
+        add(part.paraboloids, s.paraboloids);
+        add(part.disks, s.disks);
+        add(part.polygons, s.polygons);
         for (const auto i : part.point_lights)
             b.add(s.point_lights[i].position);
         for (const auto i : part.rectangle_lights) {
@@ -439,7 +437,7 @@ namespace {
             number("k", &render_settings::k, 1, 4000, "Photons in an estimate (K, k). Speed: more take longer. Error: more are smoother, and blur shadows and caustics more.");
             measure("radius, m", &render_settings::max_radius, 1e-3f, 10.0f, "%.4f", true,
                 "Largest search radius (R, r). Speed: dark places search this far. Error: where fewer than k photons lie within it, estimates are noisier instead of more blurred.");
-            choice("search", &render_settings::search, search_names, "Which photons (s): the k nearest; at least k, as the paper has it, faster on no backend and a little too bright; or all within the radius.");
+            choice("search", &render_settings::search, search_names, "Which photons (s): the k nearest; at least k, as the paper has it, which uses more photons and is a little too bright; or all within the radius.");
             choice("kernel", &render_settings::kernel, kernel_names, "Weight by distance (w). Speed: the same. Error: constant is the least noisy and shows discs; silverman the smoothest.");
             choice("bias", &render_settings::bias, bias_names, "The photon that sets the radius: paper counts it, k / (k - 1) too bright; unbiased leaves it out.");
             draw_grid();
@@ -475,12 +473,14 @@ namespace {
             tip("What draws (b). The same photons give the same picture on all; speed differs. cpu is the fastest without a GPU.");
         }
 
+        /// The grid that is not fitted: the scene's, or one where it names none.
+        glm::uvec3 cells_of_scene() const { return options_.begin.settings.grid == glm::uvec3(0) ? glm::uvec3(32) : options_.begin.settings.grid; }
         void draw_grid()
         {
             auto cells = glm::ivec3(document_.now().settings.grid);
             bool fitted = cells == glm::ivec3(0);
             if (ImGui::Checkbox("fitted grid", &fitted))
-                change("grid", [&](render_settings& r) { r.grid = fitted ? glm::uvec3(0) : options_.begin.settings.grid == glm::uvec3(0) ? glm::uvec3(32) : options_.begin.settings.grid; });
+                change("grid", [&](render_settings& r) { r.grid = fitted ? glm::uvec3(0) : cells_of_scene(); });
             tip("Cells of the photon map fitted to photons and k (g). Speed: a grid that is too coarse or too fine searches longer. Error: none for the k nearest; `at_least_k` depends on its cells.");
             if (!fitted) {
                 const bool edited = ImGui::SliderInt3("grid", &cells.x, 1, 256, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
@@ -565,7 +565,7 @@ namespace {
             if (pressed(GLFW_KEY_E))
                 change("exposure", [&](render_settings& s) { s.exposure = std::clamp(s.exposure + (up ? 0.5 : -0.5), -64.0, 64.0); });
             if (pressed(GLFW_KEY_G))
-                change("grid", [&](render_settings& s) { s.grid = s.grid == glm::uvec3(0) ? options_.begin.settings.grid : glm::uvec3(0); });
+                change("grid", [&](render_settings& s) { s.grid = s.grid == glm::uvec3(0) ? cells_of_scene() : glm::uvec3(0); });
             if (pressed(GLFW_KEY_B)) {
                 document_.begin("backend");
                 auto& b = document_.edit().backend;
