@@ -1,10 +1,10 @@
-// Every algorithm on every backend, by number of photons and by how evenly they lie in cells: docs/measures.md. Names are
-// ALGORITHM/BACKEND/photons:N/ands:A; Google Benchmark's options choose among them, set how long each is measured, and write
-// JSON (--benchmark_out). Items are photons, for the searches points.
+// Every algorithm on every backend, by number of photons and by how evenly they lie in cells: docs/measures.md. Names
+// are ALGORITHM/BACKEND/photons:N/ands:A; Google Benchmark's options choose among them, set how long each is measured,
+// and write JSON (--benchmark_out). Items are photons, for the searches points.
 //
-// Photons lie in a unit cube of 32 x 32 x 32 cells. Each of the 15 bits of a photon's cell is the AND of A + 1 random bits
-// (Thearling and Smith 1992), which leaves 15, 12.2 and 5.1 bits of entropy a key for A = 0, 1 and 3; `all_ands` stands for
-// all photons in one cell, 0 bits. Inside a cell they lie evenly.
+// Photons lie in a unit cube of 32 x 32 x 32 cells. Each of the 15 bits of a photon's cell is the AND of A + 1 random
+// bits (Thearling and Smith 1992), which leaves 15, 12.2 and 5.1 bits of entropy a key for A = 0, 1 and 3; `all_ands`
+// stands for all photons in one cell, 0 bits. Inside a cell they lie evenly.
 #include <photongrid/backends/cpu/overrides/all.hpp>
 #include <photongrid/backends/gl/overrides/all.hpp>
 #include <photongrid/backends/serial/serial.hpp>
@@ -61,7 +61,8 @@ const std::vector<vec4>& photon_positions(uint n, uint ands)
             for (uint a = 0; a < ands; ++a)
                 cell &= static_cast<uint>(engine());
         }
-        const auto coordinate = [&](uint bits) { return (static_cast<float>(bits % cells_an_axis) + random()) / cells_an_axis; };
+        const auto coordinate
+            = [&](uint bits) { return (static_cast<float>(bits % cells_an_axis) + random()) / cells_an_axis; };
         p = vec4(coordinate(cell), coordinate(cell >> 5), coordinate(cell >> 10), 0);
     }
     kept_ands = ands;
@@ -79,12 +80,13 @@ template <backend B>
 buffer_of<B, glm::uvec2> cell_keys(B& b, const photons<B>& p)
 {
     auto keys = b.template make<glm::uvec2>(p.size());
-    b.template run<kernels::photon_cell>(p.size(), {.grid = key_grid(), .photons = p.size(), .parts = every_part}, reads(p.positions, p.powers), writes(keys));
+    b.template run<kernels::photon_cell>(p.size(), {.grid = key_grid(), .photons = p.size(), .parts = every_part},
+        reads(p.positions, p.powers), writes(keys));
     return keys;
 }
 
-/// Measures `work` on what `prepare` makes anew for every iteration, apart; the device is waited for. Kernels compile in a first
-/// run that does not count.
+/// Measures `work` on what `prepare` makes anew for every iteration, apart; the device is waited for. Kernels compile
+/// in a first run that does not count.
 template <backend B, class Prepare, class Work>
 void measure(benchmark::State& state, B& b, std::size_t items, Prepare&& prepare, Work&& work)
 {
@@ -109,7 +111,9 @@ void sort_pairs(benchmark::State& state, B& b, uint n, uint ands)
 {
     const auto keys = b.download(cell_keys(b, upload_photons(b, n, ands)));
     sort_report report;
-    measure(state, b, n, [&] { return b.upload(std::span<const glm::uvec2>(keys)); }, [&](auto& pairs) { report = bitonic_sort(b, pairs); });
+    measure(
+        state, b, n, [&] { return b.upload(std::span<const glm::uvec2>(keys)); },
+        [&](auto& pairs) { report = bitonic_sort(b, pairs); });
     state.counters["passes"] = report.passes;
 }
 
@@ -118,7 +122,8 @@ void index_cells(benchmark::State& state, B& b, uint n, uint ands)
 {
     auto pairs = cell_keys(b, upload_photons(b, n, ands));
     bitonic_sort(b, pairs);
-    measure(state, b, n, [] { return 0; }, [&](int) { grid_index(b, pairs, cell_count(key_grid())); });
+    measure(
+        state, b, n, [] { return 0; }, [&](int) { grid_index(b, pairs, cell_count(key_grid())); });
 }
 
 template <backend B>
@@ -126,17 +131,20 @@ void sum_up(benchmark::State& state, B& b, uint n, uint)
 {
     const std::vector<uint> ones(n, 1u);
     const auto terms = b.upload(std::span<const uint>(ones));
-    measure(state, b, n, [] { return 0; }, [&](int) { prefix_sums(b, terms); });
+    measure(
+        state, b, n, [] { return 0; }, [&](int) { prefix_sums(b, terms); });
 }
 
 template <backend B>
 void build_sorted_map(benchmark::State& state, B& b, uint n, uint ands)
 {
     std::uint64_t bytes = 0;
-    measure(state, b, n, [&] { return upload_photons(b, n, ands); }, [&](auto& p) {
-        const auto map = sorted_map(b, std::move(p), key_grid());
-        bytes = b.bytes();
-    });
+    measure(
+        state, b, n, [&] { return upload_photons(b, n, ands); },
+        [&](auto& p) {
+            const auto map = sorted_map(b, std::move(p), key_grid());
+            bytes = b.bytes();
+        });
     state.counters["map_bytes_a_photon"] = static_cast<double>(bytes) / n;
 }
 
@@ -144,7 +152,8 @@ template <backend B>
 void route_photons(benchmark::State& state, B& b, uint n, uint ands)
 {
     const auto p = upload_photons(b, n, ands);
-    measure(state, b, n, [] { return 0; }, [&](int) { stencil_route(b, p, key_grid(), 4); });
+    measure(
+        state, b, n, [] { return 0; }, [&](int) { stencil_route(b, p, key_grid(), 4); });
 }
 
 /// At most 16,384 points where photons are, in the order of the map's cells.
@@ -161,7 +170,8 @@ void search(benchmark::State& state, B& b, uint n, uint ands, search_kind kind)
     const auto points = b.upload(std::span<const vec4>(few));
     const knn_settings settings{.k = k, .max_radius = 2, .search = kind};
     std::optional<knn_estimates<B>> e;
-    measure(state, b, few.size(), [] { return 0; }, [&](int) { e = knn_grid_estimate(b, map, points, settings); });
+    measure(
+        state, b, few.size(), [] { return 0; }, [&](int) { e = knn_grid_estimate(b, map, points, settings); });
     double used = 0, visited = 0;
     for (const auto& u : b.download(e->used)) {
         used += u.x;
@@ -175,23 +185,32 @@ void search(benchmark::State& state, B& b, uint n, uint ands, search_kind kind)
 template <backend B>
 void add(B& b)
 {
-    const std::vector<std::int64_t> sizes{1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20, 1 << 22}, all_entropies{0, 1, 3, all_ands};
+    const std::vector<std::int64_t> sizes{1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20, 1 << 22},
+        all_entropies{0, 1, 3, all_ands};
     const auto algorithm = [&](const std::string& name, const std::vector<std::int64_t>& entropies, auto run) {
-        benchmark::RegisterBenchmark((name + "/" + b.caps().backend).c_str(), [&b, run](benchmark::State& state) {
-            try {
-                run(state, b, static_cast<uint>(state.range(0)), static_cast<uint>(state.range(1)));
-            } catch (const backend_error& e) {
-                state.SkipWithError(e.what());
-            }
-        })->ArgsProduct({sizes, entropies})->ArgNames({"photons", "ands"})->UseManualTime()->Unit(benchmark::kMillisecond);
+        benchmark::RegisterBenchmark((name + "/" + b.caps().backend).c_str(),
+            [&b, run](benchmark::State& state) {
+                try {
+                    run(state, b, static_cast<uint>(state.range(0)), static_cast<uint>(state.range(1)));
+                } catch (const backend_error& e) {
+                    state.SkipWithError(e.what());
+                }
+            })
+            ->ArgsProduct({sizes, entropies})
+            ->ArgNames({"photons", "ands"})
+            ->UseManualTime()
+            ->Unit(benchmark::kMillisecond);
     };
     algorithm("bitonic_sort", all_entropies, sort_pairs<B>);
     algorithm("grid_index", all_entropies, index_cells<B>);
     algorithm("prefix_sums", {0}, sum_up<B>);
     algorithm("sorted_map", all_entropies, build_sorted_map<B>);
     algorithm("stencil_route", all_entropies, route_photons<B>);
-    algorithm("at_least_k", all_entropies, [](auto& state, auto& backend_, uint n, uint ands) { search(state, backend_, n, ands, search_kind::at_least_k); });
-    algorithm("exact_k", all_entropies, [](auto& state, auto& backend_, uint n, uint ands) { search(state, backend_, n, ands, search_kind::exact_k); });
+    algorithm("at_least_k", all_entropies, [](auto& state, auto& backend_, uint n, uint ands) {
+        search(state, backend_, n, ands, search_kind::at_least_k);
+    });
+    algorithm("exact_k", all_entropies,
+        [](auto& state, auto& backend_, uint n, uint ands) { search(state, backend_, n, ands, search_kind::exact_k); });
 }
 
 } // namespace

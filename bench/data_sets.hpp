@@ -44,7 +44,8 @@ inline std::vector<face> room_with_two_boxes()
     std::vector<face> faces{{vec3(0), x, z}, {y, x, z}, {vec3(0), y, z}, {x, y, z}, {z, x, y}};
     for (const auto& low : {vec3(0.15f, 0, 0.2f), vec3(0.55f, 0, 0.5f)}) {
         const vec3 a = 0.3f * x, b = 0.3f * y, c = 0.3f * z;
-        for (const auto& f : {face{low + b, a, c}, face{low, a, b}, face{low + c, a, b}, face{low, b, c}, face{low + a, b, c}})
+        for (const auto& f :
+            {face{low + b, a, c}, face{low, a, b}, face{low + c, a, b}, face{low, b, c}, face{low + a, b, c}})
             faces.push_back(f);
     }
     return faces;
@@ -56,7 +57,8 @@ inline void add_powers(data_set& s, random_source& u)
         s.powers.emplace_back(u(), u(), u(), 0.0f);
 }
 
-/// Photons spread evenly over the faces; points where the eye rays of a 512 x 512 pinhole camera before the open face meet them.
+/// Photons spread evenly over the faces; points where the eye rays of a 512 x 512 pinhole camera before the open face
+/// meet them.
 inline data_set box_faces(std::string name, uint photons, uint k)
 {
     data_set s{std::move(name), std::to_string(photons) + " on the faces of a room with two boxes", k, {}, {}, {}};
@@ -78,7 +80,8 @@ inline data_set box_faces(std::string name, uint photons, uint k)
     const vec3 eye(0.5f, 0.5f, -1.2f);
     for (int row = 0; row < 512; ++row)
         for (int column = 0; column < 512; ++column) {
-            const vec3 ray((static_cast<float>(column) + 0.5f) / 512 - 0.5f, (static_cast<float>(row) + 0.5f) / 512 - 0.5f, 1.2f);
+            const vec3 ray(
+                (static_cast<float>(column) + 0.5f) / 512 - 0.5f, (static_cast<float>(row) + 0.5f) / 512 - 0.5f, 1.2f);
             float nearest = std::numeric_limits<float>::infinity();
             for (const auto& f : faces) {
                 const vec3 n = glm::cross(f.u, f.v);
@@ -105,7 +108,8 @@ inline void look_at_table(data_set& s)
         }
 }
 
-/// Half of the photons in a disc of a hundredth of the unit square, with density 1/r; the others anywhere in the square.
+/// Half of the photons in a disc of a hundredth of the unit square, with density 1/r; the others anywhere in the
+/// square.
 inline data_set caustic_spot(std::string name, uint photons, uint k)
 {
     data_set s{std::move(name), std::to_string(photons) + ", half of them in a spot on a plane", k, {}, {}, {}};

@@ -1,5 +1,5 @@
-// How wrong density estimates are and how long they take, on fields of light with a known answer: every search, kernel, k and
-// number of photons, on every backend. Prints CSV; bench/error.sh draws it.
+// How wrong density estimates are and how long they take, on fields of light with a known answer: every search, kernel,
+// k and number of photons, on every backend. Prints CSV; bench/error.sh draws it.
 //
 //   field_errors [--quick]
 #include <photongrid/backends/cpu/overrides/all.hpp>
@@ -34,9 +34,11 @@ constexpr int points_a_side = 64;
 std::vector<field> fields()
 {
     constexpr double turn = 6.283185307179586;
-    return {{"even", 1, [](double, double) { return 1.0; }}, {"ramp", 2.05, [](double x, double) { return 0.4 + 1.3 * std::clamp(x, -0.25, 1.25); }},
+    return {{"even", 1, [](double, double) { return 1.0; }},
+        {"ramp", 2.05, [](double x, double) { return 0.4 + 1.3 * std::clamp(x, -0.25, 1.25); }},
         {"waves", 1.8, [=](double x, double z) { return 1 + 0.8 * std::sin(3 * turn * x) * std::sin(3 * turn * z); }},
-        {"disc", 2, [](double x, double z) { return (x - 0.5) * (x - 0.5) + (z - 0.5) * (z - 0.5) < 0.09 ? 2.0 : 0.25; }}};
+        {"disc", 2,
+            [](double x, double z) { return (x - 0.5) * (x - 0.5) + (z - 0.5) * (z - 0.5) < 0.09 ? 2.0 : 0.25; }}};
 }
 
 struct sample {
@@ -76,8 +78,10 @@ struct choice {
     const char* name;
     Setting value;
 };
-constexpr choice<search_kind> searches[] = {{"at_least_k", search_kind::at_least_k}, {"exact_k", search_kind::exact_k}, {"fixed_radius", search_kind::fixed_radius}};
-constexpr choice<filter_kernel> kernels_of[] = {{"constant", filter_kernel::constant}, {"cone", filter_kernel::cone}, {"epanechnikov", filter_kernel::epanechnikov}, {"silverman", filter_kernel::silverman}};
+constexpr choice<search_kind> searches[] = {{"at_least_k", search_kind::at_least_k}, {"exact_k", search_kind::exact_k},
+    {"fixed_radius", search_kind::fixed_radius}};
+constexpr choice<filter_kernel> kernels_of[] = {{"constant", filter_kernel::constant}, {"cone", filter_kernel::cone},
+    {"epanechnikov", filter_kernel::epanechnikov}, {"silverman", filter_kernel::silverman}};
 
 /// Prints a row for each way to estimate `s` on backend b. Times are medians of three, with building the map apart.
 template <backend B>
@@ -96,7 +100,10 @@ void measure(B& b, const std::string& name, const field& f, const sample& s, con
         std::sort(t.begin(), t.end());
         return t[1];
     };
-    const auto upload = [&] { return photons<B>{b.upload(std::span<const vec4>(s.positions)), b.upload(std::span<const vec4>(s.powers)), {}, {}}; };
+    const auto upload = [&] {
+        return photons<B>{
+            b.upload(std::span<const vec4>(s.positions)), b.upload(std::span<const vec4>(s.powers)), {}, {}};
+    };
     const auto points = b.upload(std::span<const vec4>(s.points));
     for (const uint k : ks) {
         const auto g = fitting_grid(b, upload(), k);
@@ -109,7 +116,8 @@ void measure(B& b, const std::string& name, const field& f, const sample& s, con
                 if (search.value == search_kind::fixed_radius)
                     settings.max_radius = static_cast<float>(std::sqrt(k * area / (n * 3.14159265358979)));
                 std::vector<vec4> irradiance;
-                const auto estimate = [&] { irradiance = b.download(knn_grid_estimate(b, map, points, settings).irradiance); };
+                const auto estimate
+                    = [&] { irradiance = b.download(knn_grid_estimate(b, map, points, settings).irradiance); };
                 estimate(); // kernels compile here
                 const double search_seconds = seconds(estimate);
                 double error = 0;
@@ -117,7 +125,8 @@ void measure(B& b, const std::string& name, const field& f, const sample& s, con
                     const double e = (static_cast<double>(irradiance[i].x) - s.truth[i]) / (s.truth[i] + 0.01);
                     error += e * e / static_cast<double>(s.truth.size());
                 }
-                std::printf("%s,%s,sort,%s,%s,%u,%u,%.6f,%.6f,%.6g\n", f.name, name.c_str(), search.name, kernel.name, k, n, build, search_seconds, error);
+                std::printf("%s,%s,sort,%s,%s,%u,%u,%.6f,%.6f,%.6g\n", f.name, name.c_str(), search.name, kernel.name,
+                    k, n, build, search_seconds, error);
             }
     }
     std::fflush(stdout);

@@ -1,5 +1,6 @@
-// How soon a change is seen (section 3.4): the Cornell box with the paper's settings, camera and lamp moved again and again, in
-// the loop that the window and the program use. Exit status 1 when a row misses what is wanted of it: docs/measures.md.
+// How soon a change is seen (section 3.4): the Cornell box with the paper's settings, camera and lamp moved again and
+// again, in the loop that the window and the program use. Exit status 1 when a row misses what is wanted of it:
+// docs/measures.md.
 //
 //   interactive SCENE.json [REPETITIONS [BACKEND...]]      BACKEND: cpu (default), serial, vulkan or gl
 #include "median.hpp"
@@ -33,11 +34,11 @@ double ms_of(const std::function<void()>& work)
 
 /// What a user waits for, ms.
 struct waits {
-    double first_picture;     ///< of a program that has just started: from start() to a whole picture on the CPU
-    double camera_picture;    ///< after the camera moved, a whole picture
-    double camera_converged;  ///< … the last one
-    double light_picture;     ///< after the lamp moved, a whole picture
-    double light_converged;   ///< … the last one
+    double first_picture;    ///< of a program that has just started: from start() to a whole picture on the CPU
+    double camera_picture;   ///< after the camera moved, a whole picture
+    double camera_converged; ///< … the last one
+    double light_picture;    ///< after the lamp moved, a whole picture
+    double light_converged;  ///< … the last one
 };
 
 template <backend B>
@@ -106,10 +107,16 @@ bool report(B&& b, const scene& s, uint repetitions, bool wanted)
             auto settings = paper ? as_paper(s.render) : s.render;
             settings.width = settings.height = size;
             const auto w = measure(b, s, settings, repetitions);
-            const bool fast = size == 160 ? w.first_picture <= 150 && w.camera_picture <= 1000.0 / 15 && w.light_converged <= 700 : w.first_picture <= 400;
+            const bool fast = size == 160
+                ? w.first_picture <= 150 && w.camera_picture <= 1000.0 / 15 && w.light_converged <= 700
+                : w.first_picture <= 400;
             all = all && (fast || !wanted);
-            std::printf("| %s | %u x %u | %s | %.0f | %.1f | %.0f | %.0f | %.0f | %s |\n", b.caps().backend.c_str(), size, size, paper ? "`at_least_k`, the paper's" : "`exact_k`", w.first_picture,
-                1000 / w.camera_picture, w.camera_converged, w.light_picture, w.light_converged, !wanted ? "" : fast ? "PASS" : "FAIL");
+            std::printf("| %s | %u x %u | %s | %.0f | %.1f | %.0f | %.0f | %.0f | %s |\n", b.caps().backend.c_str(),
+                size, size, paper ? "`at_least_k`, the paper's" : "`exact_k`", w.first_picture, 1000 / w.camera_picture,
+                w.camera_converged, w.light_picture, w.light_converged,
+                !wanted    ? ""
+                    : fast ? "PASS"
+                           : "FAIL");
             std::fflush(stdout);
         }
     return all;
@@ -129,7 +136,9 @@ int main(int argc, char** argv)
         std::vector<std::string> backends(argv + std::min(argc, 3), argv + argc);
         if (backends.empty())
             backends = {"cpu"};
-        std::printf("| backend | pixels | estimate | first picture, ms | updates a second, camera moving | camera rests, whole, ms | lamp moved, first picture, ms | lamp moved, whole, ms | wanted |\n|---|---|---|---|---|---|---|---|---|\n");
+        std::printf("| backend | pixels | estimate | first picture, ms | updates a second, camera moving | camera "
+                    "rests, whole, ms | lamp moved, first picture, ms | lamp moved, whole, ms | wanted "
+                    "|\n|---|---|---|---|---|---|---|---|---|\n");
         bool fast = true;
         for (const auto& name : backends) {
             if (name == "cpu")

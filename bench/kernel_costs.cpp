@@ -1,5 +1,6 @@
-// The paper's Table 2 for our kernels: what a pass of each has to do, counted in optimized SPIR-V, beside the figures of 2003;
-// and what integer addresses save (section 4.1): a step of the bitonic sort with float addresses, counted and timed. Prints Markdown.
+// The paper's Table 2 for our kernels: what a pass of each has to do, counted in optimized SPIR-V, beside the figures
+// of 2003; and what integer addresses save (section 4.1): a step of the bitonic sort with float addresses, counted and
+// timed. Prints Markdown.
 #include "median.hpp"
 
 #include <photongrid/backends/vulkan/vulkan.hpp>
@@ -34,7 +35,8 @@ struct tally {
 
 tally count(const std::vector<std::uint32_t>& words)
 {
-    constexpr std::uint32_t op_variable = 59, op_load = 61, op_access_chain = 65, op_in_bounds_access_chain = 66, op_image_fetch = 95, op_bitcast = 124;
+    constexpr std::uint32_t op_variable = 59, op_load = 61, op_access_chain = 65, op_in_bounds_access_chain = 66,
+                            op_image_fetch = 95, op_bitcast = 124;
     constexpr std::uint32_t uniform = 2, storage_buffer = 12;
     tally t;
     t.all = vulkan_detail::count_instructions(words);
@@ -46,13 +48,21 @@ tally count(const std::vector<std::uint32_t>& words)
             in_buffers.insert(words[at + 2]);
         t.reads += op == op_image_fetch || (op == op_load && in_buffers.count(words[at + 3]) != 0) ? 1u : 0u;
         // IAdd, ISub, IMul, UDiv, SDiv, UMod, SRem, SMod; shifts; or, xor, and, not
-        t.integer += op == 128 || op == 130 || op == 132 || (op >= 134 && op <= 135) || (op >= 137 && op <= 139) || (op >= 194 && op <= 200) ? 1u : 0u;
+        t.integer += op == 128 || op == 130 || op == 132 || (op >= 134 && op <= 135) || (op >= 137 && op <= 139)
+                || (op >= 194 && op <= 200)
+            ? 1u
+            : 0u;
         t.casts += op == op_bitcast ? 1u : 0u;
     });
     return t;
 }
 
-void row(const char* name, const tally& t, const char* paper) { std::printf("| `%s` | %llu | %llu | %llu | %llu | %s |\n", name, static_cast<unsigned long long>(t.all), static_cast<unsigned long long>(t.reads), static_cast<unsigned long long>(t.integer), static_cast<unsigned long long>(t.casts), paper); }
+void row(const char* name, const tally& t, const char* paper)
+{
+    std::printf("| `%s` | %llu | %llu | %llu | %llu | %s |\n", name, static_cast<unsigned long long>(t.all),
+        static_cast<unsigned long long>(t.reads), static_cast<unsigned long long>(t.integer),
+        static_cast<unsigned long long>(t.casts), paper);
+}
 
 } // namespace
 
@@ -64,12 +74,14 @@ int main()
         const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
         const text_file texts[] = {{"bench/kernels/bitonic_step_float.glsl", text}};
         b.add_texts(texts);
-        std::printf("| kernel | instructions | buffer reads | integer operations | bit casts | the paper's Inst, TEX, Addr, Pack |\n|---|---|---|---|---|---|\n");
+        std::printf("| kernel | instructions | buffer reads | integer operations | bit casts | the paper's Inst, TEX, "
+                    "Addr, Pack |\n|---|---|---|---|---|---|\n");
         row("bitonic_step", count(b.spirv<kernels::bitonic_step>(0)), "Bitonic Sort: 52, 2, 13, 0");
         row("bitonic_step_float", count(b.spirv<kernels::bitonic_step_float>(0)), "the same, with float addresses");
         row("first_in_cell", count(b.spirv<kernels::first_in_cell>(0)), "Binary Search, one iteration: 18, 1, 13, 0");
         row("route_photon", count(b.spirv<kernels::route_photon>(0)), "Stencil Routing: 42, 0, 25, 0");
-        row("knn_visit", count(b.iterate_spirv<kernels::knn_visit>(0)), "Rad. Estimate: 202, 6, 47, 41 (sort); 193, 5, 20, 41 (route)");
+        row("knn_visit", count(b.iterate_spirv<kernels::knn_visit>(0)),
+            "Rad. Estimate: 202, 6, 47, 41 (sort); 193, 5, 20, 41 (route)");
         row("kth_distance", count(b.iterate_spirv<kernels::kth_distance>(0)), "");
         row("gather_photons", count(b.iterate_spirv<kernels::gather_photons>(0)), "");
         row("photon_cell", count(b.spirv<kernels::photon_cell>(0)), "");
@@ -96,15 +108,22 @@ int main()
         };
         std::vector<double> integers, floats;
         for (int i = 0; i < 6; ++i) {
-            const double a = ms([&] { b.run<kernels::bitonic_step>(n, {.run = 2 * stride, .stride = stride}, reads(in), writes(by_integers)); });
-            const double c = ms([&] { b.run<kernels::bitonic_step_float>(n, {.run = 2.0f * stride, .stride = stride}, reads(in), writes(by_floats)); });
+            const double a = ms([&] {
+                b.run<kernels::bitonic_step>(n, {.run = 2 * stride, .stride = stride}, reads(in), writes(by_integers));
+            });
+            const double c = ms([&] {
+                b.run<kernels::bitonic_step_float>(
+                    n, {.run = 2.0f * stride, .stride = stride}, reads(in), writes(by_floats));
+            });
             if (i > 0) { // kernels compile in the first
                 integers.push_back(a);
                 floats.push_back(c);
             }
         }
         const bool same = b.download(by_integers) == b.download(by_floats);
-        std::printf("\nA step over %u pairs on %s: %.1f ms with integer addresses, %.1f ms with float addresses; ratio %.2f; results %s.\n", n, b.caps().device.c_str(), median(integers), median(floats), median(floats) / median(integers),
+        std::printf("\nA step over %u pairs on %s: %.1f ms with integer addresses, %.1f ms with float addresses; ratio "
+                    "%.2f; results %s.\n",
+            n, b.caps().device.c_str(), median(integers), median(floats), median(floats) / median(integers),
             same ? "equal" : "DIFFER");
         return same ? 0 : 3;
     } catch (const backend_error& e) {

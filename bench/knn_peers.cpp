@@ -1,16 +1,17 @@
-// The k nearest photons against CGAL, FLANN and nanoflann: docs/measures.md. All at the same number of threads, same points,
-// same k, unbounded radius, exact; every k-th squared distance is compared. Prints PASS or FAIL per data set; exits 1 where one is too slow or takes
-// too much memory, 3 where distances differ. On one thread of the cpu backend it also builds maps against trees, and searches on two threads.
+// The k nearest photons against CGAL, FLANN and nanoflann: docs/measures.md. All at the same number of threads, same
+// points, same k, unbounded radius, exact; every k-th squared distance is compared. Prints PASS or FAIL per data set;
+// exits 1 where one is too slow or takes too much memory, 3 where distances differ. On one thread of the cpu backend it
+// also builds maps against trees, and searches on two threads.
 //
 //   knn_peers [--backend cpu|vulkan|gl] [--threads N] [--sets 12345] [--seconds S] [--shuffle] [--avx2]
 //
-// A vulkan or gl device takes the threads that it takes: two of llvmpipe and lavapipe on a machine of two cores. --threads are
-// the peers' then.
+// A vulkan or gl device takes the threads that it takes: two of llvmpipe and lavapipe on a machine of two cores.
+// --threads are the peers' then.
 //
 // --avx2: no AVX-512 on our side, and half of each ratio wanted, whatever the machine has.
 //
-// photongrid makes whole estimates (it adds up the photons' flux as well); peers only find. A peer takes every n-th run of 64
-// points so that it ends within S seconds; photongrid takes all.
+// photongrid makes whole estimates (it adds up the photons' flux as well); peers only find. A peer takes every n-th run
+// of 64 points so that it ends within S seconds; photongrid takes all.
 #include "data_sets.hpp"
 #include "median.hpp"
 
@@ -94,7 +95,8 @@ peer flann_tree(const data_set& s, int leaf)
     const flann::Matrix<float> data(coordinates->data(), s.positions.size(), 3);
     std::shared_ptr<flann::KDTreeSingleIndex<flann::L2_Simple<float>>> tree;
     const double build = median_seconds_of([&] {
-        tree = std::make_shared<flann::KDTreeSingleIndex<flann::L2_Simple<float>>>(data, flann::KDTreeSingleIndexParams(leaf));
+        tree = std::make_shared<flann::KDTreeSingleIndex<flann::L2_Simple<float>>>(
+            data, flann::KDTreeSingleIndexParams(leaf));
         tree->buildIndex();
     });
     return {"FLANN, leaves of " + std::to_string(leaf), build, [coordinates, tree, k = s.k](const vec4& q) {
@@ -105,7 +107,8 @@ peer flann_tree(const data_set& s, int leaf)
                 float at[3] = {q.x, q.y, q.z};
                 flann::Matrix<size_t> i(indices.data(), 1, k);
                 flann::Matrix<float> d(distances.data(), 1, k);
-                tree->knnSearch(flann::Matrix<float>(at, 1, 3), i, d, k, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+                tree->knnSearch(
+                    flann::Matrix<float>(at, 1, 3), i, d, k, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
                 return distances.back();
             }};
 }
@@ -116,7 +119,10 @@ struct cloud {
     size_t kdtree_get_point_count() const { return points.size(); }
     float kdtree_get_pt(size_t i, size_t axis) const { return points[i][static_cast<int>(axis)]; }
     template <class Box>
-    bool kdtree_get_bbox(Box&) const { return false; }
+    bool kdtree_get_bbox(Box&) const
+    {
+        return false;
+    }
 };
 
 peer nanoflann_tree(const data_set& s, size_t leaf)
@@ -124,7 +130,8 @@ peer nanoflann_tree(const data_set& s, size_t leaf)
     using tree_type = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, cloud>, cloud, 3, uint>;
     auto data = std::make_shared<cloud>(cloud{s.positions});
     std::shared_ptr<tree_type> tree;
-    const double build = median_seconds_of([&] { tree = std::make_shared<tree_type>(3, *data, nanoflann::KDTreeSingleIndexAdaptorParams(leaf)); });
+    const double build = median_seconds_of(
+        [&] { tree = std::make_shared<tree_type>(3, *data, nanoflann::KDTreeSingleIndexAdaptorParams(leaf)); });
     return {"nanoflann, leaves of " + std::to_string(leaf), build, [data, tree, k = s.k](const vec4& q) {
                 thread_local std::vector<uint> indices;
                 thread_local std::vector<float> distances;
@@ -137,7 +144,8 @@ peer nanoflann_tree(const data_set& s, size_t leaf)
 }
 
 /// Points a second of a peer; every one's k-th squared distance is compared with `known` and counted in `wrong`.
-double rate(const peer& p, const data_set& s, const std::vector<float>& known, unsigned threads, double seconds, size_t& wrong)
+double rate(
+    const peer& p, const data_set& s, const std::vector<float>& known, unsigned threads, double seconds, size_t& wrong)
 {
     constexpr size_t run = 64;
     const size_t runs = s.points.size() / run;
@@ -175,7 +183,8 @@ struct arguments {
     bool shuffle = false, avx2 = false;
 };
 
-/// What the table must show: least ratios with AVX-512; with AVX2, half of them, and so for points in random order. 0: whatever it is.
+/// What the table must show: least ratios with AVX-512; with AVX2, half of them, and so for points in random order. 0:
+/// whatever it is.
 double wanted(const arguments& a, int number)
 {
     constexpr double cpu[] = {4, 6, 18, 8, 22};
@@ -184,10 +193,11 @@ double wanted(const arguments& a, int number)
     return number != 3 || a.shuffle ? 0 : a.backend == "vulkan" ? 1.8 : 1.1;
 }
 
-/// Points a second of whole estimates, all points again and again for as long as a peer gets, after one run to warm up, as a
-/// peer has. `e`: the last ones.
+/// Points a second of whole estimates, all points again and again for as long as a peer gets, after one run to warm up,
+/// as a peer has. `e`: the last ones.
 template <backend B>
-double rate(B& b, const photon_map<B>& map, const buffer_of<B, vec4>& points, const knn_settings& settings, double seconds, std::optional<knn_estimates<B>>& e)
+double rate(B& b, const photon_map<B>& map, const buffer_of<B, vec4>& points, const knn_settings& settings,
+    double seconds, std::optional<knn_estimates<B>>& e)
 {
     e = knn_grid_estimate(b, map, points, settings);
     double spent = 0, done = 0;
@@ -208,8 +218,14 @@ photons<B> upload_photons(B& b, const data_set& s)
 /// The cpu backend's search on two threads.
 class two_threads {
 public:
-    two_threads(const data_set& s, const grid& g) : map_(sorted_map(b_, upload_photons(b_, s), g)), points_(b_.upload(std::span<const vec4>(s.points))) {}
-    double rate(const knn_settings& settings, double seconds) { return ::rate(b_, map_, points_, settings, seconds, last_); }
+    two_threads(const data_set& s, const grid& g)
+        : map_(sorted_map(b_, upload_photons(b_, s), g)), points_(b_.upload(std::span<const vec4>(s.points)))
+    {
+    }
+    double rate(const knn_settings& settings, double seconds)
+    {
+        return ::rate(b_, map_, points_, settings, seconds, last_);
+    }
 
 private:
     cpu_backend b_{2};
@@ -218,8 +234,9 @@ private:
     std::optional<knn_estimates<cpu_backend>> last_;
 };
 
-constexpr double least_build = 8; ///< how many times as fast as the fastest tree's build a million photons' is, on one thread
-constexpr double most_bytes = 48; ///< a photon, after the build
+constexpr double least_build
+    = 8; ///< how many times as fast as the fastest tree's build a million photons' is, on one thread
+constexpr double most_bytes = 48;    ///< a photon, after the build
 constexpr double least_by_two = 1.8; ///< points a second on two threads over those on one
 
 template <backend B>
@@ -273,12 +290,17 @@ int measure(B& b, int number, const arguments& a)
         best_build = std::min(best_build, peers[i].build_seconds);
     }
     const double ours = median(searches), theirs = median(peer_rates[best]), ratio = ours / theirs;
-    const double build_ratio = best_build / median(builds), bytes = static_cast<double>(after - 16 * s.points.size()) / static_cast<double>(s.positions.size());
+    const double build_ratio = best_build / median(builds),
+                 bytes = static_cast<double>(after - 16 * s.points.size()) / static_cast<double>(s.positions.size());
     const double by_two = two ? median(searches_by_two) / ours : 0;
     const double least = wanted(a, number);
     const bool large = s.positions.size() >= 1000000;
-    const bool pass = ratio >= least && wrong == 0 && (!alone || ((!two || by_two >= least_by_two) && bytes <= most_bytes && (!large || a.avx2 || build_ratio >= least_build)));
-    std::printf("| %s | %s | %u | %u x %u x %u | %.0f | %.1f | %s | %.1f | %g | %.1f | %.1f | %.0f |", s.name.c_str(), s.what.c_str(), s.k, g.resolution.x, g.resolution.y, g.resolution.z, ours / 1000, theirs / 1000,
+    const bool pass = ratio >= least && wrong == 0
+        && (!alone
+            || ((!two || by_two >= least_by_two) && bytes <= most_bytes
+                && (!large || a.avx2 || build_ratio >= least_build)));
+    std::printf("| %s | %s | %u | %u x %u x %u | %.0f | %.1f | %s | %.1f | %g | %.1f | %.1f | %.0f |", s.name.c_str(),
+        s.what.c_str(), s.k, g.resolution.x, g.resolution.y, g.resolution.z, ours / 1000, theirs / 1000,
         peers[best].name.c_str(), ratio, least, median(builds) * 1000, build_ratio, bytes);
     if (alone)
         std::printf(" %.2f |", by_two);
@@ -307,7 +329,9 @@ int main(int argc, char** argv)
         else if (std::strcmp(argv[i], "--avx2") == 0)
             a.avx2 = true;
         else {
-            std::fprintf(stderr, "knn_peers [--backend cpu|vulkan|gl] [--threads N] [--sets 12345] [--seconds S] [--shuffle] [--avx2]\n");
+            std::fprintf(stderr,
+                "knn_peers [--backend cpu|vulkan|gl] [--threads N] [--sets 12345] [--seconds S] [--shuffle] "
+                "[--avx2]\n");
             return 2;
         }
     }
@@ -319,15 +343,22 @@ int main(int argc, char** argv)
         hwy::DisableTargets(HWY_AVX3 | HWY_AVX3_DL);
         const auto left = hwy::SupportedAndGeneratedTargets();
         if (std::find(left.begin(), left.end(), HWY_AVX2) == left.end()) {
-            std::fprintf(stderr, "knn_peers: --avx2: this machine has none, or the program is compiled for a better one alone; knn_peers_portable is not\n");
+            std::fprintf(stderr,
+                "knn_peers: --avx2: this machine has none, or the program is compiled for a better one alone; "
+                "knn_peers_portable is not\n");
             return 2;
         }
     }
-    std::printf("%s, %u thread%s%s%s\n\n", a.backend.c_str(), a.threads, a.threads == 1 ? "" : "s", a.shuffle ? ", points in random order" : "", a.avx2 ? ", AVX2" : "");
+    std::printf("%s, %u thread%s%s%s\n\n", a.backend.c_str(), a.threads, a.threads == 1 ? "" : "s",
+        a.shuffle ? ", points in random order" : "", a.avx2 ? ", AVX2" : "");
     const bool alone = a.backend == "cpu" && a.threads == 1;
     if (alone)
-        std::printf("Wanted besides: a build of a million photons %g times as fast as the fastest peer's%s, %g bytes a photon at most, %g times the speed on two threads.\n\n", least_build, a.avx2 ? " (not with AVX2)" : "", most_bytes, least_by_two);
-    std::printf("| set | photons | k | grid | photongrid, 1000/s | fastest peer, 1000/s | which | ratio | wanted | build, ms | fastest peer's build over it | bytes a photon |%s k-th distances that differ | |\n|---|---|---|---|---|---|---|---|---|---|---|---|%s---|---|\n",
+        std::printf("Wanted besides: a build of a million photons %g times as fast as the fastest peer's%s, %g bytes a "
+                    "photon at most, %g times the speed on two threads.\n\n",
+            least_build, a.avx2 ? " (not with AVX2)" : "", most_bytes, least_by_two);
+    std::printf("| set | photons | k | grid | photongrid, 1000/s | fastest peer, 1000/s | which | ratio | wanted | "
+                "build, ms | fastest peer's build over it | bytes a photon |%s k-th distances that differ | "
+                "|\n|---|---|---|---|---|---|---|---|---|---|---|---|%s---|---|\n",
         alone ? " two threads over one |" : "", alone ? "---|" : "");
     const auto all = [&](auto&& b) {
         int worst = 0;
@@ -337,7 +368,9 @@ int main(int argc, char** argv)
         return worst;
     };
     try {
-        return a.backend == "cpu" ? all(cpu_backend(a.threads)) : a.backend == "vulkan" ? all(vulkan_backend()) : all(gl_backend());
+        return a.backend == "cpu"   ? all(cpu_backend(a.threads))
+            : a.backend == "vulkan" ? all(vulkan_backend())
+                                    : all(gl_backend());
     } catch (const backend_error& e) {
         std::fprintf(stderr, "knn_peers: %s\n", e.what());
         return 2;

@@ -1,5 +1,6 @@
-// How long the searches take on S3, the faces of a room with two boxes, k = 500, by grid: docs/measures.md. Every backend in one
-// run, searches alternating; the estimates are compared with brute force (float distances, sums in double).
+// How long the searches take on S3, the faces of a room with two boxes, k = 500, by grid: docs/measures.md. Every
+// backend in one run, searches alternating; the estimates are compared with brute force (float distances, sums in
+// double).
 //
 //   search_times [REPETITIONS [BACKEND [POINTS]]]
 #include "data_sets.hpp"
@@ -54,11 +55,14 @@ double error(const data_set& s, const std::vector<vec4>& irradiance)
 template <backend B>
 void measure(B&& b, const data_set& s, uint repetitions)
 {
-    for (const auto resolution : {glm::uvec3(25, 25, 50), glm::uvec3(16, 16, 16), glm::uvec3(25, 25, 25), glm::uvec3(32, 32, 32), glm::uvec3(40, 40, 40), glm::uvec3(56, 56, 56)}) {
+    for (const auto resolution : {glm::uvec3(25, 25, 50), glm::uvec3(16, 16, 16), glm::uvec3(25, 25, 25),
+             glm::uvec3(32, 32, 32), glm::uvec3(40, 40, 40), glm::uvec3(56, 56, 56)}) {
         const auto g = make_grid(vec3(0), vec3(1), resolution);
-        const auto map = sorted_map(b, {b.upload(std::span<const vec4>(s.positions)), b.upload(std::span<const vec4>(s.powers))}, g);
+        const auto map = sorted_map(
+            b, {b.upload(std::span<const vec4>(s.positions)), b.upload(std::span<const vec4>(s.powers))}, g);
         const auto points = b.upload(std::span<const vec4>(s.points));
-        knn_settings paper = as_paper(knn_settings{.k = k, .max_radius = max_radius}), exact{.k = k, .max_radius = max_radius};
+        knn_settings paper = as_paper(knn_settings{.k = k, .max_radius = max_radius}),
+                     exact{.k = k, .max_radius = max_radius};
         std::vector<double> times[2];
         double used[2] = {}, visited[2] = {}, relmse[2] = {};
         for (uint i = 0; i <= repetitions; ++i)
@@ -68,7 +72,8 @@ void measure(B&& b, const data_set& s, uint repetitions)
                 const auto e = knn_grid_estimate(b, map, points, which == 0 ? paper : exact);
                 b.finish();
                 if (i > 0) // kernels compile the first time
-                    times[which].push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+                    times[which].push_back(
+                        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
                 if (i == repetitions) {
                     for (const auto& u : b.download(e.used)) {
                         used[which] += u.x;
@@ -81,7 +86,8 @@ void measure(B&& b, const data_set& s, uint repetitions)
         for (auto& t : times)
             std::sort(t.begin(), t.end());
         const double paper_rate = n / times[0][repetitions / 2], exact_rate = n / times[1][repetitions / 2];
-        std::printf("| %s | %u x %u x %u | %.1f | %.1f | %.2f | %.0f | %.0f | %.0f | %.0f | %.1e | %.1e |\n", b.caps().backend.c_str(), resolution.x, resolution.y, resolution.z, paper_rate / 1000, exact_rate / 1000,
+        std::printf("| %s | %u x %u x %u | %.1f | %.1f | %.2f | %.0f | %.0f | %.0f | %.0f | %.1e | %.1e |\n",
+            b.caps().backend.c_str(), resolution.x, resolution.y, resolution.z, paper_rate / 1000, exact_rate / 1000,
             exact_rate / paper_rate, used[0] / n, visited[0] / n, used[1] / n, visited[1] / n, relmse[0], relmse[1]);
         std::fflush(stdout);
     }
@@ -95,9 +101,12 @@ int main(int argc, char** argv)
     auto s = bench::make_data_set(3);
     for (std::size_t i = 0; 6 * i < s.points.size(); ++i) // serial takes its time
         s.points[i] = s.points[6 * i];
-    s.points.resize(std::min((s.points.size() + 5) / 6, static_cast<std::size_t>(argc > 3 ? std::max(200, std::atoi(argv[3])) : 1 << 30)));
-    std::printf("S3: %zu photons, %zu points, k = %u, maximum radius %.2f m\n", s.positions.size(), s.points.size(), k, static_cast<double>(max_radius));
-    std::printf("| backend | grid | at_least_k, 1000/s | exact_k, 1000/s | ratio | used | visited | used | visited | relMSE | relMSE |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+    s.points.resize(std::min(
+        (s.points.size() + 5) / 6, static_cast<std::size_t>(argc > 3 ? std::max(200, std::atoi(argv[3])) : 1 << 30)));
+    std::printf("S3: %zu photons, %zu points, k = %u, maximum radius %.2f m\n", s.positions.size(), s.points.size(), k,
+        static_cast<double>(max_radius));
+    std::printf("| backend | grid | at_least_k, 1000/s | exact_k, 1000/s | ratio | used | visited | used | visited | "
+                "relMSE | relMSE |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
     const auto wanted = [&](const char* name) { return argc < 3 || std::strcmp(argv[2], name) == 0; };
     if (wanted("serial"))
         measure(serial_backend(), s, repetitions);

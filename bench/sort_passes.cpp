@@ -1,5 +1,6 @@
-// How much the sorting network gains on GPUs' APIs by more steps in a pass, in place, and by two pairs to a texel, against the plain
-// one, a step a pass: docs/measures.md. Prints PASS or FAIL per row; exits 1 where one is too slow, 3 where the order differs.
+// How much the sorting network gains on GPUs' APIs by more steps in a pass, in place, and by two pairs to a texel,
+// against the plain one, a step a pass: docs/measures.md. Prints PASS or FAIL per row; exits 1 where one is too slow, 3
+// where the order differs.
 //
 //   sort_passes [NUMBER OF PAIRS]
 #include "median.hpp"
@@ -34,14 +35,16 @@ struct version {
 template <backend B>
 int measure(B& b, const pairs_type& pairs, const pairs_type& expected, std::vector<version<B>> versions)
 {
-    for (int i = 0; i < 6; ++i) // in turn, so that a slow minute of the machine is everybody's; kernels compile in the first
+    for (int i = 0; i < 6;
+         ++i) // in turn, so that a slow minute of the machine is everybody's; kernels compile in the first
         for (auto& v : versions) {
             auto buffer = b.upload(std::span<const glm::uvec2>(pairs));
             b.finish();
             const auto start = std::chrono::steady_clock::now();
             v.passes = v.sort(b, buffer).passes;
             b.finish();
-            const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+            const double ms
+                = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
             if (i > 0)
                 v.ms.push_back(ms);
             else
@@ -52,7 +55,9 @@ int measure(B& b, const pairs_type& pairs, const pairs_type& expected, std::vect
     for (const auto& v : versions) {
         const double ms = median(v.ms);
         const bool good = plain / ms >= v.wanted && second / ms >= v.wanted_of_second;
-        std::printf("| %s | %s | %u | %.0f | %.2f | %s | %s |\n", b.caps().backend.c_str(), v.name.c_str(), v.passes, ms, plain / ms, v.wanted > 0 ? std::to_string(v.wanted).substr(0, 3).c_str() : "", v.right ? (good ? "PASS" : "FAIL") : "WRONG");
+        std::printf("| %s | %s | %u | %.0f | %.2f | %s | %s |\n", b.caps().backend.c_str(), v.name.c_str(), v.passes,
+            ms, plain / ms, v.wanted > 0 ? std::to_string(v.wanted).substr(0, 3).c_str() : "",
+            v.right ? (good ? "PASS" : "FAIL") : "WRONG");
         worst = std::max(worst, !v.right ? 3 : good ? 0 : 1);
     }
     std::fflush(stdout);
@@ -69,15 +74,23 @@ int main(int argc, char** argv)
     for (std::size_t i = 0; i < n; ++i)
         pairs.emplace_back(static_cast<uint>(engine()) % 31250u, static_cast<uint>(i));
     auto expected = pairs;
-    std::sort(expected.begin(), expected.end(), [](glm::uvec2 a, glm::uvec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+    std::sort(expected.begin(), expected.end(),
+        [](glm::uvec2 a, glm::uvec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
     try {
         vulkan_backend vulkan;
         gl_backend gl;
-        std::printf("%zu pairs; medians of five; %s; %s\n\n| backend | version | passes | ms | times the plain one's speed | wanted | |\n|---|---|---|---|---|---|---|\n", n, vulkan.caps().device.c_str(), gl.caps().device.c_str());
-        std::vector<version<vulkan_backend>> on_vulkan{{"plain: a step a pass, from one buffer to another", [](auto& b, auto& p) { return bitonic_sort<vulkan_backend>(b, p); }}};
+        std::printf("%zu pairs; medians of five; %s; %s\n\n| backend | version | passes | ms | times the plain one's "
+                    "speed | wanted | |\n|---|---|---|---|---|---|---|\n",
+            n, vulkan.caps().device.c_str(), gl.caps().device.c_str());
+        std::vector<version<vulkan_backend>> on_vulkan{{"plain: a step a pass, from one buffer to another",
+            [](auto& b, auto& p) { return bitonic_sort<vulkan_backend>(b, p); }}};
         for (const uint steps : {1u, 2u, 3u, 4u})
-            on_vulkan.push_back({"in place, up to " + std::to_string(steps) + (steps == 1 ? " step" : " steps") + " a pass", [steps](auto& b, auto& p) { return bitonic_sort(b, p, steps); }, steps == 4 ? 4.0 : 0.0, steps == 4 ? 2.5 : 0.0});
-        const std::vector<version<gl_backend>> on_gl{{"plain: a step a pass", [](auto& b, auto& p) { return bitonic_sort<gl_backend>(b, p); }},
+            on_vulkan.push_back(
+                {"in place, up to " + std::to_string(steps) + (steps == 1 ? " step" : " steps") + " a pass",
+                    [steps](auto& b, auto& p) { return bitonic_sort(b, p, steps); }, steps == 4 ? 4.0 : 0.0,
+                    steps == 4 ? 2.5 : 0.0});
+        const std::vector<version<gl_backend>> on_gl{
+            {"plain: a step a pass", [](auto& b, auto& p) { return bitonic_sort<gl_backend>(b, p); }},
             {"two pairs a texel, up to three steps a pass", [](auto& b, auto& p) { return bitonic_sort(b, p); }, 1.6}};
         return std::max(measure(vulkan, pairs, expected, on_vulkan), measure(gl, pairs, expected, on_gl));
     } catch (const backend_error& e) {

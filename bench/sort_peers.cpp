@@ -1,6 +1,6 @@
-// Sorting pairs of a 32-bit key and a 32-bit value against std::sort, Highway's vqsort and TBB's parallel_sort, all on the
-// same pairs, compared whole: docs/measures.md. Prints PASS or FAIL per row; exits 1 where one is too slow, 3 where the order
-// differs.
+// Sorting pairs of a 32-bit key and a 32-bit value against std::sort, Highway's vqsort and TBB's parallel_sort, all on
+// the same pairs, compared whole: docs/measures.md. Prints PASS or FAIL per row; exits 1 where one is too slow, 3 where
+// the order differs.
 //
 //   sort_peers [THREADS [LARGEST NUMBER OF PAIRS]]
 #include "median.hpp"
@@ -29,7 +29,8 @@ std::vector<pair_bits> make_pairs(std::size_t n, std::uint32_t keys)
     std::mt19937 engine(1);
     std::vector<pair_bits> pairs;
     for (std::size_t i = 0; i < n; ++i) {
-        const std::uint32_t key = keys == 0 ? static_cast<std::uint32_t>(engine()) : static_cast<std::uint32_t>(engine()) % keys;
+        const std::uint32_t key
+            = keys == 0 ? static_cast<std::uint32_t>(engine()) : static_cast<std::uint32_t>(engine()) % keys;
         pairs.push_back(pair_bits{key} << 32 | i);
     }
     return pairs;
@@ -52,7 +53,9 @@ int main(int argc, char** argv)
     hwy::Sorter vqsort;
     const auto most = static_cast<std::size_t>(argc > 2 ? std::max(1, std::atoi(argv[2])) : 1 << 24);
     int worst = 0;
-    std::printf("%u thread%s; ms, medians of seven\n\n| pairs | keys | photongrid | std::sort | vqsort, 1 thread | TBB parallel_sort | over std::sort | wanted | |\n|---|---|---|---|---|---|---|---|---|\n", threads, threads == 1 ? "" : "s");
+    std::printf("%u thread%s; ms, medians of seven\n\n| pairs | keys | photongrid | std::sort | vqsort, 1 thread | TBB "
+                "parallel_sort | over std::sort | wanted | |\n|---|---|---|---|---|---|---|---|---|\n",
+        threads, threads == 1 ? "" : "s");
     for (const std::size_t n : {std::size_t{65536}, std::size_t{1} << 20, std::size_t{1} << 24})
         for (const std::uint32_t keys : {31250u, 1000000u, 0u}) {
             if (n > most)
@@ -78,11 +81,14 @@ int main(int argc, char** argv)
             }
             for (std::size_t i = 0; i < n; ++i)
                 right = right && (pair_bits{result[i].x} << 32 | result[i].y) == expected[i];
-            const bool counts = n == std::size_t{1} << 20 && keys == 1000000u && threads == 1; // what the map of a million photons needs
+            const bool counts = n == std::size_t{1} << 20 && keys == 1000000u
+                && threads == 1; // what the map of a million photons needs
             const double ratio = median(by_std) / median(ours);
             const bool good = right && (!counts || ratio >= 8);
             worst = std::max(worst, !right ? 3 : good ? 0 : 1);
-            std::printf("| %zu | %s | %.2f | %.2f | %.2f | %.2f | %.1f | %s | %s |\n", n, keys == 0 ? "32 bits" : std::to_string(keys).c_str(), median(ours), median(by_std), median(by_vqsort), median(by_tbb), ratio, counts ? "8" : "", good ? "PASS" : "FAIL");
+            std::printf("| %zu | %s | %.2f | %.2f | %.2f | %.2f | %.1f | %s | %s |\n", n,
+                keys == 0 ? "32 bits" : std::to_string(keys).c_str(), median(ours), median(by_std), median(by_vqsort),
+                median(by_tbb), ratio, counts ? "8" : "", good ? "PASS" : "FAIL");
             std::fflush(stdout);
         }
     return worst;

@@ -1,6 +1,7 @@
-// What it gains to leave finished elements out of a pass (3.3, 4.3), against passes over all elements until all are done: a mask
-// for each element, tiles that the device skips, lists of those that go on. Radiance estimates by the paper's search, whose
-// steps differ from point to point; with little work a pass, as the paper's, and with as much as photongrid does.
+// What it gains to leave finished elements out of a pass (3.3, 4.3), against passes over all elements until all are
+// done: a mask for each element, tiles that the device skips, lists of those that go on. Radiance estimates by the
+// paper's search, whose steps differ from point to point; with little work a pass, as the paper's, and with as much as
+// photongrid does.
 //
 //   unfinished [REPETITIONS [POINTS]]
 #include "data_sets.hpp"
@@ -21,12 +22,12 @@
 namespace {
 
 using namespace photongrid;
-using bench::median;
 using bench::data_set;
+using bench::median;
 using bench::vec4;
 
-/// Backend B, but every pass of run_until_done is over all elements; it asks after each eight of them whether all are done, as
-/// often as B does.
+/// Backend B, but every pass of run_until_done is over all elements; it asks after each eight of them whether all are
+/// done, as often as B does.
 template <backend B>
 class every_element : public B {
 public:
@@ -44,7 +45,8 @@ public:
     }
 };
 
-/// One way to treat finished elements: estimates the set, and says how many passes that took and a sum of what was found.
+/// One way to treat finished elements: estimates the set, and says how many passes that took and a sum of what was
+/// found.
 struct version {
     std::string name;
     std::function<std::pair<uint, double>()> estimate;
@@ -62,7 +64,8 @@ version with(std::string name, B& b, const data_set& s, uint visits)
     };
     photons<B> p{b.upload(std::span<const vec4>(s.positions)), b.upload(std::span<const vec4>(s.powers))};
     const auto g = fitting_grid(b, p, s.k);
-    auto kept = std::make_shared<prepared>(prepared{sorted_map(b, std::move(p), g), b.upload(std::span<const vec4>(s.points))});
+    auto kept = std::make_shared<prepared>(
+        prepared{sorted_map(b, std::move(p), g), b.upload(std::span<const vec4>(s.points))});
     auto settings = as_paper(knn_settings{.k = s.k, .max_radius = 2});
     if (visits > 0) {
         settings.visits_per_pass = visits;
@@ -87,12 +90,14 @@ bool measure(const char* backend, const data_set& s, const char* work, std::vect
             const auto start = std::chrono::steady_clock::now();
             std::tie(v.passes, v.found) = v.estimate();
             if (i > 0)
-                v.ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+                v.ms.push_back(
+                    std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
         }
     bool same = true;
     for (const auto& v : versions) {
         same = same && v.found == versions[0].found;
-        std::printf("| %s | %s | %s | %s | %u | %.0f | %.2f | %s |\n", s.name.c_str(), backend, work, v.name.c_str(), v.passes, median(v.ms), median(versions[0].ms) / median(v.ms), v.found == versions[0].found ? "" : "WRONG");
+        std::printf("| %s | %s | %s | %s | %u | %.0f | %.2f | %s |\n", s.name.c_str(), backend, work, v.name.c_str(),
+            v.passes, median(v.ms), median(versions[0].ms) / median(v.ms), v.found == versions[0].found ? "" : "WRONG");
     }
     std::fflush(stdout);
     return same;
@@ -110,14 +115,26 @@ int main(int argc, char** argv)
         every_element<gl_backend> plain_gl;
         vulkan_backend lists;
         every_element<vulkan_backend> plain_vulkan;
-        std::printf("gl: %s; vulkan: %s\n\n| set | backend | photons a pass | finished elements | passes | ms | gain over none | |\n|---|---|---|---|---|---|---|---|\n", tiles.caps().device.c_str(), lists.caps().device.c_str());
+        std::printf("gl: %s; vulkan: %s\n\n| set | backend | photons a pass | finished elements | passes | ms | gain "
+                    "over none | |\n|---|---|---|---|---|---|---|---|\n",
+            tiles.caps().device.c_str(), lists.caps().device.c_str());
         for (const int number : {1, 3}) {
             auto s = bench::make_data_set(number);
             s.points.resize(std::min(s.points.size(), most));
             for (const uint visits : {32u, 0u}) {
                 const char* work = visits > 0 ? "32" : "3072";
-                same = measure("gl", s, work, {with("computed all the same", plain_gl, s, visits), with("masked one by one", mask, s, visits), with("left out in tiles of 64 x 64", tiles, s, visits), with("left out in tiles of 16 x 16", small_tiles, s, visits)}, repetitions) && same;
-                same = measure("vulkan", s, work, {with("computed all the same", plain_vulkan, s, visits), with("not in the list", lists, s, visits)}, repetitions) && same;
+                same = measure("gl", s, work,
+                           {with("computed all the same", plain_gl, s, visits),
+                               with("masked one by one", mask, s, visits),
+                               with("left out in tiles of 64 x 64", tiles, s, visits),
+                               with("left out in tiles of 16 x 16", small_tiles, s, visits)},
+                           repetitions)
+                    && same;
+                same = measure("vulkan", s, work,
+                           {with("computed all the same", plain_vulkan, s, visits),
+                               with("not in the list", lists, s, visits)},
+                           repetitions)
+                    && same;
             }
         }
     } catch (const backend_error& e) {

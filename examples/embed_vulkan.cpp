@@ -1,5 +1,5 @@
-// A program with a Vulkan device of its own: the library sorts what lies in the program's buffer, and the program's commands
-// on the same queue read the result. Nobody waits between them.
+// A program with a Vulkan device of its own: the library sorts what lies in the program's buffer, and the program's
+// commands on the same queue read the result. Nobody waits between them.
 #include <photongrid/backends/vulkan/overrides/all.hpp>
 #include <photongrid/backends/vulkan/vulkan.hpp>
 
@@ -93,8 +93,10 @@ struct application {
         VkMemoryAllocateInfo memory{};
         memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
         memory.allocationSize = needs.size;
-        constexpr VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-        while (((needs.memoryTypeBits >> memory.memoryTypeIndex) & 1u) == 0 || (types.memoryTypes[memory.memoryTypeIndex].propertyFlags & wanted) != wanted)
+        constexpr VkMemoryPropertyFlags wanted
+            = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+        while (((needs.memoryTypeBits >> memory.memoryTypeIndex) & 1u) == 0
+            || (types.memoryTypes[memory.memoryTypeIndex].propertyFlags & wanted) != wanted)
             ++memory.memoryTypeIndex;
         check(vkAllocateMemory(handles.device, &memory, nullptr, &b.memory), "vkAllocateMemory");
         check(vkBindBufferMemory(handles.device, b.buffer, b.memory, 0), "vkBindBufferMemory");

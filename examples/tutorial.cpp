@@ -36,7 +36,8 @@ int main()
     const auto irradiance = device.download(estimates.irradiance);
     const auto error = device.download(estimates.standard_error);
     for (std::size_t i = 0; i < places.size(); ++i)
-        std::printf("%.2f +- %.2f W/m^2 within %.0f mm\n", static_cast<double>(irradiance[i].x), static_cast<double>(error[i].x), 1000 * std::sqrt(static_cast<double>(irradiance[i].w)));
+        std::printf("%.2f +- %.2f W/m^2 within %.0f mm\n", static_cast<double>(irradiance[i].x),
+            static_cast<double>(error[i].x), 1000 * std::sqrt(static_cast<double>(irradiance[i].w)));
 
     const auto nearest = photongrid::knn_neighbours(device, map, points, {.k = 3});
     const auto ids = device.download(nearest.ids);

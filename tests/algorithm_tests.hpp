@@ -1,5 +1,5 @@
-// What the four algorithms promise, on any backend. References: std::, brute force, FLANN; then the serial backend, bit for
-// bit. Included by each on_<backend>.cpp, which instantiates the suite for its tags.
+// What the four algorithms promise, on any backend. References: std::, brute force, FLANN; then the serial backend, bit
+// for bit. Included by each on_<backend>.cpp, which instantiates the suite for its tags.
 #pragma once
 
 #include "known_answers.hpp"
@@ -47,7 +47,8 @@ protected:
 };
 TYPED_TEST_SUITE_P(algorithms);
 
-// --- buffers ----------------------------------------------------------------------------------------------------------
+// --- buffers
+// ----------------------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(algorithms, buffers_keep_every_bit)
 {
@@ -107,14 +108,17 @@ TYPED_TEST_P(algorithms, no_photon_lies_beyond_the_last_of_more_cells_than_float
 {
     auto& b = this->b();
     const uint cells = (1u << 24) + 4;
-    const std::vector<vec4> positions{{0, 0, 0, 0}, {1, 0, 0, 0}, {1e30f, 0, 0, 0}, {0.5f, 0, 0, 0}}, powers(4, vec4(1));
+    const std::vector<vec4> positions{{0, 0, 0, 0}, {1, 0, 0, 0}, {1e30f, 0, 0, 0}, {0.5f, 0, 0, 0}},
+        powers(4, vec4(1));
     auto pairs = b.template make<uvec2>(4);
-    b.template run<kernels::photon_cell>(4, {.grid = make_grid(glm::vec3(0), glm::vec3(1), {cells, 1, 1}), .photons = 4, .parts = every_part},
+    b.template run<kernels::photon_cell>(4,
+        {.grid = make_grid(glm::vec3(0), glm::vec3(1), {cells, 1, 1}), .photons = 4, .parts = every_part},
         reads(b.upload(std::span<const vec4>(positions)), b.upload(std::span<const vec4>(powers))), writes(pairs));
     EXPECT_EQ(b.download(pairs), (std::vector<uvec2>{{0, 0}, {cells - 1, 1}, {cells - 1, 2}, {cells / 2, 3}}));
 }
 
-// --- bitonic_sort -----------------------------------------------------------------------------------------------------
+// --- bitonic_sort
+// -----------------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(algorithms, sort_equals_std_sort_for_any_size_and_keys)
 {
@@ -190,7 +194,8 @@ TYPED_TEST_P(algorithms, long_a_million_pairs_sort_and_index)
     EXPECT_EQ(sum, n);
 }
 
-// --- grid_index -------------------------------------------------------------------------------------------------------
+// --- grid_index
+// -------------------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(algorithms, index_equals_the_histogram)
 {
@@ -201,12 +206,16 @@ TYPED_TEST_P(algorithms, index_equals_the_histogram)
         random_source u(*rc::gen::arbitrary<std::uint64_t>());
         std::vector<uint> keys(n);
         for (auto& k : keys)
-            k = kind == 0 ? u.below(cells) : kind == 1 ? 0u : kind == 2 ? cells - 1 : (u.below(2) != 0u ? 0xFFFFFFFFu : u.below(cells));
+            k = kind == 0   ? u.below(cells)
+                : kind == 1 ? 0u
+                : kind == 2 ? cells - 1
+                            : (u.below(2) != 0u ? 0xFFFFFFFFu : u.below(cells));
         std::sort(keys.begin(), keys.end());
         std::vector<uvec2> pairs;
         for (const auto k : keys)
             pairs.emplace_back(k, 7u);
-        const auto index = this->b().download(grid_index(this->b(), this->b().upload(std::span<const uvec2>(pairs)), cells));
+        const auto index
+            = this->b().download(grid_index(this->b(), this->b().upload(std::span<const uvec2>(pairs)), cells));
         RC_ASSERT(index.size() == cells);
         for (uint c = 0; c < cells; ++c) {
             RC_ASSERT(index[c].x == static_cast<uint>(std::lower_bound(keys.begin(), keys.end(), c) - keys.begin()));
@@ -215,7 +224,8 @@ TYPED_TEST_P(algorithms, index_equals_the_histogram)
     }));
 }
 
-// --- stencil_route ----------------------------------------------------------------------------------------------------
+// --- stencil_route
+// ----------------------------------------------------------------------------------------------------
 
 TEST(permutation, is_one_for_every_size_and_seed)
 {
@@ -236,7 +246,8 @@ TYPED_TEST_P(algorithms, route_keeps_the_first_in_draw_order_and_all_the_flux)
     auto& b = this->b();
     double largest = 0;
     for (const uint m : {1u, 2u, 3u, 4u, 8u, 15u, 16u})
-        for (const auto d : {distribution::uniform, distribution::clustered, distribution::coincident, distribution::cell_faces}) {
+        for (const auto d :
+            {distribution::uniform, distribution::clustered, distribution::coincident, distribution::cell_faces}) {
             const uint n = 3000;
             const uint seed = 17 * m;
             const auto set = make_photons(d, n, {6, 5, 4}, m);
@@ -250,7 +261,9 @@ TYPED_TEST_P(algorithms, route_keeps_the_first_in_draw_order_and_all_the_flux)
             std::vector<std::vector<uint>> destined(cells.size());
             for (uint i = 0; i < n; ++i) {
                 const uint id = kernels::permuted(i, n, seed);
-                const glm::vec3 cell = glm::clamp(glm::floor((glm::vec3(set.positions[id]) - glm::vec3(set.g.origin)) * glm::vec3(set.g.inverse_cell)), glm::vec3(0), glm::vec3(5, 4, 3));
+                const glm::vec3 cell = glm::clamp(glm::floor((glm::vec3(set.positions[id]) - glm::vec3(set.g.origin))
+                                                      * glm::vec3(set.g.inverse_cell)),
+                    glm::vec3(0), glm::vec3(5, 4, 3));
                 destined[static_cast<std::size_t>((cell.z * 5 + cell.y) * 6 + cell.x)].push_back(id);
             }
             const uint capacity = std::min(m * m, 255u);
@@ -262,14 +275,16 @@ TYPED_TEST_P(algorithms, route_keeps_the_first_in_draw_order_and_all_the_flux)
                 ASSERT_EQ(totals[c].w, static_cast<float>(destined[c].size()));
                 glm::dvec3 before(0), after(0);
                 for (uint s = 0; s < capacity; ++s) {
-                    ASSERT_EQ(list[c * capacity + s], s < kept ? destined[c][s] : nowhere) << "cell " << c << " slot " << s << " m " << m << " " << name_of(d);
+                    ASSERT_EQ(list[c * capacity + s], s < kept ? destined[c][s] : nowhere)
+                        << "cell " << c << " slot " << s << " m " << m << " " << name_of(d);
                     if (s < kept)
                         after += glm::dvec3(powers[destined[c][s]]);
                 }
                 for (const uint id : destined[c])
                     before += glm::dvec3(set.powers[id]);
                 for (int channel = 0; channel < 3; ++channel) {
-                    ASSERT_NEAR(after[channel], before[channel], 1e-5 * before[channel]) << "cell " << c << " m " << m << " " << name_of(d);
+                    ASSERT_NEAR(after[channel], before[channel], 1e-5 * before[channel])
+                        << "cell " << c << " m " << m << " " << name_of(d);
                     if (before[channel] > 0)
                         largest = std::max(largest, std::abs(after[channel] / before[channel] - 1));
                 }
@@ -359,11 +374,14 @@ TYPED_TEST_P(algorithms, route_conserves_flux_in_crowded_cells)
         for (uint s = cell.x; s < cell.x + cell.y; ++s)
             after += glm::dvec3(powers[list[s]]);
         for (int c = 0; c < 3; ++c)
-            EXPECT_NEAR(after[c], n * static_cast<double>(set.powers[0][c]), tolerance * n * static_cast<double>(set.powers[0][c])) << n << " photons, channel " << c;
+            EXPECT_NEAR(after[c], n * static_cast<double>(set.powers[0][c]),
+                tolerance * n * static_cast<double>(set.powers[0][c]))
+                << n << " photons, channel " << c;
         double largest = 0;
         for (int c = 0; c < 3; ++c)
             largest = std::max(largest, std::abs(after[c] / (n * static_cast<double>(set.powers[0][c])) - 1));
-        this->report("A2_" + std::to_string(n), "relative error of flux, " + std::to_string(n) + " equal photons in a cell:", largest);
+        this->report("A2_" + std::to_string(n),
+            "relative error of flux, " + std::to_string(n) + " equal photons in a cell:", largest);
     }
 }
 
@@ -383,8 +401,10 @@ TYPED_TEST_P(algorithms, route_is_fair_to_later_photons)
             late += id >= 1000 ? 1u : 0u;
         }
     EXPECT_EQ(kept, 20u * 255u);
-    EXPECT_NEAR(static_cast<double>(late), 0.5 * static_cast<double>(kept), 5 * 0.5 * std::sqrt(static_cast<double>(kept)));
-    this->report("A4", "the later light's share of the photons kept:", static_cast<double>(late) / static_cast<double>(kept));
+    EXPECT_NEAR(
+        static_cast<double>(late), 0.5 * static_cast<double>(kept), 5 * 0.5 * std::sqrt(static_cast<double>(kept)));
+    this->report(
+        "A4", "the later light's share of the photons kept:", static_cast<double>(late) / static_cast<double>(kept));
 }
 
 TYPED_TEST_P(algorithms, a_map_of_one_part_of_the_light_holds_that_part)
@@ -399,7 +419,8 @@ TYPED_TEST_P(algorithms, a_map_of_one_part_of_the_light_holds_that_part)
     }
     for (const bool routed : {false, true})
         for (const uint parts : {photongrid::caustic_part, photongrid::other_part, photongrid::every_part}) {
-            const auto map = routed ? routed_map(b, upload_photons(b, set), set.g, 16, 2, parts) : sorted_map(b, upload_photons(b, set), set.g, parts);
+            const auto map = routed ? routed_map(b, upload_photons(b, set), set.g, 16, 2, parts)
+                                    : sorted_map(b, upload_photons(b, set), set.g, parts);
             const auto list = b.download(map.list);
             std::vector<uint> held;
             for (const auto& c : b.download(map.cells))
@@ -429,14 +450,17 @@ TYPED_TEST_P(algorithms, route_says_no_to_what_it_cannot_do)
     }
 }
 
-// --- knn_grid_estimate ------------------------------------------------------------------------------------------------
+// --- knn_grid_estimate
+// ------------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(algorithms, estimate_uses_exactly_the_photons_within_its_radius)
 {
     auto& b = this->b();
     EXPECT_TRUE(rc::check("set = brute force, at least k, FLANN's k nearest are in it", [&] {
-        const auto d = *rc::gen::elementOf(std::vector<distribution>(std::begin(all_distributions), std::end(all_distributions)));
-        const auto resolution = *rc::gen::element(uvec3(1, 1, 1), uvec3(20, 1, 20), uvec3(5, 5, 10), uvec3(1, 1, 40), uvec3(7, 3, 2));
+        const auto d = *rc::gen::elementOf(
+            std::vector<distribution>(std::begin(all_distributions), std::end(all_distributions)));
+        const auto resolution
+            = *rc::gen::element(uvec3(1, 1, 1), uvec3(20, 1, 20), uvec3(5, 5, 10), uvec3(1, 1, 40), uvec3(7, 3, 2));
         const auto n = *rc::gen::element(0, 1, 2, 7, 40, 700);
         const auto k = *rc::gen::element(1u, 2u, 8u, 50u, 5000u);
         const auto radius = *rc::gen::element(1e-4f, 0.03f, 0.2f, 0.7f, 10.0f);
@@ -444,8 +468,10 @@ TYPED_TEST_P(algorithms, estimate_uses_exactly_the_photons_within_its_radius)
         const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1000000);
         const auto set = make_photons(d, static_cast<std::size_t>(n), resolution, seed);
         const auto points = make_points(set, 40, seed);
-        const auto map = routed ? routed_map(b, upload_photons(b, set), set.g, 16, 3) : sorted_map(b, upload_photons(b, set), set.g);
-        const auto estimates = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), as_paper(knn_settings{.k = k, .max_radius = radius, .visits_per_pass = 64, .ranges_per_pass = 16}));
+        const auto map = routed ? routed_map(b, upload_photons(b, set), set.g, 16, 3)
+                                : sorted_map(b, upload_photons(b, set), set.g);
+        const auto estimates = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)),
+            as_paper(knn_settings{.k = k, .max_radius = radius, .visits_per_pass = 64, .ranges_per_pass = 16}));
         const auto irradiance = b.download(estimates.irradiance);
         const auto used = b.download(estimates.used);
 
@@ -491,7 +517,8 @@ TYPED_TEST_P(algorithms, estimate_adds_up_the_flux_it_says)
     const auto set = make_photons(distribution::box_faces, 4000, {10, 10, 20}, 4);
     const auto points = make_points(set, 300, 4);
     const auto map = sorted_map(b, upload_photons(b, set), set.g);
-    const auto estimates = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), as_paper(knn_settings{.k = 60, .max_radius = 0.3f}));
+    const auto estimates = knn_grid_estimate(
+        b, map, b.upload(std::span<const vec4>(points)), as_paper(knn_settings{.k = 60, .max_radius = 0.3f}));
     const auto irradiance = b.download(estimates.irradiance);
     const auto used = b.download(estimates.used);
     double largest = 0;
@@ -518,7 +545,8 @@ TYPED_TEST_P(algorithms, estimate_defines_what_has_no_neighbours)
     auto& b = this->b();
     const auto set = make_photons(distribution::uniform, 100, {4, 4, 4}, 1);
     const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-    const std::vector<vec4> points = {{0.5f, 0.5f, 0.5f, 1.0f}, {0.5f, 0.5f, 0.5f, 0.0f}, {nan, 0.5f, 0.5f, 1.0f}, {inf, 0.5f, 0.5f, 1.0f}, {1e20f, 0.5f, 0.5f, 1.0f}};
+    const std::vector<vec4> points = {{0.5f, 0.5f, 0.5f, 1.0f}, {0.5f, 0.5f, 0.5f, 0.0f}, {nan, 0.5f, 0.5f, 1.0f},
+        {inf, 0.5f, 0.5f, 1.0f}, {1e20f, 0.5f, 0.5f, 1.0f}};
     const auto at = b.upload(std::span<const vec4>(points));
     const auto map = sorted_map(b, upload_photons(b, set), set.g);
     const auto counts = [&](const photon_map<typename TestFixture::B>& m, knn_settings s) {
@@ -549,7 +577,8 @@ TYPED_TEST_P(algorithms, coincident_photons_give_a_finite_estimate)
     set.powers.assign(32, vec4(1.0f));
     const auto map = sorted_map(b, upload_photons(b, set), set.g);
     const std::vector<vec4> points(1, vec4(0.5f, 0.5f, 0.5f, 1.0f));
-    const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), as_paper(knn_settings{.k = 32, .max_radius = 1, .min_radius = 0.01f}));
+    const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)),
+        as_paper(knn_settings{.k = 32, .max_radius = 1, .min_radius = 0.01f}));
     const double expected = 32 / (M_PI * 1e-4), found = static_cast<double>(b.download(e.irradiance)[0].x);
     EXPECT_NEAR(found, expected, 1e-5 * expected);
     this->report("A8", "relative error of the disc at the floor:", std::abs(found / expected - 1));
@@ -561,7 +590,8 @@ TYPED_TEST_P(algorithms, poisoned_photons_are_counted_and_harmless)
     auto& b = this->b();
     auto set = make_photons(distribution::uniform, 2000, {5, 5, 5}, 8);
     auto poisoned = set;
-    const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+    const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+        -std::numeric_limits<float>::infinity()};
     for (int i = 0; i < 30; ++i) {
         poisoned.positions.emplace_back(i % 2 == 0 ? bad[i % 3] : 0.5f, 0.5f, 0.5f, 0.0f);
         poisoned.powers.emplace_back(i % 2 == 0 ? 1.0f : bad[i % 3], 1.0f, 1.0f, 0.0f);
@@ -570,7 +600,9 @@ TYPED_TEST_P(algorithms, poisoned_photons_are_counted_and_harmless)
     const auto at = b.upload(std::span<const vec4>(points));
     std::size_t different = 0;
     for (const bool routed : {false, true}) {
-        const auto map = [&](const photon_set& s) { return routed ? routed_map(b, upload_photons(b, s), s.g, 16) : sorted_map(b, upload_photons(b, s), s.g); };
+        const auto map = [&](const photon_set& s) {
+            return routed ? routed_map(b, upload_photons(b, s), s.g, 16) : sorted_map(b, upload_photons(b, s), s.g);
+        };
         const auto clean = map(set), dirty = map(poisoned);
         EXPECT_EQ(clean.invalid, 0u);
         EXPECT_EQ(dirty.invalid, 30u);
@@ -593,7 +625,8 @@ TYPED_TEST_P(algorithms, a_search_can_be_watched_and_resumed)
     const auto points = make_points(set, 2000, 2);
     const auto at = b.upload(std::span<const vec4>(points));
     const auto map = sorted_map(b, upload_photons(b, set), set.g);
-    const auto settings = as_paper(knn_settings{.k = 200, .max_radius = 0.3f, .visits_per_pass = 100, .ranges_per_pass = 20});
+    const auto settings
+        = as_paper(knn_settings{.k = 200, .max_radius = 0.3f, .visits_per_pass = 100, .ranges_per_pass = 20});
     const auto whole = knn_grid_estimate(b, map, at, settings);
 
     knn_search<typename TestFixture::B> search(b, map, at, settings);
@@ -623,7 +656,8 @@ TYPED_TEST_P(algorithms, a_search_can_be_watched_and_resumed)
 
 TYPED_TEST_P(algorithms, all_photons_in_one_cell_are_all_visited)
 {
-    // 70,000 photons in one cell: more than the 65,535 iterations after which llvmpipe and lavapipe end loops in silence.
+    // 70,000 photons in one cell: more than the 65,535 iterations after which llvmpipe and lavapipe end loops in
+    // silence.
     auto& b = this->b();
     photon_set set;
     set.g = make_grid(glm::vec3(0), glm::vec3(1), {3, 3, 3});
@@ -631,7 +665,8 @@ TYPED_TEST_P(algorithms, all_photons_in_one_cell_are_all_visited)
     set.powers.assign(70000, vec4(0x1p-20f));
     const auto map = sorted_map(b, upload_photons(b, set), set.g);
     const auto points = std::vector<vec4>(100, vec4(0.51f, 0.5f, 0.5f, 1.0f));
-    const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), as_paper(knn_settings{.k = 100000, .max_radius = 0.5f}));
+    const auto e = knn_grid_estimate(
+        b, map, b.upload(std::span<const vec4>(points)), as_paper(knn_settings{.k = 100000, .max_radius = 0.5f}));
     for (const auto& u : b.download(e.used))
         ASSERT_EQ(u, uvec2(70000, 70000));
     const auto irradiance = b.download(e.irradiance);
@@ -639,10 +674,12 @@ TYPED_TEST_P(algorithms, all_photons_in_one_cell_are_all_visited)
         ASSERT_EQ(v.x, irradiance[0].x);
     const double expected = 70000 * 0x1p-20 / (M_PI * 0.25);
     EXPECT_NEAR(irradiance[0].x, expected, 1e-6);
-    this->report("A15", "relative error of irradiance of 70,000 photons in one cell:", std::abs(static_cast<double>(irradiance[0].x) / expected - 1));
+    this->report("A15", "relative error of irradiance of 70,000 photons in one cell:",
+        std::abs(static_cast<double>(irradiance[0].x) / expected - 1));
 }
 
-// --- against the specification ----------------------------------------------------------------------------------------
+// --- against the specification
+// ----------------------------------------------------------------------------------------
 
 TYPED_TEST_P(algorithms, everything_equals_the_serial_backend_bit_for_bit)
 {
@@ -654,9 +691,12 @@ TYPED_TEST_P(algorithms, everything_equals_the_serial_backend_bit_for_bit)
                 const auto set = make_photons(d, 5000, resolution, 11);
                 const auto points = make_points(set, 700, 11);
                 const auto run = [&](auto& device) {
-                    const auto map = m == 0 ? sorted_map(device, upload_photons(device, set), set.g) : routed_map(device, upload_photons(device, set), set.g, m, 6);
-                    const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(points)), as_paper(knn_settings{.k = 64, .max_radius = 0.25f}));
-                    return std::tuple{device.download(map.cells), device.download(map.list), device.download(map.photons.powers), device.download(e.irradiance), device.download(e.used)};
+                    const auto map = m == 0 ? sorted_map(device, upload_photons(device, set), set.g)
+                                            : routed_map(device, upload_photons(device, set), set.g, m, 6);
+                    const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(points)),
+                        as_paper(knn_settings{.k = 64, .max_radius = 0.25f}));
+                    return std::tuple{device.download(map.cells), device.download(map.list),
+                        device.download(map.photons.powers), device.download(e.irradiance), device.download(e.used)};
                 };
                 const auto [cells, list, powers, irradiance, used] = run(b);
                 const auto [cells_s, list_s, powers_s, irradiance_s, used_s] = run(serial);
@@ -668,7 +708,8 @@ TYPED_TEST_P(algorithms, everything_equals_the_serial_backend_bit_for_bit)
                 for (std::size_t i = 0; i < irradiance.size(); ++i)
                     radii += irradiance[i].w != irradiance_s[i].w ? 1u : 0u;
                 EXPECT_EQ(radii, 0u) << where;
-                // Light: the redistributed powers and the estimate divide, so only where that rounds correctly are they equal.
+                // Light: the redistributed powers and the estimate divide, so only where that rounds correctly are they
+                // equal.
                 if (b.caps().exact_division) {
                     EXPECT_EQ(count_different_bits(powers, powers_s), 0u) << where;
                 }
@@ -698,7 +739,9 @@ TYPED_TEST_P(algorithms, a_fitting_grid_suits_any_photons)
             const auto p = upload_photons(b, set);
             const grid g = fitting_grid(b, p, 50);
             const grid same = fitting_grid(serial, upload_photons(serial, set), 50);
-            ASSERT_TRUE(g.origin == same.origin && g.cell == same.cell && g.inverse_cell == same.inverse_cell && g.resolution == same.resolution) << where;
+            ASSERT_TRUE(g.origin == same.origin && g.cell == same.cell && g.inverse_cell == same.inverse_cell
+                && g.resolution == same.resolution)
+                << where;
             ASSERT_LE(cell_count(g), std::max<double>(1.25 * static_cast<double>(n), 64)) << where;
             if (n == 20000u && d != distribution::coincident) {
                 ASSERT_GT(cell_count(g), 50u) << where; // strays have not made one cell of all
@@ -707,7 +750,9 @@ TYPED_TEST_P(algorithms, a_fitting_grid_suits_any_photons)
             // Whatever grid it is, the search is exact in it.
             const auto points = make_points(set, 40, 5);
             const auto map = sorted_map(b, upload_photons(b, set), g);
-            const auto e = b.download(knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), {.k = 50, .max_radius = 1}).irradiance);
+            const auto e = b.download(
+                knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), {.k = 50, .max_radius = 1})
+                    .irradiance);
             for (std::size_t q = 0; q < points.size(); ++q) {
                 std::vector<float> distances;
                 for (const auto& photon : set.positions)
@@ -729,13 +774,18 @@ TYPED_TEST_P(algorithms, a_fitting_grid_suits_any_photons)
     EXPECT_NEAR(g.cell.x, 0.5 * kth, 0.125 * kth);
 }
 
-REGISTER_TYPED_TEST_SUITE_P(algorithms, a_fitting_grid_suits_any_photons, buffers_keep_every_bit, a_pass_outside_a_buffer_is_refused, memory_is_accounted_for,
-    the_self_test_of_arithmetic_agrees_with_the_capabilities, no_photon_lies_beyond_the_last_of_more_cells_than_floats_count, sort_equals_std_sort_for_any_size_and_keys, sort_handles_the_sizes_where_networks_break,
-    the_generic_sort_is_right_where_another_stands_for_it, sort_reports_the_papers_numbers_of_passes, long_a_million_pairs_sort_and_index, index_equals_the_histogram,
-    route_keeps_the_first_in_draw_order_and_all_the_flux, route_conserves_unequal_powers_and_absent_channels, route_takes_a_hundred_thousand_photons_to_one_cell,
-    route_conserves_flux_in_crowded_cells, route_is_fair_to_later_photons,
-    a_map_of_one_part_of_the_light_holds_that_part, route_says_no_to_what_it_cannot_do, estimate_uses_exactly_the_photons_within_its_radius, estimate_adds_up_the_flux_it_says,
-    estimate_defines_what_has_no_neighbours, coincident_photons_give_a_finite_estimate, poisoned_photons_are_counted_and_harmless,
-    a_search_can_be_watched_and_resumed, all_photons_in_one_cell_are_all_visited, everything_equals_the_serial_backend_bit_for_bit);
+REGISTER_TYPED_TEST_SUITE_P(algorithms, a_fitting_grid_suits_any_photons, buffers_keep_every_bit,
+    a_pass_outside_a_buffer_is_refused, memory_is_accounted_for,
+    the_self_test_of_arithmetic_agrees_with_the_capabilities,
+    no_photon_lies_beyond_the_last_of_more_cells_than_floats_count, sort_equals_std_sort_for_any_size_and_keys,
+    sort_handles_the_sizes_where_networks_break, the_generic_sort_is_right_where_another_stands_for_it,
+    sort_reports_the_papers_numbers_of_passes, long_a_million_pairs_sort_and_index, index_equals_the_histogram,
+    route_keeps_the_first_in_draw_order_and_all_the_flux, route_conserves_unequal_powers_and_absent_channels,
+    route_takes_a_hundred_thousand_photons_to_one_cell, route_conserves_flux_in_crowded_cells,
+    route_is_fair_to_later_photons, a_map_of_one_part_of_the_light_holds_that_part, route_says_no_to_what_it_cannot_do,
+    estimate_uses_exactly_the_photons_within_its_radius, estimate_adds_up_the_flux_it_says,
+    estimate_defines_what_has_no_neighbours, coincident_photons_give_a_finite_estimate,
+    poisoned_photons_are_counted_and_harmless, a_search_can_be_watched_and_resumed,
+    all_photons_in_one_cell_are_all_visited, everything_equals_the_serial_backend_bit_for_bit);
 
 } // namespace photongrid::testing

@@ -16,19 +16,38 @@ struct minimal_backend {
         std::size_t size() const { return 0; }
     };
     template <element T>
-    buffer<T> make(std::size_t) { return {}; }
+    buffer<T> make(std::size_t)
+    {
+        return {};
+    }
     template <element T, std::size_t E>
-    buffer<T> upload(std::span<const T, E>) { return {}; }
+    buffer<T> upload(std::span<const T, E>)
+    {
+        return {};
+    }
     template <element T>
-    std::vector<T> download(const buffer<T>&) { return {}; }
+    std::vector<T> download(const buffer<T>&)
+    {
+        return {};
+    }
     template <gather_kernel K, class R, class W>
-    void run(launch, const typename K::Params&, R, W) {}
+    void run(launch, const typename K::Params&, R, W)
+    {
+    }
     template <iterative_kernel K, class R, class W>
-    progress run_until_done(launch, const typename K::Params&, R, W, uint) { return {.passes = 0, .finished = true, .active = {}}; }
+    progress run_until_done(launch, const typename K::Params&, R, W, uint)
+    {
+        return {.passes = 0, .finished = true, .active = {}};
+    }
     template <predicate_kernel K, class R>
-    std::uint64_t count(launch, const typename K::Params&, R) { return 0; }
+    std::uint64_t count(launch, const typename K::Params&, R)
+    {
+        return 0;
+    }
     template <route_kernel K, class R>
-    void route(launch, const typename K::Params&, R, uint, uint, buffer<uint>&, buffer<glm::vec4>&) {}
+    void route(launch, const typename K::Params&, R, uint, uint, buffer<uint>&, buffer<glm::vec4>&)
+    {
+    }
     void finish() {}
     const capabilities& caps() const { return caps_; }
     std::uint64_t bytes() const { return 0; }
@@ -49,7 +68,9 @@ static_assert(!backend<backend_without_route>);
 static_assert(!backend<int>);
 
 // Kernels are told apart by what they define.
-static_assert(gather_kernel<kernels::bitonic_step> && !iterative_kernel<kernels::bitonic_step> && !predicate_kernel<kernels::bitonic_step>);
+static_assert(
+    gather_kernel<
+        kernels::bitonic_step> && !iterative_kernel<kernels::bitonic_step> && !predicate_kernel<kernels::bitonic_step>);
 static_assert(iterative_kernel<kernels::knn_visit>);
 static_assert(predicate_kernel<kernels::overfull_cell>);
 static_assert(route_kernel<kernels::route_photon> && !route_kernel<kernels::bitonic_step>);
@@ -68,7 +89,8 @@ TEST(backend_concept, every_algorithm_compiles_for_a_minimal_backend)
     EXPECT_EQ(bitonic_sort(b, pairs).passes, 0u);
     const auto g = make_grid(glm::vec3(0), glm::vec3(1), {2, 2, 2});
     const auto sorted = sorted_map(b, photons<minimal_backend>{}, g);
-    EXPECT_THROW(routed_map(b, photons<minimal_backend>{}, g, 4), backend_error); // its max_elements is 0: every slot is too many
+    EXPECT_THROW(routed_map(b, photons<minimal_backend>{}, g, 4),
+        backend_error); // its max_elements is 0: every slot is too many
     const auto e = knn_grid_estimate(b, sorted, {}, {.k = 1, .max_radius = 1});
     EXPECT_EQ(e.used.size(), 0u);
 }
@@ -79,8 +101,10 @@ TEST(make_grid, refuses_what_no_device_could_hold)
     EXPECT_THROW(make_grid(glm::vec3(0), glm::vec3(1), {2048, 2048, 2048}), std::invalid_argument);
     EXPECT_THROW(make_grid(glm::vec3(0), glm::vec3(1), {0xFFFFFFFFu, 0xFFFFFFFFu, 0xFFFFFFFFu}), std::invalid_argument);
     EXPECT_THROW(make_grid(glm::vec3(1), glm::vec3(0), {1, 1, 1}), std::invalid_argument);
-    EXPECT_THROW(make_grid(glm::vec3(0), glm::vec3(std::numeric_limits<float>::infinity()), {1, 1, 1}), std::invalid_argument);
-    EXPECT_THROW(make_grid(glm::vec3(0), glm::vec3(std::numeric_limits<float>::quiet_NaN()), {1, 1, 1}), std::invalid_argument);
+    EXPECT_THROW(
+        make_grid(glm::vec3(0), glm::vec3(std::numeric_limits<float>::infinity()), {1, 1, 1}), std::invalid_argument);
+    EXPECT_THROW(
+        make_grid(glm::vec3(0), glm::vec3(std::numeric_limits<float>::quiet_NaN()), {1, 1, 1}), std::invalid_argument);
     EXPECT_EQ(cell_count(make_grid(glm::vec3(0), glm::vec3(0), {250, 1, 250})), 62500u); // no extent at all
 }
 

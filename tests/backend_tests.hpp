@@ -1,5 +1,5 @@
-// The tests that every backend passes, for one of your own: link photongrid::backend_tests and write, in one source file and
-// outside any namespace,
+// The tests that every backend passes, for one of your own: link photongrid::backend_tests and write, in one source
+// file and outside any namespace,
 //
 //   PHOTONGRID_TEST_BACKEND(mine, my_backend, my_backend(my_options{}))
 //

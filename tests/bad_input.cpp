@@ -1,5 +1,5 @@
-// Bad input at the interface: each line of the table is a call, the exception that it is documented to throw, and the words
-// that name the argument. On every backend, in every build type.
+// Bad input at the interface: each line of the table is a call, the exception that it is documented to throw, and the
+// words that name the argument. On every backend, in every build type.
 #include "photon_sets.hpp"
 
 #include <photongrid/backends/serial/serial.hpp>
@@ -38,7 +38,8 @@ struct bad_call {
 
 std::string name_of(thrown t)
 {
-    constexpr const char* names[] = {"nothing", "std::invalid_argument", "backend_error", "map_file_error", "another exception"};
+    constexpr const char* names[]
+        = {"nothing", "std::invalid_argument", "backend_error", "map_file_error", "another exception"};
     return names[static_cast<int>(t)];
 }
 
@@ -68,16 +69,20 @@ void expect_all(const std::vector<bad_call>& table)
 }
 
 template <class B>
-class bad_input : public ::testing::Test {};
+class bad_input : public ::testing::Test {
+};
 using all = ::testing::Types<serial_backend
 #ifdef PHOTONGRID_TEST_CPU
-    , cpu_backend
+    ,
+    cpu_backend
 #endif
 #ifdef PHOTONGRID_TEST_GL
-    , gl_backend
+    ,
+    gl_backend
 #endif
 #ifdef PHOTONGRID_TEST_VULKAN
-    , vulkan_backend
+    ,
+    vulkan_backend
 #endif
     >;
 TYPED_TEST_SUITE(bad_input, all);
@@ -90,7 +95,8 @@ TYPED_TEST(bad_input, is_refused_by_name)
     const auto points = b.upload(std::span<const glm::vec4>(make_points(set, 10, 1)));
     const auto map = sorted_map(b, upload_photons(b, set), set.g);
     const glm::vec3 zero(0), one(1);
-    const auto search = [&](const knn_settings& s) { return [&b, &map, &points, s] { (void)knn_grid_estimate(b, map, points, s); }; };
+    const auto search
+        = [&](const knn_settings& s) { return [&b, &map, &points, s] { (void)knn_grid_estimate(b, map, points, s); }; };
     const auto fixed = [](float r) {
         knn_settings s{.max_radius = r};
         s.search = search_kind::fixed_radius;
@@ -103,37 +109,77 @@ TYPED_TEST(bad_input, is_refused_by_name)
 
     expect_all({
         // grids
-        {"a grid of no cells", thrown::invalid_argument, "make_grid: resolution", [&] { (void)make_grid(zero, one, {0, 4, 4}); }},
-        {"a grid of too many cells", thrown::invalid_argument, "make_grid: resolution", [&] { (void)make_grid(zero, one, {4096, 4096, 4096}); }},
-        {"a grid upside down", thrown::invalid_argument, "make_grid: low, high: axis 0", [&] { (void)make_grid(one, zero, {4, 4, 4}); }},
-        {"a grid at NaN", thrown::invalid_argument, "make_grid: low, high", [&] { (void)make_grid(glm::vec3(nan), one, {4, 4, 4}); }},
-        {"an infinite grid", thrown::invalid_argument, "make_grid: low, high", [&] { (void)make_grid(zero, glm::vec3(inf), {4, 4, 4}); }},
+        {"a grid of no cells", thrown::invalid_argument, "make_grid: resolution",
+            [&] {
+                (void)make_grid(zero, one, {0, 4, 4});
+            }},
+        {"a grid of too many cells", thrown::invalid_argument, "make_grid: resolution",
+            [&] {
+                (void)make_grid(zero, one, {4096, 4096, 4096});
+            }},
+        {"a grid upside down", thrown::invalid_argument, "make_grid: low, high: axis 0",
+            [&] {
+                (void)make_grid(one, zero, {4, 4, 4});
+            }},
+        {"a grid at NaN", thrown::invalid_argument, "make_grid: low, high",
+            [&] {
+                (void)make_grid(glm::vec3(nan), one, {4, 4, 4});
+            }},
+        {"an infinite grid", thrown::invalid_argument, "make_grid: low, high",
+            [&] {
+                (void)make_grid(zero, glm::vec3(inf), {4, 4, 4});
+            }},
         // buffers and passes
-        {"a buffer larger than any device", thrown::backend_error, "elements", [&] { (void)b.template make<glm::vec4>(std::size_t{1} << 60); }},
-        {"more elements than a pass has", thrown::invalid_argument, "launch: elements", [&] { (void)launch(std::size_t{1} << 33); }},
-        {"a pass past the end of its output", thrown::invalid_argument, "buffer 'value'", [&] { b.template run<kernels::pair_value>(8, {}, reads(pairs), writes(few)); }},
+        {"a buffer larger than any device", thrown::backend_error, "elements",
+            [&] { (void)b.template make<glm::vec4>(std::size_t{1} << 60); }},
+        {"more elements than a pass has", thrown::invalid_argument, "launch: elements",
+            [&] { (void)launch(std::size_t{1} << 33); }},
+        {"a pass past the end of its output", thrown::invalid_argument, "buffer 'value'",
+            [&] { b.template run<kernels::pair_value>(8, {}, reads(pairs), writes(few)); }},
         // routing
-        {"no slots", thrown::invalid_argument, "stencil_route: m: 0", [&] { (void)stencil_route(b, upload_photons(b, set), set.g, 0); }},
-        {"too many slots", thrown::invalid_argument, "stencil_route: m: 17", [&] { (void)routed_map(b, upload_photons(b, set), set.g, 17); }},
-        {"a grid too large for the device", thrown::backend_error, "stencil_route: 1000000000 cells", [&] { (void)routed_map(b, upload_photons(b, set), make_grid(zero, one, {1000, 1000, 1000}), 16); }},
+        {"no slots", thrown::invalid_argument, "stencil_route: m: 0",
+            [&] { (void)stencil_route(b, upload_photons(b, set), set.g, 0); }},
+        {"too many slots", thrown::invalid_argument, "stencil_route: m: 17",
+            [&] { (void)routed_map(b, upload_photons(b, set), set.g, 17); }},
+        {"a grid too large for the device", thrown::backend_error, "stencil_route: 1000000000 cells",
+            [&] {
+                (void)routed_map(b, upload_photons(b, set), make_grid(zero, one, {1000, 1000, 1000}), 16);
+            }},
         // searches
         {"k = 0", thrown::invalid_argument, "k: 0", search({.k = 0, .max_radius = 1})},
-        {"k = 0, the paper's search", thrown::invalid_argument, "k: 0", search(as_paper(knn_settings{.k = 0, .max_radius = 1}))},
+        {"k = 0, the paper's search", thrown::invalid_argument, "k: 0",
+            search(as_paper(knn_settings{.k = 0, .max_radius = 1}))},
         {"a radius of NaN", thrown::invalid_argument, "max_radius", search({.k = 5, .max_radius = nan})},
-        {"a least radius of NaN", thrown::invalid_argument, "min_radius", search({.k = 5, .max_radius = 1, .min_radius = nan})},
+        {"a least radius of NaN", thrown::invalid_argument, "min_radius",
+            search({.k = 5, .max_radius = 1, .min_radius = nan})},
         {"all photons within infinity", thrown::invalid_argument, "max_radius: infinite", search(fixed(inf))},
         {"no visits in a pass", thrown::invalid_argument, "visits_per_pass", search(no_passes)},
-        {"a compression below 1", thrown::invalid_argument, "leaks: compression", search({.k = 5, .max_radius = 1, .leaks = {.compression = 0.5f}})},
-        {"a compression of NaN", thrown::invalid_argument, "leaks: compression", search({.k = 5, .max_radius = 1, .leaks = {.compression = nan}})},
-        {"a cosine above 1", thrown::invalid_argument, "min_cosine", search({.k = 5, .max_radius = 1, .leaks = {.min_cosine = 1.5f}})},
-        {"a policy without normals of points", thrown::invalid_argument, "normal of every query point", search({.k = 5, .max_radius = 1, .leaks = {.side = true}})},
-        {"a policy without directions of photons", thrown::invalid_argument, "photons' directions", [&] { (void)knn_grid_estimate(b, map, points, points, {.k = 5, .max_radius = 1, .leaks = {.side = true}}); }},
-        {"a policy without normals of photons", thrown::invalid_argument, "photons' surface normals", [&] { (void)knn_grid_estimate(b, map, points, points, {.k = 5, .max_radius = 1, .leaks = {.min_cosine = 0.5f}}); }},
-        {"lists of 0", thrown::invalid_argument, "k: 0", [&] { (void)knn_neighbours(b, map, points, {.k = 0, .max_radius = 1}); }},
-        {"lists of too many", thrown::invalid_argument, "k: 4000000000", [&] { (void)knn_neighbours(b, map, points, {.k = 4000000000u, .max_radius = 1}); }},
-        {"lists of another search", thrown::invalid_argument, "search", [&] { (void)knn_neighbours(b, map, points, fixed(1)); }},
+        {"a compression below 1", thrown::invalid_argument, "leaks: compression",
+            search({.k = 5, .max_radius = 1, .leaks = {.compression = 0.5f}})},
+        {"a compression of NaN", thrown::invalid_argument, "leaks: compression",
+            search({.k = 5, .max_radius = 1, .leaks = {.compression = nan}})},
+        {"a cosine above 1", thrown::invalid_argument, "min_cosine",
+            search({.k = 5, .max_radius = 1, .leaks = {.min_cosine = 1.5f}})},
+        {"a policy without normals of points", thrown::invalid_argument, "normal of every query point",
+            search({.k = 5, .max_radius = 1, .leaks = {.side = true}})},
+        {"a policy without directions of photons", thrown::invalid_argument, "photons' directions",
+            [&] {
+                (void)knn_grid_estimate(b, map, points, points, {.k = 5, .max_radius = 1, .leaks = {.side = true}});
+            }},
+        {"a policy without normals of photons", thrown::invalid_argument, "photons' surface normals",
+            [&] {
+                (void)knn_grid_estimate(
+                    b, map, points, points, {.k = 5, .max_radius = 1, .leaks = {.min_cosine = 0.5f}});
+            }},
+        {"lists of 0", thrown::invalid_argument, "k: 0",
+            [&] { (void)knn_neighbours(b, map, points, {.k = 0, .max_radius = 1}); }},
+        {"lists of too many", thrown::invalid_argument, "k: 4000000000",
+            [&] { (void)knn_neighbours(b, map, points, {.k = 4000000000u, .max_radius = 1}); }},
+        {"lists of another search", thrown::invalid_argument, "search",
+            [&] { (void)knn_neighbours(b, map, points, fixed(1)); }},
         // files
-        {"a map to nowhere", thrown::map_file_error, "/no/such/folder/map", [&] { save_map(b, map, "/no/such/folder/map"); }},
+        {"a map to nowhere", thrown::map_file_error, "/no/such/folder/map",
+            [&] { save_map(b, map, "/no/such/folder/map"); }},
         {"a map from nowhere", thrown::map_file_error, "/no/such/map", [&] { (void)load_map(b, "/no/such/map"); }},
     });
     // Afterwards all is as before.
@@ -151,7 +197,8 @@ TYPED_TEST(bad_input, that_is_empty_is_no_mistake)
     EXPECT_EQ(fitted_map(b, upload_photons(b, photon_set{{}, {}, g}), 5).photons.size(), 0u);
     EXPECT_EQ(routed_map(b, upload_photons(b, photon_set{{}, {}, g}), g, 4).photons.size(), 0u);
     const auto one = upload_points(b, std::vector<glm::vec3>{{0.5f, 0.5f, 0.5f}});
-    EXPECT_EQ(b.download(knn_grid_estimate(b, empty, one, {.k = 5, .max_radius = 1}).irradiance)[0], glm::vec4(0, 0, 0, 1));
+    EXPECT_EQ(
+        b.download(knn_grid_estimate(b, empty, one, {.k = 5, .max_radius = 1}).irradiance)[0], glm::vec4(0, 0, 0, 1));
     EXPECT_EQ(b.download(knn_neighbours(b, empty, one, {.k = 2}).ids), (std::vector<uint>{nowhere, nowhere}));
     const auto none = upload_points(b, std::vector<glm::vec3>{});
     EXPECT_EQ(knn_grid_estimate(b, empty, none, {.k = 5}).irradiance.size(), 0u);
@@ -174,7 +221,11 @@ TYPED_TEST(bad_input, of_another_backends_buffers_is_refused_or_cannot_be)
     auto their_ids = other.template make<uint>(2);
     expect_all({
         {"reading another's buffer", thrown::invalid_argument, "buffer 'pairs' belongs to another backend", mix},
-        {"writing another's buffer", thrown::invalid_argument, "buffer 'value' belongs to another backend", [&] { mine.template run<kernels::pair_value>(2, {}, reads(mine.upload(std::span<const glm::uvec2>(pairs))), writes(their_ids)); }},
+        {"writing another's buffer", thrown::invalid_argument, "buffer 'value' belongs to another backend",
+            [&] {
+                mine.template run<kernels::pair_value>(
+                    2, {}, reads(mine.upload(std::span<const glm::uvec2>(pairs))), writes(their_ids));
+            }},
         {"downloading another's buffer", thrown::invalid_argument, "download: b", [&] { (void)mine.download(theirs); }},
     });
 }

@@ -1,12 +1,11 @@
-// What only the cpu backend promises: the same bytes at any number of threads and on any instruction set, buffers that can be
-// turned over, overrides that equal the generic algorithms.
+// What only the cpu backend promises: the same bytes at any number of threads and on any instruction set, buffers that
+// can be turned over, overrides that equal the generic algorithms.
 #pragma once
 
 #include <photongrid/backends/cpu/overrides/all.hpp>
 
 #include "photon_sets.hpp"
 #include "serial_algorithms.hpp"
-
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -28,8 +27,9 @@ namespace {
         std::vector<uint> list;
         bool operator==(const findings& other) const
         {
-            return count_different_bits(irradiance, other.irradiance) + count_different_bits(errors, other.errors) + count_different_bits(used, other.used)
-                + count_different_bits(cells, other.cells) + count_different_bits(list, other.list)
+            return count_different_bits(irradiance, other.irradiance) + count_different_bits(errors, other.errors)
+                + count_different_bits(used, other.used) + count_different_bits(cells, other.cells)
+                + count_different_bits(list, other.list)
                 == 0;
         }
     };
@@ -56,8 +56,10 @@ namespace {
         k.errors = search != search_kind::at_least_k || kernel != filter_kernel::constant;
         if (!k.errors)
             k.bias = bias_kind::paper; // adds up while it searches
-        const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), b.upload(std::span<const vec4>(up)), k);
-        return {b.download(e.irradiance), b.download(e.standard_error), b.download(e.used), b.download(map.cells), b.download(map.list)};
+        const auto e = knn_grid_estimate(
+            b, map, b.upload(std::span<const vec4>(points)), b.upload(std::span<const vec4>(up)), k);
+        return {b.download(e.irradiance), b.download(e.standard_error), b.download(e.used), b.download(map.cells),
+            b.download(map.list)};
     }
 } // namespace
 
@@ -93,8 +95,10 @@ TEST(cpu_backend, instruction_sets_do_not_change_a_byte)
                         hwy::GetChosenTarget().DeInit();
                     }
                     for (std::size_t t = 1; t < all.size(); ++t)
-                        EXPECT_TRUE(all[t] == all[0]) << hwy::TargetName(targets[t]) << " against " << hwy::TargetName(targets[0]) << ", " << name_of(d) << " search " << static_cast<int>(search) << " kernel "
-                                                      << static_cast<int>(kernel);
+                        EXPECT_TRUE(all[t] == all[0])
+                            << hwy::TargetName(targets[t]) << " against " << hwy::TargetName(targets[0]) << ", "
+                            << name_of(d) << " search " << static_cast<int>(search) << " kernel "
+                            << static_cast<int>(kernel);
                 }
     std::string names;
     for (const auto target : targets)
@@ -144,13 +148,16 @@ TEST(cpu_backend, radix_sort_equals_std_sort)
     cpu::pool one(1), three(3);
     EXPECT_TRUE(rc::check("any keys and values", [&] {
         const auto n = *rc::gen::element<std::size_t>(0, 1, 2, 3, 1000, 20000, 50001);
-        const auto keys = *rc::gen::element(1u, 3u, 2000u, 70000u, 0xFFFFFFFFu), values = *rc::gen::element(0u, 1u, 5000u, 0xFFFFFFFFu);
+        const auto keys = *rc::gen::element(1u, 3u, 2000u, 70000u, 0xFFFFFFFFu),
+                   values = *rc::gen::element(0u, 1u, 5000u, 0xFFFFFFFFu);
         random_source u(*rc::gen::arbitrary<std::uint64_t>());
         std::vector<uvec2> pairs(n);
         for (std::size_t i = 0; i < n; ++i) // values 0: ascending, as ids are
-            pairs[i] = {u.below(50) == 0 ? 0xFFFFFFFFu : u.below(keys), values == 0 ? static_cast<uint>(i) : u.below(values)};
+            pairs[i] = {
+                u.below(50) == 0 ? 0xFFFFFFFFu : u.below(keys), values == 0 ? static_cast<uint>(i) : u.below(values)};
         auto expected = pairs;
-        std::sort(expected.begin(), expected.end(), [](uvec2 a, uvec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+        std::sort(
+            expected.begin(), expected.end(), [](uvec2 a, uvec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
         for (auto* threads : {&one, &three}) {
             const cpu::storage first((n + 8) * sizeof(uvec2)), second((n + 8) * sizeof(uvec2));
             auto* const here = reinterpret_cast<uvec2*>(first.begin());
@@ -179,23 +186,30 @@ TEST(cpu_backend, maps_equal_the_generic_ones)
             EXPECT_EQ(mine.left_out, theirs.left_out);
             EXPECT_EQ(count_different_bits(b.download(mine.cells), serial.download(theirs.cells)), 0u);
             EXPECT_EQ(count_different_bits(b.download(mine.list), serial.download(theirs.list)), 0u);
-            EXPECT_EQ(count_different_bits(b.download(mine.photons.positions), serial.download(theirs.photons.positions)), 0u);
-            EXPECT_EQ(count_different_bits(b.download(mine.photons.powers), serial.download(theirs.photons.powers)), 0u);
+            EXPECT_EQ(
+                count_different_bits(b.download(mine.photons.positions), serial.download(theirs.photons.positions)),
+                0u);
+            EXPECT_EQ(
+                count_different_bits(b.download(mine.photons.powers), serial.download(theirs.photons.powers)), 0u);
         }
 }
 
 TEST(cpu_backend, the_growing_search_visits_and_holds_what_serials_does)
 {
-    // What the result depends on, the order of visits among it: any grid, any number wanted, with photons enough in a cell or few.
+    // What the result depends on, the order of visits among it: any grid, any number wanted, with photons enough in a
+    // cell or few.
     cpu_backend b(2);
     serial_backend serial;
     EXPECT_TRUE(rc::check("held, visited, radius: the same bits", [&] {
-        const auto d = *rc::gen::elementOf(std::vector<distribution>(std::begin(all_distributions), std::end(all_distributions)));
-        const auto resolution = *rc::gen::element(uvec3(1, 1, 1), uvec3(20, 1, 20), uvec3(5, 5, 10), uvec3(1, 1, 40), uvec3(3, 50, 2), uvec3(17, 33, 18));
+        const auto d = *rc::gen::elementOf(
+            std::vector<distribution>(std::begin(all_distributions), std::end(all_distributions)));
+        const auto resolution = *rc::gen::element(
+            uvec3(1, 1, 1), uvec3(20, 1, 20), uvec3(5, 5, 10), uvec3(1, 1, 40), uvec3(3, 50, 2), uvec3(17, 33, 18));
         const auto n = *rc::gen::element<std::size_t>(0, 1, 2, 17, 700, 5000);
         const auto k = *rc::gen::element(1u, 2u, 15u, 16u, 17u, 50u, 333u, 5000u);
         const auto radius = *rc::gen::element(1e-4f, 0.03f, 0.2f, 0.7f, 10.0f);
-        const auto leaks = *rc::gen::element(leak_policy{}, leak_policy{.side = true}, leak_policy{.side = true, .min_cosine = -0.5f, .compression = 1.5f});
+        const auto leaks = *rc::gen::element(leak_policy{}, leak_policy{.side = true},
+            leak_policy{.side = true, .min_cosine = -0.5f, .compression = 1.5f});
         const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1000000);
         const auto s = make_oriented(d, n, resolution, 40, seed);
         for (const auto& kind : {bias_kind::paper, bias_kind::unbiased}) {
@@ -207,7 +221,8 @@ TEST(cpu_backend, the_growing_search_visits_and_holds_what_serials_does)
                 photons.directions = device.upload(std::span<const vec4>(s.directions));
                 photons.normals = device.upload(std::span<const vec4>(s.normals));
                 const auto map = sorted_map(device, std::move(photons), s.photons.g);
-                const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(s.points)), device.upload(std::span<const vec4>(s.point_normals)), settings);
+                const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(s.points)),
+                    device.upload(std::span<const vec4>(s.point_normals)), settings);
                 return std::pair{device.download(e.irradiance), device.download(e.used)};
             };
             const auto [light, used] = found(b);

@@ -1,5 +1,5 @@
-// The kernel files read as C++ once more, with double in place of float: the numerical oracle of the float pipeline. Random
-// numbers are the same, since they are 24-bit integers times 2^-24.
+// The kernel files read as C++ once more, with double in place of float: the numerical oracle of the float pipeline.
+// Random numbers are the same, since they are 24-bit integers times 2^-24.
 #pragma once
 
 #include "estimator_tests.hpp"
@@ -71,23 +71,33 @@ namespace photongrid::testing {
 /// The same numbers in double.
 inline std::vector<glm::dvec4> widened(const std::vector<glm::vec4>& v) { return {v.begin(), v.end()}; }
 
-inline double_kernels::Scene widened(const kernels::Scene& s) { return {s.round_things, s.flat_things, s.rest, glm::dvec4(s.scale)}; }
+inline double_kernels::Scene widened(const kernels::Scene& s)
+{
+    return {s.round_things, s.flat_things, s.rest, glm::dvec4(s.scale)};
+}
 
 /// The scene's records in double, of the numbers in float: what the float kernels see.
 struct double_scene {
     std::vector<glm::dvec4> records;
     double_kernels::Scene layout;
     uint features;
-    explicit double_scene(const scene_records& r) : records(widened(r.records)), layout(widened(r.layout)), features(r.features) {}
+    explicit double_scene(const scene_records& r)
+        : records(widened(r.records)), layout(widened(r.layout)), features(r.features)
+    {
+    }
 };
 
-inline double_kernels::Grid widened(const kernels::Grid& g) { return {glm::dvec4(g.origin), glm::dvec4(g.inverse_cell), glm::dvec4(g.cell), g.resolution}; }
+inline double_kernels::Grid widened(const kernels::Grid& g)
+{
+    return {glm::dvec4(g.origin), glm::dvec4(g.inverse_cell), glm::dvec4(g.cell), g.resolution};
+}
 
 /// Prints the largest and the median of errors; returns the largest.
 inline double report_errors(const char* what, std::vector<double> errors)
 {
     std::sort(errors.begin(), errors.end());
-    std::printf("double oracle: %s: largest %.3g, 99th percentile %.3g, median %.3g of %zu\n", what, errors.back(), errors[errors.size() * 99 / 100], errors[errors.size() / 2], errors.size());
+    std::printf("double oracle: %s: largest %.3g, 99th percentile %.3g, median %.3g of %zu\n", what, errors.back(),
+        errors[errors.size() * 99 / 100], errors[errors.size() / 2], errors.size());
     return errors.back();
 }
 
@@ -104,7 +114,8 @@ TEST(double_oracle, hits_of_rays)
     const auto device = upload_scene(b, s);
     auto place = b.make<glm::vec4>(r.size()), facing = b.make<glm::vec4>(r.size()), start = b.make<glm::vec4>(r.size());
     b.run<kernels::ray_probe>({static_cast<uint>(r.size()), 0u, about.features}, {.scene_layout = about.layout},
-        reads(device.records, b.upload(std::span<const glm::vec4>(r.origins)), b.upload(std::span<const glm::vec4>(r.directions)), b.upload(std::span<const glm::vec4>(r.leavings))),
+        reads(device.records, b.upload(std::span<const glm::vec4>(r.origins)),
+            b.upload(std::span<const glm::vec4>(r.directions)), b.upload(std::span<const glm::vec4>(r.leavings))),
         writes(place, facing, start));
     const auto places = b.download(place), facings = b.download(facing);
 
@@ -249,14 +260,16 @@ class double_estimates {
 public:
     /// What one point's estimate is.
     struct estimate {
-        std::vector<uint> ids; ///< the k nearest in double, the k-th last; none where fewer than k are left by the policies
+        std::vector<uint>
+            ids; ///< the k nearest in double, the k-th last; none where fewer than k are left by the policies
         glm::dvec4 irradiance{0}, standard_error{0};
-        double unweighted = 0;  ///< the first channel's irradiance if every photon had weight 1
+        double unweighted = 0;   ///< the first channel's irradiance if every photon had weight 1
         double conditioning = 0; ///< sum of w p^2 over sum of w^2 p^2, of the photons' first channels p
     };
 
     double_estimates(const oriented_set& s, const knn_settings& settings, float min_radius)
-        : settings_(settings), points_(widened(s.points)), normals_(widened(s.point_normals)), min_radius2_(static_cast<double>(min_radius) * static_cast<double>(min_radius))
+        : settings_(settings), points_(widened(s.points)), normals_(widened(s.point_normals)),
+          min_radius2_(static_cast<double>(min_radius) * static_cast<double>(min_radius))
     {
         const auto g = widened(s.photons.g);
         std::vector<std::pair<uint, uint>> order; // cell, id
@@ -277,13 +290,17 @@ public:
             cells_[c].x = cells_[c - 1].x + cells_[c - 1].y;
 
         gather_.args.grid = g;
-        gather_.args.leaks = glm::dvec4(-1.0, static_cast<double>(settings.leaks.compression) * static_cast<double>(settings.leaks.compression) - 1, 0, 0);
+        gather_.args.leaks = glm::dvec4(-1.0,
+            static_cast<double>(settings.leaks.compression) * static_cast<double>(settings.leaks.compression) - 1, 0,
+            0);
         gather_.args.min_radius2 = min_radius2_;
         gather_.args.visits = settings.visits_per_pass;
         gather_.args.ranges = settings.ranges_per_pass;
         // SWITCHes of gather_photons.glsl: SIDE, FLATTEN, the kernel, LEAVE_OUT, ERRORS.
-        turn_switches(gather_, (settings.leaks.side ? 1u : 0u) | (settings.leaks.compression > 1 ? 4u : 0u)
-                | (settings.kernel == filter_kernel::constant ? 0u : 4u << static_cast<uint>(settings.kernel)) | 1u << 6 | 1u << 7);
+        turn_switches(gather_,
+            (settings.leaks.side ? 1u : 0u) | (settings.leaks.compression > 1 ? 4u : 0u)
+                | (settings.kernel == filter_kernel::constant ? 0u : 4u << static_cast<uint>(settings.kernel)) | 1u << 6
+                | 1u << 7);
         gather_.points_data = points_;
         gather_.normals_data = normals_;
         gather_.cells_data = cells_;
@@ -381,7 +398,8 @@ TEST(double_oracle, estimates)
     }
     serial_backend b;
     const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
-    const auto points = b.upload(std::span<const vec4>(s.points)), normals = b.upload(std::span<const vec4>(s.point_normals));
+    const auto points = b.upload(std::span<const vec4>(s.points)),
+               normals = b.upload(std::span<const vec4>(s.point_normals));
     struct row {
         const char* name;
         filter_kernel kernel;
@@ -389,8 +407,10 @@ TEST(double_oracle, estimates)
         uint k;
     };
     const leak_policy strict{.side = true, .compression = 3};
-    const row rows[] = {{"constant, k = 50", filter_kernel::constant, {}, 50}, {"cone, k = 50", filter_kernel::cone, {}, 50}, {"Epanechnikov, k = 50", filter_kernel::epanechnikov, {}, 50},
-        {"Silverman, k = 50", filter_kernel::silverman, {}, 50}, {"constant, k = 1000", filter_kernel::constant, {}, 1000},
+    const row rows[] = {{"constant, k = 50", filter_kernel::constant, {}, 50},
+        {"cone, k = 50", filter_kernel::cone, {}, 50}, {"Epanechnikov, k = 50", filter_kernel::epanechnikov, {}, 50},
+        {"Silverman, k = 50", filter_kernel::silverman, {}, 50},
+        {"constant, k = 1000", filter_kernel::constant, {}, 1000},
         {"Silverman, k = 1000", filter_kernel::silverman, {}, 1000},
         {"Silverman, k = 50, side, flattened 3 times", filter_kernel::silverman, strict, 50}};
     std::size_t other = 0, compared = 0;
@@ -402,11 +422,14 @@ TEST(double_oracle, estimates)
         const auto e = knn_grid_estimate(b, map, points, normals, k);
         const auto irradiance = b.download(e.irradiance), standard_error = b.download(e.standard_error);
         double_estimates wide(s, k, k.min_radius);
-        // In units of 2^-24. A squared distance: 2 for each difference, 1 for its square, 2 for the sum; flattened, up to 18.
-        // t = d^2 / r^2: two of them, and 2. A weight's error is that times its slope, and what rounds in it: cone 1 for the
-        // root (its slope times t is at most 1/2) and 1, Epanechnikov 1, Silverman twice that and 1.
+        // In units of 2^-24. A squared distance: 2 for each difference, 1 for its square, 2 for the sum; flattened, up
+        // to 18. t = d^2 / r^2: two of them, and 2. A weight's error is that times its slope, and what rounds in it:
+        // cone 1 for the root (its slope times t is at most 1/2) and 1, Epanechnikov 1, Silverman twice that and 1.
         const double distance = r.leaks.compression > 1 ? 18 : 5, t = 2 * distance + 2;
-        const double weight = r.kernel == filter_kernel::constant ? 0 : r.kernel == filter_kernel::cone ? 0.5 * t + 2 : r.kernel == filter_kernel::epanechnikov ? t + 1 : 2 * (t + 1) + 1;
+        const double weight = r.kernel == filter_kernel::constant ? 0
+            : r.kernel == filter_kernel::cone                     ? 0.5 * t + 2
+            : r.kernel == filter_kernel::epanechnikov             ? t + 1
+                                                                  : 2 * (t + 1) + 1;
         // The rest: the disc, 3.14159265f, two products, a quotient, the weighted power, and 2 for a compensated sum.
         const double rest = distance + 0.5 + 3 + 1 + 2;
         std::vector<double> errors, spread_errors;
@@ -420,19 +443,22 @@ TEST(double_oracle, estimates)
                     ids.push_back(id);
                     at_the_radius += *d2 == irradiance[q].w ? 1u : 0u;
                 }
-            // The k-th and its neighbour may have changed places or become one distance in float, so that another is left out;
-            // or a photon that grazes the surface has changed its side.
+            // The k-th and its neighbour may have changed places or become one distance in float, so that another is
+            // left out; or a photon that grazes the surface has changed its side.
             auto expected = truth.ids;
             std::sort(expected.begin(), expected.end());
             ++compared;
-            if (expected != ids || at_the_radius != 1 || *policy_distance2(s, q, truth.ids.back(), r.leaks) != irradiance[q].w) {
+            if (expected != ids || at_the_radius != 1
+                || *policy_distance2(s, q, truth.ids.back(), r.leaks) != irradiance[q].w) {
                 ++other;
                 continue;
             }
             const double error = std::abs(static_cast<double>(irradiance[q].x) - truth.irradiance.x);
-            nearest_limit = std::max(nearest_limit, error * 0x1p24 / (rest * truth.irradiance.x + weight * truth.unweighted));
+            nearest_limit
+                = std::max(nearest_limit, error * 0x1p24 / (rest * truth.irradiance.x + weight * truth.unweighted));
             errors.push_back(error / truth.irradiance.x);
-            // Half the error of the variance, whose k - 2 plain additions round k - 2 times; 3 in each square, 3 in its factor.
+            // Half the error of the variance, whose k - 2 plain additions round k - 2 times; 3 in each square, 3 in its
+            // factor.
             const double spread_error = std::abs(static_cast<double>(standard_error[q].x) / truth.standard_error.x - 1);
             const double spread_limit = rest + 1 + weight * truth.conditioning + 0.5 * (r.k - 2 + 6);
             nearest_spread_limit = std::max(nearest_spread_limit, spread_error * 0x1p24 / spread_limit);
@@ -441,7 +467,8 @@ TEST(double_oracle, estimates)
         ASSERT_FALSE(errors.empty()) << r.name << ": no point has the photons it should";
         report_errors((std::string("relative error of irradiance, ") + r.name).c_str(), errors);
         report_errors((std::string("relative error of its standard error, ") + r.name).c_str(), spread_errors);
-        std::printf("double oracle: %s: at most %.2g and %.2g of the limits\n", r.name, nearest_limit, nearest_spread_limit);
+        std::printf(
+            "double oracle: %s: at most %.2g and %.2g of the limits\n", r.name, nearest_limit, nearest_spread_limit);
         EXPECT_LE(nearest_limit, 1) << r.name;
         EXPECT_LE(nearest_spread_limit, 1) << r.name;
     }

@@ -1,5 +1,5 @@
-// Edge correction (docs/hard_cases.md, A9), on any backend: shares of discs against integration over scan lines in double,
-// uniform fields and a picture whose light is known up to the rim. Included by each on_<backend>.cpp.
+// Edge correction (docs/hard_cases.md, A9), on any backend: shares of discs against integration over scan lines in
+// double, uniform fields and a picture whose light is known up to the rim. Included by each on_<backend>.cpp.
 #pragma once
 
 #include "known_answers.hpp"
@@ -9,7 +9,8 @@
 
 namespace photongrid::testing {
 
-inline constexpr filter_kernel kernels_over_discs[] = {filter_kernel::constant, filter_kernel::cone, filter_kernel::epanechnikov, filter_kernel::silverman};
+inline constexpr filter_kernel kernels_over_discs[]
+    = {filter_kernel::constant, filter_kernel::cone, filter_kernel::epanechnikov, filter_kernel::silverman};
 
 /// A plane's frame, to draw polygons in.
 struct drawing_board {
@@ -68,9 +69,12 @@ protected:
     using B = typename Tag::type;
 
     template <class Device>
-    static std::vector<glm::vec4> cover_on(Device& b, const device_scene<Device>& scene, const discs& d, filter_kernel kernel)
+    static std::vector<glm::vec4> cover_on(
+        Device& b, const device_scene<Device>& scene, const discs& d, filter_kernel kernel)
     {
-        const auto p = b.upload(std::span<const glm::vec4>(d.points)), n = b.upload(std::span<const glm::vec4>(d.normals)), e = b.upload(std::span<const glm::vec4>(d.estimates));
+        const auto p = b.upload(std::span<const glm::vec4>(d.points)),
+                   n = b.upload(std::span<const glm::vec4>(d.normals)),
+                   e = b.upload(std::span<const glm::vec4>(d.estimates));
         return b.download(covered_shares(b, scene, p, n, e, kernel, 0));
     }
     /// Positions of `d` are the scene's; they are recentred here. Serial's bits are compared.
@@ -102,19 +106,23 @@ TYPED_TEST_P(edges, angles_and_logarithms_are_those_of_the_library)
 {
     auto& b = this->b();
     random_source u(1);
-    std::vector<glm::vec4> numbers{{0, 1, 1, 0}, {1, 0, std::nextafter(1.0f, 2.0f), 0}, {0, -1, 1.41421356f, 0}, {1, 1, 1.41421366f, 0}, {1, -1, 2, 0}, {1e-30f, 1, 1e30f, 0}, {1e-30f, -1, 3e38f, 0}, {1e30f, 1e-5f, 4, 0}};
+    std::vector<glm::vec4> numbers{{0, 1, 1, 0}, {1, 0, std::nextafter(1.0f, 2.0f), 0}, {0, -1, 1.41421356f, 0},
+        {1, 1, 1.41421366f, 0}, {1, -1, 2, 0}, {1e-30f, 1, 1e30f, 0}, {1e-30f, -1, 3e38f, 0}, {1e30f, 1e-5f, 4, 0}};
     for (int i = 0; i < 100000; ++i) {
         const float scale = std::exp2(40 * u() - 20);
-        numbers.emplace_back(u() * scale, (2 * u() - 1) * scale * (i % 3 == 0 ? 1e-3f : 1.0f), i % 2 == 0 ? std::exp2(100 * u() * u() * u()) : 1 + u(), 0.0f);
+        numbers.emplace_back(u() * scale, (2 * u() - 1) * scale * (i % 3 == 0 ? 1e-3f : 1.0f),
+            i % 2 == 0 ? std::exp2(100 * u() * u() * u()) : 1 + u(), 0.0f);
     }
     auto out = b.template make<glm::vec2>(numbers.size());
-    b.template run<kernels::angle_probe>(numbers.size(), {}, reads(b.upload(std::span<const glm::vec4>(numbers))), writes(out));
+    b.template run<kernels::angle_probe>(
+        numbers.size(), {}, reads(b.upload(std::span<const glm::vec4>(numbers))), writes(out));
     const auto values = b.download(out);
     double angle = 0, logarithm = 0;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         const glm::dvec4 n(numbers[i]);
         angle = std::max(angle, std::abs(static_cast<double>(values[i].x) - std::atan2(n.x, n.y)));
-        logarithm = std::max(logarithm, std::abs(static_cast<double>(values[i].y) - std::log(n.z)) / std::max(1.0, std::log(n.z)));
+        logarithm = std::max(
+            logarithm, std::abs(static_cast<double>(values[i].y) - std::log(n.z)) / std::max(1.0, std::log(n.z)));
     }
     std::printf("edges: largest error of an angle %.2g, of a logarithm %.2g (over 1 or itself)\n", angle, logarithm);
     EXPECT_LE(angle, 3e-7);
@@ -144,10 +152,12 @@ TYPED_TEST_P(edges, shares_equal_integration_over_lines)
             parts = {{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}}, {{-0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
             break;
         case 2: // an L
-            parts = {{{-0.6, -0.6}, {0.6, -0.6}, {0.6, -0.1}, {-0.6, -0.1}}, {{-0.6, -0.1}, {0.1, -0.1}, {0.1, 0.7}, {-0.6, 0.7}}};
+            parts = {{{-0.6, -0.6}, {0.6, -0.6}, {0.6, -0.1}, {-0.6, -0.1}},
+                {{-0.6, -0.1}, {0.1, -0.1}, {0.1, 0.7}, {-0.6, 0.7}}};
             break;
         default: // a star of triangles about a square hole
-            parts = {{{-0.2, -0.2}, {0, -0.8}, {0.2, -0.2}}, {{0.2, -0.2}, {0.8, 0}, {0.2, 0.2}}, {{0.2, 0.2}, {0, 0.8}, {-0.2, 0.2}}, {{-0.2, 0.2}, {-0.8, 0}, {-0.2, -0.2}}};
+            parts = {{{-0.2, -0.2}, {0, -0.8}, {0.2, -0.2}}, {{0.2, -0.2}, {0.8, 0}, {0.2, 0.2}},
+                {{0.2, 0.2}, {0, 0.8}, {-0.2, 0.2}}, {{-0.2, 0.2}, {-0.8, 0}, {-0.2, -0.2}}};
         }
         const auto board = random_board(u);
         auto s = empty_scene(board.at({0.2, 0.1}) + board.normal());
@@ -158,7 +168,9 @@ TYPED_TEST_P(edges, shares_equal_integration_over_lines)
                 std::reverse(wound.begin(), wound.end());
             s.polygons.push_back(board.draw(wound));
         }
-        s.polygons.push_back({{board.at({-1, 0}), board.at({1, 0}), board.at({1, 0}) + board.normal(), board.at({-1, 0}) + board.normal()}, 0});
+        s.polygons.push_back({{board.at({-1, 0}), board.at({1, 0}), board.at({1, 0}) + board.normal(),
+                                  board.at({-1, 0}) + board.normal()},
+            0});
         auto below = board;
         below.origin -= 1e-3 * board.normal();
         s.polygons.push_back(below.draw({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}));
@@ -172,7 +184,8 @@ TYPED_TEST_P(edges, shares_equal_integration_over_lines)
         while (places.size() < 20) { // corners' and edges' neighbours more often than others
             const auto& part = parts[u.below(static_cast<std::uint32_t>(parts.size()))];
             const auto c = u.below(static_cast<std::uint32_t>(part.size()));
-            glm::dvec2 middle(0), on_edge = glm::mix(part[c], part[(c + 1) % part.size()], places.size() % 4 == 0 ? 0.0 : number());
+            glm::dvec2 middle(0),
+                on_edge = glm::mix(part[c], part[(c + 1) % part.size()], places.size() % 4 == 0 ? 0.0 : number());
             for (const auto& p : part)
                 middle += p / static_cast<double>(part.size());
             const auto p = glm::mix(on_edge, middle, places.size() % 3 == 0 ? 0.0 : number() * number());
@@ -189,7 +202,8 @@ TYPED_TEST_P(edges, shares_equal_integration_over_lines)
                 const double error = std::abs(static_cast<double>(cover[i].x) - expected[i][static_cast<int>(kernel)]);
                 largest = std::max(largest, error);
                 EXPECT_EQ(cover[i].y, 1.0f);
-                ASSERT_LE(error, 3e-6) << "kernel " << int(kernel) << ", surface " << round << ", point " << i << ": " << cover[i].x << ", not " << expected[i][static_cast<int>(kernel)];
+                ASSERT_LE(error, 3e-6) << "kernel " << int(kernel) << ", surface " << round << ", point " << i << ": "
+                                       << cover[i].x << ", not " << expected[i][static_cast<int>(kernel)];
             }
         }
     }
@@ -205,23 +219,30 @@ TYPED_TEST_P(edges, shares_have_the_known_values_of_a_square)
             auto s = empty_scene(board.at({0.5, 0.5}) + board.normal());
             // Of two triangles, four rectangles, or wound wrongly in part.
             if (round % 2 == 0)
-                s.polygons = {board.draw({{0, 0}, {1, 0}, {1, 1}}), board.draw(round % 4 == 0 ? std::vector<glm::dvec2>{{0, 0}, {1, 1}, {0, 1}} : std::vector<glm::dvec2>{{0, 1}, {1, 1}, {0, 0}})};
+                s.polygons = {board.draw({{0, 0}, {1, 0}, {1, 1}}),
+                    board.draw(round % 4 == 0 ? std::vector<glm::dvec2>{{0, 0}, {1, 1}, {0, 1}}
+                                              : std::vector<glm::dvec2>{{0, 1}, {1, 1}, {0, 0}})};
             else
-                s.polygons = {board.draw({{0, 0}, {0.3, 0}, {0.3, 0.4}, {0, 0.4}}), board.draw({{0.3, 0}, {1, 0}, {1, 0.4}, {0.3, 0.4}}), board.draw({{0, 0.4}, {0.6, 0.4}, {0.6, 1}, {0, 1}}),
+                s.polygons = {board.draw({{0, 0}, {0.3, 0}, {0.3, 0.4}, {0, 0.4}}),
+                    board.draw({{0.3, 0}, {1, 0}, {1, 0.4}, {0.3, 0.4}}),
+                    board.draw({{0, 0.4}, {0.6, 0.4}, {0.6, 1}, {0, 1}}),
                     board.draw({{0.6, 0.4}, {0.6, 1}, {1, 1}, {1, 0.4}})};
             s.camera = {board.at({0, 0}) + 3.0 * board.normal(), board.at({0, 0}), board.up, 40};
             discs inside, edge, corner, off;
             for (int i = 0; i < 20; ++i) {
-                const double r = 0.01 + 0.4 * static_cast<double>(u()), t = r + (1 - 2 * r) * static_cast<double>(u()), v = r + (1 - 2 * r) * static_cast<double>(u());
+                const double r = 0.01 + 0.4 * static_cast<double>(u()), t = r + (1 - 2 * r) * static_cast<double>(u()),
+                             v = r + (1 - 2 * r) * static_cast<double>(u());
                 inside.add(board.at({t, v}), board.normal(), r * 0.9999);
                 edge.add(board.at(i % 2 == 0 ? glm::dvec2(t, i % 4 / 2) : glm::dvec2(i % 4 / 2, t)), board.normal(), r);
                 corner.add(board.at({i % 2, i % 4 / 2}), board.normal(), r);
-                off.add(board.at({t, v}) + 0.1 * r * board.normal(), board.normal(), r);      // above the square
-                off.add(board.at({t, v}), glm::normalize(board.normal() + 0.2 * board.up), r); // on something that meets it
-                off.add(board.at({1.01, v}), board.normal(), r);                              // beside it
+                off.add(board.at({t, v}) + 0.1 * r * board.normal(), board.normal(), r); // above the square
+                off.add(
+                    board.at({t, v}), glm::normalize(board.normal() + 0.2 * board.up), r); // on something that meets it
+                off.add(board.at({1.01, v}), board.normal(), r);                           // beside it
             }
             EXPECT_LE(this->largest_error(this->cover(s, inside, kernel), 1), 2e-6);
-            EXPECT_LE(this->largest_error(this->cover(s, edge, kernel), 0.5), 2e-5); // rounding, over radii down to 0.01
+            EXPECT_LE(
+                this->largest_error(this->cover(s, edge, kernel), 0.5), 2e-5); // rounding, over radii down to 0.01
             EXPECT_LE(this->largest_error(this->cover(s, corner, kernel), 0.25), 2e-5);
             for (const auto& c : this->cover(s, off, kernel))
                 EXPECT_EQ(c.y, 0.0f);
@@ -239,7 +260,8 @@ TYPED_TEST_P(edges, bent_walls_hold_together_up_to_two_degrees_and_a_half)
         for (const double degrees : {0.1, 1.0, 2.4, 2.6, 30.0}) {
             const double c = std::cos(glm::radians(degrees)), h = std::sin(glm::radians(degrees));
             auto s = empty_scene({0, 2, 0});
-            s.polygons = {{{{-1, 0, -1}, {-1, 0, 1}, {0, 0, 1}, {0, 0, -1}}, 0}, {{{0, 0, -1}, {0, 0, 1}, {c, h, 1}, {c, h, -1}}, 0}};
+            s.polygons = {{{{-1, 0, -1}, {-1, 0, 1}, {0, 0, 1}, {0, 0, -1}}, 0},
+                {{{0, 0, -1}, {0, 0, 1}, {c, h, 1}, {c, h, -1}}, 0}};
             s.camera = {{0, 1, -3}, {0, 0, 0}, {0, 1, 0}, 45};
             discs left, right;
             for (const double x : {0.0, 0.01, 0.1, 0.29}) {
@@ -294,7 +316,8 @@ TYPED_TEST_P(edges, thousands_of_polygons_take_several_passes)
         this->cover(s, inside, filter_kernel::cone);
         FAIL() << "2,000 edges in a pass";
     } catch (const std::invalid_argument& e) {
-        EXPECT_STREQ(e.what(), "edge_correction: polygons[1] has 2000 vertices; at most 1999 can be corrected, so split it");
+        EXPECT_STREQ(
+            e.what(), "edge_correction: polygons[1] has 2000 vertices; at most 1999 can be corrected, so split it");
     }
 }
 
@@ -309,10 +332,10 @@ TYPED_TEST_P(edges, shares_are_bounded_before_they_divide)
     s.spheres = {{{4, 0.5, 0}, 0.5, 0}};
     const auto scene = upload_scene(b, s);
     discs d;
-    d.add({0.5, 0, 0.5}, {0, 1, 0}, 0.4); // share 2
-    d.add({0, 0, 0.5}, {0, 1, 0}, 0.4);   // 1/2 twice
-    d.add({2, 0, 0}, {0, 1, 0}, 0.4);     // 1/720
-    d.add({4, 1, 0}, {0, 1, 0}, 0.4);     // on the ball
+    d.add({0.5, 0, 0.5}, {0, 1, 0}, 0.4);     // share 2
+    d.add({0, 0, 0.5}, {0, 1, 0}, 0.4);       // 1/2 twice
+    d.add({2, 0, 0}, {0, 1, 0}, 0.4);         // 1/720
+    d.add({4, 1, 0}, {0, 1, 0}, 0.4);         // on the ball
     d.add({2.9995, 0, 0.0005}, {0, 1, 0}, 0); // close to the needle's right corner; radius 0: the least one counts
     for (auto& p : d.points)
         p = glm::vec4(glm::vec3(dvec3(p) - scene.about.center), p.w);
@@ -321,10 +344,12 @@ TYPED_TEST_P(edges, shares_are_bounded_before_they_divide)
     const auto p = b.upload(std::span<const glm::vec4>(d.points)), n = b.upload(std::span<const glm::vec4>(d.normals));
     const std::vector<glm::uvec2> used(d.points.size(), glm::uvec2(7, 9));
     const std::vector<glm::vec4> errors(d.points.size(), glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
-    knn_estimates<typename TestFixture::B> e{b.upload(std::span<const glm::vec4>(d.estimates)), b.upload(std::span<const glm::uvec2>(used)), b.upload(std::span<const glm::vec4>(errors))};
+    knn_estimates<typename TestFixture::B> e{b.upload(std::span<const glm::vec4>(d.estimates)),
+        b.upload(std::span<const glm::uvec2>(used)), b.upload(std::span<const glm::vec4>(errors))};
     correct_edges(b, scene, p, n, e, filter_kernel::silverman, 1e-3f);
     const auto irradiance = b.download(e.irradiance), error = b.download(e.standard_error);
-    const double corner = share_by_lines({{-1, 0}, {0, 0}, {0, std::tan(glm::radians(0.5))}}, {-0.0005, 0.0005}, 1e-3)[3];
+    const double corner
+        = share_by_lines({{-1, 0}, {0, 0}, {0, std::tan(glm::radians(0.5))}}, {-0.0005, 0.0005}, 1e-3)[3];
     ASSERT_NEAR(corner, 0.8, 0.1);
     const double factors[] = {1, 1, 256, 1, 1 / corner}, tolerances[] = {0, 1e-5, 0, 0, 2e-3};
     for (std::size_t i = 0; i < d.points.size(); ++i) {
@@ -351,7 +376,8 @@ TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
     const auto map = sorted_map(b, upload_photons(b, set), set.g);
     std::vector<glm::vec4> points, normals;
     for (uint i = 0; i < n; ++i)
-        for (const auto& at : {dvec3(0.5, 0, 0.5), dvec3(0.5, 0, 0), dvec3(0.5, 0, 1), dvec3(0, 0, 0.5), dvec3(1, 0, 0.5), dvec3(0, 0, 0), dvec3(1, 0, 0), dvec3(0, 0, 1), dvec3(1, 0, 1)}) {
+        for (const auto& at : {dvec3(0.5, 0, 0.5), dvec3(0.5, 0, 0), dvec3(0.5, 0, 1), dvec3(0, 0, 0.5),
+                 dvec3(1, 0, 0.5), dvec3(0, 0, 0), dvec3(1, 0, 0), dvec3(0, 0, 1), dvec3(1, 0, 1)}) {
             points.emplace_back(glm::vec3(all.corner(i) + at - scene.about.center), 1.0f);
             normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
         }
@@ -377,11 +403,16 @@ TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
                         without += static_cast<double>(plain[i].x);
                         EXPECT_EQ(whole[i].w, plain[i].w) << "the radius stays";
                         if (plain[i].x > 0) {
-                            EXPECT_NEAR(errors[i].w / whole[i].x, plain_errors[i].w / plain[i].x, 1e-5f) << "the relative error stays";
+                            EXPECT_NEAR(errors[i].w / whole[i].x, plain_errors[i].w / plain[i].x, 1e-5f)
+                                << "the relative error stays";
                         }
                     }
-                const double mean = sum / m, spread = std::sqrt(squared / m - mean * mean), known = place == 0 ? 1 : place == 1 ? 0.5 : 0.25;
-                const auto where = std::string(places[place]) + ", kernel " + std::to_string(int(kernel)) + ", search " + std::to_string(int(search));
+                const double mean = sum / m, spread = std::sqrt(squared / m - mean * mean),
+                             known = place == 0 ? 1
+                    : place == 1                ? 0.5
+                                                : 0.25;
+                const auto where = std::string(places[place]) + ", kernel " + std::to_string(int(kernel)) + ", search "
+                    + std::to_string(int(search));
                 EXPECT_NEAR(mean, 1, 4 * spread / std::sqrt(m)) << where;
                 EXPECT_NEAR(without / m, known, 4 * known * spread / std::sqrt(m)) << where;
                 EXPECT_NEAR(error / m, spread, 0.15 * spread) << where << ": standard error reported";
@@ -395,8 +426,9 @@ TYPED_TEST_P(edges, a_floor_lit_by_a_mirror_is_right_up_to_its_rim)
     // A bulb below a mirror: caustic light falls onto the floor as from a bulb as far above the mirror.
     scene s;
     s.materials = {{"white", material_kind::lambertian, dvec3(0.5)}, {"mirror", material_kind::mirror, dvec3(1)}};
-    s.polygons = {{{{-0.5, 0, -0.5}, {-0.5, 0, 0.5}, {0.5, 0, 0.5}}, 0}, {{{-0.5, 0, -0.5}, {0.5, 0, 0.5}, {0.5, 0, -0.5}}, 0},
-        {{{-3, 1.25, -3}, {3, 1.25, -3}, {3, 1.25, 3}, {-3, 1.25, 3}}, 1}};
+    s.polygons
+        = {{{{-0.5, 0, -0.5}, {-0.5, 0, 0.5}, {0.5, 0, 0.5}}, 0}, {{{-0.5, 0, -0.5}, {0.5, 0, 0.5}, {0.5, 0, -0.5}}, 0},
+            {{{-3, 1.25, -3}, {3, 1.25, -3}, {3, 1.25, 3}, {-3, 1.25, 3}}, 1}};
     const double height = 1.5, power = 100;
     s.point_lights = {{"bulb", {0, 1, 0}, dvec3(power)}};
     s.camera = {{0, 1.2, 0}, {0, 0, 0}, {0, 0, -1}, glm::degrees(2 * std::atan(0.5 / 1.2)) - 0.01};
@@ -414,10 +446,14 @@ TYPED_TEST_P(edges, a_floor_lit_by_a_mirror_is_right_up_to_its_rim)
         double sums[3] = {}, counts[3] = {};
         for (uint y = 0; y < 48; ++y)
             for (uint x = 0; x < 48; ++x) {
-                const double fx = (x + 0.5) / 48 - 0.5, fz = (y + 0.5) / 48 - 0.5, d2 = height * height + fx * fx + fz * fz;
+                const double fx = (x + 0.5) / 48 - 0.5, fz = (y + 0.5) / 48 - 0.5,
+                             d2 = height * height + fx * fx + fz * fz;
                 const double known = 0.5 / M_PI * power / (4 * M_PI) * height / (d2 * std::sqrt(d2)); // radiance
                 const uint across = std::min(x, 47 - x), down = std::min(y, 47 - y);
-                const int place = across < 1 && down < 1 ? 2 : (across < 1 && down > 5) || (down < 1 && across > 5) ? 1 : across > 6 && down > 6 ? 0 : -1;
+                const int place = across < 1 && down < 1                   ? 2
+                    : (across < 1 && down > 5) || (down < 1 && across > 5) ? 1
+                    : across > 6 && down > 6                               ? 0
+                                                                           : -1;
                 if (place >= 0) {
                     sums[place] += static_cast<double>(pictures[corrected].pixels[y * 48 + x].x) / known;
                     counts[place] += 1;
@@ -425,11 +461,13 @@ TYPED_TEST_P(edges, a_floor_lit_by_a_mirror_is_right_up_to_its_rim)
             }
         for (double* v : {&sums[0], &sums[1], &sums[2]})
             *v /= counts[v - sums];
-        std::printf("edges: light over the known, %s: inside %.3f, rim %.3f, corners %.3f\n", corrected ? "corrected" : "as it is", sums[0], sums[1], sums[2]);
+        std::printf("edges: light over the known, %s: inside %.3f, rim %.3f, corners %.3f\n",
+            corrected ? "corrected" : "as it is", sums[0], sums[1], sums[2]);
         // Discs have some 0.045 m radius, pixels of the rim lie 0.01 m inside.
         EXPECT_NEAR(sums[0], 1, 0.05);
         if (corrected) {
-            EXPECT_NEAR(sums[1], 1, 0.09); // four standard errors: a disc sees to 14 %, and some fifty lie along the rim
+            EXPECT_NEAR(
+                sums[1], 1, 0.09); // four standard errors: a disc sees to 14 %, and some fifty lie along the rim
             EXPECT_NEAR(sums[2], 1, 0.28);
         } else {
             EXPECT_LT(sums[1], 0.8);
@@ -469,7 +507,9 @@ TYPED_TEST_P(edges, pictures_equal_the_serial_backends)
 TYPED_TEST_P(edges, correction_needs_the_normals_policy)
 {
     const auto s = small_cornell();
-    for (const leak_policy& leaks : {leak_policy{}, leak_policy{.side = true}, leak_policy{.side = true, .compression = 4}, leak_policy{.min_cosine = 0}, leak_policy{.min_cosine = -0.5f}}) {
+    for (const leak_policy& leaks :
+        {leak_policy{}, leak_policy{.side = true}, leak_policy{.side = true, .compression = 4},
+            leak_policy{.min_cosine = 0}, leak_policy{.min_cosine = -0.5f}}) {
         auto settings = s.render;
         settings.leaks = leaks;
         EXPECT_NO_THROW(check(settings));
@@ -489,8 +529,10 @@ TYPED_TEST_P(edges, correction_needs_the_normals_policy)
     }
 }
 
-REGISTER_TYPED_TEST_SUITE_P(edges, angles_and_logarithms_are_those_of_the_library, shares_equal_integration_over_lines, shares_have_the_known_values_of_a_square,
-    bent_walls_hold_together_up_to_two_degrees_and_a_half, thousands_of_polygons_take_several_passes, shares_are_bounded_before_they_divide, uniform_squares_read_one_up_to_their_corners,
-    a_floor_lit_by_a_mirror_is_right_up_to_its_rim, pictures_equal_the_serial_backends, correction_needs_the_normals_policy);
+REGISTER_TYPED_TEST_SUITE_P(edges, angles_and_logarithms_are_those_of_the_library, shares_equal_integration_over_lines,
+    shares_have_the_known_values_of_a_square, bent_walls_hold_together_up_to_two_degrees_and_a_half,
+    thousands_of_polygons_take_several_passes, shares_are_bounded_before_they_divide,
+    uniform_squares_read_one_up_to_their_corners, a_floor_lit_by_a_mirror_is_right_up_to_its_rim,
+    pictures_equal_the_serial_backends, correction_needs_the_normals_policy);
 
 } // namespace photongrid::testing

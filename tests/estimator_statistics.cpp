@@ -1,5 +1,6 @@
-// What estimates are worth on the average: the expectation of every kernel on a uniform field, and whether the standard error
-// that an estimate reports is the spread that estimates have. On the serial backend; the others equal it bit for bit.
+// What estimates are worth on the average: the expectation of every kernel on a uniform field, and whether the standard
+// error that an estimate reports is the spread that estimates have. On the serial backend; the others equal it bit for
+// bit.
 #include "photon_sets.hpp"
 #include "serial_algorithms.hpp"
 
@@ -13,7 +14,8 @@ namespace {
     using glm::vec4;
 
     constexpr const char* kernel_names[] = {"constant", "cone", "epanechnikov", "silverman"};
-    constexpr filter_kernel kernels_of_estimates[] = {filter_kernel::constant, filter_kernel::cone, filter_kernel::epanechnikov, filter_kernel::silverman};
+    constexpr filter_kernel kernels_of_estimates[]
+        = {filter_kernel::constant, filter_kernel::cone, filter_kernel::epanechnikov, filter_kernel::silverman};
 
     /// n photons of power 1/n on the unit square: the irradiance is 1 everywhere.
     photon_map<serial_backend> uniform_field(serial_backend& b, std::size_t n, uint cells, std::uint64_t seed)
@@ -45,7 +47,8 @@ namespace {
                 rows.push_back({search_kind::exact_k, bias_kind::unbiased, kernel, k, 0.995, 1.005});
         for (const auto kernel : kernels_of_estimates)
             rows.push_back({search_kind::fixed_radius, bias_kind::unbiased, kernel, 0, 0.995, 1.005});
-        rows.push_back({search_kind::exact_k, bias_kind::paper, filter_kernel::constant, 32, 0.995 * 32 / 31, 1.005 * 32 / 31});
+        rows.push_back(
+            {search_kind::exact_k, bias_kind::paper, filter_kernel::constant, 32, 0.995 * 32 / 31, 1.005 * 32 / 31});
         rows.push_back({search_kind::at_least_k, bias_kind::unbiased, filter_kernel::constant, 32, 0.995, 1.022});
         constexpr int maps = 6, points = 6000;
         for (int m = 0; m < maps; ++m) {
@@ -70,7 +73,9 @@ namespace {
         std::printf("| search | bias | kernel | k | mean | spread |\n|---|---|---|---|---|---|\n");
         for (const auto& r : rows) {
             const double mean = r.sum / (maps * points), spread = std::sqrt(r.squares / (maps * points) - mean * mean);
-            std::printf("| %s | %s | %s | %u | %.4f | %.3f |\n", searches[static_cast<int>(r.search)], r.bias == bias_kind::paper ? "paper" : "unbiased", kernel_names[static_cast<int>(r.kernel)], r.k, mean, spread);
+            std::printf("| %s | %s | %s | %u | %.4f | %.3f |\n", searches[static_cast<int>(r.search)],
+                r.bias == bias_kind::paper ? "paper" : "unbiased", kernel_names[static_cast<int>(r.kernel)], r.k, mean,
+                spread);
             EXPECT_GE(mean, r.low) << kernel_names[static_cast<int>(r.kernel)] << " k " << r.k;
             EXPECT_LE(mean, r.high) << kernel_names[static_cast<int>(r.kernel)] << " k " << r.k;
         }
@@ -111,9 +116,12 @@ namespace {
             }
         }
         for (const auto& r : rows) {
-            const double mean = r.sum / maps, spread = std::sqrt((r.squares - maps * mean * mean) / (maps - 1)), reported = r.errors / maps;
-            std::printf("search %d bias %d %s: spread %.4f, reported %.4f\n", int(r.search), int(r.bias), kernel_names[static_cast<int>(r.kernel)], spread, reported);
-            EXPECT_NEAR(reported / spread, 1, 0.1) << "search " << int(r.search) << " bias " << int(r.bias) << " " << kernel_names[static_cast<int>(r.kernel)];
+            const double mean = r.sum / maps, spread = std::sqrt((r.squares - maps * mean * mean) / (maps - 1)),
+                         reported = r.errors / maps;
+            std::printf("search %d bias %d %s: spread %.4f, reported %.4f\n", int(r.search), int(r.bias),
+                kernel_names[static_cast<int>(r.kernel)], spread, reported);
+            EXPECT_NEAR(reported / spread, 1, 0.1) << "search " << int(r.search) << " bias " << int(r.bias) << " "
+                                                   << kernel_names[static_cast<int>(r.kernel)];
         }
     }
 

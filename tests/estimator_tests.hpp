@@ -1,5 +1,5 @@
-// What the estimates promise beyond the paper's: exact k, kernels, bias, leak policies, standard errors. References: brute
-// force in double over float distances, FLANN, statistics of uniform fields. Included by each on_<backend>.cpp.
+// What the estimates promise beyond the paper's: exact k, kernels, bias, leak policies, standard errors. References:
+// brute force in double over float distances, FLANN, statistics of uniform fields. Included by each on_<backend>.cpp.
 #pragma once
 
 #include "known_answers.hpp"
@@ -22,10 +22,13 @@ using glm::uvec2;
 using glm::uvec3;
 using glm::vec4;
 
-inline constexpr search_kind all_searches[] = {search_kind::at_least_k, search_kind::exact_k, search_kind::fixed_radius};
-inline constexpr filter_kernel all_kernels_of_estimates[] = {filter_kernel::constant, filter_kernel::cone, filter_kernel::epanechnikov, filter_kernel::silverman};
+inline constexpr search_kind all_searches[]
+    = {search_kind::at_least_k, search_kind::exact_k, search_kind::fixed_radius};
+inline constexpr filter_kernel all_kernels_of_estimates[]
+    = {filter_kernel::constant, filter_kernel::cone, filter_kernel::epanechnikov, filter_kernel::silverman};
 inline constexpr bias_kind all_biases[] = {bias_kind::paper, bias_kind::unbiased};
-inline const leak_policy all_policies[] = {{}, {.side = true}, {.min_cosine = 0.3f}, {.compression = 3}, {.side = true, .min_cosine = -0.5f, .compression = 1.5f}};
+inline const leak_policy all_policies[] = {{}, {.side = true}, {.min_cosine = 0.3f}, {.compression = 3},
+    {.side = true, .min_cosine = -0.5f, .compression = 1.5f}};
 
 template <backend B>
 photons<B> upload_photons(B& b, const oriented_set& s)
@@ -50,7 +53,9 @@ protected:
     known_map known(const oriented_set& s, bool routed)
     {
         auto& b = this->b();
-        known_map m{routed ? routed_map(b, upload_photons(b, s), s.photons.g, 3, 5) : sorted_map(b, upload_photons(b, s), s.photons.g), {}, std::vector<vec4>(s.photons.positions.size())};
+        known_map m{routed ? routed_map(b, upload_photons(b, s), s.photons.g, 3, 5)
+                           : sorted_map(b, upload_photons(b, s), s.photons.g),
+            {}, std::vector<vec4>(s.photons.positions.size())};
         const auto list = b.download(m.map.list);
         const auto stored = b.download(m.map.photons.powers);
         for (const auto& c : b.download(m.map.cells))
@@ -66,7 +71,8 @@ protected:
     {
         auto& b = this->b();
         // Errors always, but for the paper's own estimate, which has a path of its own without them.
-        settings.errors = settings.search != search_kind::at_least_k || settings.kernel != filter_kernel::constant || settings.bias != bias_kind::paper;
+        settings.errors = settings.search != search_kind::at_least_k || settings.kernel != filter_kernel::constant
+            || settings.bias != bias_kind::paper;
         const auto points = b.upload(std::span<const vec4>(s.points));
         const auto normals = b.upload(std::span<const vec4>(s.point_normals));
         const auto e = knn_grid_estimate(b, m.map, points, normals, settings);
@@ -79,18 +85,22 @@ protected:
             if (used[q].x != expected.ids.size())
                 return "used " + std::to_string(used[q].x) + ", not " + std::to_string(expected.ids.size()) + where;
             if (static_cast<double>(irradiance[q].w) != expected.radius2)
-                return "squared radius " + std::to_string(irradiance[q].w) + ", not " + std::to_string(expected.radius2) + where;
+                return "squared radius " + std::to_string(irradiance[q].w) + ", not " + std::to_string(expected.radius2)
+                    + where;
             // The sum is zero or tells the set: powers are random.
             for (int c = 0; c < 3; ++c) {
                 const double error = std::abs(static_cast<double>(irradiance[q][c]) - expected.irradiance[c]);
                 if (!(error <= 4e-6 * expected.irradiance[c] + 1e-6 * expected.irradiance.x))
-                    return "channel " + std::to_string(c) + " is " + std::to_string(irradiance[q][c]) + ", not " + std::to_string(expected.irradiance[c]) + where;
+                    return "channel " + std::to_string(c) + " is " + std::to_string(irradiance[q][c]) + ", not "
+                        + std::to_string(expected.irradiance[c]) + where;
                 if (error > 0)
                     largest_error_ = std::max(largest_error_, error / expected.irradiance[c]);
             }
             for (int c = 0; settings.errors && c < 4; ++c)
-                if (!(std::abs(static_cast<double>(standard_error[q][c]) - expected.standard_error[c]) <= 4e-6 * expected.standard_error[c] + 1e-6 * expected.irradiance.x))
-                    return "standard error " + std::to_string(c) + " is " + std::to_string(standard_error[q][c]) + ", not " + std::to_string(expected.standard_error[c]) + where;
+                if (!(std::abs(static_cast<double>(standard_error[q][c]) - expected.standard_error[c])
+                        <= 4e-6 * expected.standard_error[c] + 1e-6 * expected.irradiance.x))
+                    return "standard error " + std::to_string(c) + " is " + std::to_string(standard_error[q][c])
+                        + ", not " + std::to_string(expected.standard_error[c]) + where;
         }
         return {};
     }
@@ -114,18 +124,23 @@ TYPED_TEST_P(estimators, every_combination_equals_brute_force)
                         k.bias = bias;
                         k.leaks = leaks;
                         ASSERT_EQ(this->difference(s, map, k), "")
-                            << "search " << int(search) << " kernel " << int(kernel) << " bias " << int(bias) << " side " << leaks.side << " cosine " << leaks.min_cosine << " compression " << leaks.compression;
+                            << "search " << int(search) << " kernel " << int(kernel) << " bias " << int(bias)
+                            << " side " << leaks.side << " cosine " << leaks.min_cosine << " compression "
+                            << leaks.compression;
                     }
     }
-    this->report("A10_policies", "largest relative error of irradiance, every search, kernel, bias and policy:", this->largest_error_);
+    this->report("A10_policies",
+        "largest relative error of irradiance, every search, kernel, bias and policy:", this->largest_error_);
 }
 
 TYPED_TEST_P(estimators, exact_k_finds_flanns_photons_on_every_distribution)
 {
     auto& b = this->b();
     EXPECT_TRUE(rc::check("k-th squared distance = FLANN's bit for bit, set = brute force, ties by id", [&] {
-        const auto d = *rc::gen::elementOf(std::vector<distribution>(std::begin(all_distributions), std::end(all_distributions)));
-        const auto resolution = *rc::gen::element(uvec3(1, 1, 1), uvec3(20, 1, 20), uvec3(5, 5, 10), uvec3(1, 1, 40), uvec3(7, 3, 2));
+        const auto d = *rc::gen::elementOf(
+            std::vector<distribution>(std::begin(all_distributions), std::end(all_distributions)));
+        const auto resolution
+            = *rc::gen::element(uvec3(1, 1, 1), uvec3(20, 1, 20), uvec3(5, 5, 10), uvec3(1, 1, 40), uvec3(7, 3, 2));
         const auto n = *rc::gen::element(0, 1, 2, 7, 40, 700);
         const auto k = *rc::gen::element(1u, 2u, 3u, 8u, 50u, 333u, 5000u);
         const auto radius = *rc::gen::element(1e-4f, 0.03f, 0.2f, 0.7f, 10.0f);
@@ -142,7 +157,8 @@ TYPED_TEST_P(estimators, exact_k_finds_flanns_photons_on_every_distribution)
 
         if (static_cast<uint>(n) >= k) {
             const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
-            const auto irradiance = b.download(knn_grid_estimate(b, map, b.upload(std::span<const vec4>(s.points)), settings).irradiance);
+            const auto irradiance
+                = b.download(knn_grid_estimate(b, map, b.upload(std::span<const vec4>(s.points)), settings).irradiance);
             const auto known = kth_by_flann(s.photons.positions, s.points, k);
             for (std::size_t q = 0; q < s.points.size(); ++q) {
                 RC_ASSERT(known[q].has_value());
@@ -196,14 +212,16 @@ TYPED_TEST_P(estimators, ties_in_many_cells_go_by_id)
     oriented_set s;
     s.photons.g = make_grid(glm::vec3(0), glm::vec3(1), {5, 4, 5});
     for (int i = 0; i < 729; ++i)
-        s.photons.positions.emplace_back(0.125f * static_cast<float>(i % 9), 0.125f * static_cast<float>(i / 9 % 9), 0.125f * static_cast<float>(i / 81), 0.0f);
+        s.photons.positions.emplace_back(0.125f * static_cast<float>(i % 9), 0.125f * static_cast<float>(i / 9 % 9),
+            0.125f * static_cast<float>(i / 81), 0.0f);
     random_source u(8);
     for (uint i = 728; i > 0; --i)
         std::swap(s.photons.positions[i], s.photons.positions[u.below(i + 1)]);
     for (int i = 0; i < 729; ++i)
         s.photons.powers.emplace_back(u(), u(), u(), 0.0f);
     for (int i = 0; i < 125; ++i)
-        s.points.emplace_back(0.25f * static_cast<float>(i % 5), 0.25f * static_cast<float>(i / 5 % 5), 0.25f * static_cast<float>(i / 25), 1.0f);
+        s.points.emplace_back(0.25f * static_cast<float>(i % 5), 0.25f * static_cast<float>(i / 5 % 5),
+            0.25f * static_cast<float>(i / 25), 1.0f);
     s.directions.assign(729, vec4(0, -1, 0, 0));
     s.normals.assign(729, vec4(0, 1, 0, 0));
     s.point_normals.assign(125, vec4(0, 1, 0, 0));
@@ -238,7 +256,8 @@ TYPED_TEST_P(estimators, squared_distances_too_small_for_a_float_count_as_zero)
 
 TYPED_TEST_P(estimators, distances_next_to_each_other_are_told_apart)
 {
-    // Squared distances two roundings apart, some of them twice: every pivot of the k-th's search lies at a photon or next to one.
+    // Squared distances two roundings apart, some of them twice: every pivot of the k-th's search lies at a photon or
+    // next to one.
     oriented_set s;
     s.photons.g = make_grid(glm::vec3(0), glm::vec3(2), {1, 1, 1});
     random_source u(31);
@@ -258,7 +277,8 @@ TYPED_TEST_P(estimators, distances_next_to_each_other_are_told_apart)
 
 TYPED_TEST_P(estimators, a_photon_on_a_face_is_found_from_any_distance)
 {
-    // One photon on a face between cells, points on its axis: its distance and the cell that the radius reaches round apart.
+    // One photon on a face between cells, points on its axis: its distance and the cell that the radius reaches round
+    // apart.
     auto& b = this->b();
     for (const int axis : {0, 1, 2})
         for (const int face : {13, 22, 37}) {
@@ -293,7 +313,8 @@ TYPED_TEST_P(estimators, a_radius_holds_the_photons_on_its_rim)
     photon_set set;
     set.g = make_grid(glm::vec3(0), glm::vec3(1), {4, 4, 4});
     for (int i = 0; i < 8; ++i)
-        set.positions.emplace_back(i < 2 ? 0.5f + (i == 0 ? 0.25f : -0.25f) : 0.5f, i >= 2 && i < 4 ? 0.5f + (i == 2 ? 0.25f : -0.25f) : 0.5f,
+        set.positions.emplace_back(i < 2 ? 0.5f + (i == 0 ? 0.25f : -0.25f) : 0.5f,
+            i >= 2 && i < 4 ? 0.5f + (i == 2 ? 0.25f : -0.25f) : 0.5f,
             i >= 4 ? 0.5f + (i % 2 == 0 ? 0.25f : -0.25f) : 0.5f, 0.0f);
     set.positions.emplace_back(0.75000006f, 0.5f, 0.5f, 0.0f);
     set.positions.emplace_back(0.5f, 0.5f, 0.5f, 0.0f);
@@ -307,7 +328,8 @@ TYPED_TEST_P(estimators, a_radius_holds_the_photons_on_its_rim)
             k.bias = bias;
             const auto e = knn_grid_estimate(b, map, points, k);
             EXPECT_EQ(b.download(e.used)[0].x, 9u) << int(search);
-            EXPECT_NEAR(b.download(e.irradiance)[0].x, 9 / (M_PI * 0.0625), 1e-4) << int(search); // the radius is given: none is left out
+            EXPECT_NEAR(b.download(e.irradiance)[0].x, 9 / (M_PI * 0.0625), 1e-4)
+                << int(search); // the radius is given: none is left out
         }
 }
 
@@ -327,14 +349,16 @@ TYPED_TEST_P(estimators, no_light_comes_through_a_thin_wall)
     s.points = {{0.5f, 0.51f, 0.5f, 1.0f}, {0.5f, 0.5f, 0.5f, 1.0f}};
     s.point_normals = {{0.0f, 1.0f, 0.0f, 0.0f}, {0.0f, -1.0f, 0.0f, 0.0f}};
     const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
-    const auto points = b.upload(std::span<const vec4>(s.points)), normals = b.upload(std::span<const vec4>(s.point_normals));
+    const auto points = b.upload(std::span<const vec4>(s.points)),
+               normals = b.upload(std::span<const vec4>(s.point_normals));
     double leaked = 0;
     for (const auto search : all_searches) {
         knn_settings k{.k = 50, .max_radius = 0.1f};
         k.search = search;
         const auto leaking = b.download(knn_grid_estimate(b, map, points, normals, k).irradiance);
         EXPECT_GT(leaking[1].x, 0.5f * leaking[0].x);
-        for (const leak_policy& leaks : {leak_policy{.side = true}, leak_policy{.min_cosine = 0.5f}, leak_policy{.compression = 11}}) {
+        for (const leak_policy& leaks :
+            {leak_policy{.side = true}, leak_policy{.min_cosine = 0.5f}, leak_policy{.compression = 11}}) {
             k.leaks = leaks;
             const auto e = knn_grid_estimate(b, map, points, normals, k);
             const auto kept = b.download(e.irradiance);
@@ -393,8 +417,10 @@ TYPED_TEST_P(estimators, searches_can_be_watched_and_resumed)
                 ASSERT_LE(u.x, 4000u);
         }
         EXPECT_GT(passes, 4u);
-        EXPECT_EQ(count_different_bits(b.download(watched.estimates().irradiance), b.download(whole.irradiance)), 0u) << int(search);
-        EXPECT_EQ(count_different_bits(b.download(watched.estimates().standard_error), b.download(whole.standard_error)), 0u);
+        EXPECT_EQ(count_different_bits(b.download(watched.estimates().irradiance), b.download(whole.irradiance)), 0u)
+            << int(search);
+        EXPECT_EQ(
+            count_different_bits(b.download(watched.estimates().standard_error), b.download(whole.standard_error)), 0u);
         EXPECT_EQ(count_different_bits(b.download(watched.estimates().used), b.download(whole.used)), 0u);
         EXPECT_TRUE(watched.advance(5).finished);
     }
@@ -415,13 +441,16 @@ TYPED_TEST_P(estimators, equal_the_serial_backends_bit_for_bit)
                     k.leaks = {.side = true, .compression = 2};
                     k.errors = true;
                     const auto map = sorted_map(device, upload_photons(device, s), s.photons.g);
-                    const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(s.points)), device.upload(std::span<const vec4>(s.point_normals)), k);
-                    return std::tuple{device.download(e.irradiance), device.download(e.used), device.download(e.standard_error)};
+                    const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(s.points)),
+                        device.upload(std::span<const vec4>(s.point_normals)), k);
+                    return std::tuple{
+                        device.download(e.irradiance), device.download(e.used), device.download(e.standard_error)};
                 };
                 const auto [irradiance, used, errors] = run(b);
                 const auto [irradiance_s, used_s, errors_s] = run(serial);
                 const auto where = std::string(name_of(d)) + " search " + std::to_string(int(search));
-                // Which photons: the same everywhere. How many were looked at, and their light, where division rounds correctly.
+                // Which photons: the same everywhere. How many were looked at, and their light, where division rounds
+                // correctly.
                 for (std::size_t i = 0; i < used.size(); ++i) {
                     ASSERT_EQ(used[i].x, used_s[i].x) << where;
                     ASSERT_EQ(irradiance[i].w, irradiance_s[i].w) << where;
@@ -437,7 +466,11 @@ TYPED_TEST_P(estimators, equal_the_serial_backends_bit_for_bit)
             }
 }
 
-REGISTER_TYPED_TEST_SUITE_P(estimators, every_combination_equals_brute_force, exact_k_finds_flanns_photons_on_every_distribution, ties_at_the_kth_distance_go_by_id,
-    ties_in_many_cells_go_by_id, squared_distances_too_small_for_a_float_count_as_zero, distances_next_to_each_other_are_told_apart, a_photon_on_a_face_is_found_from_any_distance, a_radius_holds_the_photons_on_its_rim, no_light_comes_through_a_thin_wall, searches_refuse_what_they_cannot_do, searches_can_be_watched_and_resumed, equal_the_serial_backends_bit_for_bit);
+REGISTER_TYPED_TEST_SUITE_P(estimators, every_combination_equals_brute_force,
+    exact_k_finds_flanns_photons_on_every_distribution, ties_at_the_kth_distance_go_by_id, ties_in_many_cells_go_by_id,
+    squared_distances_too_small_for_a_float_count_as_zero, distances_next_to_each_other_are_told_apart,
+    a_photon_on_a_face_is_found_from_any_distance, a_radius_holds_the_photons_on_its_rim,
+    no_light_comes_through_a_thin_wall, searches_refuse_what_they_cannot_do, searches_can_be_watched_and_resumed,
+    equal_the_serial_backends_bit_for_bit);
 
 } // namespace photongrid::testing

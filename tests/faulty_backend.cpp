@@ -95,7 +95,9 @@ namespace {
         const auto p = picture(b, builder, stats, observer);
         std::string bits;
         append(bits, p.pixels);
-        append(bits, std::vector<std::uint64_t>{stats.photons.emitted, stats.photons.stored, stats.photons.absorbed, stats.photons.dropped, stats.map.overfull_cells});
+        append(bits,
+            std::vector<std::uint64_t>{stats.photons.emitted, stats.photons.stored, stats.photons.absorbed,
+                stats.photons.dropped, stats.map.overfull_cells});
         return bits;
     }
 
@@ -107,11 +109,12 @@ namespace {
         {"routed_map_and_estimate", [](faulty& b) { return estimate(b, true); }},
         {"render_sorted", [](faulty& b) { return render_bits(b, map_builder::sort); }},
         {"render_routed", [](faulty& b) { return render_bits(b, map_builder::route); }},
-        {"render_watched", [](faulty& b) {
-             render_observer observer;
-             observer.intermediate = [](const image&) {};
-             return render_bits(b, map_builder::sort, observer);
-         }},
+        {"render_watched",
+            [](faulty& b) {
+                render_observer observer;
+                observer.intermediate = [](const image&) {};
+                return render_bits(b, map_builder::sort, observer);
+            }},
     };
 
     class faulty_backend : public ::testing::TestWithParam<job> {
@@ -187,20 +190,24 @@ namespace {
             j.run(b);
         } catch (const backend_error&) {
         } catch (const std::runtime_error& e) {
-            EXPECT_TRUE(std::string_view(e.what()).starts_with("trace_photons: ")) << e.what(); // too few photons stored
+            EXPECT_TRUE(std::string_view(e.what()).starts_with("trace_photons: "))
+                << e.what(); // too few photons stored
         }
         ASSERT_EQ(inner.bytes(), 0u) << "leaked";
     }
 
-    // Kernels whose whole numbers are counted or added up, not read by. (Running sums say where a routed map's cells begin.)
+    // Kernels whose whole numbers are counted or added up, not read by. (Running sums say where a routed map's cells
+    // begin.)
     bool says_no_place(std::string_view kernel)
     {
-        return kernel == "tally_path" || kernel == "sum_tallies" || kernel == "knn_result" || kernel == "no_light" || kernel == "direct_light" || kernel == "shade";
+        return kernel == "tally_path" || kernel == "sum_tallies" || kernel == "knn_result" || kernel == "no_light"
+            || kernel == "direct_light" || kernel == "shade";
     }
 
     TEST_P(faulty_backend, garbage)
     {
-        const bool sorting = std::string_view(GetParam().name).starts_with("sort") && std::string_view(GetParam().name) != "sorted_map_and_estimate";
+        const bool sorting = std::string_view(GetParam().name).starts_with("sort")
+            && std::string_view(GetParam().name) != "sorted_map_and_estimate";
         const auto n = calls(fault::garbage);
         ASSERT_GE(n, 3u);
         for (std::uint64_t i = 1; i <= n; ++i) {
@@ -231,20 +238,24 @@ namespace {
                 b.set(fault::wrong_count, i, wrong);
                 expect_wrong_or_refused(GetParam(), b, inner);
             }
-            for (const auto wrong : {std::uint64_t{1} << 24, std::uint64_t{0xFFFFFFFFu}, (std::uint64_t{1} << 32) + 1, ~std::uint64_t{0}}) {
+            for (const auto wrong :
+                {std::uint64_t{1} << 24, std::uint64_t{0xFFFFFFFFu}, (std::uint64_t{1} << 32) + 1, ~std::uint64_t{0}}) {
                 b.set(fault::wrong_count, i, wrong);
                 try {
                     run();
                     ADD_FAILURE() << wrong << " was believed";
                 } catch (const backend_error& e) {
-                    EXPECT_NE(std::string_view(e.what()).find("the device returned " + std::to_string(wrong)), std::string_view::npos) << e.what();
+                    EXPECT_NE(std::string_view(e.what()).find("the device returned " + std::to_string(wrong)),
+                        std::string_view::npos)
+                        << e.what();
                 }
                 ASSERT_EQ(inner.bytes(), 0u) << "leaked";
             }
         }
     }
 
-    INSTANTIATE_TEST_SUITE_P(all, faulty_backend, ::testing::ValuesIn(jobs), [](const auto& info) { return std::string(info.param.name); });
+    INSTANTIATE_TEST_SUITE_P(
+        all, faulty_backend, ::testing::ValuesIn(jobs), [](const auto& info) { return std::string(info.param.name); });
 
     // No path emitted would mean tracing for ever.
     TEST(faulty_tracer, refuses_that_no_path_was_emitted)
@@ -257,7 +268,8 @@ namespace {
             picture(b, map_builder::sort, stats);
             FAIL();
         } catch (const backend_error& e) {
-            EXPECT_STREQ(e.what(), "serial: count<path_is_emitted>: the device returned 0; at least 1 of 1024 paths is emitted");
+            EXPECT_STREQ(
+                e.what(), "serial: count<path_is_emitted>: the device returned 0; at least 1 of 1024 paths is emitted");
         }
     }
 
@@ -290,7 +302,8 @@ namespace {
             EXPECT_THROW(render_to_file(), backend_error);
             const auto left = contents();
             EXPECT_TRUE(left == "old" || left.size() == whole_size) << left.size() << " bytes";
-            EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1) << "a temporary file is left";
+            EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1)
+                << "a temporary file is left";
         }
         fs::remove_all(folder);
     }

@@ -21,7 +21,8 @@ enum class fault {
     wrong_contents ///< the n-th `download` answers random bits
 };
 
-/// Which output slots of a pass may be overwritten whole; of others, only the first three floats of a vec4 are (see spoil).
+/// Which output slots of a pass may be overwritten whole; of others, only the first three floats of a vec4 are (see
+/// spoil).
 using spoils_whole = std::function<bool(std::string_view kernel)>;
 
 /// B, but for the fault that is set. What it throws says "injected".
@@ -96,7 +97,8 @@ public:
         return due(fault::wrong_count) ? wrong_ : n;
     }
     template <route_kernel K, class Reads>
-    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots, buffer<glm::vec4>& totals)
+    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots,
+        buffer<glm::vec4>& totals)
     {
         work();
         inner_->template route<K>(l, args, reads, destinations, m, slots, totals);
@@ -148,7 +150,8 @@ private:
     float random_float()
     {
         constexpr float inf = std::numeric_limits<float>::infinity();
-        constexpr float odd[] = {std::numeric_limits<float>::quiet_NaN(), inf, -inf, 3e38f, -3e38f, 1e-45f, -0.0f, 1.0f};
+        constexpr float odd[]
+            = {std::numeric_limits<float>::quiet_NaN(), inf, -inf, 3e38f, -3e38f, 1e-45f, -0.0f, 1.0f};
         const auto which = random_() % 16;
         return which < 8 ? odd[which] : random_bits<float>();
     }

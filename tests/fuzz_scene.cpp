@@ -1,4 +1,5 @@
-// libFuzzer's target: any bytes, read as a scene. Built by clang with the preset "fuzz"; docs/measures.md has the command.
+// libFuzzer's target: any bytes, read as a scene. Built by clang with the preset "fuzz"; docs/measures.md has the
+// command.
 #include "scene_corpus.hpp"
 
 #include <cstdint>

@@ -20,7 +20,8 @@
 namespace photongrid {
 namespace {
 
-    // --- kernels of these tests: the same text for C++ and, below, for OpenGL -----------------------------------------
+    // --- kernels of these tests: the same text for C++ and, below, for OpenGL
+    // -----------------------------------------
     namespace test_kernels {
         using namespace glm;
 #include <photongrid/kernels/begin.hpp>
@@ -224,7 +225,8 @@ void kernel(uint i) { value = i; }
 )glsl"},
     };
 
-    // --- helpers ------------------------------------------------------------------------------------------------------
+    // --- helpers
+    // ------------------------------------------------------------------------------------------------------
     template <class T>
     std::span<const T> view(const std::vector<T>& v)
     {
@@ -273,11 +275,17 @@ void kernel(uint i) { value = i; }
     {
         std::vector<cloud> all;
         all.push_back(make_cloud("uniform", n, [](auto& u, auto& r) { return glm::vec4(u(r), u(r), u(r), 0); }));
-        all.push_back(make_cloud("clustered", n, [](auto& u, auto& r) { return glm::vec4(0.3f + 0.1f * u(r) * u(r), 0.7f - 0.05f * u(r), u(r) < 0.5f ? 0.25f : u(r), 0); }));
-        all.push_back(make_cloud("in one cell", n, [](auto& u, auto& r) { return glm::vec4(0.5f + 0.01f * u(r), 0.52f, 0.52f + 0.001f * u(r), 0); }));
+        all.push_back(make_cloud("clustered", n, [](auto& u, auto& r) {
+            return glm::vec4(0.3f + 0.1f * u(r) * u(r), 0.7f - 0.05f * u(r), u(r) < 0.5f ? 0.25f : u(r), 0);
+        }));
+        all.push_back(make_cloud("in one cell", n,
+            [](auto& u, auto& r) { return glm::vec4(0.5f + 0.01f * u(r), 0.52f, 0.52f + 0.001f * u(r), 0); }));
         all.push_back(make_cloud("some invalid", n, [](auto& u, auto& r) {
             const float x = u(r);
-            return glm::vec4(x < 0.05f ? std::numeric_limits<float>::quiet_NaN() : x < 0.1f ? std::numeric_limits<float>::infinity() : x, u(r), u(r), 0);
+            return glm::vec4(x < 0.05f ? std::numeric_limits<float>::quiet_NaN()
+                    : x < 0.1f         ? std::numeric_limits<float>::infinity()
+                                       : x,
+                u(r), u(r), 0);
         }));
         return all;
     }
@@ -287,7 +295,8 @@ void kernel(uint i) { value = i; }
         return {b.upload(view(c.positions)), b.upload(view(c.powers)), {}};
     }
 
-    // --- contexts -----------------------------------------------------------------------------------------------------
+    // --- contexts
+    // -----------------------------------------------------------------------------------------------------
     struct egl {
         static constexpr gl_context_kind kind = gl_context_kind::egl;
         static constexpr const char* name = "gl";
@@ -433,7 +442,9 @@ void kernel(uint i) { value = i; }
         if (b.caps().software) {
             auto totals = b.template make<glm::vec4>(destinations);
             buffer_of<gl_backend, uint> slots;
-            EXPECT_THROW((b.template route<test_kernels::to_place>(1, {}, reads(pairs, amounts), destinations, 16u, slots, totals)), std::invalid_argument);
+            EXPECT_THROW((b.template route<test_kernels::to_place>(
+                             1, {}, reads(pairs, amounts), destinations, 16u, slots, totals)),
+                std::invalid_argument);
         }
         auto small = b.template make<uint>(10);
         EXPECT_THROW((b.template run<kernels::pair_value>(11, {}, reads(pairs), writes(small))), std::invalid_argument);
@@ -523,7 +534,9 @@ void kernel(uint i) { value = i; }
         EXPECT_NE(layout.find("std140"), std::string::npos) << layout;
         EXPECT_NE(this->gpu().take_debug_messages(), "") << "the compiler's errors are messages too";
         // And goes on as if nothing had happened.
-        EXPECT_EQ(this->gpu().template count<test_kernels::is_odd>(1, {}, reads(this->gpu().upload(view(std::vector<uint>{3u})))), 1u);
+        EXPECT_EQ(this->gpu().template count<test_kernels::is_odd>(
+                      1, {}, reads(this->gpu().upload(view(std::vector<uint>{3u})))),
+            1u);
     }
 
     TYPED_TEST(gl_backend_test, counts_by_occlusion)
@@ -533,10 +546,12 @@ void kernel(uint i) { value = i; }
             const auto numbers = noise<uint>(n, 3);
             const auto on_gpu = b.upload(view(numbers));
             const auto on_cpu = this->cpu.upload(view(numbers));
-            EXPECT_EQ(b.template count<test_kernels::is_odd>(n, {}, reads(on_gpu)), this->cpu.template count<test_kernels::is_odd>(n, {}, reads(on_cpu)));
+            EXPECT_EQ(b.template count<test_kernels::is_odd>(n, {}, reads(on_gpu)),
+                this->cpu.template count<test_kernels::is_odd>(n, {}, reads(on_cpu)));
             if (n > 5000) {
                 const launch part{n - 3000, 1234};
-                EXPECT_EQ(b.template count<test_kernels::is_odd>(part, {}, reads(on_gpu)), this->cpu.template count<test_kernels::is_odd>(part, {}, reads(on_cpu)));
+                EXPECT_EQ(b.template count<test_kernels::is_odd>(part, {}, reads(on_gpu)),
+                    this->cpu.template count<test_kernels::is_odd>(part, {}, reads(on_cpu)));
             }
         }
     }
@@ -550,8 +565,10 @@ void kernel(uint i) { value = i; }
             auto on_gpu = this->gpu().upload(view(data));
             auto on_cpu = this->cpu.upload(view(data));
             for (uint f = 1; f + 1 < frames; ++f) {
-                this->gpu().template run<test_kernels::next_frame>({stride, f * stride}, {.stride = stride}, reads(on_gpu), writes(on_gpu));
-                this->cpu.template run<test_kernels::next_frame>({stride, f * stride}, {.stride = stride}, reads(on_cpu), writes(on_cpu));
+                this->gpu().template run<test_kernels::next_frame>(
+                    {stride, f * stride}, {.stride = stride}, reads(on_gpu), writes(on_gpu));
+                this->cpu.template run<test_kernels::next_frame>(
+                    {stride, f * stride}, {.stride = stride}, reads(on_cpu), writes(on_cpu));
             }
             EXPECT_TRUE(same_bits(this->gpu().download(on_gpu), this->cpu.download(on_cpu))) << "stride " << stride;
         }
@@ -581,14 +598,17 @@ void kernel(uint i) { value = i; }
         auto s6 = b.upload(view(noise<uint>(n, 14)));
         auto s7 = b.upload(view(left));
         for (uint most : max_passes)
-            steps.push_back(b.template run_until_done<test_kernels::eight>(l, {.add = 5u}, reads(in0, in1, in2, in3, in4, in5, in6, in7), writes(s0, s1, s2, s3, s4, s5, s6, s7), most));
-        return std::tuple(b.download(s0), b.download(s1), b.download(s2), b.download(s3), b.download(s4), b.download(s5), b.download(s6), b.download(s7));
+            steps.push_back(b.template run_until_done<test_kernels::eight>(l, {.add = 5u},
+                reads(in0, in1, in2, in3, in4, in5, in6, in7), writes(s0, s1, s2, s3, s4, s5, s6, s7), most));
+        return std::tuple(b.download(s0), b.download(s1), b.download(s2), b.download(s3), b.download(s4),
+            b.download(s5), b.download(s6), b.download(s7));
     }
 
     TYPED_TEST(gl_backend_test, passes_only_over_what_is_not_done)
     {
         for (std::size_t n : {1u, 50u, 2048u, 30000u})
-            for (std::initializer_list<uint> passes : {std::initializer_list<uint>{~0u}, {1u, 1u, 0u, 3u, 8u, 1u, ~0u, ~0u}, {0u}, {7u}, {8u}, {9u}, {36u}, {37u}})
+            for (std::initializer_list<uint> passes : {std::initializer_list<uint>{~0u},
+                     {1u, 1u, 0u, 3u, 8u, 1u, ~0u, ~0u}, {0u}, {7u}, {8u}, {9u}, {36u}, {37u}})
                 for (uint switches : {0u, ~0u}) {
                     const launch l = n == 30000 ? launch{n - 5000, 777, switches} : launch{n, 0, switches};
                     std::vector<progress> gpu_steps, cpu_steps;
@@ -625,8 +645,12 @@ void kernel(uint i) { value = i; }
                     std::vector<glm::vec4> amounts(n);
                     for (std::size_t i = 0; i < n; ++i) {
                         const uint d = static_cast<uint>(random()) % (destinations + destinations / 8 + 1);
-                        pairs[i] = {i % 3 == 0 ? destinations / 2 : i % 17 == 0 ? nowhere : d, static_cast<uint>(random())};
-                        amounts[i] = glm::vec4(1.0f / static_cast<float>(i + 1), static_cast<float>(d) * 0.1f, 1e-3f, 1.0f);
+                        pairs[i] = {i % 3 == 0 ? destinations / 2
+                                : i % 17 == 0  ? nowhere
+                                               : d,
+                            static_cast<uint>(random())};
+                        amounts[i]
+                            = glm::vec4(1.0f / static_cast<float>(i + 1), static_cast<float>(d) * 0.1f, 1e-3f, 1.0f);
                     }
                     const auto route = [&](auto& b) {
                         const auto p = b.upload(view(pairs));
@@ -640,7 +664,8 @@ void kernel(uint i) { value = i; }
                     const auto a = route(this->gpu());
                     const auto c = route(this->cpu);
                     EXPECT_TRUE(same_bits(a.first, c.first)) << destinations << " destinations, m " << m << ", n " << n;
-                    EXPECT_TRUE(same_bits(a.second, c.second)) << destinations << " destinations, m " << m << ", n " << n;
+                    EXPECT_TRUE(same_bits(a.second, c.second))
+                        << destinations << " destinations, m " << m << ", n " << n;
                 }
     }
 
@@ -666,12 +691,14 @@ void kernel(uint i) { value = i; }
     }
 
     template <class B>
-    auto map_and_search(B& b, const cloud& c, const grid& g, uint m, const std::vector<glm::vec4>& points, const knn_settings& s)
+    auto map_and_search(
+        B& b, const cloud& c, const grid& g, uint m, const std::vector<glm::vec4>& points, const knn_settings& s)
     {
         const auto map = m == 0 ? sorted_map(b, upload_cloud(b, c), g) : routed_map(b, upload_cloud(b, c), g, m, 99);
         const auto queries = b.upload(view(points));
         const auto e = knn_grid_estimate(b, map, queries, s);
-        return std::tuple(b.download(map.list), b.download(map.cells), b.download(map.photons.powers), b.download(e.irradiance), b.download(e.used), map.invalid, map.overfull_cells);
+        return std::tuple(b.download(map.list), b.download(map.cells), b.download(map.photons.powers),
+            b.download(e.irradiance), b.download(e.used), map.invalid, map.overfull_cells);
     }
     template <class Tuple>
     void expect_same(const Tuple& a, const Tuple& c, const std::string& what)
@@ -700,12 +727,16 @@ void kernel(uint i) { value = i; }
     {
         const auto points = query_points(400);
         for (const cloud& c : clouds(12000))
-            for (const auto& [low, high, resolution] : {std::tuple{glm::vec3(0), glm::vec3(1), glm::uvec3(13, 7, 20)}, {glm::vec3(0), glm::vec3(1, 0.52f, 1), glm::uvec3(40, 1, 40)}, {glm::vec3(0.1f), glm::vec3(0.9f), glm::uvec3(1)}})
+            for (const auto& [low, high, resolution] : {std::tuple{glm::vec3(0), glm::vec3(1), glm::uvec3(13, 7, 20)},
+                     {glm::vec3(0), glm::vec3(1, 0.52f, 1), glm::uvec3(40, 1, 40)},
+                     {glm::vec3(0.1f), glm::vec3(0.9f), glm::uvec3(1)}})
                 for (uint m : {0u, 1u, 2u, 4u, 15u, 16u}) {
                     const grid g = make_grid(low, high, resolution);
                     const knn_settings s{.k = 32, .max_radius = 0.3f};
-                    expect_same(map_and_search(this->gpu(), c, g, m, points, s), map_and_search(this->cpu, c, g, m, points, s),
-                        std::string(c.name) + ", grid of " + std::to_string(resolution.x) + " x " + std::to_string(resolution.y) + ", m " + std::to_string(m));
+                    expect_same(map_and_search(this->gpu(), c, g, m, points, s),
+                        map_and_search(this->cpu, c, g, m, points, s),
+                        std::string(c.name) + ", grid of " + std::to_string(resolution.x) + " x "
+                            + std::to_string(resolution.y) + ", m " + std::to_string(m));
                 }
     }
 
@@ -720,7 +751,9 @@ void kernel(uint i) { value = i; }
             const auto a = map_and_search(this->gpu(), c, g, m, points, s);
             expect_same(a, map_and_search(this->cpu, c, g, m, points, s), "m " + std::to_string(m));
             const auto& used = std::get<4>(a);
-            EXPECT_GE(std::accumulate(used.begin(), used.end(), 0u, [](uint most, const glm::uvec2& u) { return std::max(most, u.y); }), m == 0 ? 70000u : 255u);
+            EXPECT_GE(std::accumulate(used.begin(), used.end(), 0u,
+                          [](uint most, const glm::uvec2& u) { return std::max(most, u.y); }),
+                m == 0 ? 70000u : 255u);
         }
     }
 
@@ -730,7 +763,8 @@ void kernel(uint i) { value = i; }
         const grid g = make_grid(glm::vec3(0), glm::vec3(1), glm::uvec3(5));
         const auto points = query_points(10);
         for (uint m : {15u, 16u})
-            expect_same(map_and_search(this->gpu(), c, g, m, points, {.k = 8, .max_radius = 1.0f}), map_and_search(this->cpu, c, g, m, points, {.k = 8, .max_radius = 1.0f}), "m " + std::to_string(m));
+            expect_same(map_and_search(this->gpu(), c, g, m, points, {.k = 8, .max_radius = 1.0f}),
+                map_and_search(this->cpu, c, g, m, points, {.k = 8, .max_radius = 1.0f}), "m " + std::to_string(m));
     }
 
     TYPED_TEST(gl_backend_test, reads_nothing_back_between_passes)
@@ -747,7 +781,8 @@ void kernel(uint i) { value = i; }
         const auto sorted = sorted_map(b, std::move(photons_to_sort), g);
         const auto routed = routed_map(b, std::move(photons_to_route), g, 4);
         EXPECT_EQ(b.query_polls() - polls, 3u) << "three counts: invalid photons twice, overfull cells once";
-        knn_search search(b, sorted, queries, as_paper(knn_settings{.k = 40, .max_radius = 0.4f, .visits_per_pass = 20, .ranges_per_pass = 20}));
+        knn_search search(b, sorted, queries,
+            as_paper(knn_settings{.k = 40, .max_radius = 0.4f, .visits_per_pass = 20, .ranges_per_pass = 20}));
         const auto before = b.query_polls();
         const progress p = search.advance();
         const auto e = search.estimates();
@@ -759,7 +794,8 @@ void kernel(uint i) { value = i; }
         EXPECT_GT(p.active.front(), p.active.back());
         EXPECT_TRUE(std::is_sorted(p.active.rbegin(), p.active.rend()));
         // Pass by pass it comes to the same.
-        knn_search slow(b, sorted, queries, as_paper(knn_settings{.k = 40, .max_radius = 0.4f, .visits_per_pass = 20, .ranges_per_pass = 20}));
+        knn_search slow(b, sorted, queries,
+            as_paper(knn_settings{.k = 40, .max_radius = 0.4f, .visits_per_pass = 20, .ranges_per_pass = 20}));
         uint passes = 0;
         for (progress one = slow.advance(1);; one = slow.advance(1)) {
             passes += one.passes;
@@ -780,7 +816,8 @@ void kernel(uint i) { value = i; }
         for (uint tile : {1u, 5u, 16u, 2048u}) {
             if (tile == 1) {
                 gl_backend b({.context = TypeParam::kind, .tile = tile});
-                expect_same(map_and_search(b, c, g, 0, {points.begin(), points.begin() + 100}, s), map_and_search(this->cpu, c, g, 0, {points.begin(), points.begin() + 100}, s), "tile 1");
+                expect_same(map_and_search(b, c, g, 0, {points.begin(), points.begin() + 100}, s),
+                    map_and_search(this->cpu, c, g, 0, {points.begin(), points.begin() + 100}, s), "tile 1");
             } else {
                 gl_backend b({.context = TypeParam::kind, .tile = tile});
                 expect_same(map_and_search(b, c, g, 0, points, s), reference, "tile " + std::to_string(tile));
@@ -808,7 +845,8 @@ void kernel(uint i) { value = i; }
         const auto start = std::chrono::steady_clock::now();
         const auto c = clouds(5000)[0];
         // All verbs: sorts, routes, counts and searches.
-        map_and_search(b, c, make_grid(glm::vec3(0), glm::vec3(1), glm::uvec3(8)), 2, query_points(5000), {.k = 20, .max_radius = 1});
+        map_and_search(b, c, make_grid(glm::vec3(0), glm::vec3(1), glm::uvec3(8)), 2, query_points(5000),
+            {.k = 20, .max_radius = 1});
         const double all = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
         double sum = 0;
         for (const auto& [name, cost] : b.costs()) {
@@ -822,7 +860,8 @@ void kernel(uint i) { value = i; }
     TEST(gl_contexts, live_side_by_side)
     {
         std::vector<gl_backend> all;
-        for (const auto kind : {gl_context_kind::egl, gl_context_kind::osmesa, gl_context_kind::egl, gl_context_kind::any})
+        for (const auto kind :
+            {gl_context_kind::egl, gl_context_kind::osmesa, gl_context_kind::egl, gl_context_kind::any})
             try {
                 all.emplace_back(gl_options{.context = kind});
             } catch (const backend_error&) {

@@ -1,5 +1,5 @@
-// The OpenGL backend in a context of the caller's, made here by hand: all state of OpenGL 4.5 core is as it was after every
-// call, whatever it was, and results equal the serial backend's. Buffers as the caller's textures, and back.
+// The OpenGL backend in a context of the caller's, made here by hand: all state of OpenGL 4.5 core is as it was after
+// every call, whatever it was, and results equal the serial backend's. Buffers as the caller's textures, and back.
 #include "gl_state.hpp"
 
 #include "serial_algorithms.hpp"
@@ -30,7 +30,9 @@ namespace {
 #include <photongrid/kernels/end.hpp>
         };
     } // namespace test_kernels
-    constexpr text_file test_texts[] = {{"tests/broken.glsl", "struct Params {\n    uint unused;\n};\nPARAMS(Params)\nOUTPUT(0, uint, value)\nvoid kernel(uint i) { value = i.w; }\n"}};
+    constexpr text_file test_texts[] = {{"tests/broken.glsl",
+        "struct Params {\n    uint unused;\n};\nPARAMS(Params)\nOUTPUT(0, uint, value)\nvoid kernel(uint i) { value = "
+        "i.w; }\n"}};
 
     template <class T>
     std::span<const T> view(const std::vector<T>& v)
@@ -96,7 +98,8 @@ namespace {
         }
         std::unique_ptr<gl_backend> make_backend(bool debug = false, bool time_passes = false)
         {
-            auto b = std::make_unique<gl_backend>(gl_options{.context = gl_context_kind::current, .find = Kind::find, .time_passes = time_passes, .debug = debug});
+            auto b = std::make_unique<gl_backend>(gl_options{
+                .context = gl_context_kind::current, .find = Kind::find, .time_passes = time_passes, .debug = debug});
             b->add_texts(test_texts);
             return b;
         }
@@ -110,7 +113,8 @@ namespace {
     {
         for (const auto& [name, values] : then)
             if (const auto& found = now.at(name); found != values)
-                ADD_FAILURE() << after << " changed " << name << " from " << ::testing::PrintToString(values) << " to " << ::testing::PrintToString(found);
+                ADD_FAILURE() << after << " changed " << name << " from " << ::testing::PrintToString(values) << " to "
+                              << ::testing::PrintToString(found);
     }
 
     /// What all algorithms give, to be compared between backends.
@@ -127,12 +131,17 @@ namespace {
         photons<B> p{b.upload(view(positions)), b.upload(view(powers)), {}};
         const auto map = m == 0 ? sorted_map(b, std::move(p), g) : routed_map(b, std::move(p), g, m, 99);
         const auto e = knn_grid_estimate(b, map, b.upload(view(points)), {.k = 20, .max_radius = 0.3f});
-        return std::tuple(b.download(map.list), b.download(map.cells), b.download(map.photons.powers), b.download(e.irradiance), b.download(e.used));
+        return std::tuple(b.download(map.list), b.download(map.cells), b.download(map.photons.powers),
+            b.download(e.irradiance), b.download(e.used));
     }
     template <class Tuple>
     bool same_results(const Tuple& a, const Tuple& b)
     {
-        return [&]<std::size_t... I>(std::index_sequence<I...>) { return (same_bits(std::get<I>(a), std::get<I>(b)) && ...); }(std::make_index_sequence<std::tuple_size_v<Tuple>>{});
+        return [&]<std::size_t... I>(std::index_sequence<I...>)
+        {
+            return (same_bits(std::get<I>(a), std::get<I>(b)) && ...);
+        }
+        (std::make_index_sequence<std::tuple_size_v<Tuple>>{});
     }
 
     /// Calls everything that the backend has; `check` after each.
@@ -218,10 +227,12 @@ namespace {
                 for (const auto& [name, values] : then)
                     for (std::size_t v = 0; step == 1 && v < values.size(); ++v)
                         EXPECT_NE(values[v], defaults.at(name)[v]) << name << "[" << v << "] is not set by this test";
-                call_everything([&] { return this->make_backend(debug, debug); }, *this->call, [&, first = first, step = step](const std::string& what) {
-                    expect_same(state.dump(), then, what + (step == 1 ? "" : ", pieces from " + std::to_string(first)));
-                    EXPECT_EQ(this->call->GetError(), GLenum(GL_NO_ERROR)) << what;
-                });
+                call_everything([&] { return this->make_backend(debug, debug); }, *this->call,
+                    [&, first = first, step = step](const std::string& what) {
+                        expect_same(
+                            state.dump(), then, what + (step == 1 ? "" : ", pieces from " + std::to_string(first)));
+                        EXPECT_EQ(this->call->GetError(), GLenum(GL_NO_ERROR)) << what;
+                    });
             }
     }
 
@@ -267,7 +278,8 @@ namespace {
     TEST(gl_callers_compatibility_context, either_side_keeps_its_polygon_mode)
     {
         const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-        constexpr std::array<EGLint, 7> wanted{EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT, EGL_NONE};
+        constexpr std::array<EGLint, 7> wanted{EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+            EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT, EGL_NONE};
         EGLContext context = EGL_NO_CONTEXT;
         if (display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) && eglBindAPI(EGL_OPENGL_API))
             context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted.data());
@@ -298,7 +310,8 @@ namespace {
         gl_state state(gl);
         GLuint vertices = 0;
         gl.CreateVertexArrays(1, &vertices);
-        gl.UseProgramStages(state.pipeline, GL_VERTEX_SHADER_BIT, gl.CreateShaderProgramv(GL_VERTEX_SHADER, 1, &any_vertex));
+        gl.UseProgramStages(
+            state.pipeline, GL_VERTEX_SHADER_BIT, gl.CreateShaderProgramv(GL_VERTEX_SHADER, 1, &any_vertex));
         gl.UseProgram(0);
         gl.BindProgramPipeline(state.pipeline);
         const GLuint second = 1;
@@ -308,7 +321,10 @@ namespace {
         gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.draw_target);
         gl.Viewport(0, 0, 8, 8);
         std::unique_ptr<gl_backend> b = this->make_backend();
-        EXPECT_TRUE(same_results(results(*b, 4), [] { serial_backend cpu; return results(cpu, 4); }()));
+        EXPECT_TRUE(same_results(results(*b, 4), [] {
+            serial_backend cpu;
+            return results(cpu, 4);
+        }()));
         gl.DrawArrays(GL_TRIANGLES, 0, 3);
         std::array<std::uint8_t, 4> pixel{};
         gl.ReadPixels(3, 3, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel.data());
@@ -326,13 +342,17 @@ namespace {
         int heard = 0;
         gl.Enable(GL_DEBUG_OUTPUT);
         gl.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-        gl.DebugMessageCallback([](GLenum, GLenum, GLuint, GLenum, GLsizei, const GLchar*, const void* n) { ++*static_cast<int*>(const_cast<void*>(n)); }, &heard);
-        const std::array<std::pair<GLenum, std::function<void()>>, 4> mistakes{{{GL_INVALID_ENUM, [&] { gl.Enable(0xDEAD); }}, {GL_INVALID_VALUE, [&] { gl.LineWidth(-1); }},
-            {GL_INVALID_OPERATION, [&] { gl.EndTransformFeedback(); }}, {GL_INVALID_FRAMEBUFFER_OPERATION, [&] {
-                                                             gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, incomplete);
-                                                             gl.DrawArrays(GL_POINTS, 0, 1);
-                                                             gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-                                                         }}}};
+        gl.DebugMessageCallback([](GLenum, GLenum, GLuint, GLenum, GLsizei, const GLchar*,
+                                    const void* n) { ++*static_cast<int*>(const_cast<void*>(n)); },
+            &heard);
+        const std::array<std::pair<GLenum, std::function<void()>>, 4> mistakes{
+            {{GL_INVALID_ENUM, [&] { gl.Enable(0xDEAD); }}, {GL_INVALID_VALUE, [&] { gl.LineWidth(-1); }},
+                {GL_INVALID_OPERATION, [&] { gl.EndTransformFeedback(); }},
+                {GL_INVALID_FRAMEBUFFER_OPERATION, [&] {
+                     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, incomplete);
+                     gl.DrawArrays(GL_POINTS, 0, 1);
+                     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+                 }}}};
         GLuint vertices = 0;
         gl.CreateVertexArrays(1, &vertices);
         gl.BindVertexArray(vertices);
@@ -384,8 +404,10 @@ namespace {
             EXPECT_NE(said(*b, pairs).find(name), std::string::npos) << name << ", but: " << said(*b, pairs);
             EXPECT_TRUE(same_bits(b->download(pairs), data)) << name; // uploads and downloads go on
         };
-        for (const auto& [target, name] : {std::pair{GL_SAMPLES_PASSED, "GL_SAMPLES_PASSED "}, {GL_ANY_SAMPLES_PASSED, "GL_ANY_SAMPLES_PASSED "},
-                 {GL_ANY_SAMPLES_PASSED_CONSERVATIVE, "GL_ANY_SAMPLES_PASSED_CONSERVATIVE "}, {GL_PRIMITIVES_GENERATED, "GL_PRIMITIVES_GENERATED "}}) {
+        for (const auto& [target, name] :
+            {std::pair{GL_SAMPLES_PASSED, "GL_SAMPLES_PASSED "}, {GL_ANY_SAMPLES_PASSED, "GL_ANY_SAMPLES_PASSED "},
+                {GL_ANY_SAMPLES_PASSED_CONSERVATIVE, "GL_ANY_SAMPLES_PASSED_CONSERVATIVE "},
+                {GL_PRIMITIVES_GENERATED, "GL_PRIMITIVES_GENERATED "}}) {
             GLuint query = 0;
             gl.CreateQueries(GLenum(target), 1, &query);
             gl.BeginQuery(GLenum(target), query);
@@ -461,10 +483,12 @@ namespace {
                 if (is_mutable) { // with filters as OpenGL begins, which want a pyramid of levels that is not there
                     gl.CreateTextures(GL_TEXTURE_2D, 1, &mine);
                     gl.BindTexture(GL_TEXTURE_2D, mine);
-                    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RG32UI, 2048, GLsizei(rows), 0, GL_RG_INTEGER, GL_UNSIGNED_INT, texels.data());
+                    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RG32UI, 2048, GLsizei(rows), 0, GL_RG_INTEGER, GL_UNSIGNED_INT,
+                        texels.data());
                 } else {
                     mine = make_texture(gl, GL_TEXTURE_2D, GL_RG32UI, 2048, GLsizei(rows));
-                    gl.TextureSubImage2D(mine, 0, 0, 0, 2048, GLsizei(rows), GL_RG_INTEGER, GL_UNSIGNED_INT, texels.data());
+                    gl.TextureSubImage2D(
+                        mine, 0, 0, 0, 2048, GLsizei(rows), GL_RG_INTEGER, GL_UNSIGNED_INT, texels.data());
                 }
                 const auto bytes = b->bytes();
                 {
@@ -475,7 +499,8 @@ namespace {
                 }
                 EXPECT_EQ(b->bytes(), bytes);
                 ASSERT_TRUE(gl.IsTexture(mine)) << "the library deleted the caller's texture";
-                gl.GetTextureImage(mine, 0, GL_RG_INTEGER, GL_UNSIGNED_INT, GLsizei(texels.size() * sizeof(glm::uvec2)), texels.data());
+                gl.GetTextureImage(mine, 0, GL_RG_INTEGER, GL_UNSIGNED_INT, GLsizei(texels.size() * sizeof(glm::uvec2)),
+                    texels.data());
                 texels.resize(n);
                 EXPECT_TRUE(same_bits(texels, sorted(data))) << n << (is_mutable ? ", mutable" : "");
                 gl.DeleteTextures(1, &mine);
@@ -491,8 +516,10 @@ namespace {
         std::unique_ptr<gl_backend> b = this->make_backend();
         gl_state objects(gl);
         const GLuint program = make_program(gl, any_vertex,
-            "#version 450\nlayout(binding = 3) uniform usampler2D values;\nlayout(location = 0) uniform int element;\nout vec4 colour;\n"
-            "void main() { colour = vec4(texelFetch(values, ivec2(element % 2048, element / 2048), 0).xy / 255.0, 0, 1); }\n");
+            "#version 450\nlayout(binding = 3) uniform usampler2D values;\nlayout(location = 0) uniform int "
+            "element;\nout vec4 colour;\n"
+            "void main() { colour = vec4(texelFetch(values, ivec2(element % 2048, element / 2048), 0).xy / 255.0, 0, "
+            "1); }\n");
         const auto data = [] {
             std::vector<glm::uvec2> v(5000);
             for (uint i = 0; i < v.size(); ++i)
@@ -552,7 +579,8 @@ namespace {
         expect_refusal(make_texture(gl, GL_TEXTURE_2D, GL_RG16F, 8, 1), 5, "GL_RG32F");
         expect_refusal(make_texture(gl, GL_TEXTURE_2D, GL_RG32UI, 8, 1), 5, "GL_RG32F");
         expect_refusal(make_texture(gl, GL_TEXTURE_2D, GL_RG32F, 4, 1), 5, "a width of 5 at least");
-        expect_refusal(make_texture(gl, GL_TEXTURE_2D, GL_RG32F, 1024, 4), 4096, "a width of 2048 and a height of 2 at least");
+        expect_refusal(
+            make_texture(gl, GL_TEXTURE_2D, GL_RG32F, 1024, 4), 4096, "a width of 2048 and a height of 2 at least");
         expect_refusal(make_texture(gl, GL_TEXTURE_2D, GL_RG32F, 4096, 4), 4096, "a width of 2048");
         expect_refusal(make_texture(gl, GL_TEXTURE_2D, GL_RG32F, 2048, 2), 4097, "a height of 3 at least");
         expect_refusal(1, std::size_t{1} << 40, "n: 1099511627776 elements");
@@ -563,7 +591,8 @@ namespace {
         gl.TextureParameteri(odd, GL_TEXTURE_BASE_LEVEL, 1);
         expect_refusal(odd, 5, "GL_TEXTURE_BASE_LEVEL 1");
         gl.TextureParameteri(odd, GL_TEXTURE_BASE_LEVEL, 0);
-        for (const int channel : {GL_TEXTURE_SWIZZLE_R, GL_TEXTURE_SWIZZLE_G, GL_TEXTURE_SWIZZLE_B, GL_TEXTURE_SWIZZLE_A}) {
+        for (const int channel :
+            {GL_TEXTURE_SWIZZLE_R, GL_TEXTURE_SWIZZLE_G, GL_TEXTURE_SWIZZLE_B, GL_TEXTURE_SWIZZLE_A}) {
             GLuint swizzled = make_texture(gl, GL_TEXTURE_2D, GL_RG32F, 8, 1);
             gl.TextureParameteri(swizzled, GLenum(channel), GL_ZERO);
             expect_refusal(swizzled, 5, "GL_TEXTURE_SWIZZLE");
@@ -587,7 +616,8 @@ namespace {
         b.reset();
         ASSERT_TRUE(gl.IsTexture(given.name));
         std::vector<glm::uvec2> texels(std::size_t{given.width} * given.height);
-        gl.GetTextureImage(given.name, 0, GL_RG_INTEGER, GL_UNSIGNED_INT, GLsizei(texels.size() * sizeof(glm::uvec2)), texels.data());
+        gl.GetTextureImage(
+            given.name, 0, GL_RG_INTEGER, GL_UNSIGNED_INT, GLsizei(texels.size() * sizeof(glm::uvec2)), texels.data());
         texels.resize(5000);
         EXPECT_TRUE(same_bits(texels, sorted(data)));
     }

@@ -27,14 +27,16 @@ namespace {
     /// A folder of its own for each test.
     class image_file : public ::testing::Test {
     protected:
-        image_file()
-            : folder(fs::temp_directory_path() / ("photongrid_image_" + std::to_string(::getpid())))
+        image_file() : folder(fs::temp_directory_path() / ("photongrid_image_" + std::to_string(::getpid())))
         {
             fs::create_directories(folder);
         }
         ~image_file() override { fs::remove_all(folder); }
         std::string path(const std::string& name) const { return (folder / name).string(); }
-        std::size_t files() const { return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator())); }
+        std::size_t files() const
+        {
+            return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+        }
         fs::path folder;
     };
 
@@ -113,7 +115,8 @@ namespace {
         EXPECT_EQ(box, Imath::Box2i({0, 0}, {6, 4}));
         std::vector<float> values(35, -1.0f);
         Imf::FrameBuffer frame;
-        frame.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), sizeof(float), 7 * sizeof(float)));
+        frame.insert(
+            name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), sizeof(float), 7 * sizeof(float)));
         file.setFrameBuffer(frame);
         file.readPixels(0, 4);
         return values;
@@ -123,7 +126,8 @@ namespace {
     {
         const auto p = with_layers();
         write_image(path("a.exr"), p, 0, {{"seed", "7"}});
-        EXPECT_EQ(channels(path("a.exr")), (std::vector<std::string>{"B", "G", "R", "estimate.count", "estimate.radius", "estimate.relative_error"}));
+        EXPECT_EQ(channels(path("a.exr")),
+            (std::vector<std::string>{"B", "G", "R", "estimate.count", "estimate.radius", "estimate.relative_error"}));
         EXPECT_EQ(channel(path("a.exr"), "estimate.radius"), p.layers.radius);
         EXPECT_EQ(channel(path("a.exr"), "estimate.count"), p.layers.count);
         EXPECT_EQ(channel(path("a.exr"), "estimate.relative_error"), p.layers.relative_error);
@@ -137,7 +141,8 @@ namespace {
 
         const auto q = read_image(path("a.exr"));
         ASSERT_EQ(q.pixels.size(), p.pixels.size());
-        EXPECT_EQ(std::memcmp(q.pixels.data(), p.pixels.data(), p.pixels.size() * sizeof(glm::vec3)), 0) << "layers do not disturb the picture";
+        EXPECT_EQ(std::memcmp(q.pixels.data(), p.pixels.data(), p.pixels.size() * sizeof(glm::vec3)), 0)
+            << "layers do not disturb the picture";
         EXPECT_TRUE(q.layers.radius.empty() && q.layers.count.empty() && q.layers.relative_error.empty());
     }
 
@@ -150,7 +155,8 @@ namespace {
         auto p = with_layers();
         p.layers.count.clear();
         write_image(path("a.exr"), p);
-        EXPECT_EQ(channels(path("a.exr")), (std::vector<std::string>{"B", "G", "R", "estimate.radius", "estimate.relative_error"}));
+        EXPECT_EQ(channels(path("a.exr")),
+            (std::vector<std::string>{"B", "G", "R", "estimate.radius", "estimate.relative_error"}));
         for (const auto* ending : {".png", ".pfm"}) {
             write_image(path(std::string("with") + ending), with_layers());
             write_image(path(std::string("without") + ending), gradient());
@@ -162,7 +168,10 @@ namespace {
     {
         auto p = with_layers();
         p.layers.count.pop_back();
-        EXPECT_NE(refusal([&] { write_image(path("a.exr"), p); }).find("the layer estimate.count has 34 values for 35 pixels"), std::string::npos);
+        EXPECT_NE(refusal([&] {
+            write_image(path("a.exr"), p);
+        }).find("the layer estimate.count has 34 values for 35 pixels"),
+            std::string::npos);
         EXPECT_EQ(files(), 0u);
     }
 
@@ -187,7 +196,9 @@ namespace {
     TEST_F(image_file, png_is_srgb)
     {
         const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-        const image p{.width = 2, .height = 2, .pixels = {{0.0f, 0.5f, 1.0f}, {0.001f, 2.0f, -1.0f}, {nan, inf, 0.2140411f}, {0.25f, 0.25f, 0.25f}}};
+        const image p{.width = 2,
+            .height = 2,
+            .pixels = {{0.0f, 0.5f, 1.0f}, {0.001f, 2.0f, -1.0f}, {nan, inf, 0.2140411f}, {0.25f, 0.25f, 0.25f}}};
         write_image(path("a.png"), p);
         png_image png{};
         png.version = PNG_IMAGE_VERSION;
@@ -209,7 +220,9 @@ namespace {
         for (const double exposure : {0.0, 1.0, -3.7, 12.25, -64.0, 64.0}) {
             const tone_map fast(exposure);
             const float infinite = std::numeric_limits<float>::infinity();
-            for (const float v : {0.0f, -0.0f, -1.0f, 1.0f, infinite, -infinite, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::min(), std::numeric_limits<float>::max()})
+            for (const float v :
+                {0.0f, -0.0f, -1.0f, 1.0f, infinite, -infinite, std::numeric_limits<float>::quiet_NaN(),
+                    std::numeric_limits<float>::min(), std::numeric_limits<float>::max()})
                 ASSERT_EQ(fast(v), tone_mapped(v, exposure)) << v << " at " << exposure << " EV";
             float v = static_cast<float>(std::exp2(-exposure)) * 1e-4f;
             for (int i = 0; i < 100000; ++i, v *= 1.0001f)
@@ -220,7 +233,8 @@ namespace {
     TEST_F(image_file, refuses_paths_that_cannot_be_written)
     {
         const auto p = gradient();
-        EXPECT_NE(refusal([&] { write_image(path("a.jpg"), p); }).find("expected .png, .exr or .pfm"), std::string::npos);
+        EXPECT_NE(
+            refusal([&] { write_image(path("a.jpg"), p); }).find("expected .png, .exr or .pfm"), std::string::npos);
         EXPECT_NE(refusal([&] { write_image(path("none/a.png"), p); }).find("there is no folder"), std::string::npos);
         fs::create_directory(path("d.png"));
         EXPECT_NE(refusal([&] { check_image_path(path("d.png")); }).find("is a folder"), std::string::npos);
@@ -261,7 +275,8 @@ namespace {
         EXPECT_NE(refusal([&] { read_image(path("none.pfm")); }).find("No such file"), std::string::npos);
         EXPECT_NE(refusal([&] { read_image(path("none.exr")); }), "");
         EXPECT_NE(refusal([&] { read_image(path("a.png")); }).find("expected .exr or .pfm"), std::string::npos);
-        for (const auto* text : {"", "P6\n1 1\n255\n", "PF\n1 1\n", "PF\n-1 1\n-1.0\n", "PF\n0 1\n-1.0\n", "PF\n60000 60000\n-1.0\n", "PF\n2 2\n-1.0\nabc", "PF\n2 2\n0\n"}) {
+        for (const auto* text : {"", "P6\n1 1\n255\n", "PF\n1 1\n", "PF\n-1 1\n-1.0\n", "PF\n0 1\n-1.0\n",
+                 "PF\n60000 60000\n-1.0\n", "PF\n2 2\n-1.0\nabc", "PF\n2 2\n0\n"}) {
             write_text(path("bad.pfm"), text);
             EXPECT_NE(refusal([&] { read_image(path("bad.pfm")); }), "") << text;
             write_text(path("bad.exr"), text);
@@ -274,7 +289,8 @@ namespace {
 
     TEST(compare_images, measures)
     {
-        const image a{.width = 2, .height = 1, .pixels = {{1, 1, 1}, {0.5f, 0, 0}}}, b{.width = 2, .height = 1, .pixels = {{1, 1, 1}, {0, 0, 0}}};
+        const image a{.width = 2, .height = 1, .pixels = {{1, 1, 1}, {0.5f, 0, 0}}},
+            b{.width = 2, .height = 1, .pixels = {{1, 1, 1}, {0, 0, 0}}};
         const auto d = compare_images(a, b);
         EXPECT_DOUBLE_EQ(d.mse, 0.25 / 6);
         EXPECT_DOUBLE_EQ(d.relmse, 0.25 / (0.01 * 0.01) / 6);

@@ -1,6 +1,7 @@
 // Preloaded by tests/run.sh --full: keeps the libraries named in PHOTONGRID_KEEP_LOADED (separated by colons) in memory
-// until the process ends. The Vulkan loader unloads drivers and layers, after which LeakSanitizer can no longer name, and
-// so not suppress, what they leak. Opened privately: preloading a layer itself would put its functions before the loader's.
+// until the process ends. The Vulkan loader unloads drivers and layers, after which LeakSanitizer can no longer name,
+// and so not suppress, what they leak. Opened privately: preloading a layer itself would put its functions before the
+// loader's.
 #include <cstdlib>
 #include <dlfcn.h>
 #include <string>

@@ -14,7 +14,8 @@ namespace {
 
 using namespace photongrid;
 
-constexpr text_file library[] = {{"kernels/a.glsl", "// a\nint a;\n"}, {"kernels/b.glsl", "#include \"a.glsl\"\nint b;\n"}};
+constexpr text_file library[]
+    = {{"kernels/a.glsl", "// a\nint a;\n"}, {"kernels/b.glsl", "#include \"a.glsl\"\nint b;\n"}};
 constexpr text_file prelude{"prelude.glsl", "#version 450\nint p;\n"};
 constexpr text_file kernel{"kernels/k.glsl", "// k\n#include \"b.glsl\"\n#include \"a.glsl\"\nint k;\n"};
 constexpr text_file epilogue{"epilogue.glsl", "void main() {}\n"};
@@ -22,7 +23,9 @@ constexpr text_file epilogue{"epilogue.glsl", "void main() {}\n"};
 TEST(splice, numbers_every_line_by_its_own_file)
 {
     const auto s = splice(prelude, "#define X 1\n", kernel, epilogue, library);
-    ASSERT_EQ(s.files, (std::vector<std::string>{"prelude.glsl", "kernels/k.glsl", "kernels/b.glsl", "kernels/a.glsl", "epilogue.glsl"}));
+    ASSERT_EQ(s.files,
+        (std::vector<std::string>{
+            "prelude.glsl", "kernels/k.glsl", "kernels/b.glsl", "kernels/a.glsl", "epilogue.glsl"}));
     // Follow the #line directives as a compiler would and check that each declaration is where its file has it.
     std::istringstream in(s.text);
     std::size_t number = 1, seen = 0;
@@ -34,7 +37,8 @@ TEST(splice, numbers_every_line_by_its_own_file)
             number = std::stoul(row.substr(6)) - 1;
             continue;
         }
-        const std::pair<const char*, std::size_t> places[] = {{"int p;", 100002}, {"int k;", 200004}, {"int b;", 300002}, {"int a;", 400002}, {"void main() {}", 500001}};
+        const std::pair<const char*, std::size_t> places[] = {
+            {"int p;", 100002}, {"int k;", 200004}, {"int b;", 300002}, {"int a;", 400002}, {"void main() {}", 500001}};
         for (const auto& [text, line] : places)
             if (row == text) {
                 EXPECT_EQ(number, line) << text;
@@ -59,10 +63,14 @@ TEST(splice, names_the_place_of_a_missing_file)
 TEST(translate_log, understands_three_drivers)
 {
     const auto s = splice(prelude, "", kernel, epilogue, library);
-    EXPECT_EQ(translate_log("0:200004(5): error: `x' undeclared\n", s), "kernels/k.glsl:4: error: `x' undeclared\n    int k;\n");
-    EXPECT_EQ(translate_log("0:300002(1): preprocessor error: syntax\n", s), "kernels/b.glsl:2: error: syntax\n    int b;\n");
-    EXPECT_EQ(translate_log("ERROR: 0:400002: 'y' : undeclared identifier \n", s), "kernels/a.glsl:2: error: 'y' : undeclared identifier \n    int a;\n");
-    EXPECT_EQ(translate_log("0(500001) : error C0000: syntax error\n", s), "epilogue.glsl:1: error: C0000: syntax error\n    void main() {}\n");
+    EXPECT_EQ(translate_log("0:200004(5): error: `x' undeclared\n", s),
+        "kernels/k.glsl:4: error: `x' undeclared\n    int k;\n");
+    EXPECT_EQ(
+        translate_log("0:300002(1): preprocessor error: syntax\n", s), "kernels/b.glsl:2: error: syntax\n    int b;\n");
+    EXPECT_EQ(translate_log("ERROR: 0:400002: 'y' : undeclared identifier \n", s),
+        "kernels/a.glsl:2: error: 'y' : undeclared identifier \n    int a;\n");
+    EXPECT_EQ(translate_log("0(500001) : error C0000: syntax error\n", s),
+        "epilogue.glsl:1: error: C0000: syntax error\n    void main() {}\n");
     EXPECT_EQ(translate_log("something else\n", s), "something else\n");
 }
 
@@ -73,11 +81,13 @@ TEST(kernel_texts, every_kernel_struct_has_its_text)
     EXPECT_THROW(find_kernel_text("x/none.glsl"), std::runtime_error);
 }
 
-// Hard cases G4, G7: what is fused, cut at NaN, or approximated differently from device to device is not in the dialect. (min
-// and max are exact; kernels give them no NaN.)
+// Hard cases G4, G7: what is fused, cut at NaN, or approximated differently from device to device is not in the
+// dialect. (min and max are exact; kernels give them no NaN.)
 TEST(kernel_texts, kernels_call_no_function_that_devices_round_differently)
 {
-    const std::regex comment("//[^\n]*"), forbidden(R"(\b(fma|pow|a?sin|a?cos|a?tan|exp2?|log2?|clamp|mix|mod|fract|dot|cross|length|distance|normalize|reflect|refract|inversesqrt) *\()");
+    const std::regex comment("//[^\n]*"),
+        forbidden(
+            R"(\b(fma|pow|a?sin|a?cos|a?tan|exp2?|log2?|clamp|mix|mod|fract|dot|cross|length|distance|normalize|reflect|refract|inversesqrt) *\()");
     for (const auto& f : kernel_texts) {
         const auto code = std::regex_replace(std::string(f.text), comment, "");
         std::smatch m;
@@ -99,23 +109,28 @@ std::map<std::string, std::string> backend_sources()
     return texts;
 }
 
-// Hard case G3: sums of floats whose order a device chooses. Atomic operations are on whole numbers, and floats are blended
-// in one place, route's sums, where OpenGL keeps the order of the points.
+// Hard case G3: sums of floats whose order a device chooses. Atomic operations are on whole numbers, and floats are
+// blended in one place, route's sums, where OpenGL keeps the order of the points.
 TEST(backend_texts, no_float_is_added_in_an_order_that_a_device_chooses)
 {
     std::size_t atomics = 0, blends = 0;
     for (const auto& [path, text] : backend_sources()) {
-        EXPECT_FALSE(std::regex_search(text, std::regex("shader_atomic_float|imageAtomic|subgroupAdd|subgroupExclusiveAdd"))) << path;
-        const std::regex running(R"(.*\bsubgroupInclusiveAdd\b.*)"), of_uint(R"(uint \w+\(uint (\w+)\) \{ return subgroupInclusiveAdd\(\1\); \})");
+        EXPECT_FALSE(
+            std::regex_search(text, std::regex("shader_atomic_float|imageAtomic|subgroupAdd|subgroupExclusiveAdd")))
+            << path;
+        const std::regex running(R"(.*\bsubgroupInclusiveAdd\b.*)"),
+            of_uint(R"(uint \w+\(uint (\w+)\) \{ return subgroupInclusiveAdd\(\1\); \})");
         for (std::sregex_iterator at(text.begin(), text.end(), running); at != std::sregex_iterator(); ++at)
             EXPECT_TRUE(std::regex_match((*at)[0].str(), of_uint)) << path << ": " << (*at)[0] << ": not of a uint";
         const std::regex atomic(R"(\batomic[A-Z]\w*\((\w+))");
         for (std::sregex_iterator at(text.begin(), text.end(), atomic); at != std::sregex_iterator(); ++at) {
             ++atomics;
-            EXPECT_TRUE(std::regex_search(text, std::regex("\\buint " + (*at)[1].str() + "\\b"))) << path << ": " << (*at)[0] << ": not on a uint";
+            EXPECT_TRUE(std::regex_search(text, std::regex("\\buint " + (*at)[1].str() + "\\b")))
+                << path << ": " << (*at)[0] << ": not on a uint";
         }
         const std::regex enabled(R"(Enablei?\(GL_BLEND)");
-        const auto here = std::distance(std::sregex_iterator(text.begin(), text.end(), enabled), std::sregex_iterator());
+        const auto here
+            = std::distance(std::sregex_iterator(text.begin(), text.end(), enabled), std::sregex_iterator());
         blends += static_cast<std::size_t>(here);
         EXPECT_TRUE(here == 0 || path.ends_with("routing.hpp")) << path;
     }

@@ -11,39 +11,43 @@ using glm::vec4;
 
 namespace {
 
-std::vector<vec4> random_units(std::size_t n, std::uint64_t seed)
-{
-    random_source u(seed);
-    std::vector<vec4> v;
-    while (v.size() < n) {
-        const glm::vec3 p = 2.0f * glm::vec3(u(), u(), u()) - 1.0f;
-        const float l = glm::length(p);
-        if (l > 0.1f && l < 1)
-            v.emplace_back(p / l, 0.0f);
+    std::vector<vec4> random_units(std::size_t n, std::uint64_t seed)
+    {
+        random_source u(seed);
+        std::vector<vec4> v;
+        while (v.size() < n) {
+            const glm::vec3 p = 2.0f * glm::vec3(u(), u(), u()) - 1.0f;
+            const float l = glm::length(p);
+            if (l > 0.1f && l < 1)
+                v.emplace_back(p / l, 0.0f);
+        }
+        return v;
     }
-    return v;
-}
 
-/// What each kernel, over pi times its mean, adds up to over the part of the unit disc where |y| is fixed and x from a to b:
-/// Gauss' five points on 16 pieces either side of x = 0.
-glm::dvec4 weight_of_line(double y, double a, double b)
-{
-    constexpr double nodes[5] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
-    constexpr double weights[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
-    const double half = std::sqrt(std::max(0.0, 1 - y * y));
-    glm::dvec4 sum(0);
-    for (const auto& [from, to] : {std::pair{std::max(a, -half), std::min(b, 0.0)}, std::pair{std::max(a, 0.0), std::min(b, half)}}) {
-        const double step = (to - from) / 16;
-        if (!(step > 0))
-            continue;
-        for (int piece = 0; piece < 16; ++piece)
-            for (int g = 0; g < 5; ++g) {
-                const double x = from + (piece + 0.5 + 0.5 * nodes[g]) * step, t = x * x + y * y;
-                sum += 0.5 * step * weights[g] * glm::dvec4(1, 3 * (1 - std::sqrt(t)), 2 * (1 - t), 3 * (1 - t) * (1 - t)) / M_PI;
-            }
+    /// What each kernel, over pi times its mean, adds up to over the part of the unit disc where |y| is fixed and x
+    /// from a to b: Gauss' five points on 16 pieces either side of x = 0.
+    glm::dvec4 weight_of_line(double y, double a, double b)
+    {
+        constexpr double nodes[5]
+            = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
+        constexpr double weights[5]
+            = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+        const double half = std::sqrt(std::max(0.0, 1 - y * y));
+        glm::dvec4 sum(0);
+        for (const auto& [from, to] :
+            {std::pair{std::max(a, -half), std::min(b, 0.0)}, std::pair{std::max(a, 0.0), std::min(b, half)}}) {
+            const double step = (to - from) / 16;
+            if (!(step > 0))
+                continue;
+            for (int piece = 0; piece < 16; ++piece)
+                for (int g = 0; g < 5; ++g) {
+                    const double x = from + (piece + 0.5 + 0.5 * nodes[g]) * step, t = x * x + y * y;
+                    sum += 0.5 * step * weights[g]
+                        * glm::dvec4(1, 3 * (1 - std::sqrt(t)), 2 * (1 - t), 3 * (1 - t) * (1 - t)) / M_PI;
+                }
+        }
+        return sum;
     }
-    return sum;
-}
 
 } // namespace
 
@@ -75,7 +79,8 @@ std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std:
     return d2 < std::numeric_limits<float>::min() ? 0.0f : d2;
 }
 
-brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>& in_map, const std::vector<vec4>& powers, std::size_t q, const knn_settings& k, float at_least_radius2)
+brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>& in_map,
+    const std::vector<vec4>& powers, std::size_t q, const knn_settings& k, float at_least_radius2)
 {
     std::vector<std::pair<float, uint>> near;
     const float max2 = k.max_radius * k.max_radius;
@@ -112,14 +117,16 @@ brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>&
     }
     const double per_area = norms[static_cast<int>(k.kernel)] / (M_PI * disc2);
     e.irradiance *= per_area;
-    // Of n photons of which the n-th set the radius, n / (pi r^2) varies by 1 / (n - 2) of itself, squared, when all have one power.
+    // Of n photons of which the n-th set the radius, n / (pi r^2) varies by 1 / (n - 2) of itself, squared, when all
+    // have one power.
     const double n = static_cast<double>(near.size());
     const double spread = e.kth && n > 2 ? (k.bias == bias_kind::unbiased ? n - 1 : n) / (n - 2) : 1;
     e.standard_error = per_area * glm::sqrt(spread * e.standard_error);
     return e;
 }
 
-std::vector<std::optional<float>> kth_by_flann(const std::vector<vec4>& positions, const std::vector<vec4>& points, uint k)
+std::vector<std::optional<float>> kth_by_flann(
+    const std::vector<vec4>& positions, const std::vector<vec4>& points, uint k)
 {
     std::vector<std::optional<float>> kth(points.size());
     if (positions.size() < k)
@@ -127,13 +134,15 @@ std::vector<std::optional<float>> kth_by_flann(const std::vector<vec4>& position
     std::vector<float> coordinates;
     for (const auto& p : positions)
         coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
-    flann::KDTreeSingleIndex<flann::L2_Simple<float>> tree(flann::Matrix<float>(coordinates.data(), positions.size(), 3));
+    flann::KDTreeSingleIndex<flann::L2_Simple<float>> tree(
+        flann::Matrix<float>(coordinates.data(), positions.size(), 3));
     tree.buildIndex();
     for (std::size_t q = 0; q < points.size(); ++q) {
         float query[3] = {points[q].x, points[q].y, points[q].z};
         std::vector<std::vector<std::size_t>> indices;
         std::vector<std::vector<float>> distances;
-        tree.knnSearch(flann::Matrix<float>(query, 1, 3), indices, distances, k, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+        tree.knnSearch(flann::Matrix<float>(query, 1, 3), indices, distances, k,
+            flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
         if (distances[0].size() == k)
             kth[q] = distances[0].back();
     }

@@ -1,5 +1,5 @@
-// Photon maps in files that somebody or something has changed: an error each, that says what is wrong; never a crash, a hang or
-// another map. The serial backend; map_file_tests.hpp has all of them.
+// Photon maps in files that somebody or something has changed: an error each, that says what is wrong; never a crash, a
+// hang or another map. The serial backend; map_file_tests.hpp has all of them.
 #include "map_file_tests.hpp"
 #include "on_serial.hpp"
 
@@ -88,12 +88,15 @@ namespace {
     TEST_F(damaged_map_files, made_with_care_are_refused_too)
     {
         ASSERT_EQ(summed(whole), whole);
-        // Every word of the header, and the first cells: a wrong one is seen, or it is one of those that only tell a number.
-        const std::size_t harmless[] = {offsetof(detail::map_file_header, invalid), offsetof(detail::map_file_header, left_out), offsetof(detail::map_file_header, overfull_cells),
+        // Every word of the header, and the first cells: a wrong one is seen, or it is one of those that only tell a
+        // number.
+        const std::size_t harmless[] = {offsetof(detail::map_file_header, invalid),
+            offsetof(detail::map_file_header, left_out), offsetof(detail::map_file_header, overfull_cells),
             offsetof(detail::map_file_header, checksum), offsetof(detail::map_file_header, checksum) + 4};
         for (std::size_t at = 8; at < sizeof(detail::map_file_header) + 64; at += 4) {
             const bool is_header = at < sizeof(detail::map_file_header);
-            constexpr std::size_t lattice = offsetof(detail::map_file_header, cells_of), resolution = lattice + offsetof(grid, resolution);
+            constexpr std::size_t lattice = offsetof(detail::map_file_header, cells_of),
+                                  resolution = lattice + offsetof(grid, resolution);
             const bool is_lattice = at >= lattice && at < resolution;
             if (std::find(std::begin(harmless), std::end(harmless), at) != std::end(harmless))
                 continue;
@@ -103,7 +106,8 @@ namespace {
             for (const auto value : values) {
                 auto changed = whole;
                 std::memcpy(changed.data() + at, &value, 4);
-                EXPECT_NE(complaint(summed(changed)), "") << "word at " << at << (is_header ? " of the header" : " of the cells") << " = " << value;
+                EXPECT_NE(complaint(summed(changed)), "")
+                    << "word at " << at << (is_header ? " of the header" : " of the cells") << " = " << value;
             }
         }
     }

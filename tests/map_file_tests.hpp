@@ -23,7 +23,8 @@ public:
     std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
 private:
-    std::filesystem::path path_ = std::filesystem::temp_directory_path() / ("photongrid-map-test-" + std::to_string(std::random_device()()));
+    std::filesystem::path path_
+        = std::filesystem::temp_directory_path() / ("photongrid-map-test-" + std::to_string(std::random_device()()));
 };
 
 inline std::string bytes_of(const std::filesystem::path& file)
@@ -37,7 +38,8 @@ inline void write_bytes(const std::filesystem::path& file, const std::string& by
 }
 
 template <class Tag>
-class map_files : public on_backend<Tag> {};
+class map_files : public on_backend<Tag> {
+};
 TYPED_TEST_SUITE_P(map_files);
 
 TYPED_TEST_P(map_files, come_back_to_the_bit_on_every_backend)
@@ -79,7 +81,11 @@ TYPED_TEST_P(map_files, come_back_to_the_bit_on_every_backend)
                 EXPECT_EQ(std::memcmp(&mine.cells_of, &map.cells_of, sizeof mine.cells_of), 0);
 
                 const auto points = make_points(set, 50, 2);
-                const auto find = [&](const auto& in) { return b.download(knn_grid_estimate(b, in, b.upload(std::span<const glm::vec4>(points)), {.k = 10, .max_radius = 1}).irradiance); };
+                const auto find = [&](const auto& in) {
+                    return b.download(knn_grid_estimate(
+                        b, in, b.upload(std::span<const glm::vec4>(points)), {.k = 10, .max_radius = 1})
+                                          .irradiance);
+                };
                 EXPECT_EQ(count_different_bits(find(mine), find(map)), 0u);
 
                 // The file does not tell who wrote it.

@@ -23,13 +23,16 @@ struct listed {
 };
 
 /// The k nearest of the photons in the map by brute force, in the list's order.
-inline listed listed_by_force(const oriented_set& s, const std::vector<uint>& in_map, std::size_t q, const knn_settings& settings)
+inline listed listed_by_force(
+    const oriented_set& s, const std::vector<uint>& in_map, std::size_t q, const knn_settings& settings)
 {
     std::vector<std::pair<float, uint>> all;
     const float max_radius2 = std::min(settings.max_radius * settings.max_radius, 1e38f);
-    const bool is_point = s.points[q].w > 0 && std::isfinite(s.points[q].x) && std::isfinite(s.points[q].y) && std::isfinite(s.points[q].z);
+    const bool is_point = s.points[q].w > 0 && std::isfinite(s.points[q].x) && std::isfinite(s.points[q].y)
+        && std::isfinite(s.points[q].z);
     for (const uint id : in_map)
-        if (const auto d2 = policy_distance2(s, q, id, settings.leaks); is_point && settings.max_radius > 0 && d2 && *d2 <= max_radius2)
+        if (const auto d2 = policy_distance2(s, q, id, settings.leaks);
+            is_point && settings.max_radius > 0 && d2 && *d2 <= max_radius2)
             all.emplace_back(*d2, id);
     std::sort(all.begin(), all.end());
     all.resize(std::min<std::size_t>(all.size(), settings.k));
@@ -78,8 +81,10 @@ protected:
         EXPECT_EQ(distances2.size(), ids.size());
         std::vector<listed> rows(s.points.size());
         for (std::size_t q = 0; q < rows.size(); ++q) {
-            const auto first = static_cast<std::ptrdiff_t>(q * settings.k), past = first + static_cast<std::ptrdiff_t>(settings.k);
-            rows[q] = {{ids.begin() + first, ids.begin() + past}, {distances2.begin() + first, distances2.begin() + past}};
+            const auto first = static_cast<std::ptrdiff_t>(q * settings.k),
+                       past = first + static_cast<std::ptrdiff_t>(settings.k);
+            rows[q]
+                = {{ids.begin() + first, ids.begin() + past}, {distances2.begin() + first, distances2.begin() + past}};
         }
         return rows;
     }
@@ -93,7 +98,8 @@ protected:
             const auto expected = listed_by_force(s, in_map, q, settings);
             for (std::size_t n = 0; n < settings.k; ++n)
                 if (rows[q].ids[n] != expected.ids[n] || rows[q].distances2[n] != expected.distances2[n])
-                    return "neighbour " + std::to_string(n) + " of point " + std::to_string(q) + " is " + std::to_string(rows[q].ids[n]) + " at " + std::to_string(rows[q].distances2[n]) + ", not "
+                    return "neighbour " + std::to_string(n) + " of point " + std::to_string(q) + " is "
+                        + std::to_string(rows[q].ids[n]) + " at " + std::to_string(rows[q].distances2[n]) + ", not "
                         + std::to_string(expected.ids[n]) + " at " + std::to_string(expected.distances2[n]);
         }
         return {};
@@ -108,7 +114,8 @@ TYPED_TEST_P(neighbours, equal_brute_force_for_any_photons)
         const auto n = *rc::gen::inRange<std::size_t>(0, 700);
         const glm::uvec3 resolution(*rc::gen::inRange(1u, 12u), *rc::gen::inRange(1u, 12u), *rc::gen::inRange(1u, 12u));
         const auto s = make_oriented(d, n, resolution, 40, *rc::gen::arbitrary<std::uint64_t>());
-        const knn_settings settings{.k = *rc::gen::inRange(1u, 70u), .max_radius = static_cast<float>(*rc::gen::inRange(0, 20)) * 0.1f};
+        const knn_settings settings{
+            .k = *rc::gen::inRange(1u, 70u), .max_radius = static_cast<float>(*rc::gen::inRange(0, 20)) * 0.1f};
         const auto wrong = this->difference(s, settings);
         if (!wrong.empty())
             RC_FAIL(wrong + " (" + name_of(d) + ")");
@@ -119,8 +126,10 @@ TYPED_TEST_P(neighbours, keep_every_leak_policy)
 {
     const auto s = make_oriented(distribution::box_faces, 900, {6, 6, 12}, 60, 3);
     for (const bool routed : {false, true})
-        for (const auto& leaks : {leak_policy{}, leak_policy{.side = true}, leak_policy{.min_cosine = 0.3f}, leak_policy{.compression = 3}, leak_policy{.side = true, .min_cosine = -0.5f, .compression = 1.5f}})
-            ASSERT_EQ(this->difference(s, {.k = 30, .max_radius = 0.4f, .leaks = leaks}, routed), "") << "side " << leaks.side << " cosine " << leaks.min_cosine << " compression " << leaks.compression;
+        for (const auto& leaks : {leak_policy{}, leak_policy{.side = true}, leak_policy{.min_cosine = 0.3f},
+                 leak_policy{.compression = 3}, leak_policy{.side = true, .min_cosine = -0.5f, .compression = 1.5f}})
+            ASSERT_EQ(this->difference(s, {.k = 30, .max_radius = 0.4f, .leaks = leaks}, routed), "")
+                << "side " << leaks.side << " cosine " << leaks.min_cosine << " compression " << leaks.compression;
 }
 
 TYPED_TEST_P(neighbours, of_many_at_one_distance_have_the_smallest_ids)
@@ -146,7 +155,8 @@ TYPED_TEST_P(neighbours, distances_are_flanns)
     for (const uint n : {1u, 7u, 16u, 33u, 40u}) {
         const auto flann = kth_by_flann(s.photons.positions, s.points, n);
         for (std::size_t q = 0; q < rows.size(); ++q)
-            ASSERT_NEAR(rows[q].distances2[n - 1], flann[q].value(), 1e-6f * flann[q].value()) << "neighbour " << n << " of point " << q;
+            ASSERT_NEAR(rows[q].distances2[n - 1], flann[q].value(), 1e-6f * flann[q].value())
+                << "neighbour " << n << " of point " << q;
     }
 }
 
@@ -175,7 +185,8 @@ TYPED_TEST_P(neighbours, say_what_is_wrong)
         return std::string("none");
     };
     EXPECT_NE(refusal({.k = 0, .max_radius = 1}).find("k: 0"), std::string::npos);
-    EXPECT_NE(refusal({.k = 5, .max_radius = std::numeric_limits<float>::quiet_NaN()}).find("max_radius"), std::string::npos);
+    EXPECT_NE(
+        refusal({.k = 5, .max_radius = std::numeric_limits<float>::quiet_NaN()}).find("max_radius"), std::string::npos);
     EXPECT_NE(refusal({.k = 5, .max_radius = 1, .search = search_kind::at_least_k}).find("search"), std::string::npos);
     EXPECT_NE(refusal({.k = 4'000'000'000u, .max_radius = 1}).find("k: 4000000000"), std::string::npos);
 }
@@ -184,10 +195,12 @@ TYPED_TEST_P(neighbours, of_the_same_photons_are_the_same_with_small_passes)
 {
     const auto s = make_oriented(distribution::clustered, 3000, {9, 9, 9}, 50, 9);
     const auto map = this->map_of(s);
-    EXPECT_EQ(this->lists(map, s, {.k = 50, .max_radius = 2}), this->lists(map, s, {.k = 50, .max_radius = 2, .visits_per_pass = 37, .ranges_per_pass = 5}));
+    EXPECT_EQ(this->lists(map, s, {.k = 50, .max_radius = 2}),
+        this->lists(map, s, {.k = 50, .max_radius = 2, .visits_per_pass = 37, .ranges_per_pass = 5}));
 }
 
-REGISTER_TYPED_TEST_SUITE_P(neighbours, equal_brute_force_for_any_photons, keep_every_leak_policy, of_many_at_one_distance_have_the_smallest_ids, lists_as_long_as_there_are_photons_and_longer,
-    distances_are_flanns, of_no_point_and_of_none_wanted, say_what_is_wrong, of_the_same_photons_are_the_same_with_small_passes);
+REGISTER_TYPED_TEST_SUITE_P(neighbours, equal_brute_force_for_any_photons, keep_every_leak_policy,
+    of_many_at_one_distance_have_the_smallest_ids, lists_as_long_as_there_are_photons_and_longer, distances_are_flanns,
+    of_no_point_and_of_none_wanted, say_what_is_wrong, of_the_same_photons_are_the_same_with_small_passes);
 
 } // namespace photongrid::testing

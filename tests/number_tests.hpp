@@ -14,10 +14,12 @@
 namespace photongrid::testing {
 
 template <class Tag>
-class hard_cases_of_numbers : public on_backend<Tag> {};
+class hard_cases_of_numbers : public on_backend<Tag> {
+};
 TYPED_TEST_SUITE_P(hard_cases_of_numbers);
 
-// --- G: floats on devices ---------------------------------------------------------------------------------------------
+// --- G: floats on devices
+// ---------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(hard_cases_of_numbers, g2_a_million_photons_add_up)
 {
@@ -56,20 +58,25 @@ TYPED_TEST_P(hard_cases_of_numbers, g2_a_million_photons_add_up)
     const auto e = knn_grid_estimate(b, map, points, s);
     ASSERT_EQ(b.download(e.used)[0].x, n);
     const auto irradiance = b.download(e.irradiance)[0], standard_error = b.download(e.standard_error)[0];
-    const auto paper = b.download(knn_grid_estimate(b, map, points, as_paper(knn_settings{.k = 2 * n, .max_radius = 0.5f, .visits_per_pass = 4096})).irradiance)[0];
+    const auto paper = b.download(knn_grid_estimate(
+        b, map, points, as_paper(knn_settings{.k = 2 * n, .max_radius = 0.5f, .visits_per_pass = 4096}))
+                                      .irradiance)[0];
     const double area = M_PI * 0.25;
     double largest = 0, largest_of_errors = 0, largest_of_the_papers = 0;
     for (int c = 0; c < 3; ++c) {
         largest = std::max(largest, std::abs(static_cast<double>(irradiance[c]) * area / flux[c] - 1));
-        largest_of_errors = std::max(largest_of_errors, std::abs(static_cast<double>(standard_error[c]) * area / std::sqrt(squares[c]) - 1));
-        largest_of_the_papers = std::max(largest_of_the_papers, std::abs(static_cast<double>(paper[c]) * area / flux[c] - 1));
+        largest_of_errors = std::max(
+            largest_of_errors, std::abs(static_cast<double>(standard_error[c]) * area / std::sqrt(squares[c]) - 1));
+        largest_of_the_papers
+            = std::max(largest_of_the_papers, std::abs(static_cast<double>(paper[c]) * area / flux[c] - 1));
     }
     this->report("G2", "compensated sum of 1,000,000 photons, relative error:", largest);
     this->report("G2_standard_error", "its standard error, plainly added:", largest_of_errors);
     this->report("G2_paper", "at_least_k, plainly added:", largest_of_the_papers);
     // 2 units of 2^-24 for the sum, 3.5 for the division by the area.
     EXPECT_LE(largest, 5.5 * 0x1p-24);
-    // Plain sums lose at most 2^-24 for each addition, the root halves it; they lose half of that when all roundings agree.
+    // Plain sums lose at most 2^-24 for each addition, the root halves it; they lose half of that when all roundings
+    // agree.
     EXPECT_LE(largest_of_errors, 0.5 * n * 0x1p-24);
     EXPECT_LE(largest_of_the_papers, n * 0x1p-24);
 }
@@ -78,7 +85,8 @@ TYPED_TEST_P(hard_cases_of_numbers, g3_sums_come_out_the_same_every_run)
 {
     // Sums whose bits depend on their order, of many terms, in few cells: blending on GL, sorted lists on Vulkan.
     const auto set = make_photons(distribution::clustered, 60000, {3, 3, 3}, 83);
-    const auto totals = [&](auto& b) { return b.download(stencil_route(b, upload_photons(b, set), set.g, 4, 7).totals); };
+    const auto totals
+        = [&](auto& b) { return b.download(stencil_route(b, upload_photons(b, set), set.g, 4, 7).totals); };
     serial_backend serial;
     const auto expected = totals(serial);
     std::size_t different = 0;
@@ -87,16 +95,19 @@ TYPED_TEST_P(hard_cases_of_numbers, g3_sums_come_out_the_same_every_run)
     this->report("G3", "sums of three runs that differ from serial's in any bit:", static_cast<double>(different));
     EXPECT_EQ(different, 0u);
     // That the order matters at all: another one gives other bits.
-    EXPECT_GT(count_different_bits(serial.download(stencil_route(serial, upload_photons(serial, set), set.g, 4, 8).totals), expected), 0u);
+    EXPECT_GT(count_different_bits(
+                  serial.download(stencil_route(serial, upload_photons(serial, set), set.g, 4, 8).totals), expected),
+        0u);
 }
 
 TYPED_TEST_P(hard_cases_of_numbers, g5_elements_are_found_about_the_ends_of_texture_rows)
 {
-    // Reads of element i - stride, over launches that begin and end anywhere; rows are 2,048 elements on gl. Beyond 2^24
-    // elements a float no longer holds a number of one.
+    // Reads of element i - stride, over launches that begin and end anywhere; rows are 2,048 elements on gl. Beyond
+    // 2^24 elements a float no longer holds a number of one.
     auto& b = this->b();
     std::size_t wrong = 0;
-    const auto check = [&](const std::vector<uint>& host, const buffer_of<typename TestFixture::B, uint>& device, uint first, uint count, uint stride) {
+    const auto check = [&](const std::vector<uint>& host, const buffer_of<typename TestFixture::B, uint>& device,
+                           uint first, uint count, uint stride) {
         const auto n = static_cast<uint>(host.size());
         auto out = b.template make<uint>(n);
         b.template run<kernels::prefix_sum_step>({count, first}, {.stride = stride}, reads(device), writes(out));
@@ -126,7 +137,8 @@ TYPED_TEST_P(hard_cases_of_numbers, g5_elements_are_found_about_the_ends_of_text
     EXPECT_EQ(wrong, 0u);
 }
 
-// --- H: pictures ------------------------------------------------------------------------------------------------------
+// --- H: pictures
+// ------------------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(hard_cases_of_numbers, h2_many_samples_of_a_constant_stay_that_constant)
 {
@@ -134,16 +146,20 @@ TYPED_TEST_P(hard_cases_of_numbers, h2_many_samples_of_a_constant_stay_that_cons
     auto& b = this->b();
     for (const uint samples : {4096u, 3000u}) {
         const std::vector<glm::vec4> light = {{0.1f, 1.0f / 3, 1000.0f, 0.0f}};
-        const auto at = b.upload(std::span<const glm::vec4>(light)), nothing = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(1)));
+        const auto at = b.upload(std::span<const glm::vec4>(light)),
+                   nothing = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(1)));
         const auto none = b.upload(std::span<const glm::uvec2>(std::vector<glm::uvec2>(1)));
-        auto pixel = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(1))), searches = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(1)));
+        auto pixel = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(1))),
+             searches = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(1)));
         for (uint i = 0; i < samples; ++i)
-            b.template run<kernels::shade>(1, {.scene_layout = {}, .share = 1.0f / static_cast<float>(samples)}, reads(nothing, nothing, nothing, nothing, at, nothing, nothing, none), writes(pixel, searches));
+            b.template run<kernels::shade>(1, {.scene_layout = {}, .share = 1.0f / static_cast<float>(samples)},
+                reads(nothing, nothing, nothing, nothing, at, nothing, nothing, none), writes(pixel, searches));
         const auto mean = b.download(pixel)[0];
         double largest = 0;
         for (int c = 0; c < 3; ++c)
             largest = std::max(largest, std::abs(static_cast<double>(mean[c]) / static_cast<double>(light[0][c]) - 1));
-        this->report("H2_" + std::to_string(samples), "mean of " + std::to_string(samples) + " equal samples, relative error:", largest);
+        this->report("H2_" + std::to_string(samples),
+            "mean of " + std::to_string(samples) + " equal samples, relative error:", largest);
         EXPECT_LE(largest, (0.5 * samples + 2) * 0x1p-24); // partial sums are half the whole on the average
     }
 }
@@ -175,7 +191,8 @@ TYPED_TEST_P(hard_cases_of_numbers, h4_pixels_that_are_not_finite_are_counted_an
     EXPECT_EQ(changed, 0u); // all others keep every bit
 }
 
-REGISTER_TYPED_TEST_SUITE_P(hard_cases_of_numbers, g2_a_million_photons_add_up, g3_sums_come_out_the_same_every_run, g5_elements_are_found_about_the_ends_of_texture_rows,
-    h2_many_samples_of_a_constant_stay_that_constant, h4_pixels_that_are_not_finite_are_counted_and_black);
+REGISTER_TYPED_TEST_SUITE_P(hard_cases_of_numbers, g2_a_million_photons_add_up, g3_sums_come_out_the_same_every_run,
+    g5_elements_are_found_about_the_ends_of_texture_rows, h2_many_samples_of_a_constant_stay_that_constant,
+    h4_pixels_that_are_not_finite_are_counted_and_black);
 
 } // namespace photongrid::testing

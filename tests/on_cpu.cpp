@@ -1,5 +1,5 @@
-// All backend tests on the cpu backend with its overrides, on three threads whatever the machine has, and those of its own: one
-// program, since compiling the overrides for every instruction set takes long.
+// All backend tests on the cpu backend with its overrides, on three threads whatever the machine has, and those of its
+// own: one program, since compiling the overrides for every instruction set takes long.
 #include <photongrid/backends/cpu/overrides/all.hpp>
 
 #include "algorithm_tests.hpp"

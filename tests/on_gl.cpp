@@ -30,7 +30,8 @@ struct gl_tag {
     static bool never_hardware() { return on_osmesa(); }
     static std::unique_ptr<type> make()
     {
-        auto b = std::make_unique<gl_backend>(gl_options{.context = on_osmesa() ? gl_context_kind::osmesa : gl_context_kind::egl, .debug = true});
+        auto b = std::make_unique<gl_backend>(
+            gl_options{.context = on_osmesa() ? gl_context_kind::osmesa : gl_context_kind::egl, .debug = true});
         b->add_texts(test_kernel_texts);
         return b;
     }
@@ -64,7 +65,8 @@ const auto* const watched = ::testing::AddGlobalTestEnvironment(new no_debug_mes
 
 /// Between the first pass and the last nothing comes back to the CPU but the results of occlusion queries.
 template <class Tag>
-class readbacks : public on_backend<Tag> {};
+class readbacks : public on_backend<Tag> {
+};
 TYPED_TEST_SUITE(readbacks, contexts, tag_names);
 
 TYPED_TEST(readbacks, a_whole_picture_reads_no_pixel_back)

@@ -1,9 +1,10 @@
-// All backend tests on the serial backend; those of rays and pictures in on_serial_pictures.cpp, so that two cores compile them.
+// All backend tests on the serial backend; those of rays and pictures in on_serial_pictures.cpp, so that two cores
+// compile them.
+#include "on_serial.hpp"
 #include "algorithm_tests.hpp"
 #include "estimator_tests.hpp"
 #include "neighbour_tests.hpp"
 #include "number_tests.hpp"
-#include "on_serial.hpp"
 #include "verb_tests.hpp"
 
 namespace photongrid::testing {

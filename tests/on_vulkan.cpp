@@ -24,7 +24,8 @@ struct vulkan_tag {
     /// PHOTONGRID_GPU_AV=1 has the layer watch inside the kernels too: tests/run.sh --full.
     static std::unique_ptr<type> make()
     {
-        auto b = std::make_unique<type>(vulkan_options{.validation = true, .gpu_assisted = std::getenv("PHOTONGRID_GPU_AV") != nullptr});
+        auto b = std::make_unique<type>(
+            vulkan_options{.validation = true, .gpu_assisted = std::getenv("PHOTONGRID_GPU_AV") != nullptr});
         b->add_texts(test_kernel_texts);
         return b;
     }
@@ -89,7 +90,8 @@ TEST(specialisation, a_scene_without_glass_and_lamps_has_smaller_kernels)
         scene s = all_shapes();
         const auto device = upload_scene(fresh, s);
         detail::photon_frames<vulkan_backend> f(fresh, 64);
-        fresh.run<kernels::bounce_photon>({32, 32u, features}, {.scene_layout = device.about.layout, .paths = 32, .first_path = 0, .last_frame = 1, .seed = 1},
+        fresh.run<kernels::bounce_photon>({32, 32u, features},
+            {.scene_layout = device.about.layout, .paths = 32, .first_path = 0, .last_frame = 1, .seed = 1},
             reads(device.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
         fresh.finish();

@@ -1,5 +1,5 @@
-// Kernels of a user's own (photongrid_add_kernels), on every backend: those of examples/point_cloud, and a payload of twelve
-// bands. References: brute force in double.
+// Kernels of a user's own (photongrid_add_kernels), on every backend: those of examples/point_cloud, and a payload of
+// twelve bands. References: brute force in double.
 #include "../examples/point_cloud/forest.hpp"
 #include "on_serial.hpp"
 #include "photon_sets.hpp"
@@ -31,16 +31,20 @@ struct tag_of {
 };
 
 template <class Tag>
-class own_kernels : public on_backend<Tag> {};
+class own_kernels : public on_backend<Tag> {
+};
 using all = ::testing::Types<tag_of<serial_backend>
 #ifdef PHOTONGRID_TEST_CPU
-    , tag_of<cpu_backend>
+    ,
+    tag_of<cpu_backend>
 #endif
 #ifdef PHOTONGRID_TEST_GL
-    , tag_of<gl_backend>
+    ,
+    tag_of<gl_backend>
 #endif
 #ifdef PHOTONGRID_TEST_VULKAN
-    , tag_of<vulkan_backend>
+    ,
+    tag_of<vulkan_backend>
 #endif
     >;
 TYPED_TEST_SUITE(own_kernels, all);
@@ -59,7 +63,8 @@ std::vector<std::pair<double, std::size_t>> by_distance(const std::vector<tree>&
 {
     std::vector<std::pair<double, std::size_t>> all;
     for (std::size_t i = 0; i < trees.size(); ++i) {
-        const double x = trees[i].east - static_cast<double>(place.x), y = trees[i].north - static_cast<double>(place.y);
+        const double x = trees[i].east - static_cast<double>(place.x),
+                     y = trees[i].north - static_cast<double>(place.y);
         all.emplace_back(x * x + y * y, i);
     }
     std::sort(all.begin(), all.end());
@@ -111,7 +116,8 @@ TYPED_TEST(own_kernels, add_up_spectra_of_twelve_bands)
     const auto map = sorted_map(b, upload_photons(b, set), set.g);
     const auto lists = knn_neighbours(b, map, b.upload(std::span<const glm::vec4>(points)), {.k = k, .max_radius = 1});
     auto irradiance = b.template make<glm::vec4>(points.size() * groups);
-    b.template run<spectral::spectral_irradiance>(irradiance.size(), {.k = k, .groups = groups}, reads(lists.ids, lists.distances2, b.upload(std::span<const glm::vec4>(spectra))), writes(irradiance));
+    b.template run<spectral::spectral_irradiance>(irradiance.size(), {.k = k, .groups = groups},
+        reads(lists.ids, lists.distances2, b.upload(std::span<const glm::vec4>(spectra))), writes(irradiance));
     const auto found = b.download(irradiance);
     for (std::size_t p = 0; p < points.size(); ++p) {
         std::vector<std::pair<float, std::size_t>> near;
@@ -124,7 +130,8 @@ TYPED_TEST(own_kernels, add_up_spectra_of_twelve_bands)
                 for (uint n = 0; n + 1 < k; ++n)
                     sum += static_cast<double>(spectra[near[n].second * groups + g][c]);
                 const double expected = sum / (M_PI * static_cast<double>(near[k - 1].first));
-                EXPECT_NEAR(static_cast<double>(found[p * groups + g][c]), expected, 1e-5 * expected) << "point " << p << ", band " << 4 * g + static_cast<uint>(c);
+                EXPECT_NEAR(static_cast<double>(found[p * groups + g][c]), expected, 1e-5 * expected)
+                    << "point " << p << ", band " << 4 * g + static_cast<uint>(c);
             }
     }
 }

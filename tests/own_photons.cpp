@@ -53,7 +53,8 @@ static_assert(!own_photon<foreign::stranger> && !own_photon<int> && !own_photon<
 TEST(own_photons, keep_every_attribute_in_its_place)
 {
     serial_backend b;
-    const std::vector<foreign::hit> own{{7, {1, 2, 3}, {4, 5, 6}, {0, 1, 0}, {0, 0, 1}, true}, {8, {-1, -2, -3}, {7, 8, 9}, {1, 0, 0}, {0, 1, 0}, false}};
+    const std::vector<foreign::hit> own{{7, {1, 2, 3}, {4, 5, 6}, {0, 1, 0}, {0, 0, 1}, true},
+        {8, {-1, -2, -3}, {7, 8, 9}, {1, 0, 0}, {0, 1, 0}, false}};
     const auto p = upload_photons(b, own);
     using vectors = std::vector<glm::vec4>;
     EXPECT_EQ(b.download(p.positions), (vectors{{1, 2, 3, 1}, {-1, -2, -3, 0}}));

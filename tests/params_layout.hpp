@@ -32,16 +32,46 @@ namespace params_detail {
         constexpr auto n = member_count<T>();
         static_assert(n >= 1 && n <= 10, "Params with more members: add a line here");
         const auto all = [&](const auto&... m) { (f(m), ...); };
-        if constexpr (n == 1) { const auto& [a] = t; all(a); }
-        if constexpr (n == 2) { const auto& [a, b] = t; all(a, b); }
-        if constexpr (n == 3) { const auto& [a, b, c] = t; all(a, b, c); }
-        if constexpr (n == 4) { const auto& [a, b, c, d] = t; all(a, b, c, d); }
-        if constexpr (n == 5) { const auto& [a, b, c, d, e] = t; all(a, b, c, d, e); }
-        if constexpr (n == 6) { const auto& [a, b, c, d, e, g] = t; all(a, b, c, d, e, g); }
-        if constexpr (n == 7) { const auto& [a, b, c, d, e, g, h] = t; all(a, b, c, d, e, g, h); }
-        if constexpr (n == 8) { const auto& [a, b, c, d, e, g, h, i] = t; all(a, b, c, d, e, g, h, i); }
-        if constexpr (n == 9) { const auto& [a, b, c, d, e, g, h, i, j] = t; all(a, b, c, d, e, g, h, i, j); }
-        if constexpr (n == 10) { const auto& [a, b, c, d, e, g, h, i, j, k] = t; all(a, b, c, d, e, g, h, i, j, k); }
+        if constexpr (n == 1) {
+            const auto& [a] = t;
+            all(a);
+        }
+        if constexpr (n == 2) {
+            const auto& [a, b] = t;
+            all(a, b);
+        }
+        if constexpr (n == 3) {
+            const auto& [a, b, c] = t;
+            all(a, b, c);
+        }
+        if constexpr (n == 4) {
+            const auto& [a, b, c, d] = t;
+            all(a, b, c, d);
+        }
+        if constexpr (n == 5) {
+            const auto& [a, b, c, d, e] = t;
+            all(a, b, c, d, e);
+        }
+        if constexpr (n == 6) {
+            const auto& [a, b, c, d, e, g] = t;
+            all(a, b, c, d, e, g);
+        }
+        if constexpr (n == 7) {
+            const auto& [a, b, c, d, e, g, h] = t;
+            all(a, b, c, d, e, g, h);
+        }
+        if constexpr (n == 8) {
+            const auto& [a, b, c, d, e, g, h, i] = t;
+            all(a, b, c, d, e, g, h, i);
+        }
+        if constexpr (n == 9) {
+            const auto& [a, b, c, d, e, g, h, i, j] = t;
+            all(a, b, c, d, e, g, h, i, j);
+        }
+        if constexpr (n == 10) {
+            const auto& [a, b, c, d, e, g, h, i, j, k] = t;
+            all(a, b, c, d, e, g, h, i, j, k);
+        }
     }
 } // namespace params_detail
 
@@ -51,7 +81,8 @@ std::vector<std::size_t> offsets_in_cpp(const T& t)
 {
     std::vector<std::size_t> offsets;
     params_detail::for_each_member(t, [&]<class M>(const M& m) {
-        const auto at = static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&m) - reinterpret_cast<const std::byte*>(&t));
+        const auto at
+            = static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&m) - reinterpret_cast<const std::byte*>(&t));
         if constexpr (element<M>)
             offsets.push_back(at);
         else
@@ -61,18 +92,20 @@ std::vector<std::size_t> offsets_in_cpp(const T& t)
     return offsets;
 }
 
-/// The same of the Params in a module's push constant block, whose first member is the backend's own. Empty when the kernel
-/// reads none of them.
+/// The same of the Params in a module's push constant block, whose first member is the backend's own. Empty when the
+/// kernel reads none of them.
 inline std::vector<std::size_t> offsets_in_spirv(const vulkan_detail::spirv_words& words)
 {
-    constexpr std::uint32_t type_struct = 30, type_pointer = 32, variable = 59, member_decorate = 72, push_constant = 9, offset = 35;
+    constexpr std::uint32_t type_struct = 30, type_pointer = 32, variable = 59, member_decorate = 72, push_constant = 9,
+                            offset = 35;
     std::map<std::uint32_t, std::vector<std::uint32_t>> members;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> places; // (struct, member)
     std::map<std::uint32_t, std::uint32_t> pointees;
     std::uint32_t block = 0;
     vulkan_detail::for_each_instruction(words, [&](std::uint32_t op, std::size_t at, std::size_t length) {
         if (op == type_struct)
-            members[words[at + 1]].assign(words.begin() + static_cast<std::ptrdiff_t>(at + 2), words.begin() + static_cast<std::ptrdiff_t>(at + length));
+            members[words[at + 1]].assign(words.begin() + static_cast<std::ptrdiff_t>(at + 2),
+                words.begin() + static_cast<std::ptrdiff_t>(at + length));
         if (op == member_decorate && words[at + 3] == offset)
             places[{words[at + 1], words[at + 2]}] = words[at + 4];
         if (op == type_pointer)

@@ -11,12 +11,14 @@
 namespace photongrid::testing {
 
 enum class distribution { uniform, clustered, planar, coincident, far_from_origin, cell_faces, box_faces };
-inline constexpr distribution all_distributions[] = {distribution::uniform, distribution::clustered, distribution::planar, distribution::coincident,
-    distribution::far_from_origin, distribution::cell_faces, distribution::box_faces};
+inline constexpr distribution all_distributions[]
+    = {distribution::uniform, distribution::clustered, distribution::planar, distribution::coincident,
+        distribution::far_from_origin, distribution::cell_faces, distribution::box_faces};
 
 inline const char* name_of(distribution d)
 {
-    constexpr const char* names[] = {"uniform", "clustered", "planar", "coincident", "far_from_origin", "cell_faces", "box_faces"};
+    constexpr const char* names[]
+        = {"uniform", "clustered", "planar", "coincident", "far_from_origin", "cell_faces", "box_faces"};
     return names[static_cast<int>(d)];
 }
 

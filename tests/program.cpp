@@ -37,8 +37,7 @@ namespace {
     /// Runs the program in a folder of its own.
     class program : public ::testing::Test {
     protected:
-        program()
-            : folder(fs::temp_directory_path() / ("photongrid_program_" + std::to_string(::getpid())))
+        program() : folder(fs::temp_directory_path() / ("photongrid_program_" + std::to_string(::getpid())))
         {
             fs::create_directories(folder);
         }
@@ -53,7 +52,9 @@ namespace {
             argv.push_back(nullptr);
             const pid_t child = ::fork();
             if (child == 0) {
-                const auto send = [&](const char* name, int to) { ::dup2(::open((folder.string() + name).c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), to); };
+                const auto send = [&](const char* name, int to) {
+                    ::dup2(::open((folder.string() + name).c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), to);
+                };
                 send(".out", 1);
                 send(".err", 2);
                 if (::chdir(folder.c_str()) == 0)
@@ -66,18 +67,24 @@ namespace {
         {
             int status = 0;
             ::waitpid(child, &status, 0);
-            ended e{.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1, .out = contents(folder.string() + ".out"), .err = contents(folder.string() + ".err")};
+            ended e{.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+                .out = contents(folder.string() + ".out"),
+                .err = contents(folder.string() + ".err")};
             fs::remove(folder.string() + ".out");
             fs::remove(folder.string() + ".err");
             return e;
         }
         ended run(std::vector<std::string> arguments) const { return wait(start(std::move(arguments))); }
-        std::size_t files() const { return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator())); }
+        std::size_t files() const
+        {
+            return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+        }
 
         fs::path folder;
         const std::string ring = PHOTONGRID_SCENES "/ring.json";
         /// Small enough for every test run.
-        const std::vector<std::string> small{"render", ring, "--backend", "serial", "--size", "32x24", "--photons", "300", "--k", "16", "--grid", "32,1,32"};
+        const std::vector<std::string> small{"render", ring, "--backend", "serial", "--size", "32x24", "--photons",
+            "300", "--k", "16", "--grid", "32,1,32"};
         std::vector<std::string> small_with(std::vector<std::string> more) const
         {
             more.insert(more.begin(), small.begin(), small.end());
@@ -93,8 +100,11 @@ namespace {
             EXPECT_NE(help.out.find(word), std::string::npos) << word;
         const auto render = run({"render", "--help"});
         EXPECT_EQ(render.code, 0);
-        for (const auto* option : {"--backend", "--device", "--map", "--slots", "--photons", "--k", "--grid", "--max-radius", "--size", "--spp", "--light-samples", "--depth", "--seed", "--exposure", "-o",
-                 "--search", "--kernel", "--bias", "--leaks", "--edge-correction", "--only", "--aov", "--as-paper", "--stats", "--shader-cache", "--time-passes", "--progressive", "--every", "--strip", "--crop", "--reference", "--resume", "--quiet"})
+        for (const auto* option :
+            {"--backend", "--device", "--map", "--slots", "--photons", "--k", "--grid", "--max-radius", "--size",
+                "--spp", "--light-samples", "--depth", "--seed", "--exposure", "-o", "--search", "--kernel", "--bias",
+                "--leaks", "--edge-correction", "--only", "--aov", "--as-paper", "--stats", "--shader-cache",
+                "--time-passes", "--progressive", "--every", "--strip", "--crop", "--reference", "--resume", "--quiet"})
             EXPECT_NE(render.out.find(option), std::string::npos) << option;
         const auto version = run({"--version"});
         EXPECT_EQ(version.code, 0);
@@ -106,16 +116,21 @@ namespace {
         EXPECT_EQ(run({}).code, 2);
         EXPECT_EQ(run({"draw"}).code, 2);
         EXPECT_EQ(run({"render"}).code, 2);
-        for (const auto& wrong : std::vector<std::vector<std::string>>{{"--backend", "cuda"}, {"--size", "32"}, {"--size", "32x-4"}, {"--size", "0x4"}, {"--grid", "1,2"}, {"--grid", "1,2,3,4"}, {"--grid", "0,1,1"},
-                 {"--photons", "1e3"}, {"--photons", "-1"}, {"--photons", "99999999999"}, {"--k", "0"}, {"--max-radius", "nan"}, {"--max-radius", "-1"}, {"--exposure", "inf"}, {"--slots", "17"},
-                 {"--map", "hash"}, {"--device", "0"}, {"--time-passes"}, {"--spp", "0"}, {"--nonsense"},
-                 {"--search", "exact"}, {"--kernel", "gauss"}, {"--bias", "none"}, {"--edge-correction", "disks"}, {"--edge-correction"}, {"--only", "all"}, {"--only", "caustics"}, {"--as-paper", "--as-paper=maybe"}}) {
+        for (const auto& wrong :
+            std::vector<std::vector<std::string>>{{"--backend", "cuda"}, {"--size", "32"}, {"--size", "32x-4"},
+                {"--size", "0x4"}, {"--grid", "1,2"}, {"--grid", "1,2,3,4"}, {"--grid", "0,1,1"}, {"--photons", "1e3"},
+                {"--photons", "-1"}, {"--photons", "99999999999"}, {"--k", "0"}, {"--max-radius", "nan"},
+                {"--max-radius", "-1"}, {"--exposure", "inf"}, {"--slots", "17"}, {"--map", "hash"}, {"--device", "0"},
+                {"--time-passes"}, {"--spp", "0"}, {"--nonsense"}, {"--search", "exact"}, {"--kernel", "gauss"},
+                {"--bias", "none"}, {"--edge-correction", "disks"}, {"--edge-correction"}, {"--only", "all"},
+                {"--only", "caustics"}, {"--as-paper", "--as-paper=maybe"}}) {
             const auto e = run([&] {
                 auto all = small;
                 // An option given twice is an error of its own.
                 for (std::size_t i = 2; i + 1 < all.size();)
                     if (all[i] == wrong[0])
-                        all.erase(all.begin() + static_cast<std::ptrdiff_t>(i), all.begin() + static_cast<std::ptrdiff_t>(i) + 2);
+                        all.erase(all.begin() + static_cast<std::ptrdiff_t>(i),
+                            all.begin() + static_cast<std::ptrdiff_t>(i) + 2);
                     else
                         i += 2;
                 all.insert(all.end(), wrong.begin(), wrong.end());
@@ -190,10 +205,12 @@ namespace {
         EXPECT_EQ(s.at("settings").at("grid"), "auto");
         const auto& resolution = s.at("map").at("resolution");
         ASSERT_EQ(resolution.size(), 3u);
-        EXPECT_EQ(resolution[0].get<unsigned>() * resolution[1].get<unsigned>() * resolution[2].get<unsigned>(), s.at("map").at("cells"));
+        EXPECT_EQ(resolution[0].get<unsigned>() * resolution[1].get<unsigned>() * resolution[2].get<unsigned>(),
+            s.at("map").at("cells"));
         EXPECT_GT(s.at("map").at("cells"), 1);
         ASSERT_EQ(run(small_with({"-o", "b.pfm"})).code, 0);
-        EXPECT_EQ(run({"compare", "a.pfm", "b.pfm", "--max-relmse", "1e-6"}).code, 0) << "the grid does not change what exact_k finds";
+        EXPECT_EQ(run({"compare", "a.pfm", "b.pfm", "--max-relmse", "1e-6"}).code, 0)
+            << "the grid does not change what exact_k finds";
     }
 
     TEST_F(program, renders_on_threads)
@@ -226,7 +243,11 @@ namespace {
                     word = "vulkan";
             return run(all);
         };
-        const auto kept = [&] { return fs::exists(folder / "cache") ? std::distance(fs::directory_iterator(folder / "cache"), fs::directory_iterator()) : 0; };
+        const auto kept = [&] {
+            return fs::exists(folder / "cache")
+                ? std::distance(fs::directory_iterator(folder / "cache"), fs::directory_iterator())
+                : 0;
+        };
         const auto e = on_vulkan({"-o", "none.pfm", "--shader-cache", "none"});
         if (e.code == 4 && std::getenv("PHOTONGRID_REQUIRE_BACKENDS") == nullptr)
             GTEST_SKIP() << e.err;
@@ -235,7 +256,9 @@ namespace {
         ASSERT_EQ(on_vulkan({"-o", "first.pfm", "--shader-cache", "cache"}).code, 0);
         const auto files_then = kept();
         EXPECT_GT(files_then, 10);
-        ASSERT_EQ(on_vulkan({"-o", "second.pfm", "--shader-cache", "cache", "--time-passes", "--stats", "stats.json"}).code, 0);
+        ASSERT_EQ(
+            on_vulkan({"-o", "second.pfm", "--shader-cache", "cache", "--time-passes", "--stats", "stats.json"}).code,
+            0);
         EXPECT_EQ(kept(), files_then); // nothing was compiled anew
         const auto stats = nlohmann::json::parse(contents(folder / "stats.json"));
         EXPECT_TRUE(stats.contains("compile_ms"));
@@ -288,7 +311,9 @@ namespace {
             EXPECT_GE(s.at("estimate").at("mean_visited"), s.at("estimate").at("mean_count"));
             EXPECT_FALSE(s.at("kernels").empty());
             for (const auto& [name, k] : s.at("kernels").items())
-                EXPECT_TRUE(k.contains("instructions") && k.contains("compile_ms") && k.contains("ms") && k.contains("passes")) << name;
+                EXPECT_TRUE(
+                    k.contains("instructions") && k.contains("compile_ms") && k.contains("ms") && k.contains("passes"))
+                    << name;
             EXPECT_GT(s.at("peak_memory_bytes"), 1 << 20);
             EXPECT_GT(s.at("peak_device_bytes"), 0);
             EXPECT_GT(s.at("total_ms"), 0);
@@ -297,12 +322,18 @@ namespace {
 
     TEST_F(program, refuses_wrong_leak_policies)
     {
-        const std::string list = "expected none, or some of side, normals, normals=COS, disc, disc=C with commas between them";
-        for (const auto& [given, expected] : std::vector<std::pair<std::string, std::string>>{{"walls", "\"walls\" given; " + list}, {"side,", "\"\" given; " + list}, {"", list}, {",side", "\"\" given; " + list},
-                 {"side=1", "\"side=1\" given; " + list}, {"side, disc", "\" disc\" given; " + list}, {"none,side", "expected none alone"}, {"side,none", "expected none alone"}, {"none=0", list},
-                 {"side,side", "has side twice"}, {"disc,disc=4", "has disc twice"}, {"normals=", "expected normals=COS, a cosine from -1 to 1"}, {"normals=1.1", "\"1.1\" given; expected normals=COS"},
-                 {"normals=nan", "expected normals=COS"}, {"normals=half", "expected normals=COS"}, {"disc=0.9", "\"0.9\" given; expected disc=C, a compression from 1 to 1e6"}, {"disc=1e300", "expected disc=C"},
-                 {"disc=4=4", "expected disc=C"}}) {
+        const std::string list
+            = "expected none, or some of side, normals, normals=COS, disc, disc=C with commas between them";
+        for (const auto& [given, expected] : std::vector<std::pair<std::string, std::string>>{
+                 {"walls", "\"walls\" given; " + list}, {"side,", "\"\" given; " + list}, {"", list},
+                 {",side", "\"\" given; " + list}, {"side=1", "\"side=1\" given; " + list},
+                 {"side, disc", "\" disc\" given; " + list}, {"none,side", "expected none alone"},
+                 {"side,none", "expected none alone"}, {"none=0", list}, {"side,side", "has side twice"},
+                 {"disc,disc=4", "has disc twice"}, {"normals=", "expected normals=COS, a cosine from -1 to 1"},
+                 {"normals=1.1", "\"1.1\" given; expected normals=COS"}, {"normals=nan", "expected normals=COS"},
+                 {"normals=half", "expected normals=COS"},
+                 {"disc=0.9", "\"0.9\" given; expected disc=C, a compression from 1 to 1e6"},
+                 {"disc=1e300", "expected disc=C"}, {"disc=4=4", "expected disc=C"}}) {
             const auto e = run(small_with({"--leaks", given}));
             EXPECT_EQ(e.code, 2) << given;
             EXPECT_NE(e.err.find("--leaks"), std::string::npos) << given << ": " << e.err;
@@ -318,8 +349,10 @@ namespace {
             nlohmann::json settings; ///< some of those in the statistics
         };
         using json = nlohmann::json;
-        const json by_default = json::parse(R"({"search": "exact_k", "kernel": "silverman", "bias": "unbiased", "leaks": {"side": true}, "edge_correction": "none", "only": "all"})");
-        const json paper = json::parse(R"({"search": "at_least_k", "kernel": "constant", "bias": "paper", "leaks": {}, "edge_correction": "none", "only": "all"})");
+        const json by_default = json::parse(
+            R"({"search": "exact_k", "kernel": "silverman", "bias": "unbiased", "leaks": {"side": true}, "edge_correction": "none", "only": "all"})");
+        const json paper = json::parse(
+            R"({"search": "at_least_k", "kernel": "constant", "bias": "paper", "leaks": {}, "edge_correction": "none", "only": "all"})");
         const auto but = [](json all, const char* more) {
             all.update(json::parse(more));
             return all;
@@ -327,24 +360,31 @@ namespace {
         const std::vector<row> rows{
             {{}, by_default},
             {{"--search", "at_least_k"}, but(by_default, R"({"search": "at_least_k"})")},
-            {{"--search", "fixed_radius", "--kernel", "cone"}, but(by_default, R"({"search": "fixed_radius", "kernel": "cone"})")},
+            {{"--search", "fixed_radius", "--kernel", "cone"},
+                but(by_default, R"({"search": "fixed_radius", "kernel": "cone"})")},
             {{"--kernel", "epanechnikov"}, but(by_default, R"({"kernel": "epanechnikov"})")},
-            {{"--kernel", "silverman", "--bias", "paper"}, but(by_default, R"({"kernel": "silverman", "bias": "paper"})")},
+            {{"--kernel", "silverman", "--bias", "paper"},
+                but(by_default, R"({"kernel": "silverman", "bias": "paper"})")},
             {{"--leaks", "none"}, but(by_default, R"({"leaks": {}})")},
             {{"--leaks", "side"}, by_default},
             {{"--leaks", "normals"}, but(by_default, R"({"leaks": {"normals": 0.5}})")},
             {{"--leaks", "disc"}, but(by_default, R"({"leaks": {"disc": 4}})")},
-            {{"--leaks", "disc=2.5,side,normals=-0.3"}, but(by_default, R"({"leaks": {"side": true, "normals": -0.3, "disc": 2.5}})")},
+            {{"--leaks", "disc=2.5,side,normals=-0.3"},
+                but(by_default, R"({"leaks": {"side": true, "normals": -0.3, "disc": 2.5}})")},
             {{"--leaks", "normals=-1,disc=1"}, but(by_default, R"({"leaks": {}})")},
             {{"--edge-correction", "none"}, by_default},
-            {{"--leaks", "normals", "--edge-correction", "polygons"}, but(by_default, R"({"leaks": {"normals": 0.5}, "edge_correction": "polygons"})")},
-            {{"--as-paper", "--edge-correction", "polygons", "--leaks", "side,normals=0.2"}, but(paper, R"({"leaks": {"side": true, "normals": 0.2}, "edge_correction": "polygons"})")},
+            {{"--leaks", "normals", "--edge-correction", "polygons"},
+                but(by_default, R"({"leaks": {"normals": 0.5}, "edge_correction": "polygons"})")},
+            {{"--as-paper", "--edge-correction", "polygons", "--leaks", "side,normals=0.2"},
+                but(paper, R"({"leaks": {"side": true, "normals": 0.2}, "edge_correction": "polygons"})")},
             {{"--only", "direct"}, but(by_default, R"({"only": "direct"})")},
             {{"--only", "caustic"}, but(by_default, R"({"only": "caustic"})")},
             {{"--only", "indirect"}, but(by_default, R"({"only": "indirect"})")},
             {{"--as-paper"}, paper},
-            {{"--kernel", "cone", "--as-paper", "--leaks", "side"}, but(paper, R"({"kernel": "cone", "leaks": {"side": true}})")},
-            {{"--as-paper", "--search", "exact_k", "--bias", "unbiased", "--only", "caustic"}, but(paper, R"({"search": "exact_k", "bias": "unbiased", "only": "caustic"})")},
+            {{"--kernel", "cone", "--as-paper", "--leaks", "side"},
+                but(paper, R"({"kernel": "cone", "leaks": {"side": true}})")},
+            {{"--as-paper", "--search", "exact_k", "--bias", "unbiased", "--only", "caustic"},
+                but(paper, R"({"search": "exact_k", "bias": "unbiased", "only": "caustic"})")},
         };
         const auto expect = [&](const std::vector<std::string>& arguments, const json& expected) {
             const auto e = run(arguments);
@@ -360,21 +400,31 @@ namespace {
         }
         // A scene that has wishes of its own; lengths are in m, so its statistics' settings are a scene's again.
         auto wishes = json::parse(contents(ring), nullptr, true, true);
-        wishes["render"].update(json::parse(R"({"search": "fixed_radius", "kernel": "silverman", "bias": "paper", "leaks": {"normals": 0.25, "disc": 3}, "edge_correction": "polygons"})"));
+        wishes["render"].update(json::parse(
+            R"({"search": "fixed_radius", "kernel": "silverman", "bias": "paper", "leaks": {"normals": 0.25, "disc": 3}, "edge_correction": "polygons"})"));
         std::ofstream(folder / "wishes.json") << wishes;
         auto arguments = small_with({"--stats", "stats.json", "-o", "a.exr"});
         arguments[1] = "wishes.json";
-        const auto wished = but(by_default, R"({"search": "fixed_radius", "kernel": "silverman", "bias": "paper", "leaks": {"normals": 0.25, "disc": 3}, "edge_correction": "polygons"})");
+        const auto wished = but(by_default,
+            R"({"search": "fixed_radius", "kernel": "silverman", "bias": "paper", "leaks": {"normals": 0.25, "disc": 3}, "edge_correction": "polygons"})");
         expect(arguments, wished);
-        EXPECT_NE(contents(folder / "a.exr").find(R"("search":"fixed_radius","kernel":"silverman","bias":"paper","leaks":{"normals":0.25,"disc":3.0},"edge_correction":"polygons","only":"all")"), std::string::npos) << "the EXR's note";
+        EXPECT_NE(
+            contents(folder / "a.exr")
+                .find(
+                    R"("search":"fixed_radius","kernel":"silverman","bias":"paper","leaks":{"normals":0.25,"disc":3.0},"edge_correction":"polygons","only":"all")"),
+            std::string::npos)
+            << "the EXR's note";
         // A policy taken away that the scene's correction needs is refused, with the way out; nothing is drawn.
         auto torn = arguments;
         torn.back() = "torn.exr";
         torn.insert(torn.end(), {"--leaks", "side"});
         const auto refused = run(torn);
         EXPECT_EQ(refused.code, 2);
-        EXPECT_NE(refused.err.find("on the command line: edge_correction: photons of adjoining walls would count"), std::string::npos) << refused.err;
-        EXPECT_NE(refused.err.find("needs the leak policy normals with a cosine above 0"), std::string::npos) << refused.err;
+        EXPECT_NE(refused.err.find("on the command line: edge_correction: photons of adjoining walls would count"),
+            std::string::npos)
+            << refused.err;
+        EXPECT_NE(refused.err.find("needs the leak policy normals with a cosine above 0"), std::string::npos)
+            << refused.err;
         EXPECT_FALSE(fs::exists(folder / "torn.exr"));
         arguments.insert(arguments.end(), {"--kernel", "cone", "--leaks", "side", "--edge-correction", "none"});
         expect(arguments, but(wished, R"({"kernel": "cone", "leaks": {"side": true}, "edge_correction": "none"})"));
@@ -384,13 +434,15 @@ namespace {
 
     TEST_F(program, layers_need_a_file_that_holds_them)
     {
-        for (const auto& outputs : std::vector<std::vector<std::string>>{{}, {"-o", "a.png"}, {"-o", "a.pfm", "-o", "exr"}}) {
+        for (const auto& outputs :
+            std::vector<std::vector<std::string>>{{}, {"-o", "a.png"}, {"-o", "a.pfm", "-o", "exr"}}) {
             auto arguments = small_with({"--aov"});
             arguments.insert(arguments.end(), outputs.begin(), outputs.end());
             const auto e = run(arguments);
             EXPECT_EQ(e.code, 2);
             EXPECT_NE(e.err.find("--aov: "), std::string::npos) << e.err;
-            EXPECT_NE(e.err.find("expected an EXR picture, which holds layers: -o OUT.exr"), std::string::npos) << e.err;
+            EXPECT_NE(e.err.find("expected an EXR picture, which holds layers: -o OUT.exr"), std::string::npos)
+                << e.err;
         }
         EXPECT_EQ(files(), 0u);
         const auto e = run(small_with({"--aov", "-o", "a.png", "-o", "a.EXR"}));
@@ -405,7 +457,9 @@ namespace {
         // With a given radius and a constant kernel an estimate is linear in the photons.
         const std::string box = PHOTONGRID_SCENES "/cornell_box.json";
         const auto draw = [&](std::vector<std::string> more) {
-            std::vector<std::string> arguments{"render", box, "--backend", "serial", "--size", "32x32", "--photons", "4000", "--search", "fixed_radius", "--max-radius", "0.2", "--kernel", "constant", "--stats", "s.json", "-o", "a.exr"};
+            std::vector<std::string> arguments{"render", box, "--backend", "serial", "--size", "32x32", "--photons",
+                "4000", "--search", "fixed_radius", "--max-radius", "0.2", "--kernel", "constant", "--stats", "s.json",
+                "-o", "a.exr"};
             arguments.insert(arguments.end(), more.begin(), more.end());
             const auto e = run(arguments);
             EXPECT_EQ(e.code, 0) << e.err;
@@ -422,7 +476,9 @@ namespace {
         EXPECT_GT(others, 1000u);
         for (std::size_t i = 0; i < all.pixels.size(); ++i)
             for (int c = 0; c < 3; ++c)
-                ASSERT_NEAR(direct.pixels[i][c] + caustic.pixels[i][c] + indirect.pixels[i][c], all.pixels[i][c], 1e-5f * all.pixels[i][c] + 1e-7f) << i;
+                ASSERT_NEAR(direct.pixels[i][c] + caustic.pixels[i][c] + indirect.pixels[i][c], all.pixels[i][c],
+                    1e-5f * all.pixels[i][c] + 1e-7f)
+                    << i;
     }
 
     TEST_F(program, writes_layers)
@@ -506,7 +562,8 @@ namespace {
     {
         for (const int signal : {SIGINT, SIGTERM}) {
             const auto begun = std::chrono::steady_clock::now();
-            const auto child = start({"render", ring, "--backend", "serial", "--size", "64x64", "--spp", "60000", "--photons", "300", "-o", "a.pfm", "--stats", "a.json"});
+            const auto child = start({"render", ring, "--backend", "serial", "--size", "64x64", "--spp", "60000",
+                "--photons", "300", "-o", "a.pfm", "--stats", "a.json"});
             std::this_thread::sleep_for(std::chrono::milliseconds(700));
             ::kill(child, signal);
             const auto e = wait(child);
@@ -515,7 +572,9 @@ namespace {
             EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(30));
             ASSERT_EQ(files(), 1u) << "statistics of an unfinished picture, or a part of a file";
             const auto kept = read_image((folder / "a.pfm").string());
-            ASSERT_EQ(run({"render", ring, "--backend", "serial", "--size", "64x64", "--photons", "300", "-o", "b.pfm"}).code, 0);
+            ASSERT_EQ(
+                run({"render", ring, "--backend", "serial", "--size", "64x64", "--photons", "300", "-o", "b.pfm"}).code,
+                0);
             const auto whole = read_image((folder / "b.pfm").string());
             double sum = 0, expected = 0;
             for (std::size_t i = 0; i < whole.pixels.size(); ++i) {
@@ -530,7 +589,8 @@ namespace {
 
     TEST_F(program, goes_on_where_it_was_interrupted)
     {
-        const std::vector<std::string> command{"render", ring, "--backend", "serial", "--size", "64x64", "--spp", "40", "--photons", "300", "--aov"};
+        const std::vector<std::string> command{
+            "render", ring, "--backend", "serial", "--size", "64x64", "--spp", "40", "--photons", "300", "--aov"};
         const auto with = [&](std::vector<std::string> more) {
             auto all = command;
             all.insert(all.end(), more.begin(), more.end());
@@ -573,16 +633,20 @@ namespace {
     TEST_F(program, shows_stages_in_a_strip)
     {
         ASSERT_EQ(run(small_with({"-o", "reference.pfm"})).code, 0);
-        const auto e = run(small_with({"--progressive", "steps", "--every", "1", "--strip", "strip.pfm", "--crop", "10x8+4+2", "--reference", "reference.pfm", "-o", "last.pfm"}));
+        const auto e = run(small_with({"--progressive", "steps", "--every", "1", "--strip", "strip.pfm", "--crop",
+            "10x8+4+2", "--reference", "reference.pfm", "-o", "last.pfm"}));
         ASSERT_EQ(e.code, 0) << e.err;
         EXPECT_EQ(e.out, "last.pfm\nstrip.pfm\n");
-        const auto strip = read_image((folder / "strip.pfm").string()), last = read_image((folder / "last.pfm").string());
+        const auto strip = read_image((folder / "strip.pfm").string()),
+                   last = read_image((folder / "last.pfm").string());
         ASSERT_EQ(strip.height, 8u);
         ASSERT_EQ((strip.width + 2) % 12, 0u);
         EXPECT_GE(strip.width, 22u);
         for (std::uint32_t y = 0; y < 8; ++y)
             for (std::uint32_t x = 0; x < 10; ++x)
-                EXPECT_EQ(strip.pixels[y * strip.width + strip.width - 10 + x], last.pixels[(y + 2) * last.width + 4 + x]) << "the last stage is the picture";
+                EXPECT_EQ(
+                    strip.pixels[y * strip.width + strip.width - 10 + x], last.pixels[(y + 2) * last.width + 4 + x])
+                    << "the last stage is the picture";
         // The last picture is the reference.
         const auto table = contents(folder / "steps/ring.csv");
         EXPECT_EQ(table.substr(0, table.find('\n')), "picture,ms,relmse,relmse_to_reference");

@@ -20,7 +20,8 @@ inline double brightness(const image& im)
 
 inline bool same_bytes(const image& a, const image& b)
 {
-    return a.width == b.width && a.height == b.height && a.pixels.size() == b.pixels.size() && std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
+    return a.width == b.width && a.height == b.height && a.pixels.size() == b.pixels.size()
+        && std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
 }
 
 template <class Tag>
@@ -117,14 +118,17 @@ TYPED_TEST_P(progressive, first_looks_are_as_bright_as_the_picture)
             seen = drawing.pictures();
         }
         // The paper's search has looks of larger pixels only, and beyond them what it shows while it runs.
-        const bool looks_only = settings.search == search_kind::at_least_k && !knn_search<typename TestFixture::B>::shows_running_estimate(as_paper(knn_settings{}));
+        const bool looks_only = settings.search == search_kind::at_least_k
+            && !knn_search<typename TestFixture::B>::shows_running_estimate(as_paper(knn_settings{}));
         ASSERT_GE(shown.size(), looks_only ? 3u : 5u);
         const double expected = brightness(shown.back());
         for (std::size_t i = 0; i + 1 < shown.size(); ++i)
-            EXPECT_NEAR(brightness(shown[i]), expected, (i == 0 ? 0.06 : 0.04) * expected) << "picture " << i << " of " << shown.size();
+            EXPECT_NEAR(brightness(shown[i]), expected, (i == 0 ? 0.06 : 0.04) * expected)
+                << "picture " << i << " of " << shown.size();
         // Refined in place: each is nearer to the last one than the one two before, up to noise.
         for (std::size_t i = 2; i + 1 < shown.size(); ++i)
-            EXPECT_LT(relative_mse(shown[i], shown.back()), 1.1 * relative_mse(shown[i - 2], shown.back())) << "picture " << i;
+            EXPECT_LT(relative_mse(shown[i], shown.back()), 1.1 * relative_mse(shown[i - 2], shown.back()))
+                << "picture " << i;
     }
 }
 
@@ -165,7 +169,8 @@ TYPED_TEST_P(progressive, a_map_serves_until_the_light_changes)
     grown.spheres[0].radius *= 0.5;
     auto painted = s;
     painted.materials[0].reflectance *= 0.5;
-    auto more = s.render, seeded = s.render, routed = s.render, finer = s.render, only = s.render, shallow = s.render, facing = s.render;
+    auto more = s.render, seeded = s.render, routed = s.render, finer = s.render, only = s.render, shallow = s.render,
+         facing = s.render;
     more.photons += 1000;
     seeded.seed = 7;
     routed.builder = map_builder::route;
@@ -173,7 +178,8 @@ TYPED_TEST_P(progressive, a_map_serves_until_the_light_changes)
     only.only = light_part::caustic;
     shallow.photon_depth = 4;
     facing.leaks.min_cosine = 0.5f;
-    for (const auto& [scene, with] : {std::pair{lit, s.render}, {grown, s.render}, {painted, s.render}, {s, more}, {s, seeded}, {s, routed}, {s, finer}, {s, only}, {s, shallow}, {s, facing}}) {
+    for (const auto& [scene, with] : {std::pair{lit, s.render}, {grown, s.render}, {painted, s.render}, {s, more},
+             {s, seeded}, {s, routed}, {s, finer}, {s, only}, {s, shallow}, {s, facing}}) {
         drawing.start(s, s.render, {.wanted = false}); // each differs from this in one thing
         drawing.step();
         const auto maps = drawing.maps();
@@ -313,7 +319,9 @@ TYPED_TEST_P(progressive, what_cannot_be_drawn_leaves_the_picture_alone)
     EXPECT_TRUE(same_bytes(drawing.picture(), before));
 }
 
-REGISTER_TYPED_TEST_SUITE_P(progressive, ends_with_the_bytes_of_render, first_looks_are_as_bright_as_the_picture, a_map_serves_until_the_light_changes,
-    a_camera_that_moves_while_photons_are_traced_does_not_begin_them_anew, who_wants_no_looks_any_more_gets_none, a_cancelled_step_ends_after_its_pass, a_picture_goes_on_from_its_state, what_cannot_be_drawn_leaves_the_picture_alone);
+REGISTER_TYPED_TEST_SUITE_P(progressive, ends_with_the_bytes_of_render, first_looks_are_as_bright_as_the_picture,
+    a_map_serves_until_the_light_changes, a_camera_that_moves_while_photons_are_traced_does_not_begin_them_anew,
+    who_wants_no_looks_any_more_gets_none, a_cancelled_step_ends_after_its_pass, a_picture_goes_on_from_its_state,
+    what_cannot_be_drawn_leaves_the_picture_alone);
 
 } // namespace photongrid::testing

@@ -1,6 +1,6 @@
-// Hard cases of ray tracing (docs/hard_cases.md), on any backend. References are long double arithmetic written here, or
-// analytic answers; then the serial backend, bit for bit. Each largest error is printed as "hard case ...".
-// Included by each on_<backend>.cpp.
+// Hard cases of ray tracing (docs/hard_cases.md), on any backend. References are long double arithmetic written here,
+// or analytic answers; then the serial backend, bit for bit. Each largest error is printed as "hard case ...". Included
+// by each on_<backend>.cpp.
 #pragma once
 
 #include "photon_sets.hpp"
@@ -18,7 +18,9 @@ struct vec3l {
     vec3l() = default;
     vec3l(real a, real b, real c) : x(a), y(b), z(c) {}
     template <class V>
-    explicit vec3l(const V& v) : x(static_cast<real>(v.x)), y(static_cast<real>(v.y)), z(static_cast<real>(v.z)) {}
+    explicit vec3l(const V& v) : x(static_cast<real>(v.x)), y(static_cast<real>(v.y)), z(static_cast<real>(v.z))
+    {
+    }
     friend vec3l operator+(vec3l a, vec3l b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
     friend vec3l operator-(vec3l a, vec3l b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
     friend vec3l operator*(real s, vec3l a) { return {s * a.x, s * a.y, s * a.z}; }
@@ -27,10 +29,7 @@ struct vec3l {
 };
 
 /// The distance between floats near x.
-inline double ulp(double x)
-{
-    return std::ldexp(1.0, std::max(std::ilogb(std::abs(x)), -126) - 23);
-}
+inline double ulp(double x) { return std::ldexp(1.0, std::max(std::ilogb(std::abs(x)), -126) - 23); }
 
 /// A random unit vector, rounded to float.
 inline glm::vec3 random_direction(random_source& u)
@@ -57,9 +56,11 @@ inline scene empty_scene(const dvec3& bulb)
 inline std::vector<polygon> icosphere(const dvec3& center, double radius, int splits)
 {
     const double g = 0.5 * (1 + std::sqrt(5.0));
-    const dvec3 v[12] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-    const int f[20][3] = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-        {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+    const dvec3 v[12] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
+        {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
+    const int f[20][3] = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2},
+        {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10},
+        {8, 6, 7}, {9, 8, 1}};
     std::vector<std::array<dvec3, 3>> faces;
     for (const auto& t : f)
         faces.push_back({glm::normalize(v[t[0]]), glm::normalize(v[t[1]]), glm::normalize(v[t[2]])});
@@ -100,7 +101,8 @@ struct ray_hits {
     bool hit(std::size_t i) const { return places[i].w >= 0; }
     std::size_t misses() const
     {
-        return static_cast<std::size_t>(std::count_if(places.begin(), places.end(), [](const auto& p) { return !(p.w >= 0); }));
+        return static_cast<std::size_t>(
+            std::count_if(places.begin(), places.end(), [](const auto& p) { return !(p.w >= 0); }));
     }
 };
 
@@ -113,9 +115,13 @@ protected:
     static ray_hits trace_on(Device& b, const scene& s, const rays& r)
     {
         const auto device = upload_scene(b, s);
-        auto out = std::array{b.template make<glm::vec4>(r.size()), b.template make<glm::vec4>(r.size()), b.template make<glm::vec4>(r.size())};
-        const auto o = b.upload(std::span<const glm::vec4>(r.origins)), d = b.upload(std::span<const glm::vec4>(r.directions)), l = b.upload(std::span<const glm::vec4>(r.leavings));
-        b.template run<kernels::ray_probe>({static_cast<uint>(r.size()), 0u, device.about.features}, {.scene_layout = device.about.layout}, reads(device.records, o, d, l), writes(out[0], out[1], out[2]));
+        auto out = std::array{b.template make<glm::vec4>(r.size()), b.template make<glm::vec4>(r.size()),
+            b.template make<glm::vec4>(r.size())};
+        const auto o = b.upload(std::span<const glm::vec4>(r.origins)),
+                   d = b.upload(std::span<const glm::vec4>(r.directions)),
+                   l = b.upload(std::span<const glm::vec4>(r.leavings));
+        b.template run<kernels::ray_probe>({static_cast<uint>(r.size()), 0u, device.about.features},
+            {.scene_layout = device.about.layout}, reads(device.records, o, d, l), writes(out[0], out[1], out[2]));
         return {b.download(out[0]), b.download(out[1]), b.download(out[2])};
     }
 
@@ -136,7 +142,8 @@ protected:
     bool exact() { return this->b().caps().exact_division && this->b().caps().exact_sqrt; }
 
     /// Irradiance of the scene's lights at points (recentred) with normals.
-    std::vector<glm::vec4> direct_light_at(const scene& s, const std::vector<dvec3>& points, const std::vector<dvec3>& normals, uint samples)
+    std::vector<glm::vec4> direct_light_at(
+        const scene& s, const std::vector<dvec3>& points, const std::vector<dvec3>& normals, uint samples)
     {
         auto& b = this->b();
         const auto device = upload_scene(b, s);
@@ -157,7 +164,8 @@ protected:
 };
 TYPED_TEST_SUITE_P(hard_cases);
 
-// --- B: intersection --------------------------------------------------------------------------------------------------
+// --- B: intersection
+// --------------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(hard_cases, b1_far_spheres_are_hit_within_rounding_of_the_distance)
 {
@@ -172,7 +180,8 @@ TYPED_TEST_P(hard_cases, b1_far_spheres_are_hit_within_rounding_of_the_distance)
         rays r;
         for (int i = 0; i < 20000; ++i) {
             const dvec3 from(random_direction(u)), aside = glm::normalize(glm::cross(from, dvec3(random_direction(u))));
-            r.aim(glm::vec3(from * distance + dvec3(glm::vec3(about.records[0]))), dvec3(glm::vec3(about.records[0])) + 0.98 * static_cast<double>(u()) * aside);
+            r.aim(glm::vec3(from * distance + dvec3(glm::vec3(about.records[0]))),
+                dvec3(glm::vec3(about.records[0])) + 0.98 * static_cast<double>(u()) * aside);
         }
         const auto hits = this->trace(s, r);
         EXPECT_EQ(hits.misses(), 0u) << "distance " << distance;
@@ -180,7 +189,8 @@ TYPED_TEST_P(hard_cases, b1_far_spheres_are_hit_within_rounding_of_the_distance)
             const vec3l f = vec3l(r.origins[i]) - center, d(r.directions[i]);
             const real a = dot(d, d), b = dot(f, d), c = dot(f, f) - 1;
             const real t = (-b - std::sqrt(b * b - a * c)) / a;
-            largest = std::max(largest, static_cast<double>(std::abs(static_cast<real>(hits.places[i].w) - t)) / ulp(distance));
+            largest = std::max(
+                largest, static_cast<double>(std::abs(static_cast<real>(hits.places[i].w) - t)) / ulp(distance));
         }
     }
     this->report("B1", "largest error of t, units in the last place of the distance:", largest);
@@ -195,9 +205,12 @@ TYPED_TEST_P(hard_cases, b2_a_large_sphere_is_hit_from_close_above)
     r.add({0, 1e6f + 1, 0}, {0.8f, -0.6f, 0});
     const auto hits = this->trace(s, r);
     // From the floats as they are, in long double.
-    const real b = 1000001.0L * static_cast<real>(0.6f), a = static_cast<real>(0.8f) * static_cast<real>(0.8f) + static_cast<real>(0.6f) * static_cast<real>(0.6f);
+    const real b = 1000001.0L * static_cast<real>(0.6f),
+               a
+        = static_cast<real>(0.8f) * static_cast<real>(0.8f) + static_cast<real>(0.6f) * static_cast<real>(0.6f);
     const real t = (b - std::sqrt(b * b - a * 2000001.0L)) / a;
-    this->report("B2", "relative error of t, 1 m above a sphere of 1000 km:", static_cast<double>(std::abs(static_cast<real>(hits.places[0].w) / t - 1)));
+    this->report("B2", "relative error of t, 1 m above a sphere of 1000 km:",
+        static_cast<double>(std::abs(static_cast<real>(hits.places[0].w) / t - 1)));
     EXPECT_NEAR(static_cast<double>(hits.places[0].w), 1.666668, 2e-6);
 
     // Things that float coordinates cannot resolve beside it are refused.
@@ -222,14 +235,16 @@ TYPED_TEST_P(hard_cases, b3_hits_lie_on_their_quadric)
         rays r;
         r.add(glm::vec3(dvec3(-1000, 0.999, 0) - about.center), {1, 0, 0});
         const auto hits = this->trace(s, r);
-        const real y = static_cast<real>(r.origins[0].y) - static_cast<real>(about.records[0].y), x = static_cast<real>(r.origins[0].x) - static_cast<real>(about.records[0].x);
+        const real y = static_cast<real>(r.origins[0].y) - static_cast<real>(about.records[0].y),
+                   x = static_cast<real>(r.origins[0].x) - static_cast<real>(about.records[0].x);
         const real t = -x - std::sqrt(1 - y * y);
         far_t = static_cast<double>(std::abs(static_cast<real>(hits.places[0].w) - t)) / ulp(1000);
     }
     for (int shape = 0; shape < 3; ++shape)
         for (int variant = 0; variant < 8; ++variant) {
             auto s = empty_scene({3, 0.5, 1});
-            const dvec3 base(random_direction(u)), top = base + (0.3 + 2 * static_cast<double>(u())) * dvec3(random_direction(u));
+            const dvec3 base(random_direction(u)),
+                top = base + (0.3 + 2 * static_cast<double>(u())) * dvec3(random_direction(u));
             const double radius = 0.1 + static_cast<double>(u());
             if (shape == 0)
                 s.cylinders = {{base, top, radius, 0}};
@@ -244,7 +259,8 @@ TYPED_TEST_P(hard_cases, b3_hits_lie_on_their_quadric)
             rays r;
             for (int i = 0; i < 4000; ++i) {
                 const double distance = std::pow(10.0, 3 * static_cast<double>(u()));
-                const dvec3 inside = glm::mix(base, top, static_cast<double>(u())) - about.center + 0.9 * radius * dvec3(random_direction(u));
+                const dvec3 inside = glm::mix(base, top, static_cast<double>(u())) - about.center
+                    + 0.9 * radius * dvec3(random_direction(u));
                 r.aim(glm::vec3(inside + distance * dvec3(random_direction(u))), inside);
             }
             const auto hits = this->trace(s, r);
@@ -301,10 +317,13 @@ TYPED_TEST_P(hard_cases, b4_no_ray_passes_between_two_polygons)
     random_source u(15);
     std::size_t missed = 0;
     for (int fold = 0; fold < 40; ++fold) {
-        const double angle = fold % 4 == 0 ? 0.0 : fold % 4 == 1 ? 1.56 * static_cast<double>(u()) : std::pow(10.0, -1 - 5 * static_cast<double>(u()));
+        const double angle = fold % 4 == 0 ? 0.0
+            : fold % 4 == 1                ? 1.56 * static_cast<double>(u())
+                                           : std::pow(10.0, -1 - 5 * static_cast<double>(u()));
         const dvec3 along(random_direction(u)), up0(random_direction(u));
         const dvec3 side = glm::normalize(glm::cross(along, up0)), up = glm::cross(side, along);
-        const dvec3 wing_a = std::cos(angle) * side + std::sin(angle) * up, wing_b = -std::cos(angle) * side + std::sin(angle) * up;
+        const dvec3 wing_a = std::cos(angle) * side + std::sin(angle) * up,
+                    wing_b = -std::cos(angle) * side + std::sin(angle) * up;
         const dvec3 p = 0.5 * dvec3(random_direction(u)), q = p + along;
         auto s = empty_scene({1, 2, 1});
         s.polygons = {{{p, q, q + wing_a, p + wing_a}, 0}, {{q, p, p + wing_b, q + wing_b}, 0}};
@@ -313,7 +332,8 @@ TYPED_TEST_P(hard_cases, b4_no_ray_passes_between_two_polygons)
         for (int i = 0; i < 5000; ++i) {
             const dvec3 target = glm::mix(p, q, 0.01 + 0.98 * static_cast<double>(u()));
             // Between the wings, at times close to one.
-            const double lowest = angle + (i % 2 == 0 ? 1e-3 : 0.1), at = lowest + (M_PI - 2 * lowest) * (i % 4 == 0 ? 0.0 : static_cast<double>(u()));
+            const double lowest = angle + (i % 2 == 0 ? 1e-3 : 0.1),
+                         at = lowest + (M_PI - 2 * lowest) * (i % 4 == 0 ? 0.0 : static_cast<double>(u()));
             const dvec3 away = std::cos(at) * side + std::sin(at) * up + (2 * static_cast<double>(u()) - 1) * along;
             r.aim(glm::vec3(target + 0.9 * away - about.center), target - about.center);
         }
@@ -329,7 +349,8 @@ inline void reintersect(std::uint64_t seed, scene& s, rays& r)
     random_source u(seed);
     const auto number = [&] { return static_cast<double>(u()); };
     const double size = std::pow(10.0, 16 * number() - 8);
-    const dvec3 bulb = size * dvec3(random_direction(u)), at = -number() * bulb + 0.1 * size * dvec3(random_direction(u));
+    const dvec3 bulb = size * dvec3(random_direction(u)),
+                at = -number() * bulb + 0.1 * size * dvec3(random_direction(u));
     const double own = size * std::pow(10.0, -3 * number()), radius = own * (0.05 + number());
     const dvec3 axis(random_direction(u));
     s = empty_scene(bulb);
@@ -340,7 +361,8 @@ inline void reintersect(std::uint64_t seed, scene& s, rays& r)
     case 3: s.paraboloids = {{at, at + own * axis, radius, 0}}; break;
     case 4: s.disks = {{at, axis, own, 0}}; break;
     default: {
-        const dvec3 e = own * glm::normalize(glm::cross(axis, dvec3(random_direction(u)))), f = radius * glm::normalize(glm::cross(axis, e));
+        const dvec3 e = own * glm::normalize(glm::cross(axis, dvec3(random_direction(u)))),
+                    f = radius * glm::normalize(glm::cross(axis, e));
         s.polygons = {{{at, at + e, at + e + f, at + f}, 0}};
     }
     }
@@ -384,7 +406,8 @@ std::size_t count_reintersections(std::uint64_t first, std::uint64_t past, Trace
         const auto second = trace(s, away);
         const std::size_t n = away.size() - second.misses();
         if (n != 0)
-            std::printf("  shape %d of seed %d: %zu of %zu rays hit their own surface\n", static_cast<int>(seed % 6), static_cast<int>(seed), n, away.size());
+            std::printf("  shape %d of seed %d: %zu of %zu rays hit their own surface\n", static_cast<int>(seed % 6),
+                static_cast<int>(seed), n, away.size());
         again += n;
         rays_cast += away.size();
     }
@@ -394,8 +417,10 @@ std::size_t count_reintersections(std::uint64_t first, std::uint64_t past, Trace
 TYPED_TEST_P(hard_cases, b5_rays_that_leave_a_surface_do_not_hit_it)
 {
     std::size_t cast = 0;
-    const auto again = count_reintersections(0, 60, [&](const scene& s, const rays& r) { return this->trace(s, r); }, cast);
-    this->report("B5", "rays that hit the surface they leave of " + std::to_string(cast) + ":", static_cast<double>(again));
+    const auto again = count_reintersections(
+        0, 60, [&](const scene& s, const rays& r) { return this->trace(s, r); }, cast);
+    this->report(
+        "B5", "rays that hit the surface they leave of " + std::to_string(cast) + ":", static_cast<double>(again));
     EXPECT_GT(cast, 20000u);
     EXPECT_EQ(again, 0u);
 }
@@ -403,8 +428,10 @@ TYPED_TEST_P(hard_cases, b5_rays_that_leave_a_surface_do_not_hit_it)
 TYPED_TEST_P(hard_cases, long_b5_rays_that_leave_a_surface_do_not_hit_it)
 {
     std::size_t cast = 0;
-    const auto again = count_reintersections(1000, 2000, [&](const scene& s, const rays& r) { return this->trace_on(this->b(), s, r); }, cast);
-    this->report("B5", "rays that hit the surface they leave of " + std::to_string(cast) + ":", static_cast<double>(again));
+    const auto again = count_reintersections(
+        1000, 2000, [&](const scene& s, const rays& r) { return this->trace_on(this->b(), s, r); }, cast);
+    this->report(
+        "B5", "rays that hit the surface they leave of " + std::to_string(cast) + ":", static_cast<double>(again));
     EXPECT_EQ(again, 0u);
 }
 
@@ -432,9 +459,11 @@ TYPED_TEST_P(hard_cases, b5_rays_inside_a_sphere_reach_its_other_side)
         EXPECT_EQ(second.misses(), 0u);
         for (std::size_t i = 0; i < r.size(); ++i) {
             const vec3l f = vec3l(on.origins[i]) - vec3l(center), d(on.directions[i]);
-            const real a = dot(d, d), b = dot(f, d), c = dot(f, f) - static_cast<real>(about.records[0].w) * static_cast<real>(about.records[0].w);
+            const real a = dot(d, d), b = dot(f, d),
+                       c = dot(f, f) - static_cast<real>(about.records[0].w) * static_cast<real>(about.records[0].w);
             const real t = (-b + std::sqrt(b * b - a * c)) / a;
-            largest = std::max(largest, static_cast<double>(std::abs(static_cast<real>(second.places[i].w) - t) / static_cast<real>(radius)));
+            largest = std::max(largest,
+                static_cast<double>(std::abs(static_cast<real>(second.places[i].w) - t) / static_cast<real>(radius)));
         }
     }
     this->report("B5", "largest error of t inside a sphere, radii:", largest);
@@ -464,7 +493,8 @@ TYPED_TEST_P(hard_cases, b6_nothing_blocks_the_way_to_a_lamp_close_to_a_wall)
     random_source u(17);
     std::vector<dvec3> points, normals;
     for (int i = 0; i < 100000; ++i) {
-        const double a = static_cast<double>(u()), h = 1 - 1e-5 - std::pow(10.0, -4 * static_cast<double>(u())) * (1 - 2e-5);
+        const double a = static_cast<double>(u()),
+                     h = 1 - 1e-5 - std::pow(10.0, -4 * static_cast<double>(u())) * (1 - 2e-5);
         switch (i % 5) {
         case 0: points.emplace_back(a, 0, static_cast<double>(u())), normals.emplace_back(0, 1, 0); break;
         case 1: points.emplace_back(0, h, a), normals.emplace_back(1, 0, 0); break;
@@ -517,27 +547,33 @@ TYPED_TEST_P(hard_cases, b7_degenerate_rays_hit_nothing)
 TYPED_TEST_P(hard_cases, b8_bases_are_orthonormal)
 {
     random_source u(18);
-    std::vector<glm::vec4> normals = {{0, 0, 1, 0}, {0, 0, -1, 0}, {-0.0f, -0.0f, -1, 0}, {-0.0f, 0, 1, 0}, {1, 0, -0.0f, 0}, {0, 1, 0, 0}, {0.0447102f, 0, -0.999f, 0}};
+    std::vector<glm::vec4> normals = {{0, 0, 1, 0}, {0, 0, -1, 0}, {-0.0f, -0.0f, -1, 0}, {-0.0f, 0, 1, 0},
+        {1, 0, -0.0f, 0}, {0, 1, 0, 0}, {0.0447102f, 0, -0.999f, 0}};
     for (int i = 0; i < 1000000; ++i) {
         if (i % 2 == 0) {
             normals.emplace_back(random_direction(u), 0.0f);
             continue;
         }
-        const double tilt = std::pow(10.0, -8 * static_cast<double>(u())), turn = 2 * M_PI * static_cast<double>(u()); // close to -z
-        normals.emplace_back(glm::vec3(dvec3(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), -std::cos(tilt))), 0.0f);
+        const double tilt = std::pow(10.0, -8 * static_cast<double>(u())),
+                     turn = 2 * M_PI * static_cast<double>(u()); // close to -z
+        normals.emplace_back(
+            glm::vec3(dvec3(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), -std::cos(tilt))), 0.0f);
     }
     std::vector<glm::vec4> numbers(normals.size(), glm::vec4(0.5f));
     auto& b = this->b();
-    auto first = b.template make<glm::vec4>(normals.size()), second = b.template make<glm::vec4>(normals.size()), diffuse = b.template make<glm::vec4>(normals.size()),
-         anywhere = b.template make<glm::vec4>(normals.size());
+    auto first = b.template make<glm::vec4>(normals.size()), second = b.template make<glm::vec4>(normals.size()),
+         diffuse = b.template make<glm::vec4>(normals.size()), anywhere = b.template make<glm::vec4>(normals.size());
     const auto n = b.upload(std::span<const glm::vec4>(normals)), r = b.upload(std::span<const glm::vec4>(numbers));
-    b.template run<kernels::basis_probe>(static_cast<uint>(normals.size()), {}, reads(n, r), writes(first, second, diffuse, anywhere));
+    b.template run<kernels::basis_probe>(
+        static_cast<uint>(normals.size()), {}, reads(n, r), writes(first, second, diffuse, anywhere));
     const auto x = b.download(first), y = b.download(second);
     double length_error = 0, angle_error = 0;
     for (std::size_t i = 0; i < normals.size(); ++i) {
         const vec3l a(x[i]), c(y[i]), z(normals[i]);
-        length_error = std::max({length_error, static_cast<double>(std::abs(length(a) - 1)), static_cast<double>(std::abs(length(c) - 1))});
-        angle_error = std::max({angle_error, static_cast<double>(std::abs(dot(a, c))), static_cast<double>(std::abs(dot(a, z))), static_cast<double>(std::abs(dot(c, z)))});
+        length_error = std::max(
+            {length_error, static_cast<double>(std::abs(length(a) - 1)), static_cast<double>(std::abs(length(c) - 1))});
+        angle_error = std::max({angle_error, static_cast<double>(std::abs(dot(a, c))),
+            static_cast<double>(std::abs(dot(a, z))), static_cast<double>(std::abs(dot(c, z)))});
     }
     this->report("B8", "largest error of an axis' length:", length_error);
     this->report("B8", "largest dot product of two axes:", angle_error);
@@ -545,7 +581,8 @@ TYPED_TEST_P(hard_cases, b8_bases_are_orthonormal)
     EXPECT_LE(angle_error, 1e-6);
 }
 
-// --- C: reflection and refraction -------------------------------------------------------------------------------------
+// --- C: reflection and refraction
+// -------------------------------------------------------------------------------------
 
 /// Fresnel's reflectance of a dielectric in long double; eta: index on this side over that on the other.
 inline real fresnel(real cos_i, real eta)
@@ -554,7 +591,8 @@ inline real fresnel(real cos_i, real eta)
     if (cos2_t <= 0)
         return 1;
     const real cos_t = std::sqrt(cos2_t);
-    const real parallel = (cos_i - eta * cos_t) / (cos_i + eta * cos_t), perpendicular = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    const real parallel = (cos_i - eta * cos_t) / (cos_i + eta * cos_t),
+               perpendicular = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     return (parallel * parallel + perpendicular * perpendicular) / 2;
 }
 
@@ -569,7 +607,9 @@ struct glass_cases {
     template <class Device>
     void run(Device& b)
     {
-        const auto d = b.upload(std::span<const glm::vec4>(directions)), n = b.upload(std::span<const glm::vec4>(normals)), s = b.upload(std::span<const glm::vec4>(n_scene()));
+        const auto d = b.upload(std::span<const glm::vec4>(directions)),
+                   n = b.upload(std::span<const glm::vec4>(normals)),
+                   s = b.upload(std::span<const glm::vec4>(n_scene()));
         auto r = b.template make<glm::vec4>(directions.size()), m = b.template make<glm::vec4>(directions.size());
         b.template run<kernels::glass_probe>(static_cast<uint>(directions.size()), {}, reads(s, d, n), writes(r, m));
         refracted = b.download(r);
@@ -594,18 +634,21 @@ TYPED_TEST_P(hard_cases, c1_refraction_is_finite_about_the_critical_angle)
         for (int i = 0; i < 1000; ++i)
             c = std::nextafter(c, 0.0f);
         for (int i = 0; i < 2001; ++i, c = std::nextafter(c, 1.0f))
-            g.add({static_cast<float>(std::sqrt(1 - static_cast<double>(c) * static_cast<double>(c))), 0, c}, {0, 0, 1}, index);
+            g.add({static_cast<float>(std::sqrt(1 - static_cast<double>(c) * static_cast<double>(c))), 0, c}, {0, 0, 1},
+                index);
         g.run(this->b());
         float least = 1;
         EXPECT_EQ(g.refracted.front().w, 1.0f) << index;
         EXPECT_LT(g.refracted.back().w, 1.0f) << index;
         for (std::size_t i = 0; i < g.refracted.size(); ++i) {
             const auto& r = g.refracted[i];
-            ASSERT_TRUE(std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z) && std::isfinite(r.w)) << index << " case " << i;
+            ASSERT_TRUE(std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z) && std::isfinite(r.w))
+                << index << " case " << i;
             ASSERT_GE(r.w, 0.0f);
             ASSERT_LE(r.w, 1.0f);
             length_error = std::max(length_error, static_cast<double>(std::abs(length(vec3l(r)) - 1)));
-            step_back = std::max(step_back, static_cast<double>(r.w - least)); // away from the critical angle, less is reflected
+            step_back = std::max(
+                step_back, static_cast<double>(r.w - least)); // away from the critical angle, less is reflected
             least = std::min(least, r.w);
         }
     }
@@ -642,17 +685,23 @@ TYPED_TEST_P(hard_cases, c2_energy_is_kept_down_to_grazing)
         const real eta = entering ? static_cast<real>(1.0f / g.normals[i].w) : index;
         const real cos_i = std::abs(static_cast<real>(d.z));
         const real cos2_t = 1 - eta * eta * (1 - cos_i * cos_i);
-        mirror = std::max(mirror, static_cast<double>(length(vec3l(g.mirrored[i]) - vec3l(static_cast<real>(d.x), static_cast<real>(d.y), -static_cast<real>(d.z)))));
+        mirror = std::max(mirror,
+            static_cast<double>(length(vec3l(g.mirrored[i])
+                - vec3l(static_cast<real>(d.x), static_cast<real>(d.y), -static_cast<real>(d.z)))));
         if (cos2_t < 1e-5L) // at the critical angle the share's derivative has no bound (C1)
             continue;
-        // The transmitted share by its own formula, T = 4 c_i c_t eta / ..., so that reflected + transmitted = 1 is tested.
+        // The transmitted share by its own formula, T = 4 c_i c_t eta / ..., so that reflected + transmitted = 1 is
+        // tested.
         const real cos_t = std::sqrt(cos2_t);
         const real tp = 2 * cos_i / (cos_i + eta * cos_t), ts = 2 * eta * cos_i / (eta * cos_i + cos_t);
         const real transmitted = cos_t / cos_i * (eta * tp * tp + ts * ts / eta) / 2;
         if (cos_i > 0)
-            fresnel_error = std::max(fresnel_error, static_cast<double>(cos_t * std::abs(static_cast<real>(r.w) + transmitted - 1)));
+            fresnel_error = std::max(
+                fresnel_error, static_cast<double>(cos_t * std::abs(static_cast<real>(r.w) + transmitted - 1)));
         if (r.w < 1)
-            snell = std::max(snell, static_cast<double>(std::abs(std::abs(static_cast<real>(r.x)) - eta * std::abs(static_cast<real>(d.x)))));
+            snell = std::max(snell,
+                static_cast<double>(
+                    std::abs(std::abs(static_cast<real>(r.x)) - eta * std::abs(static_cast<real>(d.x)))));
     }
     this->report("C2", "largest error of reflected + transmitted, times the refracted cosine:", fresnel_error);
     this->report("C2", "largest error of the refracted sine:", snell);
@@ -666,7 +715,8 @@ TYPED_TEST_P(hard_cases, c3_glass_in_glass_is_refused)
 {
     auto s = small_cornell();
     const auto ball = s.spheres[1];
-    for (const auto& [aside, radius, good] : {std::tuple{0.0, 0.05, false}, {0.3, 0.15, false}, {0.33, 0.15, true}, {0.4, 0.15, true}}) {
+    for (const auto& [aside, radius, good] :
+        {std::tuple{0.0, 0.05, false}, {0.3, 0.15, false}, {0.33, 0.15, true}, {0.4, 0.15, true}}) {
         s.spheres[0] = {ball.center + dvec3(aside, 0, 0), radius, ball.material};
         if (good) {
             EXPECT_NO_THROW(lay_out(s));
@@ -676,7 +726,9 @@ TYPED_TEST_P(hard_cases, c3_glass_in_glass_is_refused)
             lay_out(s);
             ADD_FAILURE() << "accepted at " << aside;
         } catch (const std::invalid_argument& e) {
-            EXPECT_NE(std::string(e.what()).find("spheres[1]: overlaps spheres[0], and both are glass"), std::string::npos) << e.what();
+            EXPECT_NE(
+                std::string(e.what()).find("spheres[1]: overlaps spheres[0], and both are glass"), std::string::npos)
+                << e.what();
         }
     }
     s.spheres[0] = {ball.center, 0.05, 0}; // something else in glass is fine
@@ -690,15 +742,19 @@ inline scene cube_of_glass()
     s.rectangle_lights.clear();
     s.point_lights = {{"bulb", {0.45, 0.55, 0.5}, dvec3(1)}};
     const dvec3 low(0.3), high(0.7);
-    const auto corner = [&](int i) { return dvec3((i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y, (i & 4) != 0 ? high.z : low.z); };
-    for (const auto& [a, b, c, d] : {std::tuple{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}})
+    const auto corner = [&](int i) {
+        return dvec3((i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y, (i & 4) != 0 ? high.z : low.z);
+    };
+    for (const auto& [a, b, c, d] :
+        {std::tuple{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}})
         s.polygons.push_back({{corner(a), corner(b), corner(c), corner(d)}, 1});
     return s;
 }
 
 TYPED_TEST_P(hard_cases, c4_endless_total_reflection_is_cut_off_and_counted)
 {
-    // Inside the cube, directions whose three components are all below sqrt(1 - 1/1.5^2) in their cosine never leave it.
+    // Inside the cube, directions whose three components are all below sqrt(1 - 1/1.5^2) in their cosine never leave
+    // it.
     auto s = cube_of_glass();
     auto& b = this->b();
     const auto device = upload_scene(b, s);
@@ -707,7 +763,8 @@ TYPED_TEST_P(hard_cases, c4_endless_total_reflection_is_cut_off_and_counted)
     expect_an_exact_account(stats, s.render.photons);
     EXPECT_EQ(stats.escaped, 0u);
     // The share that is caught for ever: three cones of half angle asin(1/1.5) about each axis both ways let light out,
-    // but for the little that Fresnel's share sends back in; caught for ever is 1 - 3 (1 - sqrt(1 - 1/1.5^2)), cut off at 32.
+    // but for the little that Fresnel's share sends back in; caught for ever is 1 - 3 (1 - sqrt(1 - 1/1.5^2)), cut off
+    // at 32.
     const double caught = 1 - 3 * (1 - std::sqrt(1 - 1 / 2.25));
     const double share = static_cast<double>(stats.cut_off) / static_cast<double>(stats.emitted);
     this->report("C4", "share of paths cut off:", share);
@@ -732,7 +789,8 @@ TYPED_TEST_P(hard_cases, c5_a_camera_in_glass_sees_through_it)
     EXPECT_LE(largest, 1e-5);
 }
 
-// --- D: lights --------------------------------------------------------------------------------------------------------
+// --- D: lights
+// --------------------------------------------------------------------------------------------------------
 
 /// Irradiance of a diffuse rectangle of 1 W by Lambert's formula, clipped at the horizon, in long double.
 inline double lambert(const rectangle_light& l, const dvec3& point, const dvec3& normal)
@@ -780,7 +838,8 @@ TYPED_TEST_P(hard_cases, d2_irradiance_close_to_a_lamp_is_bounded)
             mean += static_cast<double>(e.x) / 2000;
             worst_point = std::max(worst_point, static_cast<double>(e.x)); // the exitance is 1 W/m^2
         }
-        this->report("D2", "mean irradiance over the known one, " + std::to_string(distance) + " m from a lamp:", mean / known);
+        this->report(
+            "D2", "mean irradiance over the known one, " + std::to_string(distance) + " m from a lamp:", mean / known);
         worst_mean = std::max(worst_mean, std::abs(mean / known - 1));
     }
     this->report("D2", "largest irradiance, exitances:", worst_point);
@@ -800,22 +859,25 @@ TYPED_TEST_P(hard_cases, d3_samples_at_the_ends_of_the_unit_interval_are_finite)
                 numbers.emplace_back(x, y, 0, 0);
             }
     auto& b = this->b();
-    auto first = b.template make<glm::vec4>(normals.size()), second = b.template make<glm::vec4>(normals.size()), diffuse = b.template make<glm::vec4>(normals.size()),
-         anywhere = b.template make<glm::vec4>(normals.size());
+    auto first = b.template make<glm::vec4>(normals.size()), second = b.template make<glm::vec4>(normals.size()),
+         diffuse = b.template make<glm::vec4>(normals.size()), anywhere = b.template make<glm::vec4>(normals.size());
     const auto n = b.upload(std::span<const glm::vec4>(normals)), r = b.upload(std::span<const glm::vec4>(numbers));
-    b.template run<kernels::basis_probe>(static_cast<uint>(normals.size()), {}, reads(n, r), writes(first, second, diffuse, anywhere));
+    b.template run<kernels::basis_probe>(
+        static_cast<uint>(normals.size()), {}, reads(n, r), writes(first, second, diffuse, anywhere));
     double largest = 0;
     const auto d = b.download(diffuse), a = b.download(anywhere);
     for (std::size_t i = 0; i < normals.size(); ++i) {
         // Malley's and Archimedes' methods in long double.
-        const real x = static_cast<real>(numbers[i].x), y = 2 * static_cast<real>(M_PIl) * static_cast<real>(numbers[i].y);
+        const real x = static_cast<real>(numbers[i].x),
+                   y = 2 * static_cast<real>(M_PIl) * static_cast<real>(numbers[i].y);
         const real side = static_cast<real>(normals[i].z);
         const vec3l cosine(std::sqrt(x) * std::cos(y), side * std::sqrt(x) * std::sin(y), side * std::sqrt(1 - x));
         const real h = std::sqrt(std::max<real>(0, 4 * x * (1 - x)));
         const vec3l uniform(h * std::cos(y), h * std::sin(y), 1 - 2 * x);
         EXPECT_GT(d[i].z * normals[i].z, 0.0f); // never in the surface: no density of 0
         // Any frame about the normal will do: compare heights and lengths, and the uniform ones whole.
-        largest = std::max({largest, static_cast<double>(std::abs(static_cast<real>(d[i].z) - cosine.z)), static_cast<double>(std::abs(length(vec3l(d[i])) - 1)),
+        largest = std::max({largest, static_cast<double>(std::abs(static_cast<real>(d[i].z) - cosine.z)),
+            static_cast<double>(std::abs(length(vec3l(d[i])) - 1)),
             static_cast<double>(length(vec3l(a[i]) - uniform))});
     }
     this->report("D3", "largest error of a sampled direction:", largest);
@@ -840,7 +902,8 @@ TYPED_TEST_P(hard_cases, d4_a_point_light_on_a_surface_is_finite)
 
 TYPED_TEST_P(hard_cases, d5_dark_lights_are_refused)
 {
-    for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (const double bad :
+        {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         auto s = integrating_sphere(dvec3(0.5));
         s.point_lights[0].power = dvec3(bad);
         EXPECT_THROW(upload_scene(this->b(), s), std::invalid_argument) << bad;
@@ -853,7 +916,8 @@ TYPED_TEST_P(hard_cases, d5_dark_lights_are_refused)
     EXPECT_THROW(upload_scene(this->b(), none), std::invalid_argument);
 }
 
-// --- E: random numbers ------------------------------------------------------------------------------------------------
+// --- E: random numbers
+// ------------------------------------------------------------------------------------------------
 
 /// What random_probe.glsl makes of keys.
 struct random_numbers {
@@ -889,9 +953,11 @@ TYPED_TEST_P(hard_cases, e1_random_numbers_stay_below_one)
 TYPED_TEST_P(hard_cases, e3_hashes_have_known_answers)
 {
     // pcg4d of the JCGT paper, worked out in Python's integers.
-    const std::vector<glm::uvec4> keys = {glm::uvec4(0u), {1u, 2u, 3u, 4u}, glm::uvec4(0xFFFFFFFFu), {123456789u, 7u, 1u, 20031u}};
-    const std::vector<glm::uvec4> known = {{0x0F02F829u, 0x2D568769u, 0x32B0C43Bu, 0xD32548EAu}, {0x3622CD16u, 0xF11471D8u, 0xE1109B3Fu, 0x02B94C2Fu},
-        {0x974ED892u, 0xC015DC67u, 0x9F955760u, 0xA1BBA208u}, {0x2F4B0C9Eu, 0x2C8A81EDu, 0x6B2E1A85u, 0x7FC237FFu}};
+    const std::vector<glm::uvec4> keys
+        = {glm::uvec4(0u), {1u, 2u, 3u, 4u}, glm::uvec4(0xFFFFFFFFu), {123456789u, 7u, 1u, 20031u}};
+    const std::vector<glm::uvec4> known
+        = {{0x0F02F829u, 0x2D568769u, 0x32B0C43Bu, 0xD32548EAu}, {0x3622CD16u, 0xF11471D8u, 0xE1109B3Fu, 0x02B94C2Fu},
+            {0x974ED892u, 0xC015DC67u, 0x9F955760u, 0xA1BBA208u}, {0x2F4B0C9Eu, 0x2C8A81EDu, 0x6B2E1A85u, 0x7FC237FFu}};
     const auto r = draw_numbers(this->b(), keys);
     EXPECT_EQ(r.hashes, known);
     for (std::size_t i = 0; i < keys.size(); ++i)
@@ -982,7 +1048,8 @@ TYPED_TEST_P(hard_cases, e6_seeds_are_independent)
     EXPECT_NEAR(xy / xx, -1, 0.15);
 }
 
-// --- F6: far from the origin ------------------------------------------------------------------------------------------
+// --- F6: far from the origin
+// ------------------------------------------------------------------------------------------
 
 /// The scene moved, exactly where its coordinates and `by` are multiples of 2^-20 below 2^32.
 inline scene moved(const scene& s, const dvec3& by) { return detail::moved_back(s, -by); }
@@ -1022,7 +1089,8 @@ TYPED_TEST_P(hard_cases, f6_a_scene_far_away_renders_the_same)
     for (const auto& s : {rounded_scene(blocks), rounded_scene(all_shapes())}) {
         const dvec3 by(1e6, -1e6, 1e6);
         render_stats a, b;
-        const auto here = render(this->b(), s, s.render, {}, a), there = render(this->b(), moved(s, by), s.render, {}, b);
+        const auto here = render(this->b(), s, s.render, {}, a),
+                   there = render(this->b(), moved(s, by), s.render, {}, b);
         EXPECT_EQ(count_different_bits(here.pixels, there.pixels), 0u) << s.name;
         EXPECT_EQ(a.photons.emitted, b.photons.emitted);
     }
@@ -1032,7 +1100,8 @@ TYPED_TEST_P(hard_cases, f6_a_scene_far_away_renders_the_same)
         x.center += dvec3(1e-3 / 3, 0, 0);
     s.spheres[0].center.y += 1e-4; // touches the floor
     render_stats a, b;
-    const auto here = render(this->b(), s, s.render, {}, a), there = render(this->b(), moved(s, dvec3(1e6 + 0.1, 1e6 / 3, -1e6)), s.render, {}, b);
+    const auto here = render(this->b(), s, s.render, {}, a),
+               there = render(this->b(), moved(s, dvec3(1e6 + 0.1, 1e6 / 3, -1e6)), s.render, {}, b);
     const double difference = relative_mse(there, here);
     this->report("F6", "relMSE of a scene moved by 10^6 m, coordinates not multiples of 2^-20:", difference);
     EXPECT_LE(difference, 0.005);
@@ -1040,8 +1109,8 @@ TYPED_TEST_P(hard_cases, f6_a_scene_far_away_renders_the_same)
 
 TYPED_TEST_P(hard_cases, b9_what_is_outside_a_shaft_blocks_nothing_in_it)
 {
-    // Points and parallelograms anywhere in scenes of few and of more than 32 shapes; some points close above a surface, some
-    // parallelograms in the plane of one.
+    // Points and parallelograms anywhere in scenes of few and of more than 32 shapes; some points close above a
+    // surface, some parallelograms in the plane of one.
     auto crowd = empty_scene({0, 3, 0});
     crowd.polygons = icosphere({0.5, 0.5, 0}, 0.5, 1);
     for (int i = 0; i < 40; ++i)
@@ -1054,7 +1123,8 @@ TYPED_TEST_P(hard_cases, b9_what_is_outside_a_shaft_blocks_nothing_in_it)
         std::vector<glm::vec4> points, corners, edges_u, edges_v;
         for (int i = 0; i < 20000; ++i) {
             const auto place = [&] { return low + size * glm::vec3(u(), u(), u()); };
-            auto from = place(), corner = place(), edge_u = 0.3f * size * random_direction(u), edge_v = 0.3f * size * random_direction(u);
+            auto from = place(), corner = place(), edge_u = 0.3f * size * random_direction(u),
+                 edge_v = 0.3f * size * random_direction(u);
             if (i % 4 == 1)
                 from.y = low.y + 1e-5f * size.y; // just above the floor, or below what stands there
             if (i % 4 == 2)
@@ -1069,7 +1139,8 @@ TYPED_TEST_P(hard_cases, b9_what_is_outside_a_shaft_blocks_nothing_in_it)
         const auto up = [&](const auto& v) { return b.upload(std::span<const glm::vec4>(v)); };
         const auto p = up(points), c = up(corners), eu = up(edges_u), ev = up(edges_v);
         auto answer = b.template make<glm::uvec4>(points.size());
-        b.template run<kernels::shaft_probe>({points.size(), 0u, device.about.features}, {.scene_layout = device.about.layout}, reads(device.records, p, c, eu, ev), writes(answer));
+        b.template run<kernels::shaft_probe>({points.size(), 0u, device.about.features},
+            {.scene_layout = device.about.layout}, reads(device.records, p, c, eu, ev), writes(answer));
         std::size_t wrong = 0, blocked = 0, empty = 0;
         for (const auto& a : b.download(answer)) {
             wrong += a.x != a.y ? 1u : 0u;
@@ -1085,12 +1156,16 @@ TYPED_TEST_P(hard_cases, b9_what_is_outside_a_shaft_blocks_nothing_in_it)
     }
 }
 
-REGISTER_TYPED_TEST_SUITE_P(hard_cases, b9_what_is_outside_a_shaft_blocks_nothing_in_it, b1_far_spheres_are_hit_within_rounding_of_the_distance, b2_a_large_sphere_is_hit_from_close_above, b3_hits_lie_on_their_quadric,
-    b4_no_ray_escapes_a_closed_mesh, b4_no_ray_passes_between_two_polygons, b5_rays_that_leave_a_surface_do_not_hit_it, long_b5_rays_that_leave_a_surface_do_not_hit_it,
-    b5_rays_inside_a_sphere_reach_its_other_side, b6_nothing_blocks_the_way_to_a_lamp_close_to_a_wall, b7_degenerate_rays_hit_nothing, b8_bases_are_orthonormal,
-    c1_refraction_is_finite_about_the_critical_angle, c2_energy_is_kept_down_to_grazing, c3_glass_in_glass_is_refused, c4_endless_total_reflection_is_cut_off_and_counted,
-    c5_a_camera_in_glass_sees_through_it, d2_irradiance_close_to_a_lamp_is_bounded, d3_samples_at_the_ends_of_the_unit_interval_are_finite,
-    d4_a_point_light_on_a_surface_is_finite, d5_dark_lights_are_refused, e1_random_numbers_stay_below_one, e3_hashes_have_known_answers, e3_streams_are_uniform_in_pairs,
-    e6_seeds_are_independent, f6_a_scene_far_away_renders_the_same);
+REGISTER_TYPED_TEST_SUITE_P(hard_cases, b9_what_is_outside_a_shaft_blocks_nothing_in_it,
+    b1_far_spheres_are_hit_within_rounding_of_the_distance, b2_a_large_sphere_is_hit_from_close_above,
+    b3_hits_lie_on_their_quadric, b4_no_ray_escapes_a_closed_mesh, b4_no_ray_passes_between_two_polygons,
+    b5_rays_that_leave_a_surface_do_not_hit_it, long_b5_rays_that_leave_a_surface_do_not_hit_it,
+    b5_rays_inside_a_sphere_reach_its_other_side, b6_nothing_blocks_the_way_to_a_lamp_close_to_a_wall,
+    b7_degenerate_rays_hit_nothing, b8_bases_are_orthonormal, c1_refraction_is_finite_about_the_critical_angle,
+    c2_energy_is_kept_down_to_grazing, c3_glass_in_glass_is_refused, c4_endless_total_reflection_is_cut_off_and_counted,
+    c5_a_camera_in_glass_sees_through_it, d2_irradiance_close_to_a_lamp_is_bounded,
+    d3_samples_at_the_ends_of_the_unit_interval_are_finite, d4_a_point_light_on_a_surface_is_finite,
+    d5_dark_lights_are_refused, e1_random_numbers_stay_below_one, e3_hashes_have_known_answers,
+    e3_streams_are_uniform_in_pairs, e6_seeds_are_independent, f6_a_scene_far_away_renders_the_same);
 
 } // namespace photongrid::testing

@@ -27,11 +27,14 @@ namespace {
     {
         scene s;
         s.name = "test";
-        s.materials = {{"white", material_kind::lambertian, dvec3(1)}, {"grey", material_kind::lambertian, dvec3(0.5)}, {"mirror", material_kind::mirror, dvec3(0.8)},
-            {"glass", material_kind::glass, dvec3(1), 1.5}};
+        s.materials = {{"white", material_kind::lambertian, dvec3(1)}, {"grey", material_kind::lambertian, dvec3(0.5)},
+            {"mirror", material_kind::mirror, dvec3(0.8)}, {"glass", material_kind::glass, dvec3(1), 1.5}};
         return s;
     }
-    polygon rectangle(dvec3 corner, dvec3 u, dvec3 v, std::uint32_t material) { return {{corner, corner + u, corner + u + v, corner + v}, material}; }
+    polygon rectangle(dvec3 corner, dvec3 u, dvec3 v, std::uint32_t material)
+    {
+        return {{corner, corner + u, corner + u + v, corner + v}, material};
+    }
 
     /// A camera that sees next to nothing but `point`.
     camera looking_at(dvec3 from, dvec3 point) { return {from, point, {0.3, 0.8, 0.5}, 0.001}; }
@@ -110,7 +113,8 @@ namespace {
         const double expected = 7 / (4 * M_PI) * 2 / std::pow(5, 1.5) + 3 / (4 * M_PI) * 1 / std::pow(10, 1.5);
         expect_agrees(render_reference(s, looking_at({0, 3, -1}, dvec3(0)), settings), expected / M_PI, 0.005);
         s.disks.push_back({{0.5, 1, 0}, {0, 1, 0}, 0.1, white}); // hides lamp a
-        expect_agrees(render_reference(s, looking_at({0, 3, -1}, dvec3(0)), settings), 3 / (4 * M_PI) / std::pow(10, 1.5) / M_PI, 0.02);
+        expect_agrees(render_reference(s, looking_at({0, 3, -1}, dvec3(0)), settings),
+            3 / (4 * M_PI) / std::pow(10, 1.5) / M_PI, 0.02);
         expect_dark(render_reference(s, looking_at({0, -3, -1}, dvec3(0)), settings)); // the other side is dark
     }
 
@@ -123,14 +127,18 @@ namespace {
             const double p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
             return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2 * M_PI);
         };
-        const auto right_angles = [](double x, double y) { return (std::atan(1 / y) - y / std::hypot(x, y) * std::atan(1 / std::hypot(x, y))) / (2 * M_PI); };
+        const auto right_angles = [](double x, double y) {
+            return (std::atan(1 / y) - y / std::hypot(x, y) * std::atan(1 / std::hypot(x, y))) / (2 * M_PI);
+        };
         scene s = empty_scene();
         s.disks = {{dvec3(0), {0, 1, 0}, 0.2, white}};
         s.rectangle_lights = {{"ceiling", {0, c, 0}, {a, 0, 0}, {0, 0, b}, dvec3(power)}}; // u x v = -y: facing down
-        expect_agrees(render_reference(s, looking_at({-1, 0.4, 0}, dvec3(0)), quick(8, 8, 2000)), radiance * parallel(a / c, b / c), 0.003);
+        expect_agrees(render_reference(s, looking_at({-1, 0.4, 0}, dvec3(0)), quick(8, 8, 2000)),
+            radiance * parallel(a / c, b / c), 0.003);
         // Upright at distance c, b along the edge, a up: B-4 with X = a / b, Y = c / b.
         s.rectangle_lights = {{"wall", {c, 0, 0}, {0, 0, b}, {0, a, 0}, dvec3(power)}}; // u x v = -x
-        expect_agrees(render_reference(s, looking_at({-1, 0.4, 0}, dvec3(0)), quick(8, 8, 2000)), radiance * right_angles(a / b, c / b), 0.003);
+        expect_agrees(render_reference(s, looking_at({-1, 0.4, 0}, dvec3(0)), quick(8, 8, 2000)),
+            radiance * right_angles(a / b, c / b), 0.003);
         s.rectangle_lights = {{"wall", {c, 0, 0}, {0, a, 0}, {0, 0, b}, dvec3(power)}}; // its back
         expect_dark(render_reference(s, looking_at({-1, 0.4, 0}, dvec3(0)), quick(2, 2, 100)));
         // Seen itself it shows its radiance, in front only.
@@ -143,8 +151,9 @@ namespace {
     {
         scene s = empty_scene();
         s.materials[3].reflectance = dvec3(0.9);
-        s.polygons = {rectangle({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 3), rectangle({-1, -1, -0.1}, {0, 2, 0}, {2, 0, 0}, 3)}; // normals +z and -z
-        s.rectangle_lights = {{"lamp", {-4, -4, -1}, {8, 0, 0}, {0, 8, 0}, dvec3(64 * M_PI)}};                              // radiance 1, facing +z
+        s.polygons = {rectangle({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 3),
+            rectangle({-1, -1, -0.1}, {0, 2, 0}, {2, 0, 0}, 3)};                               // normals +z and -z
+        s.rectangle_lights = {{"lamp", {-4, -4, -1}, {8, 0, 0}, {0, 8, 0}, dvec3(64 * M_PI)}}; // radiance 1, facing +z
         const double r = 0.04, t = 0.9; // ((1.5 - 1) / (1.5 + 1))^2
         auto settings = quick(8, 8, 2000);
         settings.depth = 200;
@@ -157,14 +166,17 @@ namespace {
         // At 60 degrees, without tint: Fresnel's amplitudes by tangents and sines of the two angles.
         s.materials[3].reflectance = dvec3(1);
         const double i = M_PI / 3, o = std::asin(std::sin(i) / 1.5);
-        const double rs = std::pow(std::sin(i - o) / std::sin(i + o), 2), rp = std::pow(std::tan(i - o) / std::tan(i + o), 2);
+        const double rs = std::pow(std::sin(i - o) / std::sin(i + o), 2),
+                     rp = std::pow(std::tan(i - o) / std::tan(i + o), 2);
         settings.depth = 2;
         const double share = 0.5 * (rs + rp);
-        expect_agrees(render_reference(s, looking_at({std::sin(i), 0, std::cos(i)}, dvec3(0)), settings), (1 - share) * (1 - share), 0.003);
+        expect_agrees(render_reference(s, looking_at({std::sin(i), 0, std::cos(i)}, dvec3(0)), settings),
+            (1 - share) * (1 - share), 0.003);
     }
 
     /// Flux per ring of the floor, by the light tracer: irradiance round the ring times its area.
-    std::vector<double> flux_in_rings(const scene& s, const reference_settings& settings, double width, std::size_t rings)
+    std::vector<double> flux_in_rings(
+        const scene& s, const reference_settings& settings, double width, std::size_t rings)
     {
         const reference::geometry shapes(s);
         reference_stats stats;
@@ -185,7 +197,8 @@ namespace {
 
     TEST(reference, glass_ball_has_the_caustic_of_snells_law)
     {
-        // Lamp, ball and floor on one axis. Light through the ball by one entry and one exit, and light reflected by its outside.
+        // Lamp, ball and floor on one axis. Light through the ball by one entry and one exit, and light reflected by
+        // its outside.
         const double lamp = 3, middle = 2, radius = 0.5, index = 1.5, power = 20, floor = 0, width = 0.025;
         const std::size_t rings = 40;
         scene s = empty_scene();
@@ -207,9 +220,10 @@ namespace {
             const double alpha = widest * (k + 0.5) / steps;
             const double flux = power / 2 * std::sin(alpha) * widest / steps;
             const double i = std::asin(distance * std::sin(alpha) / radius), o = std::asin(std::sin(i) / index);
-            const double rs = std::pow(std::sin(i - o) / std::sin(i + o), 2), rp = std::pow(std::tan(i - o) / std::tan(i + o), 2), r = 0.5 * (rs + rp);
-            // Position angle of the entry, seen from the ball's middle off the upward axis; each refraction turns the ray
-            // towards the axis by i - o, and the exit lies pi - 2 o further round.
+            const double rs = std::pow(std::sin(i - o) / std::sin(i + o), 2),
+                         rp = std::pow(std::tan(i - o) / std::tan(i + o), 2), r = 0.5 * (rs + rp);
+            // Position angle of the entry, seen from the ball's middle off the upward axis; each refraction turns the
+            // ray towards the axis by i - o, and the exit lies pi - 2 o further round.
             const double entry = i - alpha, exit = entry + M_PI - 2 * o;
             const double turned = alpha - 2 * (i - o); // direction off straight down
             const double x = radius * std::sin(exit), y = middle + radius * std::cos(exit);
@@ -218,7 +232,8 @@ namespace {
                 expected[static_cast<std::size_t>(rho / width)] += flux * (1 - r) * (1 - r);
             const double reflected = alpha + M_PI - 2 * i; // off straight down
             if (std::abs(reflected) < M_PI / 2) {
-                const double far = radius * std::sin(entry) + (middle + radius * std::cos(entry) - floor) * std::tan(reflected);
+                const double far
+                    = radius * std::sin(entry) + (middle + radius * std::cos(entry) - floor) * std::tan(reflected);
                 if (far < width * static_cast<double>(rings))
                     expected[static_cast<std::size_t>(far / width)] += flux * r;
             }
@@ -226,7 +241,9 @@ namespace {
         double total = 0;
         for (std::size_t i = 0; i < rings; ++i) {
             total += expected[i];
-            EXPECT_NEAR(traced[i], expected[i], 5 * std::sqrt(std::max(expected[i], 20 * power / 4e6) * power / 4e6) + 1e-3 * expected[i]) << "ring " << i;
+            EXPECT_NEAR(traced[i], expected[i],
+                5 * std::sqrt(std::max(expected[i], 20 * power / 4e6) * power / 4e6) + 1e-3 * expected[i])
+                << "ring " << i;
         }
         EXPECT_GT(total, 0.1);
         EXPECT_NEAR(std::accumulate(traced.begin(), traced.end(), 0.0), total, 5 * std::sqrt(total * power / 4e6));
@@ -254,22 +271,29 @@ namespace {
         for (int i = 0; i < around; ++i)
             for (int k = 0; k < up; ++k) {
                 const double phi = 2 * M_PI * (i + 0.5) / around, y = height * (k + 0.5) / up;
-                const dvec3 p(r * std::cos(phi), y, r * std::sin(phi)), inward(-std::cos(phi), 0, -std::sin(phi)), in = p - lamp;
+                const dvec3 p(r * std::cos(phi), y, r * std::sin(phi)), inward(-std::cos(phi), 0, -std::sin(phi)),
+                    in = p - lamp;
                 const double length = glm::length(in), cosine = -glm::dot(in, inward) / length;
-                const double flux = power / (4 * M_PI) * cosine / (length * length) * (2 * M_PI * r / around) * (height / up) * 0.8;
+                const double flux
+                    = power / (4 * M_PI) * cosine / (length * length) * (2 * M_PI * r / around) * (height / up) * 0.8;
                 const dvec3 out = in - 2 * glm::dot(in, inward) * inward;
                 const dvec3 q = p - p.y / out.y * out;
-                if (out.y < 0 && std::hypot(q.x, q.z) < r) // inside, so neither the ray in nor the ray out met the wall before
-                    expected[static_cast<std::size_t>((std::floor((q.z + 1) * cells / 2)) * cells + std::floor((q.x + 1) * cells / 2))] += flux;
+                if (out.y < 0
+                    && std::hypot(q.x, q.z) < r) // inside, so neither the ray in nor the ray out met the wall before
+                    expected[static_cast<std::size_t>(
+                        (std::floor((q.z + 1) * cells / 2)) * cells + std::floor((q.x + 1) * cells / 2))]
+                        += flux;
             }
         double total = 0;
         for (int z = 0; z < cells; ++z)
             for (int x = 0; x < cells; ++x) {
                 const dvec3 p((x + 0.5) * 2 / cells - 1, 0.5, (z + 0.5) * 2 / cells - 1);
                 const reference::hit floor = shapes.nearest({{p.x, 1e-9, p.z}, {0, -1, 0}, reference::nothing});
-                const double traced = bins.irradiance(floor, {0, -1, 0}).first.x * (4.0 / (cells * cells)), wanted = expected[static_cast<std::size_t>(z * cells + x)];
+                const double traced = bins.irradiance(floor, {0, -1, 0}).first.x * (4.0 / (cells * cells)),
+                             wanted = expected[static_cast<std::size_t>(z * cells + x)];
                 EXPECT_EQ(bins.irradiance(floor, {0, 1, 0}).first, dvec3(0)) << "the floor's other side";
-                EXPECT_NEAR(traced, wanted, 5 * std::sqrt((wanted + 10 * power / 4e6) * power / 4e6) + 2e-3 * wanted) << x << ", " << z;
+                EXPECT_NEAR(traced, wanted, 5 * std::sqrt((wanted + 10 * power / 4e6) * power / 4e6) + 2e-3 * wanted)
+                    << x << ", " << z;
                 total += wanted;
             }
         EXPECT_GT(total, 0.2);
@@ -279,12 +303,14 @@ namespace {
     {
         scene s = empty_scene();
         s.disks = {{dvec3(0), {0, 0, 1}, 3, 2}};
-        s.rectangle_lights = {{"lamp", {0.1, -0.3, 2}, {0, 0.9, 0}, {0.5, 0, 0}, dvec3(M_PI * 0.45 * 10)}}; // facing the mirror, -z
-        const camera eye{{2.5, 0.1, 4}, {0.35, 0.15, -2}, {0, 1, 0}, 10}; // past the lamp itself
+        s.rectangle_lights
+            = {{"lamp", {0.1, -0.3, 2}, {0, 0.9, 0}, {0.5, 0, 0}, dvec3(M_PI * 0.45 * 10)}}; // facing the mirror, -z
+        const camera eye{{2.5, 0.1, 4}, {0.35, 0.15, -2}, {0, 1, 0}, 10};                    // past the lamp itself
         const auto in_mirror = render_reference(s, eye, quick(24, 24, 64));
         scene direct = s;
         direct.disks.clear();
-        direct.rectangle_lights[0] = {"lamp", {0.1, -0.3, -2}, {0.5, 0, 0}, {0, 0.9, 0}, s.rectangle_lights[0].power}; // behind, facing +z
+        direct.rectangle_lights[0]
+            = {"lamp", {0.1, -0.3, -2}, {0.5, 0, 0}, {0, 0.9, 0}, s.rectangle_lights[0].power}; // behind, facing +z
         const auto behind = render_reference(direct, eye, quick(24, 24, 64));
         int lit = 0, edge = 0;
         for (std::size_t i = 0; i < in_mirror.mean.pixels.size(); ++i) { // the same random numbers: the same eye rays
@@ -306,7 +332,8 @@ namespace {
         double difference = 0, variance = 0, n = 0;
         for (std::size_t i = 0; i < a.mean.pixels.size(); ++i) {
             const double d = static_cast<double>(a.mean.pixels[i].y) - static_cast<double>(b.mean.pixels[i].y);
-            const double v = std::pow(static_cast<double>(a.standard_error.pixels[i].y), 2) + std::pow(static_cast<double>(b.standard_error.pixels[i].y), 2);
+            const double v = std::pow(static_cast<double>(a.standard_error.pixels[i].y), 2)
+                + std::pow(static_cast<double>(b.standard_error.pixels[i].y), 2);
             difference += d;
             variance += v;
             if (v > 0) {
@@ -344,7 +371,8 @@ namespace {
     {
         // A glass ball with a grey one inside it, a mirror, and walls that reflect the caustics.
         scene s = empty_scene();
-        s.polygons = {rectangle({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, 1), rectangle({-2, 0, -1}, {4, 0, 0}, {0, 2, 0}, 1), rectangle({1, 0, -1}, {0, 0, 1}, {0, 1, 0}, 2)};
+        s.polygons = {rectangle({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, 1), rectangle({-2, 0, -1}, {4, 0, 0}, {0, 2, 0}, 1),
+            rectangle({1, 0, -1}, {0, 0, 1}, {0, 1, 0}, 2)};
         s.spheres = {{{0, 0.6, 0}, 0.5, 3}, {{0.1, 0.5, 0}, 0.25, 1}};
         s.rectangle_lights = {{"lamp", {-0.7, 2, -0.5}, {1, 0, 0}, {0, 0, 1}, dvec3(10)}};
         const camera eye{{0.3, 2, 4}, {0, 0.4, 0}, {0, 1, 0}, 30};
@@ -379,12 +407,14 @@ namespace {
         std::normal_distribution<double> normal;
         int hits = 0, misses = 0;
         for (int n = 0; n < 1500; ++n) {
-            dvec3 o(normal(random), normal(random), normal(random)), target(normal(random), normal(random), normal(random));
+            dvec3 o(normal(random), normal(random), normal(random)),
+                target(normal(random), normal(random), normal(random));
             o *= n % 3 == 0 ? 0.5 : n % 3 == 1 ? 3.0 : 1e4;
             const dvec3 d = glm::normalize(0.7 * target - o);
             const auto h = shapes.nearest({o, d, reference::nothing});
             const auto at = [&](real t) { return rvec(o) + rvec(d) * t; };
-            const real middle = -glm::dot(rvec(o), rvec(d)), first = std::max<real>(0, middle - e.reach), last = middle + e.reach;
+            const real middle = -glm::dot(rvec(o), rvec(d)), first = std::max<real>(0, middle - e.reach),
+                       last = middle + e.reach;
             real root = std::numeric_limits<real>::infinity();
             const int steps = 1500;
             for (int i = 0; i < steps && !(root < last) && first < last; ++i) {
@@ -405,8 +435,8 @@ namespace {
                 continue;
             }
             ++hits;
-            // What it says lies on the shape and on the ray; nothing lies before. A pair of roots within one step of brute
-            // force is not seen by that, hence no equality.
+            // What it says lies on the shape and on the ray; nothing lies before. A pair of roots within one step of
+            // brute force is not seen by that, hence no equality.
             EXPECT_LT(std::abs(e.value(rvec(h.position))), 1e-12L);
             const real t = static_cast<real>(h.t);
             EXPECT_LT(glm::length(rvec(h.position) - at(t)), 1e-9L * scale);
@@ -452,11 +482,16 @@ namespace {
             SCOPED_TRACE(name);
             expect_first_root(one, e, random);
         };
-        try_out("sphere", only(&scene::spheres, sphere{a, 0.5, 0}), {[=](const rvec& p) { return glm::length(p - rvec(a)) - radius; }, [](const rvec&) { return true; }, 1.2L});
-        try_out("cylinder", only(&scene::cylinders, cylinder{a, b, 0.5, 0}), {[=](const rvec& p) { return off(p) - radius; }, between, 1.8L});
-        try_out("cone", only(&scene::cones, cone{a, b, 0.5, 0}), {[=](const rvec& p) { return off(p) - radius * (1 - z(p) / height); }, between, 1.8L});
-        try_out("paraboloid", only(&scene::paraboloids, paraboloid{a, b, 0.5, 0}), {[=](const rvec& p) { return off(p) * off(p) - radius * radius * z(p) / height; }, between, 1.8L});
-        try_out("disk", only(&scene::disks, disk{a, b - a, 0.5, 0}), {[=](const rvec& p) { return z(p); }, [=](const rvec& p) { return off(p) <= radius; }, 1.8L});
+        try_out("sphere", only(&scene::spheres, sphere{a, 0.5, 0}),
+            {[=](const rvec& p) { return glm::length(p - rvec(a)) - radius; }, [](const rvec&) { return true; }, 1.2L});
+        try_out("cylinder", only(&scene::cylinders, cylinder{a, b, 0.5, 0}),
+            {[=](const rvec& p) { return off(p) - radius; }, between, 1.8L});
+        try_out("cone", only(&scene::cones, cone{a, b, 0.5, 0}),
+            {[=](const rvec& p) { return off(p) - radius * (1 - z(p) / height); }, between, 1.8L});
+        try_out("paraboloid", only(&scene::paraboloids, paraboloid{a, b, 0.5, 0}),
+            {[=](const rvec& p) { return off(p) * off(p) - radius * radius * z(p) / height; }, between, 1.8L});
+        try_out("disk", only(&scene::disks, disk{a, b - a, 0.5, 0}),
+            {[=](const rvec& p) { return z(p); }, [=](const rvec& p) { return off(p) <= radius; }, 1.8L});
         // A pentagon: half-planes between neighbouring corners.
         const dvec3 u = reference::across(glm::normalize(b - a)), v = glm::cross(glm::normalize(b - a), u);
         polygon pentagon;
@@ -478,7 +513,8 @@ namespace {
         scene s = empty_scene();
         s.point_lights = {{"lamp", {0, 9, 0}, dvec3(1)}};
         s.spheres = {{{0, 0, 0}, 1, 0}};
-        const auto hits = [&](const reference::ray& r) { return reference::geometry(s).nearest(r).shape != reference::nothing; };
+        const auto hits
+            = [&](const reference::ray& r) { return reference::geometry(s).nearest(r).shape != reference::nothing; };
         EXPECT_TRUE(hits({{-1e6, 1 - 1e-9, 0}, {1, 0, 0}, reference::nothing}));
         EXPECT_FALSE(hits({{-1e6, 1 + 1e-9, 0}, {1, 0, 0}, reference::nothing}));
         // From the surface outward never again, inward always: however flat.
@@ -492,7 +528,8 @@ namespace {
         std::mt19937 random(3);
         std::uniform_real_distribution<double> unit;
         for (int i = 0; i < 20000; ++i) {
-            const dvec3 from(unit(random), unit(random), 3 + unit(random)), to = (0.01 + 0.98 * unit(random)) * dvec3(1, 1, 0.7);
+            const dvec3 from(unit(random), unit(random), 3 + unit(random)),
+                to = (0.01 + 0.98 * unit(random)) * dvec3(1, 1, 0.7);
             EXPECT_TRUE(hits({from, glm::normalize(to - from), reference::nothing}));
         }
     }
@@ -518,22 +555,27 @@ namespace {
             EXPECT_NEAR(whole_area(ring_bins(disk{from, to, r, 0}, size)), M_PI * r * r, 1e-11);
             EXPECT_NEAR(whole_area(ring_bins(cylinder{from, to, r, 0}, size)), 2 * M_PI * r * h, 1e-11);
             EXPECT_NEAR(whole_area(ring_bins(cone{from, to, r, 0}, size)), M_PI * r * std::hypot(r, h), 1e-11);
-            EXPECT_NEAR(whole_area(ring_bins(paraboloid{from, to, r, 0}, size)), M_PI * r / (6 * h * h) * (std::pow(r * r + 4 * h * h, 1.5) - r * r * r), 1e-11);
+            EXPECT_NEAR(whole_area(ring_bins(paraboloid{from, to, r, 0}, size)),
+                M_PI * r / (6 * h * h) * (std::pow(r * r + 4 * h * h, 1.5) - r * r * r), 1e-11);
             for (std::size_t corners = 3; corners < 9; ++corners) {
                 polygon p;
                 for (std::size_t i = 0; i < corners; ++i) {
-                    const double phi = 2 * M_PI * (static_cast<double>(i) + 0.3 * std::sin(static_cast<double>(i))) / static_cast<double>(corners);
-                    p.vertices.push_back(from + std::cos(phi) * dvec3(1, 0.2, 0) + std::sin(phi) * dvec3(0.1, -0.3, 1.4));
+                    const double phi = 2 * M_PI * (static_cast<double>(i) + 0.3 * std::sin(static_cast<double>(i)))
+                        / static_cast<double>(corners);
+                    p.vertices.push_back(
+                        from + std::cos(phi) * dvec3(1, 0.2, 0) + std::sin(phi) * dvec3(0.1, -0.3, 1.4));
                 }
                 EXPECT_NEAR(whole_area(plane_bins(p, size)), glm::length(area_vector(p)), 1e-11);
             }
         }
-        EXPECT_NEAR(whole_area(ring_bins(paraboloid{from, from + dvec3(0, 1e-9, 0), r, 0}, 0.1)), M_PI * r * r, 1e-11); // nearly flat
+        EXPECT_NEAR(whole_area(ring_bins(paraboloid{from, from + dvec3(0, 1e-9, 0), r, 0}, 0.1)), M_PI * r * r,
+            1e-11); // nearly flat
     }
 
     TEST(reference, points_spread_evenly_fill_bins_by_area)
     {
-        // Each bin's share of evenly spread points is its share of the area: chi-squared, with points made shape by shape.
+        // Each bin's share of evenly spread points is its share of the area: chi-squared, with points made shape by
+        // shape.
         std::mt19937 random(5);
         std::uniform_real_distribution<double> unit;
         const auto expect_even = [&](const char* name, const auto& bins, auto point) {
@@ -563,8 +605,10 @@ namespace {
             const double z = 2 * unit(random) - 1;
             return round_z(std::sqrt(1 - z * z), z);
         });
-        expect_even("disk", reference::ring_bins(disk{{0, 0, 0}, {0, 0, 1}, 1, 0}, 0.1), [&] { return round_z(std::sqrt(unit(random)), 0); });
-        expect_even("cylinder", reference::ring_bins(cylinder{{0, 0, 0}, {0, 0, 2}, 1, 0}, 0.2), [&] { return round_z(1, 2 * unit(random)); });
+        expect_even("disk", reference::ring_bins(disk{{0, 0, 0}, {0, 0, 1}, 1, 0}, 0.1),
+            [&] { return round_z(std::sqrt(unit(random)), 0); });
+        expect_even("cylinder", reference::ring_bins(cylinder{{0, 0, 0}, {0, 0, 2}, 1, 0}, 0.2),
+            [&] { return round_z(1, 2 * unit(random)); });
         expect_even("cone", reference::ring_bins(cone{{0, 0, 0}, {0, 0, 2}, 1, 0}, 0.1), [&] {
             const double x = std::sqrt(unit(random));
             return round_z(x, 2 * (1 - x));
@@ -591,11 +635,16 @@ namespace {
     {
         EXPECT_THROW(reference::ring_bins(sphere{{0, 0, 0}, 1, 0}, 1e-9), std::invalid_argument);
         EXPECT_THROW(reference::ring_bins(paraboloid{{0, 0, 0}, {0, 0, 1e6}, 1, 0}, 1e-3), std::invalid_argument);
-        EXPECT_THROW(reference::plane_bins(rectangle({0, 0, 0}, {1e9, 0, 0}, {0, 1e9, 0}, 0), 1e-3), std::invalid_argument);
+        EXPECT_THROW(
+            reference::plane_bins(rectangle({0, 0, 0}, {1e9, 0, 0}, {0, 1e9, 0}, 0), 1e-3), std::invalid_argument);
     }
 
     // --- errors, seeds, threads ---
-    bool same_bytes(const image& a, const image& b) { return a.pixels.size() == b.pixels.size() && std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0; }
+    bool same_bytes(const image& a, const image& b)
+    {
+        return a.pixels.size() == b.pixels.size()
+            && std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
+    }
 
     TEST(reference, same_seed_same_bytes_on_any_number_of_threads)
     {
@@ -641,7 +690,8 @@ namespace {
     {
         auto s = testing::small_cornell();
         auto settings = quick(8, 8, 32);
-        s.materials[4].kind = s.materials[3].kind = material_kind::lambertian; // rare bright caustics by paths have a spread that 40 seeds do not show
+        s.materials[4].kind = s.materials[3].kind
+            = material_kind::lambertian; // rare bright caustics by paths have a spread that 40 seeds do not show
         expect_honest_errors(s, settings);
         // With bins, whose errors all samples of a pixel share: a dark floor with a caustic and little else.
         scene c = empty_scene();
@@ -687,7 +737,9 @@ namespace {
         const fs::path folder = fs::temp_directory_path() / ("photongrid_reference_" + std::to_string(::getpid()));
         fs::create_directories(folder);
         const auto run = [&](const std::string& arguments) {
-            const int status = std::system(("cd " + folder.string() + " && " + PHOTONGRID_PROGRAM + " reference " + PHOTONGRID_SCENES "/ring.json " + arguments + " >out 2>err").c_str());
+            const int status = std::system(("cd " + folder.string() + " && " + PHOTONGRID_PROGRAM + " reference "
+                + PHOTONGRID_SCENES "/ring.json " + arguments + " >out 2>err")
+                                               .c_str());
             return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
         };
         EXPECT_EQ(run("-o a.exr --error e.pfm --size 16x12 --spp 16 --paths 20000 --seed 3 --stats s.json"), 0);

@@ -67,16 +67,20 @@ protected:
         const auto photons_of = [&](auto& b) {
             const auto device = upload_scene(b, s);
             const auto t = trace_photons(b, s, device, settings);
-            return std::tuple{b.download(t.photons.positions), b.download(t.photons.powers), b.download(t.photons.directions), t.emitted};
+            return std::tuple{b.download(t.photons.positions), b.download(t.photons.powers),
+                b.download(t.photons.directions), t.emitted};
         };
         const auto mine = photons_of(this->b());
         const auto theirs = photons_of(serial);
         if (!this->b().caps().exact_division || !this->b().caps().exact_sqrt)
-            GTEST_SKIP() << "this device rounds division or square root loosely; pictures are compared statistically (long_statistics)";
+            GTEST_SKIP() << "this device rounds division or square root loosely; pictures are compared statistically "
+                            "(long_statistics)";
         EXPECT_EQ(std::get<3>(mine), std::get<3>(theirs));
-        EXPECT_EQ(count_different_bits(std::get<0>(mine), std::get<0>(theirs)), 0u) << "positions of " << settings.photons;
+        EXPECT_EQ(count_different_bits(std::get<0>(mine), std::get<0>(theirs)), 0u)
+            << "positions of " << settings.photons;
         EXPECT_EQ(count_different_bits(std::get<1>(mine), std::get<1>(theirs)), 0u) << "powers of " << settings.photons;
-        EXPECT_EQ(count_different_bits(std::get<2>(mine), std::get<2>(theirs)), 0u) << "directions of " << settings.photons;
+        EXPECT_EQ(count_different_bits(std::get<2>(mine), std::get<2>(theirs)), 0u)
+            << "directions of " << settings.photons;
 
         for (const auto builder : {map_builder::sort, map_builder::route}) {
             auto with = settings;
@@ -111,7 +115,8 @@ TYPED_TEST_P(pictures, a_closed_diffuse_sphere_has_the_known_radiance)
             mean += glm::dvec3(p) / static_cast<double>(im.pixels.size());
         for (int c = 0; c < 3; ++c) {
             const double known = reflectance[c] / (1 - reflectance[c]);
-            EXPECT_NEAR(mean[c], known, 0.02 * known) << "channel " << c; // noise of 40,000 photons, the paper's N/A bias
+            EXPECT_NEAR(mean[c], known, 0.02 * known)
+                << "channel " << c; // noise of 40,000 photons, the paper's N/A bias
         }
         expect_an_exact_account(stats.photons, settings.photons);
         EXPECT_EQ(stats.photons.escaped, 0u); // closed: no ray slips out
@@ -124,12 +129,14 @@ TYPED_TEST_P(pictures, direct_light_of_a_rectangle_equals_the_form_factor)
     auto s = small_cornell();
     s.spheres.clear();
     const auto& lamp = s.rectangle_lights[0];
-    const dvec3 corners[4] = {lamp.corner, lamp.corner + lamp.edge_u, lamp.corner + lamp.edge_u + lamp.edge_v, lamp.corner + lamp.edge_v};
+    const dvec3 corners[4]
+        = {lamp.corner, lamp.corner + lamp.edge_u, lamp.corner + lamp.edge_u + lamp.edge_v, lamp.corner + lamp.edge_v};
     const double area = glm::length(glm::cross(lamp.edge_u, lamp.edge_v));
     struct place {
         dvec3 point, normal;
     };
-    const place places[] = {{{0.5, 0, 0.5}, {0, 1, 0}}, {{0.1, 0, 0.9}, {0, 1, 0}}, {{0.0, 0.3, 0.5}, {1, 0, 0}}, {{1.0, 0.8, 0.2}, {-1, 0, 0}}, {{0.5, 0.1, 1.0}, {0, 0, -1}}};
+    const place places[] = {{{0.5, 0, 0.5}, {0, 1, 0}}, {{0.1, 0, 0.9}, {0, 1, 0}}, {{0.0, 0.3, 0.5}, {1, 0, 0}},
+        {{1.0, 0.8, 0.2}, {-1, 0, 0}}, {{0.5, 0.1, 1.0}, {0, 0, -1}}};
 
     auto& b = this->b();
     const auto device = upload_scene(b, s);
@@ -149,10 +156,12 @@ TYPED_TEST_P(pictures, direct_light_of_a_rectangle_equals_the_form_factor)
     for (std::size_t i = 0; i < points.size(); ++i) {
         dvec3 sum(0);
         for (int e = 0; e < 4; ++e) {
-            const dvec3 a = glm::normalize(corners[e] - places[i].point), c = glm::normalize(corners[(e + 1) % 4] - places[i].point);
+            const dvec3 a = glm::normalize(corners[e] - places[i].point),
+                        c = glm::normalize(corners[(e + 1) % 4] - places[i].point);
             sum += std::acos(glm::dot(a, c)) * glm::normalize(glm::cross(a, c));
         }
-        const double factor = std::abs(glm::dot(sum, places[i].normal)) / (2 * M_PI); // of the hemisphere, cosine-weighted
+        const double factor
+            = std::abs(glm::dot(sum, places[i].normal)) / (2 * M_PI); // of the hemisphere, cosine-weighted
         for (int c = 0; c < 3; ++c) {
             const double irradiance = lamp.power[c] / area * factor;
             EXPECT_NEAR(light[i][c], irradiance, 0.01 * irradiance) << "place " << i;
@@ -162,13 +171,16 @@ TYPED_TEST_P(pictures, direct_light_of_a_rectangle_equals_the_form_factor)
 
 TYPED_TEST_P(pictures, a_glass_ball_focuses_the_flux_it_should)
 {
-    // A point light above a glass ball above a nearly black floor. What two refractions bring to the floor's middle is a
-    // one-dimensional integral over the angle at the light, done here in double.
+    // A point light above a glass ball above a nearly black floor. What two refractions bring to the floor's middle is
+    // a one-dimensional integral over the angle at the light, done here in double.
     scene s;
     s.name = "caustic";
     const double index = 1.5, radius = 0.3, height = 0.4, light_height = 1.6, floor_half = 3;
-    s.materials = {{"floor", material_kind::lambertian, dvec3(0.001)}, {"glass", material_kind::glass, dvec3(1), index}};
-    s.polygons = {{{{-floor_half, 0, -floor_half}, {-floor_half, 0, floor_half}, {floor_half, 0, floor_half}, {floor_half, 0, -floor_half}}, 0}};
+    s.materials
+        = {{"floor", material_kind::lambertian, dvec3(0.001)}, {"glass", material_kind::glass, dvec3(1), index}};
+    s.polygons = {{{{-floor_half, 0, -floor_half}, {-floor_half, 0, floor_half}, {floor_half, 0, floor_half},
+                       {floor_half, 0, -floor_half}},
+        0}};
     s.spheres = {{{0, height, 0}, radius, 1}};
     s.point_lights = {{"bulb", {0, light_height, 0}, dvec3(10)}};
     s.camera = {{0, 1, -3}, {0, 0, 0}, {0, 1, 0}, 45};
@@ -180,7 +192,8 @@ TYPED_TEST_P(pictures, a_glass_ball_focuses_the_flux_it_should)
         if (sin2 >= 1)
             return 1.0;
         const double cos_t = std::sqrt(1 - sin2);
-        const double a = (cos_i - eta * cos_t) / (cos_i + eta * cos_t), p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+        const double a = (cos_i - eta * cos_t) / (cos_i + eta * cos_t),
+                     p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
         return 0.5 * (a * a + p * p);
     };
     double expected = 0;
@@ -188,7 +201,8 @@ TYPED_TEST_P(pictures, a_glass_ball_focuses_the_flux_it_should)
     const double largest = std::asin(radius / (light_height - height));
     for (int i = 0; i < steps; ++i) {
         const double theta = (i + 0.5) / steps * largest;
-        glm::dvec2 o(0, light_height - height), d(std::sin(theta), -std::cos(theta)); // about the ball's middle, in the plane
+        glm::dvec2 o(0, light_height - height),
+            d(std::sin(theta), -std::cos(theta)); // about the ball's middle, in the plane
         const double bb = glm::dot(o, d), disc = bb * bb - glm::dot(o, o) + radius * radius;
         const glm::dvec2 p = o + d * (-bb - std::sqrt(std::max(0.0, disc)));
         const glm::dvec2 n = p / radius;
@@ -196,11 +210,13 @@ TYPED_TEST_P(pictures, a_glass_ball_focuses_the_flux_it_should)
         const glm::dvec2 in = eta * d + (eta * cos_i - cos_t) * n;
         const glm::dvec2 q = p - 2 * glm::dot(p, in) * in;
         const glm::dvec2 m = -q / radius; // inward normal
-        const double cos_j = -glm::dot(in, m), cos_u = std::sqrt(std::max(0.0, 1 - index * index * (1 - cos_j * cos_j)));
+        const double cos_j = -glm::dot(in, m),
+                     cos_u = std::sqrt(std::max(0.0, 1 - index * index * (1 - cos_j * cos_j)));
         const glm::dvec2 out = index * in + (index * cos_j - cos_u) * m;
         const double t = (-height - q.y) / out.y;
         if (out.y < 0 && std::abs(q.x + t * out.x) <= within)
-            expected += 10 * (1 - fresnel(cos_i, eta)) * (1 - fresnel(cos_j, index)) * 0.5 * std::sin(theta) * largest / steps;
+            expected += 10 * (1 - fresnel(cos_i, eta)) * (1 - fresnel(cos_j, index)) * 0.5 * std::sin(theta) * largest
+                / steps;
     }
 
     auto& b = this->b();
@@ -251,7 +267,8 @@ TYPED_TEST_P(pictures, flux_balances_per_channel)
         const uint paths = 16384;
         detail::photon_frames<typename TestFixture::B> f(b, std::size_t{paths} * 7);
         const uint frames = trace_batch(b, device, f, paths, 0, s.render);
-        const auto positions = b.download(f.positions), powers = b.download(f.powers), directions = b.download(f.directions);
+        const auto positions = b.download(f.positions), powers = b.download(f.powers),
+                   directions = b.download(f.directions);
         dvec3 mean(0), squares(0);
         for (uint p = 0; p < paths; ++p) {
             dvec3 balance(0);
@@ -300,8 +317,8 @@ TYPED_TEST_P(pictures, a_photon_takes_at_most_64_bytes)
 
 TYPED_TEST_P(pictures, long_statistics_of_a_picture_equal_serials)
 {
-    // For devices that round loosely, and a check of all others: over 8 seeds a side, at least 99.75 % of the means over
-    // 8 x 8 pixels agree in a z-test (0.01, Sidak over the blocks).
+    // For devices that round loosely, and a check of all others: over 8 seeds a side, at least 99.75 % of the means
+    // over 8 x 8 pixels agree in a z-test (0.01, Sidak over the blocks).
     serial_backend serial;
     for (const auto& s : {small_cornell(), all_shapes()}) {
         const uint bx = s.render.width / 8, by = s.render.height / 8;
@@ -317,7 +334,8 @@ TYPED_TEST_P(pictures, long_statistics_of_a_picture_equal_serials)
                         for (int c = 0; c < 3; ++c) {
                             double mean = 0;
                             for (uint j = 0; j < 64; ++j)
-                                mean += static_cast<double>(im.pixels[(y * 8 + j / 8) * im.width + x * 8 + j % 8][c]) / 64;
+                                mean += static_cast<double>(im.pixels[(y * 8 + j / 8) * im.width + x * 8 + j % 8][c])
+                                    / 64;
                             blocks[(std::size_t{y} * bx + x) * 3 + static_cast<std::size_t>(c)].push_back(mean);
                         }
             }
@@ -338,7 +356,9 @@ TYPED_TEST_P(pictures, long_statistics_of_a_picture_equal_serials)
         const auto tail = [](double t) { // P(|T| > t), 14 degrees of freedom, by Simpson's rule
             const int n = 2000;
             const double top = 200, h = (top - t) / n;
-            const auto density = [](double x) { return std::tgamma(7.5) / (std::sqrt(14 * M_PI) * std::tgamma(7)) * std::pow(1 + x * x / 14, -7.5); };
+            const auto density = [](double x) {
+                return std::tgamma(7.5) / (std::sqrt(14 * M_PI) * std::tgamma(7)) * std::pow(1 + x * x / 14, -7.5);
+            };
             double sum = density(t) + density(top);
             for (int i = 1; i < n; ++i)
                 sum += density(t + i * h) * (i % 2 == 1 ? 4 : 2);
@@ -353,7 +373,8 @@ TYPED_TEST_P(pictures, long_statistics_of_a_picture_equal_serials)
             const auto [c, vc] = moments(theirs[i]);
             accepted += std::abs(a - c) <= high * std::sqrt(va + vc + 1e-14) ? 1u : 0u;
         }
-        EXPECT_GE(static_cast<double>(accepted), 0.9975 * static_cast<double>(mine.size())) << s.name << ", limit " << high;
+        EXPECT_GE(static_cast<double>(accepted), 0.9975 * static_cast<double>(mine.size()))
+            << s.name << ", limit " << high;
     }
 }
 
@@ -392,7 +413,8 @@ TYPED_TEST_P(pictures, sorting_and_routing_agree)
     render_stats stats;
     const auto all_kept = this->picture(s, settings, &stats);
     EXPECT_EQ(stats.map.overfull_cells, 0u);
-    EXPECT_LE(relative_mse(all_kept, sorted), 1e-3); // at least k: which photon is the k-th depends on the order of visits
+    EXPECT_LE(
+        relative_mse(all_kept, sorted), 1e-3); // at least k: which photon is the k-th depends on the order of visits
     settings.slots = 3;
     const auto some_kept = this->picture(s, settings, &stats);
     EXPECT_GT(stats.map.overfull_cells, 0u);
@@ -444,7 +466,8 @@ TYPED_TEST_P(pictures, running_estimates_are_shown_and_a_render_can_be_cancelled
     render_stats stats;
     const auto watched = render(b, s, settings, watch, stats);
     const auto unwatched = this->picture(s, settings);
-    EXPECT_EQ(std::memcmp(watched.pixels.data(), unwatched.pixels.data(), watched.pixels.size() * sizeof(glm::vec3)), 0);
+    EXPECT_EQ(
+        std::memcmp(watched.pixels.data(), unwatched.pixels.data(), watched.pixels.size() * sizeof(glm::vec3)), 0);
     ASSERT_GE(shown.size(), 1u);
     EXPECT_EQ(shown[0].pixels.size(), watched.pixels.size());
 
@@ -473,9 +496,11 @@ TYPED_TEST_P(pictures, a_light_that_stores_no_photon_is_named)
     }
 }
 
-REGISTER_TYPED_TEST_SUITE_P(pictures, a_closed_diffuse_sphere_has_the_known_radiance, direct_light_of_a_rectangle_equals_the_form_factor,
-    a_glass_ball_focuses_the_flux_it_should, every_photon_and_every_watt_is_accounted_for, flux_balances_per_channel, a_photon_takes_at_most_64_bytes,
-    long_statistics_of_a_picture_equal_serials, cut_off_paths_are_counted, equal_the_serial_backends, sorting_and_routing_agree,
-    a_moved_camera_runs_no_photon_pass, the_same_seed_gives_the_same_bytes, running_estimates_are_shown_and_a_render_can_be_cancelled, a_light_that_stores_no_photon_is_named);
+REGISTER_TYPED_TEST_SUITE_P(pictures, a_closed_diffuse_sphere_has_the_known_radiance,
+    direct_light_of_a_rectangle_equals_the_form_factor, a_glass_ball_focuses_the_flux_it_should,
+    every_photon_and_every_watt_is_accounted_for, flux_balances_per_channel, a_photon_takes_at_most_64_bytes,
+    long_statistics_of_a_picture_equal_serials, cut_off_paths_are_counted, equal_the_serial_backends,
+    sorting_and_routing_agree, a_moved_camera_runs_no_photon_pass, the_same_seed_gives_the_same_bytes,
+    running_estimates_are_shown_and_a_render_can_be_cancelled, a_light_that_stores_no_photon_is_named);
 
 } // namespace photongrid::testing

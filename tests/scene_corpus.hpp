@@ -1,5 +1,5 @@
-// What the reader of scene files promises for any bytes at all. The fuzzer (fuzz_scene.cpp) and the replay of the committed
-// corpus (scene_corpus.cpp) hold it to the same function.
+// What the reader of scene files promises for any bytes at all. The fuzzer (fuzz_scene.cpp) and the replay of the
+// committed corpus (scene_corpus.cpp) hold it to the same function.
 #pragma once
 
 #include "scene_file.hpp"
@@ -23,12 +23,14 @@ namespace detail {
             return "the message names a place outside the text: " + std::string(said);
         if (said.size() > 2000)
             return "the message has " + std::to_string(said.size()) + " bytes";
-        if (std::any_of(said.begin(), said.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }))
+        if (std::any_of(
+                said.begin(), said.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }))
             return "the message has control characters";
         return "";
     }
 
-    /// What kernels assume of a laid-out scene without looking: finite records, unit normals and axes, ranges that exist.
+    /// What kernels assume of a laid-out scene without looking: finite records, unit normals and axes, ranges that
+    /// exist.
     inline std::string broken_in_layout(const scene_records& r, const scene& s)
     {
         const auto unit = [](const glm::vec4& v) { return std::abs(glm::length(glm::dvec3(v)) - 1) < 1e-5; };
@@ -45,9 +47,12 @@ namespace detail {
             return n;
         }();
         const std::size_t lights = s.rectangle_lights.size() + s.point_lights.size();
-        if (l.round_things.x != 0 || l.round_things.z != 2 * s.spheres.size() || l.flat_things.x != l.round_things.z + 5 * (s.cylinders.size() + s.cones.size() + s.paraboloids.size())
-            || l.flat_things.z != l.flat_things.x + 3 * s.disks.size() || l.rest.x != l.flat_things.z + 2 * (s.polygons.size() + s.rectangle_lights.size()) + 2 * edges
-            || l.rest.y != l.rest.x + 2 * s.materials.size() || r.records.size() != l.rest.y + 6 * lights || l.rest.z != lights)
+        if (l.round_things.x != 0 || l.round_things.z != 2 * s.spheres.size()
+            || l.flat_things.x != l.round_things.z + 5 * (s.cylinders.size() + s.cones.size() + s.paraboloids.size())
+            || l.flat_things.z != l.flat_things.x + 3 * s.disks.size()
+            || l.rest.x != l.flat_things.z + 2 * (s.polygons.size() + s.rectangle_lights.size()) + 2 * edges
+            || l.rest.y != l.rest.x + 2 * s.materials.size() || r.records.size() != l.rest.y + 6 * lights
+            || l.rest.z != lights)
             return "the ranges of the records do not follow each other";
         for (std::size_t i = l.round_things.z; i < l.flat_things.x; i += 5)
             if (!unit(r.records[i + 1]) || !unit(r.records[i + 2]) || !unit(r.records[i + 3]))

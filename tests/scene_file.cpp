@@ -105,8 +105,10 @@ namespace {
     TEST(scene_file, reads_every_shape_material_and_light)
     {
         auto lines = good;
-        lines[5] = R"("white": {"type": "lambertian", "reflectance": 0.5, "comment": "x"}, "m": {"type": "mirror"}, "gold": {"type": "metal", "reflectance": [1, 0.8, 0.3]},)";
-        lines[8] = R"({"type": "cylinder", "base": [0,0,0], "top": [0,1,0], "radius": 1, "material": "m"}, {"type": "cone", "base": [0,0,0], "apex": [0,2,0], "radius": 1, "material": "gold"},
+        lines[5]
+            = R"("white": {"type": "lambertian", "reflectance": 0.5, "comment": "x"}, "m": {"type": "mirror"}, "gold": {"type": "metal", "reflectance": [1, 0.8, 0.3]},)";
+        lines[8]
+            = R"({"type": "cylinder", "base": [0,0,0], "top": [0,1,0], "radius": 1, "material": "m"}, {"type": "cone", "base": [0,0,0], "apex": [0,2,0], "radius": 1, "material": "gold"},
           {"type": "paraboloid", "vertex": [0,0,0], "rim": [0,1,0], "radius": 2, "material": "white"}, {"type": "disk", "center": [0,0,0], "normal": [0,0,2], "radius": 1, "material": "white"},
           {"type": "triangle", "vertices": [[0,0,0],[1,0,0],[0,1,0]], "material": "white"},)";
         lines[11] = R"({"type": "rectangle", "corner": [0,2,0], "edge_u": [1,0,0], "edge_v": [0,0,1], "power": 5}],)";
@@ -164,7 +166,8 @@ namespace {
         EXPECT_EQ(with(R"(, "bias": "paper")").bias, bias_kind::paper);
         EXPECT_EQ(with(R"(, "bias": "unbiased")").bias, bias_kind::unbiased);
         EXPECT_EQ(with(R"(, "edge_correction": "none")").edges, edge_correction::none);
-        EXPECT_EQ(with(R"(, "edge_correction": "polygons", "leaks": {"normals": 0.5})").edges, edge_correction::polygons);
+        EXPECT_EQ(
+            with(R"(, "edge_correction": "polygons", "leaks": {"normals": 0.5})").edges, edge_correction::polygons);
         EXPECT_FALSE(with(R"(, "leaks": {})").leaks.needs_any());
         EXPECT_FALSE(with(R"(, "leaks": {"comment": 1, "side": false})").leaks.needs_any());
         const auto all = with(R"(, "leaks": {"side": true, "normals": 0.25, "disc": 4})").leaks;
@@ -178,22 +181,33 @@ namespace {
     TEST(scene_file, refuses_unknown_kinds_of_estimates)
     {
         const auto said = [](const std::string& more) { return refusal(13, "\"k\": 20", more + ", \"k\": 20"); };
-        expect_refusal(said(R"("search": "exact")"), "13:58", {"found the text \"exact\"", R"(expected "at_least_k", "exact_k" or "fixed_radius")"});
+        expect_refusal(said(R"("search": "exact")"), "13:58",
+            {"found the text \"exact\"", R"(expected "at_least_k", "exact_k" or "fixed_radius")"});
         expect_refusal(said(R"("search": 1)"), "13:58", {"found the number 1", "\"fixed_radius\""});
-        expect_refusal(said(R"("kernel": "gauss")"), "13:58", {"found the text \"gauss\"", R"(expected "constant", "cone", "epanechnikov" or "silverman")"});
+        expect_refusal(said(R"("kernel": "gauss")"), "13:58",
+            {"found the text \"gauss\"", R"(expected "constant", "cone", "epanechnikov" or "silverman")"});
         expect_refusal(said(R"("bias": true)"), "13:56", {"found true", R"(expected "paper" or "unbiased")"});
-        expect_refusal(said(R"("edge_correction": "disks")"), "13:67", {"found the text \"disks\"", R"(expected "none" or "polygons")"});
-        expect_refusal(said(R"("edge_correction": "polygons")"), "13:67", {"edge_correction: photons of adjoining walls would count", "needs the leak policy normals with a cosine above 0"});
-        expect_refusal(said(R"("edge_correction": "polygons", "leaks": {"side": true, "normals": 0})"), "13:67", {"needs the leak policy normals"});
-        expect_refusal(said(R"("leaks": "none")"), "13:57", {"found the text \"none\"", R"("side", "normals" or "disc"; {} for no policy)"});
+        expect_refusal(said(R"("edge_correction": "disks")"), "13:67",
+            {"found the text \"disks\"", R"(expected "none" or "polygons")"});
+        expect_refusal(said(R"("edge_correction": "polygons")"), "13:67",
+            {"edge_correction: photons of adjoining walls would count",
+                "needs the leak policy normals with a cosine above 0"});
+        expect_refusal(said(R"("edge_correction": "polygons", "leaks": {"side": true, "normals": 0})"), "13:67",
+            {"needs the leak policy normals"});
+        expect_refusal(said(R"("leaks": "none")"), "13:57",
+            {"found the text \"none\"", R"("side", "normals" or "disc"; {} for no policy)"});
         expect_refusal(said(R"("leaks": ["side"])"), "13:57", {"found an array of 1", "expected an object"});
-        expect_refusal(said(R"("leaks": {"normal": 0.5})"), "13:58", {"unknown key \"normal\" in \"leaks\"", "expected \"normals\"?"});
+        expect_refusal(said(R"("leaks": {"normal": 0.5})"), "13:58",
+            {"unknown key \"normal\" in \"leaks\"", "expected \"normals\"?"});
         expect_refusal(said(R"("leaks": {"side": 1})"), "13:66", {"found the number 1", "expected true or false"});
-        expect_refusal(said(R"("leaks": {"normals": 1.01})"), "13:69", {"found the number 1.01", "expected a cosine from -1 to 1"});
+        expect_refusal(said(R"("leaks": {"normals": 1.01})"), "13:69",
+            {"found the number 1.01", "expected a cosine from -1 to 1"});
         expect_refusal(said(R"("leaks": {"normals": true})"), "13:69", {"found true"});
-        expect_refusal(said(R"("leaks": {"disc": 0.5})"), "13:66", {"found the number 0.5", "expected a compression from 1 to 1e6"});
+        expect_refusal(said(R"("leaks": {"disc": 0.5})"), "13:66",
+            {"found the number 0.5", "expected a compression from 1 to 1e6"});
         expect_refusal(said(R"("leaks": {"disc": 1000001})"), "13:66", {"found the number 1000001"});
-        expect_refusal(said(R"("serach": "exact_k")"), "13:48", {"unknown key \"serach\" in \"render\"", "expected \"search\"?"});
+        expect_refusal(
+            said(R"("serach": "exact_k")"), "13:48", {"unknown key \"serach\" in \"render\"", "expected \"search\"?"});
         // What a picture shows is not the scene's.
         expect_refusal(said(R"("only": "caustic")"), "13:48", {"unknown key \"only\""});
         expect_refusal(said(R"("aov": true)"), "13:48", {"unknown key \"aov\""});
@@ -218,9 +232,11 @@ namespace {
 
     TEST(scene_file, refuses_unknown_and_doubled_keys)
     {
-        expect_refusal(refusal(9, "\"center\"", "\"centre\""), "9:22", {"unknown key \"centre\" in \"sphere\"", "expected \"center\"?"});
+        expect_refusal(refusal(9, "\"center\"", "\"centre\""), "9:22",
+            {"unknown key \"centre\" in \"sphere\"", "expected \"center\"?"});
         expect_refusal(refusal(9, "\"center\"", "\"xyzzy\""), "9:22", {"unknown key \"xyzzy\"", "\"radius\""});
-        expect_refusal(refusal(9, "\"radius\": 0.5", "\"radius\": 0.5, \"radius\": 0.5"), "9:58", {"key \"radius\" is given twice"});
+        expect_refusal(refusal(9, "\"radius\": 0.5", "\"radius\": 0.5, \"radius\": 0.5"), "9:58",
+            {"key \"radius\" is given twice"});
         expect_refusal(refusal(6, "white", "clear"), "7:3", {"key \"clear\" is given twice"});
         EXPECT_EQ(refusal(9, "\"radius\"", "\"comment\": [1, {}], \"radius\""), "");
     }
@@ -228,7 +244,8 @@ namespace {
     TEST(scene_file, refuses_missing_keys)
     {
         expect_refusal(refusal(9, ", \"radius\": 0.5", ""), "9:3", {"\"sphere\" lacks the key \"radius\""});
-        expect_refusal(refusal(9, "\"type\": \"sphere\", ", ""), "9:3", {"a shape lacks the key \"type\"", "\"sphere\""});
+        expect_refusal(
+            refusal(9, "\"type\": \"sphere\", ", ""), "9:3", {"a shape lacks the key \"type\"", "\"sphere\""});
         expect_refusal(refusal(2, "\"name\": \"small\",", "\"name\": \"small\""), "3:2", {"unexpected string literal"});
         expect_refusal(refusal("{\"photongrid\": 1}"), "1:1", {"lacks the key \"units\""});
     }
@@ -242,7 +259,8 @@ namespace {
         expect_refusal(refusal(13, "1000", "true"), "13:42", {"found true"});
         expect_refusal(refusal("[1]"), "1:1", {"found an array of 1", "expected an object"});
         expect_refusal(refusal(1, "\"photongrid\": 1", "\"photongrid\": 2"), "1:16", {"version, 1"});
-        expect_refusal(refusal(9, "\"sphere\"", "\"spehre\""), "9:12", {"found the text \"spehre\"", "\"sphere\", \"cylinder\""});
+        expect_refusal(
+            refusal(9, "\"sphere\"", "\"spehre\""), "9:12", {"found the text \"spehre\"", "\"sphere\", \"cylinder\""});
     }
 
     TEST(scene_file, refuses_numbers_out_of_range)
@@ -254,7 +272,8 @@ namespace {
         expect_refusal(refusal(9, "0.5", "-1"), "9:53", {"found the number -1"});
         expect_refusal(refusal(6, "0.7", "1.25"), "6:51", {"found the number 1.25", "from 0 to 1"});
         expect_refusal(refusal(7, "1.5", "0.5"), "7:53", {"found the number 0.5", "1 to 10"});
-        expect_refusal(refusal(13, "1000", "99999999999999999999"), "13:42", {"expected a whole number from 1 to 134217728"});
+        expect_refusal(
+            refusal(13, "1000", "99999999999999999999"), "13:42", {"expected a whole number from 1 to 134217728"});
         expect_refusal(refusal(13, "1000", "-1"), "13:42", {"found the number -1"});
         expect_refusal(refusal(13, "[4, 1, 4]", "[100000, 1000, 1000]"), "13:65", {"2^31 cells"});
         expect_refusal(refusal(13, "[4, 1, 4]", "\"fit\""), "13:65", {"a grid: [x, y, z] cells, or \"auto\""});
@@ -263,13 +282,18 @@ namespace {
 
     TEST(scene_file, refuses_what_cannot_be_drawn)
     {
-        expect_refusal(refusal(10, "[1, 0, 1], [0, 0, 1]", "[2, 0, 0]"), "10:35", {"vertices: the polygon has no area"});
+        expect_refusal(
+            refusal(10, "[1, 0, 1], [0, 0, 1]", "[2, 0, 0]"), "10:35", {"vertices: the polygon has no area"});
         expect_refusal(refusal(10, "[1, 0, 1]", "[1, 0.5, 1]"), "10:35", {"off the plane"});
         expect_refusal(refusal(10, "[1, 0, 1], [0, 0, 1]", "[0, 0, 1], [1, 0, 1]"), "10:35", {"polygon"});
         expect_refusal(refusal(4, "[0, 0, 0]", "[0, 1, 5]"), "4:25", {"position and look_at"});
         expect_refusal(refusal(12, "[10, 20, 30]", "[0, 0, 0]"), "12:69", {"the light is black"});
-        expect_refusal(refusal(9, R"({"type": "sphere", "center": [0, 1, 0], "radius": 0.5,)", R"({"type": "cone", "base": [0, 1, 0], "apex": [0, 1, 0], "radius": 0.5,)"), "9:28", {"base and apex", "no axis"});
-        expect_refusal(refusal(12, R"("point", "name": "lamp", "position": [0, 3, 0])", R"("rectangle", "corner": [0,0,0], "edge_u": [1,0,0], "edge_v": [1,1,0])"), "12:54", {"right angles"});
+        expect_refusal(refusal(9, R"({"type": "sphere", "center": [0, 1, 0], "radius": 0.5,)",
+                           R"({"type": "cone", "base": [0, 1, 0], "apex": [0, 1, 0], "radius": 0.5,)"),
+            "9:28", {"base and apex", "no axis"});
+        expect_refusal(refusal(12, R"("point", "name": "lamp", "position": [0, 3, 0])",
+                           R"("rectangle", "corner": [0,0,0], "edge_u": [1,0,0], "edge_v": [1,1,0])"),
+            "12:54", {"right angles"});
     }
 
     TEST(scene_file, refuses_missing_lights_and_unknown_materials)
@@ -299,8 +323,10 @@ namespace {
         for (int i = 0; i < 1'000'000; ++i)
             many += ",0";
         EXPECT_NE(refusal(many + "]").find("values"), std::string::npos);
-        EXPECT_EQ(refusal(std::string((16u << 20) + 1, ' ')), "s.json: error: larger than 16 MiB; expected a scene file");
-        EXPECT_NE(refusal(std::string(16u << 20, ' ')).find("unexpected end of input"), std::string::npos) << "16 MiB are read";
+        EXPECT_EQ(
+            refusal(std::string((16u << 20) + 1, ' ')), "s.json: error: larger than 16 MiB; expected a scene file");
+        EXPECT_NE(refusal(std::string(16u << 20, ' ')).find("unexpected end of input"), std::string::npos)
+            << "16 MiB are read";
         EXPECT_THROW(read_scene("/dev/zero"), scene_error);
     }
 
@@ -315,7 +341,9 @@ namespace {
         };
         const auto shapes = [&](std::size_t n) {
             auto lines = good;
-            lines[8] = times(n, [](std::size_t) { return std::string(R"({"type":"sphere","center":[0,1,0],"radius":0.5,"material":"clear"})"); }) + "],";
+            lines[8] = times(n, [](std::size_t) {
+                return std::string(R"({"type":"sphere","center":[0,1,0],"radius":0.5,"material":"clear"})");
+            }) + "],";
             lines[9] = "";
             return refusal(text(lines));
         };
@@ -323,14 +351,18 @@ namespace {
         expect_refusal(shapes(65'537), "65545:1", {"65537 shapes", "at most 65536"});
         const auto materials = [&](std::size_t n) { // with the two that are there
             auto lines = good;
-            lines[4] += times(n - 2, [](std::size_t i) { return "\"m" + std::to_string(i) + R"(": {"type": "mirror"})"; }) + ",";
+            lines[4] += times(n - 2, [](std::size_t i) {
+                return "\"m" + std::to_string(i) + R"(": {"type": "mirror"})";
+            }) + ",";
             return refusal(text(lines));
         };
         EXPECT_EQ(materials(4'096), "");
         expect_refusal(materials(4'097), "4101:3", {"4097 materials", "at most 4096"});
         const auto lights = [&](std::size_t n) {
             auto lines = good;
-            lines[11] = times(n, [](std::size_t) { return std::string(R"({"type": "point", "position": [0, 3, 0], "power": 1})"); }) + "],";
+            lines[11] = times(n, [](std::size_t) {
+                return std::string(R"({"type": "point", "position": [0, 3, 0], "power": 1})");
+            }) + "],";
             return refusal(text(lines));
         };
         EXPECT_EQ(lights(1'024), "");
@@ -338,7 +370,8 @@ namespace {
         const auto vertices = [&](std::size_t n) { // of a regular polygon
             return refusal(10, "[[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]]", "[" + times(n, [&](std::size_t i) {
                 const double angle = 2 * M_PI * static_cast<double>(i) / static_cast<double>(n);
-                return "[" + std::to_string(100 * std::cos(angle)) + ", 0, " + std::to_string(100 * std::sin(angle)) + "]";
+                return "[" + std::to_string(100 * std::cos(angle)) + ", 0, " + std::to_string(100 * std::sin(angle))
+                    + "]";
             }) + "]");
         };
         EXPECT_EQ(vertices(1'024), "");
@@ -351,7 +384,8 @@ namespace {
     TEST(scene_file, refuses_names_that_upset_a_terminal)
     {
         for (const auto* bad : {"wh\x7Fte", "wh\\u001b[2Jte", "", "wh\\nte"}) {
-            expect_refusal(refusal(6, "white", bad), "6:3", {"found the key \"", "a material's name of 1 to 100 bytes without control characters"});
+            expect_refusal(refusal(6, "white", bad), "6:3",
+                {"found the key \"", "a material's name of 1 to 100 bytes without control characters"});
             expect_refusal(refusal(12, "lamp", bad), "12:29", {"a name"});
         }
         expect_refusal(refusal(6, "white", std::string(101, 'w')), "6:3", {"a material's name"});
@@ -360,15 +394,29 @@ namespace {
     // Found by fuzzing: normals and axes of parts this small came out as no unit vectors.
     TEST(scene_file, refuses_parts_too_small_to_have_a_direction)
     {
-        expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)", R"("cylinder", "base": [0, 0, 0], "top": [0, 1e-160, 0], "radius": 0.5)"), "9:3", {"less than 1e-9 m apart"});
-        expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)", R"("cone", "base": [0, 0, 0], "apex": [0, 9e-10, 0], "radius": 0.5)"), "9:3", {"less than 1e-9 m apart"});
-        expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)", R"("paraboloid", "vertex": [0, 0, 0], "rim": [0, 9e-10, 0], "radius": 0.5)"), "9:3", {"less than 1e-9 m apart"});
-        EXPECT_EQ(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)", R"("cone", "base": [0, 0, 0], "apex": [0, 1.1e-9, 0], "radius": 0.5)"), "");
-        expect_refusal(refusal(10, "[1, 0, 0], [1, 0, 1], [0, 0, 1]", "[1e-80, 0, 0], [0, 1e-80, 0]"), "10:3", {"less than 1e-9 m apart"});
-        expect_refusal(refusal(12, R"("point", "name": "lamp", "position": [0, 3, 0])", R"("rectangle", "corner": [0,0,0], "edge_u": [1,0,0], "edge_v": [0,1e-70,0])"), "12:3", {"less than 1e-9 m apart"});
+        expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)",
+                           R"("cylinder", "base": [0, 0, 0], "top": [0, 1e-160, 0], "radius": 0.5)"),
+            "9:3", {"less than 1e-9 m apart"});
+        expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)",
+                           R"("cone", "base": [0, 0, 0], "apex": [0, 9e-10, 0], "radius": 0.5)"),
+            "9:3", {"less than 1e-9 m apart"});
+        expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)",
+                           R"("paraboloid", "vertex": [0, 0, 0], "rim": [0, 9e-10, 0], "radius": 0.5)"),
+            "9:3", {"less than 1e-9 m apart"});
+        EXPECT_EQ(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)",
+                      R"("cone", "base": [0, 0, 0], "apex": [0, 1.1e-9, 0], "radius": 0.5)"),
+            "");
+        expect_refusal(refusal(10, "[1, 0, 0], [1, 0, 1], [0, 0, 1]", "[1e-80, 0, 0], [0, 1e-80, 0]"), "10:3",
+            {"less than 1e-9 m apart"});
+        expect_refusal(refusal(12, R"("point", "name": "lamp", "position": [0, 3, 0])",
+                           R"("rectangle", "corner": [0,0,0], "edge_u": [1,0,0], "edge_v": [0,1e-70,0])"),
+            "12:3", {"less than 1e-9 m apart"});
         expect_refusal(refusal(4, "[0, 0, 0]", "[0, 1, 5.0000000000001]"), "4:12", {"less than 1e-9 m apart"});
-        expect_refusal(refusal(4, "\"vertical_fov\"", "\"up\": [0, 1e-160, 0], \"vertical_fov\""), "4:64", {"a direction shorter than 1e-9"});
-        expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0],)", R"("disk", "center": [0, 1, 0], "normal": [0, 0, 0],)"), "9:51", {"a direction shorter than 1e-9"});
+        expect_refusal(refusal(4, "\"vertical_fov\"", "\"up\": [0, 1e-160, 0], \"vertical_fov\""), "4:64",
+            {"a direction shorter than 1e-9"});
+        expect_refusal(
+            refusal(9, R"("sphere", "center": [0, 1, 0],)", R"("disk", "center": [0, 1, 0], "normal": [0, 0, 0],)"),
+            "9:51", {"a direction shorter than 1e-9"});
     }
 
     TEST(scene_file, says_why_a_file_cannot_be_read)
@@ -408,7 +456,9 @@ namespace {
             std::uint32_t light_samples, photons, k;
             glm::uvec3 grid;
         };
-        for (const auto& r : {row{"glass_ball", {512, 384}, 4, 5'000, 32, {250, 1, 250}}, row{"ring", {512, 384}, 1, 16'000, 64, {250, 1, 250}}, row{"cornell_box", {512, 512}, 32, 65'000, 500, {25, 25, 50}},
+        for (const auto& r : {row{"glass_ball", {512, 384}, 4, 5'000, 32, {250, 1, 250}},
+                 row{"ring", {512, 384}, 1, 16'000, 64, {250, 1, 250}},
+                 row{"cornell_box", {512, 512}, 32, 65'000, 500, {25, 25, 50}},
                  row{"cornell_blocks", {512, 512}, 32, 65'000, 500, {25, 25, 50}}}) {
             SCOPED_TRACE(r.name);
             const auto s = read_scene(scenes + "/" + r.name + ".json");

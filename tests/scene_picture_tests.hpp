@@ -53,6 +53,7 @@ TYPED_TEST_P(scene_files, long_glass_ball) { this->compare("glass_ball", {0, 0})
 TYPED_TEST_P(scene_files, long_ring) { this->compare("ring", {0, 0}); }
 TYPED_TEST_P(scene_files, long_cornell_box) { this->compare("cornell_box", {0, 0}); }
 
-REGISTER_TYPED_TEST_SUITE_P(scene_files, glass_ball, ring, cornell_box, cornell_blocks, long_glass_ball, long_ring, long_cornell_box);
+REGISTER_TYPED_TEST_SUITE_P(
+    scene_files, glass_ball, ring, cornell_box, cornell_blocks, long_glass_ball, long_ring, long_cornell_box);
 
 } // namespace photongrid::testing

@@ -24,8 +24,10 @@ int smoke(B& b)
         for (const auto& p : picture.pixels)
             sum += static_cast<double>(p.x + p.y + p.z);
         const auto& p = stats.photons;
-        std::printf("%s: mean radiance %.4f, %llu paths\n", b.caps().device.c_str(), sum / 768, static_cast<unsigned long long>(p.emitted));
-        if (p.emitted != p.absorbed + p.escaped + p.cut_off + p.invalid || p.diffuse_hits != p.stored + p.direct + p.dropped || !(sum > 0))
+        std::printf("%s: mean radiance %.4f, %llu paths\n", b.caps().device.c_str(), sum / 768,
+            static_cast<unsigned long long>(p.emitted));
+        if (p.emitted != p.absorbed + p.escaped + p.cut_off + p.invalid
+            || p.diffuse_hits != p.stored + p.direct + p.dropped || !(sum > 0))
             return 1;
     }
     return 0;

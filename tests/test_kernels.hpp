@@ -1,4 +1,5 @@
-// The kernels of tests/kernels, which show single functions of the tracer to tests; their texts are `test_kernel_texts`.
+// The kernels of tests/kernels, which show single functions of the tracer to tests; their texts are
+// `test_kernel_texts`.
 #pragma once
 
 #include <photongrid/test_kernel_text.hpp>

@@ -1,5 +1,5 @@
-// One backend object to a thread, all kinds side by side in one process: nothing that they share behind the scenes may be
-// written unguarded. tests/run.sh --full runs this under the thread sanitizer.
+// One backend object to a thread, all kinds side by side in one process: nothing that they share behind the scenes may
+// be written unguarded. tests/run.sh --full runs this under the thread sanitizer.
 #include "photon_sets.hpp"
 
 #include <photongrid/backends/serial/serial.hpp>

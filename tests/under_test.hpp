@@ -1,4 +1,5 @@
-// Which backends a test runs on. A test body is written once, for a tag; each on_<backend>.cpp instantiates all of them.
+// Which backends a test runs on. A test body is written once, for a tag; each on_<backend>.cpp instantiates all of
+// them.
 #pragma once
 
 #include <photongrid/backend.hpp>
@@ -29,7 +30,8 @@ typename Tag::type* shared_backend(std::string& reason)
     static const std::unique_ptr<typename Tag::type> instance = []() -> std::unique_ptr<typename Tag::type> {
         try {
             auto b = Tag::make();
-            if (hardware_wanted() && b->caps().software && b->caps().backend != "serial" && b->caps().backend != "cpu") {
+            if (hardware_wanted() && b->caps().software && b->caps().backend != "serial"
+                && b->caps().backend != "cpu") {
                 why = "hardware was asked for, but this device is software: " + b->caps().device;
                 return nullptr;
             }
@@ -76,8 +78,8 @@ private:
     B* instance_ = nullptr;
 };
 
-/// What is so unless a tag says otherwise: sorts take the network's passes, and sums of light equal serial's to the bit where
-/// division rounds correctly.
+/// What is so unless a tag says otherwise: sorts take the network's passes, and sums of light equal serial's to the bit
+/// where division rounds correctly.
 template <class Tag>
 constexpr bool sorts_by_network()
 {

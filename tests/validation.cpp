@@ -48,29 +48,32 @@ namespace {
         return out;
     }
 
-    // --- mirror cylinders -------------------------------------------------------------------------------------------------
+    // --- mirror cylinders
+    // -------------------------------------------------------------------------------------------------
     //
-    // A standing cylinder turns horizontal directions as a circle does and leaves heights alone, so seen from above its light
-    // on the floor is the plane problem, whatever the lamp's height.
+    // A standing cylinder turns horizontal directions as a circle does and leaves heights alone, so seen from above its
+    // light on the floor is the plane problem, whatever the lamp's height.
 
     using plane_curve = std::function<dvec2(double)>;
 
     /// How far the brightest line lies from a curve, and how much darker it is beyond it.
     struct ridge {
         double largest_offset = 0, mean_offset = 0; ///< cells
-        double dark_over_bright = 0;                ///< density 1 to 2 cells beyond the curve over that of the first cell before it
+        double dark_over_bright = 0; ///< density 1 to 2 cells beyond the curve over that of the first cell before it
         int stations = 0;
     };
 
-    /// Looks along the curve's normal at each parameter. Rays are tangents of their envelope and tangents run on the convex
-    /// side, so that side is bright.
-    ridge find_ridge(const std::vector<dvec2>& photons, const plane_curve& curve, const std::vector<double>& parameters, double cell)
+    /// Looks along the curve's normal at each parameter. Rays are tangents of their envelope and tangents run on the
+    /// convex side, so that side is bright.
+    ridge find_ridge(
+        const std::vector<dvec2>& photons, const plane_curve& curve, const std::vector<double>& parameters, double cell)
     {
         ridge out;
         double dark = 0, bright = 0;
         for (const double t : parameters) {
             const double h = 1e-4;
-            const dvec2 c = curve(t), d1 = (curve(t + h) - curve(t - h)) / (2 * h), d2 = (curve(t + h) - 2.0 * c + curve(t - h)) / (h * h);
+            const dvec2 c = curve(t), d1 = (curve(t + h) - curve(t - h)) / (2 * h),
+                        d2 = (curve(t + h) - 2.0 * c + curve(t - h)) / (h * h);
             const double turn = (d1.x * d2.y - d1.y * d2.x) / std::pow(glm::length(d1), 3); // curvature, with its sign
             const dvec2 along = glm::normalize(d1), convex = dvec2(along.y, -along.x) * (turn > 0 ? 1.0 : -1.0);
             constexpr int halves = 10; // half cells on either side
@@ -80,7 +83,8 @@ namespace {
                 const double s = glm::dot(v, along);
                 if (std::abs(s) > 2 * cell)
                     continue;
-                const double u = (glm::dot(v, convex) + 0.5 * std::abs(turn) * s * s) / cell; // to second order off the curve itself
+                const double u = (glm::dot(v, convex) + 0.5 * std::abs(turn) * s * s)
+                    / cell; // to second order off the curve itself
                 if (std::abs(u) < 0.5 * halves)
                     ++count[static_cast<std::size_t>(std::floor(2 * u) + halves)];
                 dark += u > -2 && u < -1 ? 1 : 0;
@@ -88,7 +92,9 @@ namespace {
             }
             const auto peak = std::max_element(count.begin(), count.end()) - count.begin();
             const double offset = (static_cast<double>(peak) + 0.5 - halves) / 2;
-            EXPECT_LE(std::abs(offset), 1) << "cells off the curve at parameter " << t << "; photons in the brightest half cell: " << count[static_cast<std::size_t>(peak)];
+            EXPECT_LE(std::abs(offset), 1)
+                << "cells off the curve at parameter " << t
+                << "; photons in the brightest half cell: " << count[static_cast<std::size_t>(peak)];
             out.largest_offset = std::max(out.largest_offset, std::abs(offset));
             out.mean_offset += std::abs(offset);
             ++out.stations;
@@ -109,11 +115,13 @@ namespace {
         return out;
     }
 
-    void expect_ridge(const char* name, const std::vector<dvec2>& photons, const plane_curve& curve, const std::vector<double>& parameters, double cell)
+    void expect_ridge(const char* name, const std::vector<dvec2>& photons, const plane_curve& curve,
+        const std::vector<double>& parameters, double cell)
     {
         const auto r = find_ridge(photons, curve, parameters, cell);
-        std::printf("%s: %zu photons, ridge at %d places off the curve by %.2f cells on average, %.2f at most; beyond it %.3f of the density\n", name, photons.size(), r.stations,
-            r.mean_offset, r.largest_offset, r.dark_over_bright);
+        std::printf("%s: %zu photons, ridge at %d places off the curve by %.2f cells on average, %.2f at most; beyond "
+                    "it %.3f of the density\n",
+            name, photons.size(), r.stations, r.mean_offset, r.largest_offset, r.dark_over_bright);
         EXPECT_LT(r.mean_offset, 0.35) << name << ": the first half cell on the bright side is 0.25 off";
         EXPECT_LT(r.dark_over_bright, 0.5) << name;
         EXPECT_GT(photons.size(), 50000u);
@@ -137,7 +145,8 @@ namespace {
 
     TEST(validation, light_from_far_away_draws_a_nephroid)
     {
-        // A paraboloid with the lamp at its focus stands for a lamp far away: its light is parallel, and it wastes none.
+        // A paraboloid with the lamp at its focus stands for a lamp far away: its light is parallel, and it wastes
+        // none.
         const double tilt = M_PI / 4, focal = 0.4, rim = 1.6;
         auto s = mirror_cylinder(1, 1);
         const dvec3 beam(std::cos(tilt), -std::sin(tilt), 0), vertex = dvec3(0, 0.5, 0) - 5.0 * beam;
@@ -150,7 +159,9 @@ namespace {
             if (std::abs(p.direction.y - beam.y) < 1e-3 && p.direction.x < 0.98 * beam.x)
                 photons.emplace_back(p.at.x, p.at.z);
         // The nephroid: a circle of radius 1/4 rolling outside one of radius 1/2 (Huygens 1690).
-        const auto nephroid = [](double t) { return dvec2(3 * std::cos(t) - std::cos(3 * t), 3 * std::sin(t) - std::sin(3 * t)) / 4.0; };
+        const auto nephroid = [](double t) {
+            return dvec2(3 * std::cos(t) - std::cos(3 * t), 3 * std::sin(t) - std::sin(3 * t)) / 4.0;
+        };
         expect_ridge("nephroid", photons, nephroid, both_sides(0.35, 1.0, 20), 2 / cells_across);
     }
 
@@ -162,7 +173,9 @@ namespace {
         for (const auto& p : traced(s))
             photons.emplace_back(p.at.x, p.at.z);
         // The cardioid: a circle of radius 1/3 rolling round one of the same size (de L'Hopital 1696).
-        const auto cardioid = [](double t) { return dvec2(2 * std::cos(t) - std::cos(2 * t), 2 * std::sin(t) - std::sin(2 * t)) / 3.0; };
+        const auto cardioid = [](double t) {
+            return dvec2(2 * std::cos(t) - std::cos(2 * t), 2 * std::sin(t) - std::sin(2 * t)) / 3.0;
+        };
         expect_ridge("cardioid", photons, cardioid, both_sides(0.5, 2.1, 24), 2 / cells_across);
     }
 
@@ -181,14 +194,17 @@ namespace {
                 photons.emplace_back(p.at.x, p.at.z);
         // A pencil meeting a mirror of radius of curvature R at angle i focuses where 1/s + 1/s' = 2 / (R cos i).
         const auto catacaustic = [&](double t) {
-            const dvec2 q(radius * std::cos(t), radius * std::sin(t)), n = -q / radius, way = q - dvec2(lamp.x, lamp.z), d = glm::normalize(way);
+            const dvec2 q(radius * std::cos(t), radius * std::sin(t)), n = -q / radius, way = q - dvec2(lamp.x, lamp.z),
+                                                                       d = glm::normalize(way);
             const double cosine = -glm::dot(d, n), s2 = 1 / (2 / (radius * cosine) - 1 / glm::length(way));
             return q + s2 * (d + 2 * cosine * n);
         };
-        expect_ridge("ring.json", photons, catacaustic, both_sides(0.3, 0.8, 16, std::atan2(-lamp.z, -lamp.x)), 2 * radius / cells_across);
+        expect_ridge("ring.json", photons, catacaustic, both_sides(0.3, 0.8, 16, std::atan2(-lamp.z, -lamp.x)),
+            2 * radius / cells_across);
     }
 
-    // --- glass ball -------------------------------------------------------------------------------------------------------
+    // --- glass ball
+    // -------------------------------------------------------------------------------------------------------
 
     /// Where light off the axis at an angle comes to the floor, and with which share of its power.
     struct glass_path {
@@ -196,14 +212,16 @@ namespace {
         bool arrives = false;
     };
 
-    /// Lamp, ball and floor on one axis, middle of the ball at the origin of heights `lamp` and -`floor`. Light reflected `order`
-    /// times: 0 by the outside, n >= 1 refracted in, reflected n - 1 times inside and refracted out.
+    /// Lamp, ball and floor on one axis, middle of the ball at the origin of heights `lamp` and -`floor`. Light
+    /// reflected `order` times: 0 by the outside, n >= 1 refracted in, reflected n - 1 times inside and refracted out.
     glass_path through_ball(double alpha, double lamp, double floor, double radius, double index, int order)
     {
-        // In angles: i and o of incidence and refraction; by symmetry they are the same at every meeting with the surface.
+        // In angles: i and o of incidence and refraction; by symmetry they are the same at every meeting with the
+        // surface.
         const double i = std::asin(std::min(1.0, lamp * std::sin(alpha) / radius)), o = std::asin(std::sin(i) / index);
-        const double rs = std::pow(std::sin(i - o) / std::sin(i + o), 2), rp = std::pow(std::tan(i - o) / std::tan(i + o), 2), r = 0.5 * (rs + rp);
-        const double entry = i - alpha; // position angle off the upward axis
+        const double rs = std::pow(std::sin(i - o) / std::sin(i + o), 2),
+                     rp = std::pow(std::tan(i - o) / std::tan(i + o), 2), r = 0.5 * (rs + rp);
+        const double entry = i - alpha;    // position angle off the upward axis
         double place = entry, heading = 0; // heading off straight down, towards growing x
         glass_path out;
         if (order == 0) {
@@ -226,7 +244,8 @@ namespace {
         const double radius = 0.3, middle = 0.4, lamp = 0.9, index = 1.5, power = 10;
         scene s;
         s.name = "ball_on_axis";
-        s.materials = {{"black", material_kind::lambertian, dvec3(0)}, {"glass", material_kind::glass, dvec3(1), index}};
+        s.materials
+            = {{"black", material_kind::lambertian, dvec3(0)}, {"glass", material_kind::glass, dvec3(1), index}};
         s.polygons = {{{{-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}}, 0}};
         s.spheres = {{{0, middle, 0}, radius, 1}};
         s.point_lights = {{"lamp", {0, middle + lamp, 0}, dvec3(power)}};
@@ -244,20 +263,25 @@ namespace {
                 const auto g = through_ball(alpha, lamp, middle, radius, index, order);
                 if (!g.arrives || g.rho >= width * static_cast<double>(rings.size()))
                     continue;
-                rings[static_cast<std::size_t>(g.rho / width)] += power / 2 * std::sin(alpha) * widest / steps * g.weight;
+                rings[static_cast<std::size_t>(g.rho / width)]
+                    += power / 2 * std::sin(alpha) * widest / steps * g.weight;
                 if (order == 1 && alpha < 0.9 * widest)
                     fold = std::max(fold, g.rho);
             }
         const auto density = [&](double rho) { // over 1 mm either side
-            const auto first = static_cast<std::size_t>((rho - 1e-3) / width), past = static_cast<std::size_t>((rho + 1e-3) / width);
+            const auto first = static_cast<std::size_t>((rho - 1e-3) / width),
+                       past = static_cast<std::size_t>((rho + 1e-3) / width);
             const double inner = static_cast<double>(first) * width, outer = static_cast<double>(past) * width;
-            return std::accumulate(rings.begin() + static_cast<std::ptrdiff_t>(first), rings.begin() + static_cast<std::ptrdiff_t>(past), 0.0) / (M_PI * (outer * outer - inner * inner));
+            return std::accumulate(rings.begin() + static_cast<std::ptrdiff_t>(first),
+                       rings.begin() + static_cast<std::ptrdiff_t>(past), 0.0)
+                / (M_PI * (outer * outer - inner * inner));
         };
         // The mean over a disc of radius r about a point at `rho`: each ring's share that lies inside.
         const auto disc_mean = [&](double rho, double r) {
             double flux = 0;
             for (std::size_t i = 0; i < rings.size(); ++i) {
-                const double ring = width * (static_cast<double>(i) + 0.5), c = (ring * ring + rho * rho - r * r) / (2 * ring * rho);
+                const double ring = width * (static_cast<double>(i) + 0.5),
+                             c = (ring * ring + rho * rho - r * r) / (2 * ring * rho);
                 flux += c >= 1 ? 0 : c <= -1 ? rings[i] : rings[i] * std::acos(c) / M_PI;
             }
             return flux / (M_PI * r * r);
@@ -266,7 +290,8 @@ namespace {
         serial_backend b;
         const auto device = upload_scene(b, s);
         auto t = trace_photons(b, s, device, s.render);
-        const auto map = sorted_map(b, std::move(t.photons), make_grid(device.about.low, device.about.high, s.render.grid));
+        const auto map
+            = sorted_map(b, std::move(t.photons), make_grid(device.about.low, device.about.high, s.render.grid));
         std::vector<double> radii;
         for (double r = 0.02; r < 0.5; r += r < 0.24 ? 0.02 : 0.05)
             radii.push_back(r);
@@ -274,31 +299,37 @@ namespace {
         std::vector<dvec3> points;
         for (const double r : radii)
             for (int n = 0; n < around; ++n)
-                points.emplace_back(r * std::cos(2 * M_PI * n / around + r), 0, r * std::sin(2 * M_PI * n / around + r));
+                points.emplace_back(
+                    r * std::cos(2 * M_PI * n / around + r), 0, r * std::sin(2 * M_PI * n / around + r));
         const auto where = recentred(points, device.about.center);
-        const auto estimates = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(where)), {.k = s.render.k, .max_radius = static_cast<float>(s.render.max_radius), .errors = true});
+        const auto estimates = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(where)),
+            {.k = s.render.k, .max_radius = static_cast<float>(s.render.max_radius), .errors = true});
         const auto irradiance = b.download(estimates.irradiance), errors = b.download(estimates.standard_error);
 
-        std::printf("glass ball: light refracted twice folds at %.4f m\n| rho, m | ray density, W/m^2 | photon map | standard error | mean over the discs searched |\n|---|---|---|---|---|\n", fold);
+        std::printf("glass ball: light refracted twice folds at %.4f m\n| rho, m | ray density, W/m^2 | photon map | "
+                    "standard error | mean over the discs searched |\n|---|---|---|---|---|\n",
+            fold);
         double chi2 = 0, ratio_sum = 0;
         int compared = 0;
         for (std::size_t i = 0; i < radii.size(); ++i) {
             double mean = 0, variance = 0, discs = 0, largest = 0;
             for (int n = 0; n < around; ++n) {
                 const std::size_t q = i * around + static_cast<std::size_t>(n);
-                const double r = std::sqrt(static_cast<double>(irradiance[q].w)), e = static_cast<double>(irradiance[q].x), known = disc_mean(radii[i], r);
+                const double r = std::sqrt(static_cast<double>(irradiance[q].w)),
+                             e = static_cast<double>(irradiance[q].x), known = disc_mean(radii[i], r);
                 largest = std::max(largest, r);
                 mean += e / around;
                 discs += known / around;
                 variance += std::pow(static_cast<double>(errors[q].x) / around, 2);
-                // Given where k photons end, those before it lie anywhere in the disc: estimate over the disc's mean is 1 on average
-                // for any density, with relative variance 1 / (k - 2).
+                // Given where k photons end, those before it lie anywhere in the disc: estimate over the disc's mean is
+                // 1 on average for any density, with relative variance 1 / (k - 2).
                 ratio_sum += e / known;
                 chi2 += std::pow((e - known) / (known / std::sqrt(s.render.k - 2.0)), 2);
                 ++compared;
             }
             // Discs round the same circle overlap near the axis, and then their errors do not average out.
-            const double se = std::sqrt(variance) * std::sqrt(std::max(1.0, around * M_PI * largest * largest / (4 * M_PI * radii[i] * largest)));
+            const double se = std::sqrt(variance)
+                * std::sqrt(std::max(1.0, around * M_PI * largest * largest / (4 * M_PI * radii[i] * largest)));
             const double known = density(radii[i]);
             std::printf("| %.2f | %.4f | %.4f | %.4f | %.4f |\n", radii[i], known, mean, se, discs);
             EXPECT_NEAR(mean, discs, 5 * se) << "rho " << radii[i];
@@ -306,12 +337,14 @@ namespace {
                 EXPECT_NEAR(mean, known, 5 * se + 0.02 * known) << "rho " << radii[i];
             }
         }
-        std::printf("estimate over known: %.4f on average, chi^2 per point %.2f, %d points\n", ratio_sum / compared, chi2 / compared, compared);
+        std::printf("estimate over known: %.4f on average, chi^2 per point %.2f, %d points\n", ratio_sum / compared,
+            chi2 / compared, compared);
         EXPECT_NEAR(ratio_sum / compared, 1, 0.01);
         EXPECT_LT(chi2 / compared, 1.5);
     }
 
-    // --- nearest neighbours -----------------------------------------------------------------------------------------------
+    // --- nearest neighbours
+    // -----------------------------------------------------------------------------------------------
 
     struct cloud {
         const std::vector<vec4>& points;
@@ -326,8 +359,8 @@ namespace {
 
     TEST(validation, exact_k_equals_flann_and_nanoflann)
     {
-        // Both trees prune by sums rounded in another order than the distances themselves; a slightly negative epsilon makes
-        // them look a little farther, so that no neighbour is lost to the last bit.
+        // Both trees prune by sums rounded in another order than the distances themselves; a slightly negative epsilon
+        // makes them look a little farther, so that no neighbour is lost to the last bit.
         const float slack = -1e-4f;
 #if NANOFLANN_VERSION >= 0x150
         const nanoflann::SearchParameters nano_search(slack);
@@ -341,7 +374,8 @@ namespace {
             auto set = make_photons(d, 6000, {12, 12, 12}, 77);
             random_source u(5);
             for (auto& p : set.powers) // integers whose sums over a set tell sets apart, and stay exact in float
-                p = vec4(static_cast<float>(u.below(1u << 13)), static_cast<float>(u.below(1u << 13)), static_cast<float>(u.below(1u << 13)), 0.0f);
+                p = vec4(static_cast<float>(u.below(1u << 13)), static_cast<float>(u.below(1u << 13)),
+                    static_cast<float>(u.below(1u << 13)), 0.0f);
             const auto points = make_points(set, 400, 78);
             const auto map = sorted_map(b, upload_photons(b, set), set.g);
             const cloud c{set.positions};
@@ -350,15 +384,18 @@ namespace {
             std::vector<float> coordinates;
             for (const auto& p : set.positions)
                 coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
-            flann::KDTreeSingleIndex<flann::L2_Simple<float>> tree(flann::Matrix<float>(coordinates.data(), set.positions.size(), 3));
+            flann::KDTreeSingleIndex<flann::L2_Simple<float>> tree(
+                flann::Matrix<float>(coordinates.data(), set.positions.size(), 3));
             tree.buildIndex();
 
             int compared = 0, sets = 0;
             for (const uint k : {1u, 7u, 64u, 500u}) {
-                const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), {.k = k, .max_radius = 10, .bias = bias_kind::paper});
+                const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)),
+                    {.k = k, .max_radius = 10, .bias = bias_kind::paper});
                 const auto irradiance = b.download(e.irradiance);
                 const auto used = b.download(e.used);
-                const float floor2 = std::pow(std::max({set.g.cell.x * 12, set.g.cell.y * 12, set.g.cell.z * 12}) * 0x1p-20f, 2.0f);
+                const float floor2
+                    = std::pow(std::max({set.g.cell.x * 12, set.g.cell.y * 12, set.g.cell.z * 12}) * 0x1p-20f, 2.0f);
                 for (std::size_t q = 0; q < points.size(); ++q) {
                     float query[3] = {points[q].x, points[q].y, points[q].z};
                     std::vector<std::uint32_t> ids(k + 1);
@@ -370,7 +407,8 @@ namespace {
                     std::vector<std::vector<float>> flann_distances;
                     tree.knnSearch(flann::Matrix<float>(query, 1, 3), flann_ids, flann_distances, k, flann_search);
 
-                    const auto flushed = [](float x) { return x < std::numeric_limits<float>::min() ? 0.0f : x; }; // as kernels do
+                    const auto flushed
+                        = [](float x) { return x < std::numeric_limits<float>::min() ? 0.0f : x; }; // as kernels do
                     const float nth = flushed(distances[k - 1]), fth = flushed(flann_distances[0][k - 1]);
                     ASSERT_EQ(irradiance[q].w, nth) << name_of(d) << ", k " << k << ", point " << q << ": nanoflann";
                     ASSERT_EQ(irradiance[q].w, fth) << name_of(d) << ", k " << k << ", point " << q << ": FLANN";
@@ -382,7 +420,9 @@ namespace {
                     for (uint n = 0; n < k; ++n)
                         sum += glm::dvec3(set.powers[ids[n]]);
                     for (int channel = 0; channel < 3; ++channel)
-                        ASSERT_EQ(std::round(static_cast<double>(irradiance[q][channel]) * static_cast<double>(3.14159265f) * static_cast<double>(nth)), sum[channel])
+                        ASSERT_EQ(std::round(static_cast<double>(irradiance[q][channel])
+                                      * static_cast<double>(3.14159265f) * static_cast<double>(nth)),
+                            sum[channel])
                             << name_of(d) << ", k " << k << ", point " << q << ": another set";
                     ++sets;
                 }
@@ -394,10 +434,11 @@ namespace {
         }
     }
 
-    // --- one diffuse bounce -----------------------------------------------------------------------------------------------
+    // --- one diffuse bounce
+    // -----------------------------------------------------------------------------------------------
 
-    /// Two facing discs. A point lamp just under the middle of the upper, black one lights the lower one, whose light comes
-    /// back: all photons stored are of that one bounce.
+    /// Two facing discs. A point lamp just under the middle of the upper, black one lights the lower one, whose light
+    /// comes back: all photons stored are of that one bounce.
     struct facing_discs {
         double height = 0.5, lower = 1, upper = 0.8, power = 20;
         dvec3 reflectance{0.8, 0.5, 0.2};
@@ -406,15 +447,17 @@ namespace {
         {
             scene s;
             s.name = "facing_discs";
-            s.materials = {{"lower", material_kind::lambertian, reflectance}, {"upper", material_kind::lambertian, dvec3(0)}};
+            s.materials
+                = {{"lower", material_kind::lambertian, reflectance}, {"upper", material_kind::lambertian, dvec3(0)}};
             s.disks = {{{0, 0, 0}, {0, 1, 0}, lower, 0}, {{0, height * (1 + 1e-4), 0}, {0, -1, 0}, upper, 1}};
             s.point_lights = {{"lamp", {0, height, 0}, dvec3(power)}};
             s.camera = {{0, 0.2, -3}, {0, 0.2, 0}, {0, 1, 0}, 45};
             s.render = {.grid = {64, 1, 64}, .max_radius = 1, .photon_depth = 2};
             return s;
         }
-        /// At the middle of the upper disc, for reflectance 1: direct light is power / (4 pi) h / (h^2 + u)^(3/2) at distance
-        /// sqrt(u) from the axis, and the form factor of the ring there h^2 / (h^2 + u)^2 du; their product integrates in closed form.
+        /// At the middle of the upper disc, for reflectance 1: direct light is power / (4 pi) h / (h^2 + u)^(3/2) at
+        /// distance sqrt(u) from the axis, and the form factor of the ring there h^2 / (h^2 + u)^2 du; their product
+        /// integrates in closed form.
         double on_axis() const
         {
             const double h = height;
@@ -426,7 +469,8 @@ namespace {
             double sum = 0;
             const double h = height;
             for (int i = 0; i < rings; ++i) {
-                const double r = lower * (i + 0.5) / rings, direct = power / (4 * M_PI) * h / std::pow(h * h + r * r, 1.5);
+                const double r = lower * (i + 0.5) / rings,
+                             direct = power / (4 * M_PI) * h / std::pow(h * h + r * r, 1.5);
                 for (int j = 0; j < around; ++j) {
                     const double d2 = h * h + r * r + rho * rho - 2 * r * rho * std::cos(2 * M_PI * (j + 0.5) / around);
                     sum += direct / M_PI * h * h / (d2 * d2) * r * (lower / rings) * (2 * M_PI / around);
@@ -437,7 +481,8 @@ namespace {
     };
 
     /// Irradiance (rgb) and its squared radius at points of the upper disc.
-    std::vector<vec4> estimates_on_upper(const facing_discs& f, const std::vector<dvec3>& points, uint photons, uint k, uint seed)
+    std::vector<vec4> estimates_on_upper(
+        const facing_discs& f, const std::vector<dvec3>& points, uint photons, uint k, uint seed)
     {
         auto s = f.made();
         s.render.photons = photons;
@@ -445,9 +490,11 @@ namespace {
         serial_backend b;
         const auto device = upload_scene(b, s);
         auto t = trace_photons(b, s, device, s.render);
-        const auto map = sorted_map(b, std::move(t.photons), make_grid(device.about.low, device.about.high, s.render.grid));
+        const auto map
+            = sorted_map(b, std::move(t.photons), make_grid(device.about.low, device.about.high, s.render.grid));
         const auto where = recentred(points, device.about.center);
-        return b.download(knn_grid_estimate(b, map, b.upload(std::span<const vec4>(where)), {.k = k, .max_radius = 1}).irradiance);
+        return b.download(
+            knn_grid_estimate(b, map, b.upload(std::span<const vec4>(where)), {.k = k, .max_radius = 1}).irradiance);
     }
 
     std::vector<dvec3> circles(const facing_discs& f, const std::vector<double>& radii, int around)
@@ -455,7 +502,8 @@ namespace {
         std::vector<dvec3> points;
         for (const double r : radii)
             for (int n = 0; n < around; ++n)
-                points.emplace_back(r * std::cos(2 * M_PI * (n + 0.3 * r) / around), f.height * (1 + 1e-4), r * std::sin(2 * M_PI * (n + 0.3 * r) / around));
+                points.emplace_back(r * std::cos(2 * M_PI * (n + 0.3 * r) / around), f.height * (1 + 1e-4),
+                    r * std::sin(2 * M_PI * (n + 0.3 * r) / around));
         return points;
     }
 
@@ -475,17 +523,21 @@ namespace {
             dvec3 mean(0);
             for (int j = 0; j < n; ++j)
                 mean += dvec3(e[i * around + static_cast<std::size_t>(j)]) / static_cast<double>(n);
-            std::printf("facing discs, %.2f m off the axis: known %.4f W/m^2 x reflectance, photon map %.4f %.4f %.4f\n", radii[i], known, mean.x / f.reflectance.x, mean.y / f.reflectance.y,
-                mean.z / f.reflectance.z);
+            std::printf(
+                "facing discs, %.2f m off the axis: known %.4f W/m^2 x reflectance, photon map %.4f %.4f %.4f\n",
+                radii[i], known, mean.x / f.reflectance.x, mean.y / f.reflectance.y, mean.z / f.reflectance.z);
             for (int c = 0; c < 3; ++c) // 0.2 % for the curve of the profile over a disc
-                EXPECT_NEAR(mean[c] / f.reflectance[c], known, (5 / std::sqrt(static_cast<double>(k) * n) + 0.002) * known) << radii[i] << ", channel " << c;
+                EXPECT_NEAR(
+                    mean[c] / f.reflectance[c], known, (5 / std::sqrt(static_cast<double>(k) * n) + 0.002) * known)
+                    << radii[i] << ", channel " << c;
             ratio += n * mean.x / f.reflectance.x / known;
             count += n;
         }
         EXPECT_NEAR(ratio / count, 1, 4 / std::sqrt(static_cast<double>(k) * count) + 0.002);
     }
 
-    // --- convergence ------------------------------------------------------------------------------------------------------
+    // --- convergence
+    // ------------------------------------------------------------------------------------------------------
 
     /// One row of a convergence table: means over places of squared errors relative to the known value.
     struct convergence_row {
@@ -504,8 +556,10 @@ namespace {
         return (n * sxy - sx * sy) / (n * sxx - sx * sx);
     }
 
-    /// From values[seed][place]: bias^2 and variance, relative, the mean's own noise and the reference's taken off bias^2.
-    convergence_row split_error(const std::vector<std::vector<double>>& values, const std::vector<double>& known, const std::vector<double>& known_error, double floor)
+    /// From values[seed][place]: bias^2 and variance, relative, the mean's own noise and the reference's taken off
+    /// bias^2.
+    convergence_row split_error(const std::vector<std::vector<double>>& values, const std::vector<double>& known,
+        const std::vector<double>& known_error, double floor)
     {
         convergence_row row;
         const double seeds = static_cast<double>(values.size()), places = static_cast<double>(known.size());
@@ -516,7 +570,8 @@ namespace {
             for (const auto& v : values)
                 spread += (v[i] - mean) * (v[i] - mean) / (seeds - 1);
             const double scale = 1 / ((known[i] + floor) * (known[i] + floor) * places);
-            row.bias2 += ((mean - known[i]) * (mean - known[i]) - spread / seeds - known_error[i] * known_error[i]) * scale;
+            row.bias2
+                += ((mean - known[i]) * (mean - known[i]) - spread / seeds - known_error[i] * known_error[i]) * scale;
             row.variance += spread * scale;
         }
         return row;
@@ -527,9 +582,12 @@ namespace {
         std::printf("%s\n\n| photons | k | bias^2 | variance | relMSE |\n|---|---|---|---|---|\n", name);
         for (const auto& r : rows)
             std::printf("| %.0f | %.0f | %.5f | %.5f | %.5f |\n", r.photons, r.k, r.bias2, r.variance, r.total());
-        const bool biased = std::all_of(rows.begin(), rows.end(), [](const auto& r) { return r.bias2 > 0; }); // below 0: lost in the noise taken off
-        std::printf(biased ? "| slope | | %.2f |" : "| slope | | - |", slope(rows, [](const auto& r) { return r.bias2; }));
-        std::printf(" %.2f | %.2f |\n\n", slope(rows, [](const auto& r) { return r.variance; }), slope(rows, [](const auto& r) { return r.total(); }));
+        const bool biased = std::all_of(rows.begin(), rows.end(),
+            [](const auto& r) { return r.bias2 > 0; }); // below 0: lost in the noise taken off
+        std::printf(
+            biased ? "| slope | | %.2f |" : "| slope | | - |", slope(rows, [](const auto& r) { return r.bias2; }));
+        std::printf(" %.2f | %.2f |\n\n", slope(rows, [](const auto& r) { return r.variance; }),
+            slope(rows, [](const auto& r) { return r.total(); }));
         std::fflush(stdout);
     }
 
@@ -543,8 +601,8 @@ namespace {
 
     TEST(validation, long_smooth_irradiance_converges_at_the_rate_of_theory)
     {
-        // k neighbours of N photons: variance 1 / k; the disc's area goes as k / N, and so does the bias where irradiance is smooth.
-        // With k ~ N^(2/3) both squares fall as N^(-2/3).
+        // k neighbours of N photons: variance 1 / k; the disc's area goes as k / N, and so does the bias where
+        // irradiance is smooth. With k ~ N^(2/3) both squares fall as N^(-2/3).
         const facing_discs f;
         const std::vector<double> radii = {0, 0.05, 0.1, 0.15}; // about the maximum, where the bias has one sign
         const int around = 8;
@@ -581,20 +639,28 @@ namespace {
         wanted.seed = 99;
         const auto truth = render_reference(s, s.camera, wanted);
 
-        // Pixels over an edge of a shape or the lamp are left out: their noise is that of 32 eye rays, whatever the photons do.
+        // Pixels over an edge of a shape or the lamp are left out: their noise is that of 32 eye rays, whatever the
+        // photons do.
         const reference::geometry shapes(s);
-        const dvec3 forward = glm::normalize(s.camera.look_at - s.camera.position), right = glm::normalize(glm::cross(forward, s.camera.up)), up = glm::cross(right, forward);
+        const dvec3 forward = glm::normalize(s.camera.look_at - s.camera.position),
+                    right = glm::normalize(glm::cross(forward, s.camera.up)), up = glm::cross(right, forward);
         const double pixel = 2 * std::tan(glm::radians(0.5 * s.camera.vertical_fov)) / wanted.height;
         const auto shape_at = [&](double x, double y) {
-            return shapes.nearest({s.camera.position, glm::normalize(forward + (x - 0.5 * wanted.width) * pixel * right + (0.5 * wanted.height - y) * pixel * up), reference::nothing});
+            return shapes.nearest({s.camera.position,
+                glm::normalize(
+                    forward + (x - 0.5 * wanted.width) * pixel * right + (0.5 * wanted.height - y) * pixel * up),
+                reference::nothing});
         };
-        // Of these, pixels with nothing else and no edge near: there irradiance is smooth over the discs of the estimates.
+        // Of these, pixels with nothing else and no edge near: there irradiance is smooth over the discs of the
+        // estimates.
         const double clear = 0.1;
         const auto is_clear = [&](const reference::hit& h) {
-            const dvec3 n = glm::dot(h.normal, s.camera.position - h.position) > 0 ? h.normal : -h.normal, u = reference::across(n), v = glm::cross(n, u);
+            const dvec3 n = glm::dot(h.normal, s.camera.position - h.position) > 0 ? h.normal : -h.normal,
+                        u = reference::across(n), v = glm::cross(n, u);
             for (int i = 0; i < 32; ++i) {
                 const dvec3 way = std::cos(i * M_PI / 16) * u + std::sin(i * M_PI / 16) * v;
-                if (shapes.nearest({h.position + 1e-6 * n, way, reference::nothing}).t < clear || shapes.nearest({h.position + clear * way + 1e-3 * n, -n, reference::nothing}).shape != h.shape)
+                if (shapes.nearest({h.position + 1e-6 * n, way, reference::nothing}).t < clear
+                    || shapes.nearest({h.position + clear * way + 1e-3 * n, -n, reference::nothing}).shape != h.shape)
                     return false;
             }
             return true;
@@ -640,7 +706,8 @@ namespace {
             if (only_smooth)
                 for (auto& v : values)
                     v = smooth_ones(v);
-            auto r = split_error(values, only_smooth ? smooth_ones(known) : known, only_smooth ? smooth_ones(known_error) : known_error, 0.01);
+            auto r = split_error(values, only_smooth ? smooth_ones(known) : known,
+                only_smooth ? smooth_ones(known_error) : known_error, 0.01);
             r.photons = settings.photons;
             r.k = settings.k;
             return r;
@@ -662,20 +729,22 @@ namespace {
             corrected_rows.push_back(row(corrected, false));
             smooth_rows.push_back(row(values, true));
         }
-        std::printf("%zu of %zu pixels lie within one shape, %td of them %.1f m from any edge\n", whole.size(), truth.mean.pixels.size(), std::count(smooth.begin(), smooth.end(), true), clear);
+        std::printf("%zu of %zu pixels lie within one shape, %td of them %.1f m from any edge\n", whole.size(),
+            truth.mean.pixels.size(), std::count(smooth.begin(), smooth.end(), true), clear);
         print("cornell_blocks", rows);
         print("cornell_blocks, edges corrected", corrected_rows);
         print("cornell_blocks, far from edges", smooth_rows);
         expect_falling(rows);
-        // Near edges discs reach over them and the bias is of order 1 in a strip as wide as the radius, N^(-1/6): bias^2 of a
-        // whole room falls between that and N^(-2/3). The variance keeps its rate.
+        // Near edges discs reach over them and the bias is of order 1 in a strip as wide as the radius, N^(-1/6):
+        // bias^2 of a whole room falls between that and N^(-2/3). The variance keeps its rate.
         EXPECT_NEAR(slope(rows, [](const auto& r) { return r.variance; }), -2.0 / 3, 0.2);
         EXPECT_LT(slope(rows, [](const auto& r) { return r.bias2; }), -1.0 / 6 + 0.05);
         EXPECT_LT(slope(rows, [](const auto& r) { return r.total(); }), -0.2);
         EXPECT_GT(slope(rows, [](const auto& r) { return r.total(); }), -1);
         // Far from them the picture converges to the reference at the rate of smooth irradiance.
         EXPECT_NEAR(slope(smooth_rows, [](const auto& r) { return r.total(); }), -2.0 / 3, 0.25);
-        EXPECT_LT(std::abs(smooth_rows.back().bias2), 1e-4); // 1 % of the whole irradiance; the rest is the reference's error
+        EXPECT_LT(
+            std::abs(smooth_rows.back().bias2), 1e-4); // 1 % of the whole irradiance; the rest is the reference's error
         EXPECT_LT(smooth_rows.back().total(), 0.01);
     }
 

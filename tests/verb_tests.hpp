@@ -1,5 +1,5 @@
-// What each verb of a backend does, as backend.hpp promises it. References are loops in these tests. What algorithm_tests.hpp
-// shows of buffers is not repeated here. Included by each on_<backend>.cpp.
+// What each verb of a backend does, as backend.hpp promises it. References are loops in these tests. What
+// algorithm_tests.hpp shows of buffers is not repeated here. Included by each on_<backend>.cpp.
 #pragma once
 
 #include "photon_sets.hpp"
@@ -46,7 +46,8 @@ protected:
     /// Every n-th word a number that careless copies change: NaNs, infinities, the smallest numbers, minus zero.
     static std::vector<uint> delicate_words(std::size_t n)
     {
-        constexpr uint delicate[] = {0x7FC12345u, 0x7F812345u, 0xFFC00000u, 0x7F800000u, 0xFF800000u, 1u, 0x807FFFFFu, 0x80000000u, 0xFFFFFFFFu};
+        constexpr uint delicate[] = {
+            0x7FC12345u, 0x7F812345u, 0xFFC00000u, 0x7F800000u, 0xFF800000u, 1u, 0x807FFFFFu, 0x80000000u, 0xFFFFFFFFu};
         auto words = random_words(n, n);
         for (std::size_t i = 0; i < n; i += 3)
             words[i] = delicate[i / 3 % std::size(delicate)];
@@ -64,7 +65,8 @@ protected:
         auto buffer = up(host);
         std::fill(host.begin(), host.end(), T(1)); // the caller's own again
         EXPECT_EQ(buffer.size(), n);
-        EXPECT_EQ(count_different_bits(this->b().download(buffer), copy), 0u) << n << " elements of " << sizeof(T) << " bytes";
+        EXPECT_EQ(count_different_bits(this->b().download(buffer), copy), 0u)
+            << n << " elements of " << sizeof(T) << " bytes";
         const auto moved = std::move(buffer);
         EXPECT_EQ(buffer.size(), 0u); // NOLINT(bugprone-use-after-move)
         EXPECT_EQ(moved.size(), n);
@@ -74,7 +76,8 @@ protected:
 };
 TYPED_TEST_SUITE_P(verbs);
 
-// --- buffers ----------------------------------------------------------------------------------------------------------
+// --- buffers
+// ----------------------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(verbs, buffers_keep_delicate_floats)
 {
@@ -183,12 +186,27 @@ TYPED_TEST_P(verbs, too_small_buffers_are_refused_by_name)
     auto state = b.template make<glm::uvec2>(20);
     auto totals = b.template make<glm::vec4>(20);
 
-    EXPECT_NE(refusal([&] { b.template run<verb_kernels::shifted>({8, 2u}, {.added = 0}, reads(in), writes(small)); }).find("'after'"), std::string::npos);
-    EXPECT_NE(refusal([&] { b.template run<verb_kernels::running_total>(20, {}, reads(in), writes(state, small)); }).find("'old'"), std::string::npos);
-    EXPECT_NE(refusal([&] { b.template run_until_done<verb_kernels::countdown>(21, {.step = 1}, reads(in), writes(state, old), 0u); }).find("'state'"), std::string::npos);
-    EXPECT_NE(refusal([&] { b.template run_until_done<verb_kernels::countdown>({10, 0u}, {.step = 1}, reads(in), writes(state, small), 0u); }).find("'old'"), std::string::npos);
+    EXPECT_NE(refusal([&] {
+        b.template run<verb_kernels::shifted>({8, 2u}, {.added = 0}, reads(in), writes(small));
+    }).find("'after'"),
+        std::string::npos);
+    EXPECT_NE(refusal([&] {
+        b.template run<verb_kernels::running_total>(20, {}, reads(in), writes(state, small));
+    }).find("'old'"),
+        std::string::npos);
+    EXPECT_NE(refusal([&] {
+        b.template run_until_done<verb_kernels::countdown>(21, {.step = 1}, reads(in), writes(state, old), 0u);
+    }).find("'state'"),
+        std::string::npos);
+    EXPECT_NE(refusal([&] {
+        b.template run_until_done<verb_kernels::countdown>({10, 0u}, {.step = 1}, reads(in), writes(state, small), 0u);
+    }).find("'old'"),
+        std::string::npos);
     const auto route = [&](uint destinations, uint m) {
-        return refusal([&] { b.template route<verb_kernels::delivery>(100, {.first_payload = 0}, reads(in, amounts), destinations, m, small, totals); });
+        return refusal([&] {
+            b.template route<verb_kernels::delivery>(
+                100, {.first_payload = 0}, reads(in, amounts), destinations, m, small, totals);
+        });
     };
     EXPECT_NE(route(10, 1).find("slots"), std::string::npos); // 9
     EXPECT_NE(route(3, 2).find("slots"), std::string::npos);  // 12
@@ -199,7 +217,8 @@ TYPED_TEST_P(verbs, too_small_buffers_are_refused_by_name)
     EXPECT_EQ(b.download(small), marks);
 }
 
-// --- run --------------------------------------------------------------------------------------------------------------
+// --- run
+// --------------------------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(verbs, a_pass_computes_its_elements_and_no_other)
 {
@@ -258,7 +277,9 @@ TYPED_TEST_P(verbs, a_pass_has_eight_inputs_and_eight_outputs_of_mixed_types)
     auto v_ = this->up(v);
     auto w_ = this->up(w);
     for (int pass = 0; pass < 2; ++pass) {
-        b.template run<verb_kernels::mixed>({elements, first}, {}, reads(this->up(a), this->up(h_b), this->up(c), this->up(d), this->up(e), this->up(f), this->up(g), this->up(h)),
+        b.template run<verb_kernels::mixed>({elements, first}, {},
+            reads(this->up(a), this->up(h_b), this->up(c), this->up(d), this->up(e), this->up(f), this->up(g),
+                this->up(h)),
             writes(p_, q_, r_, s_, t_, u_, v_, w_));
         for (uint i = first; i < first + elements; ++i) {
             p[i] += a[i];
@@ -314,7 +335,9 @@ TYPED_TEST_P(verbs, switches_are_on_and_off_one_by_one)
             for (const uint highest : {0u, 1u})
                 for (const uint others : {0u, ~0u}) { // that the kernel lacks
                     constexpr uint known = 1u | 1u << 5 | 1u << 31;
-                    b.template run<verb_kernels::switched>({n, 0u, lowest | middle << 5 | highest << 31 | (others & ~known)}, {.factor = 8}, reads(), writes(out));
+                    b.template run<verb_kernels::switched>(
+                        {n, 0u, lowest | middle << 5 | highest << 31 | (others & ~known)}, {.factor = 8}, reads(),
+                        writes(out));
                     std::vector<uint> expected(n);
                     for (uint i = 0; i < n; ++i)
                         expected[i] = 8 * i + lowest + 2 * middle + 4 * highest;
@@ -328,14 +351,26 @@ TYPED_TEST_P(verbs, parameters_of_every_kind_arrive)
 {
     using glm::uvec4, glm::vec4;
     auto& b = this->b();
-    const verb_kernels::parameters::Params args{.a = vec4(1, 2, 3, 4), .b = uvec4(5, 6, 7, 0xFFFFFFFFu), .c = {vec4(8, 9, 10, 11), uvec4(12, 13, 14, 15)}, .d = vec4(-16, 17.5f, -0.0f, 1e30f),
-        .e = {18, 19}, .f = {20, 21}, .g = 22.25f, .h = 23, .j = -24, .k = 0x80000000u};
+    const verb_kernels::parameters::Params args{.a = vec4(1, 2, 3, 4),
+        .b = uvec4(5, 6, 7, 0xFFFFFFFFu),
+        .c = {vec4(8, 9, 10, 11), uvec4(12, 13, 14, 15)},
+        .d = vec4(-16, 17.5f, -0.0f, 1e30f),
+        .e = {18, 19},
+        .f = {20, 21},
+        .g = 22.25f,
+        .h = 23,
+        .j = -24,
+        .k = 0x80000000u};
     static_assert(sizeof args == 112);
     auto floats = b.template make<vec4>(7);
     auto wholes = b.template make<uvec4>(7);
     b.template run<verb_kernels::parameters>(7, args, reads(), writes(floats, wholes));
-    EXPECT_EQ(count_different_bits(b.download(floats), {args.a, vec4(0), args.c.floats, args.d, vec4(18, 19, 22.25f, 0), vec4(0), vec4(0)}), 0u);
-    EXPECT_EQ(b.download(wholes), (std::vector<uvec4>{uvec4(0), args.b, args.c.wholes, uvec4(0), uvec4(0), uvec4(20, 21, 23, 0x80000000u), uvec4(24, 1, 0, 0)}));
+    EXPECT_EQ(count_different_bits(b.download(floats),
+                  {args.a, vec4(0), args.c.floats, args.d, vec4(18, 19, 22.25f, 0), vec4(0), vec4(0)}),
+        0u);
+    EXPECT_EQ(b.download(wholes),
+        (std::vector<uvec4>{
+            uvec4(0), args.b, args.c.wholes, uvec4(0), uvec4(0), uvec4(20, 21, 23, 0x80000000u), uvec4(24, 1, 0, 0)}));
 }
 
 TYPED_TEST_P(verbs, a_pass_reads_one_part_of_a_buffer_and_writes_another)
@@ -376,12 +411,15 @@ TYPED_TEST_P(verbs, each_pass_sees_what_all_before_it_wrote)
     b.template run<verb_kernels::running_total>(n, {}, reads(last), writes(state, old));
     for (uint i = 0; i < n; ++i)
         totals[i] = {expected[i], expected[i] * (9 + 3 + 1) + 1};
-    EXPECT_EQ(marked, static_cast<std::uint64_t>(std::count_if(expected.begin(), expected.end(), [](uint x) { return (x & 4u) != 0; })));
+    EXPECT_EQ(marked, static_cast<std::uint64_t>(std::count_if(expected.begin(), expected.end(), [](uint x) {
+        return (x & 4u) != 0;
+    })));
     EXPECT_EQ(b.download(state), totals);
     EXPECT_EQ(b.download(last), expected);
 }
 
-// --- run_until_done ---------------------------------------------------------------------------------------------------
+// --- run_until_done
+// ---------------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(verbs, elements_take_as_many_passes_as_they_need)
 {
@@ -398,13 +436,15 @@ TYPED_TEST_P(verbs, elements_take_as_many_passes_as_they_need)
             std::vector<uint> old(n, 77u);
             const auto added_ = this->up(added);
             // All at once, and stopped after some passes and going on.
-            for (const std::vector<uint>& most : {std::vector<uint>{nowhere}, {0, 3, 1, 96, 10}, {100, 1}, {8, 8, 0, 83, 1, 5}}) {
+            for (const std::vector<uint>& most :
+                {std::vector<uint>{nowhere}, {0, 3, 1, 96, 10}, {100, 1}, {8, 8, 0, 83, 1, 5}}) {
                 auto expected = states;
                 auto expected_old = old;
                 auto state = this->up(states);
                 auto old_ = this->up(old);
                 for (const uint passes : most) {
-                    const auto p = b.template run_until_done<verb_kernels::countdown>({elements, first}, {.step = 1}, reads(added_), writes(state, old_), passes);
+                    const auto p = b.template run_until_done<verb_kernels::countdown>(
+                        {elements, first}, {.step = 1}, reads(added_), writes(state, old_), passes);
                     std::vector<std::uint64_t> active;
                     bool finished = true;
                     for (uint i = first; i < first + elements; ++i) {
@@ -417,7 +457,8 @@ TYPED_TEST_P(verbs, elements_take_as_many_passes_as_they_need)
                         }
                         finished = finished && expected[i].x == 0;
                     }
-                    const auto where = ::testing::Message() << elements << " elements from " << first << ", at most " << passes << " passes";
+                    const auto where = ::testing::Message()
+                        << elements << " elements from " << first << ", at most " << passes << " passes";
                     EXPECT_EQ(p.passes, active.size()) << where;
                     EXPECT_EQ(p.active, active) << where;
                     EXPECT_EQ(p.finished, finished) << where;
@@ -428,7 +469,8 @@ TYPED_TEST_P(verbs, elements_take_as_many_passes_as_they_need)
         }
 }
 
-// --- count ------------------------------------------------------------------------------------------------------------
+// --- count
+// ------------------------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(verbs, a_count_is_of_its_elements_and_exact)
 {
@@ -438,11 +480,15 @@ TYPED_TEST_P(verbs, a_count_is_of_its_elements_and_exact)
     const auto random = this->up(words), all = this->up(std::vector<uint>(n, 1u));
     for (const uint first : {0u, 1u, 63u, 2048u, 3001u})
         for (const uint elements : {0u, 1u, 2u, 64u, 65u, 2048u, 5999u}) {
-            const auto count = [&](const auto& buffer, uint marks) { return b.template count<verb_kernels::is_marked>({elements, first}, {.marks = marks}, reads(buffer)); };
+            const auto count = [&](const auto& buffer, uint marks) {
+                return b.template count<verb_kernels::is_marked>({elements, first}, {.marks = marks}, reads(buffer));
+            };
             const auto begin = words.begin() + first, end = begin + elements;
             EXPECT_EQ(count(all, 1), elements) << elements << " from " << first;
             EXPECT_EQ(count(all, 2), 0u) << elements << " from " << first;
-            EXPECT_EQ(count(random, 8), static_cast<std::uint64_t>(std::count_if(begin, end, [](uint x) { return (x & 8u) != 0; }))) << elements << " from " << first;
+            EXPECT_EQ(count(random, 8),
+                static_cast<std::uint64_t>(std::count_if(begin, end, [](uint x) { return (x & 8u) != 0; })))
+                << elements << " from " << first;
             if (elements == 0)
                 continue;
             // The first and the last element, and the ones before and after these.
@@ -458,7 +504,8 @@ TYPED_TEST_P(verbs, a_count_is_of_its_elements_and_exact)
         }
 }
 
-// --- route ------------------------------------------------------------------------------------------------------------
+// --- route
+// ------------------------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(verbs, a_route_keeps_the_first_draws_and_adds_up_all)
 {
@@ -475,7 +522,9 @@ TYPED_TEST_P(verbs, a_route_keeps_the_first_draws_and_adds_up_all)
                         std::vector<uint> sent(n);
                         std::vector<glm::vec4> amounts(n);
                         for (uint i = 0; i < n; ++i) {
-                            sent[i] = random.below(8) == 0 ? nowhere - random.below(2) : random.below(destinations + destinations / 10 + 1); // some to none
+                            sent[i] = random.below(8) == 0
+                                ? nowhere - random.below(2)
+                                : random.below(destinations + destinations / 10 + 1); // some to none
                             amounts[i] = {random(), -random(), 1e-3f * random(), 1};
                         }
                         const uint spare = destinations > 3 ? 3 : 0; // larger than needed: emptied too
@@ -492,14 +541,18 @@ TYPED_TEST_P(verbs, a_route_keeps_the_first_draws_and_adds_up_all)
                         }
                         auto slots_ = this->up(std::vector<uint>(slots.size(), 5u));
                         auto totals_ = this->up(std::vector<glm::vec4>(totals.size(), glm::vec4(5)));
-                        b.template route<verb_kernels::delivery>({draws, first}, {.first_payload = 5}, reads(this->up(sent), this->up(amounts)), destinations, m, slots_, totals_);
-                        const auto where = ::testing::Message() << draws << " draws from " << first << " to " << destinations << " destinations, m " << m << ", " << parts << " parts";
+                        b.template route<verb_kernels::delivery>({draws, first}, {.first_payload = 5},
+                            reads(this->up(sent), this->up(amounts)), destinations, m, slots_, totals_);
+                        const auto where = ::testing::Message()
+                            << draws << " draws from " << first << " to " << destinations << " destinations, m " << m
+                            << ", " << parts << " parts";
                         EXPECT_EQ(count_different_bits(b.download(slots_), slots), 0u) << where;
                         EXPECT_EQ(count_different_bits(b.download(totals_), totals), 0u) << where;
                     }
 }
 
-// --- what it says of itself -------------------------------------------------------------------------------------------
+// --- what it says of itself
+// -------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(verbs, passes_are_counted_by_kernel)
 {
@@ -563,10 +616,14 @@ TYPED_TEST_P(verbs, capabilities_can_be_worked_with)
     EXPECT_EQ(&c, &this->b().caps());
 }
 
-REGISTER_TYPED_TEST_SUITE_P(verbs, buffers_keep_delicate_floats, buffers_move_and_may_outlive_their_backend, a_buffer_may_go_before_the_passes_that_use_it_are_done, memory_is_given_back,
-    a_buffer_beyond_the_limit_is_refused_and_nothing_else, too_small_buffers_are_refused_by_name, a_pass_computes_its_elements_and_no_other,
-    a_pass_has_eight_inputs_and_eight_outputs_of_mixed_types, states_change_in_place_and_outputs_beside_them, switches_are_on_and_off_one_by_one, parameters_of_every_kind_arrive,
-    a_pass_reads_one_part_of_a_buffer_and_writes_another, each_pass_sees_what_all_before_it_wrote, elements_take_as_many_passes_as_they_need, a_count_is_of_its_elements_and_exact,
-    a_route_keeps_the_first_draws_and_adds_up_all, passes_are_counted_by_kernel, finish_may_be_called_at_any_time, capabilities_can_be_worked_with);
+REGISTER_TYPED_TEST_SUITE_P(verbs, buffers_keep_delicate_floats, buffers_move_and_may_outlive_their_backend,
+    a_buffer_may_go_before_the_passes_that_use_it_are_done, memory_is_given_back,
+    a_buffer_beyond_the_limit_is_refused_and_nothing_else, too_small_buffers_are_refused_by_name,
+    a_pass_computes_its_elements_and_no_other, a_pass_has_eight_inputs_and_eight_outputs_of_mixed_types,
+    states_change_in_place_and_outputs_beside_them, switches_are_on_and_off_one_by_one, parameters_of_every_kind_arrive,
+    a_pass_reads_one_part_of_a_buffer_and_writes_another, each_pass_sees_what_all_before_it_wrote,
+    elements_take_as_many_passes_as_they_need, a_count_is_of_its_elements_and_exact,
+    a_route_keeps_the_first_draws_and_adds_up_all, passes_are_counted_by_kernel, finish_may_be_called_at_any_time,
+    capabilities_can_be_worked_with);
 
 } // namespace photongrid::testing

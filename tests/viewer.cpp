@@ -36,12 +36,14 @@ namespace {
         std::size_t polygons = 0, blocks = 0;
         for (const auto& p : parts) {
             polygons += p.polygons.size();
-            blocks += p.polygons.size() == 5 && s.materials[s.polygons[p.polygons[0]].material].name == "white" ? 1u : 0u;
+            blocks
+                += p.polygons.size() == 5 && s.materials[s.polygons[p.polygons[0]].material].name == "white" ? 1u : 0u;
         }
         EXPECT_EQ(polygons, s.polygons.size()) << "each polygon is in one part";
         EXPECT_GE(blocks, 2u);
         EXPECT_EQ(parts.back().rectangle_lights.size(), 1u);
-        EXPECT_EQ(names(small_cornell()), (std::vector<std::string>{"sphere, mirror", "sphere, glass", "5 polygons, white", "lamp"}));
+        EXPECT_EQ(names(small_cornell()),
+            (std::vector<std::string>{"sphere, mirror", "sphere, glass", "5 polygons, white", "lamp"}));
     }
 
     TEST(scene_parts, what_is_moved_moves_alone_and_back)
@@ -74,7 +76,9 @@ namespace {
             const double reach = std::tan(glm::radians(c.vertical_fov) / 2) * (p.z - c.position.z);
             return glm::dvec2(100 - 100 * (p.x - c.position.x) / reach, 100 - 100 * (p.y - c.position.y) / reach);
         };
-        for (const auto& [point, name] : {std::pair{dvec3(0.7, 0.2, 0.45), "sphere, mirror"}, {dvec3(0.3, 0.18, 0.17), "sphere, glass"}, {dvec3(0.5, 0.9, 1), "5 polygons, white"}, {dvec3(0.5, 0.999, 0.5), "lamp"}}) {
+        for (const auto& [point, name] :
+            {std::pair{dvec3(0.7, 0.2, 0.45), "sphere, mirror"}, {dvec3(0.3, 0.18, 0.17), "sphere, glass"},
+                {dvec3(0.5, 0.9, 1), "5 polygons, white"}, {dvec3(0.5, 0.999, 0.5), "lamp"}}) {
             const auto at = place(point);
             const auto found = pick(s, parts, 200, 200, at.x, at.y);
             ASSERT_TRUE(found) << name;
@@ -173,10 +177,12 @@ namespace {
     class drawn : public ::testing::Test {
     protected:
         drawn()
-            : thread({.backend = "serial"}, [this] { notify(); }, [this](const std::string& line) {
-                const std::lock_guard lock(guard);
-                lines.push_back(line);
-            })
+            : thread(
+                {.backend = "serial"}, [this] { notify(); },
+                [this](const std::string& line) {
+                    const std::lock_guard lock(guard);
+                    lines.push_back(line);
+                })
         {
         }
         void notify()
@@ -199,12 +205,15 @@ namespace {
         }
         bool whole(std::uint64_t request)
         {
-            return wait([=](const render_report& r) { return r.request == request && (r.progress.stage == "finished" || !r.error.empty()); });
+            return wait([=](const render_report& r) {
+                return r.request == request && (r.progress.stage == "finished" || !r.error.empty());
+            });
         }
         std::size_t count(const std::string& what)
         {
             const std::lock_guard lock(guard);
-            return static_cast<std::size_t>(std::count_if(lines.begin(), lines.end(), [&](const std::string& l) { return l.find(what) != std::string::npos; }));
+            return static_cast<std::size_t>(std::count_if(
+                lines.begin(), lines.end(), [&](const std::string& l) { return l.find(what) != std::string::npos; }));
         }
 
         std::mutex guard;

@@ -46,7 +46,8 @@ bool wait_until(const std::function<bool()>& good, std::chrono::seconds limit = 
 /// A process, killed with this object where it still runs.
 class process {
 public:
-    process(std::vector<std::string> arguments, const fs::path& output, const std::vector<std::pair<std::string, std::string>>& environment, int keep_open = -1)
+    process(std::vector<std::string> arguments, const fs::path& output,
+        const std::vector<std::pair<std::string, std::string>>& environment, int keep_open = -1)
     {
         std::vector<char*> argv;
         for (auto& a : arguments)
@@ -89,7 +90,8 @@ private:
     pid_t id_ = 0;
 };
 
-/// A floor and a wall with a ball before it, a lamp to the left. Seen from the front: the ball's shadow falls to the right.
+/// A floor and a wall with a ball before it, a lamp to the left. Seen from the front: the ball's shadow falls to the
+/// right.
 const char* const scene = R"({"photongrid": 1, "name": "ball", "units": {"length": "m", "power": "W"},
  "camera": {"position": [0, 1, 4], "look_at": [0, 0.6, 0], "vertical_fov": 40},
  "materials": {"white": {"type": "lambertian", "reflectance": 0.7}, "red": {"type": "lambertian", "reflectance": [0.7, 0.1, 0.1]}},
@@ -122,9 +124,11 @@ protected:
     {
         int pipe[2];
         ASSERT_EQ(::pipe2(pipe, O_CLOEXEC), 0);
-        std::vector<std::string> command{"Xvfb", "-displayfd", std::to_string(pipe[1]), "-screen", "0", std::to_string(width) + "x" + std::to_string(height) + "x24", "-nolisten", "tcp", "-noreset"};
+        std::vector<std::string> command{"Xvfb", "-displayfd", std::to_string(pipe[1]), "-screen", "0",
+            std::to_string(width) + "x" + std::to_string(height) + "x24", "-nolisten", "tcp", "-noreset"};
         command.insert(command.end(), more.begin(), more.end());
-        server = std::make_unique<process>(command, folder / "xvfb.log", std::vector<std::pair<std::string, std::string>>{}, pipe[1]);
+        server = std::make_unique<process>(
+            command, folder / "xvfb.log", std::vector<std::pair<std::string, std::string>>{}, pipe[1]);
         ::close(pipe[1]);
         char digits[16] = {};
         const auto n = ::read(pipe[0], digits, sizeof digits - 1);
@@ -139,10 +143,12 @@ protected:
 
     void open_window(const std::vector<std::string>& more = {})
     {
-        std::vector<std::string> command{PHOTONGRID_PROGRAM, "view", (folder / "ball.json").string(), "--backend", "serial", "--journal", (folder / "journal").string()};
+        std::vector<std::string> command{PHOTONGRID_PROGRAM, "view", (folder / "ball.json").string(), "--backend",
+            "serial", "--journal", (folder / "journal").string()};
         command.insert(command.end(), more.begin(), more.end());
         fs::current_path(folder);
-        program = std::make_unique<process>(command, folder / "program.log", std::vector<std::pair<std::string, std::string>>{{"DISPLAY", display}, {"WAYLAND_DISPLAY", ""}});
+        program = std::make_unique<process>(command, folder / "program.log",
+            std::vector<std::pair<std::string, std::string>>{{"DISPLAY", display}, {"WAYLAND_DISPLAY", ""}});
         ASSERT_TRUE(rests()) << contents(folder / "program.log");
     }
 
@@ -248,7 +254,8 @@ protected:
     {
         screenshot s;
         s.width = picture_width, s.height = picture_height, s.left = picture_left, s.top = picture_top;
-        XImage* im = XGetImage(x, DefaultRootWindow(x), s.left, s.top, static_cast<unsigned>(s.width), static_cast<unsigned>(s.height), AllPlanes, ZPixmap);
+        XImage* im = XGetImage(x, DefaultRootWindow(x), s.left, s.top, static_cast<unsigned>(s.width),
+            static_cast<unsigned>(s.height), AllPlanes, ZPixmap);
         EXPECT_NE(im, nullptr);
         for (int py = 0; py < s.height; ++py)
             for (int px = 0; px < s.width; ++px) {
@@ -268,8 +275,8 @@ protected:
         return static_cast<double>(n) / static_cast<double>(a.bytes.size());
     }
 
-    // The window is 810 x 720, at the screen's corner, since no window manager puts it elsewhere; its picture, 480 x 360, has the
-    // panel's 330 pixels to its right.
+    // The window is 810 x 720, at the screen's corner, since no window manager puts it elsewhere; its picture, 480 x
+    // 360, has the panel's 330 pixels to its right.
     static constexpr int picture_width = 480, picture_height = 360, picture_left = 0, picture_top = 180;
     /// From parts of the picture to pixels of the screen.
     static int px(double part) { return picture_left + static_cast<int>(part * picture_width); }
@@ -314,7 +321,8 @@ TEST_F(window, follows_camera_lamp_and_keys)
     ASSERT_TRUE(rests(before));
     const auto moved = look();
     EXPECT_GT(maps(), maps_at_first);
-    EXPECT_GT(moved.brightness(0.6, 0.75, 0.66, 0.74), moved.brightness(0.28, 0.4, 0.66, 0.74) + 10) << "the shadow did not go with the lamp";
+    EXPECT_GT(moved.brightness(0.6, 0.75, 0.66, 0.74), moved.brightness(0.28, 0.4, 0.66, 0.74) + 10)
+        << "the shadow did not go with the lamp";
 
     // A key for a setting: k halves; another one undoes it and the lamp.
     before = requests();
@@ -335,7 +343,10 @@ TEST_F(window, follows_camera_lamp_and_keys)
     // Pictures and scene are saved.
     key(XK_p);
     key(XK_s, true);
-    EXPECT_TRUE(wait_until([&] { return fs::exists(folder / "ball.png") && fs::exists(folder / "ball.exr") && fs::exists(folder / "ball-changed.json"); }));
+    EXPECT_TRUE(wait_until([&] {
+        return fs::exists(folder / "ball.png") && fs::exists(folder / "ball.exr")
+            && fs::exists(folder / "ball-changed.json");
+    }));
 
     // Whatever was given up, was given up within a pass.
     for (const auto& j : journal()) {
@@ -351,7 +362,8 @@ TEST_F(window, follows_camera_lamp_and_keys)
 TEST_F(window, says_what_is_missing)
 {
     const auto view = [&](const std::string& on) {
-        process p({PHOTONGRID_PROGRAM, "view", (folder / "ball.json").string(), "--backend", "serial"}, folder / "program.log", {{"DISPLAY", on}, {"WAYLAND_DISPLAY", ""}});
+        process p({PHOTONGRID_PROGRAM, "view", (folder / "ball.json").string(), "--backend", "serial"},
+            folder / "program.log", {{"DISPLAY", on}, {"WAYLAND_DISPLAY", ""}});
         EXPECT_EQ(p.code(), 4);
         return contents(folder / "program.log");
     };

@@ -20,73 +20,59 @@
 #include <photongrid/kernels/begin.hpp>
 #undef PARAMS
 #define PARAMS(P) P args{};
-#define TEST_KERNEL(NAME, ...)                                     \
-    struct NAME {                                                  \
-        static constexpr std::string_view path = "test/" #NAME ".glsl"; \
-        __VA_ARGS__                                                \
-    };                                                             \
+#define TEST_KERNEL(NAME, ...)                                                                                         \
+    struct NAME {                                                                                                      \
+        static constexpr std::string_view path = "test/" #NAME ".glsl";                                                \
+        __VA_ARGS__                                                                                                    \
+    };                                                                                                                 \
     inline constexpr text_file NAME##_text{"test/" #NAME ".glsl", #__VA_ARGS__ "\n"};
 
 namespace photongrid::test_kernels {
 using namespace glm;
 
 // One frame of a buffer from another frame of it.
-TEST_KERNEL(next_frame,
-    struct Params { uint frame; };
-    PARAMS(Params)
-    INPUT(0, uint, before)
-    OUTPUT(0, uint, after)
-    void kernel(uint i) { after = before(i - args.frame) * 2u + 1u; })
+TEST_KERNEL(
+    next_frame, struct Params { uint frame; }; PARAMS(Params) INPUT(0, uint, before)
+        OUTPUT(0, uint, after) void kernel(uint i) { after = before(i - args.frame) * 2u + 1u; })
 
 // Element i takes as many passes as its state says.
-TEST_KERNEL(countdown,
-    struct Params { uint step; };
-    PARAMS(Params)
-    STATE(0, uvec2, state)
-    bool done() { return state.x == 0u; }
-    void kernel(uint i) { state = uvec2(state.x - args.step, state.y + i); })
+TEST_KERNEL(
+    countdown, struct Params { uint step; }; PARAMS(Params) STATE(0, uvec2, state) bool done() {
+        return state.x == 0u;
+    } void kernel(uint i) { state = uvec2(state.x - args.step, state.y + i); })
 
 // What the elements of a group tell each other, for as many passes as the state says.
-TEST_KERNEL(group_probe,
-    struct Params { uint unused; };
-    PARAMS(Params)
-    IN_GROUPS(3)
-    INPUT(0, uint, numbers)
-    STATE(0, uvec2, state)
-    OUTPUT(1, uvec4, over_all)
-    OUTPUT(2, uvec4, of_lanes)
-    bool done() { return state.x == 0u; }
-    uint weighed;
-    uint number;
-    void weigh(uint lane) { weighed += from_lane(number, lane) * (lane + 1u); }
-    void kernel(uint i) {
+TEST_KERNEL(
+    group_probe, struct Params { uint unused; }; PARAMS(Params) IN_GROUPS(3) INPUT(0, uint, numbers) STATE(0, uvec2,
+        state) OUTPUT(1, uvec4, over_all) OUTPUT(2, uvec4, of_lanes) bool done() { return state.x == 0u; } uint weighed;
+    uint number; void weigh(uint lane) { weighed += from_lane(number, lane) * (lane + 1u); } void kernel(uint i) {
         number = numbers(i);
         weighed = 0u;
         EACH_LANE(weigh)
-        over_all = uvec4(group_min(number), group_max(number), group_sum_up_to(number), group_any(number % 5u == 0u) ? 1u : 0u);
+        over_all = uvec4(
+            group_min(number), group_max(number), group_sum_up_to(number), group_any(number % 5u == 0u) ? 1u : 0u);
         of_lanes = uvec4(GROUP_LANES, group_lane(), lane_value(number, GROUP_LANES / 2u), weighed);
         state = uvec2(state.x - min(state.x, 1u), state.y + 1u);
     })
 
-TEST_KERNEL(switched,
-    struct Params { uint factor; };
-    PARAMS(Params)
-    SWITCH(0, FIRST)
-    SWITCH(5, OTHER)
-    OUTPUT(0, uint, result)
-    void kernel(uint i) {
+TEST_KERNEL(
+    switched, struct Params { uint factor; };
+    PARAMS(Params) SWITCH(0, FIRST) SWITCH(5, OTHER) OUTPUT(0, uint, result) void kernel(uint i) {
         result = i;
-        if (FIRST) { for (uint j = 0u; j < args.factor; ++j) result = result * 3u + j; }
-        if (OTHER) { for (uint j = 0u; j < args.factor; ++j) result = (result ^ j) * 5u; }
+        if (FIRST) {
+            for (uint j = 0u; j < args.factor; ++j)
+                result = result * 3u + j;
+        }
+        if (OTHER) {
+            for (uint j = 0u; j < args.factor; ++j)
+                result = (result ^ j) * 5u;
+        }
     })
 
 // Arithmetic that compilers fuse, reassociate, fold and turn into reciprocals wherever they may.
-TEST_KERNEL(contracts,
-    struct Params { uint unused; };
-    PARAMS(Params)
-    INPUT(0, vec4, numbers)
-    OUTPUT(0, vec4, result)
-    void kernel(uint i) {
+TEST_KERNEL(
+    contracts, struct Params { uint unused; };
+    PARAMS(Params) INPUT(0, vec4, numbers) OUTPUT(0, vec4, result) void kernel(uint i) {
         vec4 v = numbers(i);
         float fused = v.x * v.y + v.z;
         float reassociated = (v.x + 1.0e6f) - 1.0e6f;
@@ -96,28 +82,29 @@ TEST_KERNEL(contracts,
         result = vec4(fused, reassociated, folded - scaled.x, reciprocal + scaled.w);
     })
 
-TEST_KERNEL(sends,
-    struct Params { uint destinations; };
-    PARAMS(Params)
-    INPUT(0, vec4, numbers)
-    OUTPUT(0, uint, destination)
-    OUTPUT(1, uint, payload)
-    OUTPUT(2, vec4, amount)
-    void kernel(uint i) {
-        vec4 v = numbers(i);
-        destination = uint(v.x * float(args.destinations));
-        payload = i * 3u;
-        amount = v;
-    })
+TEST_KERNEL(
+    sends, struct Params { uint destinations; }; PARAMS(Params) INPUT(0, vec4, numbers) OUTPUT(0, uint, destination)
+        OUTPUT(1, uint, payload) OUTPUT(2, vec4, amount) void kernel(uint i) {
+            vec4 v = numbers(i);
+            destination = uint(v.x * float(args.destinations));
+            payload = i * 3u;
+            amount = v;
+        })
 
-TEST_KERNEL(eight_states,
-    struct Params { uint unused; };
-    PARAMS(Params)
-    INPUT(0, uint, a) INPUT(1, uint, b) INPUT(2, uint, c) INPUT(3, uint, d) INPUT(4, uint, e) INPUT(5, uint, f) INPUT(6, uint, g) INPUT(7, uint, h)
-    STATE(0, uint, s) STATE(1, uint, t) STATE(2, uint, u) STATE(3, uint, v) STATE(4, uint, w) STATE(5, uint, x) STATE(6, uint, y) OUTPUT(7, uint, z)
-    void kernel(uint i) {
-        s += a(i); t += b(i); u += c(i); v += d(i); w += e(i); x += f(i); y += g(i); z = h(i);
-    })
+TEST_KERNEL(
+    eight_states, struct Params { uint unused; }; PARAMS(Params) INPUT(0, uint, a) INPUT(1, uint, b) INPUT(2, uint, c)
+        INPUT(3, uint, d) INPUT(4, uint, e) INPUT(5, uint, f) INPUT(6, uint, g) INPUT(7, uint, h) STATE(0, uint, s)
+            STATE(1, uint, t) STATE(2, uint, u) STATE(3, uint, v) STATE(4, uint, w) STATE(5, uint, x) STATE(6, uint, y)
+                OUTPUT(7, uint, z) void kernel(uint i) {
+                    s += a(i);
+                    t += b(i);
+                    u += c(i);
+                    v += d(i);
+                    w += e(i);
+                    x += f(i);
+                    y += g(i);
+                    z = h(i);
+                })
 
 // The interface alone; the text that glslang gets has errors.
 struct broken {
@@ -140,7 +127,8 @@ void kernel(uint i) {
 }
 )"};
 
-inline constexpr text_file texts[] = {next_frame_text, countdown_text, group_probe_text, switched_text, contracts_text, sends_text, eight_states_text, broken_text};
+inline constexpr text_file texts[] = {next_frame_text, countdown_text, group_probe_text, switched_text, contracts_text,
+    sends_text, eight_states_text, broken_text};
 } // namespace photongrid::test_kernels
 #include <photongrid/kernels/end.hpp>
 
@@ -207,7 +195,8 @@ std::vector<vec4> numbers(std::size_t n, std::uint64_t seed)
     return v;
 }
 
-// --- buffers ----------------------------------------------------------------------------------------------------------
+// --- buffers
+// ----------------------------------------------------------------------------------------------------------
 
 template <backend B>
 void expect_round_trips(B& b)
@@ -274,7 +263,8 @@ TEST_F(vulkan, a_buffer_beyond_the_limit_is_refused_with_the_numbers)
     }
 }
 
-// --- passes -----------------------------------------------------------------------------------------------------------
+// --- passes
+// -----------------------------------------------------------------------------------------------------------
 
 TEST_F(vulkan, frames_of_one_buffer_are_read_and_written_in_one_pass)
 {
@@ -309,7 +299,8 @@ TEST_F(vulkan, eight_inputs_and_eight_outputs)
         for (auto& o : out)
             o = up(backend, host);
         for (int pass = 0; pass < 2; ++pass)
-            backend.template run<test_kernels::eight_states>(host.size(), {}, reads(in, in, in, in, in, in, in, in), writes(out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]));
+            backend.template run<test_kernels::eight_states>(host.size(), {}, reads(in, in, in, in, in, in, in, in),
+                writes(out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]));
         std::vector<uint> all;
         for (auto& o : out)
             for (const uint x : backend.download(o))
@@ -363,7 +354,8 @@ TEST_F(vulkan, passes_over_unfinished_elements_fall_and_can_be_resumed)
             state = up(b(), host);
             auto reference = up(serial, host);
             const auto some = b().run_until_done<test_kernels::countdown>(n, {.step = 1}, reads(), writes(state), most);
-            const auto same = serial.run_until_done<test_kernels::countdown>(n, {.step = 1}, reads(), writes(reference), most);
+            const auto same
+                = serial.run_until_done<test_kernels::countdown>(n, {.step = 1}, reads(), writes(reference), most);
             EXPECT_EQ(some.passes, same.passes) << most;
             EXPECT_EQ(some.finished, same.finished) << most;
             EXPECT_EQ(some.active, same.active) << most;
@@ -372,8 +364,8 @@ TEST_F(vulkan, passes_over_unfinished_elements_fall_and_can_be_resumed)
     }
 }
 
-/// Neighbours of a subgroup tell each other the truth, in all of `run` and `run_until_done`, of any number of elements, done or
-/// not; and a group is one element where the switch is off or subgroups are.
+/// Neighbours of a subgroup tell each other the truth, in all of `run` and `run_until_done`, of any number of elements,
+/// done or not; and a group is one element where the switch is off or subgroups are.
 TEST_F(vulkan, elements_of_a_group_hear_of_each_other)
 {
     uint most_lanes = 1;
@@ -414,7 +406,8 @@ TEST_F(vulkan, elements_of_a_group_hear_of_each_other)
                                 weighed += numbers[j] * (j - first + 1);
                                 any = any || numbers[j] % 5 == 0;
                             }
-                            ASSERT_EQ(all[i], uvec4(low, high, up_to, any ? 1 : 0)) << i << " of " << n << ", groups of " << width;
+                            ASSERT_EQ(all[i], uvec4(low, high, up_to, any ? 1 : 0))
+                                << i << " of " << n << ", groups of " << width;
                             ASSERT_EQ(lanes[i].y, i - first);
                             if (whole && past - first == width) {
                                 ASSERT_EQ(lanes[i].z, numbers[first + width / 2]);
@@ -422,10 +415,12 @@ TEST_F(vulkan, elements_of_a_group_hear_of_each_other)
                             }
                         }
                     };
-                    device.run<test_kernels::group_probe>({n, 0u, switches}, {}, reads(input), writes(state, over_all, of_lanes));
+                    device.run<test_kernels::group_probe>(
+                        {n, 0u, switches}, {}, reads(input), writes(state, over_all, of_lanes));
                     check(true);
                     state = up(device, states);
-                    const auto p = device.run_until_done<test_kernels::group_probe>({n, 0u, switches}, {}, reads(input), writes(state, over_all, of_lanes), nowhere);
+                    const auto p = device.run_until_done<test_kernels::group_probe>(
+                        {n, 0u, switches}, {}, reads(input), writes(state, over_all, of_lanes), nowhere);
                     const auto ends = device.download(state);
                     uint longest = 0;
                     for (uint i = 0; i < n; ++i) {
@@ -435,7 +430,9 @@ TEST_F(vulkan, elements_of_a_group_hear_of_each_other)
                     EXPECT_EQ(p.passes, longest);
                     ASSERT_EQ(p.active.size(), longest);
                     for (uint q = 0; q < longest; ++q)
-                        EXPECT_EQ(p.active[q], static_cast<std::uint64_t>(std::count_if(states.begin(), states.end(), [&](uvec2 s) { return s.x > q; })));
+                        EXPECT_EQ(p.active[q],
+                            static_cast<std::uint64_t>(
+                                std::count_if(states.begin(), states.end(), [&](uvec2 s) { return s.x > q; })));
                     check(true);
                     EXPECT_EQ(device.validation_messages(), std::vector<std::string>{});
                 }
@@ -443,7 +440,8 @@ TEST_F(vulkan, elements_of_a_group_hear_of_each_other)
     std::printf("groups of up to %u elements\n", most_lanes);
 }
 
-/// Points that search together find what each finds alone, bit for bit: close to each other, far apart, or at one place.
+/// Points that search together find what each finds alone, bit for bit: close to each other, far apart, or at one
+/// place.
 TEST_F(vulkan, points_that_search_together_find_what_each_finds_alone)
 {
     vulkan_options apart;
@@ -461,15 +459,19 @@ TEST_F(vulkan, points_that_search_together_find_what_each_finds_alone)
         for (const auto& p : make_points(s, 40, 3))
             for (int i = 0; i < 25; ++i) // runs of neighbours that begin anywhere in a group; some unwanted
                 points.emplace_back(p.x + step * u(), p.y + step * u(), p.z + step * u(), i % 9 == 4 ? 0.0f : 1.0f);
-        // Many of many, so that guesses fail for some of a group and not for others; few, to the radius; in small passes.
-        for (auto k : {knn_settings{.k = 50, .max_radius = 0.4f}, knn_settings{.k = 50, .max_radius = 0.4f, .search = search_kind::fixed_radius}, knn_settings{.k = 1000, .max_radius = 50}})
+        // Many of many, so that guesses fail for some of a group and not for others; few, to the radius; in small
+        // passes.
+        for (auto k : {knn_settings{.k = 50, .max_radius = 0.4f},
+                 knn_settings{.k = 50, .max_radius = 0.4f, .search = search_kind::fixed_radius},
+                 knn_settings{.k = 1000, .max_radius = 50}})
             for (const uint visits : {3072u, 50u}) {
                 k.errors = true;
                 k.visits_per_pass = k.k < 1000 ? visits : 20 * visits / 3;
                 const auto run = [&](vulkan_backend& device) {
                     const auto map = sorted_map(device, upload_photons(device, s), s.g);
                     const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(points)), k);
-                    return std::tuple(device.download(e.irradiance), device.download(e.standard_error), device.download(e.used));
+                    return std::tuple(
+                        device.download(e.irradiance), device.download(e.standard_error), device.download(e.used));
                 };
                 const auto [light, error, used] = run(alone);
                 for (auto* device : {&b(), &looping}) {
@@ -482,7 +484,8 @@ TEST_F(vulkan, points_that_search_together_find_what_each_finds_alone)
                     EXPECT_EQ(differ, 0u);
                     if (device == &looping)
                         continue;
-                    EXPECT_EQ(count_different_bits(used_too, std::get<2>(run(*device))), 0u); // also what they visited, run to run
+                    EXPECT_EQ(count_different_bits(used_too, std::get<2>(run(*device))),
+                        0u); // also what they visited, run to run
                 }
             }
     }
@@ -510,17 +513,20 @@ TEST_F(vulkan, route_equals_serial_bit_for_bit)
                     // Larger than needed: what nothing is destined for is emptied too. Some draws have no destination.
                     auto slots = up(backend, std::vector<uint>((destinations + 3) * route_capacity(m), 5u));
                     auto totals = up(backend, std::vector<vec4>(destinations + 3, vec4(5)));
-                    backend.template route<test_kernels::sends>(launch(n), {.destinations = destinations + destinations / 10}, reads(in), destinations, m, slots, totals);
+                    backend.template route<test_kernels::sends>(launch(n),
+                        {.destinations = destinations + destinations / 10}, reads(in), destinations, m, slots, totals);
                     return std::pair(backend.download(slots), backend.download(totals));
                 };
                 const auto [slots, totals] = run(b());
                 const auto [expected_slots, expected_totals] = run(serial);
                 EXPECT_EQ(slots, expected_slots) << n << " draws, " << destinations << " destinations, m " << m;
-                EXPECT_EQ(count_different_bits(totals, expected_totals), 0u) << n << " draws, " << destinations << " destinations, m " << m;
+                EXPECT_EQ(count_different_bits(totals, expected_totals), 0u)
+                    << n << " draws, " << destinations << " destinations, m " << m;
             }
 }
 
-// --- the algorithms against serial ------------------------------------------------------------------------------------
+// --- the algorithms against serial
+// ------------------------------------------------------------------------------------
 
 struct everything {
     std::vector<uvec2> cells;
@@ -531,12 +537,14 @@ struct everything {
 };
 
 template <backend B>
-everything map_and_estimate(B& b, const photon_set& s, const std::vector<vec4>& points, uint m, const knn_settings& settings)
+everything map_and_estimate(
+    B& b, const photon_set& s, const std::vector<vec4>& points, uint m, const knn_settings& settings)
 {
     auto map = m == 0 ? sorted_map(b, upload_photons(b, s), s.g) : routed_map(b, upload_photons(b, s), s.g, m, 3u);
     const auto q = up(b, points);
     auto e = knn_grid_estimate(b, map, q, settings);
-    return {b.download(map.cells), b.download(map.list), b.download(map.photons.powers), b.download(e.irradiance), b.download(e.used), map.invalid, map.overfull_cells};
+    return {b.download(map.cells), b.download(map.list), b.download(map.photons.powers), b.download(e.irradiance),
+        b.download(e.used), map.invalid, map.overfull_cells};
 }
 
 void expect_equal(const everything& a, const everything& b)
@@ -579,7 +587,8 @@ TEST_F(vulkan, maps_and_estimates_equal_serial)
                 }
                 const auto points = make_points(s, 300, n);
                 const knn_settings settings{.k = 50, .max_radius = 0.4f};
-                expect_equal(map_and_estimate(b(), s, points, m, settings), map_and_estimate(serial, s, points, m, settings));
+                expect_equal(
+                    map_and_estimate(b(), s, points, m, settings), map_and_estimate(serial, s, points, m, settings));
             }
 }
 
@@ -594,10 +603,12 @@ TEST_F(vulkan, a_crowded_cell_is_read_to_its_end)
     }
     const auto points = make_points(s, 100, 1);
     for (const uint m : {0u, 16u})
-        expect_equal(map_and_estimate(b(), s, points, m, {.k = 32, .max_radius = 2.0f}), map_and_estimate(serial, s, points, m, {.k = 32, .max_radius = 2.0f}));
+        expect_equal(map_and_estimate(b(), s, points, m, {.k = 32, .max_radius = 2.0f}),
+            map_and_estimate(serial, s, points, m, {.k = 32, .max_radius = 2.0f}));
 }
 
-// --- compiling --------------------------------------------------------------------------------------------------------
+// --- compiling
+// --------------------------------------------------------------------------------------------------------
 
 TEST_F(vulkan, a_kernels_error_names_its_file_and_line)
 {
@@ -613,14 +624,21 @@ TEST_F(vulkan, a_kernels_error_names_its_file_and_line)
 }
 
 template <class... K>
-struct kernel_list {};
-using all_kernels = kernel_list<kernels::arithmetic_probe, kernels::photon_cell, kernels::bitonic_step, kernels::pad_pairs, kernels::pair_value, kernels::first_in_cell, kernels::invalid_photon,
-    kernels::route_photon, kernels::routed_cell, kernels::redistribute_power, kernels::overfull_cell, kernels::knn_start, kernels::knn_visit, kernels::knn_result,
-    kernels::emit_photon, kernels::bounce_photon, kernels::path_goes_on, kernels::tally_path, kernels::sum_tallies, kernels::prefix_sum_step, kernels::path_is_emitted, kernels::is_found,
-    kernels::gather_photon, kernels::divide_power, kernels::eye_ray, kernels::eye_bounce, kernels::direct_light, kernels::no_light, kernels::copy_light, kernels::shade,
-    kernels::take_vector, kernels::other_part, kernels::packed_cell, kernels::packed_photon, kernels::kth_guess, kernels::kth_distance, kernels::kth_result, kernels::kth_tie, kernels::given_radius,
-    kernels::grown_radius, kernels::gather_start, kernels::gather_photons, kernels::no_estimate, kernels::irradiance_estimate, kernels::gather_normal, kernels::tally_error, kernels::covered_share, kernels::divide_by_share,
-    kernels::neighbours_start, kernels::list_neighbours, kernels::neighbour_pair, kernels::sort_neighbours, kernels::neighbour, test_kernels::contracts, test_kernels::countdown, test_kernels::eight_states>;
+struct kernel_list {
+};
+using all_kernels = kernel_list<kernels::arithmetic_probe, kernels::photon_cell, kernels::bitonic_step,
+    kernels::pad_pairs, kernels::pair_value, kernels::first_in_cell, kernels::invalid_photon, kernels::route_photon,
+    kernels::routed_cell, kernels::redistribute_power, kernels::overfull_cell, kernels::knn_start, kernels::knn_visit,
+    kernels::knn_result, kernels::emit_photon, kernels::bounce_photon, kernels::path_goes_on, kernels::tally_path,
+    kernels::sum_tallies, kernels::prefix_sum_step, kernels::path_is_emitted, kernels::is_found, kernels::gather_photon,
+    kernels::divide_power, kernels::eye_ray, kernels::eye_bounce, kernels::direct_light, kernels::no_light,
+    kernels::copy_light, kernels::shade, kernels::take_vector, kernels::other_part, kernels::packed_cell,
+    kernels::packed_photon, kernels::kth_guess, kernels::kth_distance, kernels::kth_result, kernels::kth_tie,
+    kernels::given_radius, kernels::grown_radius, kernels::gather_start, kernels::gather_photons, kernels::no_estimate,
+    kernels::irradiance_estimate, kernels::gather_normal, kernels::tally_error, kernels::covered_share,
+    kernels::divide_by_share, kernels::neighbours_start, kernels::list_neighbours, kernels::neighbour_pair,
+    kernels::sort_neighbours, kernels::neighbour, test_kernels::contracts, test_kernels::countdown,
+    test_kernels::eight_states>;
 
 /// Every float operation of a module that lacks NoContraction.
 std::size_t free_to_contract(const std::vector<std::uint32_t>& words)
@@ -641,7 +659,9 @@ void expect_valid(vulkan_backend& b, kernel_list<K...>)
 {
     spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_1);
     std::string complaints;
-    tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t&, const char* m) { complaints += std::string(m) + "\n"; });
+    tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t&, const char* m) {
+        complaints += std::string(m) + "\n";
+    });
     const auto check = [&](std::string_view name, const std::vector<std::uint32_t>& words) {
         complaints.clear();
         EXPECT_TRUE(tools.Validate(words)) << name << ": " << complaints;
@@ -662,8 +682,11 @@ void expect_valid(vulkan_backend& b, kernel_list<K...>)
 /// Kernels of the library: texts that define one.
 std::size_t kernels_in_texts()
 {
-    return static_cast<std::size_t>(std::count_if(std::begin(kernel_texts), std::end(kernel_texts),
-        [](const text_file& f) { return f.text.find("void kernel(uint i)") != std::string_view::npos || f.text.find("bool holds(uint i)") != std::string_view::npos; }));
+    return static_cast<std::size_t>(
+        std::count_if(std::begin(kernel_texts), std::end(kernel_texts), [](const text_file& f) {
+            return f.text.find("void kernel(uint i)") != std::string_view::npos
+                || f.text.find("bool holds(uint i)") != std::string_view::npos;
+        }));
 }
 
 template <class... K>
@@ -708,14 +731,16 @@ TEST_F(vulkan, parameters_stand_where_cpp_has_them)
 
 TEST_F(vulkan, a_switch_that_is_off_leaves_no_code)
 {
-    const auto size = [&](uint switches) { return vulkan_detail::count_instructions(b().spirv<test_kernels::switched>(switches)); };
+    const auto size
+        = [&](uint switches) { return vulkan_detail::count_instructions(b().spirv<test_kernels::switched>(switches)); };
     const auto neither = size(0);
     EXPECT_LT(neither, size(1));
     EXPECT_LT(neither, size(1u << 5));
     EXPECT_LT(size(1), size(~0u));
     const auto loops = [&](uint switches) {
         std::size_t n = 0;
-        vulkan_detail::for_each_instruction(b().spirv<test_kernels::switched>(switches), [&](std::uint32_t op, std::size_t, std::size_t) { n += op == 246 ? 1u : 0u; }); // OpLoopMerge
+        vulkan_detail::for_each_instruction(b().spirv<test_kernels::switched>(switches),
+            [&](std::uint32_t op, std::size_t, std::size_t) { n += op == 246 ? 1u : 0u; }); // OpLoopMerge
         return n;
     };
     EXPECT_EQ(loops(0), 0u);
@@ -731,7 +756,8 @@ TEST_F(vulkan, a_switch_that_is_off_leaves_no_code)
         EXPECT_EQ(run(b(), switches), run(serial, switches)) << switches;
 }
 
-// --- devices ----------------------------------------------------------------------------------------------------------
+// --- devices
+// ----------------------------------------------------------------------------------------------------------
 
 TEST_F(vulkan, devices_are_listed_and_chosen_by_index_or_name)
 {
@@ -780,7 +806,8 @@ TEST_F(vulkan, works_through_staging_buffers)
     const auto s = make_photons(distribution::clustered, 3000, uvec3(5), 1);
     const auto points = make_points(s, 100, 1);
     for (const uint m : {0u, 4u})
-        expect_equal(map_and_estimate(*staged, s, points, m, {.k = 20, .max_radius = 1.0f}), map_and_estimate(serial, s, points, m, {.k = 20, .max_radius = 1.0f}));
+        expect_equal(map_and_estimate(*staged, s, points, m, {.k = 20, .max_radius = 1.0f}),
+            map_and_estimate(serial, s, points, m, {.k = 20, .max_radius = 1.0f}));
     EXPECT_EQ(staged->validation_messages(), std::vector<std::string>{});
 }
 
@@ -795,7 +822,8 @@ TEST_F(vulkan, the_validation_layer_is_listening)
     } catch (const backend_error& e) {
         GTEST_SKIP() << e.what();
     }
-    const auto make = [&] { return std::make_shared<vulkan_detail::allocation>(c, 64, vulkan_detail::memory_kind::device); };
+    const auto make
+        = [&] { return std::make_shared<vulkan_detail::allocation>(c, 64, vulkan_detail::memory_kind::device); };
     // Synchronization: a fill and a copy of the same bytes with no barrier between them.
     const auto from = make(), to = make();
     VkCommandPoolCreateInfo pool_info{};
@@ -829,7 +857,8 @@ TEST_F(vulkan, gpu_assisted_validation_sees_a_read_out_of_bounds)
         SCOPED_TRACE(staging ? "storage buffers" : "texel buffers");
         std::unique_ptr<vulkan_backend> watched;
         try {
-            watched = std::make_unique<vulkan_backend>(vulkan_options{.validation = true, .gpu_assisted = true, .staging = staging});
+            watched = std::make_unique<vulkan_backend>(
+                vulkan_options{.validation = true, .gpu_assisted = true, .staging = staging});
         } catch (const backend_error& e) {
             GTEST_SKIP() << e.what();
         }
@@ -840,7 +869,8 @@ TEST_F(vulkan, gpu_assisted_validation_sees_a_read_out_of_bounds)
         watched->run<test_kernels::next_frame>(16, {.frame = 0u}, reads(input), writes(output));
         EXPECT_EQ(watched->download(output), std::vector<uint>(16, 15u));
         EXPECT_EQ(watched->validation_messages(), std::vector<std::string>{});
-        watched->run<test_kernels::next_frame>(16, {.frame = 0u - 1000u}, reads(input), writes(output)); // elements 1000 to 1015
+        watched->run<test_kernels::next_frame>(
+            16, {.frame = 0u - 1000u}, reads(input), writes(output)); // elements 1000 to 1015
         watched->finish();
         const auto messages = watched->validation_messages();
         ASSERT_FALSE(messages.empty());
@@ -862,7 +892,9 @@ TEST_F(vulkan, gpu_assisted_validation_takes_the_search)
     const auto radii = [&](auto& device) {
         const auto map = sorted_map(device, upload_photons(device, set), set.g);
         std::vector<float> found;
-        for (const auto& e : device.download(knn_grid_estimate(device, map, device.upload(std::span<const vec4>(points)), {.k = 10, .max_radius = 1}).irradiance))
+        for (const auto& e : device.download(knn_grid_estimate(
+                 device, map, device.upload(std::span<const vec4>(points)), {.k = 10, .max_radius = 1})
+                                                 .irradiance))
             found.push_back(e.w);
         return found;
     };
@@ -871,11 +903,13 @@ TEST_F(vulkan, gpu_assisted_validation_takes_the_search)
     EXPECT_EQ(watched->validation_messages(), std::vector<std::string>{});
 }
 
-// --- the cache of compiled kernels --------------------------------------------------------------------------------------
+// --- the cache of compiled kernels
+// --------------------------------------------------------------------------------------
 
 /// A folder of this process's own that goes with it.
 struct own_folder {
-    std::filesystem::path path = std::filesystem::temp_directory_path() / ("photongrid-cache-test-" + std::to_string(std::random_device()()));
+    std::filesystem::path path
+        = std::filesystem::temp_directory_path() / ("photongrid-cache-test-" + std::to_string(std::random_device()()));
     ~own_folder()
     {
         std::error_code failed;
@@ -894,7 +928,8 @@ TEST(file_cache, finds_what_it_kept_and_nothing_else)
     cache.keep("b", "newer");
     none.keep("a", "x");
     EXPECT_FALSE(none.find("a"));
-    const auto text = [](const auto& found) { return found ? std::string(found->begin(), found->end()) : std::string("none"); };
+    const auto text
+        = [](const auto& found) { return found ? std::string(found->begin(), found->end()) : std::string("none"); };
     EXPECT_EQ(text(vulkan_detail::file_cache(folder.path.string()).find("a")), binary);
     EXPECT_EQ(text(cache.find("b")), "newer");
     EXPECT_FALSE(cache.find("c"));

@@ -1,5 +1,5 @@
-// A program that has a Vulkan device already: photongrid works on it, takes over its buffers and hands over its own, and the
-// validation layer, synchronization included, has nothing to say.
+// A program that has a Vulkan device already: photongrid works on it, takes over its buffers and hands over its own,
+// and the validation layer, synchronization included, has nothing to say.
 #include "on_serial.hpp"
 #include "photon_sets.hpp"
 #include "under_test.hpp"
@@ -32,13 +32,17 @@ public:
         app.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
         app.apiVersion = VK_API_VERSION_1_1;
         constexpr const char* layer = "VK_LAYER_KHRONOS_validation";
-        constexpr const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
-        constexpr VkValidationFeatureEnableEXT synchronization = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+        constexpr const char* extensions[]
+            = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+        constexpr VkValidationFeatureEnableEXT synchronization
+            = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
         VkDebugUtilsMessengerCreateInfoEXT messenger{};
         messenger.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
-        messenger.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+        messenger.messageSeverity
+            = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
         messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
-        messenger.pfnUserCallback = [](VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT, const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) -> VkBool32 {
+        messenger.pfnUserCallback = [](VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                        const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) -> VkBool32 {
             static_cast<std::vector<std::string>*>(user)->emplace_back(data->pMessage);
             return VK_FALSE;
         };
@@ -55,8 +59,10 @@ public:
         instance_info.ppEnabledLayerNames = &layer;
         instance_info.enabledExtensionCount = 2;
         instance_info.ppEnabledExtensionNames = extensions;
-        expect_success(vkCreateInstance(&instance_info, nullptr, &handles.instance), "vkCreateInstance (with the validation layer; Debian: vulkan-validationlayers)");
-        const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(handles.instance, "vkCreateDebugUtilsMessengerEXT"));
+        expect_success(vkCreateInstance(&instance_info, nullptr, &handles.instance),
+            "vkCreateInstance (with the validation layer; Debian: vulkan-validationlayers)");
+        const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+            vkGetInstanceProcAddr(handles.instance, "vkCreateDebugUtilsMessengerEXT"));
         expect_success(create(handles.instance, &messenger, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
         std::uint32_t one = 1;
         if (vkEnumeratePhysicalDevices(handles.instance, &one, &handles.physical_device) < VK_SUCCESS || one == 0)
@@ -72,7 +78,8 @@ public:
         device_info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
         device_info.queueCreateInfoCount = 1;
         device_info.pQueueCreateInfos = &queue;
-        expect_success(vkCreateDevice(handles.physical_device, &device_info, nullptr, &handles.device), "vkCreateDevice");
+        expect_success(
+            vkCreateDevice(handles.physical_device, &device_info, nullptr, &handles.device), "vkCreateDevice");
         vkGetDeviceQueue(handles.device, handles.queue_family, 0, &handles.queue);
         VkCommandPoolCreateInfo pool{};
         pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
@@ -85,7 +92,8 @@ public:
     {
         vkDestroyCommandPool(handles.device, pool_, nullptr);
         vkDestroyDevice(handles.device, nullptr);
-        reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(handles.instance, "vkDestroyDebugUtilsMessengerEXT"))(handles.instance, messenger_, nullptr);
+        reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(
+            handles.instance, "vkDestroyDebugUtilsMessengerEXT"))(handles.instance, messenger_, nullptr);
         vkDestroyInstance(handles.instance, nullptr);
     }
 
@@ -138,8 +146,10 @@ public:
         VkMemoryAllocateInfo memory{};
         memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
         memory.allocationSize = needs.size;
-        constexpr VkMemoryPropertyFlags host = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-        while (((needs.memoryTypeBits >> memory.memoryTypeIndex) & 1u) == 0 || (types.memoryTypes[memory.memoryTypeIndex].propertyFlags & host) != host)
+        constexpr VkMemoryPropertyFlags host
+            = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+        while (((needs.memoryTypeBits >> memory.memoryTypeIndex) & 1u) == 0
+            || (types.memoryTypes[memory.memoryTypeIndex].propertyFlags & host) != host)
             ++memory.memoryTypeIndex;
         expect_success(vkAllocateMemory(handles.device, &memory, nullptr, &b.memory), "vkAllocateMemory");
         expect_success(vkBindBufferMemory(handles.device, b.buffer, b.memory, 0), "vkBindBufferMemory");
@@ -207,7 +217,9 @@ TEST_F(callers_device, gives_what_serial_gives_and_stays_the_callers)
     const auto points = make_points(s, 100, 1);
     const auto estimates = [&](auto& b) {
         const auto map = sorted_map(b, upload_photons(b, s), s.g);
-        return b.download(knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), {.k = 20, .max_radius = 1.0f}).irradiance);
+        return b.download(
+            knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), {.k = 20, .max_radius = 1.0f})
+                .irradiance);
     };
     {
         vulkan_backend mine(app.handles);
@@ -311,12 +323,21 @@ TEST_F(callers_device, is_refused_what_cannot_be)
         }
         return std::string("none");
     };
-    EXPECT_NE(refusal([&] { b.run<kernels::pair_value>(8, {}, reads(theirs), writes(ours)); }).find("buffer 'pairs' belongs to another"), std::string::npos);
-    EXPECT_NE(refusal([&] { other.run<kernels::pair_value>(8, {}, reads(theirs), writes(ours)); }).find("buffer 'value' belongs to another"), std::string::npos);
+    EXPECT_NE(refusal([&] {
+        b.run<kernels::pair_value>(8, {}, reads(theirs), writes(ours));
+    }).find("buffer 'pairs' belongs to another"),
+        std::string::npos);
+    EXPECT_NE(refusal([&] {
+        other.run<kernels::pair_value>(8, {}, reads(theirs), writes(ours));
+    }).find("buffer 'value' belongs to another"),
+        std::string::npos);
     EXPECT_NE(refusal([&] { (void)b.download(theirs); }).find("download: b"), std::string::npos);
     EXPECT_NE(refusal([&] { (void)b.handle(theirs); }).find("handle: b"), std::string::npos);
     EXPECT_NE(refusal([&] { (void)b.release(std::move(ids)); }).find("release: b"), std::string::npos);
-    EXPECT_EQ(refusal([&] { b.run<kernels::pair_value>(8, {}, reads(b.upload(std::span<const uvec2>(pairs))), writes(ours)); }), "none");
+    EXPECT_EQ(refusal([&] {
+        b.run<kernels::pair_value>(8, {}, reads(b.upload(std::span<const uvec2>(pairs))), writes(ours));
+    }),
+        "none");
 }
 
 } // namespace photongrid::testing

@@ -1,6 +1,6 @@
-// A buffer of the cpu backend. Vectors of four can lie as rows (x y z w, x y z w, …), as kernels read them, or as planes (all
-// x, all y, …), as SIMD reads them: a pass or an override asks for the one it needs, and the buffer is turned over when it
-// lies the other way.
+// A buffer of the cpu backend. Vectors of four can lie as rows (x y z w, x y z w, …), as kernels read them, or as
+// planes (all x, all y, …), as SIMD reads them: a pass or an override asks for the one it needs, and the buffer is
+// turned over when it lies the other way.
 #pragma once
 
 #include <photongrid/backend.hpp>
@@ -56,8 +56,8 @@ private:
     std::size_t size_ = 0;
 };
 
-/// What a backend's buffers hold, and free memory that is kept for the next ones: the system clears what it gives out, and that
-/// takes longer than building a map in it.
+/// What a backend's buffers hold, and free memory that is kept for the next ones: the system clears what it gives out,
+/// and that takes longer than building a map in it.
 class account {
 public:
     std::uint64_t now = 0, peak = 0; ///< bytes in buffers now, and at most

@@ -1,6 +1,6 @@
-// The cpu backend: the kernels on as many threads as the caller wants. With the headers of overrides/ included too, sorting,
-// building maps and searching use SIMD and other algorithms with the same results.
-// Compile with -ffp-contract=off (target photongrid::cpu does), or results differ in the last bit from the other backends'.
+// The cpu backend: the kernels on as many threads as the caller wants. With the headers of overrides/ included too,
+// sorting, building maps and searching use SIMD and other algorithms with the same results. Compile with
+// -ffp-contract=off (target photongrid::cpu does), or results differ in the last bit from the other backends'.
 #pragma once
 
 #include <photongrid/backend.hpp>
@@ -13,8 +13,8 @@
 
 namespace photongrid {
 
-/// One thread at a time drives a cpu_backend and its buffers. Results do not depend on how many threads it uses. Up to 128 MiB
-/// of memory that buffers gave back are kept for the next ones, and are not counted in bytes().
+/// One thread at a time drives a cpu_backend and its buffers. Results do not depend on how many threads it uses. Up to
+/// 128 MiB of memory that buffers gave back are kept for the next ones, and are not counted in bytes().
 /// \headerfile backends/cpu/cpu.hpp <photongrid/backends/cpu/cpu.hpp>
 /// \snippet snippets_cpu.cpp cpu_backend
 class cpu_backend {
@@ -24,8 +24,7 @@ public:
     using buffer = cpu::buffer<T>;
 
     /// `threads`: 0 for as many as the machine has; with 1 no pool is made.
-    explicit cpu_backend(uint threads = 0)
-        : pool_(threads)
+    explicit cpu_backend(uint threads = 0) : pool_(threads)
     {
         caps_.backend = "cpu";
         caps_.device = "this CPU, " + std::to_string(pool_.threads()) + (pool_.threads() == 1 ? " thread" : " threads");
@@ -150,7 +149,8 @@ public:
 
     /// Draws are computed by all threads and delivered by one, in order.
     template <route_kernel K, class Reads>
-    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots, buffer<glm::vec4>& totals)
+    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots,
+        buffer<glm::vec4>& totals)
     {
         detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
         const stopwatch watch;
@@ -197,7 +197,8 @@ public:
     const std::map<std::string, kernel_cost>& costs() const { return costs_; }
     /// @}
 
-    // --- for overrides ------------------------------------------------------------------------------------------------
+    // --- for overrides
+    // ------------------------------------------------------------------------------------------------
     /// The threads that passes run on, the caller's among them.
     cpu::pool& threads() { return pool_; }
 
@@ -234,7 +235,10 @@ public:
     class stopwatch {
     public:
         /// Milliseconds so far.
-        double ms() const { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
+        double ms() const
+        {
+            return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+        }
 
     private:
         std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -279,9 +283,9 @@ private:
         K k{};
         k.args = args;
         turn_switches(k, l.switches);
-        if constexpr (input_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
-            (k.bind(slot<I>{}, rows(std::get<I>(reads))), ...);
-        }(std::make_index_sequence<input_count<K>>{});
+        if constexpr (input_count < K >> 0)
+            [&]<std::size_t... I>(std::index_sequence<I...>) { (k.bind(slot<I>{}, rows(std::get<I>(reads))), ...); }
+        (std::make_index_sequence<input_count<K>>{});
         return k;
     }
     template <class K, class Writes>
@@ -292,20 +296,21 @@ private:
     template <class K, class Rows>
     static void load(K& k, uint i, const Rows& out)
     {
-        [&]<std::size_t... I>(std::index_sequence<I...>) {
+        [&]<std::size_t... I>(std::index_sequence<I...>)
+        {
             const auto one = [&]<std::size_t J>(slot<J> s) {
                 if constexpr (K::is_state(s))
                     k.output(s) = std::get<J>(out)[i];
             };
             (one(slot<I>{}), ...);
-        }(std::make_index_sequence<output_count<K>>{});
+        }
+        (std::make_index_sequence<output_count<K>>{});
     }
     template <class K, class Rows>
     static void store(K& k, uint i, const Rows& out)
     {
-        [&]<std::size_t... I>(std::index_sequence<I...>) {
-            ((std::get<I>(out)[i] = k.output(slot<I>{})), ...);
-        }(std::make_index_sequence<output_count<K>>{});
+        [&]<std::size_t... I>(std::index_sequence<I...>) { ((std::get<I>(out)[i] = k.output(slot<I>{})), ...); }
+        (std::make_index_sequence<output_count<K>>{});
     }
 
     cpu::pool pool_;

@@ -15,8 +15,8 @@
 
 namespace photongrid::cpu {
 
-/// Threads to share work among. Blocks do not depend on the number of threads, so that neither does what is computed per
-/// block. With one thread no pool is made: everything runs in the caller's.
+/// Threads to share work among. Blocks do not depend on the number of threads, so that neither does what is computed
+/// per block. With one thread no pool is made: everything runs in the caller's.
 class pool {
 public:
     /// `threads`: 0 for as many as the machine has.
@@ -25,7 +25,8 @@ public:
         : threads_(threads != 0 ? threads : static_cast<unsigned>(std::max(1, tbb::info::default_concurrency())))
     {
         if (threads_ > 4096)
-            throw std::invalid_argument("cpu: threads: " + std::to_string(threads_) + " asked for; 1 to 4,096, or 0 for as many as the machine has");
+            throw std::invalid_argument("cpu: threads: " + std::to_string(threads_)
+                + " asked for; 1 to 4,096, or 0 for as many as the machine has");
         if (threads_ > static_cast<unsigned>(tbb::info::default_concurrency()))
             more_.emplace(tbb::global_control::max_allowed_parallelism, threads_); // than the machine has
         if (threads_ > 1)
@@ -34,7 +35,8 @@ public:
 
     unsigned threads() const { return threads_; }
 
-    /// Calls f(first, past) for every block of [0, n), each `block` long but the last; in no order, returns when all are done.
+    /// Calls f(first, past) for every block of [0, n), each `block` long but the last; in no order, returns when all
+    /// are done.
     template <class F>
     void for_blocks(std::size_t n, std::size_t block, const F& f)
     {
@@ -47,7 +49,8 @@ public:
         }
         arena_->execute([&] {
             tbb::parallel_for(
-                tbb::blocked_range<std::size_t>(0, blocks, 1), [&](const tbb::blocked_range<std::size_t>& r) {
+                tbb::blocked_range<std::size_t>(0, blocks, 1),
+                [&](const tbb::blocked_range<std::size_t>& r) {
                     for (std::size_t i = r.begin(); i != r.end(); ++i)
                         one(i);
                 },

@@ -1,6 +1,6 @@
-// The state of a caller's context: what a call of this backend changes there is as it was when the call is over, also by an
-// exception. What passes change is in device.hpp (set_state), what routing changes in routing.hpp; each piece is saved before
-// it is first changed and put back here. Contexts of our own have none of this.
+// The state of a caller's context: what a call of this backend changes there is as it was when the call is over, also
+// by an exception. What passes change is in device.hpp (set_state), what routing changes in routing.hpp; each piece is
+// saved before it is first changed and put back here. Contexts of our own have none of this.
 #pragma once
 
 #include <photongrid/backends/gl/functions.hpp>
@@ -15,11 +15,13 @@ namespace photongrid::gl {
 /// Render targets of one pass, texture units for inputs, for states (textures.glsl, fragment_prelude.glsl).
 inline constexpr GLuint max_outputs = 8, max_inputs = 8, state_unit = 8, units = state_unit + max_outputs;
 
-/// What has to be off in passes, beside blending and the scissor test, which are so for each draw buffer and each viewport; a
-/// pass has one viewport, the first.
-inline constexpr std::array<GLenum, 22> off_in_passes{GL_CULL_FACE, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_RASTERIZER_DISCARD, GL_COLOR_LOGIC_OP, GL_DEPTH_CLAMP, GL_POLYGON_OFFSET_FILL,
-    GL_POLYGON_SMOOTH, GL_SAMPLE_MASK, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE, GL_SAMPLE_COVERAGE, GL_SAMPLE_SHADING, GL_DITHER, GL_CLIP_DISTANCE0, GL_CLIP_DISTANCE1,
-    GL_CLIP_DISTANCE2, GL_CLIP_DISTANCE3, GL_CLIP_DISTANCE4, GL_CLIP_DISTANCE5, GL_CLIP_DISTANCE6, GL_CLIP_DISTANCE7};
+/// What has to be off in passes, beside blending and the scissor test, which are so for each draw buffer and each
+/// viewport; a pass has one viewport, the first.
+inline constexpr std::array<GLenum, 22> off_in_passes{GL_CULL_FACE, GL_DEPTH_TEST, GL_STENCIL_TEST,
+    GL_RASTERIZER_DISCARD, GL_COLOR_LOGIC_OP, GL_DEPTH_CLAMP, GL_POLYGON_OFFSET_FILL, GL_POLYGON_SMOOTH, GL_SAMPLE_MASK,
+    GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE, GL_SAMPLE_COVERAGE, GL_SAMPLE_SHADING, GL_DITHER,
+    GL_CLIP_DISTANCE0, GL_CLIP_DISTANCE1, GL_CLIP_DISTANCE2, GL_CLIP_DISTANCE3, GL_CLIP_DISTANCE4, GL_CLIP_DISTANCE5,
+    GL_CLIP_DISTANCE6, GL_CLIP_DISTANCE7};
 
 inline const char* error_name(GLenum code)
 {
@@ -43,7 +45,10 @@ namespace detail {
     }
     inline GLuint get_name(functions& gl, GLenum what) { return static_cast<GLuint>(get(gl, what)); }
     inline void turn(functions& gl, GLenum what, bool on) { on ? gl.Enable(what) : gl.Disable(what); }
-    inline void turn(functions& gl, GLenum what, GLuint index, bool on) { on ? gl.Enablei(what, index) : gl.Disablei(what, index); }
+    inline void turn(functions& gl, GLenum what, GLuint index, bool on)
+    {
+        on ? gl.Enablei(what, index) : gl.Disablei(what, index);
+    }
 
     /// The program in use, with what glUseProgram forgets: the subroutines chosen, also of a program pipeline.
     class program_in_use {
@@ -55,7 +60,8 @@ namespace detail {
                 gl.GetProgramiv(program_, GL_DELETE_STATUS, &dying);
                 gl.GetProgramiv(program_, GL_LINK_STATUS, &linked);
                 if (dying || !linked)
-                    throw backend_error("gl: the program in use, " + std::to_string(program_) + (dying ? ", is marked for deletion" : ", failed to link again after glUseProgram")
+                    throw backend_error("gl: the program in use, " + std::to_string(program_)
+                        + (dying ? ", is marked for deletion" : ", failed to link again after glUseProgram")
                         + ": it could not be put back; call glUseProgram with another, or with 0, before the library");
             }
             const GLuint pipeline = program_ != 0 ? 0 : get_name(gl, GL_PROGRAM_PIPELINE_BINDING);
@@ -66,10 +72,12 @@ namespace detail {
                 if (pipeline != 0)
                     gl.GetProgramPipelineiv(pipeline, stages[s], &program);
                 if (program != 0)
-                    gl.GetProgramInterfaceiv(static_cast<GLuint>(program), subroutine_uniforms[s], GL_ACTIVE_RESOURCES, &n);
+                    gl.GetProgramInterfaceiv(
+                        static_cast<GLuint>(program), subroutine_uniforms[s], GL_ACTIVE_RESOURCES, &n);
                 if (n == 0) // also where the program lacks the stage, about which the next call must not ask
                     continue;
-                gl.GetProgramStageiv(static_cast<GLuint>(program), stages[s], GL_ACTIVE_SUBROUTINE_UNIFORM_LOCATIONS, &n);
+                gl.GetProgramStageiv(
+                    static_cast<GLuint>(program), stages[s], GL_ACTIVE_SUBROUTINE_UNIFORM_LOCATIONS, &n);
                 subroutines_[s].resize(static_cast<std::size_t>(n));
                 for (GLint l = 0; l < n; ++l)
                     gl.GetUniformSubroutineuiv(stages[s], l, &subroutines_[s][static_cast<std::size_t>(l)]);
@@ -80,13 +88,16 @@ namespace detail {
             gl.UseProgram(program_);
             for (std::size_t s = 0; s < stages.size(); ++s)
                 if (!subroutines_[s].empty())
-                    gl.UniformSubroutinesuiv(stages[s], static_cast<GLsizei>(subroutines_[s].size()), subroutines_[s].data());
+                    gl.UniformSubroutinesuiv(
+                        stages[s], static_cast<GLsizei>(subroutines_[s].size()), subroutines_[s].data());
         }
 
     private:
-        static constexpr std::array<GLenum, 6> stages{GL_VERTEX_SHADER, GL_TESS_CONTROL_SHADER, GL_TESS_EVALUATION_SHADER, GL_GEOMETRY_SHADER, GL_FRAGMENT_SHADER, GL_COMPUTE_SHADER};
-        static constexpr std::array<GLenum, 6> subroutine_uniforms{GL_VERTEX_SUBROUTINE_UNIFORM, GL_TESS_CONTROL_SUBROUTINE_UNIFORM, GL_TESS_EVALUATION_SUBROUTINE_UNIFORM,
-            GL_GEOMETRY_SUBROUTINE_UNIFORM, GL_FRAGMENT_SUBROUTINE_UNIFORM, GL_COMPUTE_SUBROUTINE_UNIFORM};
+        static constexpr std::array<GLenum, 6> stages{GL_VERTEX_SHADER, GL_TESS_CONTROL_SHADER,
+            GL_TESS_EVALUATION_SHADER, GL_GEOMETRY_SHADER, GL_FRAGMENT_SHADER, GL_COMPUTE_SHADER};
+        static constexpr std::array<GLenum, 6> subroutine_uniforms{GL_VERTEX_SUBROUTINE_UNIFORM,
+            GL_TESS_CONTROL_SUBROUTINE_UNIFORM, GL_TESS_EVALUATION_SUBROUTINE_UNIFORM, GL_GEOMETRY_SUBROUTINE_UNIFORM,
+            GL_FRAGMENT_SUBROUTINE_UNIFORM, GL_COMPUTE_SUBROUTINE_UNIFORM};
         GLuint program_;
         std::array<std::vector<GLuint>, 6> subroutines_;
     };
@@ -132,14 +143,16 @@ namespace detail {
             gl.ViewportIndexedf(0, viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
             gl.ScissorIndexed(0, scissor_[0], scissor_[1], scissor_[2], scissor_[3]);
             gl.PolygonMode(GL_FRONT_AND_BACK, static_cast<GLenum>(polygon_mode_[0]));
-            if (polygon_mode_[1] != 0 && polygon_mode_[1] != polygon_mode_[0]) // compatibility contexts have one for either side
+            if (polygon_mode_[1] != 0
+                && polygon_mode_[1] != polygon_mode_[0]) // compatibility contexts have one for either side
                 gl.PolygonMode(GL_BACK, static_cast<GLenum>(polygon_mode_[1]));
             gl.ClipControl(clip_origin_, clip_depth_);
             gl.BindVertexArray(vertices_);
             gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets_);
             gl.BindBuffer(GL_QUERY_BUFFER, results_);
             if (block_size_ != 0)
-                gl.BindBufferRange(GL_UNIFORM_BUFFER, 0, block_, static_cast<GLintptr>(block_start_), static_cast<GLsizeiptr>(block_size_));
+                gl.BindBufferRange(GL_UNIFORM_BUFFER, 0, block_, static_cast<GLintptr>(block_start_),
+                    static_cast<GLsizeiptr>(block_size_));
             else
                 gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, block_);
             gl.BindBuffer(GL_UNIFORM_BUFFER, uniforms_); // after the indexed one, which sets it too
@@ -160,15 +173,19 @@ namespace detail {
         program_in_use program_;
     };
 
-    /// What routing changes beside. To be saved with an 8-bit stencil buffer bound: OpenGL clamps the reference value that it
-    /// tells to the bits of the one that is bound, and the caller may have set it for another framebuffer.
+    /// What routing changes beside. To be saved with an 8-bit stencil buffer bound: OpenGL clamps the reference value
+    /// that it tells to the bits of the one that is bound, and the caller may have set it for another framebuffer.
     class stencil_state {
     public:
         explicit stencil_state(functions& gl)
-            : sides_{side{GL_FRONT, get_name(gl, GL_STENCIL_FUNC), get(gl, GL_STENCIL_REF), get_name(gl, GL_STENCIL_VALUE_MASK), get_name(gl, GL_STENCIL_FAIL),
-                         get_name(gl, GL_STENCIL_PASS_DEPTH_FAIL), get_name(gl, GL_STENCIL_PASS_DEPTH_PASS), get_name(gl, GL_STENCIL_WRITEMASK)},
-                  side{GL_BACK, get_name(gl, GL_STENCIL_BACK_FUNC), get(gl, GL_STENCIL_BACK_REF), get_name(gl, GL_STENCIL_BACK_VALUE_MASK), get_name(gl, GL_STENCIL_BACK_FAIL),
-                      get_name(gl, GL_STENCIL_BACK_PASS_DEPTH_FAIL), get_name(gl, GL_STENCIL_BACK_PASS_DEPTH_PASS), get_name(gl, GL_STENCIL_BACK_WRITEMASK)}}
+            : sides_{side{GL_FRONT, get_name(gl, GL_STENCIL_FUNC), get(gl, GL_STENCIL_REF),
+                         get_name(gl, GL_STENCIL_VALUE_MASK), get_name(gl, GL_STENCIL_FAIL),
+                         get_name(gl, GL_STENCIL_PASS_DEPTH_FAIL), get_name(gl, GL_STENCIL_PASS_DEPTH_PASS),
+                         get_name(gl, GL_STENCIL_WRITEMASK)},
+                side{GL_BACK, get_name(gl, GL_STENCIL_BACK_FUNC), get(gl, GL_STENCIL_BACK_REF),
+                    get_name(gl, GL_STENCIL_BACK_VALUE_MASK), get_name(gl, GL_STENCIL_BACK_FAIL),
+                    get_name(gl, GL_STENCIL_BACK_PASS_DEPTH_FAIL), get_name(gl, GL_STENCIL_BACK_PASS_DEPTH_PASS),
+                    get_name(gl, GL_STENCIL_BACK_WRITEMASK)}}
         {
         }
         void restore(functions& gl) const
@@ -196,7 +213,8 @@ namespace detail {
     public:
         explicit blend_state(functions& gl)
         {
-            constexpr std::array<GLenum, 6> names{GL_BLEND_EQUATION_RGB, GL_BLEND_EQUATION_ALPHA, GL_BLEND_SRC_RGB, GL_BLEND_DST_RGB, GL_BLEND_SRC_ALPHA, GL_BLEND_DST_ALPHA};
+            constexpr std::array<GLenum, 6> names{GL_BLEND_EQUATION_RGB, GL_BLEND_EQUATION_ALPHA, GL_BLEND_SRC_RGB,
+                GL_BLEND_DST_RGB, GL_BLEND_SRC_ALPHA, GL_BLEND_DST_ALPHA};
             for (std::size_t v = 0; v < names.size(); ++v) {
                 GLint value = 0;
                 gl.GetIntegeri_v(names[v], 0, &value);
@@ -217,7 +235,9 @@ namespace detail {
     class pixel_state {
     public:
         enum direction { pack, unpack };
-        pixel_state(functions& gl, direction d) : names_(d == pack ? pack_names : unpack_names), target_(d == pack ? GL_PIXEL_PACK_BUFFER : GL_PIXEL_UNPACK_BUFFER)
+        pixel_state(functions& gl, direction d)
+            : names_(d == pack ? pack_names : unpack_names),
+              target_(d == pack ? GL_PIXEL_PACK_BUFFER : GL_PIXEL_UNPACK_BUFFER)
         {
             buffer_ = get_name(gl, d == pack ? GL_PIXEL_PACK_BUFFER_BINDING : GL_PIXEL_UNPACK_BUFFER_BINDING);
             for (std::size_t v = 0; v < names_.size(); ++v)
@@ -239,9 +259,10 @@ namespace detail {
 
     private:
         using names = std::array<GLenum, 7>;
-        static constexpr names pack_names{GL_PACK_ALIGNMENT, GL_PACK_ROW_LENGTH, GL_PACK_IMAGE_HEIGHT, GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_IMAGES, GL_PACK_SWAP_BYTES};
-        static constexpr names unpack_names{
-            GL_UNPACK_ALIGNMENT, GL_UNPACK_ROW_LENGTH, GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_IMAGES, GL_UNPACK_SWAP_BYTES};
+        static constexpr names pack_names{GL_PACK_ALIGNMENT, GL_PACK_ROW_LENGTH, GL_PACK_IMAGE_HEIGHT,
+            GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_IMAGES, GL_PACK_SWAP_BYTES};
+        static constexpr names unpack_names{GL_UNPACK_ALIGNMENT, GL_UNPACK_ROW_LENGTH, GL_UNPACK_IMAGE_HEIGHT,
+            GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_IMAGES, GL_UNPACK_SWAP_BYTES};
         const names& names_;
         GLenum target_;
         GLuint buffer_;
@@ -264,7 +285,8 @@ namespace detail {
     /// Who hears the driver's messages.
     class debug_state {
     public:
-        explicit debug_state(functions& gl) : output_(gl.IsEnabled(GL_DEBUG_OUTPUT)), synchronous_(gl.IsEnabled(GL_DEBUG_OUTPUT_SYNCHRONOUS))
+        explicit debug_state(functions& gl)
+            : output_(gl.IsEnabled(GL_DEBUG_OUTPUT)), synchronous_(gl.IsEnabled(GL_DEBUG_OUTPUT_SYNCHRONOUS))
         {
             gl.GetPointerv(GL_DEBUG_CALLBACK_FUNCTION, &callback_);
             gl.GetPointerv(GL_DEBUG_CALLBACK_USER_PARAM, &user_);
@@ -285,12 +307,17 @@ namespace detail {
 /// Keeps a caller's state from the outermost call's beginning to its end. Calls nest; each piece is saved once.
 class callers_state {
 public:
-    /// `question`: an occlusion query that nobody else uses. `hear`: gets the driver's messages during calls, if not null.
-    callers_state(functions& call, GLuint question, GLDEBUGPROC hear, const void* user) : gl_(call), question_(question), hear_(hear), user_(user) {}
+    /// `question`: an occlusion query that nobody else uses. `hear`: gets the driver's messages during calls, if not
+    /// null.
+    callers_state(functions& call, GLuint question, GLDEBUGPROC hear, const void* user)
+        : gl_(call), question_(question), hear_(hear), user_(user)
+    {
+    }
     callers_state(const callers_state&) = delete;
     callers_state& operator=(const callers_state&) = delete;
 
-    /// A call begins. The errors that the context has noted are the caller's: they are kept until the end, and not ours.
+    /// A call begins. The errors that the context has noted are the caller's: they are kept until the end, and not
+    /// ours.
     /// \throws backend_error for one that cannot be given back, such as GL_OUT_OF_MEMORY.
     void enter()
     {
@@ -348,7 +375,8 @@ public:
         if (unit_states_[unit])
             return false;
         gl_.ActiveTexture(GL_TEXTURE0 + unit);
-        unit_states_[unit] = detail::unit_state{detail::get_name(gl_, GL_TEXTURE_BINDING_2D), detail::get_name(gl_, GL_SAMPLER_BINDING)};
+        unit_states_[unit] = detail::unit_state{
+            detail::get_name(gl_, GL_TEXTURE_BINDING_2D), detail::get_name(gl_, GL_SAMPLER_BINDING)};
         return true;
     }
     /// Saves how pixels are packed or unpacked and sets what transfers want.
@@ -387,9 +415,11 @@ private:
             const GLenum code = gl_.GetError();
             if (code == GL_NO_ERROR)
                 return;
-            if (code != GL_INVALID_ENUM && code != GL_INVALID_VALUE && code != GL_INVALID_OPERATION && code != GL_INVALID_FRAMEBUFFER_OPERATION) {
+            if (code != GL_INVALID_ENUM && code != GL_INVALID_VALUE && code != GL_INVALID_OPERATION
+                && code != GL_INVALID_FRAMEBUFFER_OPERATION) {
                 errors_.clear();
-                throw backend_error(std::string("gl: before this call the context had noted ") + error_name(code) + "; what the program did last has failed");
+                throw backend_error(std::string("gl: before this call the context had noted ") + error_name(code)
+                    + "; what the program did last has failed");
             }
             errors_.push_back(code);
         }
@@ -397,7 +427,7 @@ private:
     /// Forgets what we did wrong and no exception has told, and makes the same mistakes that the caller made.
     void give_errors_back() noexcept
     {
-        for (int n = 0; n < 8 && gl_.GetError() != GL_NO_ERROR; ++n) { }
+        for (int n = 0; n < 8 && gl_.GetError() != GL_NO_ERROR; ++n) {}
         if (errors_.empty())
             return;
         const bool heard = gl_.IsEnabled(GL_DEBUG_OUTPUT) != GL_FALSE;
@@ -405,7 +435,7 @@ private:
         for (const GLenum code : errors_)
             switch (code) {
             case GL_INVALID_ENUM: gl_.Enable(GL_NONE); break;
-            case GL_INVALID_VALUE: gl_.BindSampler(~0u, 0); break; // no such unit
+            case GL_INVALID_VALUE: gl_.BindSampler(~0u, 0); break;        // no such unit
             case GL_INVALID_OPERATION: gl_.EndConditionalRender(); break; // none has begun
             default: clear_without_targets();
             }
@@ -424,16 +454,20 @@ private:
 
     void refuse_what_counts_or_discards()
     {
-        constexpr std::array counters{std::pair{GL_SAMPLES_PASSED, "GL_SAMPLES_PASSED"}, std::pair{GL_ANY_SAMPLES_PASSED, "GL_ANY_SAMPLES_PASSED"},
-            std::pair{GL_ANY_SAMPLES_PASSED_CONSERVATIVE, "GL_ANY_SAMPLES_PASSED_CONSERVATIVE"}, std::pair{GL_PRIMITIVES_GENERATED, "GL_PRIMITIVES_GENERATED"}};
+        constexpr std::array counters{std::pair{GL_SAMPLES_PASSED, "GL_SAMPLES_PASSED"},
+            std::pair{GL_ANY_SAMPLES_PASSED, "GL_ANY_SAMPLES_PASSED"},
+            std::pair{GL_ANY_SAMPLES_PASSED_CONSERVATIVE, "GL_ANY_SAMPLES_PASSED_CONSERVATIVE"},
+            std::pair{GL_PRIMITIVES_GENERATED, "GL_PRIMITIVES_GENERATED"}};
         for (const auto& [target, name] : counters) {
             GLint active = 0;
             gl_.GetQueryiv(static_cast<GLenum>(target), GL_CURRENT_QUERY, &active);
             if (active != 0)
-                throw backend_error(std::string("gl: a query of ") + name + " is active, which would count what the library draws; call glEndQuery before the library");
+                throw backend_error(std::string("gl: a query of ") + name
+                    + " is active, which would count what the library draws; call glEndQuery before the library");
         }
         if (detail::get(gl_, GL_TRANSFORM_FEEDBACK_ACTIVE) != 0 && detail::get(gl_, GL_TRANSFORM_FEEDBACK_PAUSED) == 0)
-            throw backend_error("gl: transform feedback is active, which would record what the library draws; call glPauseTransformFeedback or glEndTransformFeedback before the library");
+            throw backend_error("gl: transform feedback is active, which would record what the library draws; call "
+                                "glPauseTransformFeedback or glEndTransformFeedback before the library");
         refuse_conditional_rendering();
     }
     /// OpenGL does not say whether conditional rendering has begun, but refuses to begin it twice.
@@ -445,7 +479,8 @@ private:
         }
         gl_.BeginConditionalRender(question_, GL_QUERY_NO_WAIT);
         if (gl_.GetError() != GL_NO_ERROR)
-            throw backend_error("gl: conditional rendering has begun, which may discard what the library draws; call glEndConditionalRender before the library");
+            throw backend_error("gl: conditional rendering has begun, which may discard what the library draws; call "
+                                "glEndConditionalRender before the library");
         gl_.EndConditionalRender();
     }
 

@@ -93,8 +93,10 @@ private:
 
 inline std::string egl_error_name(EGLint code)
 {
-    constexpr std::array names{"EGL_SUCCESS", "EGL_NOT_INITIALIZED", "EGL_BAD_ACCESS", "EGL_BAD_ALLOC", "EGL_BAD_ATTRIBUTE", "EGL_BAD_CONFIG", "EGL_BAD_CONTEXT",
-        "EGL_BAD_CURRENT_SURFACE", "EGL_BAD_DISPLAY", "EGL_BAD_MATCH", "EGL_BAD_NATIVE_PIXMAP", "EGL_BAD_NATIVE_WINDOW", "EGL_BAD_PARAMETER", "EGL_BAD_SURFACE", "EGL_CONTEXT_LOST"};
+    constexpr std::array names{"EGL_SUCCESS", "EGL_NOT_INITIALIZED", "EGL_BAD_ACCESS", "EGL_BAD_ALLOC",
+        "EGL_BAD_ATTRIBUTE", "EGL_BAD_CONFIG", "EGL_BAD_CONTEXT", "EGL_BAD_CURRENT_SURFACE", "EGL_BAD_DISPLAY",
+        "EGL_BAD_MATCH", "EGL_BAD_NATIVE_PIXMAP", "EGL_BAD_NATIVE_WINDOW", "EGL_BAD_PARAMETER", "EGL_BAD_SURFACE",
+        "EGL_CONTEXT_LOST"};
     const auto index = static_cast<std::size_t>(code - EGL_SUCCESS);
     return index < names.size() ? names[index] : "EGL error " + std::to_string(code);
 }
@@ -104,7 +106,9 @@ public:
     /// An OpenGL 4.5 core context on `display`; the text of the exception says which step failed.
     egl_context(EGLDisplay display, bool debug) : display_(display)
     {
-        const auto fail = [](const char* step) { throw backend_error(std::string(step) + " failed with " + egl_error_name(eglGetError())); };
+        const auto fail = [](const char* step) {
+            throw backend_error(std::string(step) + " failed with " + egl_error_name(eglGetError()));
+        };
         if (display == EGL_NO_DISPLAY)
             fail("eglGetPlatformDisplay");
         if (!eglInitialize(display, nullptr, nullptr))
@@ -115,8 +119,9 @@ public:
                 throw backend_error(std::string("the EGL display has no ") + wanted);
         if (!eglBindAPI(EGL_OPENGL_API))
             fail("eglBindAPI(EGL_OPENGL_API)");
-        const std::array<EGLint, 9> wanted{EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-            EGL_CONTEXT_OPENGL_DEBUG, debug ? EGL_TRUE : EGL_FALSE, EGL_NONE};
+        const std::array<EGLint, 9> wanted{EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+            EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_CONTEXT_OPENGL_DEBUG,
+            debug ? EGL_TRUE : EGL_FALSE, EGL_NONE};
         context_ = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted.data());
         if (context_ == EGL_NO_CONTEXT)
             fail("eglCreateContext (OpenGL 4.5 core)");
@@ -133,7 +138,8 @@ protected:
     {
         eglBindAPI(EGL_OPENGL_API);
         if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
-            throw backend_error("gl: eglMakeCurrent failed with " + egl_error_name(eglGetError()) + "; is the context current in another thread?");
+            throw backend_error("gl: eglMakeCurrent failed with " + egl_error_name(eglGetError())
+                + "; is the context current in another thread?");
     }
     void release() noexcept override
     {
@@ -152,8 +158,8 @@ public:
     osmesa_context()
     {
         name = "gl-osmesa";
-        const std::array<int, 13> wanted{OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_STENCIL_BITS, 8, OSMESA_PROFILE, OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 4,
-            OSMESA_CONTEXT_MINOR_VERSION, 5, 0};
+        const std::array<int, 13> wanted{OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_STENCIL_BITS, 8,
+            OSMESA_PROFILE, OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 4, OSMESA_CONTEXT_MINOR_VERSION, 5, 0};
         context_ = OSMesaCreateContextAttribs(wanted.data(), nullptr);
         if (context_ == nullptr)
             throw backend_error("OSMesaCreateContextAttribs (OpenGL 4.5 core) returned no context");
@@ -195,7 +201,8 @@ protected:
     void bind() override
     {
         if (current_token() != token_)
-            throw backend_error("gl: the context that was current when this backend was made is not current now; make it current before every call");
+            throw backend_error("gl: the context that was current when this backend was made is not current now; make "
+                                "it current before every call");
     }
     void release() noexcept override {}
 
@@ -231,7 +238,9 @@ inline bool is_software(std::string_view renderer)
 /// EGL: a hardware device if there is one, else Mesa's software renderer.
 inline std::shared_ptr<context> make_egl_context(bool debug, std::string& tried)
 {
-    const auto find = [](auto& f, const char* name) { f = reinterpret_cast<std::remove_reference_t<decltype(f)>>(eglGetProcAddress(name)); };
+    const auto find = [](auto& f, const char* name) {
+        f = reinterpret_cast<std::remove_reference_t<decltype(f)>>(eglGetProcAddress(name));
+    };
     const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     const std::string_view extensions = client != nullptr ? client : "";
     std::shared_ptr<context> software;
@@ -250,25 +259,30 @@ inline std::shared_ptr<context> make_egl_context(bool debug, std::string& tried)
         return nullptr;
     };
     if (extensions.find("EGL_MESA_platform_surfaceless") != std::string_view::npos) {
-        if (auto c = attempt("surfaceless (eglGetPlatformDisplay)", eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)))
+        if (auto c = attempt("surfaceless (eglGetPlatformDisplay)",
+                eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)))
             return c;
     } else {
-        tried += "  EGL, surfaceless: the library has no EGL_MESA_platform_surfaceless (Debian packages libegl1, libegl-mesa0)\n";
+        tried += "  EGL, surfaceless: the library has no EGL_MESA_platform_surfaceless (Debian packages libegl1, "
+                 "libegl-mesa0)\n";
     }
     // Drivers that know no surfaceless platform offer their devices instead.
     PFNEGLQUERYDEVICESEXTPROC query_devices = nullptr;
     PFNEGLQUERYDEVICESTRINGEXTPROC query_string = nullptr;
     find(query_devices, "eglQueryDevicesEXT");
     find(query_string, "eglQueryDeviceStringEXT");
-    if (query_devices != nullptr && query_string != nullptr && extensions.find("EGL_EXT_platform_device") != std::string_view::npos) {
+    if (query_devices != nullptr && query_string != nullptr
+        && extensions.find("EGL_EXT_platform_device") != std::string_view::npos) {
         std::array<EGLDeviceEXT, 16> devices{};
         EGLint n = 0;
         query_devices(static_cast<EGLint>(devices.size()), devices.data(), &n);
         for (EGLint d = 0; d < n; ++d) {
             const char* abilities = query_string(devices[static_cast<std::size_t>(d)], EGL_EXTENSIONS);
-            if (abilities != nullptr && std::string_view(abilities).find("EGL_MESA_device_software") != std::string_view::npos && software)
+            if (abilities != nullptr
+                && std::string_view(abilities).find("EGL_MESA_device_software") != std::string_view::npos && software)
                 continue;
-            if (auto c = attempt("device " + std::to_string(d), eglGetPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(d)], nullptr)))
+            if (auto c = attempt("device " + std::to_string(d),
+                    eglGetPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(d)], nullptr)))
                 return c;
         }
     }
@@ -293,7 +307,8 @@ inline std::shared_ptr<context> make_context(gl_context_kind kind, bool debug, l
         c->call.load(find);
         const auto* version = reinterpret_cast<const char*>(c->call.GetString(GL_VERSION));
         if (version == nullptr)
-            throw backend_error("gl: no OpenGL context is current in this thread; make yours current before constructing the backend, or ask for gl_context_kind::any");
+            throw backend_error("gl: no OpenGL context is current in this thread; make yours current before "
+                                "constructing the backend, or ask for gl_context_kind::any");
         GLint major = 0, minor = 0;
         c->call.GetIntegerv(GL_MAJOR_VERSION, &major);
         c->call.GetIntegerv(GL_MINOR_VERSION, &minor);

@@ -18,11 +18,18 @@ inline constexpr uint row_width = 2048;
 /// How element type T is stored.
 template <element T>
 struct texture_format {
-    static constexpr bool is_integer = std::same_as<T, uint> || std::same_as<T, glm::uvec2> || std::same_as<T, glm::uvec4>;
+    static constexpr bool is_integer
+        = std::same_as<T, uint> || std::same_as<T, glm::uvec2> || std::same_as<T, glm::uvec4>;
     static constexpr GLenum type = is_integer ? GL_UNSIGNED_INT : GL_FLOAT;
-    static constexpr GLenum format = sizeof(T) == 4 ? (is_integer ? GL_RED_INTEGER : GL_RED) : sizeof(T) == 8 ? (is_integer ? GL_RG_INTEGER : GL_RG) : (is_integer ? GL_RGBA_INTEGER : GL_RGBA);
-    static constexpr GLenum internal = sizeof(T) == 4 ? (is_integer ? GL_R32UI : GL_R32F) : sizeof(T) == 8 ? (is_integer ? GL_RG32UI : GL_RG32F) : (is_integer ? GL_RGBA32UI : GL_RGBA32F);
-    static constexpr const char* internal_name = sizeof(T) == 4 ? (is_integer ? "GL_R32UI" : "GL_R32F") : sizeof(T) == 8 ? (is_integer ? "GL_RG32UI" : "GL_RG32F") : (is_integer ? "GL_RGBA32UI" : "GL_RGBA32F");
+    static constexpr GLenum format = sizeof(T) == 4 ? (is_integer ? GL_RED_INTEGER : GL_RED)
+        : sizeof(T) == 8                            ? (is_integer ? GL_RG_INTEGER : GL_RG)
+                                                    : (is_integer ? GL_RGBA_INTEGER : GL_RGBA);
+    static constexpr GLenum internal = sizeof(T) == 4 ? (is_integer ? GL_R32UI : GL_R32F)
+        : sizeof(T) == 8                              ? (is_integer ? GL_RG32UI : GL_RG32F)
+                                                      : (is_integer ? GL_RGBA32UI : GL_RGBA32F);
+    static constexpr const char* internal_name = sizeof(T) == 4 ? (is_integer ? "GL_R32UI" : "GL_R32F")
+        : sizeof(T) == 8                                        ? (is_integer ? "GL_RG32UI" : "GL_RG32F")
+                                                                : (is_integer ? "GL_RGBA32UI" : "GL_RGBA32F");
 };
 
 class texture;
@@ -81,8 +88,8 @@ public:
             call.DebugMessageCallback(nullptr, nullptr); // it may be this that hears
     }
 
-    /// To be called first by every call of the backend and held to its end: makes the context current, and a caller's state
-    /// as it was in the end.
+    /// To be called first by every call of the backend and held to its end: makes the context current, and a caller's
+    /// state as it was in the end.
     [[nodiscard]] call_scope use()
     {
         make_current();
@@ -133,7 +140,8 @@ public:
     }
     void set_viewport(GLint x, GLint y, GLsizei width, GLsizei height)
     {
-        call.ViewportIndexedf(0, static_cast<GLfloat>(x), static_cast<GLfloat>(y), static_cast<GLfloat>(width), static_cast<GLfloat>(height));
+        call.ViewportIndexedf(0, static_cast<GLfloat>(x), static_cast<GLfloat>(y), static_cast<GLfloat>(width),
+            static_cast<GLfloat>(height));
     }
 
     /// An uninitialised texture. \throws backend_error with the numbers when the device refuses.
@@ -151,8 +159,9 @@ public:
             attached_[t] = wanted;
         }
         if (textures.size() != target_count_) {
-            constexpr std::array<GLenum, max_outputs> all{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2, GL_COLOR_ATTACHMENT3, GL_COLOR_ATTACHMENT4,
-                GL_COLOR_ATTACHMENT5, GL_COLOR_ATTACHMENT6, GL_COLOR_ATTACHMENT7};
+            constexpr std::array<GLenum, max_outputs> all{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
+                GL_COLOR_ATTACHMENT2, GL_COLOR_ATTACHMENT3, GL_COLOR_ATTACHMENT4, GL_COLOR_ATTACHMENT5,
+                GL_COLOR_ATTACHMENT6, GL_COLOR_ATTACHMENT7};
             call.NamedFramebufferDrawBuffers(targets_, static_cast<GLsizei>(textures.size()), all.data());
             target_count_ = textures.size();
         }
@@ -160,13 +169,17 @@ public:
         check_framebuffer(targets_);
     }
     /// Fills the first target of `draw_into` with `value`.
-    void clear_targets(const std::array<GLfloat, 4>& value) { call.ClearNamedFramebufferfv(targets_, GL_COLOR, 0, value.data()); }
+    void clear_targets(const std::array<GLfloat, 4>& value)
+    {
+        call.ClearNamedFramebufferfv(targets_, GL_COLOR, 0, value.data());
+    }
     /// Binds a framebuffer without targets, of `rows` rows of a buffer: for passes that only count.
     void draw_into_nothing(uint rows)
     {
         const uint height = std::bit_ceil(rows);
         if (height != blank_height_)
-            call.NamedFramebufferParameteri(blank_, GL_FRAMEBUFFER_DEFAULT_HEIGHT, static_cast<GLint>(std::min(height, max_size)));
+            call.NamedFramebufferParameteri(
+                blank_, GL_FRAMEBUFFER_DEFAULT_HEIGHT, static_cast<GLint>(std::min(height, max_size)));
         blank_height_ = height;
         call.BindFramebuffer(GL_DRAW_FRAMEBUFFER, blank_);
         check_framebuffer(blank_);
@@ -175,8 +188,10 @@ public:
     {
         const GLenum status = call.CheckNamedFramebufferStatus(framebuffer, GL_DRAW_FRAMEBUFFER);
         if (status != GL_FRAMEBUFFER_COMPLETE)
-            throw backend_error(name() + ": the driver cannot draw into these targets (framebuffer status " + std::to_string(status)
-                + "); float and integer render targets and framebuffers without targets are needed, as OpenGL 4.5 prescribes");
+            throw backend_error(name() + ": the driver cannot draw into these targets (framebuffer status "
+                + std::to_string(status)
+                + "); float and integer render targets and framebuffers without targets are needed, as OpenGL 4.5 "
+                  "prescribes");
     }
 
     /// The values of a kernel's Params, which std140 lays out as C++ does (docs/design.md).
@@ -197,8 +212,9 @@ public:
         const GLenum code = call.GetError();
         if (code == GL_NO_ERROR)
             return;
-        while (call.GetError() != GL_NO_ERROR) { }
-        throw backend_error(name() + ": " + what + ": " + error_name(code) + (messages.empty() ? "" : "\n" + std::exchange(messages, {})));
+        while (call.GetError() != GL_NO_ERROR) {}
+        throw backend_error(name() + ": " + what + ": " + error_name(code)
+            + (messages.empty() ? "" : "\n" + std::exchange(messages, {})));
     }
 
     const std::string& name() const { return context_->name; }
@@ -231,10 +247,12 @@ private:
         call.BindBuffer(GL_QUERY_BUFFER, 0); // results of queries would go there
         call.BindBufferBase(GL_UNIFORM_BUFFER, 0, uniforms_);
     }
-    static void APIENTRY note_message(GLenum, GLenum, GLuint, GLenum severity, GLsizei length, const GLchar* text, const void* user)
+    static void APIENTRY note_message(
+        GLenum, GLenum, GLuint, GLenum severity, GLsizei length, const GLchar* text, const void* user)
     {
         if (severity == GL_DEBUG_SEVERITY_HIGH)
-            static_cast<device*>(const_cast<void*>(user))->messages += std::string(text, static_cast<std::size_t>(std::max(length, 0))) + "\n";
+            static_cast<device*>(const_cast<void*>(user))->messages
+                += std::string(text, static_cast<std::size_t>(std::max(length, 0))) + "\n";
     }
 
     std::shared_ptr<context> context_;
@@ -311,9 +329,12 @@ private:
 
 inline texture device::make(GLenum internal, uint width, uint height, std::size_t texel_bytes, const std::string& what)
 {
-    const auto text = [&] { return what + " (a texture of " + std::to_string(width) + " x " + std::to_string(height) + " texels)"; };
+    const auto text = [&] {
+        return what + " (a texture of " + std::to_string(width) + " x " + std::to_string(height) + " texels)";
+    };
     if (width > max_size || height > max_size)
-        throw backend_error(name() + ": " + text() + ": this device's textures have at most " + std::to_string(max_size) + " x " + std::to_string(max_size));
+        throw backend_error(name() + ": " + text() + ": this device's textures have at most " + std::to_string(max_size)
+            + " x " + std::to_string(max_size));
     check_errors("before allocating");
     texture t;
     call.CreateTextures(GL_TEXTURE_2D, 1, &t.id);
@@ -325,7 +346,8 @@ inline texture device::make(GLenum internal, uint width, uint height, std::size_
     call.TextureStorage2D(t.id, 1, internal, static_cast<GLsizei>(width), static_cast<GLsizei>(height));
     call.TextureParameteri(t.id, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     call.TextureParameteri(t.id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    check_errors(text() + ", " + std::to_string(t.bytes_) + " bytes beside " + std::to_string(bytes - t.bytes_) + " held");
+    check_errors(
+        text() + ", " + std::to_string(t.bytes_) + " bytes beside " + std::to_string(bytes - t.bytes_) + " held");
     peak_bytes = std::max(peak_bytes, bytes);
     return t;
 }

@@ -19,10 +19,11 @@ struct gl_options {
 };
 
 /// A backend on an OpenGL context. It and its buffers belong to one thread at a time. Every call makes its context
-/// current and leaves it so. With gl_context_kind::current the caller does, and finds its OpenGL state as it was, also after
-/// an exception: every binding, switch and mask, and the errors that it left to glGetError. Verbs that draw throw
+/// current and leaves it so. With gl_context_kind::current the caller does, and finds its OpenGL state as it was, also
+/// after an exception: every binding, switch and mask, and the errors that it left to glGetError. Verbs that draw throw
 /// backend_error where they would disturb what nobody can put back: an active query that counts samples or primitives,
-/// active transform feedback, conditional rendering, a program in use that is marked for deletion (docs/embed_in_opengl.md).
+/// active transform feedback, conditional rendering, a program in use that is marked for deletion
+/// (docs/embed_in_opengl.md).
 /// \headerfile backends/gl/gl.hpp <photongrid/backends/gl/gl.hpp>
 /// \snippet snippets_gl.cpp gl_backend
 class gl_backend {
@@ -35,7 +36,8 @@ public:
         /// \name A buffer's members, the same on every backend
         /// @{
 
-        /// A buffer holds size() elements T. It is moved, never copied; one that was moved from, or made by default, is empty.
+        /// A buffer holds size() elements T. It is moved, never copied; one that was moved from, or made by default, is
+        /// empty.
         using value_type = T;
         buffer() = default;
         buffer(buffer&& other) noexcept { swap(other); }
@@ -69,7 +71,8 @@ private:
     void check_owner(const char* what, const buffer<T>& b) const
     {
         if (!owns()(b))
-            throw std::invalid_argument(std::string("gl_backend: ") + what + ": the buffer belongs to another backend; download it there and upload it here");
+            throw std::invalid_argument(std::string("gl_backend: ") + what
+                + ": the buffer belongs to another backend; download it there and upload it here");
     }
 
 public:
@@ -78,8 +81,10 @@ public:
     explicit gl_backend(const gl_options& options = {}) : options_(options)
     {
         if (options.tile < 1 || options.tile > gl::row_width)
-            throw std::invalid_argument("gl_options: tile: " + std::to_string(options.tile) + "; it must be from 1 to " + std::to_string(gl::row_width));
-        device_ = std::make_shared<gl::device>(gl::make_context(options.context, options.debug, options.find), options.debug);
+            throw std::invalid_argument("gl_options: tile: " + std::to_string(options.tile) + "; it must be from 1 to "
+                + std::to_string(gl::row_width));
+        device_ = std::make_shared<gl::device>(
+            gl::make_context(options.context, options.debug, options.find), options.debug);
         const auto scope = device_->use();
         made_ = std::make_unique<gl::programs>(device_);
         const auto text = [&](GLenum what) {
@@ -124,7 +129,8 @@ public:
     buffer<T> make(std::size_t n)
     {
         if (n > caps_.max_elements)
-            throw backend_error(device_->name() + ": a buffer of " + std::to_string(n) + " elements was asked for; the limit of this device is " + std::to_string(caps_.max_elements)
+            throw backend_error(device_->name() + ": a buffer of " + std::to_string(n)
+                + " elements was asked for; the limit of this device is " + std::to_string(caps_.max_elements)
                 + " (textures of " + std::to_string(gl::row_width) + " x " + std::to_string(device_->max_size) + ")");
         buffer<T> b;
         if (n == 0)
@@ -132,7 +138,8 @@ public:
         const auto scope = device_->use();
         const uint width = std::min(gl::row_width, std::bit_ceil(static_cast<uint>(n)));
         const auto rows = static_cast<uint>((n + gl::row_width - 1) / gl::row_width);
-        b.texture_ = device_->make(gl::texture_format<T>::internal, width, rows, sizeof(T), "a buffer of " + std::to_string(n) + " elements");
+        b.texture_ = device_->make(
+            gl::texture_format<T>::internal, width, rows, sizeof(T), "a buffer of " + std::to_string(n) + " elements");
         b.size_ = n;
         return b;
     }
@@ -147,7 +154,8 @@ public:
         device_->prepare_upload();
         using format = gl::texture_format<T>;
         for_blocks(data.size(), [&](std::size_t first, GLint y, GLsizei width, GLsizei rows) {
-            device_->call.TextureSubImage2D(b.texture_.id, 0, 0, y, width, rows, format::format, format::type, data.data() + first);
+            device_->call.TextureSubImage2D(
+                b.texture_.id, 0, 0, y, width, rows, format::format, format::type, data.data() + first);
         });
         device_->check_errors("upload");
         return b;
@@ -163,7 +171,8 @@ public:
         using format = gl::texture_format<T>;
         for_blocks(data.size(), [&](std::size_t first, GLint y, GLsizei width, GLsizei rows) {
             const auto bytes = sizeof(T) * static_cast<std::size_t>(width) * static_cast<std::size_t>(rows);
-            device_->call.GetTextureSubImage(b.texture_.id, 0, 0, y, 0, width, rows, 1, format::format, format::type, static_cast<GLsizei>(bytes), data.data() + first);
+            device_->call.GetTextureSubImage(b.texture_.id, 0, 0, y, 0, width, rows, 1, format::format, format::type,
+                static_cast<GLsizei>(bytes), data.data() + first);
         });
         device_->check_errors("download");
         return data;
@@ -171,8 +180,8 @@ public:
 
     /// @}
 
-    /// The buffer as a texture, to read or write with OpenGL in the order of calls, without a copy. It stays the buffer's.
-    /// Who writes it by image stores calls glMemoryBarrier before the buffer is used again.
+    /// The buffer as a texture, to read or write with OpenGL in the order of calls, without a copy. It stays the
+    /// buffer's. Who writes it by image stores calls glMemoryBarrier before the buffer is used again.
     /// \throws std::invalid_argument for a buffer of another backend.
     /// \snippet snippets_gl.cpp texture_of
     template <element T>
@@ -182,9 +191,9 @@ public:
         return {b.texture_.id, b.texture_.width, b.texture_.height, b.size_ > 0 ? gl::texture_format<T>::internal : 0u};
     }
 
-    /// A buffer over a texture of the caller's, laid out as gl_texture says. The texture stays the caller's and must live as
-    /// long as the buffer; bytes() does not count it. Texels of level 0 beyond the n elements may be overwritten; its filters
-    /// do not matter. A buffer of 0 elements has no texture, whatever is given.
+    /// A buffer over a texture of the caller's, laid out as gl_texture says. The texture stays the caller's and must
+    /// live as long as the buffer; bytes() does not count it. Texels of level 0 beyond the n elements may be
+    /// overwritten; its filters do not matter. A buffer of 0 elements has no texture, whatever is given.
     /// \throws std::invalid_argument for a texture of another kind, format or size.
     /// \snippet snippets_gl.cpp adopt
     template <element T>
@@ -194,9 +203,11 @@ public:
         if (n == 0)
             return b;
         if (n > caps_.max_elements)
-            throw std::invalid_argument("gl_backend::adopt: n: " + std::to_string(n) + " elements; the limit of this device is " + std::to_string(caps_.max_elements));
+            throw std::invalid_argument("gl_backend::adopt: n: " + std::to_string(n)
+                + " elements; the limit of this device is " + std::to_string(caps_.max_elements));
         const auto scope = device_->use();
-        const gl_texture t = gl::check_adoptable(device_->call, texture, n, gl::texture_format<T>::internal, gl::texture_format<T>::internal_name);
+        const gl_texture t = gl::check_adoptable(
+            device_->call, texture, n, gl::texture_format<T>::internal, gl::texture_format<T>::internal_name);
         b.texture_ = device_->adopt(t.name, t.width, t.height);
         b.size_ = n;
         return b;
@@ -325,7 +336,9 @@ public:
         if (l.elements == 0)
             return 0;
         if (std::uint64_t{l.first} + l.elements > caps_.max_elements)
-            throw backend_error(device_->name() + ": count: elements up to " + std::to_string(std::uint64_t{l.first} + l.elements) + "; the limit of this device is " + std::to_string(caps_.max_elements));
+            throw backend_error(device_->name() + ": count: elements up to "
+                + std::to_string(std::uint64_t{l.first} + l.elements) + "; the limit of this device is "
+                + std::to_string(caps_.max_elements));
         make_queries(1);
         start_clock();
         bind<K>(args, reads, std::tuple<>{});
@@ -337,16 +350,20 @@ public:
     }
 
     template <route_kernel K, class Reads>
-    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots, buffer<glm::vec4>& totals)
+    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots,
+        buffer<glm::vec4>& totals)
     {
         detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
         detail::check_reads<K>("route", reads, owns());
         check_owner("route: slots", slots);
         check_owner("route: totals", totals);
         if (std::uint64_t{l.first} + l.elements > caps_.max_elements)
-            throw backend_error(device_->name() + ": route: draws up to " + std::to_string(std::uint64_t{l.first} + l.elements) + "; the limit of this device is " + std::to_string(caps_.max_elements));
+            throw backend_error(device_->name() + ": route: draws up to "
+                + std::to_string(std::uint64_t{l.first} + l.elements) + "; the limit of this device is "
+                + std::to_string(caps_.max_elements));
         const auto scope = device_->use();
-        gl::routing pass{*device_, *made_, made_->get<K>(gl::verb::route_payload, l.switches), made_->get<K>(gl::verb::route_amount, l.switches), l, destinations, m};
+        gl::routing pass{*device_, *made_, made_->get<K>(gl::verb::route_payload, l.switches),
+            made_->get<K>(gl::verb::route_amount, l.switches), l, destinations, m};
         count_passes<K>(1);
         start_clock();
         bind<K>(args, reads, std::tuple<>{});
@@ -359,7 +376,8 @@ public:
 
     /// @}
 
-    /// Compiles kernel K for every verb that it serves, without running it. \throws backend_error with the compiler's log.
+    /// Compiles kernel K for every verb that it serves, without running it. \throws backend_error with the compiler's
+    /// log.
     template <kernel_struct K>
     void compile(uint switches = ~0u)
     {
@@ -397,8 +415,8 @@ public:
     /// How often pixels or buffers were read back or mapped: only `download` does.
     std::uint64_t readbacks() const { return device_->call.readbacks(); }
 
-    /// What the driver has said of high severity since the last call, a line each: errors that no exception has told yet,
-    /// and those of its compiler. Always empty unless options.debug.
+    /// What the driver has said of high severity since the last call, a line each: errors that no exception has told
+    /// yet, and those of its compiler. Always empty unless options.debug.
     std::string take_debug_messages() { return std::exchange(device_->messages, {}); }
     /// How often the host waited for results of occlusion queries.
     std::uint64_t query_polls() const { return query_polls_; }
@@ -429,7 +447,8 @@ private:
         const uint last = l.first + (l.elements - 1);
         const uint row = l.first / gl::row_width, end = last / gl::row_width + 1;
         if (end - row == 1)
-            return {static_cast<GLint>(l.first % gl::row_width), static_cast<GLint>(row), static_cast<GLsizei>(l.elements), 1};
+            return {static_cast<GLint>(l.first % gl::row_width), static_cast<GLint>(row),
+                static_cast<GLsizei>(l.elements), 1};
         return {0, static_cast<GLint>(row), static_cast<GLsizei>(gl::row_width), static_cast<GLsizei>(end - row)};
     }
     /// Tiles of about tile x tile elements; wider where there are few rows.
@@ -448,15 +467,24 @@ private:
     template <class K, class Reads, class Writes>
     void bind(const typename K::Params& args, const Reads& reads, const Writes& writes)
     {
-        static_assert(input_count<K> <= gl::max_inputs && output_count<K> <= gl::max_outputs, "OpenGL passes have at most 8 inputs and 8 outputs");
+        static_assert(input_count<K> <= gl::max_inputs && output_count<K> <= gl::max_outputs,
+            "OpenGL passes have at most 8 inputs and 8 outputs");
         device_->prepare_passes();
         device_->set_uniforms(&args, sizeof args);
-        if constexpr (input_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
-            (device_->bind_texture(I, std::get<I>(reads).texture_.id), ...);
-        }(std::make_index_sequence<input_count<K>>{});
-        if constexpr (std::tuple_size_v<Writes> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
-            ((K::is_state(slot<I>{}) ? device_->bind_texture(gl::state_unit + I, std::get<I>(writes).texture_.id) : void()), ...);
-        }(std::make_index_sequence<output_count<K>>{});
+        if constexpr (input_count < K >> 0)
+            [&]<std::size_t... I>(std::index_sequence<I...>)
+            {
+                (device_->bind_texture(I, std::get<I>(reads).texture_.id), ...);
+            }
+        (std::make_index_sequence<input_count<K>>{});
+        if constexpr (std::tuple_size_v < Writes >> 0)
+            [&]<std::size_t... I>(std::index_sequence<I...>)
+            {
+                ((K::is_state(slot<I>{}) ? device_->bind_texture(gl::state_unit + I, std::get<I>(writes).texture_.id)
+                                         : void()),
+                    ...);
+            }
+        (std::make_index_sequence<output_count<K>>{});
     }
     /// Makes the written buffers the render targets. True when the pass also reads one of them.
     template <class K, class Reads, class Writes>
@@ -465,12 +493,19 @@ private:
         static_assert(output_count<K> > 0, "a kernel needs an OUTPUT or STATE to run");
         bool feedback = false;
         std::array<GLuint, output_count<K>> targets{};
-        [&]<std::size_t... I>(std::index_sequence<I...>) {
+        [&]<std::size_t... I>(std::index_sequence<I...>)
+        {
             ((targets[I] = std::get<I>(writes).texture_.id, feedback = feedback || K::is_state(slot<I>{})), ...);
-        }(std::make_index_sequence<output_count<K>>{});
-        if constexpr (input_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
-            ((feedback = feedback || std::find(targets.begin(), targets.end(), std::get<I>(reads).texture_.id) != targets.end()), ...);
-        }(std::make_index_sequence<input_count<K>>{});
+        }
+        (std::make_index_sequence<output_count<K>>{});
+        if constexpr (input_count < K >> 0)
+            [&]<std::size_t... I>(std::index_sequence<I...>)
+            {
+                ((feedback = feedback
+                         || std::find(targets.begin(), targets.end(), std::get<I>(reads).texture_.id) != targets.end()),
+                    ...);
+            }
+        (std::make_index_sequence<input_count<K>>{});
         device_->draw_into(targets);
         return feedback;
     }

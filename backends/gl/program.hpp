@@ -96,17 +96,25 @@ public:
         std::string defines = "#define SWITCHES_ " + std::to_string(switches) + "u\n";
         GLuint program = 0;
         if (v == verb::route_payload || v == verb::route_amount) {
-            const GLuint vertex = gl::compile(*device_, GL_VERTEX_SHADER, splice(text("vertex_prelude.glsl"), defines, kernel, text("vertex_epilogue.glsl"), texts), what + " (vertex stage)");
-            program = link(*device_, vertex, compile_own(GL_FRAGMENT_SHADER, v == verb::route_payload ? "route_payload.glsl" : "route_amount.glsl"), what);
+            const GLuint vertex = gl::compile(*device_, GL_VERTEX_SHADER,
+                splice(text("vertex_prelude.glsl"), defines, kernel, text("vertex_epilogue.glsl"), texts),
+                what + " (vertex stage)");
+            program = link(*device_, vertex,
+                compile_own(GL_FRAGMENT_SHADER, v == verb::route_payload ? "route_payload.glsl" : "route_amount.glsl"),
+                what);
         } else {
             constexpr std::array verbs{"RUN_", "UNTIL_DONE_", "NOT_DONE_", "HOLDS_"};
-            defines += std::string("#define ") + verbs[static_cast<std::size_t>(v)] + "\n#define LOAD_STATES_(at) " + load_states<K>() + "\n";
-            const GLuint fragment = gl::compile(*device_, GL_FRAGMENT_SHADER, splice(text("fragment_prelude.glsl"), defines, kernel, text("fragment_epilogue.glsl"), texts), what + " (fragment stage)");
+            defines += std::string("#define ") + verbs[static_cast<std::size_t>(v)] + "\n#define LOAD_STATES_(at) "
+                + load_states<K>() + "\n";
+            const GLuint fragment = gl::compile(*device_, GL_FRAGMENT_SHADER,
+                splice(text("fragment_prelude.glsl"), defines, kernel, text("fragment_epilogue.glsl"), texts),
+                what + " (fragment stage)");
             program = link(*device_, compile_own(GL_VERTEX_SHADER, "screen.glsl"), fragment, what);
         }
         kernels_.emplace(key, program);
         check_layout(program, sizeof(typename K::Params), what);
-        costs[name].compile_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        costs[name].compile_ms
+            += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
         return program;
     }
 
@@ -115,7 +123,8 @@ public:
     {
         GLuint& program = own_[file];
         if (program == 0)
-            program = link(*device_, compile_own(GL_VERTEX_SHADER, "screen.glsl"), compile_own(GL_FRAGMENT_SHADER, file), file);
+            program = link(
+                *device_, compile_own(GL_VERTEX_SHADER, "screen.glsl"), compile_own(GL_FRAGMENT_SHADER, file), file);
         return program;
     }
 
@@ -132,17 +141,22 @@ private:
     template <class K>
     static constexpr uint known_switches()
     {
-        return []<std::size_t... B>(std::index_sequence<B...>) {
+        return []<std::size_t... B>(std::index_sequence<B...>)
+        {
             return ((requires(K k) { k.turn(slot<B>{}, true); } ? 1u << B : 0u) | ...);
-        }(std::make_index_sequence<32>{});
+        }
+        (std::make_index_sequence<32>{});
     }
     template <class K>
     static std::string load_states()
     {
         std::string calls;
-        if constexpr (output_count<K> > 0) [&]<std::size_t... B>(std::index_sequence<B...>) {
-            ((calls += K::is_state(slot<B>{}) ? "load_state_" + std::to_string(B) + "(at); " : ""), ...);
-        }(std::make_index_sequence<output_count<K>>{});
+        if constexpr (output_count < K >> 0)
+            [&]<std::size_t... B>(std::index_sequence<B...>)
+            {
+                ((calls += K::is_state(slot<B>{}) ? "load_state_" + std::to_string(B) + "(at); " : ""), ...);
+            }
+        (std::make_index_sequence<output_count<K>>{});
         return calls;
     }
     /// Params reach the program as bytes: the driver's layout must be C++'s.
@@ -154,7 +168,8 @@ private:
         GLint bytes = 0;
         device_->call.GetActiveUniformBlockiv(program, block, GL_UNIFORM_BLOCK_DATA_SIZE, &bytes);
         if (static_cast<std::size_t>(bytes) != (size + 15) / 16 * 16)
-            throw backend_error(device_->name() + ": " + what + ": its Params have " + std::to_string(size) + " bytes in C++ and " + std::to_string(bytes)
+            throw backend_error(device_->name() + ": " + what + ": its Params have " + std::to_string(size)
+                + " bytes in C++ and " + std::to_string(bytes)
                 + " in std140; put members of 16 bytes first and use no vec3 (docs/design.md)");
     }
 

@@ -1,5 +1,5 @@
-// Stencil routing as the paper draws it (2.2.2, figure 5): every draw is a point of m x m pixels over its destination, and
-// the stencil buffer lets one pixel of it through, the destination's next free slot.
+// Stencil routing as the paper draws it (2.2.2, figure 5): every draw is a point of m x m pixels over its destination,
+// and the stencil buffer lets one pixel of it through, the destination's next free slot.
 #pragma once
 
 #include <photongrid/backends/gl/program.hpp>
@@ -26,7 +26,8 @@ struct routing {
         // As square as can be: both edges are limited.
         const uint columns = std::max(1u, static_cast<uint>(std::ceil(std::sqrt(static_cast<double>(destinations)))));
         const uint rows = std::max(1u, (destinations + columns - 1) / columns);
-        const std::string what = "route: " + std::to_string(destinations) + " destinations of " + std::to_string(m) + " x " + std::to_string(m) + " slots";
+        const std::string what = "route: " + std::to_string(destinations) + " destinations of " + std::to_string(m)
+            + " x " + std::to_string(m) + " slots";
         const texture drawn = on.make(GL_R32UI, columns * m, rows * m, 4, what);
         texture stencil;
         const GLuint framebuffer = make_framebuffer(drawn, stencil, what);
@@ -58,7 +59,8 @@ struct routing {
         gl.DeleteFramebuffers(1, &framebuffer);
     }
 
-    /// totals[d * parts + p] = sum of the amounts of the draws to d in the p-th block of draws, in draw order, by blending.
+    /// totals[d * parts + p] = sum of the amounts of the draws to d in the p-th block of draws, in draw order, by
+    /// blending.
     void sum(const texture& totals, uint parts)
     {
         functions& gl = on.call;
@@ -91,7 +93,8 @@ private:
             std::size_t bytes;
         };
         // Stencil alone is optional in OpenGL; beside depth it is not.
-        for (const auto& c : {choice{GL_STENCIL_INDEX8, GL_STENCIL_ATTACHMENT, 1}, choice{GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL_ATTACHMENT, 4}}) {
+        for (const auto& c : {choice{GL_STENCIL_INDEX8, GL_STENCIL_ATTACHMENT, 1},
+                 choice{GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL_ATTACHMENT, 4}}) {
             stencil = on.make(c.format, drawn.width, drawn.height, c.bytes, what + ", stencil");
             gl.NamedFramebufferTexture(framebuffer, c.attachment, stencil.id, 0);
             if (gl.CheckNamedFramebufferStatus(framebuffer, GL_DRAW_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE)

@@ -10,8 +10,8 @@
 
 namespace photongrid {
 
-/// Kernels in plain loops on one thread, in single precision as IEEE 754 has it: what the other backends are compared with. It
-/// needs no device. One thread at a time may use a backend and its buffers; a buffer may outlive it.
+/// Kernels in plain loops on one thread, in single precision as IEEE 754 has it: what the other backends are compared
+/// with. It needs no device. One thread at a time may use a backend and its buffers; a buffer may outlive it.
 /// \headerfile backends/serial/serial.hpp <photongrid/backends/serial/serial.hpp>
 /// \snippet snippets.cpp serial_backend
 class serial_backend {
@@ -28,7 +28,8 @@ public:
         /// \name A buffer's members, the same on every backend
         /// @{
 
-        /// A buffer holds size() elements T. It is moved, never copied; one that was moved from, or made by default, is empty.
+        /// A buffer holds size() elements T. It is moved, never copied; one that was moved from, or made by default, is
+        /// empty.
         using value_type = T;
         buffer() = default;
         buffer(buffer&& other) noexcept { swap(other); }
@@ -49,8 +50,7 @@ public:
 
     private:
         friend serial_backend;
-        buffer(std::shared_ptr<account> a, std::vector<T> data)
-            : account_(std::move(a)), data_(std::move(data))
+        buffer(std::shared_ptr<account> a, std::vector<T> data) : account_(std::move(a)), data_(std::move(data))
         {
             account_->now += data_.size() * sizeof(T);
             account_->peak = std::max(account_->peak, account_->now);
@@ -84,7 +84,8 @@ public:
     buffer<T> make(std::size_t n)
     {
         if (n > caps_.max_elements)
-            throw backend_error("serial: a buffer of " + std::to_string(n) + " elements was asked for; the limit is " + std::to_string(caps_.max_elements));
+            throw backend_error("serial: a buffer of " + std::to_string(n) + " elements was asked for; the limit is "
+                + std::to_string(caps_.max_elements));
         return buffer<T>(account_, std::vector<T>(n));
     }
     template <element T, std::size_t E>
@@ -152,7 +153,8 @@ public:
     }
 
     template <route_kernel K, class Reads>
-    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots, buffer<glm::vec4>& totals)
+    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots,
+        buffer<glm::vec4>& totals)
     {
         detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
         K k = prepare<K>(l, args, reads);
@@ -188,28 +190,35 @@ private:
         K k{};
         k.args = args;
         turn_switches(k, l.switches);
-        if constexpr (input_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
-            (k.bind(slot<I>{}, std::span<const input_t<K, I>>(std::get<I>(reads).data_)), ...);
-        }(std::make_index_sequence<input_count<K>>{});
+        if constexpr (input_count < K >> 0)
+            [&]<std::size_t... I>(std::index_sequence<I...>)
+            {
+                (k.bind(slot<I>{}, std::span<const input_t<K, I>>(std::get<I>(reads).data_)), ...);
+            }
+        (std::make_index_sequence<input_count<K>>{});
         return k;
     }
     template <class K, class Writes>
     static void load(K& k, uint i, Writes& writes)
     {
-        [&]<std::size_t... I>(std::index_sequence<I...>) {
+        [&]<std::size_t... I>(std::index_sequence<I...>)
+        {
             const auto one = [&]<std::size_t J>(slot<J> s) {
                 if constexpr (K::is_state(s))
                     k.output(s) = std::get<J>(writes).data_[i];
             };
             (one(slot<I>{}), ...);
-        }(std::make_index_sequence<output_count<K>>{});
+        }
+        (std::make_index_sequence<output_count<K>>{});
     }
     template <class K, class Writes>
     static void store(K& k, uint i, Writes& writes)
     {
-        [&]<std::size_t... I>(std::index_sequence<I...>) {
+        [&]<std::size_t... I>(std::index_sequence<I...>)
+        {
             ((std::get<I>(writes).data_[i] = k.output(slot<I>{})), ...);
-        }(std::make_index_sequence<output_count<K>>{});
+        }
+        (std::make_index_sequence<output_count<K>>{});
     }
 
     capabilities caps_;

@@ -13,12 +13,14 @@ namespace photongrid::vulkan_detail {
 class compiled_kernels {
 public:
     /// `folder`: where they are kept from one start to the next; "": nowhere. `optimized`: by the SPIR-V optimizer.
-    compiled_kernels(std::shared_ptr<context> c, const std::string& folder, bool optimized) : context_(std::move(c)), cache_(folder), optimized_(optimized)
+    compiled_kernels(std::shared_ptr<context> c, const std::string& folder, bool optimized)
+        : context_(std::move(c)), cache_(folder), optimized_(optimized)
     {
         if (folder.empty())
             return;
         const auto& p = context_->properties();
-        drivers_key_ = "pipelines " + std::to_string(p.vendorID) + " " + std::to_string(p.deviceID) + " " + std::to_string(p.driverVersion) + " ";
+        drivers_key_ = "pipelines " + std::to_string(p.vendorID) + " " + std::to_string(p.deviceID) + " "
+            + std::to_string(p.driverVersion) + " ";
         for (const auto byte : p.pipelineCacheUUID)
             drivers_key_ += std::to_string(byte) + ".";
         kept_ = cache_.find(drivers_key_).value_or(file_cache::bytes{});
@@ -50,17 +52,20 @@ public:
     /// As compile_spirv(), unless the very same text was compiled by the same tools before.
     spirv_words compile(const spliced_source& source, const std::string& name)
     {
-        static const std::string tools = "SPIR-V by photongrid 1, glslang " + std::to_string(GLSLANG_VERSION_MAJOR) + "." + std::to_string(GLSLANG_VERSION_MINOR) + "." + std::to_string(GLSLANG_VERSION_PATCH) + ", SPIRV-Tools "
-            + spvSoftwareVersionString() + "\n";
+        static const std::string tools = "SPIR-V by photongrid 1, glslang " + std::to_string(GLSLANG_VERSION_MAJOR)
+            + "." + std::to_string(GLSLANG_VERSION_MINOR) + "." + std::to_string(GLSLANG_VERSION_PATCH)
+            + ", SPIRV-Tools " + spvSoftwareVersionString() + "\n";
         const std::string key = (optimized_ ? tools : "plain " + tools) + source.text;
-        if (const auto found = cache_.find(key); found && !found->empty() && found->size() % sizeof(std::uint32_t) == 0) {
+        if (const auto found = cache_.find(key);
+            found && !found->empty() && found->size() % sizeof(std::uint32_t) == 0) {
             spirv_words words(found->size() / sizeof(std::uint32_t));
             std::memcpy(words.data(), found->data(), found->size());
             ++found_;
             return words;
         }
         const auto words = compile_spirv(source, name, optimized_);
-        cache_.keep(key, std::string_view(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(std::uint32_t)));
+        cache_.keep(
+            key, std::string_view(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(std::uint32_t)));
         return words;
     }
 

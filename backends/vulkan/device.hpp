@@ -18,18 +18,20 @@ namespace photongrid {
 /// Which device to open, and how.
 /// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
 struct vulkan_options {
-    std::string device{};       ///< "": the best (discrete, integrated, virtual, CPU); else an index or a part of the name
+    std::string device{}; ///< "": the best (discrete, integrated, virtual, CPU); else an index or a part of the name
     bool hardware_only = false; ///< refuse devices that are a CPU
-    bool validation = false;    ///< run the Khronos validation layer (core and synchronization) and collect its messages
-    bool gpu_assisted = false;  ///< with validation: instrument kernels too, so that their accesses past a buffer's end are messages; slow
-    bool staging = false;       ///< work as on a discrete GPU even where it is not needed: copy through staging buffers, read inputs as storage buffers
+    bool validation = false;   ///< run the Khronos validation layer (core and synchronization) and collect its messages
+    bool gpu_assisted = false; ///< with validation: instrument kernels too, so that their accesses past a buffer's end
+                               ///< are messages; slow
+    bool staging = false; ///< work as on a discrete GPU even where it is not needed: copy through staging buffers, read
+                          ///< inputs as storage buffers
     bool subgroups = true;      ///< let neighbouring points search together where the device can
     bool time_passes = false;   ///< measure each pass by the device's clock, for costs(); a little slower
     std::string cache_folder{}; ///< keep compiled kernels in this folder, so that the next start is quick; "": nowhere
 };
 
-/// A device that the caller has opened, and goes on owning. The instance must be for Vulkan 1.1 or later, the queue of a
-/// family with compute; nobody else may use the queue at the same time.
+/// A device that the caller has opened, and goes on owning. The instance must be for Vulkan 1.1 or later, the queue of
+/// a family with compute; nobody else may use the queue at the same time.
 /// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
 struct vulkan_handles {
     VkInstance instance = VK_NULL_HANDLE;              ///< made for Vulkan 1.1 or later
@@ -42,16 +44,16 @@ struct vulkan_handles {
 /// A device as `vulkan_devices()` lists it.
 /// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
 struct vulkan_device_info {
-    std::uint32_t index = 0; ///< that vulkan_options::device may name
-    std::string name;        ///< the driver's
-    std::string type;        ///< "discrete", "integrated", "virtual", "cpu", "other"
-    std::string driver;      ///< its name and version
-    std::string api_version; ///< "1.3.230"
-    bool software = false;   ///< true where the device is a CPU
-    std::uint64_t max_buffer_bytes = 0;     ///< of one buffer that a pass binds
-    std::uint64_t memory_bytes = 0;         ///< largest device-local heap
-    std::uint32_t max_storage_buffers = 0;  ///< that one pass can bind
-    std::string unusable;                   ///< why this backend cannot use it; empty: it can
+    std::uint32_t index = 0;               ///< that vulkan_options::device may name
+    std::string name;                      ///< the driver's
+    std::string type;                      ///< "discrete", "integrated", "virtual", "cpu", "other"
+    std::string driver;                    ///< its name and version
+    std::string api_version;               ///< "1.3.230"
+    bool software = false;                 ///< true where the device is a CPU
+    std::uint64_t max_buffer_bytes = 0;    ///< of one buffer that a pass binds
+    std::uint64_t memory_bytes = 0;        ///< largest device-local heap
+    std::uint32_t max_storage_buffers = 0; ///< that one pass can bind
+    std::string unusable;                  ///< why this backend cannot use it; empty: it can
 };
 
 namespace vulkan_detail {
@@ -61,8 +63,8 @@ namespace vulkan_detail {
         std::vector<std::string> messages;
     };
 
-    inline VKAPI_ATTR VkBool32 VKAPI_CALL collect_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
-        const VkDebugUtilsMessengerCallbackDataEXT* data, void* user)
+    inline VKAPI_ATTR VkBool32 VKAPI_CALL collect_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
+        VkDebugUtilsMessageTypeFlagsEXT, const VkDebugUtilsMessengerCallbackDataEXT* data, void* user)
     {
         auto& log = *static_cast<message_log*>(user);
         const std::scoped_lock lock(log.mutex);
@@ -77,10 +79,12 @@ namespace vulkan_detail {
         explicit instance(bool validation, bool gpu_assisted = false)
         {
             std::uint32_t version = VK_API_VERSION_1_0;
-            if (const auto f = reinterpret_cast<PFN_vkEnumerateInstanceVersion>(vkGetInstanceProcAddr(nullptr, "vkEnumerateInstanceVersion")))
+            if (const auto f = reinterpret_cast<PFN_vkEnumerateInstanceVersion>(
+                    vkGetInstanceProcAddr(nullptr, "vkEnumerateInstanceVersion")))
                 f(&version);
             if (version < VK_API_VERSION_1_1)
-                throw backend_error("vulkan: the loader knows Vulkan 1.0 only; 1.1 is needed. Update it (Debian: apt install libvulkan1)");
+                throw backend_error("vulkan: the loader knows Vulkan 1.0 only; 1.1 is needed. Update it (Debian: apt "
+                                    "install libvulkan1)");
             VkApplicationInfo app{};
             app.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
             app.pApplicationName = "photongrid";
@@ -99,18 +103,23 @@ namespace vulkan_detail {
             VkDebugUtilsMessengerCreateInfoEXT messenger{};
             VkValidationFeaturesEXT features{};
             // GPU-assisted validation needs a descriptor set of its own, which it reserves.
-            constexpr VkValidationFeatureEnableEXT enabled[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT, VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT,
-                VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT};
+            constexpr VkValidationFeatureEnableEXT enabled[]
+                = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT,
+                    VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT,
+                    VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT};
             if (validation) {
                 if (!has_layer(layer))
-                    throw backend_error(std::string("vulkan: validation was asked for, but the layer ") + layer + " is not installed (Debian: apt install vulkan-validationlayers)");
+                    throw backend_error(std::string("vulkan: validation was asked for, but the layer ") + layer
+                        + " is not installed (Debian: apt install vulkan-validationlayers)");
                 extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
                 if (has_extension(layer, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME))
                     extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
                 log_ = std::make_unique<message_log>();
                 messenger.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
-                messenger.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-                messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+                messenger.messageSeverity
+                    = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+                messenger.messageType
+                    = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
                 messenger.pfnUserCallback = collect_message;
                 messenger.pUserData = log_.get();
                 features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
@@ -125,10 +134,12 @@ namespace vulkan_detail {
             info.ppEnabledExtensionNames = extensions.data();
             const VkResult r = vkCreateInstance(&info, nullptr, &handle_);
             if (r != VK_SUCCESS)
-                throw backend_error("vulkan: vkCreateInstance: " + result_name(r) + "; drivers were sought in " + driver_search_paths() + ". " + install_hint);
+                throw backend_error("vulkan: vkCreateInstance: " + result_name(r) + "; drivers were sought in "
+                    + driver_search_paths() + ". " + install_hint);
             owned_ = true;
             if (validation) {
-                const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(handle_, "vkCreateDebugUtilsMessengerEXT"));
+                const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+                    vkGetInstanceProcAddr(handle_, "vkCreateDebugUtilsMessengerEXT"));
                 if (create)
                     create(handle_, &messenger, nullptr, &messenger_);
             }
@@ -139,7 +150,8 @@ namespace vulkan_detail {
         ~instance()
         {
             if (messenger_)
-                if (const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(handle_, "vkDestroyDebugUtilsMessengerEXT")))
+                if (const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+                        vkGetInstanceProcAddr(handle_, "vkDestroyDebugUtilsMessengerEXT")))
                     destroy(handle_, messenger_, nullptr);
             if (owned_)
                 vkDestroyInstance(handle_, nullptr);
@@ -174,7 +186,8 @@ namespace vulkan_detail {
             vkEnumerateInstanceLayerProperties(&n, nullptr);
             std::vector<VkLayerProperties> layers(n);
             vkEnumerateInstanceLayerProperties(&n, layers.data());
-            return std::any_of(layers.begin(), layers.end(), [&](const auto& l) { return std::strcmp(l.layerName, name) == 0; });
+            return std::any_of(
+                layers.begin(), layers.end(), [&](const auto& l) { return std::strcmp(l.layerName, name) == 0; });
         }
         static bool has_extension(const char* layer, const char* name)
         {
@@ -182,7 +195,8 @@ namespace vulkan_detail {
             vkEnumerateInstanceExtensionProperties(layer, &n, nullptr);
             std::vector<VkExtensionProperties> extensions(n);
             vkEnumerateInstanceExtensionProperties(layer, &n, extensions.data());
-            return std::any_of(extensions.begin(), extensions.end(), [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+            return std::any_of(extensions.begin(), extensions.end(),
+                [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
         }
         std::unique_ptr<message_log> log_;
         VkInstance handle_ = VK_NULL_HANDLE;
@@ -196,7 +210,8 @@ namespace vulkan_detail {
         vkEnumerateDeviceExtensionProperties(d, nullptr, &n, nullptr);
         std::vector<VkExtensionProperties> extensions(n);
         vkEnumerateDeviceExtensionProperties(d, nullptr, &n, extensions.data());
-        return std::any_of(extensions.begin(), extensions.end(), [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+        return std::any_of(extensions.begin(), extensions.end(),
+            [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
     }
 
     /// The first queue family with compute; nothing if there is none.
@@ -222,8 +237,8 @@ namespace vulkan_detail {
         return families[family].timestampValidBits;
     }
 
-    /// Invocations to a subgroup, where that is the same for every shader and they can count votes, add up and hand values around;
-    /// else 1.
+    /// Invocations to a subgroup, where that is the same for every shader and they can count votes, add up and hand
+    /// values around; else 1.
     inline std::uint32_t lanes_of_subgroups(VkPhysicalDevice d)
     {
         VkPhysicalDeviceSubgroupProperties subgroup{};
@@ -237,15 +252,21 @@ namespace vulkan_detail {
         p.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
         p.pNext = &subgroup;
         vkGetPhysicalDeviceProperties2(d, &p);
-        constexpr VkSubgroupFeatureFlags needed = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
-        const bool can = (subgroup.supportedOperations & needed) == needed && (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0;
+        constexpr VkSubgroupFeatureFlags needed
+            = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+        const bool can = (subgroup.supportedOperations & needed) == needed
+            && (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0;
         return can && sizes.minSubgroupSize == sizes.maxSubgroupSize ? subgroup.subgroupSize : 1;
     }
 
     /// 3 for a discrete device down to 0 for a CPU.
     inline int rank(VkPhysicalDeviceType t)
     {
-        return t == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ? 4 : t == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU ? 3 : t == VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU ? 2 : t == VK_PHYSICAL_DEVICE_TYPE_CPU ? 0 : 1;
+        return t == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU  ? 4
+            : t == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU ? 3
+            : t == VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU    ? 2
+            : t == VK_PHYSICAL_DEVICE_TYPE_CPU            ? 0
+                                                          : 1;
     }
 
     inline vulkan_device_info describe(VkPhysicalDevice d, std::uint32_t index)
@@ -258,7 +279,9 @@ namespace vulkan_detail {
         constexpr const char* types[] = {"cpu", "other", "virtual", "integrated", "discrete"};
         i.type = types[rank(p.deviceType)];
         i.software = p.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-        i.api_version = std::to_string(VK_API_VERSION_MAJOR(p.apiVersion)) + "." + std::to_string(VK_API_VERSION_MINOR(p.apiVersion)) + "." + std::to_string(VK_API_VERSION_PATCH(p.apiVersion));
+        i.api_version = std::to_string(VK_API_VERSION_MAJOR(p.apiVersion)) + "."
+            + std::to_string(VK_API_VERSION_MINOR(p.apiVersion)) + "."
+            + std::to_string(VK_API_VERSION_PATCH(p.apiVersion));
         i.max_buffer_bytes = p.limits.maxStorageBufferRange;
         i.max_storage_buffers = p.limits.maxPerStageDescriptorStorageBuffers;
         VkPhysicalDeviceMemoryProperties m;
@@ -289,7 +312,8 @@ namespace vulkan_detail {
     {
         std::string text;
         for (const auto& d : devices)
-            text += (text.empty() ? "" : "; ") + std::to_string(d.index) + ": " + d.name + " (" + d.type + (d.unusable.empty() ? "" : ", " + d.unusable) + ")";
+            text += (text.empty() ? "" : "; ") + std::to_string(d.index) + ": " + d.name + " (" + d.type
+                + (d.unusable.empty() ? "" : ", " + d.unusable) + ")";
         return text.empty() ? "none" : text;
     }
 
@@ -299,30 +323,39 @@ namespace vulkan_detail {
     {
         const auto devices = in.physical_devices();
         if (devices.empty())
-            throw backend_error("vulkan: no device: drivers were found, but none has a device (sought in " + driver_search_paths() + "). " + install_hint);
+            throw backend_error("vulkan: no device: drivers were found, but none has a device (sought in "
+                + driver_search_paths() + "). " + install_hint);
         std::vector<vulkan_device_info> all;
         for (std::uint32_t d = 0; d < devices.size(); ++d)
             all.push_back(describe(devices[d], d));
 
         const auto lower = [](std::string s) {
-            std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+            std::transform(
+                s.begin(), s.end(), s.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
             return s;
         };
-        const bool number = !options.device.empty() && options.device.size() < 6 && std::all_of(options.device.begin(), options.device.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+        const bool number = !options.device.empty() && options.device.size() < 6
+            && std::all_of(
+                options.device.begin(), options.device.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
         std::optional<std::uint32_t> best;
         int best_rank = -1;
         for (const auto& i : all) {
             VkPhysicalDeviceProperties p;
             vkGetPhysicalDeviceProperties(devices[i.index], &p);
-            const bool meant = number ? std::stoul(options.device) == i.index : lower(i.name).find(lower(options.device)) != std::string::npos;
-            if (!meant || !i.unusable.empty() || (options.hardware_only && i.software) || rank(p.deviceType) <= best_rank)
+            const bool meant = number ? std::stoul(options.device) == i.index
+                                      : lower(i.name).find(lower(options.device)) != std::string::npos;
+            if (!meant || !i.unusable.empty() || (options.hardware_only && i.software)
+                || rank(p.deviceType) <= best_rank)
                 continue;
             best = i.index;
             best_rank = rank(p.deviceType);
         }
         if (!best)
-            throw backend_error("vulkan: no device" + (options.device.empty() ? std::string() : " '" + options.device + "'") + (options.hardware_only ? " that is hardware" : "") + " can be used; there are: " + in_words(all)
-                + (options.hardware_only ? ". Install the GPU's Vulkan driver, or allow software devices" : ". Name one of these by index or part of its name"));
+            throw backend_error("vulkan: no device"
+                + (options.device.empty() ? std::string() : " '" + options.device + "'")
+                + (options.hardware_only ? " that is hardware" : "") + " can be used; there are: " + in_words(all)
+                + (options.hardware_only ? ". Install the GPU's Vulkan driver, or allow software devices"
+                                         : ". Name one of these by index or part of its name"));
         return devices[*best];
     }
 
@@ -351,7 +384,9 @@ namespace vulkan_detail {
             owned_ = true;
             vkGetDeviceQueue(handle_, family_, 0, &queue_);
         }
-        explicit logical_device(const vulkan_handles& h) : handle_(h.device), queue_(h.queue), family_(h.queue_family) {}
+        explicit logical_device(const vulkan_handles& h) : handle_(h.device), queue_(h.queue), family_(h.queue_family)
+        {
+        }
         logical_device(const logical_device&) = delete;
         logical_device& operator=(const logical_device&) = delete;
         ~logical_device()

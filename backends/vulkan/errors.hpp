@@ -13,9 +13,8 @@ namespace photongrid::vulkan_detail {
 inline std::string result_name(VkResult r)
 {
     switch (r) {
-#define PHOTONGRID_NAME(R) \
-    case R:                \
-        return #R;
+#define PHOTONGRID_NAME(R)                                                                                             \
+    case R: return #R;
         PHOTONGRID_NAME(VK_SUCCESS)
         PHOTONGRID_NAME(VK_NOT_READY)
         PHOTONGRID_NAME(VK_TIMEOUT)
@@ -35,8 +34,7 @@ inline std::string result_name(VkResult r)
         PHOTONGRID_NAME(VK_ERROR_INVALID_SHADER_NV)
         PHOTONGRID_NAME(VK_ERROR_UNKNOWN)
 #undef PHOTONGRID_NAME
-    default:
-        return "VkResult " + std::to_string(static_cast<int>(r));
+    default: return "VkResult " + std::to_string(static_cast<int>(r));
     }
 }
 
@@ -47,7 +45,8 @@ inline void check(VkResult r, const std::string& what)
         return;
     std::string text = "vulkan: " + what + ": " + result_name(r);
     if (r == VK_ERROR_DEVICE_LOST)
-        text += ". The device was lost: the driver reset it, most often because a pass ran too long. Ask for less work a pass (visits_per_pass), and make a new backend: every later call on this one fails";
+        text += ". The device was lost: the driver reset it, most often because a pass ran too long. Ask for less work "
+                "a pass (visits_per_pass), and make a new backend: every later call on this one fails";
     if (r == VK_ERROR_OUT_OF_DEVICE_MEMORY || r == VK_ERROR_OUT_OF_HOST_MEMORY)
         text += ". Use fewer photons, a smaller picture or a coarser grid, or close other programs on this device";
     throw backend_error(text);
@@ -60,9 +59,11 @@ inline std::string driver_search_paths()
     for (const char* name : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_ADD_DRIVER_FILES"})
         if (const char* value = std::getenv(name))
             text += std::string(name) + "=" + value + " ";
-    return text.empty() ? "the loader's default folders, such as /usr/share/vulkan/icd.d" : text + "(from the environment)";
+    return text.empty() ? "the loader's default folders, such as /usr/share/vulkan/icd.d"
+                        : text + "(from the environment)";
 }
 
-inline constexpr const char* install_hint = "Install a driver (Debian: apt install mesa-vulkan-drivers), or use another backend";
+inline constexpr const char* install_hint
+    = "Install a driver (Debian: apt install mesa-vulkan-drivers), or use another backend";
 
 } // namespace photongrid::vulkan_detail

@@ -18,8 +18,8 @@
 
 namespace photongrid::vulkan_detail {
 
-/// Keeps bytes under a text, a file each. A cache: what is damaged, another's or cannot be read counts as not there, what
-/// cannot be written is not kept, and nothing is an error. Several programs may use a folder at once.
+/// Keeps bytes under a text, a file each. A cache: what is damaged, another's or cannot be read counts as not there,
+/// what cannot be written is not kept, and nothing is an error. Several programs may use a folder at once.
 class file_cache {
 public:
     using bytes = std::vector<char>;
@@ -39,7 +39,8 @@ public:
         std::uint64_t sizes_and_sum[3];
         std::memcpy(sizes_and_sum, all.data() + sizeof magic, sizeof sizes_and_sum);
         const std::string_view contents(all.data() + head, all.size() - head);
-        if (sizes_and_sum[0] != key.size() || sizes_and_sum[1] != contents.size() - key.size() || contents.substr(0, key.size()) != key || sizes_and_sum[2] != hash(contents))
+        if (sizes_and_sum[0] != key.size() || sizes_and_sum[1] != contents.size() - key.size()
+            || contents.substr(0, key.size()) != key || sizes_and_sum[2] != hash(contents))
             return std::nullopt;
         return bytes(contents.begin() + static_cast<std::ptrdiff_t>(key.size()), contents.end());
     }
@@ -54,7 +55,9 @@ public:
         const std::string contents = std::string(key) + std::string(value);
         const std::uint64_t sizes_and_sum[3] = {key.size(), value.size(), hash(contents)};
         // Written beside and renamed, so that nobody reads half a file.
-        const auto whole = path_of(key), beside = std::filesystem::path(whole.string() + "." + std::to_string(std::random_device()()) + ".new");
+        const auto whole = path_of(key),
+                   beside
+            = std::filesystem::path(whole.string() + "." + std::to_string(std::random_device()()) + ".new");
         {
             std::ofstream file(beside, std::ios::binary);
             file.write(magic, sizeof magic);

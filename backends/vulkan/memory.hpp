@@ -1,5 +1,5 @@
-// The device as the backend's parts share it, and its memory. Buffers own a part of it together, so a buffer may outlive
-// the backend that made it.
+// The device as the backend's parts share it, and its memory. Buffers own a part of it together, so a buffer may
+// outlive the backend that made it.
 #pragma once
 
 #include <photongrid/backends/vulkan/device.hpp>
@@ -30,7 +30,8 @@ public:
     explicit context(const vulkan_handles& h) : instance_(h.instance), physical_(h.physical_device), device_(h)
     {
         if (!h.instance || !h.physical_device || !h.device || !h.queue)
-            throw std::invalid_argument("vulkan_backend: handles: an instance, a physical device, a device and a queue are needed; one is null");
+            throw std::invalid_argument("vulkan_backend: handles: an instance, a physical device, a device and a queue "
+                                        "are needed; one is null");
         look(false);
     }
     context(const context&) = delete;
@@ -105,15 +106,19 @@ private:
         p2.pNext = &m3;
         vkGetPhysicalDeviceProperties2(physical_, &p2);
         properties_ = p2.properties;
-        max_buffer_bytes_ = std::min<std::uint64_t>(properties_.limits.maxStorageBufferRange, m3.maxMemoryAllocationSize);
+        max_buffer_bytes_
+            = std::min<std::uint64_t>(properties_.limits.maxStorageBufferRange, m3.maxMemoryAllocationSize);
         vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
         // Where host and device share their memory, copies are a waste; across a bus, reading by the host is slow.
-        unified_ = !staging && properties_.deviceType != VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU && find_type(~0u, shared_memory) != none;
+        unified_ = !staging && properties_.deviceType != VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU
+            && find_type(~0u, shared_memory) != none;
     }
 
     static constexpr std::uint32_t none = ~0u;
-    static constexpr VkMemoryPropertyFlags host_memory = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    static constexpr VkMemoryPropertyFlags shared_memory = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | host_memory | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+    static constexpr VkMemoryPropertyFlags host_memory
+        = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    static constexpr VkMemoryPropertyFlags shared_memory
+        = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | host_memory | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
 
     std::uint32_t find_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const
     {
@@ -138,13 +143,15 @@ private:
 
     block allocate(VkDeviceSize bytes, memory_kind kind)
     {
-        const std::string what = "a buffer of " + std::to_string(bytes) + " bytes (" + std::to_string(bytes_) + " are in use)";
+        const std::string what
+            = "a buffer of " + std::to_string(bytes) + " bytes (" + std::to_string(bytes_) + " are in use)";
         block b;
         b.bytes = bytes;
         VkBufferCreateInfo info{};
         info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
         info.size = bytes;
-        info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT
+        info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT
+            | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT
             | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
         check(vkCreateBuffer(device(), &info, nullptr, &b.buffer), "vkCreateBuffer: " + what);
         VkMemoryRequirements needs;
@@ -160,7 +167,9 @@ private:
         }
         if (r == VK_SUCCESS)
             r = vkBindBufferMemory(device(), b.buffer, b.memory, 0);
-        const bool seen = kind == memory_kind::host || (unified_ && (memory_.memoryTypes[memory.memoryTypeIndex].propertyFlags & shared_memory) == shared_memory);
+        const bool seen = kind == memory_kind::host
+            || (unified_
+                && (memory_.memoryTypes[memory.memoryTypeIndex].propertyFlags & shared_memory) == shared_memory);
         if (r == VK_SUCCESS && seen)
             r = vkMapMemory(device(), b.memory, 0, VK_WHOLE_SIZE, 0, &b.mapped);
         if (r != VK_SUCCESS)
@@ -207,7 +216,8 @@ public:
     }
     /// Over a buffer that stays the caller's: its first `bytes` bytes.
     allocation(std::shared_ptr<context> c, VkBuffer callers, VkDeviceSize bytes, VkFormat format)
-        : context_(std::move(c)), kind_(memory_kind::device), format_(format), bytes_(bytes), named_(false), ours_(false), block_{.buffer = callers, .bytes = bytes}
+        : context_(std::move(c)), kind_(memory_kind::device), format_(format), bytes_(bytes), named_(false),
+          ours_(false), block_{.buffer = callers, .bytes = bytes}
     {
     }
     allocation(const allocation&) = delete;

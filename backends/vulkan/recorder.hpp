@@ -20,13 +20,17 @@ struct binding {
 class pipeline {
 public:
     /// `cache` may be null.
-    pipeline(const context& c, VkPipelineCache cache, std::span<const std::uint32_t> spirv, std::vector<binding> bindings, const std::string& name)
+    pipeline(const context& c, VkPipelineCache cache, std::span<const std::uint32_t> spirv,
+        std::vector<binding> bindings, const std::string& name)
         : device_(c.device()), bindings_(std::move(bindings))
     {
         const auto limit = c.properties().limits.maxPerStageDescriptorStorageBuffers;
-        const auto needed = static_cast<std::size_t>(std::count_if(bindings_.begin(), bindings_.end(), [](const auto& b) { return b.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER; }));
+        const auto needed = static_cast<std::size_t>(std::count_if(bindings_.begin(), bindings_.end(),
+            [](const auto& b) { return b.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER; }));
         if (needed > limit)
-            throw backend_error("vulkan: kernel '" + name + "' needs " + std::to_string(needed) + " storage buffers in one pass; this device (" + c.properties().deviceName + ") binds " + std::to_string(limit) + " at most");
+            throw backend_error("vulkan: kernel '" + name + "' needs " + std::to_string(needed)
+                + " storage buffers in one pass; this device (" + c.properties().deviceName + ") binds "
+                + std::to_string(limit) + " at most");
         try {
             create(cache, spirv, name);
         } catch (...) {
@@ -62,7 +66,8 @@ private:
         set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
         set.bindingCount = static_cast<std::uint32_t>(slots.size());
         set.pBindings = slots.data();
-        check(vkCreateDescriptorSetLayout(device_, &set, nullptr, &set_layout_), "vkCreateDescriptorSetLayout for kernel '" + name + "'");
+        check(vkCreateDescriptorSetLayout(device_, &set, nullptr, &set_layout_),
+            "vkCreateDescriptorSetLayout for kernel '" + name + "'");
 
         VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes};
         VkPipelineLayoutCreateInfo layout{};
@@ -71,14 +76,16 @@ private:
         layout.pSetLayouts = &set_layout_;
         layout.pushConstantRangeCount = 1;
         layout.pPushConstantRanges = &push;
-        check(vkCreatePipelineLayout(device_, &layout, nullptr, &layout_), "vkCreatePipelineLayout for kernel '" + name + "'");
+        check(vkCreatePipelineLayout(device_, &layout, nullptr, &layout_),
+            "vkCreatePipelineLayout for kernel '" + name + "'");
 
         VkShaderModuleCreateInfo module_info{};
         module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
         module_info.codeSize = spirv.size_bytes();
         module_info.pCode = spirv.data();
         VkShaderModule module_ = VK_NULL_HANDLE;
-        check(vkCreateShaderModule(device_, &module_info, nullptr, &module_), "vkCreateShaderModule for kernel '" + name + "'");
+        check(vkCreateShaderModule(device_, &module_info, nullptr, &module_),
+            "vkCreateShaderModule for kernel '" + name + "'");
         VkComputePipelineCreateInfo info{};
         info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
         info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
@@ -110,7 +117,8 @@ public:
     explicit recorder(std::shared_ptr<context> c, bool timed) : context_(std::move(c)), timed_(timed)
     {
         if (timed && timestamp_bits(context_->physical(), context_->family()) == 0)
-            throw backend_error(std::string("vulkan: time_passes: ") + context_->properties().deviceName + " has no timestamps on its compute queue");
+            throw backend_error(std::string("vulkan: time_passes: ") + context_->properties().deviceName
+                + " has no timestamps on its compute queue");
         VkCommandPoolCreateInfo info{};
         info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
         info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
@@ -133,15 +141,19 @@ public:
         vkDestroyCommandPool(context_->device(), commands_, nullptr);
     }
 
-    /// A pass over a number of workgroups known now. `push` is the launch header and the parameters. What it takes is added to
-    /// `ms` when it is done, if passes are timed.
-    void dispatch(const pipeline& p, std::span<const memory> buffers, std::span<const std::byte> push, std::uint64_t groups, double& ms)
+    /// A pass over a number of workgroups known now. `push` is the launch header and the parameters. What it takes is
+    /// added to `ms` when it is done, if passes are timed.
+    void dispatch(const pipeline& p, std::span<const memory> buffers, std::span<const std::byte> push,
+        std::uint64_t groups, double& ms)
     {
         const auto most = context_->properties().limits.maxComputeWorkGroupCount[0];
         const auto rows = (groups + most - 1) / most;
         const auto columns = rows == 0 ? 0 : (groups + rows - 1) / rows;
         if (rows > context_->properties().limits.maxComputeWorkGroupCount[1])
-            throw backend_error("vulkan: a pass needs " + std::to_string(groups) + " workgroups; this device dispatches " + std::to_string(std::uint64_t{most} * context_->properties().limits.maxComputeWorkGroupCount[1]) + " at most");
+            throw backend_error("vulkan: a pass needs " + std::to_string(groups)
+                + " workgroups; this device dispatches "
+                + std::to_string(std::uint64_t{most} * context_->properties().limits.maxComputeWorkGroupCount[1])
+                + " at most");
         const auto c = bind(p, buffers, push);
         const timing t(*this, ms);
         vkCmdDispatch(c, static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows), 1);
@@ -150,7 +162,8 @@ public:
     }
 
     /// A pass over as many workgroups as the device wrote at `offset` (bytes) of `groups`.
-    void dispatch_indirect(const pipeline& p, std::span<const memory> buffers, std::span<const std::byte> push, const memory& groups, VkDeviceSize offset, double& ms)
+    void dispatch_indirect(const pipeline& p, std::span<const memory> buffers, std::span<const std::byte> push,
+        const memory& groups, VkDeviceSize offset, double& ms)
     {
         const auto c = bind(p, buffers, push);
         const timing t(*this, ms);
@@ -166,7 +179,8 @@ public:
         counted();
     }
 
-    void copy(const memory& from, VkDeviceSize from_offset, const memory& to, VkDeviceSize to_offset, VkDeviceSize bytes)
+    void copy(
+        const memory& from, VkDeviceSize from_offset, const memory& to, VkDeviceSize to_offset, VkDeviceSize bytes)
     {
         const auto c = begin(from, to);
         const VkBufferCopy region{from_offset, to_offset, bytes};
@@ -202,8 +216,8 @@ public:
         std::memcpy(data, seen->mapped(), bytes);
     }
 
-    /// Hands what is recorded to the device, and from now on lets the caller's commands on the queue take turns with ours:
-    /// those submitted later see what ours wrote, and ours see what theirs wrote.
+    /// Hands what is recorded to the device, and from now on lets the caller's commands on the queue take turns with
+    /// ours: those submitted later see what ours wrote, and ours see what theirs wrote.
     void take_turns()
     {
         taking_turns_ = true;
@@ -238,7 +252,9 @@ public:
             flying_.pop_back();
             check(r, "submitting passes");
         }
-        while (!flying_.empty() && (flying_.size() > most_flying || vkGetFenceStatus(context_->device(), flying_.front().fence) == VK_SUCCESS))
+        while (!flying_.empty()
+            && (flying_.size() > most_flying
+                || vkGetFenceStatus(context_->device(), flying_.front().fence) == VK_SUCCESS))
             retire();
     }
 
@@ -283,7 +299,11 @@ private:
         }
 
     private:
-        void stamp(std::uint32_t which) const { vkCmdWriteTimestamp(r_.now_.commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, r_.now_.clock, 2 * (static_cast<std::uint32_t>(r_.now_.timed.size()) - 1) + which); }
+        void stamp(std::uint32_t which) const
+        {
+            vkCmdWriteTimestamp(r_.now_.commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, r_.now_.clock,
+                2 * (static_cast<std::uint32_t>(r_.now_.timed.size()) - 1) + which);
+        }
         recorder& r_;
     };
 
@@ -295,8 +315,10 @@ private:
             recording_ = true;
         }
         (now_.kept.push_back(used), ...);
-        barrier(VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
-            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+        barrier(
+            VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_READ_BIT
+                | VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
         return now_.commands;
     }
 
@@ -328,7 +350,8 @@ private:
             }
             now_.kept.push_back(buffers[i]);
         }
-        vkUpdateDescriptorSets(context_->device(), static_cast<std::uint32_t>(buffers.size()), writes.data(), 0, nullptr);
+        vkUpdateDescriptorSets(
+            context_->device(), static_cast<std::uint32_t>(buffers.size()), writes.data(), 0, nullptr);
         vkCmdBindPipeline(c, VK_PIPELINE_BIND_POINT_COMPUTE, p.get());
         vkCmdBindDescriptorSets(c, VK_PIPELINE_BIND_POINT_COMPUTE, p.layout(), 0, 1, &set, 0, nullptr);
         std::array<std::byte, pipeline::push_bytes> bytes{};
@@ -343,7 +366,9 @@ private:
         b.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
         b.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
         b.dstAccessMask = reads;
-        vkCmdPipelineBarrier(now_.commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, stages, 0, 1, &b, 0, nullptr, 0, nullptr);
+        vkCmdPipelineBarrier(now_.commands,
+            VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+            stages, 0, 1, &b, 0, nullptr, 0, nullptr);
     }
 
     /// Between ours and whatever the caller does on the queue.
@@ -353,7 +378,8 @@ private:
         b.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
         b.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
         b.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-        vkCmdPipelineBarrier(now_.commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &b, 0, nullptr, 0, nullptr);
+        vkCmdPipelineBarrier(now_.commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0,
+            1, &b, 0, nullptr, 0, nullptr);
     }
 
     void counted()
@@ -400,7 +426,8 @@ private:
         VkFenceCreateInfo fence{};
         fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
         check(vkCreateFence(context_->device(), &fence, nullptr, &b.fence), "vkCreateFence");
-        constexpr VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, passes_a_batch * buffers_a_pass}, {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, passes_a_batch * inputs_a_pass}};
+        constexpr VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, passes_a_batch * buffers_a_pass},
+            {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, passes_a_batch * inputs_a_pass}};
         VkDescriptorPoolCreateInfo pool{};
         pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
         pool.maxSets = passes_a_batch;
@@ -440,13 +467,16 @@ private:
             r = vkResetDescriptorPool(device, b.sets, 0);
         std::vector<std::uint64_t> ticks(2 * b.timed.size());
         if (r == VK_SUCCESS && !ticks.empty())
-            r = vkGetQueryPoolResults(device, b.clock, 0, static_cast<std::uint32_t>(ticks.size()), ticks.size() * sizeof(std::uint64_t), ticks.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
+            r = vkGetQueryPoolResults(device, b.clock, 0, static_cast<std::uint32_t>(ticks.size()),
+                ticks.size() * sizeof(std::uint64_t), ticks.data(), sizeof(std::uint64_t),
+                VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
         if (r != VK_SUCCESS) {
             destroy(b);
             check(r, "waiting for passes");
         }
         for (std::size_t t = 0; t < b.timed.size(); ++t)
-            *b.timed[t] += static_cast<double>(ticks[2 * t + 1] - ticks[2 * t]) * static_cast<double>(context_->properties().limits.timestampPeriod) * 1e-6;
+            *b.timed[t] += static_cast<double>(ticks[2 * t + 1] - ticks[2 * t])
+                * static_cast<double>(context_->properties().limits.timestampPeriod) * 1e-6;
         b.timed.clear();
         b.kept.clear();
         b.passes = 0;

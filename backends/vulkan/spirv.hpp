@@ -59,7 +59,8 @@ inline spirv_words forbid_contraction(const spirv_words& in)
     spirv_words extra;
     for_each_instruction(in, [&](std::uint32_t op, std::size_t at, std::size_t) {
         // OpFNegate, OpFAdd, OpFSub, OpFMul, OpFDiv, OpFRem, OpFMod, and OpVectorTimesScalar to OpDot.
-        const bool arithmetic = op == 127 || op == 129 || op == 131 || op == 133 || op == 136 || op == 140 || op == 141 || (op >= 142 && op <= 148);
+        const bool arithmetic = op == 127 || op == 129 || op == 131 || op == 133 || op == 136 || op == 140 || op == 141
+            || (op >= 142 && op <= 148);
         if (arithmetic && decorated.insert(in[at + 2]).second)
             extra.insert(extra.end(), {(3u << 16u) | decorate, in[at + 2], no_contraction});
     });
@@ -93,13 +94,17 @@ inline spirv_words compile_spirv(const spliced_source& source, const std::string
     input.default_profile = GLSLANG_NO_PROFILE;
     input.messages = static_cast<glslang_messages_t>(GLSLANG_MSG_SPV_RULES_BIT | GLSLANG_MSG_VULKAN_RULES_BIT);
     input.resource = glslang_default_resource();
-    const std::unique_ptr<glslang_shader_t, void (*)(glslang_shader_t*)> shader(glslang_shader_create(&input), glslang_shader_delete);
+    const std::unique_ptr<glslang_shader_t, void (*)(glslang_shader_t*)> shader(
+        glslang_shader_create(&input), glslang_shader_delete);
     if (!shader || !glslang_shader_preprocess(shader.get(), &input) || !glslang_shader_parse(shader.get(), &input))
-        throw backend_error("vulkan: kernel '" + name + "' does not compile:\n" + translate_log(shader ? glslang_shader_get_info_log(shader.get()) : "no memory", source));
-    const std::unique_ptr<glslang_program_t, void (*)(glslang_program_t*)> program(glslang_program_create(), glslang_program_delete);
+        throw backend_error("vulkan: kernel '" + name + "' does not compile:\n"
+            + translate_log(shader ? glslang_shader_get_info_log(shader.get()) : "no memory", source));
+    const std::unique_ptr<glslang_program_t, void (*)(glslang_program_t*)> program(
+        glslang_program_create(), glslang_program_delete);
     glslang_program_add_shader(program.get(), shader.get());
     if (!glslang_program_link(program.get(), input.messages))
-        throw backend_error("vulkan: kernel '" + name + "' does not link:\n" + translate_log(glslang_program_get_info_log(program.get()), source));
+        throw backend_error("vulkan: kernel '" + name + "' does not link:\n"
+            + translate_log(glslang_program_get_info_log(program.get()), source));
     glslang_spv_options_t options{};
     options.disable_optimizer = true;
     glslang_program_SPIRV_generate_with_options(program.get(), GLSLANG_STAGE_COMPUTE, &options);

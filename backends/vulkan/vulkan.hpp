@@ -15,9 +15,10 @@ namespace photongrid {
 /// Runs kernels as compute shaders, on the best Vulkan 1.1 device, on a chosen one, or on one that the caller has open.
 ///
 /// Work is deferred: passes are recorded and submitted by the dozen; download, count, route, run_until_done and finish
-/// wait. One thread at a time may use a backend and its buffers. A buffer may outlive the backend. The memory of a buffer
-/// that is gone is free again when the last pass that uses it is done: bytes() counts what still has a name, peak_bytes()
-/// the most that was held. Up to 64 MiB of free memory are kept for the next buffers and counted in neither.
+/// wait. One thread at a time may use a backend and its buffers. A buffer may outlive the backend. The memory of a
+/// buffer that is gone is free again when the last pass that uses it is done: bytes() counts what still has a name,
+/// peak_bytes() the most that was held. Up to 64 MiB of free memory are kept for the next buffers and counted in
+/// neither.
 ///
 /// costs()[kernel].instructions is the number of SPIR-V instructions in the functions of the kernel's largest
 /// specialisation so far, after optimisation.
@@ -35,7 +36,8 @@ public:
         /// \name A buffer's members, the same on every backend
         /// @{
 
-        /// A buffer holds size() elements T. It is moved, never copied; one that was moved from, or made by default, is empty.
+        /// A buffer holds size() elements T. It is moved, never copied; one that was moved from, or made by default, is
+        /// empty.
         using value_type = T;
         buffer() = default;
         buffer(buffer&& other) noexcept : memory_(std::move(other.memory_)), n_(std::exchange(other.n_, 0)) {}
@@ -74,20 +76,27 @@ private:
     void check_owner(const char* what, const buffer<T>& b) const
     {
         if (!owns()(b))
-            throw std::invalid_argument(std::string("vulkan_backend: ") + what + ": the buffer belongs to another backend; download it there and upload it here");
+            throw std::invalid_argument(std::string("vulkan_backend: ") + what
+                + ": the buffer belongs to another backend; download it there and upload it here");
     }
 
 public:
     /// Opens a device.
     /// \throws backend_error when there is no driver, no such device, or no validation layer where one is asked for.
-    explicit vulkan_backend(const vulkan_options& options = {}) : vulkan_backend(std::make_shared<vulkan_detail::context>(options), options) {}
+    explicit vulkan_backend(const vulkan_options& options = {})
+        : vulkan_backend(std::make_shared<vulkan_detail::context>(options), options)
+    {
+    }
 
-    /// Works on a device that the caller owns and that outlives this backend and its buffers. It changes nothing that is the
-    /// caller's: it has a command pool, descriptors and pipelines of its own, and submits to the queue. Of the options, those
-    /// about kernels and timing count; device, validation and staging are the caller's affair.
+    /// Works on a device that the caller owns and that outlives this backend and its buffers. It changes nothing that
+    /// is the caller's: it has a command pool, descriptors and pipelines of its own, and submits to the queue. Of the
+    /// options, those about kernels and timing count; device, validation and staging are the caller's affair.
     /// \throws backend_error for a device that lacks what the backend needs, std::invalid_argument for a null handle.
     /// \snippet snippets_vulkan.cpp callers_device
-    explicit vulkan_backend(const vulkan_handles& handles, const vulkan_options& options = {}) : vulkan_backend(std::make_shared<vulkan_detail::context>(handles), options) {}
+    explicit vulkan_backend(const vulkan_handles& handles, const vulkan_options& options = {})
+        : vulkan_backend(std::make_shared<vulkan_detail::context>(handles), options)
+    {
+    }
 
     /// More kernel files than the library's own, as photongrid_embed() made them; they must outlive the backend.
     void add_texts(std::span<const text_file> texts) { texts_.insert(texts_.end(), texts.begin(), texts.end()); }
@@ -101,8 +110,9 @@ public:
     {
         const auto limit = context_->max_buffer_bytes() / sizeof(T);
         if (n > limit)
-            throw backend_error("vulkan: a buffer of " + std::to_string(n) + " elements of " + std::to_string(sizeof(T)) + " bytes was asked for; " + caps_.device + " binds "
-                + std::to_string(context_->max_buffer_bytes()) + " bytes (maxStorageBufferRange), " + std::to_string(limit) + " elements");
+            throw backend_error("vulkan: a buffer of " + std::to_string(n) + " elements of " + std::to_string(sizeof(T))
+                + " bytes was asked for; " + caps_.device + " binds " + std::to_string(context_->max_buffer_bytes())
+                + " bytes (maxStorageBufferRange), " + std::to_string(limit) + " elements");
         return buffer<T>(allocate(n * sizeof(T), format_of<T>), n);
     }
     template <element T, std::size_t E>
@@ -123,10 +133,11 @@ public:
 
     /// @}
 
-    /// The Vulkan buffer behind `b`: element i begins at byte i * sizeof(T). It stays this backend's and lives as long as `b`.
-    /// Null for a buffer that was never made. What was asked of this backend so far is submitted. Commands that the caller
-    /// submits to the queue afterwards see its results without a barrier, and what they write is seen by passes asked for after
-    /// they were submitted. Ask again before each of your own submissions that touches a buffer of this backend.
+    /// The Vulkan buffer behind `b`: element i begins at byte i * sizeof(T). It stays this backend's and lives as long
+    /// as `b`. Null for a buffer that was never made. What was asked of this backend so far is submitted. Commands that
+    /// the caller submits to the queue afterwards see its results without a barrier, and what they write is seen by
+    /// passes asked for after they were submitted. Ask again before each of your own submissions that touches a buffer
+    /// of this backend.
     /// \throws std::invalid_argument for a buffer of another backend.
     /// \snippet snippets_vulkan.cpp handle
     template <element T>
@@ -138,11 +149,13 @@ public:
     }
 
     /// What a Vulkan buffer must be usable for, to be adopted.
-    static constexpr VkBufferUsageFlags adopted_usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    static constexpr VkBufferUsageFlags adopted_usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT
+        | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT
+        | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 
-    /// A buffer over the first n elements of one that the caller has on the same device, and goes on owning: it must live, and
-    /// keep its memory, until the buffer is gone and finish() has returned. Not counted in bytes(). As with handle(), commands
-    /// on the queue take turns.
+    /// A buffer over the first n elements of one that the caller has on the same device, and goes on owning: it must
+    /// live, and keep its memory, until the buffer is gone and finish() has returned. Not counted in bytes(). As with
+    /// handle(), commands on the queue take turns.
     /// \throws std::invalid_argument for a null handle, 0 elements or more than the device binds.
     /// \snippet snippets_vulkan.cpp adopt
     template <element T>
@@ -150,10 +163,12 @@ public:
     {
         const auto limit = context_->max_buffer_bytes() / sizeof(T);
         if (callers == VK_NULL_HANDLE || n < 1 || n > limit)
-            throw std::invalid_argument("vulkan_backend: adopt: callers, n: " + std::to_string(n) + " elements of " + (callers == VK_NULL_HANDLE ? "no buffer" : "a buffer") + " were given; this device binds 1 to "
+            throw std::invalid_argument("vulkan_backend: adopt: callers, n: " + std::to_string(n) + " elements of "
+                + (callers == VK_NULL_HANDLE ? "no buffer" : "a buffer") + " were given; this device binds 1 to "
                 + std::to_string(limit) + " of " + std::to_string(sizeof(T)) + " bytes");
         recorder_.take_turns();
-        return buffer<T>(std::make_shared<vulkan_detail::allocation>(context_, callers, n * sizeof(T), format_of<T>), n);
+        return buffer<T>(
+            std::make_shared<vulkan_detail::allocation>(context_, callers, n * sizeof(T), format_of<T>), n);
     }
 
     /// A buffer that is the caller's to destroy, and the memory that it alone is bound to.
@@ -208,7 +223,8 @@ public:
         auto buffers = bound(reads, std::tuple<>{});
         buffers.push_back(held);
         recorder_.fill(held, 0, sizeof(uint), 0);
-        recorder_.dispatch(kernel_pipeline<K>(verb::count, l.switches, buffers), buffers, push(l, groups(l.elements), l.first, args), groups(l.elements), cost<K>().ms);
+        recorder_.dispatch(kernel_pipeline<K>(verb::count, l.switches, buffers), buffers,
+            push(l, groups(l.elements), l.first, args), groups(l.elements), cost<K>().ms);
         uint n = 0;
         recorder_.read(held, &n, sizeof n);
         return n;
@@ -217,7 +233,8 @@ public:
     /// Deterministic: draws are sorted by destination, stably, so that each one's rank is its place in draw order, and
     /// amounts are added in that order. Scratch: 40 bytes a draw and 8 a destination.
     template <route_kernel K, class Reads>
-    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots, buffer<glm::vec4>& totals)
+    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots,
+        buffer<glm::vec4>& totals)
     {
         detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
         detail::check_reads<K>("route", reads, owns());
@@ -239,14 +256,16 @@ public:
         const auto most = allocate(sizeof(uint));
         recorder_.fill(most, 0, sizeof(uint), 0);
         own_pass("route_ranges", destinations, {l.elements}, {keys.memory_, ranges.memory_, most});
-        own_pass("route_slots", slots.size(), {destinations, route_capacity(m)}, {keys.memory_, ranges.memory_, payload.memory_, slots.memory_});
+        own_pass("route_slots", slots.size(), {destinations, route_capacity(m)},
+            {keys.memory_, ranges.memory_, payload.memory_, slots.memory_});
         uint longest = 0;
         recorder_.read(most, &longest, sizeof longest);
         constexpr uint at_once = 4096;
         const uint parts = route_parts(totals.size(), destinations), block = route_block(l.elements, parts);
         std::uint64_t begin = 0;
         do { // once at least: it also sets the totals of what nothing is destined for to 0
-            own_pass("route_totals", totals.size(), {destinations, parts, block, static_cast<uint>(begin), at_once}, {keys.memory_, ranges.memory_, amount.memory_, totals.memory_});
+            own_pass("route_totals", totals.size(), {destinations, parts, block, static_cast<uint>(begin), at_once},
+                {keys.memory_, ranges.memory_, amount.memory_, totals.memory_});
             begin += at_once;
         } while (begin < std::min(longest, block));
     }
@@ -258,20 +277,23 @@ public:
     const std::map<std::string, kernel_cost>& costs() const { return costs_; }
     /// @}
 
-    // --- for overrides ------------------------------------------------------------------------------------------------
-    /// One pass of a shader of the backend's or an override's own: `elements` invocations, the buffers bound from 0 up. The
-    /// same shader with other defines is another. Counted under the shader's name.
+    // --- for overrides
+    // ------------------------------------------------------------------------------------------------
+    /// One pass of a shader of the backend's or an override's own: `elements` invocations, the buffers bound from 0 up.
+    /// The same shader with other defines is another. Counted under the shader's name.
     template <class... Buffers>
-    void own_pass(const std::string& name, const std::string& more_defines, std::uint64_t elements, std::initializer_list<uint> args, Buffers&... buffers)
+    void own_pass(const std::string& name, const std::string& more_defines, std::uint64_t elements,
+        std::initializer_list<uint> args, Buffers&... buffers)
     {
         own_pass(name, elements, args, {buffers.memory_...}, more_defines);
         ++costs_[name].passes;
     }
 
-    /// As run_until_done, but pass q of element i, from 0, computes element i + q * stride: a frame a pass, of those elements
-    /// whose last frame was not done(). Before the first pass none is done if the kernel has no states.
+    /// As run_until_done, but pass q of element i, from 0, computes element i + q * stride: a frame a pass, of those
+    /// elements whose last frame was not done(). Before the first pass none is done if the kernel has no states.
     template <iterative_kernel K, class Reads, class Writes>
-    progress run_frames(launch l, uint stride, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
+    progress run_frames(
+        launch l, uint stride, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
     {
         detail::check_call<K>("run_until_done", l, reads, writes, owns());
         progress p;
@@ -279,8 +301,8 @@ public:
         if (l.elements == 0)
             return p;
 
-        // Eight words a pass: the workgroups of its dispatch, the length of its list, and how many elements are not done. The
-        // host looks at them once in `together` passes.
+        // Eight words a pass: the workgroups of its dispatch, the length of its list, and how many elements are not
+        // done. The host looks at them once in `together` passes.
         struct pass_slot {
             glm::uvec4 dispatch;
             glm::uvec4 unfinished;
@@ -293,7 +315,8 @@ public:
         const auto first_extra = buffers.size();
         buffers.insert(buffers.end(), {lists[1], lists[0], control});
         recorder_.fill(control, 0, control->bytes(), 0);
-        recorder_.dispatch(kernel_pipeline<K>(verb::list, l.switches, buffers), buffers, push(l, groups(l.elements), l.first, args), groups(l.elements), cost<K>().ms);
+        recorder_.dispatch(kernel_pipeline<K>(verb::list, l.switches, buffers), buffers,
+            push(l, groups(l.elements), l.first, args), groups(l.elements), cost<K>().ms);
         prepare_indirect(control, 0);
         const auto& iterate = kernel_pipeline<K>(verb::iterate, l.switches, buffers);
         for (;;) {
@@ -301,7 +324,8 @@ public:
             for (uint q = 0; q < now; ++q) {
                 buffers[first_extra] = lists[0];
                 buffers[first_extra + 1] = lists[1];
-                recorder_.dispatch_indirect(iterate, buffers, push(l, q, (p.passes + q) * stride, args), control, q * slot_bytes, cost<K>().ms);
+                recorder_.dispatch_indirect(
+                    iterate, buffers, push(l, q, (p.passes + q) * stride, args), control, q * slot_bytes, cost<K>().ms);
                 prepare_indirect(control, q + 1);
                 std::swap(lists[0], lists[1]);
             }
@@ -354,13 +378,16 @@ private:
     enum class verb { run, list, iterate, count };
 
     vulkan_backend(std::shared_ptr<vulkan_detail::context> c, const vulkan_options& options)
-        : context_(std::move(c)), kernels_(context_, options.cache_folder, !options.gpu_assisted), texts_(std::begin(kernel_texts), std::end(kernel_texts)), recorder_(context_, options.time_passes), empty_(allocate(0))
+        : context_(std::move(c)), kernels_(context_, options.cache_folder, !options.gpu_assisted),
+          texts_(std::begin(kernel_texts), std::end(kernel_texts)), recorder_(context_, options.time_passes),
+          empty_(allocate(0))
     {
         const auto info = vulkan_detail::describe(context_->physical(), 0);
         if (!info.unusable.empty())
             throw backend_error("vulkan: " + info.name + " cannot be used: " + info.unusable);
         group_ = std::min(64u, context_->properties().limits.maxComputeWorkGroupInvocations);
-        if (const uint lanes = vulkan_detail::lanes_of_subgroups(context_->physical()); options.subgroups && lanes >= 4 && group_ % lanes == 0)
+        if (const uint lanes = vulkan_detail::lanes_of_subgroups(context_->physical());
+            options.subgroups && lanes >= 4 && group_ % lanes == 0)
             lanes_ = lanes;
         caps_.backend = "vulkan";
         caps_.device = info.name + ", " + info.driver;
@@ -392,7 +419,9 @@ private:
     std::vector<memory> bound(const Reads& reads, const Writes& writes) const
     {
         std::vector<memory> all;
-        const auto add = [&]<class... B>(const B&... b) { (all.push_back(b.memory_ ? b.memory_ : allocate(0, format_of<typename B::value_type>)), ...); };
+        const auto add = [&]<class... B>(const B&... b) {
+            (all.push_back(b.memory_ ? b.memory_ : allocate(0, format_of<typename B::value_type>)), ...);
+        };
         std::apply(add, reads);
         std::apply(add, writes);
         return all;
@@ -402,9 +431,11 @@ private:
 
     /// The launch header, 16 bytes, and the parameters behind it.
     template <class Params>
-    static std::array<std::byte, vulkan_detail::pipeline::push_bytes> push(const launch& l, std::uint64_t groups, uint where, const Params& args)
+    static std::array<std::byte, vulkan_detail::pipeline::push_bytes> push(
+        const launch& l, std::uint64_t groups, uint where, const Params& args)
     {
-        static_assert(sizeof(Params) <= vulkan_detail::pipeline::push_bytes - 16, "a kernel's Params are at most 112 bytes");
+        static_assert(
+            sizeof(Params) <= vulkan_detail::pipeline::push_bytes - 16, "a kernel's Params are at most 112 bytes");
         static_assert(std::is_trivially_copyable_v<Params>);
         std::array<std::byte, vulkan_detail::pipeline::push_bytes> bytes{};
         const uint header[4] = {l.elements, l.first, static_cast<uint>(groups), where};
@@ -416,11 +447,13 @@ private:
     template <class K>
     void gather(const launch& l, uint where, const typename K::Params& args, const std::vector<memory>& buffers)
     {
-        recorder_.dispatch(kernel_pipeline<K>(verb::run, l.switches, buffers), buffers, push(l, groups(l.elements), where, args), groups(l.elements), cost<K>().ms);
+        recorder_.dispatch(kernel_pipeline<K>(verb::run, l.switches, buffers), buffers,
+            push(l, groups(l.elements), where, args), groups(l.elements), cost<K>().ms);
     }
 
     /// One pass of a shader that is the backend's own.
-    void own_pass(const std::string& name, std::uint64_t elements, std::initializer_list<uint> args, std::initializer_list<memory> buffers, const std::string& more_defines = {})
+    void own_pass(const std::string& name, std::uint64_t elements, std::initializer_list<uint> args,
+        std::initializer_list<memory> buffers, const std::string& more_defines = {})
     {
         std::vector<memory> bound_buffers;
         for (const auto& b : buffers)
@@ -429,7 +462,8 @@ private:
         assert(args.size() <= params.size());
         std::copy(args.begin(), args.end(), params.begin());
         if (elements > 0)
-            recorder_.dispatch(own_pipeline(name, buffers.size(), more_defines), bound_buffers, push(launch(elements), groups(elements), 0, params), groups(elements), costs_[name].ms);
+            recorder_.dispatch(own_pipeline(name, buffers.size(), more_defines), bound_buffers,
+                push(launch(elements), groups(elements), 0, params), groups(elements), costs_[name].ms);
     }
 
     void prepare_indirect(const memory& control, uint pass)
@@ -437,13 +471,15 @@ private:
         own_pass("indirect", 1, {pass, context_->properties().limits.maxComputeWorkGroupCount[0]}, {control});
     }
 
-    /// Sorts (destination, draw) by destination, keeping the order of draws: least significant digit first, 4 bits a time.
+    /// Sorts (destination, draw) by destination, keeping the order of draws: least significant digit first, 4 bits a
+    /// time.
     void sort_by_destination(buffer<glm::uvec2>& keys, uint destinations)
     {
         const uint n = static_cast<uint>(keys.size());
         if (n < 2)
             return;
-        // Chunks are taken in order by one invocation each; more of them than 16,384 would make the counters' sums long.
+        // Chunks are taken in order by one invocation each; more of them than 16,384 would make the counters' sums
+        // long.
         const uint chunk = std::max(256u, (n - 1) / 16384u + 1);
         const uint chunks = (n - 1) / chunk + 1;
         auto sorted = make<glm::uvec2>(n);
@@ -451,7 +487,8 @@ private:
         for (uint shift = 0; shift < 32 && (destinations >> shift) != 0; shift += 4) {
             own_pass("radix_count", chunks, {n, shift, chunk, chunks}, {keys.memory_, counters.memory_});
             own_pass("radix_scan", 1, {16 * chunks}, {counters.memory_});
-            own_pass("radix_scatter", chunks, {n, shift, chunk, chunks}, {keys.memory_, counters.memory_, sorted.memory_});
+            own_pass(
+                "radix_scatter", chunks, {n, shift, chunk, chunks}, {keys.memory_, counters.memory_, sorted.memory_});
             std::swap(keys, sorted);
         }
     }
@@ -466,15 +503,19 @@ private:
     template <class K>
     static constexpr uint known_switches()
     {
-        return []<std::size_t... B>(std::index_sequence<B...>) {
-            return (0u | ... | (requires(K& k) { k.turn(slot<B>{}, true); } ? 1u << B : 0u));
-        }(std::make_index_sequence<32>{});
+        return []<std::size_t... B>(std::index_sequence<B...>)
+        {
+            return (0u | ... | (requires(K & k) { k.turn(slot<B>{}, true); } ? 1u << B : 0u));
+        }
+        (std::make_index_sequence<32>{});
     }
 
     std::string defines(std::size_t outputs, uint switches, bool listing, bool texels, uint lanes) const
     {
-        return "#define GROUP " + std::to_string(group_) + "\n#define LANES " + std::to_string(lanes) + "\n#define LANE_LOOPS " + (lanes > 8 || context_->staging() ? "1" : "0") + "\n#define OUTPUTS " + std::to_string(outputs) + "\n#define SWITCHES " + std::to_string(switches) + "u\n#define LISTING " + (listing ? "1" : "0")
-            + "\n#define TEXELS " + (texels ? "1" : "0") + "\n";
+        return "#define GROUP " + std::to_string(group_) + "\n#define LANES " + std::to_string(lanes)
+            + "\n#define LANE_LOOPS " + (lanes > 8 || context_->staging() ? "1" : "0") + "\n#define OUTPUTS "
+            + std::to_string(outputs) + "\n#define SWITCHES " + std::to_string(switches) + "u\n#define LISTING "
+            + (listing ? "1" : "0") + "\n#define TEXELS " + (texels ? "1" : "0") + "\n";
     }
 
     static const text_file& own_text(const std::string& name) { return find_kernel_text(name + ".glsl", vulkan_texts); }
@@ -490,7 +531,8 @@ private:
             if (v != verb::count && (switches >> K::group_switch & 1u) != 0)
                 lanes = lanes_;
         const auto texts = texts_of<K>(texts_);
-        const auto source = splice(own_text("compute_prelude"), defines(output_count<K>, switches & known_switches<K>(), v == verb::list, texels, lanes),
+        const auto source = splice(own_text("compute_prelude"),
+            defines(output_count<K>, switches & known_switches<K>(), v == verb::list, texels, lanes),
             find_kernel_text(K::path, texts), own_text(epilogues[static_cast<int>(v)]), texts);
         auto words = kernels_.compile(source, name);
         auto& c = costs_[name];
@@ -504,38 +546,47 @@ private:
     const vulkan_detail::pipeline& kernel_pipeline(verb v, uint switches, const std::vector<memory>& buffers)
     {
         switches &= known_switches<K>();
-        const bool texels = std::all_of(buffers.begin(), buffers.begin() + input_count<K>, [&](const memory& m) { return m->bytes() <= texel_limit_; });
+        const bool texels = std::all_of(buffers.begin(), buffers.begin() + input_count<K>,
+            [&](const memory& m) { return m->bytes() <= texel_limit_; });
         auto& p = pipelines_[{std::string(K::path), v, switches, texels}];
         if (p)
             return *p;
         std::vector<vulkan_detail::binding> bindings;
         for (std::uint32_t i = 0; i < input_count<K>; ++i)
-            bindings.push_back({i, texels ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
+            bindings.push_back(
+                {i, texels ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
         for (std::uint32_t o = 0; v != verb::count && o < output_count<K>; ++o)
             bindings.push_back({8 + o});
-        static_assert(input_count<K> <= 8 && output_count<K> <= 8, "a kernel has at most 8 inputs and 8 outputs and states");
+        static_assert(
+            input_count<K> <= 8 && output_count<K> <= 8, "a kernel has at most 8 inputs and 8 outputs and states");
         const std::uint32_t own = v == verb::count ? 1 : v == verb::run ? 0 : 3;
         for (std::uint32_t e = 0; e < own; ++e)
             bindings.push_back({16 + e});
         const auto words = compile<K>(v, switches, texels);
         const auto begin = std::chrono::steady_clock::now();
-        p = std::make_unique<vulkan_detail::pipeline>(*context_, kernels_.drivers(), words, std::move(bindings), std::string(kernel_name<K>()));
-        cost<K>().compile_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+        p = std::make_unique<vulkan_detail::pipeline>(
+            *context_, kernels_.drivers(), words, std::move(bindings), std::string(kernel_name<K>()));
+        cost<K>().compile_ms
+            += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
         return *p;
     }
 
-    const vulkan_detail::pipeline& own_pipeline(const std::string& name, std::size_t buffers, const std::string& more_defines)
+    const vulkan_detail::pipeline& own_pipeline(
+        const std::string& name, std::size_t buffers, const std::string& more_defines)
     {
         auto& p = own_pipelines_[name + more_defines];
         if (p)
             return *p;
-        const auto source = splice(own_text("compute_prelude"), defines(0, 0, false, false, 1) + more_defines, own_text(name), text_file{name + " (end)", ""}, {});
+        const auto source = splice(own_text("compute_prelude"), defines(0, 0, false, false, 1) + more_defines,
+            own_text(name), text_file{name + " (end)", ""}, {});
         std::vector<vulkan_detail::binding> bindings;
         for (std::uint32_t b = 0; b < buffers; ++b)
             bindings.push_back({b});
         const auto begin = std::chrono::steady_clock::now();
-        p = std::make_unique<vulkan_detail::pipeline>(*context_, kernels_.drivers(), kernels_.compile(source, name), std::move(bindings), name);
-        costs_[name].compile_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+        p = std::make_unique<vulkan_detail::pipeline>(
+            *context_, kernels_.drivers(), kernels_.compile(source, name), std::move(bindings), name);
+        costs_[name].compile_ms
+            += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
         return *p;
     }
 
@@ -545,7 +596,7 @@ private:
     std::vector<text_file> texts_;
     std::map<std::string, kernel_cost> costs_;
     uint group_ = 64;
-    uint lanes_ = 1; ///< elements that kernels IN_GROUPS compute together
+    uint lanes_ = 1;                ///< elements that kernels IN_GROUPS compute together
     std::uint64_t texel_limit_ = 0; ///< bytes of the largest buffer that is read as texels; 0: none is
     // Declared before the recorder, so that they outlive its last batch.
     std::map<std::tuple<std::string, verb, uint, bool>, std::unique_ptr<vulkan_detail::pipeline>> pipelines_;

@@ -28,10 +28,13 @@ void trace_on(B& device)
         if (i % 8 == 0)
             points.emplace_back((place + 0.5f) / 16.0f, 1.0f);
     }
-    photons<examples::tracing_backend<B&>> all{traced.upload(std::span<const glm::vec4>(positions)), traced.upload(std::span<const glm::vec4>(powers)), {}};
+    photons<examples::tracing_backend<B&>> all{
+        traced.upload(std::span<const glm::vec4>(positions)), traced.upload(std::span<const glm::vec4>(powers)), {}};
     const auto map = sorted_map(traced, std::move(all), make_grid(glm::vec3(0), glm::vec3(1), {8, 8, 8}));
-    const auto estimates = knn_grid_estimate(traced, map, traced.upload(std::span<const glm::vec4>(points)), {.k = 8, .max_radius = 1});
-    std::cout << device.caps().backend << ", " << device.caps().device << ": " << traced.download(estimates.irradiance).size() << " estimates\n";
+    const auto estimates
+        = knn_grid_estimate(traced, map, traced.upload(std::span<const glm::vec4>(points)), {.k = 8, .max_radius = 1});
+    std::cout << device.caps().backend << ", " << device.caps().device << ": "
+              << traced.download(estimates.irradiance).size() << " estimates\n";
     traced.print(std::cout);
 }
 

@@ -19,20 +19,18 @@ struct trace_entry {
     double ms = 0;           ///< until the call returned; until it was done, where the tracer waits
 };
 
-/// Has a backend of its own, made from the constructor's arguments; tracing_backend<B&> works on one of yours. Overrides are
-/// for a backend's own type: a wrapped one runs the algorithms by kernels.
+/// Has a backend of its own, made from the constructor's arguments; tracing_backend<B&> works on one of yours.
+/// Overrides are for a backend's own type: a wrapped one runs the algorithms by kernels.
 template <class Inner>
-    requires backend<std::remove_reference_t<Inner>>
+requires backend<std::remove_reference_t<Inner>>
 class tracing_backend {
 public:
     template <class T>
     using buffer = typename std::remove_reference_t<Inner>::template buffer<T>;
 
     template <class... Arguments>
-        requires std::constructible_from<Inner, Arguments...>
-    explicit tracing_backend(Arguments&&... arguments)
-        : inner_(std::forward<Arguments>(arguments)...)
-    {}
+    requires std::constructible_from<Inner, Arguments...>
+    explicit tracing_backend(Arguments&&... arguments) : inner_(std::forward<Arguments>(arguments)...) {}
 
     /// Whether each verb waits until the device is done, so that its time is its own. Slower: nothing overlaps.
     void wait_for_each_verb(bool waits) { waits_ = waits; }
@@ -70,7 +68,8 @@ public:
     {
         const auto start = clock::now();
         inner_.template run<K>(l, args, reads, writes);
-        note("run", kernel_name<K>(), start, {.elements = l.elements, .passes = 1, .bytes = l.elements * element_bytes(writes)});
+        note("run", kernel_name<K>(), start,
+            {.elements = l.elements, .passes = 1, .bytes = l.elements * element_bytes(writes)});
     }
     template <iterative_kernel K, class Reads, class Writes>
     progress run_until_done(launch l, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
@@ -78,7 +77,8 @@ public:
         const auto start = clock::now();
         auto p = inner_.template run_until_done<K>(l, args, reads, writes, max_passes);
         const auto computed = std::accumulate(p.active.begin(), p.active.end(), std::uint64_t{0});
-        note("run_until_done", kernel_name<K>(), start, {.elements = computed, .passes = p.passes, .bytes = computed * element_bytes(writes)});
+        note("run_until_done", kernel_name<K>(), start,
+            {.elements = computed, .passes = p.passes, .bytes = computed * element_bytes(writes)});
         return p;
     }
     template <predicate_kernel K, class Reads>
@@ -90,11 +90,15 @@ public:
         return n;
     }
     template <route_kernel K, class Reads>
-    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots, buffer<glm::vec4>& totals)
+    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots,
+        buffer<glm::vec4>& totals)
     {
         const auto start = clock::now();
         inner_.template route<K>(l, args, reads, destinations, m, slots, totals);
-        note("route", kernel_name<K>(), start, {.elements = l.elements, .passes = 1, .bytes = slots.size() * sizeof(uint) + totals.size() * sizeof(glm::vec4)});
+        note("route", kernel_name<K>(), start,
+            {.elements = l.elements,
+                .passes = 1,
+                .bytes = slots.size() * sizeof(uint) + totals.size() * sizeof(glm::vec4)});
     }
 
     void finish()
@@ -135,15 +139,17 @@ private:
 };
 
 template <class Inner>
-    requires backend<std::remove_reference_t<Inner>>
+requires backend<std::remove_reference_t<Inner>>
 void tracing_backend<Inner>::print(std::ostream& out) const
 {
     const auto flags = out.flags();
     const auto row = [&](const auto&... columns) { ((out << columns), ...) << '\n'; };
     const auto right = [](int width) { return std::setw(width); };
-    row(std::left, right(16), "verb", right(24), "kernel", std::right, right(8), "calls", right(8), "passes", right(14), "elements", right(16), "bytes", right(12), "ms");
+    row(std::left, right(16), "verb", right(24), "kernel", std::right, right(8), "calls", right(8), "passes", right(14),
+        "elements", right(16), "bytes", right(12), "ms");
     for (const auto& [key, e] : entries_)
-        row(std::left, right(16), key.first, right(24), key.second, std::right, right(8), e.calls, right(8), e.passes, right(14), e.elements, right(16), e.bytes, std::fixed, std::setprecision(2), right(12), e.ms);
+        row(std::left, right(16), key.first, right(24), key.second, std::right, right(8), e.calls, right(8), e.passes,
+            right(14), e.elements, right(16), e.bytes, std::fixed, std::setprecision(2), right(12), e.ms);
     out.flags(flags);
 }
 

@@ -1,7 +1,8 @@
 // All that the host needs for caustics: photons of its own, and photongrid to make light of them.
 #include "caustics.hpp"
 
-#if __has_include(<photongrid/backends/cpu/cpu.hpp>) // CMakeLists.txt links photongrid::cpu, or without it photongrid::serial
+#if __has_include(                                                                                                     \
+    <photongrid/backends/cpu/cpu.hpp>) // CMakeLists.txt links photongrid::cpu, or without it photongrid::serial
 #include <photongrid/backends/cpu/overrides/all.hpp>
 using device_type = photongrid::cpu_backend;
 #else
@@ -13,7 +14,9 @@ using device_type = photongrid::serial_backend;
 #include <photongrid/own_photons.hpp>
 
 namespace host {
-struct photon { vec3 position, flux, direction, normal; }; // m, W, unit vectors; photongrid reads members of these names
+struct photon {
+    vec3 position, flux, direction, normal;
+}; // m, W, unit vectors; photongrid reads members of these names
 
 /// The photons that meet only mirrors and glass on their way from the lamp to a diffuse surface.
 static std::vector<photon> shoot(const scene& s, int count, std::uint64_t seed)
@@ -38,15 +41,20 @@ static std::vector<photon> shoot(const scene& s, int count, std::uint64_t seed)
 irradiance_source caustics_of(const scene& s, int photons, std::uint64_t seed)
 {
     const auto device = std::make_shared<device_type>();
-    const photongrid::knn_settings how{.k = 50, .max_radius = 0.1f, .kernel = photongrid::filter_kernel::silverman, .leaks = {.side = true, .min_cosine = 0.9f}};
-    const auto map = std::make_shared<const photongrid::photon_map<device_type>>(photongrid::fitted_map(*device, photongrid::upload_photons(*device, shoot(s, photons, seed)), how.k));
+    const photongrid::knn_settings how{.k = 50,
+        .max_radius = 0.1f,
+        .kernel = photongrid::filter_kernel::silverman,
+        .leaks = {.side = true, .min_cosine = 0.9f}};
+    const auto map = std::make_shared<const photongrid::photon_map<device_type>>(
+        photongrid::fitted_map(*device, photongrid::upload_photons(*device, shoot(s, photons, seed)), how.k));
     return [=](const std::vector<gather_point>& points) {
         std::vector<vec3> at, normals;
         for (const auto& p : points) {
             at.push_back(p.where);
             normals.push_back(p.normal);
         }
-        const auto found = photongrid::knn_grid_estimate(*device, *map, photongrid::upload_points(*device, at), photongrid::upload_normals(*device, normals), how);
+        const auto found = photongrid::knn_grid_estimate(
+            *device, *map, photongrid::upload_points(*device, at), photongrid::upload_normals(*device, normals), how);
         std::vector<vec3> irradiance;
         for (const auto& e : device->download(found.irradiance))
             irradiance.push_back({e.x, e.y, e.z});

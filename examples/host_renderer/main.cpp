@@ -37,7 +37,8 @@ void write_png(const std::string& path, const std::vector<host::vec3>& picture, 
 /// A whole number from 1 to 100,000, or 0 for anything else.
 int count_of(const std::string& text)
 {
-    const bool is_count = !text.empty() && text.size() <= 6 && text.find_first_not_of("0123456789") == std::string::npos;
+    const bool is_count
+        = !text.empty() && text.size() <= 6 && text.find_first_not_of("0123456789") == std::string::npos;
     const int n = is_count ? std::stoi(text) : 0;
     return n <= 100000 ? n : 0;
 }
@@ -56,7 +57,8 @@ int main(int argc, char** argv)
         settings.size = count_of(arguments[1]);
     if (arguments.size() > 2)
         settings.samples = count_of(arguments[2]);
-    if (arguments.empty() || arguments.size() > 3 || arguments[0].starts_with("-") || (without_caustics && reference) || settings.size < 1 || settings.samples < 1) {
+    if (arguments.empty() || arguments.size() > 3 || arguments[0].starts_with("-") || (without_caustics && reference)
+        || settings.size < 1 || settings.samples < 1) {
         std::cerr << "usage: host_renderer [--without-caustics | --reference] FILE.png [SIZE [SAMPLES]]\n"
                      "  SIZE: pixels a side, 400; SAMPLES: paths a pixel, 64; whole numbers from 1 to 100000\n";
         return 2;
@@ -64,7 +66,9 @@ int main(int argc, char** argv)
     try {
         const auto scene = host::box_scene();
         const bool adds_caustics = !without_caustics && !reference;
-        write_png(arguments[0], host::render(scene, settings, adds_caustics ? host::caustics_of(scene, 4000000, settings.seed) : nullptr), settings.size);
+        write_png(arguments[0],
+            host::render(scene, settings, adds_caustics ? host::caustics_of(scene, 4000000, settings.seed) : nullptr),
+            settings.size);
     } catch (const std::exception& e) {
         std::cerr << "host_renderer: " << e.what() << '\n';
         return 1;

@@ -19,7 +19,8 @@ namespace {
     }
 
     /// One path from the eye: its radiance, and the points where caustic light is missing.
-    vec3 trace(const scene& s, ray r, int pixel, bool keeps_specks, random_stream& random, std::vector<gather_point>& points)
+    vec3 trace(
+        const scene& s, ray r, int pixel, bool keeps_specks, random_stream& random, std::vector<gather_point>& points)
     {
         vec3 radiance, throughput{1, 1, 1};
         bool met_diffuse = false, from_specular = false;
@@ -79,11 +80,13 @@ std::vector<vec3> render(const scene& s, const render_settings& settings, const 
             points.clear();
             for (int x = 0; x < size; ++x) {
                 const int pixel = y * size + x;
-                random_stream random(settings.seed, static_cast<std::uint64_t>(sample) << 32 | static_cast<std::uint64_t>(pixel));
+                random_stream random(
+                    settings.seed, static_cast<std::uint64_t>(sample) << 32 | static_cast<std::uint64_t>(pixel));
                 // The picture's frame is the box's open front, 2 m a side at z = 1.
                 const vec3 through{2 * (x + random.next()) / size - 1, 2 - 2 * (y + random.next()) / size, 1};
                 auto& radiance = picture[static_cast<std::size_t>(pixel)];
-                radiance = radiance + trace(s, {eye, normalized(through - eye)}, pixel, settings.keeps_specks, random, points);
+                radiance = radiance
+                    + trace(s, {eye, normalized(through - eye)}, pixel, settings.keeps_specks, random, points);
             }
         });
         if (!caustics)

@@ -21,8 +21,8 @@ struct render_settings {
     int samples = 64; ///< paths a pixel
     int threads = 1;
     std::uint64_t seed = 1;
-    /// Count the lamp where a path meets it by mirrors and glass after a diffuse surface. True to nature, but so few paths do
-    /// that they show as bright specks.
+    /// Count the lamp where a path meets it by mirrors and glass after a diffuse surface. True to nature, but so few
+    /// paths do that they show as bright specks.
     bool keeps_specks = false;
 };
 

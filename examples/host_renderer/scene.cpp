@@ -119,8 +119,10 @@ ray specular_bounce(const ray& r, const hit& h, random_stream& random)
 
 scene box_scene()
 {
-    const material white{surface::diffuse, {0.74, 0.74, 0.74}}, red{surface::diffuse, {0.47, 0.05, 0.05}}, green{surface::diffuse, {0.09, 0.40, 0.08}};
-    const material glass{surface::glass, {1, 1, 1}}, gold{surface::mirror, {0.98, 0.78, 0.36}}, light{surface::lamp, {150, 135, 115}};
+    const material white{surface::diffuse, {0.74, 0.74, 0.74}}, red{surface::diffuse, {0.47, 0.05, 0.05}},
+        green{surface::diffuse, {0.09, 0.40, 0.08}};
+    const material glass{surface::glass, {1, 1, 1}}, gold{surface::mirror, {0.98, 0.78, 0.36}},
+        light{surface::lamp, {150, 135, 115}};
     scene s;
     s.spheres = {{{0.42, 0.38, 0.15}, 0.38, glass}};
     s.tubes = {{{-0.45, 0, 0.35}, 0.38, 0.12, gold}};

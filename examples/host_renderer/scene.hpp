@@ -47,9 +47,9 @@ struct tube {
 };
 
 struct hit {
-    double distance; ///< m
+    double distance;    ///< m
     vec3 where, normal; ///< normal: unit vector, towards the side that the ray came from
-    bool outside; ///< the ray came from the outside of a solid, or from the front
+    bool outside;       ///< the ray came from the outside of a solid, or from the front
     material of;
 };
 
@@ -67,8 +67,8 @@ struct scene {
 /// A box with a glass ball and a gold ring.
 scene box_scene();
 
-/// How light goes on from a mirror or from glass, whichever way it travels. Glass reflects or refracts at random, by Fresnel's
-/// equations, so that what is left of the light is the surface's colour alone.
+/// How light goes on from a mirror or from glass, whichever way it travels. Glass reflects or refracts at random, by
+/// Fresnel's equations, so that what is left of the light is the surface's colour alone.
 ray specular_bounce(const ray& r, const hit& h, random_stream& random);
 
 } // namespace host

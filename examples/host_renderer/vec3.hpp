@@ -26,12 +26,11 @@ inline double length(vec3 a) { return std::sqrt(dot(a, a)); }
 inline vec3 normalized(vec3 a) { return (1 / length(a)) * a; }
 inline double largest(vec3 a) { return std::fmax(a.x, std::fmax(a.y, a.z)); }
 
-/// A stream of random numbers (splitmix64; Steele, Lea and Flood 2014). Each pixel's sample and each photon has its own, so
-/// results do not depend on threads.
+/// A stream of random numbers (splitmix64; Steele, Lea and Flood 2014). Each pixel's sample and each photon has its
+/// own, so results do not depend on threads.
 class random_stream {
 public:
-    random_stream(std::uint64_t seed, std::uint64_t element)
-        : state_(seed * 0x9E3779B97F4A7C15u)
+    random_stream(std::uint64_t seed, std::uint64_t element) : state_(seed * 0x9E3779B97F4A7C15u)
     {
         state_ = bits() + element * 0xD1342543DE82EF95u;
         state_ = bits();
@@ -56,7 +55,8 @@ inline vec3 cosine_direction(vec3 normal, random_stream& random)
 {
     const vec3 aside = normalized(cross(std::abs(normal.x) < 0.5 ? vec3{1, 0, 0} : vec3{0, 1, 0}, normal));
     const double radius2 = random.next(), angle = 2 * pi * random.next(), radius = std::sqrt(radius2);
-    return radius * std::cos(angle) * aside + radius * std::sin(angle) * cross(normal, aside) + std::sqrt(1 - radius2) * normal;
+    return radius * std::cos(angle) * aside + radius * std::sin(angle) * cross(normal, aside)
+        + std::sqrt(1 - radius2) * normal;
 }
 
 } // namespace host

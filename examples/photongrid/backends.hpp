@@ -49,8 +49,8 @@ struct renderer_options {
     bool time_passes = false;    ///< on vulkan, gl and gl-osmesa
 };
 
-/// Throws backend_error when the backend or device cannot be had, or the program was built without it. OpenGL's belongs to the
-/// calling thread.
+/// Throws backend_error when the backend or device cannot be had, or the program was built without it. OpenGL's belongs
+/// to the calling thread.
 std::unique_ptr<renderer> make_renderer(const renderer_options& o);
 
 // make_renderer's choices.
@@ -70,7 +70,7 @@ struct device_report {
     std::string backend{}; ///< as --backend takes it
     std::string device{};  ///< empty where there is none
     bool works = false;
-    std::string about{};   ///< its limits, or why it cannot be had
+    std::string about{}; ///< its limits, or why it cannot be had
 };
 
 device_report serial_device();

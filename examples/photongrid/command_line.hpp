@@ -15,7 +15,15 @@
 namespace photongrid {
 
 /// Exit codes; --help lists them.
-enum exit_code { success = 0, failure = 1, usage_error = 2, scene_file_error = 3, backend_failure = 4, file_failure = 5, interrupted = 130 };
+enum exit_code {
+    success = 0,
+    failure = 1,
+    usage_error = 2,
+    scene_file_error = 3,
+    backend_failure = 4,
+    file_failure = 5,
+    interrupted = 130
+};
 
 /// `render`. What is empty is as the scene file has it.
 struct render_options {
@@ -35,7 +43,7 @@ struct render_options {
     std::vector<std::string> outputs;
     std::string stats, progressive, strip, reference, resume;
     std::optional<crop> strip_crop;
-    double every = 0; ///< ms
+    double every = 0;                        ///< ms
     std::optional<std::string> shader_cache; ///< "none": none
     bool time_passes = false, quiet = false;
 };
@@ -72,12 +80,13 @@ struct check_options {
 struct devices_options {};
 
 /// What to do; or the exit code where the command line has been answered already (help, version, mistake).
-using command = std::variant<exit_code, render_options, view_options, reference_options, compare_options, check_options, devices_options>;
+using command = std::variant<exit_code, render_options, view_options, reference_options, compare_options, check_options,
+    devices_options>;
 
 command read_command_line(int argc, char** argv);
 
-/// The scene's settings, or with --as-paper the paper's estimate in them, with those of the command line in their place.
-/// Throws std::invalid_argument.
+/// The scene's settings, or with --as-paper the paper's estimate in them, with those of the command line in their
+/// place. Throws std::invalid_argument.
 render_settings settings_for(const scene& s, const render_options& o);
 
 } // namespace photongrid

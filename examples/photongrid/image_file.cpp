@@ -35,11 +35,15 @@ namespace {
     std::string ending(const std::string& path)
     {
         auto e = fs::path(path).extension().string();
-        std::transform(e.begin(), e.end(), e.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
+        std::transform(e.begin(), e.end(), e.begin(),
+            [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
         return e;
     }
 
-    [[noreturn]] void fail(const std::string& path, const std::string& reason) { throw file_error(path + ": " + reason); }
+    [[noreturn]] void fail(const std::string& path, const std::string& reason)
+    {
+        throw file_error(path + ": " + reason);
+    }
 
     /// The file behind a link, so that the link survives.
     fs::path target(const std::string& path)
@@ -74,10 +78,7 @@ namespace {
     // --- EXR ---
     class memory_stream : public Imf::OStream {
     public:
-        memory_stream()
-            : Imf::OStream("memory")
-        {
-        }
+        memory_stream() : Imf::OStream("memory") {}
         void write(const char c[], int n) override
         {
             const auto size = static_cast<std::size_t>(n);
@@ -100,7 +101,8 @@ namespace {
         const auto width = static_cast<std::size_t>(box.max.x - box.min.x + 1);
         Imf::FrameBuffer frame;
         for (int c = 0; c < 3; ++c)
-            frame.insert(std::string(1, "RGB"[c]), Imf::Slice::Make(Imf::FLOAT, &(*pixels)[c], box, sizeof(glm::vec3), sizeof(glm::vec3) * width));
+            frame.insert(std::string(1, "RGB"[c]),
+                Imf::Slice::Make(Imf::FLOAT, &(*pixels)[c], box, sizeof(glm::vec3), sizeof(glm::vec3) * width));
         return frame;
     }
 
@@ -115,7 +117,8 @@ namespace {
     {
         const auto& l = picture.layers;
         std::vector<layer_channel> all;
-        for (const auto& c : {layer_channel{"estimate.radius", l.radius}, layer_channel{"estimate.count", l.count}, layer_channel{"estimate.relative_error", l.relative_error}})
+        for (const auto& c : {layer_channel{"estimate.radius", l.radius}, layer_channel{"estimate.count", l.count},
+                 layer_channel{"estimate.relative_error", l.relative_error}})
             if (!c.values.empty())
                 all.push_back(c);
         return all;
@@ -129,7 +132,8 @@ namespace {
         const auto layers = layers_of(picture);
         for (const auto& l : layers) {
             if (l.values.size() != picture.pixels.size())
-                throw std::runtime_error(std::string("the layer ") + l.name + " has " + std::to_string(l.values.size()) + " values for " + std::to_string(picture.pixels.size()) + " pixels");
+                throw std::runtime_error(std::string("the layer ") + l.name + " has " + std::to_string(l.values.size())
+                    + " values for " + std::to_string(picture.pixels.size()) + " pixels");
             header.channels().insert(l.name, Imf::Channel(Imf::FLOAT));
         }
         header.compression() = Imf::ZIP_COMPRESSION;
@@ -141,7 +145,8 @@ namespace {
             // OpenEXR reads through pointers that are not const.
             auto frame = rgb_frame(const_cast<glm::vec3*>(picture.pixels.data()), header.dataWindow());
             for (const auto& l : layers)
-                frame.insert(l.name, Imf::Slice::Make(Imf::FLOAT, const_cast<float*>(l.values.data()), header.dataWindow()));
+                frame.insert(
+                    l.name, Imf::Slice::Make(Imf::FLOAT, const_cast<float*>(l.values.data()), header.dataWindow()));
             file.setFrameBuffer(frame);
             file.writePixels(static_cast<int>(picture.height));
         }
@@ -153,12 +158,17 @@ namespace {
         Imf::InputFile file(path.c_str());
         const auto box = file.header().dataWindow();
         const auto width = std::int64_t{box.max.x} - box.min.x + 1, height = std::int64_t{box.max.y} - box.min.y + 1;
-        if (width < 1 || height < 1 || width > max_edge || height > max_edge || static_cast<std::uint64_t>(width * height) > max_pixels)
-            fail(path, "is " + std::to_string(width) + " x " + std::to_string(height) + " pixels; expected 1 to 65536 a side and at most 2^28");
+        if (width < 1 || height < 1 || width > max_edge || height > max_edge
+            || static_cast<std::uint64_t>(width * height) > max_pixels)
+            fail(path,
+                "is " + std::to_string(width) + " x " + std::to_string(height)
+                    + " pixels; expected 1 to 65536 a side and at most 2^28");
         for (const auto* c : {"R", "G", "B"})
             if (!file.header().channels().findChannel(c))
                 fail(path, std::string("has no channel ") + c + "; expected R, G and B");
-        image picture{.width = static_cast<std::uint32_t>(width), .height = static_cast<std::uint32_t>(height), .pixels = std::vector<glm::vec3>(static_cast<std::size_t>(width * height))};
+        image picture{.width = static_cast<std::uint32_t>(width),
+            .height = static_cast<std::uint32_t>(height),
+            .pixels = std::vector<glm::vec3>(static_cast<std::size_t>(width * height))};
         file.setFrameBuffer(rgb_frame(picture.pixels.data(), box));
         file.readPixels(box.min.y, box.max.y);
         return picture;
@@ -171,7 +181,8 @@ namespace {
     {
         std::string bytes = "PF\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n-1.0\n";
         for (std::uint32_t y = picture.height; y-- > 0;)
-            bytes.append(reinterpret_cast<const char*>(&picture.pixels[std::size_t{y} * picture.width]), picture.width * sizeof(glm::vec3));
+            bytes.append(reinterpret_cast<const char*>(&picture.pixels[std::size_t{y} * picture.width]),
+                picture.width * sizeof(glm::vec3));
         return bytes;
     }
 
@@ -184,10 +195,14 @@ namespace {
         double scale = 0;
         if (!(in >> magic))
             fail(path, errno != 0 ? std::strerror(errno) : "is empty");
-        if ((magic != "PF" && magic != "Pf") || !(in >> width >> height >> scale) || in.get() == EOF || scale == 0 || !std::isfinite(scale))
+        if ((magic != "PF" && magic != "Pf") || !(in >> width >> height >> scale) || in.get() == EOF || scale == 0
+            || !std::isfinite(scale))
             fail(path, "is not a PFM file: expected \"PF\" or \"Pf\", width, height, scale");
-        if (width < 1 || height < 1 || width > max_edge || height > max_edge || std::uint64_t{width} * height > max_pixels)
-            fail(path, "is " + std::to_string(width) + " x " + std::to_string(height) + " pixels; expected 1 to 65536 a side and at most 2^28");
+        if (width < 1 || height < 1 || width > max_edge || height > max_edge
+            || std::uint64_t{width} * height > max_pixels)
+            fail(path,
+                "is " + std::to_string(width) + " x " + std::to_string(height)
+                    + " pixels; expected 1 to 65536 a side and at most 2^28");
         const std::size_t channels = magic == "PF" ? 3 : 1;
         image picture{.width = width, .height = height, .pixels = {}};
         std::error_code none;
@@ -197,13 +212,15 @@ namespace {
         std::vector<float> row(width * channels);
         for (std::uint32_t y = height; y-- > 0;) {
             if (!in.read(reinterpret_cast<char*>(row.data()), static_cast<std::streamsize>(row.size() * sizeof(float))))
-                fail(path, "ends too early for its " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
+                fail(path,
+                    "ends too early for its " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
             for (std::size_t x = 0; x < width; ++x)
                 for (std::size_t c = 0; c < 3; ++c) {
                     auto bits = std::bit_cast<std::uint32_t>(row[x * channels + c % channels]);
                     if (scale > 0) // big-endian
                         bits = (bits << 24) | ((bits & 0xFF00u) << 8) | ((bits >> 8) & 0xFF00u) | (bits >> 24);
-                    picture.pixels[std::size_t{y} * width + x][static_cast<int>(c)] = std::bit_cast<float>(bits) * static_cast<float>(std::abs(scale));
+                    picture.pixels[std::size_t{y} * width + x][static_cast<int>(c)]
+                        = std::bit_cast<float>(bits) * static_cast<float>(std::abs(scale));
                 }
         }
         return picture;
@@ -290,12 +307,17 @@ void check_image_path(const std::string& path)
 void write_image(const std::string& path, const image& picture, double exposure, const image_notes& notes)
 {
     check_image_path(path);
-    if (picture.width == 0 || picture.height == 0 || picture.pixels.size() != std::size_t{picture.width} * picture.height)
-        fail(path, "the picture has " + std::to_string(picture.pixels.size()) + " pixels for " + std::to_string(picture.width) + " x " + std::to_string(picture.height));
+    if (picture.width == 0 || picture.height == 0
+        || picture.pixels.size() != std::size_t{picture.width} * picture.height)
+        fail(path,
+            "the picture has " + std::to_string(picture.pixels.size()) + " pixels for " + std::to_string(picture.width)
+                + " x " + std::to_string(picture.height));
     const auto e = ending(path);
     std::string bytes;
     try {
-        bytes = e == ".png" ? png_bytes(picture, exposure) : e == ".exr" ? exr_bytes(picture, notes) : pfm_bytes(picture);
+        bytes = e == ".png" ? png_bytes(picture, exposure)
+            : e == ".exr"   ? exr_bytes(picture, notes)
+                            : pfm_bytes(picture);
     } catch (const std::exception& what) {
         fail(path, std::string("cannot be encoded: ") + what.what());
     }
@@ -321,7 +343,8 @@ image read_image(const std::string& path)
 image_difference compare_images(const image& a, const image& b)
 {
     if (a.width != b.width || a.height != b.height)
-        throw std::invalid_argument("the sizes differ: " + std::to_string(a.width) + " x " + std::to_string(a.height) + " and " + std::to_string(b.width) + " x " + std::to_string(b.height));
+        throw std::invalid_argument("the sizes differ: " + std::to_string(a.width) + " x " + std::to_string(a.height)
+            + " and " + std::to_string(b.width) + " x " + std::to_string(b.height));
     image_difference d;
     d.largest = -1;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {

@@ -29,8 +29,9 @@ void check_file_path(const std::string& path);
 bool holds_layers(const std::string& path);
 
 /// Writes a picture in the format of its ending. All or nothing: on an error, or when the program dies, `path` is
-/// what it was before. `exposure` (EV) is used by PNG only. EXR holds the picture's layers too, as single precision channels
-/// estimate.radius (m), estimate.count and estimate.relative_error; PNG and PFM leave them out. Throws file_error.
+/// what it was before. `exposure` (EV) is used by PNG only. EXR holds the picture's layers too, as single precision
+/// channels estimate.radius (m), estimate.count and estimate.relative_error; PNG and PFM leave them out. Throws
+/// file_error.
 void write_image(const std::string& path, const image& picture, double exposure = 0, const image_notes& notes = {});
 
 /// Reads an EXR or PFM file; of an EXR's channels R, G and B alone. Throws file_error.
@@ -62,12 +63,12 @@ private:
 
 /// How far picture a is from the reference b, over all channels of the pixels that are finite in both.
 struct image_difference {
-    double mse = 0;                 ///< mean of (a - b)^2
-    double relmse = 0;              ///< mean of (a - b)^2 / (b + 0.01)^2, as pbrt's MRSE
-    double largest = 0;             ///< largest |a - b|
-    std::uint32_t x = 0, y = 0;     ///< where that is
-    std::uint64_t compared = 0;     ///< pixels
-    std::uint64_t not_finite = 0;   ///< pixels skipped
+    double mse = 0;               ///< mean of (a - b)^2
+    double relmse = 0;            ///< mean of (a - b)^2 / (b + 0.01)^2, as pbrt's MRSE
+    double largest = 0;           ///< largest |a - b|
+    std::uint32_t x = 0, y = 0;   ///< where that is
+    std::uint64_t compared = 0;   ///< pixels
+    std::uint64_t not_finite = 0; ///< pixels skipped
 };
 
 /// Throws std::invalid_argument when the sizes differ.

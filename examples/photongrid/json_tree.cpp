@@ -22,13 +22,12 @@ namespace {
     }
 } // namespace
 
-// nlohmann calls one of these for each token, in the order of the file. Its parser does not say where a token begins, so
-// `token` finds it again: the text up to here is known to be valid JSON, hence the next token begins after blanks,
+// nlohmann calls one of these for each token, in the order of the file. Its parser does not say where a token begins,
+// so `token` finds it again: the text up to here is known to be valid JSON, hence the next token begins after blanks,
 // commas and colons.
 class json_builder {
 public:
-    explicit json_builder(json_tree& tree)
-        : tree_(tree)
+    explicit json_builder(json_tree& tree) : tree_(tree)
     {
         if (std::string_view(tree.text_).starts_with("\xEF\xBB\xBF"))
             cursor_ = 3;
@@ -60,8 +59,8 @@ public:
         return true;
     }
 
-    // `position` counts the characters read. What stands after the last accepted token is the one at fault, save a comma
-    // or colon; within a string the last character read is.
+    // `position` counts the characters read. What stands after the last accepted token is the one at fault, save a
+    // comma or colon; within a string the last character read is.
     bool parse_error(std::size_t position, const std::string& last_token, const nlohmann::json::exception& e)
     {
         const auto& t = tree_.text_;
@@ -69,10 +68,12 @@ public:
         const bool in_string = std::string_view(e.what()).find("invalid string") != std::string_view::npos;
         const std::size_t place = in_string ? last : std::min(last, t.find_first_not_of(" \t\r\n,:", cursor_));
         if (e.id == 406)
-            tree_.fail(place, "number " + last_token.substr(0, 60) + " is out of range; expected a number that double precision holds");
+            tree_.fail(place,
+                "number " + last_token.substr(0, 60)
+                    + " is out of range; expected a number that double precision holds");
         std::string what = e.what();
-        // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while parsing …": the first two
-        // parts are said better by the place.
+        // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while parsing …": the first
+        // two parts are said better by the place.
         if (const auto at = what.find("column "); at != std::string::npos)
             if (const auto colon = what.find(": ", at); colon != std::string::npos)
                 what.erase(0, colon + 2);
@@ -94,7 +95,10 @@ private:
     bool number(double d)
     {
         const auto place = token();
-        return put({.kind = json_kind::number, .place = place, .number = d, .text = tree_.text_.substr(place, cursor_ - place)});
+        return put({.kind = json_kind::number,
+            .place = place,
+            .number = d,
+            .text = tree_.text_.substr(place, cursor_ - place)});
     }
 
     std::size_t token()
@@ -119,7 +123,8 @@ private:
     {
         const auto place = token();
         if (frames_.size() == json_tree::max_depth)
-            tree_.fail(place, "nested deeper than " + std::to_string(json_tree::max_depth) + " levels; a scene needs far fewer");
+            tree_.fail(place,
+                "nested deeper than " + std::to_string(json_tree::max_depth) + " levels; a scene needs far fewer");
         count(place);
         frames_.push_back({.value = {.kind = kind, .place = place}});
         return true;
@@ -157,7 +162,8 @@ private:
     void count(std::size_t place)
     {
         if (++values_ > json_tree::max_values)
-            tree_.fail(place, "more than " + std::to_string(json_tree::max_values) + " values; expected a scene, not a mesh");
+            tree_.fail(
+                place, "more than " + std::to_string(json_tree::max_values) + " values; expected a scene, not a mesh");
     }
 
     json_tree& tree_;
@@ -171,12 +177,11 @@ const json_value* json_value::find(std::string_view key_wanted) const
     return m == items.end() ? nullptr : &*m;
 }
 
-json_tree::json_tree(std::string file, std::string text)
-    : file_(std::move(file))
-    , text_(std::move(text))
+json_tree::json_tree(std::string file, std::string text) : file_(std::move(file)), text_(std::move(text))
 {
     if (text_.size() > max_bytes)
-        throw scene_error(file_, 0, 0, "larger than " + std::to_string(max_bytes >> 20) + " MiB; expected a scene file");
+        throw scene_error(
+            file_, 0, 0, "larger than " + std::to_string(max_bytes >> 20) + " MiB; expected a scene file");
     json_builder builder(*this);
     nlohmann::json::sax_parse(text_.data(), text_.data() + text_.size(), &builder);
 }
@@ -188,7 +193,8 @@ void json_tree::fail(std::size_t place, const std::string& what) const
     auto begin = before.rfind('\n');
     begin = begin == std::string_view::npos ? 0 : begin + 1;
     // Bytes 10xxxxxx continue a character of UTF-8.
-    const auto column = std::count_if(before.begin() + static_cast<std::ptrdiff_t>(begin), before.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; });
+    const auto column = std::count_if(before.begin() + static_cast<std::ptrdiff_t>(begin), before.end(),
+        [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; });
     throw scene_error(file_, line, static_cast<std::size_t>(column) + 1, what);
 }
 
@@ -235,8 +241,11 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 
 std::string read_scene_text(const std::string& path)
 {
-    const auto refuse = [&](const char* what) -> scene_error { return {path, 0, 0, std::string("the file cannot be read: ") + what}; };
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), [](std::FILE* f) { return f ? std::fclose(f) : 0; });
+    const auto refuse = [&](const char* what) -> scene_error {
+        return {path, 0, 0, std::string("the file cannot be read: ") + what};
+    };
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
+        std::fopen(path.c_str(), "rb"), [](std::FILE* f) { return f ? std::fclose(f) : 0; });
     if (!file)
         throw refuse(std::strerror(errno));
     std::string text;
@@ -244,7 +253,8 @@ std::string read_scene_text(const std::string& path)
     while (const auto n = std::fread(block.data(), 1, block.size(), file.get())) {
         text.append(block.data(), n);
         if (text.size() > json_tree::max_bytes)
-            throw scene_error(path, 0, 0, "larger than " + std::to_string(json_tree::max_bytes >> 20) + " MiB; expected a scene file");
+            throw scene_error(path, 0, 0,
+                "larger than " + std::to_string(json_tree::max_bytes >> 20) + " MiB; expected a scene file");
     }
     if (std::ferror(file.get()))
         throw refuse(std::strerror(errno));

@@ -15,9 +15,9 @@ namespace photongrid {
 /// Lines and columns count from 1, columns in characters. Line 0: the file as a whole ("file: error: …").
 struct scene_error : std::runtime_error {
     scene_error(const std::string& file, std::size_t line_, std::size_t column_, const std::string& what_)
-        : std::runtime_error(file + (line_ > 0 ? ":" + std::to_string(line_) + ":" + std::to_string(column_) : "") + ": error: " + what_)
-        , line(line_)
-        , column(column_)
+        : std::runtime_error(file + (line_ > 0 ? ":" + std::to_string(line_) + ":" + std::to_string(column_) : "")
+            + ": error: " + what_),
+          line(line_), column(column_)
     {
     }
     std::size_t line = 0, column = 0;
@@ -47,7 +47,8 @@ public:
     static constexpr std::size_t max_depth = 32;
     static constexpr std::size_t max_values = 1'000'000;
 
-    /// Parses `text`. Throws scene_error on a syntax error, a key given twice, a number beyond double, or a limit above.
+    /// Parses `text`. Throws scene_error on a syntax error, a key given twice, a number beyond double, or a limit
+    /// above.
     json_tree(std::string file, std::string text);
 
     const json_value& root() const { return root_; }

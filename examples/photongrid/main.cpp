@@ -52,10 +52,7 @@ namespace {
 
     exit_code run(const render_options& o) { return run_render(o, asked_to_stop); }
     exit_code run(const view_options& o) { return run_view(o, asked_to_stop); }
-    exit_code run(const reference_options& o)
-    {
-        return run_reference(o, asked_to_stop);
-    }
+    exit_code run(const reference_options& o) { return run_reference(o, asked_to_stop); }
 
     exit_code run(const compare_options& o)
     {
@@ -67,7 +64,8 @@ namespace {
             std::cerr << "photongrid: error: " << o.a << ", " << o.b << ": " << e.what() << '\n';
             return file_failure;
         }
-        std::cout << "MSE     " << d.mse << "\nrelMSE  " << d.relmse << "\nlargest " << d.largest << " at pixel " << d.x << "," << d.y << '\n';
+        std::cout << "MSE     " << d.mse << "\nrelMSE  " << d.relmse << "\nlargest " << d.largest << " at pixel " << d.x
+                  << "," << d.y << '\n';
         if (d.not_finite > 0)
             std::cout << "skipped " << d.not_finite << " pixels that are not finite\n";
         if (d.compared == 0) {
@@ -80,8 +78,10 @@ namespace {
     exit_code run(const check_options& o)
     {
         const auto s = read_scene(o.scene_path);
-        const auto shapes = s.spheres.size() + s.cylinders.size() + s.cones.size() + s.paraboloids.size() + s.disks.size() + s.polygons.size();
-        std::cout << o.scene_path << ": \"" << s.name << "\": " << shapes << " shapes, " << s.materials.size() << " materials, " << s.point_lights.size() + s.rectangle_lights.size() << " lights\n";
+        const auto shapes = s.spheres.size() + s.cylinders.size() + s.cones.size() + s.paraboloids.size()
+            + s.disks.size() + s.polygons.size();
+        std::cout << o.scene_path << ": \"" << s.name << "\": " << shapes << " shapes, " << s.materials.size()
+                  << " materials, " << s.point_lights.size() + s.rectangle_lights.size() << " lights\n";
         return success;
     }
 
@@ -91,7 +91,11 @@ namespace {
         for (auto&& more : {cpu_devices(), gl_devices(), vulkan_devices_report()})
             all.insert(all.end(), more.begin(), more.end());
         for (const auto& d : all) {
-            std::cout << d.backend << "  " << (d.works ? d.device : d.device.empty() ? "not available" : d.device + "  not usable") << '\n';
+            std::cout << d.backend << "  "
+                      << (d.works                   ? d.device
+                                 : d.device.empty() ? "not available"
+                                                    : d.device + "  not usable")
+                      << '\n';
             std::cout << "    " << d.about << '\n';
         }
         return success;

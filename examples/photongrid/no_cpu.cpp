@@ -4,7 +4,8 @@
 namespace photongrid {
 
 namespace {
-    const char* const reason = "cpu: this photongrid was built without the cpu backend; install libtbb-dev and libhwy-dev, then configure with -DPHOTONGRID_CPU=ON";
+    const char* const reason = "cpu: this photongrid was built without the cpu backend; install libtbb-dev and "
+                               "libhwy-dev, then configure with -DPHOTONGRID_CPU=ON";
 }
 
 std::unique_ptr<renderer> cpu_renderer(const renderer_options&) { throw backend_error(reason); }

@@ -4,7 +4,9 @@
 namespace photongrid {
 
 namespace {
-    const char* const reason = "vulkan: this photongrid was built without the Vulkan backend; install libvulkan-dev, glslang-dev, glslang-tools, spirv-tools and mesa-vulkan-drivers, then configure with -DPHOTONGRID_VULKAN=ON";
+    const char* const reason
+        = "vulkan: this photongrid was built without the Vulkan backend; install libvulkan-dev, glslang-dev, "
+          "glslang-tools, spirv-tools and mesa-vulkan-drivers, then configure with -DPHOTONGRID_VULKAN=ON";
 }
 
 std::unique_ptr<renderer> vulkan_renderer(const renderer_options&) { throw backend_error(reason); }

@@ -50,11 +50,14 @@ picture_series::picture_series(series_options o) : options_(std::move(o))
     if (!options_.reference.empty()) {
         reference_ = read_image(options_.reference);
         if (reference_->width != size.x || reference_->height != size.y)
-            throw std::invalid_argument("--reference " + options_.reference + ": has " + std::to_string(reference_->width) + " x " + std::to_string(reference_->height) + " pixels; the picture has "
-                + std::to_string(size.x) + " x " + std::to_string(size.y));
+            throw std::invalid_argument("--reference " + options_.reference + ": has "
+                + std::to_string(reference_->width) + " x " + std::to_string(reference_->height)
+                + " pixels; the picture has " + std::to_string(size.x) + " x " + std::to_string(size.y));
     }
-    if (const auto& c = options_.strip_crop; c && (c->width > size.x || c->x > size.x - c->width || c->height > size.y || c->y > size.y - c->height))
-        throw std::invalid_argument("--crop: does not lie in the picture, which has " + std::to_string(size.x) + " x " + std::to_string(size.y) + " pixels");
+    if (const auto& c = options_.strip_crop;
+        c && (c->width > size.x || c->x > size.x - c->width || c->height > size.y || c->y > size.y - c->height))
+        throw std::invalid_argument("--crop: does not lie in the picture, which has " + std::to_string(size.x) + " x "
+            + std::to_string(size.y) + " pixels");
     if (options_.folder.empty())
         return;
     std::error_code error;
@@ -107,7 +110,8 @@ void picture_series::write_table() const
     std::string table = std::string("picture,ms,relmse") + (reference_ ? ",relmse_to_reference" : "") + "\n";
     for (std::size_t i = 0; i < steps_.size(); ++i) {
         char line[96];
-        std::snprintf(line, sizeof line, ",%.3f,%.6g", steps_[i].ms, compare_images(steps_[i].picture, steps_.back().picture).relmse);
+        std::snprintf(line, sizeof line, ",%.3f,%.6g", steps_[i].ms,
+            compare_images(steps_[i].picture, steps_.back().picture).relmse);
         table += std::filesystem::path(path(i + 1)).filename().string() + line;
         if (reference_) {
             std::snprintf(line, sizeof line, ",%.6g", compare_images(steps_[i].picture, *reference_).relmse);

@@ -1,4 +1,5 @@
-// The running estimate as files: numbered pictures in a folder with a table of their errors, and a strip of some of them.
+// The running estimate as files: numbered pictures in a folder with a table of their errors, and a strip of some of
+// them.
 #pragma once
 
 #include "image_file.hpp"
@@ -27,8 +28,9 @@ struct series_options {
     double every_ms = 0;            ///< between pictures; 0: each, but none sooner than a tenth of the time so far
 };
 
-/// Writes pictures STEM-0001.png, STEM-0002.png … as they come and, at the end, STEM.csv with a line for each: its file, when it
-/// was there, in ms since the series began less what writing has taken, its relMSE to the last picture, and to the reference.
+/// Writes pictures STEM-0001.png, STEM-0002.png … as they come and, at the end, STEM.csv with a line for each: its
+/// file, when it was there, in ms since the series began less what writing has taken, its relMSE to the last picture,
+/// and to the reference.
 class picture_series {
 public:
     /// \throws file_error when the folder cannot be made or the reference not be read, std::invalid_argument when the reference
@@ -51,7 +53,10 @@ private:
         image picture;
         double ms;
     };
-    double elapsed_ms() const { return std::chrono::duration<double, std::milli>(clock::now() - start_).count() - spent_ms_; }
+    double elapsed_ms() const
+    {
+        return std::chrono::duration<double, std::milli>(clock::now() - start_).count() - spent_ms_;
+    }
     std::string path(std::size_t number) const;
     void write_table() const;
     void write_strip();

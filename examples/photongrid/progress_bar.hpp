@@ -15,10 +15,7 @@ namespace photongrid {
 class progress_bar {
 public:
     /// Draws on stderr where that is a terminal, and not at all when `quiet`.
-    explicit progress_bar(bool quiet)
-        : on_(!quiet && ::isatty(STDERR_FILENO) == 1)
-    {
-    }
+    explicit progress_bar(bool quiet) : on_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
     progress_bar(const progress_bar&) = delete;
     progress_bar& operator=(const progress_bar&) = delete;
     ~progress_bar() { clear(); }

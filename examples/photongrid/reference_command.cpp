@@ -39,7 +39,8 @@ namespace {
 
     json settings_json(const reference_settings& s)
     {
-        return {{"size", {s.width, s.height}}, {"spp", s.spp}, {"paths", s.paths}, {"bin", s.bin}, {"depth", s.depth}, {"photon_depth", s.photon_depth},
+        return {{"size", {s.width, s.height}}, {"spp", s.spp}, {"paths", s.paths}, {"bin", s.bin}, {"depth", s.depth},
+            {"photon_depth", s.photon_depth},
             {"caustics", s.area_light_caustics == caustics_by::bins ? "bins" : "paths"}, {"seed", s.seed}};
     }
 } // namespace
@@ -73,11 +74,12 @@ exit_code run_reference(const reference_options& o, const std::function<bool()>&
 
     const auto& stats = result.stats;
     if (stats.invalid_samples > 0)
-        std::cerr << "photongrid: warning: " << stats.invalid_samples << " samples were NaN or infinite and count as black\n";
+        std::cerr << "photongrid: warning: " << stats.invalid_samples
+                  << " samples were NaN or infinite and count as black\n";
     if (!o.quiet && stats.light_paths > 0)
         std::cerr << "photongrid: caustics from bins of " << stats.bin_size << " m, over which they are blurred\n";
-    const image_notes notes{{"scene", s.name}, {"backend", "reference"}, {"seed", std::to_string(settings.seed)}, {"settings", settings_json(settings).dump()},
-        {"version", std::string("photongrid ") + PHOTONGRID_VERSION}};
+    const image_notes notes{{"scene", s.name}, {"backend", "reference"}, {"seed", std::to_string(settings.seed)},
+        {"settings", settings_json(settings).dump()}, {"version", std::string("photongrid ") + PHOTONGRID_VERSION}};
     for (const auto& path : o.outputs) {
         write_image(path, result.mean, o.exposure, notes);
         std::cout << path << '\n';
@@ -87,8 +89,10 @@ exit_code run_reference(const reference_options& o, const std::function<bool()>&
         std::cout << o.error << '\n';
     }
     if (!o.stats.empty()) {
-        const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.name}, {"settings", settings_json(settings)}, {"threads", stats.threads}, {"spp", stats.spp}, {"light_paths", stats.light_paths},
-            {"caustic_hits", stats.caustic_hits}, {"bins", stats.bins}, {"bin_size", stats.bin_size}, {"mean_standard_error", stats.mean_standard_error}, {"invalid_samples", stats.invalid_samples},
+        const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.name}, {"settings", settings_json(settings)},
+            {"threads", stats.threads}, {"spp", stats.spp}, {"light_paths", stats.light_paths},
+            {"caustic_hits", stats.caustic_hits}, {"bins", stats.bins}, {"bin_size", stats.bin_size},
+            {"mean_standard_error", stats.mean_standard_error}, {"invalid_samples", stats.invalid_samples},
             {"light_seconds", stats.light_seconds}, {"eye_seconds", stats.eye_seconds}};
         write_file(o.stats, all.dump(2) + "\n");
     }

@@ -19,7 +19,8 @@ namespace {
     {
         if (o.shader_cache)
             return *o.shader_cache == "none" ? "" : *o.shader_cache;
-        if (const char* caches = std::getenv("XDG_CACHE_HOME"); caches != nullptr && caches[0] == '/') // else not valid, says its specification
+        if (const char* caches = std::getenv("XDG_CACHE_HOME");
+            caches != nullptr && caches[0] == '/') // else not valid, says its specification
             return std::string(caches) + "/photongrid";
         if (const char* home = std::getenv("HOME"); home != nullptr && home[0] == '/')
             return std::string(home) + "/.cache/photongrid";
@@ -32,7 +33,8 @@ namespace {
     class resumable {
     public:
         /// An empty path: there is no file. \throws file_error for a file of another picture.
-        resumable(renderer& drawing, std::string path, const scene& s, const render_settings& settings) : drawing_(drawing), path_(std::move(path))
+        resumable(renderer& drawing, std::string path, const scene& s, const render_settings& settings)
+            : drawing_(drawing), path_(std::move(path))
         {
             if (path_.empty())
                 return;
@@ -77,7 +79,8 @@ std::string file_stem(const std::string& name)
 {
     std::string stem;
     for (const char c : name) {
-        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+        const bool plain
+            = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
         stem += plain ? c : '_';
     }
     return stem.empty() ? "picture" : stem;
@@ -87,13 +90,18 @@ renderer_options renderer_asked(const render_options& o)
 {
     if (o.threads.value_or(0) > 4096)
         throw std::invalid_argument("--threads " + std::to_string(*o.threads) + ": at most 4,096; 0: all");
-    renderer_options r{.backend = o.backend, .threads = o.threads.value_or(0), .device = o.device, .shader_cache = shader_cache_folder(o), .time_passes = o.time_passes};
+    renderer_options r{.backend = o.backend,
+        .threads = o.threads.value_or(0),
+        .device = o.device,
+        .shader_cache = shader_cache_folder(o),
+        .time_passes = o.time_passes};
     if (o.backend == "auto") {
         const auto device = hardware_vulkan_device();
         r.backend = device ? "vulkan" : has_cpu() ? "cpu" : "serial";
         r.device = device.value_or("");
         if (!o.quiet)
-            std::cerr << "photongrid: --backend auto: " << r.backend << (device ? ", device " + *device : " (no hardware Vulkan device)") << '\n';
+            std::cerr << "photongrid: --backend auto: " << r.backend
+                      << (device ? ", device " + *device : " (no hardware Vulkan device)") << '\n';
     }
     return r;
 }
@@ -114,8 +122,14 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
             check_image_path(path);
         if (!o.stats.empty())
             check_file_path(o.stats);
-        series.emplace(series_options{.folder = o.progressive, .stem = file_stem(s.name), .strip = o.strip, .strip_crop = o.strip_crop, .reference = o.reference,
-            .size = {settings.width, settings.height}, .exposure = settings.exposure, .every_ms = o.every});
+        series.emplace(series_options{.folder = o.progressive,
+            .stem = file_stem(s.name),
+            .strip = o.strip,
+            .strip_crop = o.strip_crop,
+            .reference = o.reference,
+            .size = {settings.width, settings.height},
+            .exposure = settings.exposure,
+            .every_ms = o.every});
     } catch (const std::invalid_argument& e) {
         std::cerr << "photongrid: error: on the command line: " << e.what() << '\n';
         return usage_error;
@@ -148,7 +162,8 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
     const auto picture = drawing->picture();
     const double total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     if (drawing->stats().invalid_pixels > 0)
-        std::cerr << "photongrid: warning: " << drawing->stats().invalid_pixels << " pixels were NaN or infinite and are black\n";
+        std::cerr << "photongrid: warning: " << drawing->stats().invalid_pixels
+                  << " pixels were NaN or infinite and are black\n";
     series->finish(picture);
     for (const auto& path : outputs) {
         write_image(path, picture, settings.exposure, picture_notes(s, settings, *drawing));
@@ -164,7 +179,8 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
         }
     }
     if (!finished) {
-        std::cerr << "photongrid: interrupted at " << percent(done) << "; the picture is the best there was" << go_on << '\n';
+        std::cerr << "photongrid: interrupted at " << percent(done) << "; the picture is the best there was" << go_on
+                  << '\n';
         return interrupted;
     }
     file.done();

@@ -4,7 +4,10 @@
 
 namespace photongrid {
 
-std::unique_ptr<renderer> cpu_renderer(const renderer_options& o) { return std::make_unique<renderer_on<cpu_backend>>(o.threads); }
+std::unique_ptr<renderer> cpu_renderer(const renderer_options& o)
+{
+    return std::make_unique<renderer_on<cpu_backend>>(o.threads);
+}
 
 std::vector<device_report> cpu_devices()
 {

@@ -8,7 +8,9 @@ namespace photongrid {
 
 std::unique_ptr<renderer> gl_renderer(const renderer_options& o)
 {
-    return std::make_unique<renderer_on<gl_backend>>(gl_options{.context = o.backend == "gl-osmesa" ? gl_context_kind::osmesa : gl_context_kind::egl, .time_passes = o.time_passes});
+    return std::make_unique<renderer_on<gl_backend>>(
+        gl_options{.context = o.backend == "gl-osmesa" ? gl_context_kind::osmesa : gl_context_kind::egl,
+            .time_passes = o.time_passes});
 }
 
 std::vector<device_report> gl_devices()

@@ -6,7 +6,8 @@ namespace photongrid {
 
 std::unique_ptr<renderer> vulkan_renderer(const renderer_options& o)
 {
-    return std::make_unique<renderer_on<vulkan_backend>>(vulkan_options{.device = o.device, .time_passes = o.time_passes, .cache_folder = o.shader_cache});
+    return std::make_unique<renderer_on<vulkan_backend>>(
+        vulkan_options{.device = o.device, .time_passes = o.time_passes, .cache_folder = o.shader_cache});
 }
 
 std::optional<std::string> hardware_vulkan_device()
@@ -31,7 +32,9 @@ std::vector<device_report> vulkan_devices_report()
     std::vector<device_report> all;
     try {
         for (const auto& d : vulkan_devices()) {
-            device_report r{.backend = "vulkan", .device = std::to_string(d.index) + ": " + d.name + " (" + d.type + ", " + d.driver + ", Vulkan " + d.api_version + ")"};
+            device_report r{.backend = "vulkan",
+                .device = std::to_string(d.index) + ": " + d.name + " (" + d.type + ", " + d.driver + ", Vulkan "
+                    + d.api_version + ")"};
             r.works = d.unusable.empty();
             r.about = d.unusable;
             if (r.works)
@@ -45,7 +48,8 @@ std::vector<device_report> vulkan_devices_report()
             all.push_back(r);
         }
         if (all.empty())
-            all.push_back({.backend = "vulkan", .about = "vulkan: the drivers list no device (Debian: apt install mesa-vulkan-drivers)"});
+            all.push_back({.backend = "vulkan",
+                .about = "vulkan: the drivers list no device (Debian: apt install mesa-vulkan-drivers)"});
     } catch (const backend_error& e) {
         all.push_back({.backend = "vulkan", .about = e.what()});
     }

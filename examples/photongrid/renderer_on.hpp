@@ -11,9 +11,14 @@ template <backend B>
 class renderer_on final : public renderer {
 public:
     template <class... Arguments>
-    explicit renderer_on(Arguments&&... arguments) : backend_(std::forward<Arguments>(arguments)...), drawing_(backend_) {}
+    explicit renderer_on(Arguments&&... arguments) : backend_(std::forward<Arguments>(arguments)...), drawing_(backend_)
+    {
+    }
 
-    void start(const scene& s, const render_settings& settings, const first_looks& looks) override { drawing_.start(s, settings, looks); }
+    void start(const scene& s, const render_settings& settings, const first_looks& looks) override
+    {
+        drawing_.start(s, settings, looks);
+    }
     void resume(view_state state) override { drawing_.resume(std::move(state)); }
     view_state state() override { return drawing_.state(); }
     bool step(double budget_ms) override { return drawing_.step(std::chrono::duration<double, std::milli>(budget_ms)); }

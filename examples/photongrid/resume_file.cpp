@@ -37,15 +37,17 @@ namespace {
 
 std::string picture_identity(const scene& s, const render_settings& settings, const capabilities& caps)
 {
-    const json all = {{"version", PHOTONGRID_VERSION}, {"backend", caps.backend}, {"device", caps.device}, {"scene", json::parse(scene_text(s, {}))},
-        {"set of settings", json::parse(settings_text(settings))}, {"choice of layers", settings.aov}};
+    const json all = {{"version", PHOTONGRID_VERSION}, {"backend", caps.backend}, {"device", caps.device},
+        {"scene", json::parse(scene_text(s, {}))}, {"set of settings", json::parse(settings_text(settings))},
+        {"choice of layers", settings.aov}};
     return all.dump();
 }
 
 void write_resume_file(const std::string& path, const std::string& identity, const view_state& state)
 {
     const auto bytes = bytes_of(state);
-    const json head = {{"rays", state.rays}, {"pixels", state.pixels.size()}, {"layers", !state.errors.empty()}, {"hash", hash(identity + bytes)}};
+    const json head = {{"rays", state.rays}, {"pixels", state.pixels.size()}, {"layers", !state.errors.empty()},
+        {"hash", hash(identity + bytes)}};
     write_file(path, std::string(first_line) + "\n" + identity + "\n" + head.dump() + "\n" + bytes);
 }
 
@@ -65,20 +67,29 @@ std::optional<view_state> read_resume_file(const std::string& path, const std::s
         return l;
     };
     const auto first = line(), theirs = line(), head_line = line(), bytes = text.substr(at);
-    const auto fail = [&](const std::string& why) -> void { throw file_error(path + ": " + why + "; remove it to begin the picture anew"); };
+    const auto fail = [&](const std::string& why) -> void {
+        throw file_error(path + ": " + why + "; remove it to begin the picture anew");
+    };
     if (first != first_line)
         fail("is no unfinished picture of this program");
     const auto head = json::parse(head_line, nullptr, false);
-    const auto number = [&](const char* key) { return head.is_object() && head.contains(key) && head[key].is_number_unsigned() ? head[key].get<std::uint64_t>() : 0; };
+    const auto number = [&](const char* key) {
+        return head.is_object() && head.contains(key) && head[key].is_number_unsigned() ? head[key].get<std::uint64_t>()
+                                                                                        : 0;
+    };
     const std::size_t pixels = number("pixels");
     const bool layers = head.is_object() && head.contains("layers") && head["layers"] == true;
-    if (pixels == 0 || pixels > bytes.size() || bytes.size() != pixels * sizeof(glm::vec4) * (layers ? 3u : 2u) || hash(theirs + bytes) != number("hash"))
+    if (pixels == 0 || pixels > bytes.size() || bytes.size() != pixels * sizeof(glm::vec4) * (layers ? 3u : 2u)
+        || hash(theirs + bytes) != number("hash"))
         fail("is damaged");
     if (theirs != identity) {
         const auto a = json::parse(theirs, nullptr, false), b = json::parse(identity);
         for (const auto& [key, value] : b.items())
             if (!a.is_object() || !a.contains(key) || a[key] != value)
-                fail("was begun with a different " + key + (value.is_string() && a.is_object() && a.contains(key) ? " (" + a[key].dump() + ", not " + value.dump() + ")" : ""));
+                fail("was begun with a different " + key
+                    + (value.is_string() && a.is_object() && a.contains(key)
+                            ? " (" + a[key].dump() + ", not " + value.dump() + ")"
+                            : ""));
         fail("was begun by another program");
     }
     view_state s;

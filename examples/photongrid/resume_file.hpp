@@ -17,8 +17,8 @@ std::string picture_identity(const scene& s, const render_settings& settings, co
 /// Writes a state, whole or not at all. Throws file_error.
 void write_resume_file(const std::string& path, const std::string& identity, const view_state& state);
 
-/// Reads the state of the picture with this identity; nothing where there is no such file. Throws file_error for a file that is
-/// damaged, or another picture's.
+/// Reads the state of the picture with this identity; nothing where there is no such file. Throws file_error for a file
+/// that is damaged, or another picture's.
 std::optional<view_state> read_resume_file(const std::string& path, const std::string& identity);
 
 } // namespace photongrid

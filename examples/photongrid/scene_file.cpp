@@ -13,30 +13,41 @@ namespace photongrid {
 namespace {
     // --- what the format knows ---
     constexpr bool must = true, may = false;
-    constexpr scene_key scene_keys[] = {{"$schema", may}, {"photongrid", must}, {"name", may}, {"units", must}, {"camera", must}, {"materials", must}, {"shapes", must}, {"lights", must}, {"render", must}};
+    constexpr scene_key scene_keys[] = {{"$schema", may}, {"photongrid", must}, {"name", may}, {"units", must},
+        {"camera", must}, {"materials", must}, {"shapes", must}, {"lights", must}, {"render", must}};
     constexpr scene_key units_keys[] = {{"length", must}, {"power", must}};
     constexpr scene_key camera_keys[] = {{"position", must}, {"look_at", must}, {"up", may}, {"vertical_fov", must}};
     constexpr scene_key reflecting_keys[] = {{"type", must}, {"reflectance", must}};
     constexpr scene_key mirror_keys[] = {{"type", must}, {"reflectance", may}};
     constexpr scene_key glass_keys[] = {{"type", must}, {"index_of_refraction", must}, {"transmittance", may}};
     constexpr scene_key sphere_keys[] = {{"type", must}, {"center", must}, {"radius", must}, {"material", must}};
-    constexpr scene_key cylinder_keys[] = {{"type", must}, {"base", must}, {"top", must}, {"radius", must}, {"material", must}};
-    constexpr scene_key cone_keys[] = {{"type", must}, {"base", must}, {"apex", must}, {"radius", must}, {"material", must}};
-    constexpr scene_key paraboloid_keys[] = {{"type", must}, {"vertex", must}, {"rim", must}, {"radius", must}, {"material", must}};
-    constexpr scene_key disk_keys[] = {{"type", must}, {"center", must}, {"normal", must}, {"radius", must}, {"material", must}};
+    constexpr scene_key cylinder_keys[]
+        = {{"type", must}, {"base", must}, {"top", must}, {"radius", must}, {"material", must}};
+    constexpr scene_key cone_keys[]
+        = {{"type", must}, {"base", must}, {"apex", must}, {"radius", must}, {"material", must}};
+    constexpr scene_key paraboloid_keys[]
+        = {{"type", must}, {"vertex", must}, {"rim", must}, {"radius", must}, {"material", must}};
+    constexpr scene_key disk_keys[]
+        = {{"type", must}, {"center", must}, {"normal", must}, {"radius", must}, {"material", must}};
     constexpr scene_key vertices_keys[] = {{"type", must}, {"vertices", must}, {"material", must}};
     constexpr scene_key point_keys[] = {{"type", must}, {"name", may}, {"position", must}, {"power", must}};
-    constexpr scene_key rectangle_keys[] = {{"type", must}, {"name", may}, {"corner", must}, {"edge_u", must}, {"edge_v", must}, {"power", must}};
-    constexpr scene_key render_keys[] = {{"size", must}, {"photons", must}, {"k", must}, {"grid", must}, {"max_radius", must}, {"light_samples", may}, {"spp", may}, {"depth", may}, {"photon_depth", may}, {"seed", may},
-        {"map", may}, {"slots", may}, {"exposure", may}, {"search", may}, {"kernel", may}, {"bias", may}, {"leaks", may}, {"edge_correction", may}};
+    constexpr scene_key rectangle_keys[]
+        = {{"type", must}, {"name", may}, {"corner", must}, {"edge_u", must}, {"edge_v", must}, {"power", must}};
+    constexpr scene_key render_keys[] = {{"size", must}, {"photons", must}, {"k", must}, {"grid", must},
+        {"max_radius", must}, {"light_samples", may}, {"spp", may}, {"depth", may}, {"photon_depth", may},
+        {"seed", may}, {"map", may}, {"slots", may}, {"exposure", may}, {"search", may}, {"kernel", may}, {"bias", may},
+        {"leaks", may}, {"edge_correction", may}};
     constexpr scene_key leaks_keys[] = {{"side", may}, {"normals", may}, {"disc", may}};
-    constexpr object_keys objects[] = {{"scene", scene_keys}, {"units", units_keys}, {"camera", camera_keys}, {"lambertian", reflecting_keys}, {"mirror", mirror_keys}, {"metal", reflecting_keys}, {"glass", glass_keys},
-        {"sphere", sphere_keys}, {"cylinder", cylinder_keys}, {"cone", cone_keys}, {"paraboloid", paraboloid_keys}, {"disk", disk_keys}, {"triangle", vertices_keys}, {"polygon", vertices_keys}, {"point", point_keys},
+    constexpr object_keys objects[] = {{"scene", scene_keys}, {"units", units_keys}, {"camera", camera_keys},
+        {"lambertian", reflecting_keys}, {"mirror", mirror_keys}, {"metal", reflecting_keys}, {"glass", glass_keys},
+        {"sphere", sphere_keys}, {"cylinder", cylinder_keys}, {"cone", cone_keys}, {"paraboloid", paraboloid_keys},
+        {"disk", disk_keys}, {"triangle", vertices_keys}, {"polygon", vertices_keys}, {"point", point_keys},
         {"rectangle", rectangle_keys}, {"render", render_keys}, {"leaks", leaks_keys}};
 
     // Beyond these, single precision (squares and cubes of lengths, photon power) is no longer safe.
     constexpr double max_length = 1e9, max_power = 1e15;
-    // Below this, squares and cubes of lengths leave even double precision, and normals made of them are no unit vectors.
+    // Below this, squares and cubes of lengths leave even double precision, and normals made of them are no unit
+    // vectors.
     constexpr double min_length = 1e-9;
     constexpr std::size_t max_shapes = 65'536, max_materials = 4'096, max_lights = 1'024, max_vertices = 1'024;
 
@@ -48,7 +59,8 @@ namespace {
         return all;
     }
 
-    /// The length (m) that a part must not lack: its axis, its least edge, a polygon's extent. Radii are read with limits.
+    /// The length (m) that a part must not lack: its axis, its least edge, a polygon's extent. Radii are read with
+    /// limits.
     double extent(const cylinder& c) { return glm::length(c.top - c.base); }
     double extent(const cone& c) { return glm::length(c.apex - c.base); }
     double extent(const paraboloid& p) { return glm::length(p.rim - p.vertex); }
@@ -69,10 +81,7 @@ namespace {
 
     class reader {
     public:
-        reader(const std::string& file, std::string text)
-            : tree_(file, std::move(text))
-        {
-        }
+        reader(const std::string& file, std::string text) : tree_(file, std::move(text)) {}
 
         scene read(const std::string& default_name)
         {
@@ -95,7 +104,10 @@ namespace {
         }
 
     private:
-        [[noreturn]] void wrong(const json_value& v, const std::string& expected) const { tree_.fail(v.place, "found " + described(v) + "; expected " + expected); }
+        [[noreturn]] void wrong(const json_value& v, const std::string& expected) const
+        {
+            tree_.fail(v.place, "found " + described(v) + "; expected " + expected);
+        }
 
         // --- objects ---
         static const json_value& at(const json_value& object, std::string_view key) { return *object.find(key); }
@@ -113,13 +125,18 @@ namespace {
         {
             if (v.kind != json_kind::object)
                 wrong(v, "an object with the keys of \"" + std::string(kind) + "\"");
-            const auto keys = std::find_if(std::begin(objects), std::end(objects), [&](const object_keys& o) { return o.name == kind; })->keys;
+            const auto keys = std::find_if(std::begin(objects), std::end(objects), [&](const object_keys& o) {
+                return o.name == kind;
+            })->keys;
             for (const auto& m : v.items) {
-                if (m.key == "comment" || std::any_of(keys.begin(), keys.end(), [&](const scene_key& k) { return m.key == k.name; }))
+                if (m.key == "comment"
+                    || std::any_of(keys.begin(), keys.end(), [&](const scene_key& k) { return m.key == k.name; }))
                     continue;
                 const auto near = nearest(m.key, names(keys));
-                tree_.fail(m.key_place, "unknown key " + described({.kind = json_kind::string, .text = m.key}).substr(9) + " in \"" + std::string(kind) + "\"; expected "
-                    + (near.empty() ? joined(names(keys)) : "\"" + near + "\"?"));
+                tree_.fail(m.key_place,
+                    "unknown key " + described({.kind = json_kind::string, .text = m.key}).substr(9) + " in \""
+                        + std::string(kind) + "\"; expected "
+                        + (near.empty() ? joined(names(keys)) : "\"" + near + "\"?"));
             }
             for (const auto& k : keys)
                 if (k.required && !v.find(k.name))
@@ -150,7 +167,8 @@ namespace {
             if (v.kind != json_kind::array)
                 wrong(v, std::string("an array of ") + what);
             if (v.items.size() > limit)
-                tree_.fail(v.items[limit].place, std::to_string(v.items.size()) + " " + what + "; expected at most " + std::to_string(limit));
+                tree_.fail(v.items[limit].place,
+                    std::to_string(v.items.size()) + " " + what + "; expected at most " + std::to_string(limit));
             for (const auto& item : v.items)
                 read(item);
         }
@@ -168,7 +186,8 @@ namespace {
             }
             if constexpr (requires { extent(part); })
                 if (extent(part) < min_length)
-                    tree_.fail(v.place, "its points or edges are less than 1e-9 m apart; expected a larger one (are the units right?)");
+                    tree_.fail(v.place,
+                        "its points or edges are less than 1e-9 m apart; expected a larger one (are the units right?)");
         }
 
         // --- numbers ---
@@ -198,8 +217,14 @@ namespace {
             return d;
         }
 
-        double length(const json_value& v) const { return in_units(v, length_, -max_length, max_length, "a length of at most 1e9 m"); }
-        double radius(const json_value& v) const { return in_units(v, length_, min_length, max_length, "a length from 1e-9 m to 1e9 m"); }
+        double length(const json_value& v) const
+        {
+            return in_units(v, length_, -max_length, max_length, "a length of at most 1e9 m");
+        }
+        double radius(const json_value& v) const
+        {
+            return in_units(v, length_, min_length, max_length, "a length from 1e-9 m to 1e9 m");
+        }
 
         template <class Element>
         dvec3 three(const json_value& v, const char* expected, Element&& element) const
@@ -216,7 +241,8 @@ namespace {
 
         dvec3 direction(const json_value& v) const
         {
-            const auto d = three(v, "a direction: [x, y, z]", [&](const json_value& c) { return number(c, -1e9, 1e9, "a number from -1e9 to 1e9"); });
+            const auto d = three(v, "a direction: [x, y, z]",
+                [&](const json_value& c) { return number(c, -1e9, 1e9, "a number from -1e9 to 1e9"); });
             if (glm::length(d) < 1e-9)
                 tree_.fail(v.place, "found a direction shorter than 1e-9; expected a longer one");
             return d;
@@ -231,18 +257,22 @@ namespace {
 
         dvec3 fraction(const json_value& v) const
         {
-            return rgb(v, "[red, green, blue] or one number, each from 0 to 1", [&](const json_value& c) { return number(c, 0, 1, "a number from 0 to 1"); });
+            return rgb(v, "[red, green, blue] or one number, each from 0 to 1",
+                [&](const json_value& c) { return number(c, 0, 1, "a number from 0 to 1"); });
         }
 
         dvec3 power(const json_value& v) const
         {
-            return rgb(v, "[red, green, blue] or one number: power", [&](const json_value& c) { return in_units(c, power_, 0, max_power, "a power from 0 to 1e15 W"); });
+            return rgb(v, "[red, green, blue] or one number: power",
+                [&](const json_value& c) { return in_units(c, power_, 0, max_power, "a power from 0 to 1e15 W"); });
         }
 
         /// Names stand in messages, so a terminal must bear them.
         static bool is_name(const std::string& text)
         {
-            return !text.empty() && text.size() <= 100 && std::none_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+            return !text.empty() && text.size() <= 100 && std::none_of(text.begin(), text.end(), [](char c) {
+                return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+            });
         }
 
         std::string read_name(const json_value& v) const
@@ -256,7 +286,8 @@ namespace {
         void read_units(const json_value& v)
         {
             open(v, "units");
-            static const std::map<std::string, unit> lengths{{"m", {}}, {"cm", {1, 100}}, {"mm", {1, 1000}}}, powers{{"W", {}}, {"mW", {1, 1000}}, {"kW", {1000, 1}}};
+            static const std::map<std::string, unit> lengths{{"m", {}}, {"cm", {1, 100}}, {"mm", {1, 1000}}},
+                powers{{"W", {}}, {"mW", {1, 1000}}, {"kW", {1000, 1}}};
             length_ = lengths.at(one_of(at(v, "length"), {"m", "cm", "mm"}));
             power_ = powers.at(one_of(at(v, "power"), {"W", "mW", "kW"}));
         }
@@ -278,11 +309,14 @@ namespace {
             if (v.kind != json_kind::object)
                 wrong(v, "an object: materials by name");
             if (v.items.size() > max_materials)
-                tree_.fail(v.items[max_materials].key_place, std::to_string(v.items.size()) + " materials; expected at most " + std::to_string(max_materials));
+                tree_.fail(v.items[max_materials].key_place,
+                    std::to_string(v.items.size()) + " materials; expected at most " + std::to_string(max_materials));
             for (const auto& m : v.items)
                 if (m.key != "comment") {
                     if (!is_name(m.key))
-                        tree_.fail(m.key_place, "found the key " + described({.kind = json_kind::string, .text = m.key}).substr(9) + "; expected a material's name of 1 to 100 bytes without control characters");
+                        tree_.fail(m.key_place,
+                            "found the key " + described({.kind = json_kind::string, .text = m.key}).substr(9)
+                                + "; expected a material's name of 1 to 100 bytes without control characters");
                     material_index_[m.key] = static_cast<std::uint32_t>(scene_.materials.size());
                     material_names_.push_back(m.key);
                     scene_.materials.push_back(read_material(m));
@@ -294,7 +328,10 @@ namespace {
             const auto& type = type_of(v, "material", {"lambertian", "mirror", "metal", "glass"});
             open(v, type);
             material made{.name = v.key};
-            made.kind = type == "lambertian" ? material_kind::lambertian : type == "mirror" ? material_kind::mirror : type == "metal" ? material_kind::metal : material_kind::glass;
+            made.kind = type == "lambertian" ? material_kind::lambertian
+                : type == "mirror"           ? material_kind::mirror
+                : type == "metal"            ? material_kind::metal
+                                             : material_kind::glass;
             const auto* colour = v.find(type == "glass" ? "transmittance" : "reflectance");
             made.reflectance = colour ? fraction(*colour) : dvec3(1);
             if (const auto* ior = v.find("index_of_refraction"))
@@ -311,7 +348,8 @@ namespace {
             const auto found = material_index_.find(v.text);
             if (found == material_index_.end()) {
                 const auto near = nearest(v.text, material_names_);
-                wrong(v, "the name of a material in \"materials\"" + (near.empty() ? "" : ", perhaps \"" + near + "\""));
+                wrong(
+                    v, "the name of a material in \"materials\"" + (near.empty() ? "" : ", perhaps \"" + near + "\""));
             }
             return found->second;
         }
@@ -326,7 +364,8 @@ namespace {
 
         void read_shape(const json_value& v)
         {
-            const auto& type = type_of(v, "shape", {"sphere", "cylinder", "cone", "paraboloid", "disk", "triangle", "polygon"});
+            const auto& type
+                = type_of(v, "shape", {"sphere", "cylinder", "cone", "paraboloid", "disk", "triangle", "polygon"});
             open(v, type);
             const auto p = [&](const char* key) { return point(at(v, key)); };
             const auto r = [&] { return radius(at(v, "radius")); };
@@ -347,8 +386,10 @@ namespace {
         void read_polygon(const json_value& v, bool triangle)
         {
             const auto& list = at(v, "vertices");
-            if (list.kind != json_kind::array || list.items.size() < 3 || list.items.size() > (triangle ? 3 : max_vertices))
-                wrong(list, triangle ? "an array of 3 points" : "an array of 3 to " + std::to_string(max_vertices) + " points");
+            if (list.kind != json_kind::array || list.items.size() < 3
+                || list.items.size() > (triangle ? 3 : max_vertices))
+                wrong(list,
+                    triangle ? "an array of 3 points" : "an array of 3 to " + std::to_string(max_vertices) + " points");
             polygon p;
             for (const auto& vertex : list.items)
                 p.vertices.push_back(point(vertex));
@@ -360,13 +401,19 @@ namespace {
             const auto& type = type_of(v, "light", {"point", "rectangle"});
             open(v, type);
             const auto* given = v.find("name");
-            const auto name = given ? read_name(*given) : "lights[" + std::to_string(scene_.point_lights.size() + scene_.rectangle_lights.size()) + "]";
+            const auto name = given
+                ? read_name(*given)
+                : "lights[" + std::to_string(scene_.point_lights.size() + scene_.rectangle_lights.size()) + "]";
             if (type == "point") {
                 const point_light l{.name = name, .position = point(at(v, "position")), .power = power(at(v, "power"))};
                 checked(v, l);
                 scene_.point_lights.push_back(l);
             } else {
-                const rectangle_light l{.name = name, .corner = point(at(v, "corner")), .edge_u = point(at(v, "edge_u")), .edge_v = point(at(v, "edge_v")), .power = power(at(v, "power"))};
+                const rectangle_light l{.name = name,
+                    .corner = point(at(v, "corner")),
+                    .edge_u = point(at(v, "edge_u")),
+                    .edge_v = point(at(v, "edge_v")),
+                    .power = power(at(v, "power"))};
                 checked(v, l);
                 scene_.rectangle_lights.push_back(l);
             }
@@ -407,7 +454,8 @@ namespace {
             if (const auto& grid = at(v, "grid"); grid.kind == json_kind::string && grid.text == "auto") {
                 r.grid = glm::uvec3(0);
             } else {
-                const auto cells = three(grid, "a grid: [x, y, z] cells, or \"auto\"", [&](const json_value& c) { return static_cast<double>(whole(c, 1, 1u << 20)); });
+                const auto cells = three(grid, "a grid: [x, y, z] cells, or \"auto\"",
+                    [&](const json_value& c) { return static_cast<double>(whole(c, 1, 1u << 20)); });
                 if (cells.x * cells.y * cells.z > 0x1p31)
                     wrong(grid, "at most 2^31 cells");
                 r.grid = glm::uvec3(cells);
@@ -447,7 +495,10 @@ namespace {
 
 std::span<const object_keys> known_objects() { return objects; }
 
-scene parse_scene(const std::string& file, std::string text) { return reader(file, std::move(text)).read(std::filesystem::path(file).stem().string()); }
+scene parse_scene(const std::string& file, std::string text)
+{
+    return reader(file, std::move(text)).read(std::filesystem::path(file).stem().string());
+}
 
 scene read_scene(const std::string& path) { return parse_scene(path, read_scene_text(path)); }
 

@@ -16,8 +16,8 @@ struct scene_key {
     bool required;
 };
 
-/// The keys of one kind of object. examples/scenes/photongrid-scene.schema.json defines the same kinds by the same names
-/// (a test compares them). Every object may also have "comment".
+/// The keys of one kind of object. examples/scenes/photongrid-scene.schema.json defines the same kinds by the same
+/// names (a test compares them). Every object may also have "comment".
 struct object_keys {
     const char* name;
     std::span<const scene_key> keys;

@@ -37,9 +37,13 @@ namespace {
 
     json settings_json(const render_settings& s)
     {
-        return {{"size", {s.width, s.height}}, {"photons", s.photons}, {"k", s.k}, {"grid", s.grid == glm::uvec3(0) ? json("auto") : json{s.grid.x, s.grid.y, s.grid.z}}, {"max_radius", s.max_radius}, {"light_samples", s.light_samples}, {"spp", s.spp},
-            {"depth", s.depth}, {"photon_depth", s.photon_depth}, {"seed", s.seed}, {"map", name_of(map_names, s.builder)}, {"slots", s.slots}, {"exposure", s.exposure},
-            {"search", name_of(search_names, s.search)}, {"kernel", name_of(kernel_names, s.kernel)}, {"bias", name_of(bias_names, s.bias)}, {"leaks", leaks_json(s.leaks)}, {"edge_correction", name_of(edge_names, s.edges)},
+        return {{"size", {s.width, s.height}}, {"photons", s.photons}, {"k", s.k},
+            {"grid", s.grid == glm::uvec3(0) ? json("auto") : json{s.grid.x, s.grid.y, s.grid.z}},
+            {"max_radius", s.max_radius}, {"light_samples", s.light_samples}, {"spp", s.spp}, {"depth", s.depth},
+            {"photon_depth", s.photon_depth}, {"seed", s.seed}, {"map", name_of(map_names, s.builder)},
+            {"slots", s.slots}, {"exposure", s.exposure}, {"search", name_of(search_names, s.search)},
+            {"kernel", name_of(kernel_names, s.kernel)}, {"bias", name_of(bias_names, s.bias)},
+            {"leaks", leaks_json(s.leaks)}, {"edge_correction", name_of(edge_names, s.edges)},
             {"only", name_of(part_names, s.only)}};
     }
 
@@ -72,7 +76,8 @@ namespace {
         case material_kind::lambertian: return {{"type", "lambertian"}, {"reflectance", colour}};
         case material_kind::mirror: return {{"type", "mirror"}, {"reflectance", colour}};
         case material_kind::metal: return {{"type", "metal"}, {"reflectance", colour}};
-        case material_kind::glass: return {{"type", "glass"}, {"index_of_refraction", m.index_of_refraction}, {"transmittance", colour}};
+        case material_kind::glass:
+            return {{"type", "glass"}, {"index_of_refraction", m.index_of_refraction}, {"transmittance", colour}};
         }
         throw std::logic_error("a material without a kind");
     }
@@ -97,9 +102,11 @@ std::string scene_text(const scene& s, const render_settings& settings)
     for (const auto& x : s.cones)
         add({{"type", "cone"}, {"base", three(x.base)}, {"apex", three(x.apex)}, {"radius", x.radius}}, x.material);
     for (const auto& x : s.paraboloids)
-        add({{"type", "paraboloid"}, {"vertex", three(x.vertex)}, {"rim", three(x.rim)}, {"radius", x.radius}}, x.material);
+        add({{"type", "paraboloid"}, {"vertex", three(x.vertex)}, {"rim", three(x.rim)}, {"radius", x.radius}},
+            x.material);
     for (const auto& x : s.disks)
-        add({{"type", "disk"}, {"center", three(x.center)}, {"normal", three(x.normal)}, {"radius", x.radius}}, x.material);
+        add({{"type", "disk"}, {"center", three(x.center)}, {"normal", three(x.normal)}, {"radius", x.radius}},
+            x.material);
     for (const auto& x : s.polygons) {
         json vertices = json::array();
         for (const auto& v : x.vertices)
@@ -107,17 +114,22 @@ std::string scene_text(const scene& s, const render_settings& settings)
         add({{"type", "polygon"}, {"vertices", std::move(vertices)}}, x.material);
     }
     for (const auto& x : s.point_lights)
-        lights.push_back({{"type", "point"}, {"name", x.name}, {"position", three(x.position)}, {"power", three(x.power)}});
+        lights.push_back(
+            {{"type", "point"}, {"name", x.name}, {"position", three(x.position)}, {"power", three(x.power)}});
     for (const auto& x : s.rectangle_lights)
-        lights.push_back({{"type", "rectangle"}, {"name", x.name}, {"corner", three(x.corner)}, {"edge_u", three(x.edge_u)}, {"edge_v", three(x.edge_v)}, {"power", three(x.power)}});
+        lights.push_back({{"type", "rectangle"}, {"name", x.name}, {"corner", three(x.corner)},
+            {"edge_u", three(x.edge_u)}, {"edge_v", three(x.edge_v)}, {"power", three(x.power)}});
     for (auto& light : lights)
         if (light["name"] == "")
             light.erase("name");
     auto render = settings_json(settings);
     render.erase("only");
-    const json all = {{"photongrid", 1}, {"name", s.name.empty() ? "scene" : s.name}, {"units", {{"length", "m"}, {"power", "W"}}},
-        {"camera", {{"position", three(s.camera.position)}, {"look_at", three(s.camera.look_at)}, {"up", three(s.camera.up)}, {"vertical_fov", s.camera.vertical_fov}}}, {"materials", materials},
-        {"shapes", shapes}, {"lights", lights}, {"render", render}};
+    const json all
+        = {{"photongrid", 1}, {"name", s.name.empty() ? "scene" : s.name}, {"units", {{"length", "m"}, {"power", "W"}}},
+            {"camera",
+                {{"position", three(s.camera.position)}, {"look_at", three(s.camera.look_at)},
+                    {"up", three(s.camera.up)}, {"vertical_fov", s.camera.vertical_fov}}},
+            {"materials", materials}, {"shapes", shapes}, {"lights", lights}, {"render", render}};
     return all.dump(2) + "\n";
 }
 

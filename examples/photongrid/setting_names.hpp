@@ -18,12 +18,16 @@ struct named {
 };
 
 inline constexpr named<map_builder> map_names[] = {{"sort", map_builder::sort}, {"route", map_builder::route}};
-inline constexpr named<search_kind> search_names[] = {{"at_least_k", search_kind::at_least_k}, {"exact_k", search_kind::exact_k}, {"fixed_radius", search_kind::fixed_radius}};
+inline constexpr named<search_kind> search_names[] = {{"at_least_k", search_kind::at_least_k},
+    {"exact_k", search_kind::exact_k}, {"fixed_radius", search_kind::fixed_radius}};
 inline constexpr named<filter_kernel> kernel_names[]
-    = {{"constant", filter_kernel::constant}, {"cone", filter_kernel::cone}, {"epanechnikov", filter_kernel::epanechnikov}, {"silverman", filter_kernel::silverman}};
+    = {{"constant", filter_kernel::constant}, {"cone", filter_kernel::cone},
+        {"epanechnikov", filter_kernel::epanechnikov}, {"silverman", filter_kernel::silverman}};
 inline constexpr named<bias_kind> bias_names[] = {{"paper", bias_kind::paper}, {"unbiased", bias_kind::unbiased}};
-inline constexpr named<edge_correction> edge_names[] = {{"none", edge_correction::none}, {"polygons", edge_correction::polygons}};
-inline constexpr named<light_part> part_names[] = {{"all", light_part::all}, {"direct", light_part::direct}, {"caustic", light_part::caustic}, {"indirect", light_part::indirect}};
+inline constexpr named<edge_correction> edge_names[]
+    = {{"none", edge_correction::none}, {"polygons", edge_correction::polygons}};
+inline constexpr named<light_part> part_names[] = {{"all", light_part::all}, {"direct", light_part::direct},
+    {"caustic", light_part::caustic}, {"indirect", light_part::indirect}};
 
 template <class Setting, std::size_t N>
 std::vector<std::string> words(const named<Setting> (&names)[N])

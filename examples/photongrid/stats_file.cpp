@@ -14,7 +14,10 @@ namespace photongrid {
 namespace {
     using json = nlohmann::ordered_json;
 
-    json stage_json(const stage_stats& s) { return {{"ms", s.ms}, {"compile_ms", s.compile_ms}, {"passes", s.passes}, {"device_bytes", s.device_bytes}}; }
+    json stage_json(const stage_stats& s)
+    {
+        return {{"ms", s.ms}, {"compile_ms", s.compile_ms}, {"passes", s.passes}, {"device_bytes", s.device_bytes}};
+    }
 } // namespace
 
 std::string stats_json(const scene& s, const render_settings& settings, const renderer& result, double total_ms)
@@ -25,22 +28,34 @@ std::string stats_json(const scene& s, const render_settings& settings, const re
     double compile_ms = 0;
     for (const auto& [name, cost] : result.costs()) {
         compile_ms += cost.compile_ms;
-        kernels[name] = {{"instructions", cost.instructions}, {"compile_ms", cost.compile_ms}, {"ms", cost.ms}, {"passes", cost.passes}};
+        kernels[name] = {{"instructions", cost.instructions}, {"compile_ms", cost.compile_ms}, {"ms", cost.ms},
+            {"passes", cost.passes}};
     }
-    const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.name}, {"backend", result.caps().backend}, {"device", result.caps().device}, {"seed", settings.seed}, {"settings", json::parse(settings_text(settings))},
+    const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.name}, {"backend", result.caps().backend},
+        {"device", result.caps().device}, {"seed", settings.seed}, {"settings", json::parse(settings_text(settings))},
         {"photons",
-            {{"emitted", p.emitted}, {"absorbed", p.absorbed}, {"escaped", p.escaped}, {"cut_off", p.cut_off}, {"invalid", p.invalid}, {"stored", p.stored}, {"direct", p.direct}, {"dropped", p.dropped}}},
-        {"map", {{"builder", name_of(map_names, r.map.builder)}, {"cells", r.map.cells}, {"resolution", {r.map.resolution.x, r.map.resolution.y, r.map.resolution.z}}, {"overfull_cells", r.map.overfull_cells}, {"redistributed_flux", r.map.redistributed_flux}, {"left_out", r.map.left_out}}},
+            {{"emitted", p.emitted}, {"absorbed", p.absorbed}, {"escaped", p.escaped}, {"cut_off", p.cut_off},
+                {"invalid", p.invalid}, {"stored", p.stored}, {"direct", p.direct}, {"dropped", p.dropped}}},
+        {"map",
+            {{"builder", name_of(map_names, r.map.builder)}, {"cells", r.map.cells},
+                {"resolution", {r.map.resolution.x, r.map.resolution.y, r.map.resolution.z}},
+                {"overfull_cells", r.map.overfull_cells}, {"redistributed_flux", r.map.redistributed_flux},
+                {"left_out", r.map.left_out}}},
         {"stages",
-            {{"trace_photons", stage_json(r.trace_photons)}, {"build_map", stage_json(r.build_map)}, {"trace_rays", stage_json(r.trace_rays)}, {"radiance_estimate", stage_json(r.radiance_estimate)}}},
-        {"estimate", {{"mean_count", r.estimate.mean_count}, {"mean_radius", r.estimate.mean_radius}, {"mean_visited", r.estimate.mean_visited}}}, {"kernels", kernels},
-        {"peak_memory_bytes", peak_memory_bytes()}, {"peak_device_bytes", r.peak_device_bytes}, {"compile_ms", compile_ms}, {"total_ms", total_ms}};
+            {{"trace_photons", stage_json(r.trace_photons)}, {"build_map", stage_json(r.build_map)},
+                {"trace_rays", stage_json(r.trace_rays)}, {"radiance_estimate", stage_json(r.radiance_estimate)}}},
+        {"estimate",
+            {{"mean_count", r.estimate.mean_count}, {"mean_radius", r.estimate.mean_radius},
+                {"mean_visited", r.estimate.mean_visited}}},
+        {"kernels", kernels}, {"peak_memory_bytes", peak_memory_bytes()}, {"peak_device_bytes", r.peak_device_bytes},
+        {"compile_ms", compile_ms}, {"total_ms", total_ms}};
     return all.dump(2) + "\n";
 }
 
 image_notes picture_notes(const scene& s, const render_settings& settings, const renderer& result)
 {
-    return {{"scene", s.name}, {"backend", result.caps().backend}, {"device", result.caps().device}, {"seed", std::to_string(settings.seed)}, {"settings", settings_text(settings)},
+    return {{"scene", s.name}, {"backend", result.caps().backend}, {"device", result.caps().device},
+        {"seed", std::to_string(settings.seed)}, {"settings", settings_text(settings)},
         {"version", std::string("photongrid ") + PHOTONGRID_VERSION}};
 }
 

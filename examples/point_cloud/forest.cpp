@@ -1,5 +1,5 @@
-// Density and nearest neighbours of a point cloud that has nothing to do with photons: a forest of 200,000 trees, 500 to the
-// hectare in the west and 150 in the east, where they are taller.
+// Density and nearest neighbours of a point cloud that has nothing to do with photons: a forest of 200,000 trees, 500
+// to the hectare in the west and 150 in the east, where they are taller.
 #include "forest.hpp"
 
 #include <photongrid/backends/serial/serial.hpp>
@@ -16,14 +16,18 @@ int main()
         const tree t{2500 * unit(random), 2500 * unit(random), 0};
         const bool west = t.east < 1250;
         if (unit(random) < (west ? 1.0 : 0.3))
-            trees.push_back({t.east, t.north, static_cast<float>(west ? 12 + 4 * unit(random) : 22 + 8 * unit(random))});
+            trees.push_back(
+                {t.east, t.north, static_cast<float>(west ? 12 + 4 * unit(random) : 22 + 8 * unit(random))});
     }
     photongrid::serial_backend device; // change this line to survey it on another backend
     const std::vector<glm::vec3> places{{400, 1200, 0}, {1100, 300, 0}, {2000, 700, 0}};
     const auto surveys = survey_forest(device, trees, places, 200);
     for (std::size_t p = 0; p < places.size(); ++p) {
         const auto& s = surveys[p];
-        std::printf("%4.0f m east, %4.0f m north: %3.0f +- %2.0f trees a hectare, %4.1f m high; the nearest is tree %6u, %.1f m away\n", static_cast<double>(places[p].x), static_cast<double>(places[p].y),
-            static_cast<double>(s.trees_a_hectare), static_cast<double>(s.standard_error), static_cast<double>(s.mean_height), s.nearest[0], static_cast<double>(s.distances[0]));
+        std::printf("%4.0f m east, %4.0f m north: %3.0f +- %2.0f trees a hectare, %4.1f m high; the nearest is tree "
+                    "%6u, %.1f m away\n",
+            static_cast<double>(places[p].x), static_cast<double>(places[p].y), static_cast<double>(s.trees_a_hectare),
+            static_cast<double>(s.standard_error), static_cast<double>(s.mean_height), s.nearest[0],
+            static_cast<double>(s.distances[0]));
     }
 }

@@ -26,15 +26,16 @@ struct photongrid::photon_reader<tree> {
 /// What is found about one place.
 struct survey {
     float trees_a_hectare = 0;
-    float standard_error = 0; ///< of it
-    float mean_height = 0;    ///< m
+    float standard_error = 0;           ///< of it
+    float mean_height = 0;              ///< m
     std::vector<std::uint32_t> nearest; ///< places in the vector of trees
     std::vector<float> distances;       ///< m
 };
 
 /// Surveys places (m: east, north, 0) from the `k` trees nearest to each, on any backend.
 template <photongrid::backend Device>
-std::vector<survey> survey_forest(Device& device, const std::vector<tree>& trees, const std::vector<glm::vec3>& places, std::uint32_t k)
+std::vector<survey> survey_forest(
+    Device& device, const std::vector<tree>& trees, const std::vector<glm::vec3>& places, std::uint32_t k)
 {
     // Trees to the device, into a map of cells that suit them; places too.
     const auto map = photongrid::fitted_map(device, photongrid::upload_photons(device, trees), k);
@@ -53,7 +54,8 @@ std::vector<survey> survey_forest(Device& device, const std::vector<tree>& trees
         heights.push_back(t.height);
     const auto all_heights = photongrid::upload(device, heights);
     auto mean = device.template make<float>(places.size());
-    device.template run<forest::mean_height>(places.size(), {.k = k}, photongrid::reads(neighbours.ids, neighbours.distances2, all_heights), photongrid::writes(mean));
+    device.template run<forest::mean_height>(places.size(), {.k = k},
+        photongrid::reads(neighbours.ids, neighbours.distances2, all_heights), photongrid::writes(mean));
 
     const auto per_square_metre = device.download(density.irradiance), errors = device.download(density.standard_error);
     const auto means = device.download(mean), distances2 = device.download(neighbours.distances2);

@@ -40,14 +40,18 @@ struct photongrid::photon_reader<particle> {
 
 namespace {
 
-bool is_near(float value, double truth, double tolerance) { return std::abs(static_cast<double>(value) - truth) <= tolerance * truth; }
+bool is_near(float value, double truth, double tolerance)
+{
+    return std::abs(static_cast<double>(value) - truth) <= tolerance * truth;
+}
 
 /// 1 W on a square of 1 m about the origin: 1 W/m^2 everywhere. Spread by multiples of irrational numbers.
 std::vector<photon> photons_on_a_square()
 {
     std::vector<photon> all;
     for (int i = 1; i <= 10000; ++i)
-        all.push_back({{std::fmod(i * 0.7548776662, 1.0) - 0.5, 0, std::fmod(i * 0.5698402910, 1.0) - 0.5}, glm::vec3(1e-4f)});
+        all.push_back(
+            {{std::fmod(i * 0.7548776662, 1.0) - 0.5, 0, std::fmod(i * 0.5698402910, 1.0) - 0.5}, glm::vec3(1e-4f)});
     return all;
 }
 
@@ -100,34 +104,43 @@ void maps(device_type& device)
     expect(n == 400, "make_grid");
 
     //! [upload_photons]
-    photongrid::photons<device_type> p = photongrid::upload_photons(device, mine); // a vector of { vec3 position; vec3 flux; }
+    photongrid::photons<device_type> p
+        = photongrid::upload_photons(device, mine); // a vector of { vec3 position; vec3 flux; }
     //! [upload_photons]
-    expect(p.size() == mine.size() && device.download(p.powers)[0] == glm::vec4(1e-4f, 1e-4f, 1e-4f, 0), "upload_photons");
+    expect(
+        p.size() == mine.size() && device.download(p.powers)[0] == glm::vec4(1e-4f, 1e-4f, 1e-4f, 0), "upload_photons");
 
     const auto particles = photongrid::upload_photons(device, std::vector<particle>{{{1, 2, 3}, 5}});
-    expect(device.download(particles.positions)[0] == glm::vec4(1, 2, 3, 0) && device.download(particles.powers)[0] == glm::vec4(5, 5, 5, 0), "photon_reader");
+    expect(device.download(particles.positions)[0] == glm::vec4(1, 2, 3, 0)
+            && device.download(particles.powers)[0] == glm::vec4(5, 5, 5, 0),
+        "photon_reader");
 
     //! [fitting_grid]
-    const photongrid::grid fitted = photongrid::fitting_grid(device, p, 50, device.caps().cells_a_radius); // for the 50 nearest
+    const photongrid::grid fitted
+        = photongrid::fitting_grid(device, p, 50, device.caps().cells_a_radius); // for the 50 nearest
     //! [fitting_grid]
     expect(photongrid::cell_count(fitted) > 100 && photongrid::cell_count(fitted) <= 12500, "fitting_grid");
 
     //! [stencil_route]
-    const auto routed = photongrid::stencil_route(device, p, cells, 4);       // 4 x 4 slots a cell
-    const std::vector<photongrid::uint> slots = device.download(routed.list); // 16 ids a cell, 0xFFFFFFFF where there are no more
-    const glm::uvec2 first_cell = device.download(routed.cells)[0];           // (0, 16): it is full
+    const auto routed = photongrid::stencil_route(device, p, cells, 4); // 4 x 4 slots a cell
+    const std::vector<photongrid::uint> slots
+        = device.download(routed.list);                             // 16 ids a cell, 0xFFFFFFFF where there are no more
+    const glm::uvec2 first_cell = device.download(routed.cells)[0]; // (0, 16): it is full
     //! [stencil_route]
-    expect(slots.size() == 6400 && first_cell == glm::uvec2(0, 16) && slots[0] < p.size() && routed.overfull_cells > 0, "stencil_route");
+    expect(slots.size() == 6400 && first_cell == glm::uvec2(0, 16) && slots[0] < p.size() && routed.overfull_cells > 0,
+        "stencil_route");
 
     //! [sorted_map]
     const auto map = photongrid::sorted_map(device, std::move(p), cells);
-    const glm::uvec2 range = device.download(map.cells)[0];         // cell 0 has the photons range.x to range.x + range.y - 1
-    const photongrid::uint id = device.download(map.list)[range.x]; // the first of them is photon `id` of those uploaded
+    const glm::uvec2 range = device.download(map.cells)[0]; // cell 0 has the photons range.x to range.x + range.y - 1
+    const photongrid::uint id
+        = device.download(map.list)[range.x]; // the first of them is photon `id` of those uploaded
     //! [sorted_map]
     expect(range.y > 0 && mine[id].position.x < -0.45f && mine[id].position.z < -0.45f, "sorted_map");
 
     //! [routed_map]
-    const auto approximate = photongrid::routed_map(device, photongrid::upload_photons(device, mine), cells, 4); // 4 x 4 slots a cell
+    const auto approximate
+        = photongrid::routed_map(device, photongrid::upload_photons(device, mine), cells, 4); // 4 x 4 slots a cell
     //! [routed_map]
     expect(approximate.overfull_cells > 0 && device.download(approximate.cells)[0].y == 16, "routed_map");
 
@@ -137,7 +150,8 @@ void maps(device_type& device)
     expect(moved > 0.5 && moved < 3 && photongrid::redistributed_flux(device, map) == 0, "redistributed_flux");
 
     //! [fitted_map]
-    const auto ready = photongrid::fitted_map(device, photongrid::upload_photons(device, mine), 50); // for the 50 nearest
+    const auto ready
+        = photongrid::fitted_map(device, photongrid::upload_photons(device, mine), 50); // for the 50 nearest
     //! [fitted_map]
     expect(ready.photons.size() == mine.size() && ready.invalid == 0, "fitted_map");
 }
@@ -151,11 +165,13 @@ void estimates(device_type& device, const photongrid::photon_map<device_type>& m
     expect(device.download(points)[1] == glm::vec4(0.1f, 0, 0.2f, 1), "upload_points");
 
     //! [knn_grid_estimate]
-    const auto found = photongrid::knn_grid_estimate(device, map, points, {.k = 50, .max_radius = 0.2f, .kernel = photongrid::filter_kernel::silverman, .errors = true});
+    const auto found = photongrid::knn_grid_estimate(device, map, points,
+        {.k = 50, .max_radius = 0.2f, .kernel = photongrid::filter_kernel::silverman, .errors = true});
     const glm::vec4 light = device.download(found.irradiance)[0];     // rgb: W/m^2, w: squared radius, m^2
     const glm::vec4 error = device.download(found.standard_error)[0]; // rgb: W/m^2
     //! [knn_grid_estimate]
-    expect(is_near(light.x, 1, 0.1) && is_near(light.w, 50 / (10000 * M_PI), 0.1) && error.x > 0 && error.x < 0.5f, "knn_grid_estimate");
+    expect(is_near(light.x, 1, 0.1) && is_near(light.w, 50 / (10000 * M_PI), 0.1) && error.x > 0 && error.x < 0.5f,
+        "knn_grid_estimate");
 
     //! [upload_normals]
     const auto normals = photongrid::upload_normals(device, std::vector<glm::vec3>(2, {0, 1, 0}));
@@ -168,7 +184,8 @@ void estimates(device_type& device, const photongrid::photon_map<device_type>& m
     //! [as_paper]
     const photongrid::knn_settings paper = photongrid::as_paper({.k = 50, .max_radius = 0.2f, .visits_per_pass = 16});
     //! [as_paper]
-    expect(paper.search == photongrid::search_kind::at_least_k && paper.bias == photongrid::bias_kind::paper, "as_paper");
+    expect(
+        paper.search == photongrid::search_kind::at_least_k && paper.bias == photongrid::bias_kind::paper, "as_paper");
 
     std::vector<vectors> shown;
     const auto show = [&](const vectors& irradiances) { shown.push_back(irradiances); };
@@ -186,12 +203,15 @@ void estimates(device_type& device, const photongrid::photon_map<device_type>& m
     const auto squared = device.download(lists.distances2); // m^2
     //! [knn_neighbours]
     const auto place = photons_on_a_square()[ids[8]].position - places[1];
-    expect(ids.size() == 16 && is_near(squared[8], static_cast<double>(glm::dot(place, place)), 1e-4) && std::is_sorted(squared.begin() + 8, squared.end()), "knn_neighbours");
+    expect(ids.size() == 16 && is_near(squared[8], static_cast<double>(glm::dot(place, place)), 1e-4)
+            && std::is_sorted(squared.begin() + 8, squared.end()),
+        "knn_neighbours");
 }
 
 void files(device_type& device, const photongrid::photon_map<device_type>& map)
 {
-    const std::filesystem::path file = std::filesystem::temp_directory_path() / ("photongrid-snippets-" + std::to_string(std::random_device()()) + ".map");
+    const std::filesystem::path file = std::filesystem::temp_directory_path()
+        / ("photongrid-snippets-" + std::to_string(std::random_device()()) + ".map");
     //! [save_map]
     photongrid::save_map(device, map, file, "a square, 10000 photons"); // whole, or not there
     //! [save_map]
@@ -210,7 +230,8 @@ photongrid::scene a_corner()
     photongrid::scene s;
     s.camera = {{0, 0.8, 2}, {0, 0.2, 0}, {0, 1, 0}, 45};
     s.materials = {{.name = "white", .reflectance = glm::dvec3(0.7)}};
-    s.polygons = {{{{-0.5, 0, -0.5}, {-0.5, 0, 0.5}, {0.5, 0, 0.5}, {0.5, 0, -0.5}}, 0}, {{{-0.5, 0, -0.5}, {0.5, 0, -0.5}, {0.5, 1, -0.5}, {-0.5, 1, -0.5}}, 0}};
+    s.polygons = {{{{-0.5, 0, -0.5}, {-0.5, 0, 0.5}, {0.5, 0, 0.5}, {0.5, 0, -0.5}}, 0},
+        {{{-0.5, 0, -0.5}, {0.5, 0, -0.5}, {0.5, 1, -0.5}, {-0.5, 1, -0.5}}, 0}};
     s.point_lights = {{.name = "lamp", .position = {0, 0.6, 0}, .power = glm::dvec3(10)}};
     return s;
 }
@@ -232,8 +253,10 @@ void edges(device_type& device)
     auto found = photongrid::knn_grid_estimate(device, map, points, settings);
     const float before = device.download(found.irradiance)[0].x;
     //! [correct_edges]
-    // A point on the floor's edge, where half of the disc hangs over: the estimate is half of the truth until this is called.
-    photongrid::correct_edges(device, scene, points, normals, found, settings.kernel, photongrid::least_radius(map.cells_of));
+    // A point on the floor's edge, where half of the disc hangs over: the estimate is half of the truth until this is
+    // called.
+    photongrid::correct_edges(
+        device, scene, points, normals, found, settings.kernel, photongrid::least_radius(map.cells_of));
     //! [correct_edges]
     expect(is_near(before, 0.5, 0.15) && is_near(device.download(found.irradiance)[0].x, 1, 0.15), "correct_edges");
 }
@@ -257,13 +280,15 @@ void pictures(device_type& device)
 
     //! [draw]
     const photongrid::camera from_above{.position = {0, 2, 0.5}, .look_at = {0, 0, 0}};
-    const photongrid::image above = photongrid::draw(device, built, from_above, settings, {}, stats); // no photon is traced
-    const glm::vec3 radiance = above.pixels[6 * 16 + 8];                                              // W/(m^2 sr)
+    const photongrid::image above
+        = photongrid::draw(device, built, from_above, settings, {}, stats); // no photon is traced
+    const glm::vec3 radiance = above.pixels[6 * 16 + 8];                    // W/(m^2 sr)
     //! [draw]
     expect(radiance.x > 0 && stats.invalid_pixels == 0 && above.pixels.size() == 16 * 12, "draw");
 
     //! [render]
-    const photongrid::image picture = photongrid::render(device, room, settings, {}, stats); // by the scene's own camera
+    const photongrid::image picture
+        = photongrid::render(device, room, settings, {}, stats); // by the scene's own camera
     //! [render]
     expect(picture.pixels == photongrid::draw(device, built, room.camera, settings, {}, stats).pixels, "render");
 
@@ -276,27 +301,30 @@ void pictures(device_type& device)
         //! [progressive_render]
         photongrid::progressive_render drawing(device);
         drawing.start(room, settings);
-        while (!drawing.step(16ms))       // about; a pass at least
-            if (drawing.pictures() > 0)   // whole ones: first few photons and large pixels, then better
+        while (!drawing.step(16ms))     // about; a pass at least
+            if (drawing.pictures() > 0) // whole ones: first few photons and large pixels, then better
                 show(drawing.picture());
-        show(drawing.picture());          // the bytes of photongrid::render
+        show(drawing.picture()); // the bytes of photongrid::render
 
-        edited.camera.position.x += 0.1;  // now something else: the photon map is kept ...
+        edited.camera.position.x += 0.1; // now something else: the photon map is kept ...
         drawing.start(edited, settings);
         while (drawing.pictures() == 0)
             drawing.step(0ms);
-        show(drawing.picture());          // ... and the first look is there
+        show(drawing.picture()); // ... and the first look is there
 
         edited.point_lights[0].position.x += 0.1; // the light: photons are traced anew
         drawing.start(edited, settings);
         //! [progressive_render]
         expect(drawing.step() && drawing.maps() >= 2, "progressive_render");
-        expect(window.size() >= 2 && window[window.size() - 2].pixels == photongrid::render(device, room, settings, {}, stats).pixels, "its last picture");
+        expect(window.size() >= 2
+                && window[window.size() - 2].pixels == photongrid::render(device, room, settings, {}, stats).pixels,
+            "its last picture");
     }
 
     //! [render_reference]
     const auto truth = photongrid::render_reference(room, room.camera, {.width = 16, .height = 12, .spp = 64});
-    const glm::vec3 value = truth.mean.pixels[7 * 16 + 8], error = truth.standard_error.pixels[7 * 16 + 8]; // W/(m^2 sr)
+    const glm::vec3 value = truth.mean.pixels[7 * 16 + 8],
+                    error = truth.standard_error.pixels[7 * 16 + 8]; // W/(m^2 sr)
     //! [render_reference]
     expect(error.x > 0 && std::abs(value.x - picture.pixels[7 * 16 + 8].x) < 0.2f * value.x, "render_reference");
 }

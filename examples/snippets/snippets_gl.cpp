@@ -26,7 +26,8 @@ void snippets(photongrid::gl_backend& device)
     const std::vector<photongrid::uint> expected{1, 3, 6, 10};
 
     //! [texture_of]
-    const photongrid::gl_texture t = device.texture_of(sums); // t.name for glBindTextureUnit(); the buffer goes on owning it
+    const photongrid::gl_texture t
+        = device.texture_of(sums); // t.name for glBindTextureUnit(); the buffer goes on owning it
     //! [texture_of]
     expect(t.name != 0 && t.width == 4 && t.height == 1 && t.internal_format == GL_R32UI, "texture_of");
 
@@ -36,7 +37,8 @@ void snippets(photongrid::gl_backend& device)
     expect(mine.name == t.name && sums.size() == 0, "release");
 
     //! [adopt]
-    const auto again = device.adopt<photongrid::uint>(mine.name, 4); // a buffer over a texture of the caller's, without a copy
+    const auto again
+        = device.adopt<photongrid::uint>(mine.name, 4); // a buffer over a texture of the caller's, without a copy
     //! [adopt]
     expect(device.download(again) == expected && device.texture_of(again).name == mine.name, "adopt");
 } // the context goes with the backend, and the texture with the context
@@ -50,8 +52,9 @@ try {
         return 77; // ctest: skipped
     }
     //! [gl_backend]
-    photongrid::gl_backend device({.context = photongrid::gl_context_kind::egl}); // current: in the context that you have current
-    const std::string name = device.caps().device;                                // the driver's words
+    photongrid::gl_backend device(
+        {.context = photongrid::gl_context_kind::egl}); // current: in the context that you have current
+    const std::string name = device.caps().device;      // the driver's words
     //! [gl_backend]
     expect(name.find("OpenGL") != std::string::npos, "gl_backend");
     snippets(device);

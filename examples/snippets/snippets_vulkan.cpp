@@ -88,12 +88,14 @@ void snippets(const photongrid::vulkan_handles& handles)
         expect(buffer != VK_NULL_HANDLE, "handle");
 
         //! [release]
-        mine = device.release(std::move(sums)); // to be ended by vkDestroyBuffer(mine.buffer) and vkFreeMemory(mine.memory)
+        mine = device.release(
+            std::move(sums)); // to be ended by vkDestroyBuffer(mine.buffer) and vkFreeMemory(mine.memory)
         //! [release]
         expect(mine.buffer == buffer && mine.memory != VK_NULL_HANDLE && sums.size() == 0, "release");
 
         //! [adopt]
-        const auto again = device.adopt<photongrid::uint>(mine.buffer, 4); // a VkBuffer made with usage adopted_usage, without a copy
+        const auto again = device.adopt<photongrid::uint>(
+            mine.buffer, 4); // a VkBuffer made with usage adopted_usage, without a copy
         //! [adopt]
         expect(device.download(again) == expected, "adopt");
     }
@@ -111,7 +113,7 @@ try {
     }
     {
         //! [vulkan_backend]
-        photongrid::vulkan_backend device;             // the best device; {.device = "llvmpipe"}: the one with that in its name
+        photongrid::vulkan_backend device; // the best device; {.device = "llvmpipe"}: the one with that in its name
         const std::string name = device.caps().device; // the driver's words
         auto buffer = device.make<float>(1000);        // contents undefined
         //! [vulkan_backend]

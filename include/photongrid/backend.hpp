@@ -54,30 +54,30 @@ std::tuple<Buffers&...> writes(Buffers&... buffers)
 
 /// What run_until_done did.
 struct progress {
-    uint passes = 0;                    ///< passes run
-    bool finished = false;              ///< true when every element is done
-    std::vector<std::uint64_t> active;  ///< per pass: elements that were not yet done when it began
+    uint passes = 0;                   ///< passes run
+    bool finished = false;             ///< true when every element is done
+    std::vector<std::uint64_t> active; ///< per pass: elements that were not yet done when it began
 };
 
 /// What was spent on one kernel.
 struct kernel_cost {
     std::uint64_t instructions = 0; ///< SPIR-V instructions, 0 where the backend compiles none
     double compile_ms = 0;          ///< all specialisations together
-    double ms = 0;                  ///< its passes, where the backend times them: cpu always, vulkan and gl with time_passes
-    std::uint64_t passes = 0;       ///< passes run so far
+    double ms = 0;            ///< its passes, where the backend times them: cpu always, vulkan and gl with time_passes
+    std::uint64_t passes = 0; ///< passes run so far
 };
 
 /// What a device is and can do. Algorithms may ask; nothing here changes after construction.
 struct capabilities {
-    std::string backend;              ///< "serial", "gl", "gl-osmesa", "vulkan"
-    std::string device;               ///< the driver's own words
-    bool software = true;             ///< true where the device is a CPU
-    std::uint64_t max_elements = 0;   ///< in one buffer
-    uint max_route_slots = 0;         ///< largest m of route's m x m slots a destination
-    bool exact_division = false;      ///< a / b rounds correctly (self-test at start)
-    bool exact_sqrt = false;          ///< sqrt rounds correctly (self-test at start)
-    float cells_a_radius = 2;         ///< how fine a grid searches like best: its cells to the radius of a search
-    uint loop_limit = 0;              ///< iterations after which the driver silently ends loops; 0: none known
+    std::string backend;            ///< "serial", "gl", "gl-osmesa", "vulkan"
+    std::string device;             ///< the driver's own words
+    bool software = true;           ///< true where the device is a CPU
+    std::uint64_t max_elements = 0; ///< in one buffer
+    uint max_route_slots = 0;       ///< largest m of route's m x m slots a destination
+    bool exact_division = false;    ///< a / b rounds correctly (self-test at start)
+    bool exact_sqrt = false;        ///< sqrt rounds correctly (self-test at start)
+    float cells_a_radius = 2;       ///< how fine a grid searches like best: its cells to the radius of a search
+    uint loop_limit = 0;            ///< iterations after which the driver silently ends loops; 0: none known
 };
 
 namespace detail {
@@ -87,42 +87,56 @@ namespace detail {
     inline void check_owner(bool owned, const char* verb, std::string_view kernel, std::string_view name)
     {
         if (!owned)
-            throw std::invalid_argument(std::string(verb) + "<" + std::string(kernel) + ">: buffer '" + std::string(name) + "' belongs to another backend; download it there and upload it here");
+            throw std::invalid_argument(std::string(verb) + "<" + std::string(kernel) + ">: buffer '"
+                + std::string(name) + "' belongs to another backend; download it there and upload it here");
     }
 
     /// Checks what a call is to read against kernel K: types at compile time, by `owns` at run time whose it is.
     template <kernel_struct K, class Reads, class Owns>
-    void check_reads([[maybe_unused]] const char* verb, [[maybe_unused]] const Reads& reads, [[maybe_unused]] const Owns& owns)
+    void check_reads(
+        [[maybe_unused]] const char* verb, [[maybe_unused]] const Reads& reads, [[maybe_unused]] const Owns& owns)
     {
-        static_assert(std::tuple_size_v<Reads> == input_count<K>, "reads(...) must name one buffer per INPUT of the kernel");
-        if constexpr (input_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
-            static_assert((std::same_as<typename std::remove_cvref_t<std::tuple_element_t<I, Reads>>::value_type, input_t<K, I>> && ...),
-                "a buffer's element type differs from the kernel's INPUT");
-            (check_owner(owns(std::get<I>(reads)), verb, kernel_name<K>(), K::input_name(slot<I>{})), ...);
-        }(std::make_index_sequence<input_count<K>>{});
+        static_assert(
+            std::tuple_size_v<Reads> == input_count<K>, "reads(...) must name one buffer per INPUT of the kernel");
+        if constexpr (input_count < K >> 0)
+            [&]<std::size_t... I>(std::index_sequence<I...>)
+            {
+                static_assert((std::same_as<typename std::remove_cvref_t<std::tuple_element_t<I, Reads>>::value_type,
+                                   input_t<K, I>> && ...),
+                    "a buffer's element type differs from the kernel's INPUT");
+                (check_owner(owns(std::get<I>(reads)), verb, kernel_name<K>(), K::input_name(slot<I>{})), ...);
+            }
+        (std::make_index_sequence<input_count<K>>{});
     }
 
     /// Checks the arguments of one call against kernel K: types at compile time, sizes and owners at run time.
     template <kernel_struct K, class Reads, class Writes, class Owns = decltype(any_owner)>
-    void check_call(const char* verb, const launch& l, const Reads& reads, [[maybe_unused]] const Writes& writes, const Owns& owns = any_owner)
+    void check_call(const char* verb, const launch& l, const Reads& reads, [[maybe_unused]] const Writes& writes,
+        const Owns& owns = any_owner)
     {
         check_reads<K>(verb, reads, owns);
-        static_assert(std::tuple_size_v<Writes> == output_count<K>, "writes(...) must name one buffer per OUTPUT and STATE");
+        static_assert(
+            std::tuple_size_v<Writes> == output_count<K>, "writes(...) must name one buffer per OUTPUT and STATE");
         [[maybe_unused]] const auto fail = [&](std::string_view name, std::size_t size) {
-            throw std::invalid_argument(std::string(verb) + "<" + std::string(kernel_name<K>()) + ">: buffer '" + std::string(name) + "' holds "
-                + std::to_string(size) + " elements; the pass writes elements " + std::to_string(l.first) + " to "
-                + std::to_string(std::uint64_t{l.first} + l.elements) + " (exclusive)");
+            throw std::invalid_argument(std::string(verb) + "<" + std::string(kernel_name<K>()) + ">: buffer '"
+                + std::string(name) + "' holds " + std::to_string(size) + " elements; the pass writes elements "
+                + std::to_string(l.first) + " to " + std::to_string(std::uint64_t{l.first} + l.elements)
+                + " (exclusive)");
         };
-        if constexpr (output_count<K> > 0) [&]<std::size_t... I>(std::index_sequence<I...>) {
-            static_assert((std::same_as<typename std::remove_cvref_t<std::tuple_element_t<I, Writes>>::value_type, output_t<K, I>> && ...),
-                "a buffer's element type differs from the kernel's OUTPUT or STATE");
-            const auto check = [&](std::string_view name, std::size_t size) {
-                if (size < std::uint64_t{l.first} + l.elements)
-                    fail(name, size);
-            };
-            (check(K::output_name(slot<I>{}), std::get<I>(writes).size()), ...);
-            (check_owner(owns(std::get<I>(writes)), verb, kernel_name<K>(), K::output_name(slot<I>{})), ...);
-        }(std::make_index_sequence<output_count<K>>{});
+        if constexpr (output_count < K >> 0)
+            [&]<std::size_t... I>(std::index_sequence<I...>)
+            {
+                static_assert((std::same_as<typename std::remove_cvref_t<std::tuple_element_t<I, Writes>>::value_type,
+                                   output_t<K, I>> && ...),
+                    "a buffer's element type differs from the kernel's OUTPUT or STATE");
+                const auto check = [&](std::string_view name, std::size_t size) {
+                    if (size < std::uint64_t{l.first} + l.elements)
+                        fail(name, size);
+                };
+                (check(K::output_name(slot<I>{}), std::get<I>(writes).size()), ...);
+                (check_owner(owns(std::get<I>(writes)), verb, kernel_name<K>(), K::output_name(slot<I>{})), ...);
+            }
+        (std::make_index_sequence<output_count<K>>{});
     }
 
     /// Checks the sizes of a route call; `limit` is the device's largest m.
@@ -130,10 +144,13 @@ namespace detail {
     {
         const std::uint64_t capacity = m * m < 255u ? m * m : 255u;
         if (m < 1 || m > limit)
-            throw std::invalid_argument("route: m: " + std::to_string(m) + " by " + std::to_string(m) + " slots asked for; this device takes 1 to " + std::to_string(limit));
+            throw std::invalid_argument("route: m: " + std::to_string(m) + " by " + std::to_string(m)
+                + " slots asked for; this device takes 1 to " + std::to_string(limit));
         if (slots < destinations * capacity || totals < destinations)
-            throw std::invalid_argument("route: slots, totals: " + std::to_string(destinations) + " destinations of " + std::to_string(capacity) + " slots need buffers of "
-                + std::to_string(destinations * capacity) + " and " + std::to_string(destinations) + " elements, not " + std::to_string(slots) + " and " + std::to_string(totals));
+            throw std::invalid_argument("route: slots, totals: " + std::to_string(destinations) + " destinations of "
+                + std::to_string(capacity) + " slots need buffers of " + std::to_string(destinations * capacity)
+                + " and " + std::to_string(destinations) + " elements, not " + std::to_string(slots) + " and "
+                + std::to_string(totals));
     }
 
     /// A kernel with one input and one output, for the concept below.
@@ -173,50 +190,74 @@ namespace detail {
 /// A backend runs kernels over buffers. Work may be deferred; `download` and `finish` wait for it. Every verb throws
 /// backend_error when the device refuses and std::invalid_argument when a buffer is too small.
 ///
-/// After a backend_error every buffer is still freed by its destructor, what the failed verb was to write is undefined, and
-/// the backend may be used again, unless the device was lost: then every verb throws. Algorithms pass exceptions on; what
-/// they took over or were sorting is then undefined. Kernels trust the ids that other passes wrote; host code refuses, by
-/// backend_error, a count from the device that cannot be.
+/// After a backend_error every buffer is still freed by its destructor, what the failed verb was to write is undefined,
+/// and the backend may be used again, unless the device was lost: then every verb throws. Algorithms pass exceptions
+/// on; what they took over or were sorting is then undefined. Kernels trust the ids that other passes wrote; host code
+/// refuses, by backend_error, a count from the device that cannot be.
 ///
-/// A verb sees what all before it wrote. A pass may read a buffer that it also writes, if it reads none of the elements that
-/// it writes (a STATE is its own element's old value); outputs of one pass are different buffers. Elements outside the launch
-/// keep their values.
+/// A verb sees what all before it wrote. A pass may read a buffer that it also writes, if it reads none of the elements
+/// that it writes (a STATE is its own element's old value); outputs of one pass are different buffers. Elements outside
+/// the launch keep their values.
 ///
 /// - `make<T>(n)`            a buffer of n elements, n from 0 up, contents undefined
 /// - `upload(span<const T>)` a buffer with a copy of these contents, every bit
 /// - `download(buffer)`      its contents as std::vector<T>, every bit
 /// - `run<K>(launch, params, reads(…), writes(…))`             one pass (the paper's screen-sized quad)
-/// - `run_until_done<K>(launch, params, reads, writes, passes)` passes over the elements not yet done (3.3, 4.3), at most
-///                           `passes` of them; may be called again to go on. Of an element that is done nothing is written
+/// - `run_until_done<K>(launch, params, reads, writes, passes)` passes over the elements not yet done (3.3, 4.3), at
+/// most
+///                           `passes` of them; may be called again to go on. Of an element that is done nothing is
+///                           written
 /// - `count<K>(launch, params, reads(…))`                       how many elements `holds` is true for (occlusion query)
 /// - `route<K>(launch, params, reads, destinations, m, slots, totals)`  many-to-one scatter (2.2.2): with cap =
-///                           min(m*m, 255), slots[d*cap + r] = payload of the r-th draw (in index order) with destination
-///                           d, for r < cap, the rest 0xFFFFFFFF; totals[d] = sum of all amounts with destination d, added
-///                           in that order; draws with a destination past the last are dropped.
+///                           min(m*m, 255), slots[d*cap + r] = payload of the r-th draw (in index order) with
+///                           destination d, for r < cap, the rest 0xFFFFFFFF; totals[d] = sum of all amounts with
+///                           destination d, added in that order; draws with a destination past the last are dropped.
 ///                           With room for P totals a destination there are P partial sums: totals[d*P + p] adds up, in
 ///                           order, the draws of the p-th of P equal blocks. Shorter sums round less
 /// - `finish()`              waits until all passes are done
-/// - `caps()`, `bytes()`, `peak_bytes()`, `costs()`             what it is, holds, held at most, has spent: costs() counts a
+/// - `caps()`, `bytes()`, `peak_bytes()`, `costs()`             what it is, holds, held at most, has spent: costs()
+/// counts a
 ///                           pass for each run, count and route, and those of run_until_done
 ///
-/// A buffer moves and is not copied; one that was moved from has no elements. It may go as soon as the call that names it has
-/// returned, and may outlive the backend.
+/// A buffer moves and is not copied; one that was moved from has no elements. It may go as soon as the call that names
+/// it has returned, and may outlive the backend.
 template <class B>
-concept backend = requires(B& b, const B& cb, typename B::template buffer<uint>& u, typename B::template buffer<glm::vec4>& v, launch l,
-    detail::concept_probe::Params p, std::span<const uint> host) {
-    { b.template make<uint>(std::size_t{}) } -> std::same_as<typename B::template buffer<uint>>;
-    { b.upload(host) } -> std::same_as<typename B::template buffer<uint>>;
-    { b.download(u) } -> std::same_as<std::vector<uint>>;
-    { u.size() } -> std::same_as<std::size_t>;
+concept backend = requires(B& b, const B& cb, typename B::template buffer<uint>& u,
+    typename B::template buffer<glm::vec4>& v, launch l, detail::concept_probe::Params p, std::span<const uint> host)
+{
+    {
+        b.template make<uint>(std::size_t{})
+        } -> std::same_as<typename B::template buffer<uint>>;
+    {
+        b.upload(host)
+        } -> std::same_as<typename B::template buffer<uint>>;
+    {
+        b.download(u)
+        } -> std::same_as<std::vector<uint>>;
+    {
+        u.size()
+        } -> std::same_as<std::size_t>;
     b.template run<detail::concept_probe>(l, p, reads(u), writes(u));
-    { b.template run_until_done<detail::concept_probe>(l, p, reads(u), writes(u), uint{}) } -> std::same_as<progress>;
-    { b.template count<detail::concept_probe>(l, p, reads(u)) } -> std::same_as<std::uint64_t>;
+    {
+        b.template run_until_done<detail::concept_probe>(l, p, reads(u), writes(u), uint{})
+        } -> std::same_as<progress>;
+    {
+        b.template count<detail::concept_probe>(l, p, reads(u))
+        } -> std::same_as<std::uint64_t>;
     b.template route<detail::route_probe>(l, p, reads(u), uint{}, uint{}, u, v);
     b.finish();
-    { cb.caps() } -> std::same_as<const capabilities&>;
-    { cb.bytes() } -> std::same_as<std::uint64_t>;
-    { cb.peak_bytes() } -> std::same_as<std::uint64_t>;
-    { cb.costs() } -> std::same_as<const std::map<std::string, kernel_cost>&>;
+    {
+        cb.caps()
+        } -> std::same_as<const capabilities&>;
+    {
+        cb.bytes()
+        } -> std::same_as<std::uint64_t>;
+    {
+        cb.peak_bytes()
+        } -> std::same_as<std::uint64_t>;
+    {
+        cb.costs()
+        } -> std::same_as<const std::map<std::string, kernel_cost>&>;
 };
 
 namespace detail {
@@ -226,7 +267,9 @@ namespace detail {
     {
         const std::uint64_t n = b.template count<K>(l, args, reads);
         if (n > l.elements)
-            throw backend_error(b.caps().backend + ": count<" + std::string(kernel_name<K>()) + ">: the device returned " + std::to_string(n) + "; there are " + std::to_string(l.elements) + " elements");
+            throw backend_error(b.caps().backend + ": count<" + std::string(kernel_name<K>())
+                + ">: the device returned " + std::to_string(n) + "; there are " + std::to_string(l.elements)
+                + " elements");
         return static_cast<uint>(n);
     }
 } // namespace detail
@@ -239,8 +282,8 @@ using buffer_of = typename B::template buffer<T>;
 /// \throws backend_error where the device has no room.
 /// \snippet snippets.cpp upload
 template <backend B, std::ranges::contiguous_range Range>
-    requires std::ranges::sized_range<Range> && element<std::ranges::range_value_t<Range>>
-buffer_of<B, std::ranges::range_value_t<Range>> upload(B& b, const Range& elements)
+requires std::ranges::sized_range<Range> && element<std::ranges::range_value_t<Range>>
+    buffer_of<B, std::ranges::range_value_t<Range>> upload(B& b, const Range& elements)
 {
     return b.upload(std::span<const std::ranges::range_value_t<Range>>(elements));
 }
@@ -254,7 +297,8 @@ constexpr uint route_parts(std::size_t totals, uint destinations)
 {
     return destinations == 0 ? 1u : static_cast<uint>(totals / destinations);
 }
-/// Draws that share a partial sum in route: `draws` cut into `parts` equal blocks, the last of which may be shorter. 1 at least.
+/// Draws that share a partial sum in route: `draws` cut into `parts` equal blocks, the last of which may be shorter. 1
+/// at least.
 constexpr uint route_block(uint draws, uint parts)
 {
     const uint block = draws / parts + (draws % parts != 0 ? 1u : 0u);

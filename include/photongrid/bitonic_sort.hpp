@@ -35,7 +35,8 @@ sort_report bitonic_sort(B& b, buffer_of<B, glm::uvec2>& pairs)
     }
     for (std::size_t run = 2; run <= padded; run *= 2)
         for (std::size_t stride = run / 2; stride > 0; stride /= 2) {
-            b.template run<kernels::bitonic_step>(padded, {.run = static_cast<uint>(run), .stride = static_cast<uint>(stride)}, reads(pairs), writes(next));
+            b.template run<kernels::bitonic_step>(padded,
+                {.run = static_cast<uint>(run), .stride = static_cast<uint>(stride)}, reads(pairs), writes(next));
             std::swap(pairs, next);
             ++report.steps;
             ++report.passes;

@@ -28,8 +28,8 @@ namespace detail {
     }
 } // namespace detail
 
-/// A photon map by sorting (2.2.1): exact, L(L+1)/2 + 5 passes and one per attribute. Takes the photons over. Those that are
-/// not of `parts` are in no cell.
+/// A photon map by sorting (2.2.1): exact, L(L+1)/2 + 5 passes and one per attribute. Takes the photons over. Those
+/// that are not of `parts` are in no cell.
 /// \throws backend_error when the device cannot hold them.
 /// \snippet snippets.cpp sorted_map
 template <backend B>
@@ -42,7 +42,8 @@ photon_map<B> sorted_map(B& b, photons<B> p, const grid& g, uint parts = every_p
     {
         // The pairs are made with their padding, so that the sort need not copy them.
         auto pairs = b.template make<glm::uvec2>(n == 0 ? 0 : std::bit_ceil(n));
-        b.template run<kernels::photon_cell>(pairs.size(), {.grid = g, .photons = n, .parts = parts}, reads(p.positions, p.powers), writes(pairs));
+        b.template run<kernels::photon_cell>(
+            pairs.size(), {.grid = g, .photons = n, .parts = parts}, reads(p.positions, p.powers), writes(pairs));
         bitonic_sort(b, pairs);
         map.cells = grid_index(b, pairs, cell_count(g));
         map.list = b.template make<uint>(n);
@@ -55,8 +56,8 @@ photon_map<B> sorted_map(B& b, photons<B> p, const grid& g, uint parts = every_p
     return map;
 }
 
-/// A photon map by stencil routing with m x m slots a cell (2.2.2): approximate where cells overflow, few passes. The gaps
-/// that routing leaves between cells are closed afterwards. Takes the photons over. `seed` orders the drawing.
+/// A photon map by stencil routing with m x m slots a cell (2.2.2): approximate where cells overflow, few passes. The
+/// gaps that routing leaves between cells are closed afterwards. Takes the photons over. `seed` orders the drawing.
 /// \throws std::invalid_argument for m outside 1 to 16, backend_error when cells x slots exceed the device.
 /// \snippet snippets.cpp routed_map
 template <backend B>
@@ -78,7 +79,8 @@ photon_map<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 
         map.cells = b.template make<glm::uvec2>(cells);
         b.template run<kernels::packed_cell>(cells, {}, reads(sums, routed.cells), writes(map.cells));
         map.list = b.template make<uint>(n);
-        b.template run<kernels::packed_photon>(n, {.cells = cells}, reads(sums, routed.cells, routed.list), writes(map.list));
+        b.template run<kernels::packed_photon>(
+            n, {.cells = cells}, reads(sums, routed.cells, routed.list), writes(map.list));
     }
     if (parts != every_part)
         map.left_out = detail::checked_count<kernels::other_part>(b, n, {.parts = parts}, reads(p.positions));

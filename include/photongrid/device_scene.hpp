@@ -1,5 +1,5 @@
-// A scene as kernels read it: one buffer of vec4 records, recentred so that float keeps its precision far from the origin.
-// The records' layout is kernels/scene_hit.glsl's.
+// A scene as kernels read it: one buffer of vec4 records, recentred so that float keeps its precision far from the
+// origin. The records' layout is kernels/scene_hit.glsl's.
 #pragma once
 
 #include <photongrid/backend.hpp>
@@ -77,9 +77,16 @@ namespace detail {
     /// Writes records; positions are recentred.
     class record_writer {
     public:
-        record_writer(scene_records& out, double scale) : out_(out), edge_margin_(scale * 0x1p-20), doubt_(scale * 0x1p-20) {}
+        record_writer(scene_records& out, double scale)
+            : out_(out), edge_margin_(scale * 0x1p-20), doubt_(scale * 0x1p-20)
+        {
+        }
 
-        void put(const dvec3& v, double w) { out_.records.emplace_back(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w)); }
+        void put(const dvec3& v, double w)
+        {
+            out_.records.emplace_back(
+                static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w));
+        }
         void put_position(const dvec3& v, double w) { put(v - out_.center, w); }
         uint next() const { return static_cast<uint>(out_.records.size()); }
 
@@ -150,9 +157,13 @@ namespace detail {
     }
 
     /// A point that moves with the scene exactly: any that its lights name.
-    inline dvec3 anchor(const scene& s) { return s.rectangle_lights.empty() ? s.point_lights.at(0).position : s.rectangle_lights[0].corner; }
+    inline dvec3 anchor(const scene& s)
+    {
+        return s.rectangle_lights.empty() ? s.point_lights.at(0).position : s.rectangle_lights[0].corner;
+    }
 
-    /// How far the coordinates of a round shape's points reach, from the origin of its record: see `clearance` (scene_layout.glsl).
+    /// How far the coordinates of a round shape's points reach, from the origin of its record: see `clearance`
+    /// (scene_layout.glsl).
     inline double reach(const sphere& s) { return 2 * s.radius; }
     inline double reach(double height, double radius) { return 2 * (height + radius); }
 
@@ -162,7 +173,9 @@ namespace detail {
         const auto all = [&](const char* kind, const auto& shapes, auto size) {
             for (std::size_t i = 0; i < shapes.size(); ++i)
                 require(size(shapes[i]) >= scale * 0x1p-18,
-                    std::string(kind) + "[" + std::to_string(i) + "]: is 2^18 times smaller than the scene or more, which single precision cannot resolve; leave it out, or model the large things smaller");
+                    std::string(kind) + "[" + std::to_string(i)
+                        + "]: is 2^18 times smaller than the scene or more, which single precision cannot resolve; "
+                          "leave it out, or model the large things smaller");
         };
         const auto radius = [](const auto& x) { return x.radius; };
         all("spheres", s.spheres, radius);
@@ -176,12 +189,13 @@ namespace detail {
                 extent = std::max(extent, glm::length(v - p.vertices[0]));
             return extent;
         });
-        all("rectangle_lights", s.rectangle_lights, [](const rectangle_light& l) { return std::min(glm::length(l.edge_u), glm::length(l.edge_v)); });
+        all("rectangle_lights", s.rectangle_lights,
+            [](const rectangle_light& l) { return std::min(glm::length(l.edge_u), glm::length(l.edge_v)); });
     }
 } // namespace detail
 
-/// Lays a scene out for kernels. \throws std::invalid_argument as check(scene) does, when no surface is Lambertian, or when
-/// a size or a power does not fit single precision.
+/// Lays a scene out for kernels. \throws std::invalid_argument as check(scene) does, when no surface is Lambertian, or
+/// when a size or a power does not fit single precision.
 inline scene_records lay_out(const scene& original)
 {
     check(original);
@@ -204,7 +218,8 @@ inline scene_records lay_out(const scene& original)
     bound(s.paraboloids);
     bound(s.disks);
     bound(s.polygons);
-    detail::require(!lambertian.empty(), "materials: no shape is lambertian, so no photon can be stored and nothing can be lit");
+    detail::require(
+        !lambertian.empty(), "materials: no shape is lambertian, so no photon can be stored and nothing can be lit");
     for (const auto& l : s.rectangle_lights)
         for (const auto& corner : {l.corner, l.corner + l.edge_u, l.corner + l.edge_v, l.corner + l.edge_u + l.edge_v})
             all.add(corner);
@@ -257,13 +272,17 @@ inline scene_records lay_out(const scene& original)
         w.put_polygon(x, 0);
     for (std::size_t i = 0; i < s.rectangle_lights.size(); ++i) {
         const auto& l = s.rectangle_lights[i];
-        w.put_polygon({{l.corner, l.corner + l.edge_u, l.corner + l.edge_u + l.edge_v, l.corner + l.edge_v}, 0}, static_cast<double>(i + 1));
+        w.put_polygon({{l.corner, l.corner + l.edge_u, l.corner + l.edge_u + l.edge_v, l.corner + l.edge_v}, 0},
+            static_cast<double>(i + 1));
     }
 
     out.layout.rest.x = w.next();
     for (const auto& m : s.materials) {
         const bool mirrors = m.kind == material_kind::mirror || m.kind == material_kind::metal;
-        w.put(m.reflectance, mirrors ? kernels::MIRROR_SURFACE : m.kind == material_kind::glass ? kernels::GLASS_SURFACE : kernels::LAMBERTIAN_SURFACE);
+        w.put(m.reflectance,
+            mirrors                              ? kernels::MIRROR_SURFACE
+                : m.kind == material_kind::glass ? kernels::GLASS_SURFACE
+                                                 : kernels::LAMBERTIAN_SURFACE);
         w.put(dvec3(m.index_of_refraction, 0, 0), 0);
         out.features |= mirrors ? has_mirrors : m.kind == material_kind::glass ? has_glass : 0u;
     }
@@ -306,7 +325,8 @@ inline scene_records lay_out(const scene& original)
     out.features |= s.point_lights.empty() ? 0u : has_point_lights;
     out.features |= s.rectangle_lights.empty() ? 0u : has_area_lights;
     for (const auto& r : out.records)
-        detail::require(std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z) && std::isfinite(r.w), "scene: a size or a power is too large for single precision");
+        detail::require(std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z) && std::isfinite(r.w),
+            "scene: a size or a power is too large for single precision");
     out.center += anchor;
     return out;
 }
@@ -314,7 +334,7 @@ inline scene_records lay_out(const scene& original)
 /// A scene on a device.
 template <backend B>
 struct device_scene {
-    scene_records about; ///< `records` stay on the host too
+    scene_records about;             ///< `records` stay on the host too
     buffer_of<B, glm::vec4> records; ///< as kernels/scene_hit.glsl reads them
 };
 

@@ -18,7 +18,8 @@ namespace detail {
         for (uint i = 0; i < std::min(n, wanted); ++i)
             ids.push_back(static_cast<uint>(std::uint64_t{i} * n / std::min(n, wanted)));
         auto taken = b.template make<glm::vec4>(ids.size());
-        b.template run<kernels::take_vector>(ids.size(), {.photons = n}, reads(b.upload(std::span<const uint>(ids)), p.positions), writes(taken));
+        b.template run<kernels::take_vector>(
+            ids.size(), {.photons = n}, reads(b.upload(std::span<const uint>(ids)), p.positions), writes(taken));
         std::vector<glm::vec3> positions;
         for (const auto& v : b.download(taken))
             if (std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z))
@@ -46,12 +47,12 @@ namespace detail {
 
 /// A grid for estimates from k of these photons: `cells_a_radius` cells to the distance of the k-th nearest (see
 /// capabilities), twice as many along x, where rows are cut off at the radius; at most 5/4 cells a photon. The box
-/// is that of the photons but for one in 500 at either end of each axis, so that a stray one does not make all cells useless; what
-/// lies outside belongs to border cells.
+/// is that of the photons but for one in 500 at either end of each axis, so that a stray one does not make all cells
+/// useless; what lies outside belongs to border cells.
 ///
-/// How photons fill space is measured on a sample of 16,384: the cubes of some edge h that hold any number h^-D, with D = 2
-/// for photons on surfaces (box counting; Mandelbrot 1982). Same photons, same grid, on every backend.
-/// Reads the sample back.
+/// How photons fill space is measured on a sample of 16,384: the cubes of some edge h that hold any number h^-D, with D
+/// = 2 for photons on surfaces (box counting; Mandelbrot 1982). Same photons, same grid, on every backend. Reads the
+/// sample back.
 /// \throws backend_error when the device fails.
 /// \snippet snippets.cpp fitting_grid
 template <backend B>
@@ -65,7 +66,8 @@ grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_a_radius = 1)
         const std::size_t stray = sample.size() / 500;
         const auto nth = [&](std::size_t n) {
             const auto at = sample.begin() + static_cast<std::ptrdiff_t>(n);
-            std::nth_element(sample.begin(), at, sample.end(), [&](const auto& a, const auto& c) { return a[axis] < c[axis]; });
+            std::nth_element(
+                sample.begin(), at, sample.end(), [&](const auto& a, const auto& c) { return a[axis] < c[axis]; });
             return (*at)[axis];
         };
         low[axis] = nth(stray);
@@ -86,8 +88,8 @@ grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_a_radius = 1)
         cubes = finer;
         edge /= 2;
     }
-    // Photons in a cube of edge h: N / cubes (h / edge)^D; in a ball of radius r about a third less than in a square or a cube
-    // of edge 2 r. So many are k at
+    // Photons in a cube of edge h: N / cubes (h / edge)^D; in a ball of radius r about a third less than in a square or
+    // a cube of edge 2 r. So many are k at
     const double in_ball = 0.785 * static_cast<double>(p.size()) / cubes;
     double radius = 0.5 * edge * std::pow(static_cast<double>(std::max(k, 1u)) / in_ball, 1 / dimension);
     radius /= static_cast<double>(cells_a_radius);
@@ -95,7 +97,8 @@ grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_a_radius = 1)
     for (;; radius *= 1.05) {
         glm::dvec3 cells;
         for (int axis = 0; axis < 3; ++axis)
-            cells[axis] = std::max(1.0, std::ceil(static_cast<double>(high[axis] - low[axis]) / (axis == 0 ? 0.5 * radius : radius) - 1e-6));
+            cells[axis] = std::max(1.0,
+                std::ceil(static_cast<double>(high[axis] - low[axis]) / (axis == 0 ? 0.5 * radius : radius) - 1e-6));
         if (cells.x * cells.y * cells.z <= most)
             return make_grid(low, high, glm::uvec3(cells));
     }

@@ -6,16 +6,17 @@
 
 namespace photongrid {
 
-/// For every key from 0 to cells - 1: x the position of its first pair, y how many pairs have it. A key that no pair has
-/// begins where the next key does. `pairs` is sorted by key; larger keys (invalid photons) are in no cell.
-/// One pass, O(log n) reads a cell (section 2.2.1, figure 4).
+/// For every key from 0 to cells - 1: x the position of its first pair, y how many pairs have it. A key that no pair
+/// has begins where the next key does. `pairs` is sorted by key; larger keys (invalid photons) are in no cell. One
+/// pass, O(log n) reads a cell (section 2.2.1, figure 4).
 /// \throws backend_error when the device cannot hold `cells` elements.
 /// \snippet snippets.cpp grid_index
 template <backend B>
 buffer_of<B, glm::uvec2> grid_index(B& b, const buffer_of<B, glm::uvec2>& pairs, uint cells)
 {
     auto index = b.template make<glm::uvec2>(cells);
-    b.template run<kernels::first_in_cell>(cells, {.pairs = static_cast<uint>(pairs.size())}, reads(pairs), writes(index));
+    b.template run<kernels::first_in_cell>(
+        cells, {.pairs = static_cast<uint>(pairs.size())}, reads(pairs), writes(index));
     return index;
 }
 

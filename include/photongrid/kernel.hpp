@@ -18,11 +18,13 @@ using uint = std::uint32_t;
 
 /// The index of an input, output or switch, as a type.
 template <std::size_t I>
-struct slot {};
+struct slot {
+};
 
 /// What a buffer can hold: the element types that GLSL, C++ and textures lay out alike (4, 8 or 16 bytes).
 template <class T>
-concept element = std::same_as<T, float> || std::same_as<T, uint> || std::same_as<T, glm::vec2> || std::same_as<T, glm::uvec2> || std::same_as<T, glm::vec4> || std::same_as<T, glm::uvec4>;
+concept element = std::same_as<T, float> || std::same_as<T, uint> || std::same_as<T, glm::vec2> || std::same_as<T,
+    glm::uvec2> || std::same_as<T, glm::vec4> || std::same_as<T, glm::uvec4>;
 
 namespace detail {
     template <class K, std::size_t I = 0>
@@ -60,26 +62,48 @@ using output_t = std::remove_reference_t<decltype(std::declval<K&>().output(slot
 
 /// A kernel: one source text, its parameters, its slots.
 template <class K>
-concept kernel_struct = std::default_initializable<K> && std::default_initializable<typename K::Params> && requires(K k) {
-    { K::path } -> std::convertible_to<std::string_view>;
-    { k.args } -> std::same_as<typename K::Params&>;
+concept kernel_struct = std::default_initializable<K> && std::default_initializable<typename K::Params> && requires(K k)
+{
+    {
+        K::path
+        } -> std::convertible_to<std::string_view>;
+    {
+        k.args
+        } -> std::same_as<typename K::Params&>;
 };
 
 /// A gather kernel: `kernel(i)` computes element i of every output and touches nothing else.
 template <class K>
-concept gather_kernel = kernel_struct<K> && requires(K k, uint i) { k.kernel(i); };
+concept gather_kernel = kernel_struct<K> && requires(K k, uint i)
+{
+    k.kernel(i);
+};
 
 /// A gather kernel over states that also says, from the states alone, when an element needs no more passes.
 template <class K>
-concept iterative_kernel = gather_kernel<K> && requires(K k) { { k.done() } -> std::same_as<bool>; };
+concept iterative_kernel = gather_kernel<K> && requires(K k)
+{
+    {
+        k.done()
+        } -> std::same_as<bool>;
+};
 
 /// A predicate over elements: `holds(i)`.
 template <class K>
-concept predicate_kernel = kernel_struct<K> && requires(K k, uint i) { { k.holds(i) } -> std::same_as<bool>; };
+concept predicate_kernel = kernel_struct<K> && requires(K k, uint i)
+{
+    {
+        k.holds(i)
+        } -> std::same_as<bool>;
+};
 
-/// A routing kernel: for draw i it gives a destination (none: 0xFFFFFFFF), a payload, and an amount to be added up there.
+/// A routing kernel: for draw i it gives a destination (none: 0xFFFFFFFF), a payload, and an amount to be added up
+/// there.
 template <class K>
-concept route_kernel = gather_kernel<K> && output_count<K> == 3 && std::same_as<output_t<K, 0>, uint> && std::same_as<output_t<K, 1>, uint> && std::same_as<output_t<K, 2>, glm::vec4>;
+concept route_kernel = gather_kernel<K> && output_count<K>
+== 3
+    && std::same_as<output_t<K, 0>, uint>&& std::same_as<output_t<K, 1>, uint>&&
+        std::same_as<output_t<K, 2>, glm::vec4>;
 
 /// The kernel's name: its file's name without folder and extension, "bitonic_step".
 template <kernel_struct K>
@@ -94,13 +118,15 @@ constexpr std::string_view kernel_name()
 template <kernel_struct K>
 void turn_switches(K& k, uint switches)
 {
-    [&]<std::size_t... B>(std::index_sequence<B...>) {
+    [&]<std::size_t... B>(std::index_sequence<B...>)
+    {
         const auto turn = [&]<std::size_t S>(slot<S> s) {
             if constexpr (requires { k.turn(s, true); })
                 k.turn(s, ((switches >> S) & 1u) != 0u);
         };
         (turn(slot<B>{}), ...);
-    }(std::make_index_sequence<32>{});
+    }
+    (std::make_index_sequence<32>{});
 }
 
 } // namespace photongrid

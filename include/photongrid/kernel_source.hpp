@@ -38,7 +38,9 @@ namespace detail {
             std::string_view text = source.text;
             out_.files.emplace_back(name);
             out_.texts.emplace_back(text);
-            const auto line_directive = [&](std::size_t line) { out_.text += "#line " + std::to_string((file + 1) * lines_per_file + line) + "\n"; };
+            const auto line_directive = [&](std::size_t line) {
+                out_.text += "#line " + std::to_string((file + 1) * lines_per_file + line) + "\n";
+            };
             std::size_t line = 1;
             if (!text.starts_with("#version"))
                 line_directive(1);
@@ -70,7 +72,8 @@ namespace detail {
                     append(f);
                 return;
             }
-            throw std::runtime_error(std::string(from) + ":" + std::to_string(line) + ": error: no kernel file named \"" + std::string(wanted) + "\"");
+            throw std::runtime_error(std::string(from) + ":" + std::to_string(line) + ": error: no kernel file named \""
+                + std::string(wanted) + "\"");
         }
         std::span<const text_file> library_;
         std::set<std::string_view> once_;
@@ -81,7 +84,8 @@ namespace detail {
 /// Puts `prelude` before `kernel`, then `epilogue` (a wrapper's main), with every `#include "x.glsl"` replaced by that
 /// file of `library`, each once. Defines go after the prelude's `#version` line as they are.
 /// \throws std::runtime_error that names file and line, where an included file is not in `library`.
-inline spliced_source splice(const text_file& prelude, std::string_view defines, const text_file& kernel, const text_file& epilogue, std::span<const text_file> library = kernel_texts)
+inline spliced_source splice(const text_file& prelude, std::string_view defines, const text_file& kernel,
+    const text_file& epilogue, std::span<const text_file> library = kernel_texts)
 {
     detail::splicer s(library);
     s.append(prelude, defines);
@@ -98,10 +102,12 @@ inline const text_file& find_kernel_text(std::string_view path, std::span<const 
     for (const auto& f : library)
         if (f.name.substr(f.name.rfind('/') + 1) == base)
             return f;
-    throw std::runtime_error("kernel text '" + std::string(path) + "' was not embedded; name it in photongrid_embed() in CMake");
+    throw std::runtime_error(
+        "kernel text '" + std::string(path) + "' was not embedded; name it in photongrid_embed() in CMake");
 }
 
-/// The texts that kernel K can be made of: those that it brings along, which photongrid_add_kernels() gives it, before `library`.
+/// The texts that kernel K can be made of: those that it brings along, which photongrid_add_kernels() gives it, before
+/// `library`.
 template <class K>
 std::vector<text_file> texts_of(std::span<const text_file> library)
 {
@@ -133,8 +139,8 @@ namespace detail {
         return number;
     }
 
-    /// Reads Mesa's rows, `0:300010(5): error: ...`, NVIDIA's, `0(300010) : error ...`, and glslang's, `ERROR: name:300010: ...`.
-    /// Without <regex>, which takes a compiler three seconds in every file.
+    /// Reads Mesa's rows, `0:300010(5): error: ...`, NVIDIA's, `0(300010) : error ...`, and glslang's, `ERROR:
+    /// name:300010: ...`. Without <regex>, which takes a compiler three seconds in every file.
     inline std::optional<log_row> parse_log_row(std::string_view row)
     {
         for (const std::string_view kind : {"error", "warning"}) {
@@ -178,8 +184,8 @@ namespace detail {
     }
 } // namespace detail
 
-/// Rewrites a compiler's log so that each message reads `kernel.glsl:line: error: …` with the source line quoted below it.
-/// Understands Mesa's, glslang's and NVIDIA's forms; what matches none is kept as it is.
+/// Rewrites a compiler's log so that each message reads `kernel.glsl:line: error: …` with the source line quoted below
+/// it. Understands Mesa's, glslang's and NVIDIA's forms; what matches none is kept as it is.
 inline std::string translate_log(std::string_view log, const spliced_source& source)
 {
     std::string out;
@@ -191,7 +197,8 @@ inline std::string translate_log(std::string_view log, const spliced_source& sou
             continue;
         }
         const auto line = said->number % detail::lines_per_file;
-        out += source.files[file - 1] + ":" + std::to_string(line) + ": " + std::string(said->kind) + ": " + std::string(said->message) + "\n";
+        out += source.files[file - 1] + ":" + std::to_string(line) + ": " + std::string(said->kind) + ": "
+            + std::string(said->message) + "\n";
         std::string_view text = source.texts[file - 1], quoted;
         for (unsigned long l = 0; l < line; ++l)
             quoted = detail::next_line(text).value_or("");

@@ -1,8 +1,9 @@
 // A photon map in a file, so that an animation or another process searches it without tracing and sorting again.
 //
-// The file is a header (detail::map_file_header) and the map's buffers as they lie in the memory of a little-endian machine,
-// each from a multiple of 64 bytes on: cells, list, positions, powers, directions, normals, surpluses, the caller's note; those
-// that there are not are left out. Loading maps the file into memory, where the system can, and uploads from there.
+// The file is a header (detail::map_file_header) and the map's buffers as they lie in the memory of a little-endian
+// machine, each from a multiple of 64 bytes on: cells, list, positions, powers, directions, normals, surpluses, the
+// caller's note; those that there are not are left out. Loading maps the file into memory, where the system can, and
+// uploads from there.
 #pragma once
 
 #include <photongrid/photon_map.hpp>
@@ -25,12 +26,15 @@
 
 namespace photongrid {
 
-/// What load_map() throws for a file that is not a whole photon map of a version it knows, and save_map() for one that it
-/// cannot write. Says which file, what is wrong, and what to do.
+/// What load_map() throws for a file that is not a whole photon map of a version it knows, and save_map() for one that
+/// it cannot write. Says which file, what is wrong, and what to do.
 class map_file_error : public std::runtime_error {
 public:
     /// The message is "file: what".
-    map_file_error(const std::filesystem::path& file, const std::string& what) : std::runtime_error(file.string() + ": " + what) {}
+    map_file_error(const std::filesystem::path& file, const std::string& what)
+        : std::runtime_error(file.string() + ": " + what)
+    {
+    }
 };
 
 namespace detail {
@@ -44,10 +48,10 @@ namespace detail {
         grid cells_of{};
         std::uint32_t photons = 0;
         std::uint32_t cells = 0;
-        std::uint32_t surpluses = 0; ///< elements; 0 or as many as cells
+        std::uint32_t surpluses = 0;  ///< elements; 0 or as many as cells
         std::uint32_t attributes = 0; ///< bit 0: directions, bit 1: normals
         std::uint32_t invalid = 0, left_out = 0, overfull_cells = 0;
-        std::uint32_t note = 0; ///< bytes
+        std::uint32_t note = 0;     ///< bytes
         std::uint64_t bytes = 0;    ///< of the whole file
         std::uint64_t checksum = 0; ///< of the whole file, taken with 0 here
     };
@@ -85,7 +89,8 @@ namespace detail {
             struct ::stat about {};
             const bool known = ::fstat(descriptor, &about) == 0 && S_ISREG(about.st_mode);
             if (known && about.st_size > 0)
-                mapped_ = ::mmap(nullptr, static_cast<std::size_t>(about.st_size), PROT_READ, MAP_PRIVATE, descriptor, 0);
+                mapped_
+                    = ::mmap(nullptr, static_cast<std::size_t>(about.st_size), PROT_READ, MAP_PRIVATE, descriptor, 0);
             ::close(descriptor);
             if (!known || mapped_ == MAP_FAILED) {
                 mapped_ = nullptr;
@@ -137,8 +142,9 @@ namespace detail {
 } // namespace detail
 #undef PHOTONGRID_CAN_MAP_FILES
 
-/// Writes the map to `file`, which afterwards is whole or as it was. The same map gives the same bytes on every backend.
-/// `note`: whatever the caller wants to find again with the map, such as which scene and settings it is of; any bytes.
+/// Writes the map to `file`, which afterwards is whole or as it was. The same map gives the same bytes on every
+/// backend. `note`: whatever the caller wants to find again with the map, such as which scene and settings it is of;
+/// any bytes.
 /// \throws map_file_error where the file cannot be written.
 /// \snippet snippets.cpp save_map
 template <backend B>
@@ -148,10 +154,12 @@ void save_map(B& b, const photon_map<B>& map, const std::filesystem::path& file,
     const auto cells = b.download(map.cells);
     const auto list = b.download(map.list);
     const auto positions = b.download(map.photons.positions), powers = b.download(map.photons.powers);
-    const auto directions = b.download(map.photons.directions), normals = b.download(map.photons.normals), surpluses = b.download(map.surpluses);
+    const auto directions = b.download(map.photons.directions), normals = b.download(map.photons.normals),
+               surpluses = b.download(map.surpluses);
 
     if (note.size() > std::numeric_limits<std::uint32_t>::max())
-        throw map_file_error(file, "cannot be written: its note of " + std::to_string(note.size()) + " bytes is longer than 2^32 - 1");
+        throw map_file_error(
+            file, "cannot be written: its note of " + std::to_string(note.size()) + " bytes is longer than 2^32 - 1");
     detail::map_file_header header;
     header.cells_of = map.cells_of;
     header.photons = map.photons.size();
@@ -196,7 +204,9 @@ void save_map(B& b, const photon_map<B>& map, const std::filesystem::path& file,
     std::error_code failed;
     {
         std::ofstream out(part, std::ios::binary | std::ios::trunc);
-        each_block([&](const std::byte* data, std::uint64_t bytes) { out.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(bytes)); });
+        each_block([&](const std::byte* data, std::uint64_t bytes) {
+            out.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(bytes));
+        });
         out.close();
         if (!out) {
             std::filesystem::remove(part, failed);
@@ -211,7 +221,8 @@ void save_map(B& b, const photon_map<B>& map, const std::filesystem::path& file,
     }
 }
 
-/// Reads a map that save_map() wrote, on whichever backend. Every byte is checked first. `note`: where the caller's note goes.
+/// Reads a map that save_map() wrote, on whichever backend. Every byte is checked first. `note`: where the caller's
+/// note goes.
 /// \throws map_file_error for a file that is damaged, cut short, no photon map, or of another version.
 /// \throws backend_error where the backend has no room for the map.
 /// \snippet snippets.cpp load_map
@@ -221,7 +232,8 @@ photon_map<B> load_map(B& b, const std::filesystem::path& file, std::string* not
     const detail::file_bytes bytes(file);
     const auto refuse = [&](const std::string& what) { throw map_file_error(file, what); };
     detail::map_file_header header;
-    if (bytes.size() < sizeof header.magic || std::memcmp(bytes.data(), detail::map_file_magic.data(), sizeof header.magic) != 0)
+    if (bytes.size() < sizeof header.magic
+        || std::memcmp(bytes.data(), detail::map_file_magic.data(), sizeof header.magic) != 0)
         refuse("is not a photon map; save_map() writes them");
     if (bytes.size() < sizeof header)
         refuse("is cut short; save the map again");
@@ -229,9 +241,11 @@ photon_map<B> load_map(B& b, const std::filesystem::path& file, std::string* not
     if (header.byte_order != detail::map_file_byte_order)
         refuse("is damaged, or from a machine with another order of bytes; save the map again here");
     if (header.version != detail::map_file_version)
-        refuse("is a photon map of version " + std::to_string(header.version) + ", and this photongrid reads version " + std::to_string(detail::map_file_version) + "; save the map again");
+        refuse("is a photon map of version " + std::to_string(header.version) + ", and this photongrid reads version "
+            + std::to_string(detail::map_file_version) + "; save the map again");
     if (header.bytes != bytes.size())
-        refuse("has " + std::to_string(bytes.size()) + " bytes and should have " + std::to_string(header.bytes) + ": it is cut short or damaged; save the map again");
+        refuse("has " + std::to_string(bytes.size()) + " bytes and should have " + std::to_string(header.bytes)
+            + ": it is cut short or damaged; save the map again");
     detail::map_file_checksum sum;
     auto unsummed = header;
     unsummed.checksum = 0;
@@ -243,16 +257,20 @@ photon_map<B> load_map(B& b, const std::filesystem::path& file, std::string* not
     // From here on only a file that somebody made with care can be wrong, but a search must end for that one too.
     const auto wrong = [&] { refuse("contradicts itself; it is not from save_map()"); };
     const std::uint64_t n = header.photons, cells = header.cells;
-    const auto size_of = [&](std::uint64_t count, std::size_t element) { return detail::map_file_padded(count * element); };
-    const std::uint64_t expected = size_of(1, sizeof header) + size_of(cells, sizeof(glm::uvec2)) + size_of(n, sizeof(uint)) + size_of(header.surpluses, sizeof(glm::vec4))
-        + size_of(header.note, 1) + size_of(n, sizeof(glm::vec4)) * (2u + (header.attributes & 1u) + (header.attributes >> 1 & 1u));
+    const auto size_of
+        = [&](std::uint64_t count, std::size_t element) { return detail::map_file_padded(count * element); };
+    const std::uint64_t expected = size_of(1, sizeof header) + size_of(cells, sizeof(glm::uvec2))
+        + size_of(n, sizeof(uint)) + size_of(header.surpluses, sizeof(glm::vec4)) + size_of(header.note, 1)
+        + size_of(n, sizeof(glm::vec4)) * (2u + (header.attributes & 1u) + (header.attributes >> 1 & 1u));
     const grid& g = header.cells_of;
     const auto& r = g.resolution;
-    if (header.attributes > 3 || expected != bytes.size() || (header.surpluses != 0 && header.surpluses != cells) || r[0] < 1 || r[1] < 1 || r[2] < 1 || r[3] != cells
-        || std::uint64_t{r[0]} * r[1] > cells || std::uint64_t{r[0]} * r[1] * r[2] != cells)
+    if (header.attributes > 3 || expected != bytes.size() || (header.surpluses != 0 && header.surpluses != cells)
+        || r[0] < 1 || r[1] < 1 || r[2] < 1 || r[3] != cells || std::uint64_t{r[0]} * r[1] > cells
+        || std::uint64_t{r[0]} * r[1] * r[2] != cells)
         wrong();
     for (int axis = 0; axis < 3; ++axis)
-        if (!std::isfinite(g.origin[axis]) || !std::isfinite(g.inverse_cell[axis]) || !std::isfinite(g.cell[axis]) || !(g.inverse_cell[axis] > 0) || !(g.cell[axis] > 0))
+        if (!std::isfinite(g.origin[axis]) || !std::isfinite(g.inverse_cell[axis]) || !std::isfinite(g.cell[axis])
+            || !(g.inverse_cell[axis] > 0) || !(g.cell[axis] > 0))
             wrong();
 
     const std::byte* at = bytes.data() + sizeof header;

@@ -22,9 +22,9 @@
 
 namespace photongrid {
 
-/// How photons of type P are read. As it stands it takes the members `position` (m) and `flux` (W), and, where P has them,
-/// `direction` (of travel, a unit vector), `normal` (of the surface, a unit vector) and `caustic` (whether the photon counts
-/// as caustic light). Specialise it for structs with other names.
+/// How photons of type P are read. As it stands it takes the members `position` (m) and `flux` (W), and, where P has
+/// them, `direction` (of travel, a unit vector), `normal` (of the surface, a unit vector) and `caustic` (whether the
+/// photon counts as caustic light). Specialise it for structs with other names.
 ///
 /// Positions, directions and normals are anything with members x, y, z or elements [0] to [2]; a flux is the same, its
 /// channels red, green and blue, or one number for all three.
@@ -33,23 +33,42 @@ template <class P>
 struct photon_reader {
     /// \name What a specialisation may have; position and flux are needed
     /// @{
-    static const auto& position(const P& p) requires requires { p.position; } { return p.position; } ///< m
-    static const auto& flux(const P& p) requires requires { p.flux; } { return p.flux; }                 ///< W
-    static const auto& direction(const P& p) requires requires { p.direction; } { return p.direction; } ///< of travel, unit length; leak_policy::side reads it
-    static const auto& normal(const P& p) requires requires { p.normal; } { return p.normal; }             ///< of the surface, unit length; leak_policy::min_cosine reads it
-    static bool caustic(const P& p) requires requires { p.caustic; } { return p.caustic; }                ///< true: caustic_part, false: other_part
+    static const auto& position(const P& p) requires requires { p.position; }
+    {
+        return p.position;
+    } ///< m
+    static const auto& flux(const P& p) requires requires { p.flux; }
+    {
+        return p.flux;
+    } ///< W
+    static const auto& direction(const P& p) requires requires { p.direction; }
+    {
+        return p.direction;
+    } ///< of travel, unit length; leak_policy::side reads it
+    static const auto& normal(const P& p) requires requires { p.normal; }
+    {
+        return p.normal;
+    } ///< of the surface, unit length; leak_policy::min_cosine reads it
+    static bool caustic(const P& p) requires requires { p.caustic; }
+    {
+        return p.caustic;
+    } ///< true: caustic_part, false: other_part
     /// @}
 };
 
 namespace detail {
     template <class V>
-    concept has_xyz = requires(const V& v) {
+    concept has_xyz = requires(const V& v)
+    {
         static_cast<float>(v.x);
         static_cast<float>(v.y);
         static_cast<float>(v.z);
     };
     template <class V>
-    concept has_elements = requires(const V& v) { static_cast<float>(v[0]); };
+    concept has_elements = requires(const V& v)
+    {
+        static_cast<float>(v[0]);
+    };
     template <class V>
     concept vector_like = has_xyz<V> || has_elements<V>;
     template <class V>
@@ -69,18 +88,23 @@ namespace detail {
 
 /// A type that photon_reader can read.
 template <class P>
-concept own_photon = requires(const P& p) {
-    { photon_reader<P>::position(p) } -> detail::vector_like;
-    { photon_reader<P>::flux(p) } -> detail::flux_like;
+concept own_photon = requires(const P& p)
+{
+    {
+        photon_reader<P>::position(p)
+        } -> detail::vector_like;
+    {
+        photon_reader<P>::flux(p)
+        } -> detail::flux_like;
 };
 
-/// The caller's photons in buffers of `b`, in their order. Directions and normals only where the type has them. Beside the
-/// buffers it takes 16 bytes a photon, for as long as it runs.
+/// The caller's photons in buffers of `b`, in their order. Directions and normals only where the type has them. Beside
+/// the buffers it takes 16 bytes a photon, for as long as it runs.
 /// \throws std::invalid_argument for more than 2^32 - 1 photons, backend_error where the device has no room.
 /// \snippet snippets.cpp upload_photons
 template <backend B, std::ranges::contiguous_range Range>
-    requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_t<Range>>
-photons<B> upload_photons(B& b, const Range& own)
+requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_t<Range>> photons<B> upload_photons(
+    B& b, const Range& own)
 {
     using P = std::ranges::range_value_t<Range>;
     using reader = photon_reader<P>;
@@ -121,22 +145,24 @@ namespace detail {
     }
 } // namespace detail
 
-/// Query points, m, for a search that wants an estimate at each: a range of the caller's vectors, as in photon_reader. w is 1.
+/// Query points, m, for a search that wants an estimate at each: a range of the caller's vectors, as in photon_reader.
+/// w is 1.
 /// \throws backend_error where the device has no room.
 /// \snippet snippets.cpp upload_points
 template <backend B, std::ranges::contiguous_range Range>
-    requires std::ranges::sized_range<Range> && detail::vector_like<std::ranges::range_value_t<Range>>
-buffer_of<B, glm::vec4> upload_points(B& b, const Range& points)
+requires std::ranges::sized_range<Range> && detail::vector_like<std::ranges::range_value_t<Range>>
+    buffer_of<B, glm::vec4> upload_points(B& b, const Range& points)
 {
     return detail::upload_vectors(b, points, 1.0f); // w > 0: wanted
 }
 
-/// Unit normals of the surfaces that query points lie on, towards the side that is looked at: one a point, in their order. w is 0.
+/// Unit normals of the surfaces that query points lie on, towards the side that is looked at: one a point, in their
+/// order. w is 0.
 /// \throws backend_error where the device has no room.
 /// \snippet snippets.cpp upload_normals
 template <backend B, std::ranges::contiguous_range Range>
-    requires std::ranges::sized_range<Range> && detail::vector_like<std::ranges::range_value_t<Range>>
-buffer_of<B, glm::vec4> upload_normals(B& b, const Range& normals)
+requires std::ranges::sized_range<Range> && detail::vector_like<std::ranges::range_value_t<Range>>
+    buffer_of<B, glm::vec4> upload_normals(B& b, const Range& normals)
 {
     return detail::upload_vectors(b, normals, 0.0f);
 }

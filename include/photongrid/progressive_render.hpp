@@ -1,5 +1,5 @@
-// The interactive loop (section 3.4): a picture that is started, stepped, looked at at any time, changed and cancelled. The
-// photon map is built again only when geometry, materials or lights change (figure 1).
+// The interactive loop (section 3.4): a picture that is started, stepped, looked at at any time, changed and cancelled.
+// The photon map is built again only when geometry, materials or lights change (figure 1).
 //
 //     progressive_render<B> drawing(device);
 //     for (drawing.start(scene, settings); !drawing.finished(); show(drawing.picture()))
@@ -20,13 +20,14 @@ template <backend B>
 class progressive_render {
 public:
     using milliseconds = std::chrono::duration<double, std::milli>; ///< of a step
-    static constexpr milliseconds no_limit{std::numeric_limits<double>::infinity()}; ///< a step that ends with the picture
+    static constexpr milliseconds no_limit{
+        std::numeric_limits<double>::infinity()}; ///< a step that ends with the picture
 
     /// `b` must outlive it.
     explicit progressive_render(B& b) : b_(b) {}
 
-    /// From now on draws `s`, seen by its camera. Work in flight is given up, but for a map that serves the new picture too
-    /// (same_map). Cheap: all work is step's.
+    /// From now on draws `s`, seen by its camera. Work in flight is given up, but for a map that serves the new picture
+    /// too (same_map). Cheap: all work is step's.
     /// \throws std::invalid_argument for a scene or settings that check() refuses; what was drawn before is then still there.
     /// \snippet snippets.cpp progressive_render
     void start(const scene& s, const render_settings& settings, const first_looks& looks = {})
@@ -51,8 +52,9 @@ public:
         if (!looks.wanted)
             drop_early_map();
     }
-    /// Goes on from a state() of the same scene, settings and device, without first looks: the picture ends with the same bytes.
-    /// To be called after start() and before step(), which throws std::invalid_argument for a state of another size.
+    /// Goes on from a state() of the same scene, settings and device, without first looks: the picture ends with the
+    /// same bytes. To be called after start() and before step(), which throws std::invalid_argument for a state of
+    /// another size.
     void resume(view_state s)
     {
         state_ = std::move(s);
@@ -62,8 +64,8 @@ public:
     /// What the picture has so far, for resume().
     view_state state() { return view_ && !built_is_early_ ? view_->state() : state_; }
 
-    /// Works for about `budget`: whole passes, at least one, until time is up, the picture is finished, or another thread cancels.
-    /// Returns whether the picture is finished.
+    /// Works for about `budget`: whole passes, at least one, until time is up, the picture is finished, or another
+    /// thread cancels. Returns whether the picture is finished.
     /// \throws std::logic_error before start(), std::runtime_error when the lights store too few photons, backend_error. The
     ///         next step begins the picture anew.
     bool step(milliseconds budget = no_limit)
@@ -85,8 +87,8 @@ public:
         return finished();
     }
 
-    /// Makes the step that runs in another thread end after the pass in flight, whatever its budget. The next step goes on;
-    /// start() begins anew.
+    /// Makes the step that runs in another thread end after the pass in flight, whatever its budget. The next step goes
+    /// on; start() begins anew.
     void cancel() { stop_asked_ = true; }
 
     /// True when picture() is the picture.
@@ -111,10 +113,12 @@ public:
         if (finished())
             return {"finished", 1, 0, 1, settings_.photons};
         if (building_)
-            return {building_->fraction() < 1 ? "trace_photons" : "build_map", building_->fraction(), pixels, 1, building_with_.photons};
+            return {building_->fraction() < 1 ? "trace_photons" : "build_map", building_->fraction(), pixels, 1,
+                building_with_.photons};
         if (!view_)
             return {"trace_photons", 0, pixels, 1, settings_.photons};
-        return {view_->looking() ? "first_looks" : "radiance_estimate", view_->fraction(), view_->unfinished(), view_->divisor(), built_with_.photons};
+        return {view_->looking() ? "first_looks" : "radiance_estimate", view_->fraction(), view_->unfinished(),
+            view_->divisor(), built_with_.photons};
     }
     /// Of the map in use, and of the picture so far; whole after picture() of the finished picture.
     const render_stats& stats() const { return stats_; }
@@ -142,7 +146,8 @@ private:
             building_.reset();
     }
 
-    /// One pass: of the map, or of the picture. The picture waits for a map; the whole map, for a look from an early one.
+    /// One pass: of the map, or of the picture. The picture waits for a map; the whole map, for a look from an early
+    /// one.
     void advance()
     {
         if (!built_ || (built_is_early_ && view_ && view_->pictures() > 0))
@@ -201,7 +206,8 @@ private:
         auto settings = settings_;
         if (built_is_early_)
             settings.k = std::max(1u, settings.k / std::max(1u, settings.photons / built_with_.photons));
-        view_.emplace(b_, *built_, scene_.camera, settings, stats_, looks_.wanted ? looks() : std::vector<first_look>{}, pass_size::small);
+        view_.emplace(b_, *built_, scene_.camera, settings, stats_, looks_.wanted ? looks() : std::vector<first_look>{},
+            pass_size::small);
         if (state_.rays > 0)
             view_->resume(std::exchange(state_, {}));
     }
@@ -223,19 +229,21 @@ private:
     /// As large pixels as must be, then smaller ones, then more photons an estimate.
     std::vector<first_look> looks() const
     {
-        const auto pixels = [&](uint divisor) { return static_cast<double>(detail::raster_of(settings_, divisor).size()); };
+        const auto pixels
+            = [&](uint divisor) { return static_cast<double>(detail::raster_of(settings_, divisor).size()); };
         if (!built_is_early_ && pixels(1) * ms_a_pixel_ <= looks_.target_ms)
-            return {}; // the picture is as fast as a look should be
+            return {};    // the picture is as fast as a look should be
         uint divisor = 1; // of which something can be recognised
-        while (std::min(settings_.width, settings_.height) / divisor >= 64 && pixels(divisor) * ms_a_look_pixel_ > looks_.target_ms)
+        while (std::min(settings_.width, settings_.height) / divisor >= 64
+            && pixels(divisor) * ms_a_look_pixel_ > looks_.target_ms)
             divisor *= 2;
         if (built_is_early_)
             return {{divisor, std::max(1u, 16 / std::max(1u, settings_.photons / built_with_.photons))}};
         std::vector<first_look> all;
         for (divisor = early_ ? std::max(1u, divisor / 2) : divisor; divisor > 1; divisor /= 2)
             all.push_back({divisor, 16});
-        // Where there is little light the growing search goes out to the maximum radius whatever k is, so that a look in the
-        // picture's own pixels would take as long as the picture (3.1).
+        // Where there is little light the growing search goes out to the maximum radius whatever k is, so that a look
+        // in the picture's own pixels would take as long as the picture (3.1).
         if (all.empty() || settings_.search != search_kind::at_least_k)
             all.push_back({1, 16});
         if (settings_.k > 32 && settings_.search != search_kind::at_least_k) // k / 16 is less
@@ -249,7 +257,8 @@ private:
     render_settings settings_;
     first_looks looks_;
     render_stats stats_, building_stats_;
-    render_settings map_for_, building_with_, built_with_; ///< what maps were made for, and with: the latter may have fewer photons
+    render_settings map_for_, building_with_,
+        built_with_; ///< what maps were made for, and with: the latter may have fewer photons
     std::optional<map_building<B>> building_;
     std::optional<built_map<B>> built_;
     bool built_is_early_ = false;             ///< it has fewer photons, for a first look

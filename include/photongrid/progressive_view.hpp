@@ -1,5 +1,5 @@
-// A view of a built map, drawn pass by pass (sections 2.4 and 3.4; figure 1, right): first looks with larger pixels and fewer
-// photons, then the picture itself, one eye ray a pixel after the other. No photon pass runs.
+// A view of a built map, drawn pass by pass (sections 2.4 and 3.4; figure 1, right): first looks with larger pixels and
+// fewer photons, then the picture itself, one eye ray a pixel after the other. No photon pass runs.
 #pragma once
 
 #include <photongrid/edge_correction.hpp>
@@ -34,10 +34,11 @@ namespace detail {
         return k;
     }
 
-    /// Pixels as an image of the whole size. Squares are spread out; between their middles values are interpolated as v / (1 + v)
-    /// of what the exposure leaves, so that a lamp does not shine on its neighbours. Pixels that are NaN or infinite become 0
-    /// and are counted.
-    inline image to_image(const std::vector<glm::vec4>& pixels, const raster& r, const render_settings& s, float scale, std::uint64_t& invalid)
+    /// Pixels as an image of the whole size. Squares are spread out; between their middles values are interpolated as v
+    /// / (1 + v) of what the exposure leaves, so that a lamp does not shine on its neighbours. Pixels that are NaN or
+    /// infinite become 0 and are counted.
+    inline image to_image(const std::vector<glm::vec4>& pixels, const raster& r, const render_settings& s, float scale,
+        std::uint64_t& invalid)
     {
         image out;
         out.width = s.width;
@@ -75,7 +76,8 @@ namespace detail {
             const auto* above = &good[std::size_t{row.low} * r.width];
             const auto* below = &good[std::size_t{row.high} * r.width];
             for (const auto& c : columns) {
-                const auto p = glm::mix(glm::mix(above[c.low], above[c.high], c.share), glm::mix(below[c.low], below[c.high], c.share), row.share);
+                const auto p = glm::mix(glm::mix(above[c.low], above[c.high], c.share),
+                    glm::mix(below[c.low], below[c.high], c.share), row.share);
                 out.pixels.push_back(p / (1.0f - p * exposure));
             }
         }
@@ -83,22 +85,17 @@ namespace detail {
     }
 } // namespace detail
 
-/// A picture of a built map that comes about pass by pass. Its last bytes do not depend on looks, on sizes of passes, or on
-/// when it was looked at.
+/// A picture of a built map that comes about pass by pass. Its last bytes do not depend on looks, on sizes of passes,
+/// or on when it was looked at.
 template <backend B>
 class progressive_view {
 public:
     /// Draws nothing yet. `built` and `stats`, where times go, must outlive it.
     /// \throws std::invalid_argument for a camera or settings that check() refuses, or a look with a 0.
-    progressive_view(B& b, const built_map<B>& built, const camera& view, const render_settings& settings, render_stats& stats, std::vector<first_look> looks = {}, pass_size size = pass_size::largest)
-        : b_(b)
-        , built_(built)
-        , view_(view)
-        , settings_(settings)
-        , stats_(stats)
-        , looks_(std::move(looks))
-        , size_(size)
-        , branches_(1u << detail::branchings_of(built.scene.about))
+    progressive_view(B& b, const built_map<B>& built, const camera& view, const render_settings& settings,
+        render_stats& stats, std::vector<first_look> looks = {}, pass_size size = pass_size::largest)
+        : b_(b), built_(built), view_(view), settings_(settings), stats_(stats), looks_(std::move(looks)), size_(size),
+          branches_(1u << detail::branchings_of(built.scene.about))
     {
         check(settings);
         check(view);
@@ -142,8 +139,8 @@ public:
             advance_rays();
     }
 
-    /// The best picture so far, in the whole size. NaN and infinite pixels are 0. Of the finished picture they are counted, as
-    /// are its searches and the map's photons: only then are the statistics whole.
+    /// The best picture so far, in the whole size. NaN and infinite pixels are 0. Of the finished picture they are
+    /// counted, as are its searches and the map's photons: only then are the statistics whole.
     /// \throws std::logic_error when there is none yet, backend_error.
     image picture()
     {
@@ -154,7 +151,8 @@ public:
             auto running = copy(canvas_->pixels);
             auto ignored = b_.template make<glm::vec4>(running.size());
             shade(search_->estimates(), 1.0f / static_cast<float>(settings_.spp), running, ignored);
-            return detail::to_image(b_.download(running), canvas_->raster, settings_, static_cast<float>(settings_.spp), invalid);
+            return detail::to_image(
+                b_.download(running), canvas_->raster, settings_, static_cast<float>(settings_.spp), invalid);
         }
         image im = detail::to_image(b_.download(shown_->pixels), shown_->raster, settings_, shown_->scale, invalid);
         if (!finished())
@@ -177,7 +175,8 @@ public:
     view_state state()
     {
         if (finished())
-            return {settings_.spp * branches_, b_.download(shown_->pixels), b_.download(shown_->searches), b_.download(shown_->errors)};
+            return {settings_.spp * branches_, b_.download(shown_->pixels), b_.download(shown_->searches),
+                b_.download(shown_->errors)};
         if (looking() || !canvas_)
             return {};
         return {ray_, b_.download(canvas_->pixels), b_.download(canvas_->searches), b_.download(canvas_->errors)};
@@ -189,15 +188,19 @@ public:
         const auto n = detail::raster_of(settings_, 1).size();
         if (s.rays == 0)
             return;
-        if (s.rays > settings_.spp * branches_ || s.pixels.size() != n || s.searches.size() != n || s.errors.size() != (settings_.aov ? n : 0))
-            throw std::invalid_argument("progressive_view::resume: state: is of another picture: " + std::to_string(s.pixels.size()) + " pixels and " + std::to_string(s.rays) + " rays a pixel; this one has "
-                + std::to_string(n) + " and " + std::to_string(settings_.spp * branches_));
+        if (s.rays > settings_.spp * branches_ || s.pixels.size() != n || s.searches.size() != n
+            || s.errors.size() != (settings_.aov ? n : 0))
+            throw std::invalid_argument(
+                "progressive_view::resume: state: is of another picture: " + std::to_string(s.pixels.size())
+                + " pixels and " + std::to_string(s.rays) + " rays a pixel; this one has " + std::to_string(n) + " and "
+                + std::to_string(settings_.spp * branches_));
         search_.reset();
         current_.reset();
         traced_ = 0;
         look_ = looks_.size();
         ray_ = s.rays;
-        canvas_.emplace(canvas{detail::raster_of(settings_, 1), upload(b_, s.pixels), upload(b_, s.searches), upload(b_, s.errors)});
+        canvas_.emplace(canvas{
+            detail::raster_of(settings_, 1), upload(b_, s.pixels), upload(b_, s.searches), upload(b_, s.errors)});
         if (ray_ % branches_ == 0)
             show_samples();
     }
@@ -214,9 +217,15 @@ private:
     };
 
     /// The picture's own search, looks apart.
-    knn_settings search_settings() const { return detail::estimate_settings(settings_, least_radius(built_.map.cells_of)); }
+    knn_settings search_settings() const
+    {
+        return detail::estimate_settings(settings_, least_radius(built_.map.cells_of));
+    }
     /// Where light is added up while a search runs, who looks can look at it (3.4).
-    bool grows() const { return !looking() && !looks_.empty() && knn_search<B>::shows_running_estimate(search_settings()); }
+    bool grows() const
+    {
+        return !looking() && !looks_.empty() && knn_search<B>::shows_running_estimate(search_settings());
+    }
     /// The first sample's other ways through the scene must be there already.
     bool shows_running_estimate() const { return search_ && grows() && grown_ > 0 && ray_ + 1 == branches_; }
 
@@ -249,10 +258,12 @@ private:
         if (!current_)
             current_.emplace(traced_ray{detail::eye_hits<B>(b_, n), b_.template make<glm::vec4>(n)});
         if (traced_ < n) {
-            const launch pixels(size_ == pass_size::small ? std::min<std::size_t>(n - traced_, 65536) : n - traced_, static_cast<uint>(traced_));
+            const launch pixels(size_ == pass_size::small ? std::min<std::size_t>(n - traced_, 65536) : n - traced_,
+                static_cast<uint>(traced_));
             detail::trace_eye_rays(b_, built_.scene, view_, settings_, r, ray_, pixels, current_->hits);
             if (settings_.only == light_part::all || settings_.only == light_part::direct) {
-                detail::direct_light(b_, built_.scene, current_->hits, light_settings(), ray_, pixels, current_->direct);
+                detail::direct_light(
+                    b_, built_.scene, current_->hits, light_settings(), ray_, pixels, current_->direct);
             } else {
                 b_.template run<kernels::no_light>(pixels, {}, reads(), writes(current_->direct));
                 b_.template run<kernels::no_light>(pixels, {}, reads(), writes(current_->hits.emissions));
@@ -317,9 +328,11 @@ private:
 
     void end_search()
     {
-        const auto found = shade(std::move(*search_).estimates(), looking() ? 1.0f : 1.0f / static_cast<float>(settings_.spp), canvas_->pixels, canvas_->searches);
+        const auto found = shade(std::move(*search_).estimates(),
+            looking() ? 1.0f : 1.0f / static_cast<float>(settings_.spp), canvas_->pixels, canvas_->searches);
         if (canvas_->errors.size() > 0)
-            b_.template run<kernels::tally_error>(canvas_->errors.size(), {}, reads(current_->hits.points, found.irradiance, found.standard_error), writes(canvas_->errors));
+            b_.template run<kernels::tally_error>(canvas_->errors.size(), {},
+                reads(current_->hits.points, found.irradiance, found.standard_error), writes(canvas_->errors));
         search_.reset();
         if (looking() && (look_ + 1 < looks_.size() ? looks_[look_ + 1].divisor : 1u) == divisor())
             kept_[ray_] = std::move(current_); // the next look sees the same points
@@ -329,13 +342,17 @@ private:
             show_samples();
     }
 
-    knn_estimates<B> shade(knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches)
+    knn_estimates<B> shade(
+        knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches)
     {
         const auto& hits = current_->hits;
         if (settings_.edges != edge_correction::none)
-            correct_edges(b_, built_.scene, hits.points, hits.surfaces, found, settings_.kernel, least_radius(built_.map.cells_of));
+            correct_edges(b_, built_.scene, hits.points, hits.surfaces, found, settings_.kernel,
+                least_radius(built_.map.cells_of));
         b_.template run<kernels::shade>(pixels.size(), {.scene_layout = built_.scene.about.layout, .share = share},
-            reads(built_.scene.records, hits.points, hits.weights, hits.surfaces, hits.emissions, current_->direct, found.irradiance, found.used), writes(pixels, searches));
+            reads(built_.scene.records, hits.points, hits.weights, hits.surfaces, hits.emissions, current_->direct,
+                found.irradiance, found.used),
+            writes(pixels, searches));
         return found;
     }
 
@@ -350,7 +367,8 @@ private:
             ray_ = 0;
             ++look_;
         } else {
-            shown_.emplace(canvas{canvas_->raster, copy(canvas_->pixels), {}, {}, static_cast<float>(settings_.spp) / static_cast<float>(samples)});
+            shown_.emplace(canvas{canvas_->raster, copy(canvas_->pixels), {}, {},
+                static_cast<float>(settings_.spp) / static_cast<float>(samples)});
         }
     }
 
@@ -362,7 +380,8 @@ private:
         for (const auto& p : b_.download(shown_->searches))
             sum += glm::dvec4(p);
         if (!(sum.w >= 0) || !(sum.w <= searched))
-            throw backend_error(b_.caps().backend + ": shade: the device says that " + std::to_string(sum.w) + " points were searched for; there are " + std::to_string(searched));
+            throw backend_error(b_.caps().backend + ": shade: the device says that " + std::to_string(sum.w)
+                + " points were searched for; there are " + std::to_string(searched));
         stats_.estimate.points = static_cast<std::uint64_t>(sum.w);
         const double points = std::max(sum.w, 1.0);
         stats_.estimate.mean_count = sum.x / points;
@@ -384,11 +403,11 @@ private:
     pass_size size_;
     uint branches_;
 
-    std::size_t look_ = 0; ///< past the looks: the picture; past that: finished
-    uint ray_ = 0;         ///< of this look: sample x branches + way through the glass
-    std::size_t traced_ = 0; ///< pixels whose eye rays are traced
+    std::size_t look_ = 0;         ///< past the looks: the picture; past that: finished
+    uint ray_ = 0;                 ///< of this look: sample x branches + way through the glass
+    std::size_t traced_ = 0;       ///< pixels whose eye rays are traced
     std::uint64_t unfinished_ = 0; ///< pixels that the search in flight is not done with
-    uint grown_ = 0;       ///< passes of a growing search
+    uint grown_ = 0;               ///< passes of a growing search
     std::uint64_t pictures_ = 0;
     std::optional<traced_ray> current_;
     std::vector<std::optional<traced_ray>> kept_; ///< for the next look: the first sample's, one a way

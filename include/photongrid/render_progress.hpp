@@ -24,8 +24,9 @@ struct view_state {
     std::vector<glm::vec4> errors;   ///< x: sum of relative errors; empty unless render_settings::aov
 };
 
-/// How a picture that is watched begins: with fewer photons where tracing all takes long, larger pixels and smaller k, so that
-/// its first look takes about as long as it should, by what the last ones took. The picture's end does not depend on it.
+/// How a picture that is watched begins: with fewer photons where tracing all takes long, larger pixels and smaller k,
+/// so that its first look takes about as long as it should, by what the last ones took. The picture's end does not
+/// depend on it.
 struct first_looks {
     bool wanted = true;    ///< false: nothing is shown before the picture itself
     double target_ms = 40; ///< of the first map, and of the first look from it

@@ -25,7 +25,7 @@ struct material {
     std::string name;                               ///< free; in a scene file, the key that shapes name it by
     material_kind kind = material_kind::lambertian; ///< what `reflectance` means
     dvec3 reflectance{0.5};                         ///< rgb, 0 to 1: see above
-    double index_of_refraction = 1.5; ///< glass only, 1 to 10; air, 1, is outside
+    double index_of_refraction = 1.5;               ///< glass only, 1 to 10; air, 1, is outside
 
     bool operator==(const material&) const = default; ///< of every member
 };
@@ -122,7 +122,11 @@ namespace detail {
     struct camera_axes {
         dvec3 forward, right, up;
 
-        explicit camera_axes(const camera& c) : forward(glm::normalize(c.look_at - c.position)), right(glm::normalize(glm::cross(forward, c.up))), up(glm::cross(right, forward)) {}
+        explicit camera_axes(const camera& c)
+            : forward(glm::normalize(c.look_at - c.position)), right(glm::normalize(glm::cross(forward, c.up))),
+              up(glm::cross(right, forward))
+        {
+        }
     };
 } // namespace detail
 
@@ -135,27 +139,28 @@ enum class light_part { all, direct, caustic, indirect };
 
 /// How to render: the paper's parameters, and what goes beyond them.
 struct render_settings {
-    std::uint32_t width = 512;               ///< pixels, 1 to 16384
-    std::uint32_t height = 512;              ///< pixels, 1 to 16384
-    std::uint32_t photons = 65000;           ///< photons *stored*
-    std::uint32_t k = 500;                   ///< photons sought by an estimate
-    glm::uvec3 grid{25, 25, 50};             ///< cells of the photon map over the scene; 0, 0, 0: fitted to photons and k (fitting_grid.hpp)
-    double max_radius = 0.1;                 ///< m
-    std::uint32_t light_samples = 32;        ///< shadow rays a light, pixel and eye ray; a point light needs one
-    std::uint32_t spp = 1;                   ///< eye rays a pixel
-    std::uint32_t depth = 8;                 ///< reflections and refractions an eye ray follows
-    std::uint32_t photon_depth = 32;         ///< surfaces a photon path meets at most
-    std::uint32_t seed = 1;                  ///< of all random numbers; the same seed gives the same picture
-    map_builder builder = map_builder::sort; ///< sorted or routed
-    std::uint32_t slots = 4;                 ///< m: routed cells have m x m slots
-    double exposure = 0;                     ///< EV for tone-mapped output: pixel values times 2^exposure
-    search_kind search = search_kind::exact_k;       ///< which photons an estimate uses
+    std::uint32_t width = 512;     ///< pixels, 1 to 16384
+    std::uint32_t height = 512;    ///< pixels, 1 to 16384
+    std::uint32_t photons = 65000; ///< photons *stored*
+    std::uint32_t k = 500;         ///< photons sought by an estimate
+    glm::uvec3 grid{
+        25, 25, 50}; ///< cells of the photon map over the scene; 0, 0, 0: fitted to photons and k (fitting_grid.hpp)
+    double max_radius = 0.1;                   ///< m
+    std::uint32_t light_samples = 32;          ///< shadow rays a light, pixel and eye ray; a point light needs one
+    std::uint32_t spp = 1;                     ///< eye rays a pixel
+    std::uint32_t depth = 8;                   ///< reflections and refractions an eye ray follows
+    std::uint32_t photon_depth = 32;           ///< surfaces a photon path meets at most
+    std::uint32_t seed = 1;                    ///< of all random numbers; the same seed gives the same picture
+    map_builder builder = map_builder::sort;   ///< sorted or routed
+    std::uint32_t slots = 4;                   ///< m: routed cells have m x m slots
+    double exposure = 0;                       ///< EV for tone-mapped output: pixel values times 2^exposure
+    search_kind search = search_kind::exact_k; ///< which photons an estimate uses
     filter_kernel kernel = filter_kernel::silverman; ///< their weight by distance
     bias_kind bias = bias_kind::unbiased;            ///< does the photon that sets the radius count?
     leak_policy leaks{.side = true};                 ///< photons that are refused
     edge_correction edges = edge_correction::none;   ///< polygons: needs leak_policy::min_cosine above 0
     light_part only = light_part::all;               ///< what of the light is drawn
-    bool aov = false;                        ///< radius, count and relative standard error of the estimate are wanted per pixel
+    bool aov = false; ///< radius, count and relative standard error of the estimate are wanted per pixel
 
     bool operator==(const render_settings&) const = default; ///< of every member
 };
@@ -178,7 +183,8 @@ struct scene {
     bool operator==(const scene&) const = default; ///< of every member
 };
 
-/// The settings that reproduce the paper's estimate (2.3): at least k, constant kernel, no policy, no correction. The rest stays.
+/// The settings that reproduce the paper's estimate (2.3): at least k, constant kernel, no policy, no correction. The
+/// rest stays.
 /// \snippet snippets.cpp as_paper
 inline render_settings as_paper(render_settings s)
 {
@@ -190,8 +196,8 @@ inline render_settings as_paper(render_settings s)
     return s;
 }
 
-/// What the estimates behind a picture say of themselves, means over each pixel's eye rays, row by row from the top left;
-/// 0 where no ray asked for an estimate.
+/// What the estimates behind a picture say of themselves, means over each pixel's eye rays, row by row from the top
+/// left; 0 where no ray asked for an estimate.
 struct estimate_layers {
     std::vector<float> radius;         ///< m
     std::vector<float> count;          ///< photons within it
@@ -203,7 +209,7 @@ struct image {
     std::uint32_t width = 0;       ///< pixels
     std::uint32_t height = 0;      ///< pixels
     std::vector<glm::vec3> pixels; ///< width x height of them
-    estimate_layers layers{}; ///< empty unless render_settings::aov
+    estimate_layers layers{};      ///< empty unless render_settings::aov
 };
 
 namespace detail {
@@ -228,9 +234,12 @@ namespace detail {
 inline void check(const material& m)
 {
     const auto& r = m.reflectance;
-    detail::require(detail::finite(r) && r.x >= 0 && r.y >= 0 && r.z >= 0 && r.x <= 1 && r.y <= 1 && r.z <= 1, "reflectance: each channel must be from 0 to 1");
+    detail::require(detail::finite(r) && r.x >= 0 && r.y >= 0 && r.z >= 0 && r.x <= 1 && r.y <= 1 && r.z <= 1,
+        "reflectance: each channel must be from 0 to 1");
     if (m.kind == material_kind::glass)
-        detail::require(detail::finite(m.index_of_refraction) && m.index_of_refraction >= 1 && m.index_of_refraction <= 10, "index_of_refraction: must be from 1 to 10");
+        detail::require(
+            detail::finite(m.index_of_refraction) && m.index_of_refraction >= 1 && m.index_of_refraction <= 10,
+            "index_of_refraction: must be from 1 to 10");
 }
 /// \throws std::invalid_argument for a centre that is not finite, or a radius that is not above 0.
 inline void check(const sphere& s)
@@ -291,15 +300,19 @@ inline void check(const polygon& p)
         const auto& b = p.vertices[(i + 1) % p.vertices.size()];
         const auto& c = p.vertices[(i + 2) % p.vertices.size()];
         detail::require(std::abs(glm::dot(n, a - p.vertices[0])) <= 1e-5 * extent,
-            "vertices: vertex " + std::to_string(i) + " lies off the plane of the others by more than 1e-5 of the polygon's extent; split it into triangles");
-        detail::require(glm::dot(n, glm::cross(b - a, c - b)) >= -1e-9 * extent * extent, "vertices: the polygon is not convex at vertex " + std::to_string((i + 1) % p.vertices.size()));
+            "vertices: vertex " + std::to_string(i)
+                + " lies off the plane of the others by more than 1e-5 of the polygon's extent; split it into "
+                  "triangles");
+        detail::require(glm::dot(n, glm::cross(b - a, c - b)) >= -1e-9 * extent * extent,
+            "vertices: the polygon is not convex at vertex " + std::to_string((i + 1) % p.vertices.size()));
     }
 }
 
 /// \throws std::invalid_argument for a power (W, rgb) with a channel that is not finite or below 0, or with no light.
 inline void check_power(const dvec3& power)
 {
-    detail::require(detail::finite(power) && power.x >= 0 && power.y >= 0 && power.z >= 0, "power: each channel must be finite and not negative");
+    detail::require(detail::finite(power) && power.x >= 0 && power.y >= 0 && power.z >= 0,
+        "power: each channel must be finite and not negative");
     detail::require(power.x + power.y + power.z > 0, "power: the light is black");
 }
 /// \throws std::invalid_argument for a position that is not finite, or a power as in check_power.
@@ -311,9 +324,11 @@ inline void check(const point_light& l)
 /// \throws std::invalid_argument for what is not finite, edges without area or not at right angles, or a power as in check_power.
 inline void check(const rectangle_light& l)
 {
-    detail::require(detail::finite(l.corner) && detail::finite(l.edge_u) && detail::finite(l.edge_v), "corner, edge_u, edge_v: must be finite");
+    detail::require(detail::finite(l.corner) && detail::finite(l.edge_u) && detail::finite(l.edge_v),
+        "corner, edge_u, edge_v: must be finite");
     const double u = glm::length(l.edge_u), v = glm::length(l.edge_v);
-    detail::require(u > 0 && v > 0 && glm::length(glm::cross(l.edge_u, l.edge_v)) > 1e-9 * u * v, "edge_u, edge_v: the rectangle has no area");
+    detail::require(u > 0 && v > 0 && glm::length(glm::cross(l.edge_u, l.edge_v)) > 1e-9 * u * v,
+        "edge_u, edge_v: the rectangle has no area");
     detail::require(std::abs(glm::dot(l.edge_u, l.edge_v)) <= 1e-6 * u * v, "edge_u, edge_v: must be at right angles");
     check_power(l.power);
 }
@@ -322,26 +337,34 @@ inline void check(const camera& c)
 {
     detail::require(detail::finite(c.position) && detail::finite(c.look_at), "position and look_at: must be finite");
     detail::require(c.position != c.look_at, "position and look_at: are the same point, so the camera looks nowhere");
-    detail::require(detail::finite(c.up) && glm::length(glm::cross(c.up, c.look_at - c.position)) > 1e-9 * glm::length(c.up) * glm::length(c.look_at - c.position) && glm::length(c.up) > 0,
+    detail::require(detail::finite(c.up)
+            && glm::length(glm::cross(c.up, c.look_at - c.position))
+                > 1e-9 * glm::length(c.up) * glm::length(c.look_at - c.position)
+            && glm::length(c.up) > 0,
         "up: must be finite, not zero, and not along the line of sight");
-    detail::require(detail::finite(c.vertical_fov) && c.vertical_fov > 0 && c.vertical_fov < 179, "vertical_fov: must be between 0 and 179 degrees");
+    detail::require(detail::finite(c.vertical_fov) && c.vertical_fov > 0 && c.vertical_fov < 179,
+        "vertical_fov: must be between 0 and 179 degrees");
 }
 /// \throws std::invalid_argument for a setting out of its range, which the message gives.
 inline void check(const render_settings& s)
 {
-    detail::require(s.width >= 1 && s.height >= 1 && s.width <= 16384 && s.height <= 16384, "size: width and height must be from 1 to 16384 pixels");
+    detail::require(s.width >= 1 && s.height >= 1 && s.width <= 16384 && s.height <= 16384,
+        "size: width and height must be from 1 to 16384 pixels");
     detail::require(s.photons >= 1 && s.photons <= (1u << 27), "photons: must be from 1 to 2^27");
     detail::require(s.k >= 1 && s.k <= (1u << 24), "k: must be from 1 to 2^24");
-    detail::require(s.grid == glm::uvec3(0) || (s.grid.x >= 1 && s.grid.y >= 1 && s.grid.z >= 1), "grid: each axis needs at least one cell (or all three 0: fitted to the photons)");
+    detail::require(s.grid == glm::uvec3(0) || (s.grid.x >= 1 && s.grid.y >= 1 && s.grid.z >= 1),
+        "grid: each axis needs at least one cell (or all three 0: fitted to the photons)");
     detail::require(detail::finite(s.max_radius) && s.max_radius > 0, "max_radius: must be finite and greater than 0");
     detail::require(s.light_samples >= 1 && s.light_samples <= 65536, "light_samples: must be from 1 to 65536");
     detail::require(s.spp >= 1 && s.spp <= 65536, "spp: must be from 1 to 65536");
     detail::require(s.depth <= 64, "depth: must be at most 64");
     detail::require(s.photon_depth >= 1 && s.photon_depth <= 64, "photon_depth: must be from 1 to 64");
-    detail::require(s.leaks.compression >= 1 && s.leaks.compression <= 1e6f, "leaks: compression must be from 1 to 10^6");
+    detail::require(
+        s.leaks.compression >= 1 && s.leaks.compression <= 1e6f, "leaks: compression must be from 1 to 10^6");
     detail::require(s.leaks.min_cosine >= -1 && s.leaks.min_cosine <= 1, "leaks: min_cosine must be from -1 to 1");
     detail::require(s.edges == edge_correction::none || s.leaks.min_cosine > 0,
-        "edge_correction: photons of adjoining walls would count, though their area does not; it needs the leak policy normals with a cosine above 0, for example 0.5 (or edge_correction none)");
+        "edge_correction: photons of adjoining walls would count, though their area does not; it needs the leak policy "
+        "normals with a cosine above 0, for example 0.5 (or edge_correction none)");
     detail::require(s.slots >= 1 && s.slots <= 16, "slots: must be from 1 to 16");
     detail::require(detail::finite(s.exposure) && std::abs(s.exposure) <= 64, "exposure: must be from -64 to 64 EV");
 }
@@ -376,8 +399,10 @@ inline void check(const scene& s)
     for (std::size_t i = 0; i < s.spheres.size(); ++i)
         for (std::size_t j = 0; j < i; ++j) {
             const auto &a = s.spheres[i], &b = s.spheres[j];
-            detail::require(!is_glass(a) || !is_glass(b) || glm::length(a.center - b.center) >= (a.radius + b.radius) * (1 - 1e-9),
-                "spheres[" + std::to_string(i) + "]: overlaps spheres[" + std::to_string(j) + "], and both are glass; light is followed through one glass body at a time, so move them apart");
+            detail::require(
+                !is_glass(a) || !is_glass(b) || glm::length(a.center - b.center) >= (a.radius + b.radius) * (1 - 1e-9),
+                "spheres[" + std::to_string(i) + "]: overlaps spheres[" + std::to_string(j)
+                    + "], and both are glass; light is followed through one glass body at a time, so move them apart");
         }
     check(s.camera);
     check(s.render);

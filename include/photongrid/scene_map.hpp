@@ -1,5 +1,5 @@
-// A scene's photon map (figure 1, left): photons are traced and put into a grid. Needed again only when geometry, materials or
-// lights change, or a setting that same_map() names.
+// A scene's photon map (figure 1, left): photons are traced and put into a grid. Needed again only when geometry,
+// materials or lights change, or a setting that same_map() names.
 #pragma once
 
 #include <photongrid/build_map.hpp>
@@ -26,14 +26,16 @@ constexpr uint parts_of(light_part only)
     return only == light_part::caustic ? caustic_part : only == light_part::indirect ? other_part : every_part;
 }
 
-/// True where one photon map serves both scenes with these settings: same shapes, materials and lights, and the same photons in
-/// the same grid. Cameras, names and pictures' settings do not matter.
+/// True where one photon map serves both scenes with these settings: same shapes, materials and lights, and the same
+/// photons in the same grid. Cameras, names and pictures' settings do not matter.
 inline bool same_map(const scene& a, const render_settings& as, const scene& b, const render_settings& bs)
 {
     const bool fitted = as.grid == glm::uvec3(0);
-    return a.materials == b.materials && a.spheres == b.spheres && a.cylinders == b.cylinders && a.cones == b.cones && a.paraboloids == b.paraboloids && a.disks == b.disks
-        && a.polygons == b.polygons && a.point_lights == b.point_lights && a.rectangle_lights == b.rectangle_lights && as.photons == bs.photons && as.grid == bs.grid && (!fitted || as.k == bs.k)
-        && as.photon_depth == bs.photon_depth && as.seed == bs.seed && as.builder == bs.builder && (as.builder == map_builder::sort || as.slots == bs.slots)
+    return a.materials == b.materials && a.spheres == b.spheres && a.cylinders == b.cylinders && a.cones == b.cones
+        && a.paraboloids == b.paraboloids && a.disks == b.disks && a.polygons == b.polygons
+        && a.point_lights == b.point_lights && a.rectangle_lights == b.rectangle_lights && as.photons == bs.photons
+        && as.grid == bs.grid && (!fitted || as.k == bs.k) && as.photon_depth == bs.photon_depth && as.seed == bs.seed
+        && as.builder == bs.builder && (as.builder == map_builder::sort || as.slots == bs.slots)
         && (as.leaks.needs_normals() || !bs.leaks.needs_normals()) && parts_of(as.only) == parts_of(bs.only);
 }
 
@@ -43,7 +45,8 @@ class map_building {
 public:
     /// Uploads the scene; traces nothing yet. Times go to `stats`, which must outlive it.
     /// \throws std::invalid_argument for a scene or settings that check() refuses, backend_error.
-    map_building(B& b, const scene& s, const render_settings& settings, render_stats& stats) : b_(b), settings_(settings), stats_(stats)
+    map_building(B& b, const scene& s, const render_settings& settings, render_stats& stats)
+        : b_(b), settings_(settings), stats_(stats)
     {
         check(settings);
         built_.scene = upload_scene(b, s);
@@ -86,9 +89,12 @@ private:
     {
         photons<B> p = std::move(built_.trace.photons);
         const auto& about = built_.scene.about;
-        const grid g = settings_.grid == glm::uvec3(0) ? fitting_grid(b_, p, settings_.k, b_.caps().cells_a_radius) : make_grid(about.low, about.high, settings_.grid);
+        const grid g = settings_.grid == glm::uvec3(0) ? fitting_grid(b_, p, settings_.k, b_.caps().cells_a_radius)
+                                                       : make_grid(about.low, about.high, settings_.grid);
         const uint parts = parts_of(settings_.only);
-        built_.map = settings_.builder == map_builder::sort ? sorted_map(b_, std::move(p), g, parts) : routed_map(b_, std::move(p), g, settings_.slots, settings_.seed, parts);
+        built_.map = settings_.builder == map_builder::sort
+            ? sorted_map(b_, std::move(p), g, parts)
+            : routed_map(b_, std::move(p), g, settings_.slots, settings_.seed, parts);
         built_.about.builder = settings_.builder;
         built_.about.cells = cell_count(g);
         built_.about.resolution = glm::uvec3(g.resolution);
@@ -108,7 +114,8 @@ private:
 /// \throws what map_building throws, and render_cancelled.
 /// \snippet snippets.cpp build_map
 template <backend B>
-built_map<B> build_map(B& b, const scene& s, const render_settings& settings, const render_observer& observer, render_stats& stats)
+built_map<B> build_map(
+    B& b, const scene& s, const render_settings& settings, const render_observer& observer, render_stats& stats)
 {
     map_building<B> building(b, s, settings, stats);
     detail::run_to_end(building, observer, [&] {

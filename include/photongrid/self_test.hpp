@@ -1,5 +1,5 @@
-// What a device's arithmetic is worth: Vulkan and GL allow a division 2.5 units in the last place off. Where division and
-// square root round correctly, traced photons equal the serial backend's bit for bit (docs/design.md).
+// What a device's arithmetic is worth: Vulkan and GL allow a division 2.5 units in the last place off. Where division
+// and square root round correctly, traced photons equal the serial backend's bit for bit (docs/design.md).
 #pragma once
 
 #include <photongrid/backend.hpp>

@@ -1,5 +1,6 @@
-// Photon tracing (section 2.1), breadth-first: all paths of a batch take one bounce a pass, each bounce into its own frame
-// of the photon texture. No pixel is read back: two counts a batch, by occlusion query, tell the host how far it is.
+// Photon tracing (section 2.1), breadth-first: all paths of a batch take one bounce a pass, each bounce into its own
+// frame of the photon texture. No pixel is read back: two counts a batch, by occlusion query, tell the host how far it
+// is.
 #pragma once
 
 #include <photongrid/device_scene.hpp>
@@ -35,8 +36,11 @@ namespace detail {
         buffer_of<B, glm::vec4> positions, powers, directions, next_origins, next_directions;
 
         photon_frames(B& b, std::size_t n)
-            : positions(b.template make<glm::vec4>(n)), powers(b.template make<glm::vec4>(n)), directions(b.template make<glm::vec4>(n)),
-              next_origins(b.template make<glm::vec4>(n)), next_directions(b.template make<glm::vec4>(n)) {}
+            : positions(b.template make<glm::vec4>(n)), powers(b.template make<glm::vec4>(n)),
+              directions(b.template make<glm::vec4>(n)), next_origins(b.template make<glm::vec4>(n)),
+              next_directions(b.template make<glm::vec4>(n))
+        {
+        }
     };
 
     /// The sums of the first `n` tallies.
@@ -46,7 +50,8 @@ namespace detail {
         do {
             const uint groups = (n + 15) / 16;
             path_tally<B> sums{b.template make<glm::uvec4>(groups), b.template make<glm::uvec4>(groups)};
-            b.template run<kernels::sum_tallies>(groups, {.terms = n}, reads(t.ends, t.hits), writes(sums.ends, sums.hits));
+            b.template run<kernels::sum_tallies>(
+                groups, {.terms = n}, reads(t.ends, t.hits), writes(sums.ends, sums.hits));
             t = std::move(sums);
             n = groups;
         } while (n > 1);
@@ -68,37 +73,41 @@ namespace detail {
 
 /// Traces `paths` paths from id `first` on; returns the frames used. Asks now and then whether any path goes on.
 template <backend B>
-uint trace_batch(B& b, const device_scene<B>& s, detail::photon_frames<B>& f, uint paths, uint first, const render_settings& settings)
+uint trace_batch(B& b, const device_scene<B>& s, detail::photon_frames<B>& f, uint paths, uint first,
+    const render_settings& settings)
 {
     const auto& about = s.about;
-    b.template run<kernels::emit_photon>({paths, 0u, about.features}, {.scene_layout = about.layout, .first_path = first, .seed = settings.seed}, reads(s.records),
+    b.template run<kernels::emit_photon>({paths, 0u, about.features},
+        {.scene_layout = about.layout, .first_path = first, .seed = settings.seed}, reads(s.records),
         writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
     uint frame = 1;
     for (; frame <= settings.photon_depth; ++frame) {
         b.template run<kernels::bounce_photon>({paths, frame * paths, about.features},
-            {.scene_layout = about.layout, .paths = paths, .first_path = first, .last_frame = settings.photon_depth, .seed = settings.seed},
+            {.scene_layout = about.layout,
+                .paths = paths,
+                .first_path = first,
+                .last_frame = settings.photon_depth,
+                .seed = settings.seed},
             reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
-        if (frame % 8 == 0 && detail::checked_count<kernels::path_goes_on>(b, {paths, frame * paths}, {}, reads(f.positions)) == 0)
+        if (frame % 8 == 0
+            && detail::checked_count<kernels::path_goes_on>(b, {paths, frame * paths}, {}, reads(f.positions)) == 0)
             return frame + 1;
     }
     return frame;
 }
 
-/// Photon tracing that can be stopped between batches: emits paths in id order until settings.photons photons are stored;
-/// photon order is (path, bounce). Each photon's power is the lights' power divided by the paths emitted. Positions' w is 1
-/// for caustic photons (light_part). Normals are kept only where the leak policy asks for them.
+/// Photon tracing that can be stopped between batches: emits paths in id order until settings.photons photons are
+/// stored; photon order is (path, bounce). Each photon's power is the lights' power divided by the paths emitted.
+/// Positions' w is 1 for caustic photons (light_part). Normals are kept only where the leak policy asks for them.
 template <backend B>
 class photon_tracing {
 public:
     /// Emits nothing yet. `device` must outlive it.
     photon_tracing(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings)
-        : b_(b)
-        , device_(device)
-        , settings_(settings)
-        , lights_(detail::light_names(s))
-        , paths_(std::clamp(std::bit_ceil(settings.photons / 2 + 1), 1024u, 32768u))
-        , frames_(b, std::size_t{paths_} * (settings.photon_depth + 1))
+        : b_(b), device_(device), settings_(settings), lights_(detail::light_names(s)),
+          paths_(std::clamp(std::bit_ceil(settings.photons / 2 + 1), 1024u, 32768u)),
+          frames_(b, std::size_t{paths_} * (settings.photon_depth + 1))
     {
         const auto make = [&] { return b.template make<glm::vec4>(settings.photons); };
         t_.photons = {make(), make(), make(), {}};
@@ -123,26 +132,36 @@ public:
 
         auto storable = b_.template make<uint>(paths_);
         path_tally<B> tally{b_.template make<glm::uvec4>(paths_), b_.template make<glm::uvec4>(paths_)};
-        b_.template run<kernels::tally_path>(paths_, {.paths = paths_, .frames = frames}, reads(frames_.positions), writes(storable, tally.ends, tally.hits));
+        b_.template run<kernels::tally_path>(paths_, {.paths = paths_, .frames = frames}, reads(frames_.positions),
+            writes(storable, tally.ends, tally.hits));
         const auto sums = prefix_sums(b_, storable);
 
-        const uint emitted = detail::checked_count<kernels::path_is_emitted>(b_, paths_, {.wanted = wanted}, reads(sums, storable));
+        const uint emitted
+            = detail::checked_count<kernels::path_is_emitted>(b_, paths_, {.wanted = wanted}, reads(sums, storable));
         if (emitted == 0) // the first always is; believing it would mean tracing for ever
-            throw backend_error(b_.caps().backend + ": count<path_is_emitted>: the device returned 0; at least 1 of " + std::to_string(paths_) + " paths is emitted");
-        // No path stores more photons than it takes bounces, and the last of these is the first to have stored what is wanted.
-        const auto found = detail::checked_count<kernels::is_found>(b_, std::size_t{wanted} + settings_.photon_depth, {.emitted = emitted}, reads(sums));
+            throw backend_error(b_.caps().backend + ": count<path_is_emitted>: the device returned 0; at least 1 of "
+                + std::to_string(paths_) + " paths is emitted");
+        // No path stores more photons than it takes bounces, and the last of these is the first to have stored what is
+        // wanted.
+        const auto found = detail::checked_count<kernels::is_found>(
+            b_, std::size_t{wanted} + settings_.photon_depth, {.emitted = emitted}, reads(sums));
         const uint taken = std::min(found, wanted);
-        b_.template run<kernels::gather_photon>({taken, stored_}, {.paths = paths_, .frames = frames, .stored_before = stored_},
-            reads(sums, frames_.positions, frames_.powers, frames_.directions), writes(t_.photons.positions, t_.photons.powers, t_.photons.directions));
+        b_.template run<kernels::gather_photon>({taken, stored_},
+            {.paths = paths_, .frames = frames, .stored_before = stored_},
+            reads(sums, frames_.positions, frames_.powers, frames_.directions),
+            writes(t_.photons.positions, t_.photons.powers, t_.photons.directions));
         if (settings_.leaks.needs_normals())
-            b_.template run<kernels::gather_normal>({taken, stored_}, {.paths = paths_, .frames = frames, .stored_before = stored_},
-                reads(sums, frames_.positions, frames_.powers, frames_.next_origins, frames_.next_directions), writes(t_.photons.normals));
+            b_.template run<kernels::gather_normal>({taken, stored_},
+                {.paths = paths_, .frames = frames, .stored_before = stored_},
+                reads(sums, frames_.positions, frames_.powers, frames_.next_origins, frames_.next_directions),
+                writes(t_.photons.normals));
         t_.tallies.push_back(detail::sum_tally(b_, std::move(tally), emitted));
         t_.dropped += found - taken;
         t_.emitted += emitted;
         stored_ += taken;
         if (finished())
-            b_.template run<kernels::divide_power>(settings_.photons, {.share = 1.0f / static_cast<float>(t_.emitted)}, reads(), writes(t_.photons.powers));
+            b_.template run<kernels::divide_power>(settings_.photons, {.share = 1.0f / static_cast<float>(t_.emitted)},
+                reads(), writes(t_.photons.powers));
     }
 
     /// The photons, once finished.
@@ -151,10 +170,13 @@ public:
 private:
     void require_hope() const
     {
-        const std::uint64_t most_paths = std::min<std::uint64_t>(std::uint64_t{settings_.photons} * 4096 + (1u << 20), 0xFFFF0000u);
+        const std::uint64_t most_paths
+            = std::min<std::uint64_t>(std::uint64_t{settings_.photons} * 4096 + (1u << 20), 0xFFFF0000u);
         if (t_.emitted >= most_paths || (stored_ == 0 && t_.emitted >= (1u << 22)))
-            throw std::runtime_error("trace_photons: " + std::to_string(t_.emitted) + " paths from " + lights_ + " stored " + std::to_string(stored_) + " of the "
-                + std::to_string(settings_.photons) + " photons asked for. Stored are diffuse hits that come not straight from a light: does the light reach a mirror, glass, or a second diffuse surface?");
+            throw std::runtime_error("trace_photons: " + std::to_string(t_.emitted) + " paths from " + lights_
+                + " stored " + std::to_string(stored_) + " of the " + std::to_string(settings_.photons)
+                + " photons asked for. Stored are diffuse hits that come not straight from a light: does the light "
+                  "reach a mirror, glass, or a second diffuse surface?");
     }
 
     B& b_;
@@ -170,7 +192,8 @@ private:
 /// Traces photons to the end (photon_tracing).
 /// \throws std::runtime_error as photon_tracing::advance does, render_cancelled.
 template <backend B>
-traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings, const render_observer& observer = {})
+traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings,
+    const render_observer& observer = {})
 {
     photon_tracing<B> tracing(b, s, device, settings);
     detail::run_to_end(tracing, observer, [&] {

@@ -7,6 +7,7 @@
 
 namespace photongrid {
 
-inline constexpr long library_version = PHOTONGRID_VERSION_MAJOR * 10000L + PHOTONGRID_VERSION_MINOR * 100L + PHOTONGRID_VERSION_PATCH; ///< 10203 is 1.2.3
+inline constexpr long library_version = PHOTONGRID_VERSION_MAJOR * 10000L + PHOTONGRID_VERSION_MINOR * 100L
+    + PHOTONGRID_VERSION_PATCH; ///< 10203 is 1.2.3
 
 } // namespace photongrid

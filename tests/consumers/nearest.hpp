@@ -33,7 +33,8 @@ inline constexpr photongrid::uint k = 8;
 template <photongrid::backend B>
 photongrid::photon_map<B> make_map(B& device)
 {
-    return photongrid::sorted_map(device, photongrid::upload_photons(device, photons()), photongrid::make_grid(glm::vec3(0), glm::vec3(1), {10, 10, 10}));
+    return photongrid::sorted_map(device, photongrid::upload_photons(device, photons()),
+        photongrid::make_grid(glm::vec3(0), glm::vec3(1), {10, 10, 10}));
 }
 
 /// Irradiance at the point from the k nearest photons, W/m^2; w: squared distance of the k-th, m^2.
@@ -41,7 +42,8 @@ template <photongrid::backend B>
 glm::vec4 estimate(B& device, const photongrid::photon_map<B>& map)
 {
     const auto points = device.upload(std::span(&point, 1));
-    return device.download(photongrid::knn_grid_estimate(device, map, points, {.k = k, .max_radius = 1.0f}).irradiance)[0];
+    return device.download(
+        photongrid::knn_grid_estimate(device, map, points, {.k = k, .max_radius = 1.0f}).irradiance)[0];
 }
 
 /// Does the estimate equal what looking at every photon gives? The k-th photon sets the radius and does not count.
@@ -55,7 +57,8 @@ inline bool is_right(glm::vec4 estimate)
     std::ranges::nth_element(squared, squared.begin() + (k - 1));
     const double radius2 = static_cast<double>(squared[k - 1]), irradiance = (k - 1) * 0.5 / (3.14159265 * radius2);
     std::printf("irradiance %g W/m^2, by brute force %g\n", static_cast<double>(estimate.x), irradiance);
-    return std::abs(static_cast<double>(estimate.w) - radius2) < 1e-6 * radius2 && std::abs(static_cast<double>(estimate.x) - irradiance) < 1e-5 * irradiance;
+    return std::abs(static_cast<double>(estimate.w) - radius2) < 1e-6 * radius2
+        && std::abs(static_cast<double>(estimate.x) - irradiance) < 1e-5 * irradiance;
 }
 
 /// For main(): 0 if the device finds the right photons.

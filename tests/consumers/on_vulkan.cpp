@@ -1,5 +1,5 @@
-#include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/backends/vulkan/overrides/all.hpp>
+#include <photongrid/backends/vulkan/vulkan.hpp>
 
 #include "nearest.hpp"
 

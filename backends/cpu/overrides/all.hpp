@@ -1,4 +1,5 @@
-// Everything that the cpu backend does faster than by kernels. Include it before the algorithms are used with a cpu_backend.
+// Everything that the cpu backend does faster than by kernels. Include it before the algorithms are used with a
+// cpu_backend.
 #pragma once
 
 #include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>

@@ -1,5 +1,5 @@
-// Adding up the photons that a search chose, in vectors, and the estimate made of them. Read once for every instruction set, so
-// no include guard; other files include simd.hpp.
+// Adding up the photons that a search chose, in vectors, and the estimate made of them. Read once for every instruction
+// set, so no include guard; other files include simd.hpp.
 //
 // Sums have 16 lanes whatever a register's width, so that results are the same to the bit on every machine.
 #include <photongrid/backends/cpu/overrides/packet_simd.hpp>
@@ -43,7 +43,8 @@ public:
             few_[group] = hn::Zero(floats());
         }
     }
-    /// The sum and `more`. Lane l and lane l + 8, then these eight the same way, and so on: the same tree for every width.
+    /// The sum and `more`. Lane l and lane l + 8, then these eight the same way, and so on: the same tree for every
+    /// width.
     HWY_INLINE float total(double more) const
     {
         hn::VFromD<doubles> t[halves * lanes / width];
@@ -66,7 +67,6 @@ private:
 #endif
         return hn::GetLane(v);
     }
-
 };
 
 HWY_INLINE vector weight_of(filter_kernel kernel, vector t)
@@ -112,7 +112,8 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
     constexpr std::size_t width = hn::MaxLanes(d);
     const std::size_t n = near.size();
     const float* const distances = near.of(packet::squared_distance);
-    const float *const p_red = near.of(packet::red), *const p_green = near.of(packet::green), *const p_blue = near.of(packet::blue);
+    const float *const p_red = near.of(packet::red), *const p_green = near.of(packet::green),
+                       *const p_blue = near.of(packet::blue);
     const float inverse_disc2 = 1.0f / std::max(r.radius2, j.min_radius2);
     const auto radius2 = hn::Set(d, r.radius2), inverse = hn::Set(d, inverse_disc2), one = hn::Set(d, 1.0f);
     const filter_kernel kernel = j.kernel;
@@ -120,13 +121,15 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
     std::size_t within = 0, at_most = 0;
     for (std::size_t i = 0; i < n;) {
         for (const std::size_t stop = std::min(n, i + lane_sums::few * lanes); i < stop;)
-            for (std::size_t group = 0; group < lanes / width; ++group, i += width) { // unrolled, so that sums stay in registers
+            for (std::size_t group = 0; group < lanes / width;
+                 ++group, i += width) { // unrolled, so that sums stay in registers
                 const auto d2 = hn::Load(d, distances + i);
                 const auto nearer = hn::Lt(d2, radius2);
                 within += hn::CountTrue(d, nearer);
                 at_most += hn::CountTrue(d, hn::Le(d2, radius2));
                 const auto weight = hn::IfThenElseZero(nearer, weight_of(kernel, hn::Min(hn::Mul(d2, inverse), one)));
-                const auto r1 = hn::Mul(hn::Load(d, p_red + i), weight), g1 = hn::Mul(hn::Load(d, p_green + i), weight), b1 = hn::Mul(hn::Load(d, p_blue + i), weight);
+                const auto r1 = hn::Mul(hn::Load(d, p_red + i), weight), g1 = hn::Mul(hn::Load(d, p_green + i), weight),
+                           b1 = hn::Mul(hn::Load(d, p_blue + i), weight);
                 red.add(group, r1);
                 green.add(group, g1);
                 blue.add(group, b1);
@@ -149,8 +152,8 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
         }
     }
 
-    // At the radius itself: all, or of the k nearest as many as are still wanted, the smallest ids first; of these, the one that
-    // set the radius may be left out.
+    // At the radius itself: all, or of the k nearest as many as are still wanted, the smallest ids first; of these, the
+    // one that set the radius may be left out.
     std::size_t counted = at_most - within;
     if (j.search == search_kind::exact_k && r.by_photon && at_most > j.wanted)
         counted = j.wanted - within;
@@ -162,10 +165,12 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
         for (std::size_t i = 0; i < near.size(); ++i)
             if (distances[i] == r.radius2)
                 at_radius.push_back(static_cast<uint>(i));
-        std::partial_sort(at_radius.begin(), at_radius.begin() + static_cast<std::ptrdiff_t>(counted), at_radius.end(), by_id);
+        std::partial_sort(
+            at_radius.begin(), at_radius.begin() + static_cast<std::ptrdiff_t>(counted), at_radius.end(), by_id);
         const float at_rim = weight_of(kernel, std::min(r.radius2 * inverse_disc2, 1.0f));
         for (std::size_t i = 0; i + (apart ? 1 : 0) < counted; ++i) {
-            const float f[3] = {p_red[at_radius[i]] * at_rim, p_green[at_radius[i]] * at_rim, p_blue[at_radius[i]] * at_rim};
+            const float f[3]
+                = {p_red[at_radius[i]] * at_rim, p_green[at_radius[i]] * at_rim, p_blue[at_radius[i]] * at_rim};
             const float all = f[0] + f[1] + f[2];
             for (int c = 0; c < 3; ++c) {
                 extra[c] += static_cast<double>(f[c]);
@@ -183,7 +188,10 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
 }
 
 /// Does a point want an estimate?
-inline bool is_wanted(const search_job& j, uint point) { return j.searching && j.points[point].w > 0.0f && kernels::is_finite(j.points[point]); }
+inline bool is_wanted(const search_job& j, uint point)
+{
+    return j.searching && j.points[point].w > 0.0f && kernels::is_finite(j.points[point]);
+}
 
 /// Makes the estimate of what was gathered.
 inline void finish(const search_job& j, uint point, chosen_radius r, const gathered& g, uint visited)

@@ -7,7 +7,8 @@
 namespace photongrid {
 
 /// Same cells as the generic grid_index.
-inline cpu_backend::buffer<glm::uvec2> grid_index(cpu_backend& b, const cpu_backend::buffer<glm::uvec2>& pairs, uint cells)
+inline cpu_backend::buffer<glm::uvec2> grid_index(
+    cpu_backend& b, const cpu_backend::buffer<glm::uvec2>& pairs, uint cells)
 {
     const cpu_backend::stopwatch watch;
     auto index = b.make<glm::uvec2>(cells);
@@ -15,7 +16,9 @@ inline cpu_backend::buffer<glm::uvec2> grid_index(cpu_backend& b, const cpu_back
     const auto to = b.rows_to_write(index);
     const std::size_t n = from.size();
     // Where the key changes, the cells from the last key's next up to this one begin.
-    const auto cell_after = [&](std::size_t i) { return i == 0 ? 0u : i > n ? cells : std::min(cells, from[i - 1].x == nowhere ? cells : from[i - 1].x + 1u); };
+    const auto cell_after = [&](std::size_t i) {
+        return i == 0 ? 0u : i > n ? cells : std::min(cells, from[i - 1].x == nowhere ? cells : from[i - 1].x + 1u);
+    };
     b.threads().for_blocks(n + 1, 65536, [&](std::size_t first, std::size_t past) {
         for (std::size_t i = first; i < past; ++i) {
             const uint begin = cell_after(i), end = i == n ? cells : cell_after(i + 1);
@@ -23,7 +26,9 @@ inline cpu_backend::buffer<glm::uvec2> grid_index(cpu_backend& b, const cpu_back
                 to[c].x = static_cast<uint>(i);
         }
     });
-    const auto in_cells = static_cast<uint>(std::lower_bound(from.begin(), from.end(), cells, [](const glm::uvec2& p, uint key) { return p.x < key; }) - from.begin());
+    const auto in_cells = static_cast<uint>(
+        std::lower_bound(from.begin(), from.end(), cells, [](const glm::uvec2& p, uint key) { return p.x < key; })
+        - from.begin());
     b.threads().for_blocks(cells, 65536, [&](std::size_t first, std::size_t past) {
         for (std::size_t c = first; c < past; ++c)
             to[c].y = (c + 1 < cells ? to[c + 1].x : in_cells) - to[c].x;

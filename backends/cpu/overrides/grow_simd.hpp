@@ -1,9 +1,9 @@
-// The growing search (2.3, figure 6) in vectors: at_least_k. Read once for every instruction set, so no include guard; other
-// files include simd.hpp.
+// The growing search (2.3, figure 6) in vectors: at_least_k. Read once for every instruction set, so no include guard;
+// other files include simd.hpp.
 //
-// It visits the same photons in the same order as knn_visit.glsl, a register at a time: while fewer than k are held, all within
-// the maximum radius are; the one that makes k sets the radius, and from then on all within that are. So only the register in
-// which the k-th is found has to be looked at photon by photon.
+// It visits the same photons in the same order as knn_visit.glsl, a register at a time: while fewer than k are held,
+// all within the maximum radius are; the one that makes k sets the radius, and from then on all within that are. So
+// only the register in which the k-th is found has to be looked at photon by photon.
 #include <photongrid/backends/cpu/overrides/gather_simd.hpp>
 
 #include <bit>
@@ -12,8 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The photons that one point holds while it visits others. STORE: their distances are kept, for weights that need the final
-/// radius; else their powers are added up at once.
+/// The photons that one point holds while it visits others. STORE: their distances are kept, for weights that need the
+/// final radius; else their powers are added up at once.
 template <int POLICIES, bool STORE>
 class growth {
 public:
@@ -51,7 +51,8 @@ public:
         if (STORE)
             store_.reserve(past - first + lanes);
         for (std::size_t i = first; i < past;) {
-            for (std::size_t group = 0; group < lanes / width; ++group, i += width) { // unrolled, so that sums stay in registers
+            for (std::size_t group = 0; group < lanes / width;
+                 ++group, i += width) { // unrolled, so that sums stay in registers
                 const auto d2 = squared_distances<POLICIES>(job_, query_, photons, i);
                 auto within = hn::And(hn::Le(d2, hn::Set(d, limit2_)), hn::FirstN(d, i < past ? past - i : 0));
                 if (!enough())
@@ -87,7 +88,8 @@ private:
     {
         const floats d;
         float distance2[lanes];
-        hn::StoreU(hn::IfThenElse(within, distances2, hn::Set(d, std::numeric_limits<float>::infinity())), d, distance2);
+        hn::StoreU(
+            hn::IfThenElse(within, distances2, hn::Set(d, std::numeric_limits<float>::infinity())), d, distance2);
         limit2_ = hn::GetLane(hn::MaxOfLanes(d, farthest_));
         std::size_t held = held_;
         for (std::size_t i = 0; held < job_.wanted; ++i) {
@@ -117,17 +119,18 @@ private:
     uint visited_ = 0, terms_ = 0;
 };
 
-/// A box of cells about a point's own, `ring` cells away from it as far as the grid goes. Its surface is the ring of that number.
+/// A box of cells about a point's own, `ring` cells away from it as far as the grid goes. Its surface is the ring of
+/// that number.
 struct ring_of_cells {
-    glm::uvec4 c;         ///< the point's own cell
-    glm::vec3 u;          ///< the point, in cells
+    glm::uvec4 c; ///< the point's own cell
+    glm::vec3 u;  ///< the point, in cells
     uint ring = 0;
     glm::uvec3 low, high; ///< both in the box
 };
 
-/// Visits a ring, row of cells by row of cells: all of a row on a face of the box, else its two ends, of which the grid may lack
-/// either. A register's width of rows is looked at together, by the limit that stands before the first of them; the limit
-/// only shrinks, so what it rules out then stays out, and the others are asked again.
+/// Visits a ring, row of cells by row of cells: all of a row on a face of the box, else its two ends, of which the grid
+/// may lack either. A register's width of rows is looked at together, by the limit that stands before the first of
+/// them; the limit only shrinks, so what it rules out then stays out, and the others are asked again.
 template <class Growth>
 HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& found)
 {
@@ -140,8 +143,10 @@ HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& 
         return gap * gap;
     };
     const bool has_low = r.c.x >= r.ring, has_high = r.c.x + r.ring == r.high.x;
-    const auto low_gap_x2 = hn::Set(d, gap2(r.u.x, r.c.x, r.low.x, g.cell.x)), high_gap_x2 = hn::Set(d, gap2(r.u.x, r.c.x, r.high.x, g.cell.x));
-    // Gathers reach 2^31 words, and cells are two: rows of several layers go together where fifteen layers are not farther.
+    const auto low_gap_x2 = hn::Set(d, gap2(r.u.x, r.c.x, r.low.x, g.cell.x)),
+               high_gap_x2 = hn::Set(d, gap2(r.u.x, r.c.x, r.high.x, g.cell.x));
+    // Gathers reach 2^31 words, and cells are two: rows of several layers go together where fifteen layers are not
+    // farther.
     const std::size_t layer = std::size_t{g.resolution.y} * g.resolution.x;
     const bool together = layer < 1u << 26;
     const uint across = r.high.y - r.low.y + 1;
@@ -158,7 +163,8 @@ HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& 
         // Rows beyond the last stand for it. Halves are far enough from whole numbers for the reciprocal's rounding.
         const auto nth = hn::Min(hn::Add(every(y), hn::Iota(di, 0)), every(y + rows - 1));
         const auto layers = hn::ConvertTo(di, hn::Mul(hn::Add(hn::ConvertTo(d, nth), hn::Set(d, 0.5f)), of_across));
-        const auto cell_y = hn::Add(hn::Sub(nth, hn::Mul(layers, every(across))), every(r.low.y)), cell_z = hn::Add(layers, every(z));
+        const auto cell_y = hn::Add(hn::Sub(nth, hn::Mul(layers, every(across))), every(r.low.y)),
+                   cell_z = hn::Add(layers, every(z));
         const auto* const base = reinterpret_cast<const int*>(j.cells.data() + z * layer);
         for (y += rows; y >= across && z <= r.high.z; y -= across)
             ++z;
@@ -168,29 +174,35 @@ HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& 
         const auto within = hn::And(hn::FirstN(d, rows), hn::Le(row2, limit2));
         if (hn::AllFalse(d, within))
             continue;
-        const auto at_distance = [&](hn::VFromD<ints> cell, uint c) HWY_ATTR { return hn::RebindMask(d, hn::Eq(hn::Abs(hn::Sub(cell, every(c))), every(r.ring))); };
+        const auto at_distance = [&](hn::VFromD<ints> cell, uint c) HWY_ATTR {
+            return hn::RebindMask(d, hn::Eq(hn::Abs(hn::Sub(cell, every(c))), every(r.ring)));
+        };
         const auto whole = hn::Or(at_distance(cell_y, r.c.y), at_distance(cell_z, r.c.z));
         const auto row = hn::Mul(hn::Add(hn::Mul(layers, every(g.resolution.y)), cell_y), every(g.resolution.x));
         const auto low = hn::Add(row, every(r.low.x)), high = hn::Add(row, every(r.high.x));
-        const auto look = [&](ends& e, hn::VFromD<ints> from, hn::VFromD<ints> to, vector away2, hn::Mask<floats> wanted) HWY_ATTR {
+        const auto look = [&](ends& e, hn::VFromD<ints> from, hn::VFromD<ints> to, vector away2,
+                              hn::Mask<floats> wanted) HWY_ATTR {
             const auto twice_from = hn::Add(from, from), twice_to = hn::Add(to, to);
             const auto first = hn::GatherIndex(di, base, twice_from);
             const auto past = hn::Add(hn::GatherIndex(di, base, twice_to), hn::GatherIndex(di, base + 1, twice_to));
             hn::StoreU(first, di, e.first);
             hn::StoreU(past, di, e.past);
             hn::StoreU(away2, d, e.away2);
-            hn::StoreMaskBits(d, hn::And(wanted, hn::And(hn::Le(away2, limit2), hn::RebindMask(d, hn::Lt(first, past)))), e.some);
+            hn::StoreMaskBits(
+                d, hn::And(wanted, hn::And(hn::Le(away2, limit2), hn::RebindMask(d, hn::Lt(first, past)))), e.some);
         };
         ends lower, upper;
         const auto whole_int = hn::RebindMask(di, whole);
-        look(lower, low, hn::IfThenElse(whole_int, high, low), hn::IfThenElse(whole, row2, hn::Add(row2, low_gap_x2)), has_low ? within : hn::And(within, whole));
+        look(lower, low, hn::IfThenElse(whole_int, high, low), hn::IfThenElse(whole, row2, hn::Add(row2, low_gap_x2)),
+            has_low ? within : hn::And(within, whole));
         if (has_high)
             look(upper, high, high, hn::Add(row2, high_gap_x2), hn::AndNot(whole, within));
         const auto visit = [&](const ends& e, uint i) HWY_ATTR {
             if (e.has(i) && e.away2[i] <= found.limit2())
                 found.visit(static_cast<uint>(e.first[i]), static_cast<uint>(e.past[i]));
         };
-        for (uint some = static_cast<uint>(lower.some[0] | upper.some[0] | (lower.some[1] | upper.some[1]) << 8); some != 0; some &= some - 1) {
+        for (uint some = static_cast<uint>(lower.some[0] | upper.some[0] | (lower.some[1] | upper.some[1]) << 8);
+             some != 0; some &= some - 1) {
             const auto i = static_cast<uint>(std::countr_zero(some));
             visit(lower, i);
             visit(upper, i);
@@ -206,7 +218,9 @@ HWY_INLINE void visit_rings(const search_job& j, const glm::vec4& point, Growth&
     const glm::uvec3 last = glm::uvec3(g.resolution) - 1u;
     ring_of_cells r;
     r.c = kernels::cell_coordinates(g, point);
-    r.u = {kernels::in_cells(point.x, g.origin.x, g.inverse_cell.x), kernels::in_cells(point.y, g.origin.y, g.inverse_cell.y), kernels::in_cells(point.z, g.origin.z, g.inverse_cell.z)};
+    r.u = {kernels::in_cells(point.x, g.origin.x, g.inverse_cell.x),
+        kernels::in_cells(point.y, g.origin.y, g.inverse_cell.y),
+        kernels::in_cells(point.z, g.origin.z, g.inverse_cell.z)};
     for (;; ++r.ring) {
         const glm::uvec3 c(r.c);
         for (int axis = 0; axis < 3; ++axis) {
@@ -258,7 +272,10 @@ HWY_NOINLINE void grow_points(const search_job& j, std::size_t begin, std::size_
         growth<POLICIES, true> found(j, q, held);
         visit_rings(j, j.points[point], found);
         held.fetch_powers(j);
-        finish(j, point, found.chosen(), j.errors ? gather<true>(j, found.chosen(), held, at_radius) : gather<false>(j, found.chosen(), held, at_radius), found.visited());
+        finish(j, point, found.chosen(),
+            j.errors ? gather<true>(j, found.chosen(), held, at_radius)
+                     : gather<false>(j, found.chosen(), held, at_radius),
+            found.visited());
     }
 }
 

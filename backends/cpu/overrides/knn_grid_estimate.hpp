@@ -6,17 +6,22 @@
 
 namespace photongrid {
 
-/// Finds the same photons as the kernels do; sums differ from theirs by 10^-6 at most, since they are added up in another
-/// order. A pass searches for some points whole, and advance() counts those.
+/// Finds the same photons as the kernels do; sums differ from theirs by 10^-6 at most, since they are added up in
+/// another order. A pass searches for some points whole, and advance() counts those.
 template <>
 class knn_search<cpu_backend> {
 public:
     using vectors = cpu_backend::buffer<glm::vec4>;
 
     knn_search(cpu_backend& b, const photon_map<cpu_backend>& map, const vectors& points, const knn_settings& s)
-        : knn_search(b, map, points, nullptr, s) {}
-    knn_search(cpu_backend& b, const photon_map<cpu_backend>& map, const vectors& points, const vectors& normals, const knn_settings& s)
-        : knn_search(b, map, points, &normals, s) {}
+        : knn_search(b, map, points, nullptr, s)
+    {
+    }
+    knn_search(cpu_backend& b, const photon_map<cpu_backend>& map, const vectors& points, const vectors& normals,
+        const knn_settings& s)
+        : knn_search(b, map, points, &normals, s)
+    {
+    }
 
     /// A point's estimate is made at once: there is none of it before.
     static constexpr bool shows_running_estimate(const knn_settings&) { return false; }
@@ -36,7 +41,8 @@ public:
             job.used = b.rows_to_write(e_.used).data();
             if (job.errors)
                 job.standard_error = b.rows_to_write(e_.standard_error).data();
-            b.threads().for_blocks(done_ - begin, cpu::search_block_size, [&](std::size_t first, std::size_t past) { cpu::search_block(job, begin + first, begin + past); });
+            b.threads().for_blocks(done_ - begin, cpu::search_block_size,
+                [&](std::size_t first, std::size_t past) { cpu::search_block(job, begin + first, begin + past); });
         }
         b.count_passes("knn_search", now, watch);
         progress p;
@@ -47,18 +53,13 @@ public:
         return p;
     }
 
-    knn_estimates<cpu_backend> estimates() &
-    {
-        return {copy(e_.irradiance), copy(e_.used), copy(e_.standard_error)};
-    }
+    knn_estimates<cpu_backend> estimates() & { return {copy(e_.irradiance), copy(e_.used), copy(e_.standard_error)}; }
     /// Of a search that goes away: nothing is copied.
-    knn_estimates<cpu_backend> estimates() &&
-    {
-        return std::move(e_);
-    }
+    knn_estimates<cpu_backend> estimates() && { return std::move(e_); }
 
 private:
-    knn_search(cpu_backend& b, const photon_map<cpu_backend>& map, const vectors& points, const vectors* normals, const knn_settings& s)
+    knn_search(cpu_backend& b, const photon_map<cpu_backend>& map, const vectors& points, const vectors* normals,
+        const knn_settings& s)
         : in_(b, map, points, normals, s)
     {
         const std::size_t n = points.size();

@@ -17,18 +17,21 @@ namespace cpu {
         auto job = make_search_job(in, order);
         job.ids = b.rows_to_write(lists.ids).data();
         job.distances2 = b.rows_to_write(lists.distances2).data();
-        b.threads().for_blocks(n, search_block_size, [&](std::size_t first, std::size_t past) { search_block(job, first, past); });
+        b.threads().for_blocks(
+            n, search_block_size, [&](std::size_t first, std::size_t past) { search_block(job, first, past); });
         b.count_passes("knn_neighbours", 1, watch);
         return lists;
     }
 } // namespace cpu
 
-inline neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& b, const photon_map<cpu_backend>& map, const cpu::buffer<glm::vec4>& points, const knn_settings& settings)
+inline neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& b, const photon_map<cpu_backend>& map,
+    const cpu::buffer<glm::vec4>& points, const knn_settings& settings)
 {
     detail::check_lists(settings, points.size(), b.caps().max_elements);
     return cpu::list_neighbours(detail::search_inputs<cpu_backend>(b, map, points, nullptr, settings));
 }
-inline neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& b, const photon_map<cpu_backend>& map, const cpu::buffer<glm::vec4>& points, const cpu::buffer<glm::vec4>& normals, const knn_settings& settings)
+inline neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& b, const photon_map<cpu_backend>& map,
+    const cpu::buffer<glm::vec4>& points, const cpu::buffer<glm::vec4>& normals, const knn_settings& settings)
 {
     detail::check_lists(settings, points.size(), b.caps().max_elements);
     return cpu::list_neighbours(detail::search_inputs<cpu_backend>(b, map, points, &normals, settings));

@@ -1,4 +1,5 @@
-// What the SIMD code that builds maps is given: plain pointers, so that it can be compiled once for each instruction set.
+// What the SIMD code that builds maps is given: plain pointers, so that it can be compiled once for each instruction
+// set.
 #pragma once
 
 #include <photongrid/backends/cpu/buffer.hpp>
@@ -14,8 +15,8 @@ struct photon_record {
     glm::vec4 position, power;
 };
 
-/// Photons, and where they go. A bucket is a run of 2^shift cells; one more "cell" behind the last holds the photons that are
-/// in none.
+/// Photons, and where they go. A bucket is a run of 2^shift cells; one more "cell" behind the last holds the photons
+/// that are in none.
 struct map_job {
     static constexpr uint most_buckets = 512, most_shift = 18;
     grid cells_of{};

@@ -1,9 +1,9 @@
 // Building a map, in vectors. Read once for every instruction set, so no include guard; other files include simd.hpp.
 //
-// Photons go to their places in two moves. The first takes each to its bucket, a run of cells: a photon's data travel with it,
-// a cache line at a time and past the caches, since reading them later, by the sorted ids, would fetch a line of memory for
-// each. The second orders a bucket, which fits the caches, by cells. Both keep the photons' order, so that a cell's photons
-// ascend.
+// Photons go to their places in two moves. The first takes each to its bucket, a run of cells: a photon's data travel
+// with it, a cache line at a time and past the caches, since reading them later, by the sorted ids, would fetch a line
+// of memory for each. The second orders a bucket, which fits the caches, by cells. Both keep the photons' order, so
+// that a cell's photons ascend.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
@@ -15,8 +15,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Jobs are copies, which what is written cannot overwrite.
 
-/// Writes the cells of photons first to past - 1, as photon_cell.glsl, and counts how many go to each bucket, how many are
-/// invalid and how many of other parts.
+/// Writes the cells of photons first to past - 1, as photon_cell.glsl, and counts how many go to each bucket, how many
+/// are invalid and how many of other parts.
 inline void find_cells(map_job j, std::size_t first, std::size_t past, uint* in_bucket, uint& invalid, uint& left_out)
 {
     const hn::CappedTag<float, lanes> d;
@@ -33,7 +33,9 @@ inline void find_cells(map_job j, std::size_t first, std::size_t past, uint* in_
         const auto c = hn::ConvertTo(di, hn::Min(u, hn::Set(d, static_cast<float>(resolution - 1u))));
         return hn::BitCast(du, hn::Min(c, hn::Set(di, static_cast<int>(resolution - 1u))));
     };
-    const auto times = [&](auto a, uint b) HWY_ATTR { return hn::BitCast(du, hn::Mul(hn::BitCast(di, a), hn::Set(di, static_cast<int>(b)))); };
+    const auto times = [&](auto a, uint b) HWY_ATTR {
+        return hn::BitCast(du, hn::Mul(hn::BitCast(di, a), hn::Set(di, static_cast<int>(b))));
+    };
     std::size_t i = first;
     for (; i + width <= past; i += width) {
         auto x = hn::Zero(d), y = x, z = x, w = x, red = x, green = x, blue = x, unused = x;
@@ -45,7 +47,8 @@ inline void find_cells(map_job j, std::size_t first, std::size_t past, uint* in_
         const auto caustic = hn::RebindMask(du, hn::Eq(w, hn::Set(d, 1.0f)));
         const auto part = hn::IfThenElse(caustic, hn::Set(du, caustic_part), hn::Set(du, other_part));
         const auto other = hn::Eq(hn::And(part, hn::Set(du, j.parts)), hn::Zero(du));
-        const auto key = hn::Add(times(hn::Add(times(cell(z, 2), g.resolution.y), cell(y, 1)), g.resolution.x), cell(x, 0));
+        const auto key
+            = hn::Add(times(hn::Add(times(cell(z, 2), g.resolution.y), cell(y, 1)), g.resolution.x), cell(x, 0));
         const auto in_none = hn::Or(hn::Ne(bad, hn::Zero(du)), other);
         hn::StoreU(hn::IfThenElse(in_none, hn::Set(du, j.cells), key), du, j.keys + i);
         invalid += static_cast<uint>(hn::CountTrue(du, hn::Ne(bad, hn::Zero(du))));
@@ -54,7 +57,8 @@ inline void find_cells(map_job j, std::size_t first, std::size_t past, uint* in_
             ++in_bucket[j.keys[i + lane] >> j.shift];
     }
     for (; i < past; ++i) {
-        const bool good = kernels::is_finite(j.positions[i]) && kernels::is_finite(j.powers[i]), wanted = kernels::is_of_parts(j.positions[i], j.parts);
+        const bool good = kernels::is_finite(j.positions[i]) && kernels::is_finite(j.powers[i]),
+                   wanted = kernels::is_of_parts(j.positions[i], j.parts);
         invalid += good ? 0u : 1u;
         left_out += wanted ? 0u : 1u;
         j.keys[i] = j.cells;
@@ -66,8 +70,9 @@ inline void find_cells(map_job j, std::size_t first, std::size_t past, uint* in_
     }
 }
 
-/// Takes photons first to past - 1 to their buckets; the next one of bucket v goes to place next[v]. Lines are collected and
-/// then written past the caches (software write-combining; Satish et al., Fast Sort on CPUs and GPUs, 2010).
+/// Takes photons first to past - 1 to their buckets; the next one of bucket v goes to place next[v]. Lines are
+/// collected and then written past the caches (software write-combining; Satish et al., Fast Sort on CPUs and GPUs,
+/// 2010).
 inline void scatter_photons(map_job j, std::size_t first, std::size_t past, uint* next, scatter_lines& lines)
 {
     uint begin[map_job::most_buckets]; // what lies before in a line belongs to others
@@ -78,7 +83,8 @@ inline void scatter_photons(map_job j, std::size_t first, std::size_t past, uint
         const uint start = (end - 1) / size * size;
         if (end - start == size && start >= begin[bucket]) {
             for (std::size_t lane = 0; lane < lanes; lane += hn::Lanes(d))
-                hn::Stream(hn::Load(d, reinterpret_cast<const float*>(line) + lane), d, reinterpret_cast<float*>(to + start) + lane);
+                hn::Stream(hn::Load(d, reinterpret_cast<const float*>(line) + lane), d,
+                    reinterpret_cast<float*>(to + start) + lane);
         } else {
             for (uint p = std::max(begin[bucket], start); p < end; ++p)
                 to[p] = line[p % size];

@@ -1,6 +1,6 @@
-// What a search in vectors works on: photons in planes, their distances from a point, and packets of them. Read once for every
-// instruction set that the compiler knows (Highway), so no include guard: packet_simd.hpp is read by gather_simd.hpp, that by
-// grow_simd.hpp, that by search_simd.hpp, and other files include simd.hpp.
+// What a search in vectors works on: photons in planes, their distances from a point, and packets of them. Read once
+// for every instruction set that the compiler knows (Highway), so no include guard: packet_simd.hpp is read by
+// gather_simd.hpp, that by grow_simd.hpp, that by search_simd.hpp, and other files include simd.hpp.
 #include <hwy/highway.h>
 
 #include <photongrid/backends/cpu/overrides/compress_table.hpp>
@@ -20,9 +20,9 @@ using uints = hn::RebindToUnsigned<floats>;
 using ints = hn::RebindToSigned<floats>;
 using vector = hn::VFromD<floats>;
 
-/// Stores the lanes that the mask has, one after the other, and anything in the rest of a register's width. Returns how many
-/// they are. Not by Highway's own where registers are short: g++ copies its tables to the stack at every call, which made the
-/// whole search five times slower with AVX2.
+/// Stores the lanes that the mask has, one after the other, and anything in the rest of a register's width. Returns how
+/// many they are. Not by Highway's own where registers are short: g++ copies its tables to the stack at every call,
+/// which made the whole search five times slower with AVX2.
 template <class D, class Mask>
 HWY_INLINE std::size_t store_some(D d, hn::VFromD<D> v, Mask mask, hn::TFromD<D>* to)
 {
@@ -64,18 +64,22 @@ struct query_lanes {
     }
 };
 
-/// Squared distances of a register of photons, from photon i on, as photon_distance.glsl has it: those that a policy rejects
-/// are farther than any radius. POLICIES: 0 none, 1 the side of the surface, 2 any.
+/// Squared distances of a register of photons, from photon i on, as photon_distance.glsl has it: those that a policy
+/// rejects are farther than any radius. POLICIES: 0 none, 1 the side of the surface, 2 any.
 template <int POLICIES>
-HWY_INLINE vector squared_distances(const search_job& j, const query_lanes& q, const photon_planes& photons, std::size_t i)
+HWY_INLINE vector squared_distances(
+    const search_job& j, const query_lanes& q, const photon_planes& photons, std::size_t i)
 {
     const floats d;
-    const auto smallest = hn::Set(d, std::numeric_limits<float>::min()), rejected = hn::Set(d, std::numeric_limits<float>::max());
+    const auto smallest = hn::Set(d, std::numeric_limits<float>::min()),
+               rejected = hn::Set(d, std::numeric_limits<float>::max());
     const auto& at = photons.positions;
-    const auto dx = hn::Sub(hn::LoadU(d, at.x + i), q.x), dy = hn::Sub(hn::LoadU(d, at.y + i), q.y), dz = hn::Sub(hn::LoadU(d, at.z + i), q.z);
+    const auto dx = hn::Sub(hn::LoadU(d, at.x + i), q.x), dy = hn::Sub(hn::LoadU(d, at.y + i), q.y),
+               dz = hn::Sub(hn::LoadU(d, at.z + i), q.z);
     auto d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
     const auto along_normal = [&](const planes<const float>& v) HWY_ATTR {
-        return hn::Add(hn::Add(hn::Mul(hn::LoadU(d, v.x + i), q.normal_x), hn::Mul(hn::LoadU(d, v.y + i), q.normal_y)), hn::Mul(hn::LoadU(d, v.z + i), q.normal_z));
+        return hn::Add(hn::Add(hn::Mul(hn::LoadU(d, v.x + i), q.normal_x), hn::Mul(hn::LoadU(d, v.y + i), q.normal_y)),
+            hn::Mul(hn::LoadU(d, v.z + i), q.normal_z));
     };
     if (POLICIES == 2 && j.flattening > 0) {
         const auto h = hn::Add(hn::Add(hn::Mul(dx, q.normal_x), hn::Mul(dy, q.normal_y)), hn::Mul(dz, q.normal_z));
@@ -105,7 +109,8 @@ inline uint cell_at(float u, uint resolution)
 }
 inline glm::uvec2 cells_within(float x, float radius, float origin, float inverse_cell, uint resolution)
 {
-    return {cell_at(kernels::in_cells(x - radius, origin, inverse_cell), resolution), cell_at(kernels::in_cells(x + radius, origin, inverse_cell), resolution)};
+    return {cell_at(kernels::in_cells(x - radius, origin, inverse_cell), resolution),
+        cell_at(kernels::in_cells(x + radius, origin, inverse_cell), resolution)};
 }
 
 /// kernels::gap of a register of cells: distances, m, along one axis from a point at u in cell c.
@@ -114,7 +119,8 @@ HWY_INLINE vector gaps(hn::VFromD<ints> cell, float u, uint c, float size)
     const floats d;
     const auto v = hn::ConvertTo(d, cell), at = hn::Set(d, u);
     const auto margin = hn::Mul(hn::Add(hn::Add(v, hn::Abs(at)), hn::Set(d, 2.0f)), hn::Set(d, 9.5367431640625e-7f));
-    const auto beyond = hn::Sub(hn::Sub(v, at), margin), before = hn::Sub(hn::Sub(at, hn::Add(v, hn::Set(d, 1.0f))), margin);
+    const auto beyond = hn::Sub(hn::Sub(v, at), margin),
+               before = hn::Sub(hn::Sub(at, hn::Add(v, hn::Set(d, 1.0f))), margin);
     const auto here = hn::Set(d, static_cast<float>(c));
     auto gap = hn::IfThenElseZero(hn::Gt(v, here), beyond);
     gap = hn::IfThenElse(hn::Lt(v, here), before, gap);
@@ -128,7 +134,8 @@ HWY_INLINE void find_rows(const search_job& j, const glm::vec3& at, float radius
     const float radius = std::sqrt(radius2) * 1.00000095f + 1.1e-19f;
     const auto rows_y = cells_within(at.y, radius, g.origin.y, g.inverse_cell.y, g.resolution.y);
     const auto rows_z = cells_within(at.z, radius, g.origin.z, g.inverse_cell.z, g.resolution.z);
-    const float u_y = kernels::in_cells(at.y, g.origin.y, g.inverse_cell.y), u_z = kernels::in_cells(at.z, g.origin.z, g.inverse_cell.z);
+    const float u_y = kernels::in_cells(at.y, g.origin.y, g.inverse_cell.y),
+                u_z = kernels::in_cells(at.z, g.origin.z, g.inverse_cell.z);
     const uint c_y = cell_at(u_y, g.resolution.y), c_z = cell_at(u_z, g.resolution.z);
 
     const floats d;
@@ -150,16 +157,21 @@ HWY_INLINE void find_rows(const search_job& j, const glm::vec3& at, float radius
     std::size_t n = 0;
     for (uint z = rows_z.x; z <= rows_z.y; ++z) {
         const float gap_z = kernels::gap(u_z, c_z, z, g.cell.z);
-        // Indices within a slab of cells; of two words each, so a slab of 2^29 cells is the largest that a gather reaches.
-        const auto* const slab = reinterpret_cast<const int*>(j.cells.data() + std::size_t{z} * g.resolution.y * g.resolution.x);
+        // Indices within a slab of cells; of two words each, so a slab of 2^29 cells is the largest that a gather
+        // reaches.
+        const auto* const slab
+            = reinterpret_cast<const int*>(j.cells.data() + std::size_t{z} * g.resolution.y * g.resolution.x);
         for (uint y = rows_y.x; y <= rows_y.y; y += static_cast<uint>(width)) {
             const auto cell = hn::Add(hn::Set(di, static_cast<int>(y)), hn::Iota(di, 0));
             const auto gap_y = gaps(cell, u_y, c_y, g.cell.y);
             const auto r2 = hn::Set(d, radius2);
-            const auto left2 = hn::Add(hn::Sub(r2, hn::Add(hn::Mul(gap_y, gap_y), hn::Set(d, gap_z * gap_z))), hn::Mul(r2, wide));
-            const auto reach = hn::Add(hn::Mul(hn::Sqrt(hn::Max(left2, hn::Zero(d))), hn::Set(d, 1.00000095f)), hn::Set(d, 1.1e-19f));
+            const auto left2
+                = hn::Add(hn::Sub(r2, hn::Add(hn::Mul(gap_y, gap_y), hn::Set(d, gap_z * gap_z))), hn::Mul(r2, wide));
+            const auto reach = hn::Add(
+                hn::Mul(hn::Sqrt(hn::Max(left2, hn::Zero(d))), hn::Set(d, 1.00000095f)), hn::Set(d, 1.1e-19f));
             const auto x = hn::Set(d, at.x);
-            const auto row = hn::Mul(hn::Min(cell, hn::Set(di, static_cast<int>(g.resolution.y - 1u))), hn::Set(di, static_cast<int>(g.resolution.x)));
+            const auto row = hn::Mul(hn::Min(cell, hn::Set(di, static_cast<int>(g.resolution.y - 1u))),
+                hn::Set(di, static_cast<int>(g.resolution.x)));
             const auto low = hn::Add(row, x_cell(hn::Sub(x, reach))), high = hn::Add(row, x_cell(hn::Add(x, reach)));
             const auto two_low = hn::Add(low, low), two_high = hn::Add(high, high);
             const auto first = hn::GatherIndex(di, slab, two_low);
@@ -177,15 +189,36 @@ HWY_INLINE void find_rows(const search_job& j, const glm::vec3& at, float radius
 /// The photons near some queries, or those that a query holds, one after the other.
 class packet {
 public:
-    enum plane { x, y, z, red, green, blue, travel_x, travel_y, travel_z, normal_x, normal_y, normal_z, squared_distance, kept, count };
+    enum plane {
+        x,
+        y,
+        z,
+        red,
+        green,
+        blue,
+        travel_x,
+        travel_y,
+        travel_z,
+        normal_x,
+        normal_y,
+        normal_z,
+        squared_distance,
+        kept,
+        count
+    };
 
     std::size_t size() const { return size_; }
     float* of(plane p) const { return memory_ + p * stride_; }
     /// Place of photon i in the map.
     uint place(std::size_t i) const { return places_[i]; }
-    photon_planes photons() const { return {{of(x), of(y), of(z)}, {of(travel_x), of(travel_y), of(travel_z)}, {of(normal_x), of(normal_y), of(normal_z)}}; }
+    photon_planes photons() const
+    {
+        return {{of(x), of(y), of(z)}, {of(travel_x), of(travel_y), of(travel_z)},
+            {of(normal_x), of(normal_y), of(normal_z)}};
+    }
 
-    /// Copies the photons within `reach` of `center`, and perhaps some that are a little farther. Returns how many it looked at.
+    /// Copies the photons within `reach` of `center`, and perhaps some that are a little farther. Returns how many it
+    /// looked at.
     HWY_INLINE std::size_t fill(const search_job& j, const glm::vec3& center, float reach)
     {
         const floats d;
@@ -198,19 +231,22 @@ public:
             n += rows_.past[r] - rows_.first[r];
         clear();
         reserve(n);
-        const auto cx = hn::Set(d, center.x), cy = hn::Set(d, center.y), cz = hn::Set(d, center.z), within2 = hn::Set(d, reach2);
+        const auto cx = hn::Set(d, center.x), cy = hn::Set(d, center.y), cz = hn::Set(d, center.z),
+                   within2 = hn::Set(d, reach2);
         std::size_t k = 0;
         for (std::size_t r = 0; r < rows_.rows; ++r) {
             const std::size_t past = rows_.past[r];
             for (std::size_t i = rows_.first[r]; i < past; i += width) {
-                const auto px = hn::LoadU(d, j.positions.x + i), py = hn::LoadU(d, j.positions.y + i), pz = hn::LoadU(d, j.positions.z + i);
+                const auto px = hn::LoadU(d, j.positions.x + i), py = hn::LoadU(d, j.positions.y + i),
+                           pz = hn::LoadU(d, j.positions.z + i);
                 const auto dx = hn::Sub(px, cx), dy = hn::Sub(py, cy), dz = hn::Sub(pz, cz);
                 const auto d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
                 const auto near = hn::And(hn::Le(d2, within2), hn::FirstN(d, past - i));
                 const std::size_t some = store_some(d, px, near, of(x) + k);
                 store_some(d, py, near, of(y) + k);
                 store_some(d, pz, near, of(z) + k);
-                const auto take = [&](plane p, const float* from) HWY_ATTR { store_some(d, hn::LoadU(d, from + i), near, of(p) + k); };
+                const auto take = [&](plane p, const float* from)
+                                      HWY_ATTR { store_some(d, hn::LoadU(d, from + i), near, of(p) + k); };
                 take(red, j.powers.x); // for lists too: asking here costs estimates more than it saves them
                 take(green, j.powers.y);
                 take(blue, j.powers.z);
@@ -224,7 +260,8 @@ public:
                     take(normal_y, j.normals.y);
                     take(normal_z, j.normals.z);
                 }
-                store_some(du, hn::Add(hn::Set(du, static_cast<uint>(i)), hn::Iota(du, 0)), hn::RebindMask(du, near), places_ + k);
+                store_some(du, hn::Add(hn::Set(du, static_cast<uint>(i)), hn::Iota(du, 0)), hn::RebindMask(du, near),
+                    places_ + k);
                 k += some;
             }
         }
@@ -250,7 +287,8 @@ public:
     {
         const uints du;
         const std::size_t added = store_some(floats(), distances2, some, of(squared_distance) + size_);
-        store_some(du, hn::Add(hn::Set(du, static_cast<uint>(place)), hn::Iota(du, 0)), hn::RebindMask(du, some), places_ + size_);
+        store_some(du, hn::Add(hn::Set(du, static_cast<uint>(place)), hn::Iota(du, 0)), hn::RebindMask(du, some),
+            places_ + size_);
         size_ += added;
     }
     /// Fetches the powers of all that were added.

@@ -1,5 +1,5 @@
-// Sorting pairs by their bits: stable, by as many digits as the bits that differ need; least significant digit first, but where
-// there are too many pairs for a cache.
+// Sorting pairs by their bits: stable, by as many digits as the bits that differ need; least significant digit first,
+// but where there are too many pairs for a cache.
 #pragma once
 
 #include <photongrid/backends/cpu/buffer.hpp>
@@ -25,7 +25,8 @@ inline constexpr std::size_t in_cache = 65536;
 /// As few digits as 11 bits each allow: 2,048 counters fit the first-level cache.
 constexpr uint digits_for(uint bits) { return (bits + 10) / 11; }
 
-/// Adds up how often a digit has each value in pairs first to past - 1. The digit is a copy, which counts cannot overwrite.
+/// Adds up how often a digit has each value in pairs first to past - 1. The digit is a copy, which counts cannot
+/// overwrite.
 inline void count_digits(digit by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* counts)
 {
     if (by.of_value)
@@ -53,9 +54,10 @@ inline void scatter_in_cache(digit by, const glm::uvec2* from, glm::uvec2* to, s
 
 using counters = std::vector<std::array<uint, digit::most>>; ///< of each part
 
-/// As scatter_in_cache() for any number of pairs, by all threads, each of which takes `part`. `next` holds how often each part
-/// has each digit, and is overwritten. Returns where each digit's pairs begin, and n.
-inline std::vector<uint> scatter_counted(pool& threads, const digit& by, const glm::uvec2* from, glm::uvec2* to, std::size_t n, std::size_t part, counters& next)
+/// As scatter_in_cache() for any number of pairs, by all threads, each of which takes `part`. `next` holds how often
+/// each part has each digit, and is overwritten. Returns where each digit's pairs begin, and n.
+inline std::vector<uint> scatter_counted(pool& threads, const digit& by, const glm::uvec2* from, glm::uvec2* to,
+    std::size_t n, std::size_t part, counters& next)
 {
     std::vector<uint> begin(std::size_t{by.mask} + 2);
     uint sum = 0;
@@ -124,7 +126,10 @@ inline look sample(const glm::uvec2* pairs, std::size_t n)
 struct bit_range {
     uint low = 0, bits = 0;
     explicit bit_range(uint varying)
-        : low(varying != 0 ? static_cast<uint>(std::countr_zero(varying)) : 0), bits(32 - static_cast<uint>(std::countl_zero(varying)) - low) {}
+        : low(varying != 0 ? static_cast<uint>(std::countr_zero(varying)) : 0),
+          bits(32 - static_cast<uint>(std::countl_zero(varying)) - low)
+    {
+    }
 };
 
 /// The most significant digit of keys, by which many pairs are parted so that the rest of the work fits a cache.
@@ -134,7 +139,8 @@ inline digit first_digit(const bit_range& r)
     return {false, r.low + r.bits - width, (1u << width) - 1};
 }
 
-/// Sorts n pairs by (x, y). Both ranges have room for n and begin on cache lines; which one the result is in is reported.
+/// Sorts n pairs by (x, y). Both ranges have room for n and begin on cache lines; which one the result is in is
+/// reported.
 inline radix_report radix_sort(pool& threads, glm::uvec2* pairs, glm::uvec2* scratch, std::size_t n)
 {
     radix_report report;
@@ -195,7 +201,8 @@ inline radix_report radix_sort(pool& threads, glm::uvec2* pairs, glm::uvec2* scr
             for (std::size_t bucket = first; bucket < past; ++bucket) {
                 glm::uvec2 *here = to + begin[bucket], *there = from + begin[bucket];
                 for (uint d = 0; d < digits; ++d) {
-                    scatter_in_cache({false, keys.low + d * width, (1u << width) - 1}, here, there, begin[bucket + 1] - begin[bucket]);
+                    scatter_in_cache({false, keys.low + d * width, (1u << width) - 1}, here, there,
+                        begin[bucket + 1] - begin[bucket]);
                     std::swap(here, there);
                 }
             }

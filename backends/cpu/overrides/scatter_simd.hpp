@@ -1,5 +1,5 @@
-// Moving pairs to where their digit goes, a cache line at a time. Read once for every instruction set, so no include guard;
-// other files include simd.hpp.
+// Moving pairs to where their digit goes, a cache line at a time. Read once for every instruction set, so no include
+// guard; other files include simd.hpp.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
@@ -9,11 +9,13 @@ HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Writes pairs first to past - 1 of `from` to their places in `to`, which begins on a cache line: the next pair with digit v
-/// goes to to[next[v]]. `lines` holds pairs_a_line pairs a digit. Lines are collected there and then written past the caches
-/// (software write-combining; Satish et al., Fast Sort on CPUs and GPUs, 2010): scattered writes would fetch each line first.
+/// Writes pairs first to past - 1 of `from` to their places in `to`, which begins on a cache line: the next pair with
+/// digit v goes to to[next[v]]. `lines` holds pairs_a_line pairs a digit. Lines are collected there and then written
+/// past the caches (software write-combining; Satish et al., Fast Sort on CPUs and GPUs, 2010): scattered writes would
+/// fetch each line first.
 template <bool BY_VALUE>
-HWY_INLINE void scatter(digit by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* next, glm::uvec2* to, glm::uvec2* lines)
+HWY_INLINE void scatter(digit by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* next,
+    glm::uvec2* to, glm::uvec2* lines)
 {
     const hn::CappedTag<uint, 2 * pairs_a_line> d;
     const std::size_t width = hn::Lanes(d);
@@ -37,12 +39,14 @@ HWY_INLINE void scatter(digit by, const glm::uvec2* from, std::size_t first, std
         }
     }
     for (uint v = 0; v <= by.mask; ++v)
-        for (uint p = std::max(begin[v], next[v] / static_cast<uint>(pairs_a_line) * static_cast<uint>(pairs_a_line)); p < next[v]; ++p)
+        for (uint p = std::max(begin[v], next[v] / static_cast<uint>(pairs_a_line) * static_cast<uint>(pairs_a_line));
+             p < next[v]; ++p)
             to[p] = lines[v * pairs_a_line + p % pairs_a_line];
     hwy::FlushStream();
 }
 
-inline void scatter_pairs(const digit& by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* next, glm::uvec2* to, glm::uvec2* lines)
+inline void scatter_pairs(const digit& by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* next,
+    glm::uvec2* to, glm::uvec2* lines)
 {
     if (by.of_value)
         scatter<true>(by, from, first, past, next, to, lines);

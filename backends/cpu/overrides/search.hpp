@@ -1,4 +1,5 @@
-// What the cpu backend's estimates and lists share: the order in which points are searched for, and the job of the SIMD code.
+// What the cpu backend's estimates and lists share: the order in which points are searched for, and the job of the SIMD
+// code.
 #pragma once
 
 #include <photongrid/backends/cpu/cpu.hpp>
@@ -8,8 +9,8 @@
 
 namespace photongrid::cpu {
 
-/// Points that follow each other on one thread. Blocks stay the same however many threads there are: a block's queries help
-/// each other.
+/// Points that follow each other on one thread. Blocks stay the same however many threads there are: a block's queries
+/// help each other.
 inline constexpr std::size_t search_block_size = 256;
 
 /// Orders points along a curve that keeps neighbours together (Morton 1966), 1,024 steps along each axis of the grid.

@@ -20,16 +20,16 @@ struct search_job {
     const uint* order = nullptr;              ///< of the points: neighbours in it should be neighbours in space
 
     search_kind search = search_kind::exact_k;
-    bool searching = true;   ///< false: nothing can be found
-    uint wanted = 0;         ///< k
-    float max_radius2 = 0;   ///< m^2
-    float min_radius2 = 0;   ///< m^2
-    bool side = false;       ///< leak policies
+    bool searching = true; ///< false: nothing can be found
+    uint wanted = 0;       ///< k
+    float max_radius2 = 0; ///< m^2
+    float min_radius2 = 0; ///< m^2
+    bool side = false;     ///< leak policies
     bool agreement = false;
     float min_cosine = -1;
-    float flattening = 0;    ///< c^2 - 1, see photon_distance.glsl
+    float flattening = 0; ///< c^2 - 1, see photon_distance.glsl
     filter_kernel kernel = filter_kernel::constant;
-    float norm = 1;          ///< of the kernel
+    float norm = 1; ///< of the kernel
     bool leave_out = false;
     bool errors = false;
 
@@ -37,8 +37,8 @@ struct search_job {
     glm::uvec2* used = nullptr;
     glm::vec4* standard_error = nullptr; ///< only with errors
 
-    uint* ids = nullptr;                 ///< lists are wanted, not estimates: `wanted` entries a point here ...
-    float* distances2 = nullptr;         ///< ... and here
+    uint* ids = nullptr;         ///< lists are wanted, not estimates: `wanted` entries a point here ...
+    float* distances2 = nullptr; ///< ... and here
 };
 
 } // namespace photongrid::cpu

@@ -1,14 +1,14 @@
-// The search in vectors, of exact_k and fixed_radius. Read once for every instruction set, so no include guard; other files
-// include simd.hpp.
+// The search in vectors, of exact_k and fixed_radius. Read once for every instruction set, so no include guard; other
+// files include simd.hpp.
 //
-// Queries that lie close together go in packets. The photons near a packet, in all rows of cells that can hold any, are copied
-// once, one after the other, so that each query reads full vectors of just those. It does so twice: the first scan finds the
-// k-th squared distance, the second weighs and adds up.
+// Queries that lie close together go in packets. The photons near a packet, in all rows of cells that can hold any, are
+// copied once, one after the other, so that each query reads full vectors of just those. It does so twice: the first
+// scan finds the k-th squared distance, the second weighs and adds up.
 //
-// Moving a query point by s changes the distance to its k-th nearest photon by s at most, so that distance lies in a narrow
-// band about the last query's: photons nearer than the band are counted, those in it are kept, and the k-th is selected among
-// these few. The counts prove the result; where they say that it lies elsewhere, the scan is repeated without the band, and
-// where the packet does not reach far enough, a new one is made.
+// Moving a query point by s changes the distance to its k-th nearest photon by s at most, so that distance lies in a
+// narrow band about the last query's: photons nearer than the band are counted, those in it are kept, and the k-th is
+// selected among these few. The counts prove the result; where they say that it lies elsewhere, the scan is repeated
+// without the band, and where the packet does not reach far enough, a new one is made.
 #include <photongrid/backends/cpu/overrides/grow_simd.hpp>
 
 #include <bit>
@@ -17,13 +17,14 @@ HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Writes the squared distance of every photon. Counts those within low2, and keeps the distances of those beyond it, high2 at
-/// most. Returns {counted, kept}.
+/// Writes the squared distance of every photon. Counts those within low2, and keeps the distances of those beyond it,
+/// high2 at most. Returns {counted, kept}.
 template <int POLICIES>
 HWY_INLINE glm::uvec2 scan(const search_job& j, const query& at, float low2, float high2, const packet& near)
 {
     const floats d;
-    const std::size_t width = hn::Lanes(d), n = (near.size() + lanes - 1) / lanes * lanes; // with what is added up later
+    const std::size_t width = hn::Lanes(d),
+                      n = (near.size() + lanes - 1) / lanes * lanes; // with what is added up later
     float *const distances = near.of(packet::squared_distance), *const kept = near.of(packet::kept);
     const query_lanes q(at);
     const photon_planes photons = near.photons();
@@ -39,9 +40,9 @@ HWY_INLINE glm::uvec2 scan(const search_job& j, const query& at, float low2, flo
     return {static_cast<uint>(counted), static_cast<uint>(k)};
 }
 
-/// The n-th smallest (from 1) of `count` numbers above low (or 0), high at most. They are expected to be spread evenly, so that
-/// a few rounds of interpolation and counting find a number that n or n - 1 of them do not exceed. `values` is overwritten, also
-/// four registers' width past its end.
+/// The n-th smallest (from 1) of `count` numbers above low (or 0), high at most. They are expected to be spread evenly,
+/// so that a few rounds of interpolation and counting find a number that n or n - 1 of them do not exceed. `values` is
+/// overwritten, also four registers' width past its end.
 HWY_INLINE float nth_smallest(float* values, std::size_t count, std::size_t n, float low, float high)
 {
     const floats d;
@@ -51,14 +52,16 @@ HWY_INLINE float nth_smallest(float* values, std::size_t count, std::size_t n, f
     std::size_t below = 0, up_to = count; // how many are low at most, high at most
     auto beyond = hn::Set(d, -1.0f);      // low, once some are below: squared distances are not negative
     for (int rounds = 0; below + 1 < n && n < up_to; ++rounds) {
-        const float pivot = low + (high - low) * (static_cast<float>(n - below) / static_cast<float>(up_to - below + 1));
+        const float pivot
+            = low + (high - low) * (static_cast<float>(n - below) / static_cast<float>(up_to - below + 1));
         if (rounds == 12 || !(pivot > low && pivot < high)) { // not spread evenly, or equal
             std::nth_element(values, values + (n - 1), values + count);
             return values[n - 1];
         }
         const auto p = hn::Set(d, pivot);
         std::size_t within = 0;
-        for (std::size_t i = 0; i < whole; i += 4 * width) // four at a time: nearly always one or two rounds, easy to predict
+        for (std::size_t i = 0; i < whole;
+             i += 4 * width) // four at a time: nearly always one or two rounds, easy to predict
             for (std::size_t v = 0; v < 4; ++v)
                 within += hn::CountTrue(d, hn::Le(hn::LoadU(d, values + i + v * width), p));
         if (n <= within) {
@@ -95,9 +98,10 @@ inline void end_list(const search_job& j, uint point, std::size_t held)
     std::fill(j.distances2 + first + held, j.distances2 + first + j.wanted, std::numeric_limits<float>::infinity());
 }
 
-/// Lists the photons within the radius, nearest first, by the distances that scan() wrote. `keys` is scratch. Not inlined: sorting
-/// would take registers from the search for estimates.
-HWY_NOINLINE void list(const search_job& j, uint point, chosen_radius r, const packet& near, std::vector<std::uint64_t>& keys)
+/// Lists the photons within the radius, nearest first, by the distances that scan() wrote. `keys` is scratch. Not
+/// inlined: sorting would take registers from the search for estimates.
+HWY_NOINLINE void list(
+    const search_job& j, uint point, chosen_radius r, const packet& near, std::vector<std::uint64_t>& keys)
 {
     const floats d;
     const uints du;
@@ -109,7 +113,8 @@ HWY_NOINLINE void list(const search_job& j, uint point, chosen_radius r, const p
     std::size_t held = 0;
     for (std::size_t i = 0; i < n; i += width) {
         const auto is_within = hn::And(hn::Le(hn::Load(d, distances + i), radius2), hn::FirstN(d, n - i));
-        held += store_some(du, hn::Add(hn::Set(du, static_cast<uint>(i)), hn::Iota(du, 0)), hn::RebindMask(du, is_within), within + held);
+        held += store_some(du, hn::Add(hn::Set(du, static_cast<uint>(i)), hn::Iota(du, 0)),
+            hn::RebindMask(du, is_within), within + held);
     }
     // The bits of squared distances are in their order; the smallest ids come first.
     keys.resize(held);
@@ -151,8 +156,8 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
     std::vector<uint> at_radius;
     std::vector<std::uint64_t> keys;
     query last;
-    float last_radius = -1;     // distance of the last query's k-th photon; none: -1
-    float expected = -1;        // this query's, where something better than the last is known
+    float last_radius = -1; // distance of the last query's k-th photon; none: -1
+    float expected = -1;    // this query's, where something better than the last is known
     const bool exact = j.search == search_kind::exact_k;
     const float max_radius = std::sqrt(j.max_radius2);
     float step = 0; // from one point to the next, on average
@@ -173,15 +178,17 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
         if (!exact)
             expected = max_radius;
         else if (expected < 0 && last_radius > 0)
-            expected = last_radius + std::min(surplus * last_radius, distance_between(glm::vec3(j.points[first]), last.at));
+            expected
+                = last_radius + std::min(surplus * last_radius, distance_between(glm::vec3(j.points[first]), last.at));
         else if (expected < 0) {
             expected = std::sqrt(1.3f * guess(j, first));
             guessed = true;
         }
         expected = std::min(expected, max_radius);
 
-        // The packet: the next points, as long as they are close together. Copying has its cost, and so has every photon that is
-        // too far for most of them: the least of both together lies where their spread goes with the power 2/3 of their step.
+        // The packet: the next points, as long as they are close together. Copying has its cost, and so has every
+        // photon that is too far for most of them: the least of both together lies where their spread goes with the
+        // power 2/3 of their step.
         const float relative_step = std::min(step / expected, 1.0f);
         const float widest = 2 * 1.4f * std::cbrt(relative_step * relative_step) * expected;
         glm::vec3 low(j.points[first]), high = low;
@@ -190,7 +197,8 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             const uint point = j.order[past];
             if (!is_wanted(j, point))
                 break;
-            const glm::vec3 l = glm::min(low, glm::vec3(j.points[point])), h = glm::max(high, glm::vec3(j.points[point]));
+            const glm::vec3 l = glm::min(low, glm::vec3(j.points[point])),
+                            h = glm::max(high, glm::vec3(j.points[point]));
             if (!(distance_between(l, h) <= widest))
                 break;
             low = l;
@@ -238,10 +246,12 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
                     visited += static_cast<uint>(near.size());
                 }
                 if (found.x + found.y >= j.wanted)
-                    r = {nth_smallest(near.of(packet::kept), found.y, j.wanted - found.x, std::max(low2, 0.0f), high2), true};
+                    r = {nth_smallest(near.of(packet::kept), found.y, j.wanted - found.x, std::max(low2, 0.0f), high2),
+                        true};
                 else if (sure2 < j.max_radius2) {
                     // The packet does not reach far enough: another from here on.
-                    const float growth = 1.2f * static_cast<float>(j.wanted) / static_cast<float>(std::max(found.x + found.y, 1u));
+                    const float growth
+                        = 1.2f * static_cast<float>(j.wanted) / static_cast<float>(std::max(found.x + found.y, 1u));
                     expected = std::max(begun_with * std::sqrt(std::clamp(growth, 1.3f, 8.0f)), 1e-15f);
                     if (growth > 4 && !guessed)
                         expected = std::max(expected, std::sqrt(1.3f * guess(j, point)));
@@ -251,7 +261,8 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             if (j.ids != nullptr)
                 list(j, point, r, near, keys);
             else
-                finish(j, point, r, j.errors ? gather<true>(j, r, near, at_radius) : gather<false>(j, r, near, at_radius), visited);
+                finish(j, point, r,
+                    j.errors ? gather<true>(j, r, near, at_radius) : gather<false>(j, r, near, at_radius), visited);
             visited = 0;
             last_radius = r.by_photon ? std::sqrt(r.radius2) : -1;
             last = q;

@@ -1,9 +1,9 @@
-// SIMD code of the cpu backend's overrides, compiled for every instruction set that the compiler knows; the best one that the
-// machine has is chosen when it runs (Highway).
+// SIMD code of the cpu backend's overrides, compiled for every instruction set that the compiler knows; the best one
+// that the machine has is chosen when it runs (Highway).
 #pragma once
 
-// Highway 1.0.3 leaves out its newest instruction set for x86 unless asked, and stops with an error where the compiler may use
-// it everywhere (-march=sapphirerapids).
+// Highway 1.0.3 leaves out its newest instruction set for x86 unless asked, and stops with an error where the compiler
+// may use it everywhere (-march=sapphirerapids).
 #if defined(__AVXVNNI__) && defined(__AVX512VPOPCNTDQ__) && !defined(HWY_WANT_AVX3_DL)
 #define HWY_WANT_AVX3_DL
 #define PHOTONGRID_WANTS_AVX3_DL
@@ -29,7 +29,8 @@ HWY_EXPORT(scatter_pairs);
 HWY_EXPORT(search_block);
 
 /// See map_simd.hpp.
-inline void find_cells(const map_job& j, std::size_t first, std::size_t past, uint* in_bucket, uint& invalid, uint& left_out)
+inline void find_cells(
+    const map_job& j, std::size_t first, std::size_t past, uint* in_bucket, uint& invalid, uint& left_out)
 {
     HWY_DYNAMIC_DISPATCH(find_cells)(j, first, past, in_bucket, invalid, left_out);
 }
@@ -43,7 +44,8 @@ inline void order_bucket(const map_job& j, uint bucket, std::size_t begin, std::
 }
 
 /// See scatter_simd.hpp.
-inline void scatter_pairs(const digit& by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* next, glm::uvec2* to, glm::uvec2* lines)
+inline void scatter_pairs(const digit& by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* next,
+    glm::uvec2* to, glm::uvec2* lines)
 {
     HWY_DYNAMIC_DISPATCH(scatter_pairs)(by, from, first, past, next, to, lines);
 }

@@ -1,5 +1,5 @@
-// The cpu backend's way to build a map by sorting: photons go to runs of cells, and within these to their cells, into planes,
-// as the search reads them (map_simd.hpp).
+// The cpu backend's way to build a map by sorting: photons go to runs of cells, and within these to their cells, into
+// planes, as the search reads them (map_simd.hpp).
 #pragma once
 
 #include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>
@@ -11,7 +11,8 @@ namespace photongrid {
 
 namespace cpu {
     /// What turns an attribute's order into that of the cells.
-    inline cpu_backend::buffer<glm::vec4> in_order_of(cpu_backend& b, std::span<const uint> list, const cpu_backend::buffer<glm::vec4>& attribute)
+    inline cpu_backend::buffer<glm::vec4> in_order_of(
+        cpu_backend& b, std::span<const uint> list, const cpu_backend::buffer<glm::vec4>& attribute)
     {
         const std::size_t n = list.size();
         const auto from = b.rows(attribute);
@@ -34,7 +35,8 @@ namespace cpu {
 } // namespace cpu
 
 /// Same map as the generic sorted_map, which also builds those of 2^27 cells and more. Scratch: 44 bytes a photon.
-inline photon_map<cpu_backend> sorted_map(cpu_backend& b, photons<cpu_backend> p, const grid& g, uint parts = every_part)
+inline photon_map<cpu_backend> sorted_map(
+    cpu_backend& b, photons<cpu_backend> p, const grid& g, uint parts = every_part)
 {
     const uint n = p.size();
     cpu::map_job j;
@@ -57,7 +59,8 @@ inline photon_map<cpu_backend> sorted_map(cpu_backend& b, photons<cpu_backend> p
     auto positions = b.make<glm::vec4>(n), powers = b.make<glm::vec4>(n);
     {
         // A part a thread, so that counts need no sharing; the result does not depend on their number.
-        const std::size_t threads = n < 16384 ? 1 : b.threads().threads(), part = std::max<std::size_t>((n + threads - 1) / threads, 1);
+        const std::size_t threads = n < 16384 ? 1 : b.threads().threads(),
+                          part = std::max<std::size_t>((n + threads - 1) / threads, 1);
         std::vector<std::array<uint, cpu::map_job::most_buckets>> next(threads);
         auto keys = b.make<uint>(n);
         auto records = b.make<glm::vec4>(std::size_t{2} * n);
@@ -95,11 +98,12 @@ inline photon_map<cpu_backend> sorted_map(cpu_backend& b, photons<cpu_backend> p
             const auto lines = std::make_unique_for_overwrite<cpu::scatter_lines>();
             cpu::scatter_photons(j, first, past, next[first / part].data(), *lines);
         });
-        b.threads().for_blocks(j.buckets(), std::max(1u, j.buckets() / (8 * b.threads().threads())), [&](std::size_t first, std::size_t past) {
-            cpu::bucket_scratch scratch;
-            for (std::size_t v = first; v < past; ++v)
-                cpu::order_bucket(j, static_cast<uint>(v), begin[v], begin[v + 1], scratch);
-        });
+        b.threads().for_blocks(j.buckets(), std::max(1u, j.buckets() / (8 * b.threads().threads())),
+            [&](std::size_t first, std::size_t past) {
+                cpu::bucket_scratch scratch;
+                for (std::size_t v = first; v < past; ++v)
+                    cpu::order_bucket(j, static_cast<uint>(v), begin[v], begin[v + 1], scratch);
+            });
     }
     p.positions = std::move(positions);
     p.powers = std::move(powers);

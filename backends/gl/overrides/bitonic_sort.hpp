@@ -26,8 +26,8 @@ struct unpack_pairs {
 
 namespace photongrid {
 
-/// Same pairs in the same order as the generic bitonic_sort; 102 passes over half the texels for 1,048,576 pairs, where that
-/// takes 210. Scratch: two more buffers of n pairs, rounded up to a power of two, while it runs.
+/// Same pairs in the same order as the generic bitonic_sort; 102 passes over half the texels for 1,048,576 pairs, where
+/// that takes 210. Scratch: two more buffers of n pairs, rounded up to a power of two, while it runs.
 inline sort_report bitonic_sort(gl_backend& b, gl_backend::buffer<glm::uvec2>& pairs)
 {
     const std::size_t n = pairs.size();
@@ -47,7 +47,8 @@ inline sort_report bitonic_sort(gl_backend& b, gl_backend::buffer<glm::uvec2>& p
                 // Two strides at a time; where their number is odd, the last is taken alone.
                 const bool two = stride > 1, last = stride <= 2;
                 const launch l(texels, 0, (two ? 1u : 0u) | (last ? 2u : 0u));
-                b.run<gl::kernels::bitonic_texels>(l, {.run = static_cast<uint>(run), .stride = static_cast<uint>(stride)}, reads(now), writes(next));
+                b.run<gl::kernels::bitonic_texels>(
+                    l, {.run = static_cast<uint>(run), .stride = static_cast<uint>(stride)}, reads(now), writes(next));
                 std::swap(now, next);
                 ++report.passes;
                 stride /= two ? 4 : 2;

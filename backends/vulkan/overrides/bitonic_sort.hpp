@@ -6,8 +6,9 @@
 
 namespace photongrid {
 
-/// Same pairs in the same order as the generic bitonic_sort; 57 passes for 1,048,576 pairs where that takes 210. Scratch:
-/// none where n is a power of two, else two more buffers of n pairs for a while. `steps_a_pass`: 1 to 4 at most.
+/// Same pairs in the same order as the generic bitonic_sort; 57 passes for 1,048,576 pairs where that takes 210.
+/// Scratch: none where n is a power of two, else two more buffers of n pairs for a while. `steps_a_pass`: 1 to 4 at
+/// most.
 inline sort_report bitonic_sort(vulkan_backend& b, vulkan_backend::buffer<glm::uvec2>& pairs, uint steps_a_pass = 4)
 {
     if (steps_a_pass < 1 || steps_a_pass > 4)
@@ -25,8 +26,9 @@ inline sort_report bitonic_sort(vulkan_backend& b, vulkan_backend::buffer<glm::u
     const auto levels = static_cast<uint>(std::countr_zero(padded));
     report.steps = levels * (levels + 1) / 2;
     const auto pass = [&](uint run_bits, uint first_bit, uint steps, bool whole_blocks) {
-        b.own_pass("bitonic_strides", "#define STEPS " + std::to_string(steps) + "\n#define SORT_BLOCKS " + (whole_blocks ? "1" : "0") + "\n", padded >> steps,
-            {static_cast<uint>(padded), 1u << run_bits, 1u << (first_bit + 1 - steps)}, pairs);
+        b.own_pass("bitonic_strides",
+            "#define STEPS " + std::to_string(steps) + "\n#define SORT_BLOCKS " + (whole_blocks ? "1" : "0") + "\n",
+            padded >> steps, {static_cast<uint>(padded), 1u << run_bits, 1u << (first_bit + 1 - steps)}, pairs);
         ++report.passes;
     };
     uint run_bits = 1; // of the length of the runs being merged

@@ -10,9 +10,9 @@ namespace photongrid::viewer {
 
 /// Everything that undo brings back.
 struct version {
-    photongrid::scene scene;  ///< its own settings are not looked at
+    photongrid::scene scene; ///< its own settings are not looked at
     render_settings settings;
-    std::string backend;      ///< as --backend takes it, not auto
+    std::string backend; ///< as --backend takes it, not auto
 
     bool operator==(const version&) const = default; ///< of every member
 };

@@ -7,7 +7,8 @@ namespace photongrid {
 
 exit_code run_view(const view_options&, bool (*)())
 {
-    throw backend_error("view: this photongrid was built without its window; install libglfw3-dev, libimgui-dev and libgl-dev, then configure again. `photongrid render --progressive DIR` needs none");
+    throw backend_error("view: this photongrid was built without its window; install libglfw3-dev, libimgui-dev and "
+                        "libgl-dev, then configure again. `photongrid render --progressive DIR` needs none");
 }
 
 } // namespace photongrid

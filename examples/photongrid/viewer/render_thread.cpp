@@ -17,18 +17,17 @@ namespace {
     /// Time that a step may take before it is asked again what to do.
     constexpr double step_ms = 8;
 
-    /// Where every core renders, the window comes first: this thread, and those that the backend makes in it, give way to others.
+    /// Where every core renders, the window comes first: this thread, and those that the backend makes in it, give way
+    /// to others.
     void give_way()
     {
-        (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 5); // of one thread, on Linux; it may be refused
+        (void)::setpriority(
+            PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 5); // of one thread, on Linux; it may be refused
     }
 } // namespace
 
 render_thread::render_thread(renderer_options options, std::function<void()> wake, journal log)
-    : options_(std::move(options))
-    , wake_(std::move(wake))
-    , log_(std::move(log))
-    , thread_([this] { work(); })
+    : options_(std::move(options)), wake_(std::move(wake)), log_(std::move(log)), thread_([this] { work(); })
 {
 }
 
@@ -138,7 +137,9 @@ bool render_thread::take()
         const std::lock_guard lock(guard_);
         report_.error.clear();
     }
-    tell("start", ", \"request\": " + std::to_string(current_.number) + ", \"passes_waited\": " + std::to_string(passes_waited) + ", \"waited_ms\": " + std::to_string(ms_since(current_.made))
+    tell("start",
+        ", \"request\": " + std::to_string(current_.number) + ", \"passes_waited\": " + std::to_string(passes_waited)
+            + ", \"waited_ms\": " + std::to_string(ms_since(current_.made))
             + ", \"moving\": " + (current_.moving ? "true" : "false"));
     return true;
 }
@@ -164,7 +165,8 @@ void render_thread::draw()
         report_.device = renderer_->caps().device;
     }
     if (whole)
-        tell("whole", ", \"request\": " + std::to_string(current_.number) + ", \"maps\": " + std::to_string(renderer_->maps()));
+        tell("whole",
+            ", \"request\": " + std::to_string(current_.number) + ", \"maps\": " + std::to_string(renderer_->maps()));
     if (news || whole)
         wake_();
 }
@@ -175,8 +177,11 @@ void render_thread::publish(double ms)
     if (last_)
         f.change = compare_images(*last_, f.picture).relmse;
     last_ = f.picture;
-    tell("picture", ", \"request\": " + std::to_string(current_.number) + ", \"pictures\": " + std::to_string(seen_) + ", \"maps\": " + std::to_string(renderer_->maps())
-            + ", \"stage\": \"" + std::string(renderer_->progress().stage) + "\", \"since_request_ms\": " + std::to_string(ms_since(current_.made)));
+    tell("picture",
+        ", \"request\": " + std::to_string(current_.number) + ", \"pictures\": " + std::to_string(seen_)
+            + ", \"maps\": " + std::to_string(renderer_->maps()) + ", \"stage\": \""
+            + std::string(renderer_->progress().stage)
+            + "\", \"since_request_ms\": " + std::to_string(ms_since(current_.made)));
     const std::lock_guard lock(guard_);
     f.number = newest_.number + 1;
     newest_ = std::move(f);

@@ -19,20 +19,20 @@ struct frame {
     std::uint64_t request = 0; ///< which request it answers
     std::uint64_t number = 0;  ///< pictures since the window opened; 0: none
     image picture;
-    double ms = 0;             ///< since the request was begun
-    double change = 0;         ///< relMSE of the picture before to this one; 0 of a request's first
+    double ms = 0;     ///< since the request was begun
+    double change = 0; ///< relMSE of the picture before to this one; 0 of a request's first
 };
 
 /// Where the renderer is.
 struct render_report {
-    std::uint64_t request = 0;  ///< being drawn
+    std::uint64_t request = 0; ///< being drawn
     render_progress progress{};
     render_stats stats{};
-    std::uint64_t maps = 0;     ///< begun since the backend was opened
-    std::uint64_t passes = 0;   ///< run since the window opened
-    std::string backend{};      ///< as --backend takes it
+    std::uint64_t maps = 0;   ///< begun since the backend was opened
+    std::uint64_t passes = 0; ///< run since the window opened
+    std::string backend{};    ///< as --backend takes it
     std::string device{};
-    std::string error{};        ///< why the last request is not drawn; empty where it is
+    std::string error{}; ///< why the last request is not drawn; empty where it is
 };
 
 /// What happened, for --journal: one line of JSON without its end.
@@ -46,8 +46,8 @@ public:
     render_thread(const render_thread&) = delete;
     render_thread& operator=(const render_thread&) = delete;
 
-    /// From now on draws `v`. Work in flight ends after its pass; while `moving`, more requests are to follow soon, so it goes on to its
-    /// first look. Returns the request's number.
+    /// From now on draws `v`. Work in flight ends after its pass; while `moving`, more requests are to follow soon, so
+    /// it goes on to its first look. Returns the request's number.
     std::uint64_t show(const version& v, bool moving);
 
     /// The newest picture, if its number is above `seen`.
@@ -76,12 +76,12 @@ private:
 
     mutable std::mutex guard_;
     std::condition_variable changed_;
-    std::optional<request> wanted_;     ///< not taken yet
+    std::optional<request> wanted_; ///< not taken yet
     bool ends_ = false;
     std::uint64_t requests_ = 0;
     frame newest_;
     render_report report_;
-    renderer* cancellable_ = nullptr;   ///< the renderer, while it may be told to stop
+    renderer* cancellable_ = nullptr; ///< the renderer, while it may be told to stop
     std::atomic<std::uint64_t> steps_ = 0;
 
     // The thread's own.

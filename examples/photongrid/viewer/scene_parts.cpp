@@ -28,7 +28,9 @@ namespace {
         for (std::size_t i = 0; i < polygons.size(); ++i)
             for (const auto& v : polygons[i].vertices)
                 corners.push_back({v, i});
-        const auto less = [](const corner& a, const corner& b) { return std::tie(a.at.x, a.at.y, a.at.z) < std::tie(b.at.x, b.at.y, b.at.z); };
+        const auto less = [](const corner& a, const corner& b) {
+            return std::tie(a.at.x, a.at.y, a.at.z) < std::tie(b.at.x, b.at.y, b.at.z);
+        };
         std::sort(corners.begin(), corners.end(), less);
         for (std::size_t i = 1; i < corners.size(); ++i)
             if (corners[i].at == corners[i - 1].at)
@@ -69,7 +71,8 @@ std::vector<scene_part> parts_of(const scene& s)
                 p.polygons.push_back(i);
         if (p.polygons.empty())
             continue;
-        p.name = named(p.polygons.size() == 1 ? "polygon" : (std::to_string(p.polygons.size()) + " polygons").c_str(), s, s.polygons[p.polygons[0]].material);
+        p.name = named(p.polygons.size() == 1 ? "polygon" : (std::to_string(p.polygons.size()) + " polygons").c_str(),
+            s, s.polygons[p.polygons[0]].material);
         parts.push_back(std::move(p));
     }
     const auto lights = [&](const auto& all, const char* kind, auto member) {
@@ -110,10 +113,13 @@ sight_line sight_line_at(const camera& c, double width, double height, double x,
 {
     const auto [forward, right, up] = photongrid::detail::camera_axes(c);
     const double reach = std::tan(glm::radians(c.vertical_fov) / 2);
-    return {c.position, glm::normalize(forward + (2 * x / width - 1) * reach * width / height * right + (1 - 2 * y / height) * reach * up)};
+    return {c.position,
+        glm::normalize(
+            forward + (2 * x / width - 1) * reach * width / height * right + (1 - 2 * y / height) * reach * up)};
 }
 
-std::optional<grip> pick(const scene& s, const std::vector<scene_part>& parts, double width, double height, double x, double y)
+std::optional<grip> pick(
+    const scene& s, const std::vector<scene_part>& parts, double width, double height, double x, double y)
 {
     const reference::geometry shapes(s);
     const auto line = sight_line_at(s.camera, width, height, x, y);
@@ -133,14 +139,17 @@ std::optional<grip> pick(const scene& s, const std::vector<scene_part>& parts, d
 
     // The reference numbers shapes in this order.
     std::size_t number = hit.shape;
-    for (const auto& [count, member] : {std::pair{s.spheres.size(), &scene_part::spheres}, {s.cylinders.size(), &scene_part::cylinders}, {s.cones.size(), &scene_part::cones},
-             {s.paraboloids.size(), &scene_part::paraboloids}, {s.disks.size(), &scene_part::disks}, {s.polygons.size(), &scene_part::polygons}, {s.rectangle_lights.size(), &scene_part::rectangle_lights}}) {
+    for (const auto& [count, member] : {std::pair{s.spheres.size(), &scene_part::spheres},
+             {s.cylinders.size(), &scene_part::cylinders}, {s.cones.size(), &scene_part::cones},
+             {s.paraboloids.size(), &scene_part::paraboloids}, {s.disks.size(), &scene_part::disks},
+             {s.polygons.size(), &scene_part::polygons}, {s.rectangle_lights.size(), &scene_part::rectangle_lights}}) {
         if (number >= count) {
             number -= count;
             continue;
         }
         for (std::size_t p = 0; p < parts.size(); ++p)
-            if (const auto& of_kind = parts[p].*member; std::find(of_kind.begin(), of_kind.end(), number) != of_kind.end())
+            if (const auto& of_kind = parts[p].*member;
+                std::find(of_kind.begin(), of_kind.end(), number) != of_kind.end())
                 return grip{p, hit.position};
         break;
     }

@@ -5,8 +5,8 @@
 
 namespace photongrid {
 
-/// Returns when the window is closed, or when `stop_asked` says so. Throws scene_error, file_error, backend_error where there is no
-/// display.
+/// Returns when the window is closed, or when `stop_asked` says so. Throws scene_error, file_error, backend_error where
+/// there is no display.
 exit_code run_view(const view_options& o, bool (*stop_asked)());
 
 } // namespace photongrid

@@ -33,7 +33,9 @@ namespace {
             glfwSetErrorCallback([](int, const char* text) { said() = text; });
             if (glfwInit() != GLFW_TRUE)
                 throw backend_error("view: no window can be opened: " + said()
-                    + ". Is there a display (DISPLAY or WAYLAND_DISPLAY set; over ssh: -X)? Without one, `photongrid render --progressive DIR` writes the same pictures to files, and `xvfb-run photongrid view …` opens the window unseen");
+                    + ". Is there a display (DISPLAY or WAYLAND_DISPLAY set; over ssh: -X)? Without one, `photongrid "
+                      "render --progressive DIR` writes the same pictures to files, and `xvfb-run photongrid view …` "
+                      "opens the window unseen");
         }
         glfw(const glfw&) = delete;
         glfw& operator=(const glfw&) = delete;
@@ -60,7 +62,8 @@ namespace {
             ImGui::StyleColorsDark();
             ImGui_ImplGlfw_InitForOpenGL(w, true);
             if (!ImGui_ImplOpenGL3_Init("#version 130"))
-                throw backend_error("view: the panel cannot be drawn: this OpenGL has no shaders (Debian: apt install libgl1-mesa-dri)");
+                throw backend_error("view: the panel cannot be drawn: this OpenGL has no shaders (Debian: apt install "
+                                    "libgl1-mesa-dri)");
         }
         interface(const interface&) = delete;
         interface& operator=(const interface&) = delete;
@@ -116,7 +119,8 @@ namespace {
             b.add(s.point_lights[i].position);
         for (const auto i : part.rectangle_lights) {
             const auto& l = s.rectangle_lights[i];
-            for (const auto& corner : {l.corner, l.corner + l.edge_u, l.corner + l.edge_v, l.corner + l.edge_u + l.edge_v})
+            for (const auto& corner :
+                {l.corner, l.corner + l.edge_u, l.corner + l.edge_v, l.corner + l.edge_u + l.edge_v})
                 b.add(corner);
         }
         const auto& c = s.camera;
@@ -124,12 +128,16 @@ namespace {
         const double reach = std::tan(glm::radians(c.vertical_fov) / 2);
         frame_box f;
         for (int corner = 0; corner < 8; ++corner) {
-            const dvec3 to = dvec3(corner & 1 ? b.high.x : b.low.x, corner & 2 ? b.high.y : b.low.y, corner & 4 ? b.high.z : b.low.z) - c.position;
+            const dvec3 to = dvec3(corner & 1 ? b.high.x : b.low.x, corner & 2 ? b.high.y : b.low.y,
+                                 corner & 4 ? b.high.z : b.low.z)
+                - c.position;
             const double depth = glm::dot(to, forward);
             if (depth <= 0)
                 return std::nullopt;
-            const double x = 0.5 * width + 0.5 * height * glm::dot(to, right) / (depth * reach), y = 0.5 * height - 0.5 * height * glm::dot(to, up) / (depth * reach);
-            f.left = std::min(f.left, x), f.right = std::max(f.right, x), f.top = std::min(f.top, y), f.bottom = std::max(f.bottom, y);
+            const double x = 0.5 * width + 0.5 * height * glm::dot(to, right) / (depth * reach),
+                         y = 0.5 * height - 0.5 * height * glm::dot(to, up) / (depth * reach);
+            f.left = std::min(f.left, x), f.right = std::max(f.right, x), f.top = std::min(f.top, y),
+            f.bottom = std::max(f.bottom, y);
         }
         return f;
     }
@@ -137,19 +145,19 @@ namespace {
     class window {
     public:
         window(const window_options& o, bool (*stop_asked)())
-            : options_(o)
-            , stop_asked_(stop_asked)
-            , handle_(open(o.begin.settings))
-            , interface_(handle_.get())
-            , document_(o.begin)
-            , journal_(o.journal)
-            , renderer_(o.renderer, [] { glfwPostEmptyEvent(); }, o.journal.empty() ? journal() : [this](const std::string& line) { note(line); })
+            : options_(o), stop_asked_(stop_asked), handle_(open(o.begin.settings)), interface_(handle_.get()),
+              document_(o.begin), journal_(o.journal),
+              renderer_(
+                  o.renderer, [] { glfwPostEmptyEvent(); },
+                  o.journal.empty() ? journal() : [this](const std::string& line) { note(line); })
         {
             if (!o.journal.empty() && !journal_.is_open())
                 throw file_error(o.journal + ": cannot be written");
             glGenTextures(1, &texture_);
             glBindTexture(GL_TEXTURE_2D, texture_);
-            for (const auto& [name, value] : {std::pair{GL_TEXTURE_MIN_FILTER, GL_LINEAR}, {GL_TEXTURE_MAG_FILTER, GL_LINEAR}, {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE}, {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE}})
+            for (const auto& [name, value] :
+                {std::pair{GL_TEXTURE_MIN_FILTER, GL_LINEAR}, {GL_TEXTURE_MAG_FILTER, GL_LINEAR},
+                    {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE}, {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE}})
                 glTexParameteri(GL_TEXTURE_2D, static_cast<GLenum>(name), value);
             glfwSetWindowUserPointer(handle_.get(), this);
             send(false);
@@ -168,25 +176,33 @@ namespace {
                 take_news();
                 draw();
                 if (glGetError() == context_lost)
-                    throw backend_error("view: the window's OpenGL context was lost (driver reset); open it again, or take --backend cpu if the GPU is the renderer's too");
+                    throw backend_error("view: the window's OpenGL context was lost (driver reset); open it again, or "
+                                        "take --backend cpu if the GPU is the renderer's too");
                 ++turns;
                 const double ms = 1000 * (glfwGetTime() - begin);
                 slowest_ms = std::max(slowest_ms, ms);
                 slow_turns += ms > 1000.0 / 30 ? 1u : 0u;
             }
             if (journal_.is_open())
-                note("{\"event\": \"closed\", \"turns\": " + std::to_string(turns) + ", \"turns_above_33_ms\": " + std::to_string(slow_turns) + ", \"slowest_turn_ms\": " + std::to_string(slowest_ms) + "}");
+                note("{\"event\": \"closed\", \"turns\": " + std::to_string(turns) + ", \"turns_above_33_ms\": "
+                    + std::to_string(slow_turns) + ", \"slowest_turn_ms\": " + std::to_string(slowest_ms) + "}");
         }
 
     private:
         static std::unique_ptr<GLFWwindow, window_closer> open(const render_settings& s)
         {
-            const float scale = std::max(1.0f, std::min(3.0f, 640.0f / static_cast<float>(std::max(s.width, s.height))));
-            const int width = static_cast<int>(scale * static_cast<float>(s.width) + panel_width), height = std::max(720, static_cast<int>(scale * static_cast<float>(s.height)));
-            glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET); // so that a loss is said; ignored where it cannot be
-            std::unique_ptr<GLFWwindow, window_closer> w(glfwCreateWindow(std::min(width, 1600), std::min(height, 1000), "photongrid", nullptr, nullptr));
+            const float scale
+                = std::max(1.0f, std::min(3.0f, 640.0f / static_cast<float>(std::max(s.width, s.height))));
+            const int width = static_cast<int>(scale * static_cast<float>(s.width) + panel_width),
+                      height = std::max(720, static_cast<int>(scale * static_cast<float>(s.height)));
+            glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS,
+                GLFW_LOSE_CONTEXT_ON_RESET); // so that a loss is said; ignored where it cannot be
+            std::unique_ptr<GLFWwindow, window_closer> w(
+                glfwCreateWindow(std::min(width, 1600), std::min(height, 1000), "photongrid", nullptr, nullptr));
             if (!w)
-                throw backend_error("view: the display gives no OpenGL context: " + glfw::said() + " (Debian: apt install libgl1-mesa-dri libglx-mesa0); `photongrid render --progressive DIR` needs none");
+                throw backend_error("view: the display gives no OpenGL context: " + glfw::said()
+                    + " (Debian: apt install libgl1-mesa-dri libglx-mesa0); `photongrid render --progressive DIR` "
+                      "needs none");
             glfwMakeContextCurrent(w.get());
             glfwSwapInterval(1);
             return w;
@@ -231,8 +247,10 @@ namespace {
             shown_ = std::move(*next);
             if (shown_.change > 0)
                 changes_.push_back(static_cast<float>(std::log10(shown_.change)));
-            if (const auto& r = options_.reference; r && r->width == shown_.picture.width && r->height == shown_.picture.height)
-                errors_.push_back(static_cast<float>(std::log10(std::max(1e-12, compare_images(shown_.picture, *r).relmse))));
+            if (const auto& r = options_.reference;
+                r && r->width == shown_.picture.width && r->height == shown_.picture.height)
+                errors_.push_back(
+                    static_cast<float>(std::log10(std::max(1e-12, compare_images(shown_.picture, *r).relmse))));
             upload();
         }
 
@@ -248,7 +266,8 @@ namespace {
                     bytes_.push_back(to_screen(pixel[c]));
             glBindTexture(GL_TEXTURE_2D, texture_);
             glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-            glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, static_cast<GLsizei>(p.width), static_cast<GLsizei>(p.height), 0, GL_RGB, GL_UNSIGNED_BYTE, bytes_.data());
+            glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, static_cast<GLsizei>(p.width), static_cast<GLsizei>(p.height), 0,
+                GL_RGB, GL_UNSIGNED_BYTE, bytes_.data());
         }
 
         // --- the screen ---
@@ -258,11 +277,13 @@ namespace {
             ImGui_ImplGlfw_NewFrame();
             ImGui::NewFrame();
             const auto size = ImGui::GetIO().DisplaySize;
-            constexpr auto fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
+            constexpr auto fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove
+                | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
             ImGui::SetNextWindowPos({0, 0});
             ImGui::SetNextWindowSize({std::max(1.0f, size.x - panel_width), size.y});
             ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-            ImGui::Begin("picture", nullptr, fixed | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground);
+            ImGui::Begin(
+                "picture", nullptr, fixed | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground);
             ImGui::PopStyleVar();
             draw_picture();
             ImGui::End();
@@ -289,18 +310,26 @@ namespace {
         {
             const auto& s = document_.now().settings;
             const auto room = ImGui::GetContentRegionAvail();
-            const float scale = std::max(1e-3f, std::min(room.x / static_cast<float>(s.width), room.y / static_cast<float>(s.height)));
+            const float scale = std::max(
+                1e-3f, std::min(room.x / static_cast<float>(s.width), room.y / static_cast<float>(s.height)));
             const ImVec2 size(scale * static_cast<float>(s.width), scale * static_cast<float>(s.height));
             const ImVec2 corner(std::max(0.0f, 0.5f * (room.x - size.x)), std::max(0.0f, 0.5f * (room.y - size.y)));
             if (shown_.number > 0)
-                ImGui::GetWindowDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)), corner, {corner.x + size.x, corner.y + size.y});
+                ImGui::GetWindowDrawList()->AddImage(
+                    reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)), corner,
+                    {corner.x + size.x, corner.y + size.y});
             ImGui::SetCursorPos(corner);
-            ImGui::InvisibleButton("mouse", size, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle | ImGuiButtonFlags_MouseButtonRight);
+            ImGui::InvisibleButton("mouse", size,
+                ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle
+                    | ImGuiButtonFlags_MouseButtonRight);
             mouse(corner, size);
             if (const auto part = document_.selected())
-                if (const auto box = box_of(document_.now().scene, document_.parts()[*part], static_cast<double>(size.x), static_cast<double>(size.y)))
-                    ImGui::GetWindowDrawList()->AddRect({corner.x + static_cast<float>(box->left) - 3, corner.y + static_cast<float>(box->top) - 3},
-                        {corner.x + static_cast<float>(box->right) + 3, corner.y + static_cast<float>(box->bottom) + 3}, IM_COL32(255, 200, 60, 200), 4, 0, 1.5f);
+                if (const auto box = box_of(document_.now().scene, document_.parts()[*part],
+                        static_cast<double>(size.x), static_cast<double>(size.y)))
+                    ImGui::GetWindowDrawList()->AddRect(
+                        {corner.x + static_cast<float>(box->left) - 3, corner.y + static_cast<float>(box->top) - 3},
+                        {corner.x + static_cast<float>(box->right) + 3, corner.y + static_cast<float>(box->bottom) + 3},
+                        IM_COL32(255, 200, 60, 200), 4, 0, 1.5f);
             draw_overlay();
         }
 
@@ -309,17 +338,22 @@ namespace {
             const auto& r = report_;
             char text[512];
             const auto& st = r.stats;
-            std::snprintf(text, sizeof text, "%s on %s\n%s %.0f %%  pictures %llu  after %.0f ms\nphotons %u  maps %llu  passes %llu  unfinished %llu\ntrace %.0f  build %.0f  rays %.0f  estimate %.0f ms", r.backend.c_str(),
-                r.device.substr(0, 40).c_str(), std::string(r.progress.stage).c_str(), 100 * r.progress.fraction, static_cast<unsigned long long>(shown_.number), shown_.ms, r.progress.photons,
-                static_cast<unsigned long long>(r.maps), static_cast<unsigned long long>(r.passes), static_cast<unsigned long long>(r.progress.unfinished), st.trace_photons.ms, st.build_map.ms, st.trace_rays.ms,
-                st.radiance_estimate.ms);
+            std::snprintf(text, sizeof text,
+                "%s on %s\n%s %.0f %%  pictures %llu  after %.0f ms\nphotons %u  maps %llu  passes %llu  unfinished "
+                "%llu\ntrace %.0f  build %.0f  rays %.0f  estimate %.0f ms",
+                r.backend.c_str(), r.device.substr(0, 40).c_str(), std::string(r.progress.stage).c_str(),
+                100 * r.progress.fraction, static_cast<unsigned long long>(shown_.number), shown_.ms,
+                r.progress.photons, static_cast<unsigned long long>(r.maps), static_cast<unsigned long long>(r.passes),
+                static_cast<unsigned long long>(r.progress.unfinished), st.trace_photons.ms, st.build_map.ms,
+                st.trace_rays.ms, st.radiance_estimate.ms);
             auto* list = ImGui::GetWindowDrawList();
             if (overlay_) {
                 list->AddText({9, 9}, IM_COL32(0, 0, 0, 255), text);
                 list->AddText({8, 8}, IM_COL32(255, 255, 255, 230), text);
             }
             if (!r.error.empty())
-                list->AddText(nullptr, 0, {8, 80}, IM_COL32(255, 120, 90, 255), ("not drawn: " + r.error).c_str(), nullptr, std::max(100.0f, ImGui::GetIO().DisplaySize.x - panel_width - 16));
+                list->AddText(nullptr, 0, {8, 80}, IM_COL32(255, 120, 90, 255), ("not drawn: " + r.error).c_str(),
+                    nullptr, std::max(100.0f, ImGui::GetIO().DisplaySize.x - panel_width - 16));
         }
 
         // --- the mouse ---
@@ -327,7 +361,8 @@ namespace {
         {
             const auto& io = ImGui::GetIO();
             const double width = static_cast<double>(size.x), height = static_cast<double>(size.y);
-            const double x = static_cast<double>(io.MousePos.x - corner.x), y = static_cast<double>(io.MousePos.y - corner.y);
+            const double x = static_cast<double>(io.MousePos.x - corner.x),
+                         y = static_cast<double>(io.MousePos.y - corner.y);
             if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f) {
                 document_.begin("zoom");
                 document_.zoom(std::pow(1.1, static_cast<double>(io.MouseWheel)));
@@ -335,22 +370,31 @@ namespace {
             if (ImGui::IsItemActivated()) {
                 pressed_ = pick(document_.now().scene, document_.parts(), width, height, x, y);
                 moved_ = false;
-                moves_part_ = ImGui::IsMouseDown(ImGuiMouseButton_Left) && pressed_ && document_.selected() == pressed_->part;
+                moves_part_
+                    = ImGui::IsMouseDown(ImGuiMouseButton_Left) && pressed_ && document_.selected() == pressed_->part;
             }
             if (ImGui::IsItemActive()) {
                 const bool left = ImGui::IsMouseDown(ImGuiMouseButton_Left);
-                if (!moved_ && ImGui::IsMouseDragging(left ? ImGuiMouseButton_Left : ImGui::IsMouseDown(ImGuiMouseButton_Middle) ? ImGuiMouseButton_Middle : ImGuiMouseButton_Right, 3.0f)) {
+                if (!moved_
+                    && ImGui::IsMouseDragging(left                        ? ImGuiMouseButton_Left
+                            : ImGui::IsMouseDown(ImGuiMouseButton_Middle) ? ImGuiMouseButton_Middle
+                                                                          : ImGuiMouseButton_Right,
+                        3.0f)) {
                     moved_ = true;
-                    document_.begin(moves_part_ ? "move of " + document_.parts()[pressed_->part].name : left && !io.KeyShift ? "turn" : "pan");
+                    document_.begin(moves_part_    ? "move of " + document_.parts()[pressed_->part].name
+                            : left && !io.KeyShift ? "turn"
+                                                   : "pan");
                 }
                 if (!moved_)
                     return;
                 if (moves_part_)
                     drag(sight_line_at(document_.now().scene.camera, width, height, x, y), io.KeyShift);
                 else if (left && !io.KeyShift)
-                    document_.orbit(180 * static_cast<double>(io.MouseDelta.x) / width, 180 * static_cast<double>(io.MouseDelta.y) / height);
+                    document_.orbit(180 * static_cast<double>(io.MouseDelta.x) / width,
+                        180 * static_cast<double>(io.MouseDelta.y) / height);
                 else
-                    document_.pan(-static_cast<double>(io.MouseDelta.x) / height, static_cast<double>(io.MouseDelta.y) / height);
+                    document_.pan(
+                        -static_cast<double>(io.MouseDelta.x) / height, static_cast<double>(io.MouseDelta.y) / height);
             }
             if (ImGui::IsItemDeactivated() && !moved_ && ImGui::IsMouseReleased(ImGuiMouseButton_Left))
                 document_.select(pressed_ ? std::optional(pressed_->part) : std::nullopt);
@@ -382,7 +426,8 @@ namespace {
 
         /// A setting with a word for each value.
         template <class Setting, std::size_t N>
-        void choice(const char* label, Setting render_settings::*member, const named<Setting> (&names)[N], const char* about)
+        void choice(
+            const char* label, Setting render_settings::*member, const named<Setting> (&names)[N], const char* about)
         {
             const auto value = document_.now().settings.*member;
             if (ImGui::BeginCombo(label, name_of(names, value))) {
@@ -398,16 +443,19 @@ namespace {
         void number(const char* label, std::uint32_t render_settings::*member, int low, int high, const char* about)
         {
             int value = static_cast<int>(document_.now().settings.*member);
-            const bool edited = ImGui::SliderInt(label, &value, low, high, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+            const bool edited = ImGui::SliderInt(
+                label, &value, low, high, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
             if (begun(label) && edited)
                 document_.edit().settings.*member = static_cast<std::uint32_t>(value);
             tip(about);
         }
 
-        void measure(const char* label, double render_settings::*member, float low, float high, const char* format, bool logarithmic, const char* about)
+        void measure(const char* label, double render_settings::*member, float low, float high, const char* format,
+            bool logarithmic, const char* about)
         {
             float value = static_cast<float>(document_.now().settings.*member);
-            const bool edited = ImGui::SliderFloat(label, &value, low, high, format, (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp);
+            const bool edited = ImGui::SliderFloat(label, &value, low, high, format,
+                (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp);
             if (begun(label) && edited)
                 document_.edit().settings.*member = static_cast<double>(value);
             tip(about);
@@ -428,31 +476,51 @@ namespace {
                 ImGui::Text("selected: %s", document_.parts()[*part].name.c_str());
             else
                 ImGui::TextDisabled("click selects; drag turns");
-            tip("Left button: click selects, a drag moves what is selected (with Shift level with the floor), elsewhere it turns the camera. Right or middle button, or Shift: pans. Wheel: zooms. A moving camera keeps the photon map; "
+            tip("Left button: click selects, a drag moves what is selected (with Shift level with the floor), "
+                "elsewhere it turns the camera. Right or middle button, or Shift: pans. Wheel: zooms. A moving camera "
+                "keeps the photon map; "
                 "what moves in the scene needs a new one.");
             ImGui::Separator();
             draw_backend();
             const auto& s = document_.now().settings;
-            number("photons", &render_settings::photons, 256, 4000000, "Photons stored (N, n). Speed: tracing and sorting them takes proportionally longer. Error: noise falls with the square root.");
-            number("k", &render_settings::k, 1, 4000, "Photons in an estimate (K, k). Speed: more take longer. Error: more are smoother, and blur shadows and caustics more.");
+            number("photons", &render_settings::photons, 256, 4000000,
+                "Photons stored (N, n). Speed: tracing and sorting them takes proportionally longer. Error: noise "
+                "falls with the square root.");
+            number("k", &render_settings::k, 1, 4000,
+                "Photons in an estimate (K, k). Speed: more take longer. Error: more are smoother, and blur shadows "
+                "and caustics more.");
             measure("radius, m", &render_settings::max_radius, 1e-3f, 10.0f, "%.4f", true,
-                "Largest search radius (R, r). Speed: dark places search this far. Error: where fewer than k photons lie within it, estimates are noisier instead of more blurred.");
-            choice("search", &render_settings::search, search_names, "Which photons (s): the k nearest; at least k, as the paper has it, which uses more photons and is a little too bright; or all within the radius.");
-            choice("kernel", &render_settings::kernel, kernel_names, "Weight by distance (w). Speed: the same. Error: constant is the least noisy and shows discs; silverman the smoothest.");
-            choice("bias", &render_settings::bias, bias_names, "The photon that sets the radius: paper counts it, k / (k - 1) too bright; unbiased leaves it out.");
+                "Largest search radius (R, r). Speed: dark places search this far. Error: where fewer than k photons "
+                "lie within it, estimates are noisier instead of more blurred.");
+            choice("search", &render_settings::search, search_names,
+                "Which photons (s): the k nearest; at least k, as the paper has it, which uses more photons and is a "
+                "little too bright; or all within the radius.");
+            choice("kernel", &render_settings::kernel, kernel_names,
+                "Weight by distance (w). Speed: the same. Error: constant is the least noisy and shows discs; "
+                "silverman the smoothest.");
+            choice("bias", &render_settings::bias, bias_names,
+                "The photon that sets the radius: paper counts it, k / (k - 1) too bright; unbiased leaves it out.");
             draw_grid();
-            choice("map", &render_settings::builder, map_names, "How the photon map is built (m). sort is exact; route takes fewer passes and, where cells overflow, is approximate.");
+            choice("map", &render_settings::builder, map_names,
+                "How the photon map is built (m). sort is exact; route takes fewer passes and, where cells overflow, "
+                "is approximate.");
             if (s.builder == map_builder::route)
-                number("slots", &render_settings::slots, 1, 16, "Cells have slots x slots places. More lose fewer photons and take more memory.");
+                number("slots", &render_settings::slots, 1, 16,
+                    "Cells have slots x slots places. More lose fewer photons and take more memory.");
             ImGui::Separator();
-            number("eye rays", &render_settings::spp, 1, 64, "Eye rays a pixel. Speed: proportional. Error: smooth edges, less noise of glass and lamps.");
-            number("light samples", &render_settings::light_samples, 1, 256, "Shadow rays a lamp and eye ray. Speed: proportional for direct light. Error: smoother half-shadows.");
-            choice("light", &render_settings::only, part_names, "Which part of the light is shown. Caustics or indirect light alone need a map of their own.");
+            number("eye rays", &render_settings::spp, 1, 64,
+                "Eye rays a pixel. Speed: proportional. Error: smooth edges, less noise of glass and lamps.");
+            number("light samples", &render_settings::light_samples, 1, 256,
+                "Shadow rays a lamp and eye ray. Speed: proportional for direct light. Error: smoother half-shadows.");
+            choice("light", &render_settings::only, part_names,
+                "Which part of the light is shown. Caustics or indirect light alone need a map of their own.");
             bool side = s.leaks.side;
             if (ImGui::Checkbox("side", &side))
                 change("side", [&](render_settings& r) { r.leaks.side = side; });
-            tip("Refuse photons that came from behind a surface. Speed: hardly any. Error: no light leaks through walls.");
-            measure("exposure, EV", &render_settings::exposure, -10, 10, "%+.1f", false, "Brightness of the screen and of saved PNGs (E, e). Draws nothing anew.");
+            tip("Refuse photons that came from behind a surface. Speed: hardly any. Error: no light leaks through "
+                "walls.");
+            measure("exposure, EV", &render_settings::exposure, -10, 10, "%+.1f", false,
+                "Brightness of the screen and of saved PNGs (E, e). Draws nothing anew.");
             ImGui::Separator();
             draw_buttons();
             draw_curve();
@@ -470,20 +538,26 @@ namespace {
                     }
                 ImGui::EndCombo();
             }
-            tip("What draws (b). The same photons give the same picture on all; speed differs. cpu is the fastest without a GPU.");
+            tip("What draws (b). The same photons give the same picture on all; speed differs. cpu is the fastest "
+                "without a GPU.");
         }
 
         /// The grid that is not fitted: the scene's, or one where it names none.
-        glm::uvec3 cells_of_scene() const { return options_.begin.settings.grid == glm::uvec3(0) ? glm::uvec3(32) : options_.begin.settings.grid; }
+        glm::uvec3 cells_of_scene() const
+        {
+            return options_.begin.settings.grid == glm::uvec3(0) ? glm::uvec3(32) : options_.begin.settings.grid;
+        }
         void draw_grid()
         {
             auto cells = glm::ivec3(document_.now().settings.grid);
             bool fitted = cells == glm::ivec3(0);
             if (ImGui::Checkbox("fitted grid", &fitted))
                 change("grid", [&](render_settings& r) { r.grid = fitted ? glm::uvec3(0) : cells_of_scene(); });
-            tip("Cells of the photon map fitted to photons and k (g). Speed: a grid that is too coarse or too fine searches longer. Error: none for the k nearest; `at_least_k` depends on its cells.");
+            tip("Cells of the photon map fitted to photons and k (g). Speed: a grid that is too coarse or too fine "
+                "searches longer. Error: none for the k nearest; `at_least_k` depends on its cells.");
             if (!fitted) {
-                const bool edited = ImGui::SliderInt3("grid", &cells.x, 1, 256, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+                const bool edited = ImGui::SliderInt3(
+                    "grid", &cells.x, 1, 256, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
                 if (begun("grid") && edited)
                     document_.edit().settings.grid = glm::uvec3(cells);
                 tip("Cells along x, y and z.");
@@ -522,7 +596,8 @@ namespace {
                 ImGui::PlotLines(label, values.data(), static_cast<int>(values.size()), 0, last, -8, 2, {170, 60});
                 tip(about);
             };
-            plot("change", changes_, "relMSE from picture to picture since the last change of yours, logarithmic: from 100 down to 1e-8.");
+            plot("change", changes_,
+                "relMSE from picture to picture since the last change of yours, logarithmic: from 100 down to 1e-8.");
             if (options_.reference)
                 plot("error", errors_, "relMSE to the reference, logarithmic: from 100 down to 1e-8.");
         }
@@ -542,10 +617,13 @@ namespace {
                 return;
             }
             const bool up = io.KeyShift;
-            const auto doubled = [&](int key, const char* name, std::uint32_t render_settings::*member, std::uint32_t high) {
-                if (pressed(key))
-                    change(name, [&](render_settings& s) { s.*member = std::clamp(up ? s.*member * 2 : s.*member / 2, 1u, high); });
-            };
+            const auto doubled
+                = [&](int key, const char* name, std::uint32_t render_settings::*member, std::uint32_t high) {
+                      if (pressed(key))
+                          change(name, [&](render_settings& s) {
+                              s.*member = std::clamp(up ? s.*member * 2 : s.*member / 2, 1u, high);
+                          });
+                  };
             const auto next = [&](int key, const char* name, auto member, const auto& names) {
                 if (pressed(key))
                     change(name, [&](render_settings& s) {
@@ -563,9 +641,11 @@ namespace {
             if (pressed(GLFW_KEY_R))
                 change("radius", [&](render_settings& s) { s.max_radius *= up ? 1.25 : 0.8; });
             if (pressed(GLFW_KEY_E))
-                change("exposure", [&](render_settings& s) { s.exposure = std::clamp(s.exposure + (up ? 0.5 : -0.5), -64.0, 64.0); });
+                change("exposure",
+                    [&](render_settings& s) { s.exposure = std::clamp(s.exposure + (up ? 0.5 : -0.5), -64.0, 64.0); });
             if (pressed(GLFW_KEY_G))
-                change("grid", [&](render_settings& s) { s.grid = s.grid == glm::uvec3(0) ? cells_of_scene() : glm::uvec3(0); });
+                change("grid",
+                    [&](render_settings& s) { s.grid = s.grid == glm::uvec3(0) ? cells_of_scene() : glm::uvec3(0); });
             if (pressed(GLFW_KEY_B)) {
                 document_.begin("backend");
                 auto& b = document_.edit().backend;

@@ -17,8 +17,8 @@ struct window_options {
     std::string journal{};            ///< a file for what happens, a line of JSON each; empty: none
 };
 
-/// Opens the window and returns when it is closed, or when `stop_asked` says so. Throws backend_error where there is no display, or no
-/// OpenGL on it.
+/// Opens the window and returns when it is closed, or when `stop_asked` says so. Throws backend_error where there is no
+/// display, or no OpenGL on it.
 void show_window(const window_options& o, bool (*stop_asked)());
 
 } // namespace photongrid::viewer

@@ -8,12 +8,14 @@
 //   OUTPUT(B, T, NAME)    the variable NAME is written to element i of the buffer at output slot B
 //   STATE(B, T, NAME)     like OUTPUT, but NAME holds the element's old value before `kernel` runs: in place
 //   SWITCH(B, NAME)       a bool, constant while a pass runs; compiled in on GPUs, so that `if (NAME)` costs nothing
-//   IN_GROUPS(B)          elements may be computed GROUP_LANES at a time, in step, and tell each other what they hold, where
-//                         the device can and switch B is on; else, and always here and on GL, one by one. group_lane() is this element's place among them; group_any(b), group_min(v),
-//                         group_max(v) are over all, group_sum_up_to(v) over the places up to this one; lane_value(v, place)
-//                         is v there; EACH_LANE(F) says F(0u) to F(GROUP_LANES - 1u), and from_lane(v, LANE) is for its LANE.
-//                         Some of a group may be the same element. Ask others only where all of a group do: not in a
-//                         branch, nor in an arm of ?:, that some of them do not take.
+//   IN_GROUPS(B)          elements may be computed GROUP_LANES at a time, in step, and tell each other what they hold,
+//   where
+//                         the device can and switch B is on; else, and always here and on GL, one by one. group_lane()
+//                         is this element's place among them; group_any(b), group_min(v), group_max(v) are over all,
+//                         group_sum_up_to(v) over the places up to this one; lane_value(v, place) is v there;
+//                         EACH_LANE(F) says F(0u) to F(GROUP_LANES - 1u), and from_lane(v, LANE) is for its LANE. Some
+//                         of a group may be the same element. Ask others only where all of a group do: not in a branch,
+//                         nor in an arm of ?:, that some of them do not take.
 //
 // No include guard: this file is meant to be read again by every header that holds kernels.
 #include <cassert>
@@ -35,7 +37,7 @@
 // GLSL has the files that kernels share spliced in once (kernel_source.hpp); C++ has them from kernels/shared.hpp.
 #define PHOTONGRID_SHARED_IS_READ
 
-#define PARAMS(P)                                                                                                       \
+#define PARAMS(P)                                                                                                      \
     P args{};                                                                                                          \
     static constexpr std::string_view path = __FILE__;
 

@@ -1,5 +1,5 @@
-// The functions and constants that kernels share, read as C++ once, at namespace scope. Within a kernel's struct their files
-// are then empty (kernels/begin.hpp).
+// The functions and constants that kernels share, read as C++ once, at namespace scope. Within a kernel's struct their
+// files are then empty (kernels/begin.hpp).
 #pragma once
 
 #include <glm/glm.hpp>

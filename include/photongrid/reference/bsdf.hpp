@@ -31,9 +31,9 @@ inline double fresnel_reflectance(double cos_i, double n_i, double cos_t, double
 /// Where a ray goes on from a mirror, metal or glass.
 struct specular_bounce {
     dvec3 direction{0, 0, 1}; ///< unit
-    /// What a ray traced against the light multiplies radiance with: (n of the side it comes from / n of the side it goes
-    /// to)^2 through glass, since radiance / n^2 is what stays constant; 1 where it is reflected. Flux traced with the light
-    /// is not scaled.
+    /// What a ray traced against the light multiplies radiance with: (n of the side it comes from / n of the side it
+    /// goes to)^2 through glass, since radiance / n^2 is what stays constant; 1 where it is reflected. Flux traced with
+    /// the light is not scaled.
     double radiance_scale = 1;
 };
 

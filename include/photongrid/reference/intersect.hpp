@@ -15,7 +15,7 @@
 /// The parts of the reference renderer (docs/reference.md): double precision, m, W.
 namespace photongrid::reference {
 
-constexpr std::uint32_t nothing = 0xFFFFFFFFu;                          ///< no shape, no material, no light
+constexpr std::uint32_t nothing = 0xFFFFFFFFu;                       ///< no shape, no material, no light
 constexpr double infinity = std::numeric_limits<double>::infinity(); ///< the distance of what is not met
 
 /// Where a ray begins and where it goes.
@@ -43,8 +43,8 @@ inline dvec3 across(const dvec3& n)
     return glm::normalize(glm::cross(n, least));
 }
 
-/// The real roots of a t^2 + 2 b t + c = 0; infinity for one that is not there. `starts_on`: c is 0 but for rounding, and
-/// the root that is then 0 is left out.
+/// The real roots of a t^2 + 2 b t + c = 0; infinity for one that is not there. `starts_on`: c is 0 but for rounding,
+/// and the root that is then 0 is left out.
 inline std::array<double, 2> real_roots(double a, double b, double c, bool starts_on)
 {
     const auto kept = [](double root) { return std::isfinite(root) ? root : infinity; };
@@ -61,14 +61,16 @@ inline std::array<double, 2> real_roots(double a, double b, double c, bool start
 struct turned_shape {
     /// How the radius changes along the axis.
     enum class profile { cylinder, cone, paraboloid } kind = profile::cylinder; ///< which of them it is
-    dvec3 base{0};       ///< m; where z is 0
-    dvec3 axis{0, 0, 1}; ///< unit
-    double height = 1;   ///< m
-    double radius = 1;   ///< m; of a cone at z = 0, of a paraboloid at z = height
+    dvec3 base{0};                                                              ///< m; where z is 0
+    dvec3 axis{0, 0, 1};                                                        ///< unit
+    double height = 1;                                                          ///< m
+    double radius = 1; ///< m; of a cone at z = 0, of a paraboloid at z = height
 
     /// Along the axis from `from` to `to`, m; they differ.
     turned_shape(profile k, const dvec3& from, const dvec3& to, double r)
-        : kind(k), base(from), axis(glm::normalize(to - from)), height(glm::length(to - from)), radius(r) {}
+        : kind(k), base(from), axis(glm::normalize(to - from)), height(glm::length(to - from)), radius(r)
+    {
+    }
 
     /// Distance from the axis at height z, both in m.
     double radius_at(double z) const
@@ -122,7 +124,9 @@ struct turned_shape {
         switch (kind) {
         case profile::cylinder: return outward;
         case profile::cone: return r > 0 ? glm::normalize(height * outward + radius * axis) : axis;
-        default: return glm::normalize(2 * height * radius_at(z) * outward - radius * radius * axis); // gradient of height rho^2 - radius^2 z
+        default:
+            return glm::normalize(
+                2 * height * radius_at(z) * outward - radius * radius * axis); // gradient of height rho^2 - radius^2 z
         }
     }
 };
@@ -139,8 +143,7 @@ struct flat_shape {
     std::vector<edge> edges; ///< without those of length 0
 
     /// Of a polygon that check() accepts.
-    explicit flat_shape(const polygon& p)
-        : normal(glm::normalize(area_vector(p))), corner(p.vertices[0])
+    explicit flat_shape(const polygon& p) : normal(glm::normalize(area_vector(p))), corner(p.vertices[0])
     {
         double extent = 0;
         for (const auto& v : p.vertices)
@@ -148,7 +151,8 @@ struct flat_shape {
         for (std::size_t i = 0; i < p.vertices.size(); ++i) {
             const dvec3 a = p.vertices[i], b = p.vertices[(i + 1) % p.vertices.size()];
             const dvec3 inward = glm::cross(normal, b - a);
-            if (const double length = glm::length(inward); length > 0) // rounding must not open a gap between neighbours
+            if (const double length = glm::length(inward);
+                length > 0) // rounding must not open a gap between neighbours
                 edges.push_back({inward / length, glm::dot(inward / length, a - corner) - 1e-13 * extent});
         }
     }
@@ -265,12 +269,15 @@ public:
         first_light_ = static_cast<std::uint32_t>(materials_.size());
         double total = 0;
         for (const auto& l : s.rectangle_lights) {
-            light_source source{.is_area = true, .corner = l.corner, .edge_u = l.edge_u, .edge_v = l.edge_v, .power = l.power};
+            light_source source{
+                .is_area = true, .corner = l.corner, .edge_u = l.edge_u, .edge_v = l.edge_v, .power = l.power};
             const dvec3 area = glm::cross(l.edge_u, l.edge_v);
             source.area = glm::length(area);
             source.normal = area / source.area;
             source.shape = static_cast<std::uint32_t>(materials_.size());
-            add(flats_, flat_shape({{l.corner, l.corner + l.edge_u, l.corner + l.edge_u + l.edge_v, l.corner + l.edge_v}, 0}), nothing);
+            add(flats_,
+                flat_shape({{l.corner, l.corner + l.edge_u, l.corner + l.edge_u + l.edge_v, l.corner + l.edge_v}, 0}),
+                nothing);
             lights_.push_back(source);
         }
         for (const auto& l : s.point_lights)

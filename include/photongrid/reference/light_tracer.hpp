@@ -1,5 +1,5 @@
-// Caustics by brute force: light paths from the lights through mirrors and glass to the first diffuse surface, whose bins
-// add up the flux. What a path tracer cannot find, since no eye path hits a point light by chance.
+// Caustics by brute force: light paths from the lights through mirrors and glass to the first diffuse surface, whose
+// bins add up the flux. What a path tracer cannot find, since no eye path hits a point light by chance.
 #pragma once
 
 #include <photongrid/reference/bsdf.hpp>
@@ -13,17 +13,21 @@
 namespace photongrid::reference {
 
 /// Light paths come in this many groups, each with bins of its own: the groups are independent, so the spread between
-/// them is the error of whatever was made from them. Each is traced by one thread in path order: sums do not depend on threads.
+/// them is the error of whatever was made from them. Each is traced by one thread in path order: sums do not depend on
+/// threads.
 constexpr std::uint32_t light_groups = 16;
 
-/// Irradiance that has come through at least one mirror or glass surface, from some lights, straight onto diffuse surfaces.
+/// Irradiance that has come through at least one mirror or glass surface, from some lights, straight onto diffuse
+/// surfaces.
 class caustic_bins {
 public:
     /// No bins.
     caustic_bins() = default;
 
-    /// No bins where no light in question can make a caustic. \throws std::invalid_argument for too many bins, render_cancelled.
-    caustic_bins(const scene& s, const geometry& shapes, const reference_settings& settings, const render_observer& observer, reference_stats& stats)
+    /// No bins where no light in question can make a caustic. \throws std::invalid_argument for too many bins,
+    /// render_cancelled.
+    caustic_bins(const scene& s, const geometry& shapes, const reference_settings& settings,
+        const render_observer& observer, reference_stats& stats)
     {
         lights_.reserve(shapes.lights().size());
         for (const auto& l : shapes.lights())
@@ -46,8 +50,8 @@ public:
 
         irradiance_.resize(light_groups);
         std::vector<std::uint64_t> hits(light_groups, 0);
-        share_out(light_groups, threads_for(settings.threads), "light_paths", static_cast<double>(stats.light_paths), observer,
-            [&](std::uint32_t group, watch& w) { hits[group] = trace_group(s, shapes, settings, group, w); });
+        share_out(light_groups, threads_for(settings.threads), "light_paths", static_cast<double>(stats.light_paths),
+            observer, [&](std::uint32_t group, watch& w) { hits[group] = trace_group(s, shapes, settings, group, w); });
         for (const auto h : hits)
             stats.caustic_hits += h;
     }
@@ -101,8 +105,10 @@ private:
         });
         if (!shiny || !(area > 0))
             return;
-        // The noise of a bin falls with its edge, blur grows with it: the best edge goes as the fourth root of the paths.
-        bin_ = settings.bin > 0 ? settings.bin : std::sqrt(area) / (8 * std::pow(static_cast<double>(settings.paths), 0.25));
+        // The noise of a bin falls with its edge, blur grows with it: the best edge goes as the fourth root of the
+        // paths.
+        bin_ = settings.bin > 0 ? settings.bin
+                                : std::sqrt(area) / (8 * std::pow(static_cast<double>(settings.paths), 0.25));
         each_shape([&](const auto& x, bool diffuse) {
             surfaces_.emplace_back();
             if (!diffuse)
@@ -118,7 +124,10 @@ private:
     }
     static double area_of_shape(const polygon& p) { return glm::length(area_vector(p)); }
     template <class Round>
-    static double area_of_shape(const Round& r) { return ring_bins(r, infinity).area_of_all(); }
+    static double area_of_shape(const Round& r)
+    {
+        return ring_bins(r, infinity).area_of_all();
+    }
 
     /// A bin of the side that faces against d.
     std::uint32_t bin_at(const hit& h, const dvec3& d) const
@@ -128,7 +137,8 @@ private:
         return surface.first + 2 * in_shape + (glm::dot(h.normal, d) > 0 ? 1 : 0);
     }
 
-    std::uint64_t trace_group(const scene& s, const geometry& shapes, const reference_settings& settings, std::uint32_t group, watch& w)
+    std::uint64_t trace_group(
+        const scene& s, const geometry& shapes, const reference_settings& settings, std::uint32_t group, watch& w)
     {
         std::vector<dvec3> flux(size_, dvec3(0));
         random_stream random(settings.seed, 1, group);
@@ -149,14 +159,16 @@ private:
                     [&](const auto& b) {
                         for (std::uint32_t i = 0; i < 2 * b.size(); ++i)
                             if (const double area = b.area(i / 2); area > 0)
-                                out[surface.first + i] = glm::vec3(flux[surface.first + i] / (area * static_cast<double>(paths_a_group_)));
+                                out[surface.first + i]
+                                    = glm::vec3(flux[surface.first + i] / (area * static_cast<double>(paths_a_group_)));
                     },
                     *surface.bins);
         return hits;
     }
 
     /// One path, at most to its first diffuse surface; 1 if it left flux there.
-    std::uint64_t trace_path(const scene& s, const geometry& shapes, const reference_settings& settings, random_stream& random, std::vector<dvec3>& flux) const
+    std::uint64_t trace_path(const scene& s, const geometry& shapes, const reference_settings& settings,
+        random_stream& random, std::vector<dvec3>& flux) const
     {
         const auto* light = &lights_.front();
         if (lights_.size() > 1) {
@@ -191,7 +203,8 @@ private:
                 return 1;
             }
             power *= m.reflectance;
-            r = {h.position, specular(m, r.direction, h.normal, m.kind == material_kind::glass ? random() : 0).direction, h.shape};
+            r = {h.position,
+                specular(m, r.direction, h.normal, m.kind == material_kind::glass ? random() : 0).direction, h.shape};
         }
         return 0;
     }

@@ -9,8 +9,11 @@ namespace photongrid::reference {
 class path_tracer {
 public:
     /// All four must outlive the tracer.
-    path_tracer(const scene& s, const geometry& shapes, const caustic_bins& caustics, const reference_settings& settings)
-        : scene_(s), shapes_(shapes), caustics_(caustics), settings_(settings) {}
+    path_tracer(
+        const scene& s, const geometry& shapes, const caustic_bins& caustics, const reference_settings& settings)
+        : scene_(s), shapes_(shapes), caustics_(caustics), settings_(settings)
+    {
+    }
 
     /// An unbiased estimate of the radiance that arrives along r, W/(m^2 sr), with caustics from group `group`.
     dvec3 radiance(ray r, random_stream& random, std::uint32_t group) const
@@ -72,7 +75,10 @@ public:
 
 private:
     /// Density of a shadow ray's direction, per sr: this light, any point of it alike.
-    static double light_density(const light_source& light, double distance, double cosine) { return light.probability * distance * distance / (light.area * cosine); }
+    static double light_density(const light_source& light, double distance, double cosine)
+    {
+        return light.probability * distance * distance / (light.area * cosine);
+    }
 
     /// Irradiance straight from the lights: one shadow ray to a light chosen by power.
     dvec3 direct(const hit& h, const dvec3& normal, random_stream& random) const

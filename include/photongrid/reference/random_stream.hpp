@@ -1,13 +1,13 @@
-// Random numbers of the reference renderer: one stream a pixel and one a group of light paths, so that the result does not
-// depend on which thread does what. Nothing is shared with kernels/random.glsl.
+// Random numbers of the reference renderer: one stream a pixel and one a group of light paths, so that the result does
+// not depend on which thread does what. Nothing is shared with kernels/random.glsl.
 #pragma once
 
 #include <cstdint>
 
 namespace photongrid::reference {
 
-/// Stream number `id` of `seed` for one purpose. xoshiro256++ filled by splitmix64 (Blackman and Vigna, Scrambled Linear
-/// Pseudorandom Number Generators, ACM TOMS 47(4), 2021).
+/// Stream number `id` of `seed` for one purpose. xoshiro256++ filled by splitmix64 (Blackman and Vigna, Scrambled
+/// Linear Pseudorandom Number Generators, ACM TOMS 47(4), 2021).
 class random_stream {
 public:
     /// `purpose` keeps streams with the same seed and id apart: 1 is for groups of light paths, 2 for pixels.

@@ -13,15 +13,17 @@ enum class caustics_by {
 
 /// What is asked of the reference renderer.
 struct reference_settings {
-    std::uint32_t width = 512;               ///< pixels, 1 to 16384
-    std::uint32_t height = 512;              ///< pixels, 1 to 16384
-    std::uint32_t spp = 256;                 ///< eye paths a pixel, at least 2; with bins rounded up to a multiple of 16, the groups of light paths
-    std::uint64_t paths = 1u << 24;          ///< light paths, if bins are needed; rounded up likewise
-    double bin = 0;                          ///< edge of a bin, m; 0: chosen from the diffuse area and the number of paths
-    std::uint32_t threads = 0;               ///< 0: as many as the machine has; the picture does not depend on it
-    std::uint64_t seed = 1;                  ///< of all random numbers
-    std::uint32_t depth = 8;                 ///< specular surfaces that an eye path passes before the first diffuse one
-    std::uint32_t photon_depth = 32;         ///< surfaces that light meets at most up to the first diffuse one seen from the eye, that one included
+    std::uint32_t width = 512;  ///< pixels, 1 to 16384
+    std::uint32_t height = 512; ///< pixels, 1 to 16384
+    std::uint32_t spp
+        = 256; ///< eye paths a pixel, at least 2; with bins rounded up to a multiple of 16, the groups of light paths
+    std::uint64_t paths = 1u << 24; ///< light paths, if bins are needed; rounded up likewise
+    double bin = 0;                 ///< edge of a bin, m; 0: chosen from the diffuse area and the number of paths
+    std::uint32_t threads = 0;      ///< 0: as many as the machine has; the picture does not depend on it
+    std::uint64_t seed = 1;         ///< of all random numbers
+    std::uint32_t depth = 8;        ///< specular surfaces that an eye path passes before the first diffuse one
+    std::uint32_t photon_depth
+        = 32; ///< surfaces that light meets at most up to the first diffuse one seen from the eye, that one included
     caustics_by area_light_caustics = caustics_by::paths; ///< of rectangle lights
 };
 
@@ -40,8 +42,10 @@ inline reference_settings reference_settings_for(const render_settings& s)
 /// \throws std::invalid_argument "member: what is wrong" for a setting out of its range, which the message gives.
 inline void check(const reference_settings& s)
 {
-    detail::require(s.width >= 1 && s.height >= 1 && s.width <= 16384 && s.height <= 16384, "size: width and height must be from 1 to 16384 pixels");
-    detail::require(s.spp >= 2 && s.spp <= (1u << 24), "spp: must be from 2 to 2^24, since one path has no standard error");
+    detail::require(s.width >= 1 && s.height >= 1 && s.width <= 16384 && s.height <= 16384,
+        "size: width and height must be from 1 to 16384 pixels");
+    detail::require(
+        s.spp >= 2 && s.spp <= (1u << 24), "spp: must be from 2 to 2^24, since one path has no standard error");
     detail::require(s.paths >= 1 && s.paths <= (std::uint64_t{1} << 40), "paths: must be from 1 to 2^40");
     detail::require(std::isfinite(s.bin) && s.bin >= 0, "bin: must be finite and greater than 0");
     detail::require(s.threads <= 1024, "threads: must be at most 1024");

@@ -16,7 +16,8 @@ constexpr double most_bins = 0x1p23;
 inline void require_few_bins(double count, double size)
 {
     if (!(count <= most_bins))
-        throw std::invalid_argument("bin: bins of " + std::to_string(size) + " m cut the diffuse surfaces into more than 2^23; choose a larger size");
+        throw std::invalid_argument("bin: bins of " + std::to_string(size)
+            + " m cut the diffuse surfaces into more than 2^23; choose a larger size");
 }
 
 /// The part of a convex polygon with coordinate `axis` at least (`above`) or at most `bound` (Sutherland and Hodgman).
@@ -46,13 +47,14 @@ inline double area_of(const std::vector<glm::dvec2>& p)
     return 0.5 * std::abs(twice);
 }
 
-/// A convex polygon's bins: squares of about `size`, cut at its edges. What is left of a square that is mostly cut off is
-/// joined to a neighbour, since little area means much noise.
+/// A convex polygon's bins: squares of about `size`, cut at its edges. What is left of a square that is mostly cut off
+/// is joined to a neighbour, since little area means much noise.
 class plane_bins {
 public:
     /// `size`: m. \throws std::invalid_argument for more bins than most_bins.
     plane_bins(const polygon& p, double size)
-        : corner_(p.vertices[0]), u_(across(glm::normalize(area_vector(p)))), v_(glm::cross(glm::normalize(area_vector(p)), u_))
+        : corner_(p.vertices[0]), u_(across(glm::normalize(area_vector(p)))),
+          v_(glm::cross(glm::normalize(area_vector(p)), u_))
     {
         std::vector<glm::dvec2> outline;
         glm::dvec2 high(-infinity);
@@ -69,9 +71,11 @@ public:
         step_ = (high - low_) / wanted;
         std::vector<double> cut(std::size_t{columns_} * rows_, 0.0);
         for (std::uint32_t y = 0; y < rows_; ++y) {
-            const auto strip = clipped(clipped(outline, 1, low_.y + y * step_.y, true), 1, low_.y + (y + 1) * step_.y, false);
+            const auto strip
+                = clipped(clipped(outline, 1, low_.y + y * step_.y, true), 1, low_.y + (y + 1) * step_.y, false);
             for (std::uint32_t x = 0; x < columns_ && strip.size() >= 3; ++x)
-                cut[index(x, y)] = area_of(clipped(clipped(strip, 0, low_.x + x * step_.x, true), 0, low_.x + (x + 1) * step_.x, false));
+                cut[index(x, y)] = area_of(
+                    clipped(clipped(strip, 0, low_.x + x * step_.x, true), 0, low_.x + (x + 1) * step_.x, false));
         }
         join(cut);
     }
@@ -83,7 +87,8 @@ public:
     /// The bin of a point of the polygon, m.
     std::uint32_t at(const dvec3& p) const
     {
-        const glm::dvec2 cell = glm::clamp(glm::floor((flat(p) - low_) / step_), glm::dvec2(0), glm::dvec2(columns_ - 1, rows_ - 1));
+        const glm::dvec2 cell
+            = glm::clamp(glm::floor((flat(p) - low_) / step_), glm::dvec2(0), glm::dvec2(columns_ - 1, rows_ - 1));
         return bin_of_[index(static_cast<std::uint32_t>(cell.x), static_cast<std::uint32_t>(cell.y))];
     }
 
@@ -128,16 +133,28 @@ public:
     /// @{
 
     /// \throws std::invalid_argument for more bins than most_bins.
-    ring_bins(const sphere& s, double size)
-        : ring_bins(form::sphere, s.center, dvec3(0, 0, 1), s.radius, 0, M_PI, size) {}
+    ring_bins(const sphere& s, double size) : ring_bins(form::sphere, s.center, dvec3(0, 0, 1), s.radius, 0, M_PI, size)
+    {
+    }
     ring_bins(const disk& d, double size)
-        : ring_bins(form::disk, d.center, glm::normalize(d.normal), d.radius, 0, d.radius, size) {}
+        : ring_bins(form::disk, d.center, glm::normalize(d.normal), d.radius, 0, d.radius, size)
+    {
+    }
     ring_bins(const cylinder& c, double size)
-        : ring_bins(form::cylinder, c.base, glm::normalize(c.top - c.base), c.radius, glm::length(c.top - c.base), glm::length(c.top - c.base), size) {}
+        : ring_bins(form::cylinder, c.base, glm::normalize(c.top - c.base), c.radius, glm::length(c.top - c.base),
+            glm::length(c.top - c.base), size)
+    {
+    }
     ring_bins(const cone& c, double size) // measured from the apex
-        : ring_bins(form::cone, c.apex, glm::normalize(c.base - c.apex), c.radius, glm::length(c.base - c.apex), std::hypot(glm::length(c.base - c.apex), c.radius), size) {}
+        : ring_bins(form::cone, c.apex, glm::normalize(c.base - c.apex), c.radius, glm::length(c.base - c.apex),
+            std::hypot(glm::length(c.base - c.apex), c.radius), size)
+    {
+    }
     ring_bins(const paraboloid& p, double size)
-        : ring_bins(form::paraboloid, p.vertex, glm::normalize(p.rim - p.vertex), p.radius, glm::length(p.rim - p.vertex), p.radius, size) {}
+        : ring_bins(form::paraboloid, p.vertex, glm::normalize(p.rim - p.vertex), p.radius,
+            glm::length(p.rim - p.vertex), p.radius, size)
+    {
+    }
     /// @}
 
     /// Bins.
@@ -145,7 +162,8 @@ public:
     /// m^2
     double area(std::uint32_t bin) const
     {
-        const auto ring = static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), bin) - first_.begin()) - 1;
+        const auto ring
+            = static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), bin) - first_.begin()) - 1;
         return (area_within(edges_[ring + 1]) - area_within(edges_[ring])) / (first_[ring + 1] - first_[ring]);
     }
     /// m^2, of the whole surface.
@@ -168,15 +186,18 @@ private:
 
     /// `length`: the last profile coordinate, an angle for a sphere, m for the others.
     ring_bins(form f, const dvec3& origin, const dvec3& axis, double radius, double height, double length, double size)
-        : form_(f), origin_(origin), axis_(axis), u_(across(axis)), v_(glm::cross(axis, u_)), radius_(radius), height_(height)
+        : form_(f), origin_(origin), axis_(axis), u_(across(axis)), v_(glm::cross(axis, u_)), radius_(radius),
+          height_(height)
     {
         const double step = f == form::sphere ? size / radius : size;
         require_few_bins(length / step, size);
         edges_.push_back(0);
-        if (f == form::paraboloid) { // rings as wide along the bowl as elsewhere: d(arc) = sqrt(1 + (2 height rho / radius^2)^2) d(rho)
+        if (f == form::paraboloid) { // rings as wide along the bowl as elsewhere: d(arc) = sqrt(1 + (2 height rho /
+                                     // radius^2)^2) d(rho)
             require_few_bins(2 * (radius + height) / size, size);
             while (edges_.back() < length)
-                edges_.push_back(std::min(length, edges_.back() + step / std::hypot(1.0, 2 * height * edges_.back() / (radius * radius))));
+                edges_.push_back(std::min(
+                    length, edges_.back() + step / std::hypot(1.0, 2 * height * edges_.back() / (radius * radius))));
         } else {
             const double rings = std::max(1.0, std::ceil(length / step - 1e-9));
             for (double i = 1; i <= rings; ++i)

@@ -20,7 +20,9 @@ class watch {
 public:
     /// Of the stage `stage`, of `units` of work in all; the thread that makes it is the one that calls the observer.
     watch(const render_observer& observer, std::string_view stage, double units)
-        : observer_(observer), stage_(stage), units_(units) {}
+        : observer_(observer), stage_(stage), units_(units)
+    {
+    }
 
     /// Adds `done` units; false: stop now.
     bool goes_on(std::uint64_t done)
@@ -53,12 +55,16 @@ private:
 };
 
 /// `asked`, or for 0 as many threads as the machine has, 1 at least.
-inline std::uint32_t threads_for(std::uint32_t asked) { return asked > 0 ? asked : std::max(1u, std::thread::hardware_concurrency()); }
+inline std::uint32_t threads_for(std::uint32_t asked)
+{
+    return asked > 0 ? asked : std::max(1u, std::thread::hardware_concurrency());
+}
 
-/// Runs job(i, watch) for i = 0 … n-1, in any order, on `threads` threads of which the caller is one; `units` is the work
-/// of all jobs together. \throws render_cancelled, or what a job throws.
+/// Runs job(i, watch) for i = 0 … n-1, in any order, on `threads` threads of which the caller is one; `units` is the
+/// work of all jobs together. \throws render_cancelled, or what a job throws.
 template <class Job>
-void share_out(std::uint32_t n, std::uint32_t threads, std::string_view stage, double units, const render_observer& observer, Job job)
+void share_out(std::uint32_t n, std::uint32_t threads, std::string_view stage, double units,
+    const render_observer& observer, Job job)
 {
     watch w(observer, stage, units);
     std::atomic<std::uint32_t> next{0}, at_work{0};

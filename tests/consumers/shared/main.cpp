@@ -1,5 +1,5 @@
-// A map made in one library goes through a file in another; estimates of both libraries and of this program agree; an exception
-// that leaves a library is caught here by its type.
+// A map made in one library goes through a file in another; estimates of both libraries and of this program agree; an
+// exception that leaves a library is caught here by its type.
 #include "shared.hpp"
 
 int main(int, char** arguments)
