@@ -1,17 +1,18 @@
-// Every algorithm on every backend, by number of photons and by how evenly they lie in cells: docs/measures.md. Names
-// are ALGORITHM/BACKEND/photons:N/ands:A; Google Benchmark's options choose among them, set how long each is measured,
-// and write JSON (--benchmark_out). Items are photons, for the searches points.
+// Every algorithm on every backend, by number of photons and by how evenly they lie in cells:
+// docs/reference/measures.md. Names are ALGORITHM/BACKEND/photons:N/ands:A; Google Benchmark's options choose among
+// them, set how long each is measured, and write JSON (--benchmark_out). Items are photons, for the searches points.
 //
 // Photons lie in a unit cube of 32 x 32 x 32 cells. Each of the 15 bits of a photon's cell is the AND of A + 1 random
 // bits (Thearling and Smith 1992), which leaves 15, 12.2 and 5.1 bits of entropy a key for A = 0, 1 and 3; `all_ands`
 // stands for all photons in one cell, 0 bits. Inside a cell they lie evenly.
-#include <photongrid/backends/cpu/overrides/all.hpp>
-#include <photongrid/backends/gl/overrides/all.hpp>
+#include <photongrid/backends/cpu/cpu.hpp>
+#include <photongrid/backends/gl/gl.hpp>
 #include <photongrid/backends/serial/serial.hpp>
-#include <photongrid/backends/vulkan/overrides/all.hpp>
-#include <photongrid/build_map.hpp>
-#include <photongrid/fitting_grid.hpp>
-#include <photongrid/knn_grid_estimate.hpp>
+#include <photongrid/backends/vulkan/vulkan.hpp>
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/fitting_grid.hpp>
+#include <photongrid/map/photon_cell.kernel.hpp>
 
 #include <benchmark/benchmark.h>
 

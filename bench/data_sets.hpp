@@ -1,7 +1,8 @@
-// Photons and query points that neighbour searches are measured with: S1 to S5 of docs/measures.md. Lengths in metres.
+// Photons and query points that neighbour searches are measured with: S1 to S5 of docs/reference/measures.md. Lengths
+// in metres.
 #pragma once
 
-#include <photongrid/photon_map.hpp>
+#include <photongrid/map/map_buffers.hpp>
 
 #include <array>
 #include <cmath>

@@ -2,13 +2,13 @@
 // k and number of photons, on every backend. Prints CSV; bench/error.sh draws it.
 //
 //   field_errors [--quick]
-#include <photongrid/backends/cpu/overrides/all.hpp>
-#include <photongrid/backends/gl/overrides/all.hpp>
+#include <photongrid/backends/cpu/cpu.hpp>
+#include <photongrid/backends/gl/gl.hpp>
 #include <photongrid/backends/serial/serial.hpp>
-#include <photongrid/backends/vulkan/overrides/all.hpp>
-#include <photongrid/build_map.hpp>
-#include <photongrid/fitting_grid.hpp>
-#include <photongrid/knn_grid_estimate.hpp>
+#include <photongrid/backends/vulkan/vulkan.hpp>
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/fitting_grid.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -30,9 +30,9 @@ program() {
   packages+=("$2")
   cat >"$work/${#names[@]}.cpp" <<CPP
 #include <photongrid/backends/$3>
-#include <photongrid/build_map.hpp>
-#include <photongrid/knn_grid_estimate.hpp>
-#include <photongrid/own_photons.hpp>
+#include <photongrid/map/build_map.hpp>
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/map/own_photons.hpp>
 struct photon { glm::vec3 position, flux; };
 int main()
 {
@@ -53,7 +53,7 @@ for backend in "${backends[@]}"; do
   program "$backend" "photongrid-$backend" "$backend/$backend.hpp" "${backend}_backend"
 done
 if [[ " ${backends[*]} " == *" cpu "* ]]; then
-  program "cpu, with SIMD" photongrid-cpu cpu/overrides/all.hpp cpu_backend
+  program "cpu, by kernels" photongrid-cpu cpu/cpu_by_kernels.hpp cpu_by_kernels
 fi
 
 for ((run = 0; run < runs; ++run)); do

@@ -1,19 +1,17 @@
 // How soon a change is seen (section 3.4): the Cornell box with the paper's settings, camera and lamp moved again and
 // again, in the loop that the window and the program use. Exit status 1 when a row misses what is wanted of it:
-// docs/measures.md.
+// docs/reference/measures.md.
 //
 //   interactive SCENE.json [REPETITIONS [BACKEND...]]      BACKEND: cpu (default), serial, vulkan or gl
 #include "median.hpp"
 #include "scene_file.hpp"
 
-#include <photongrid/backends/cpu/overrides/all.hpp>
-#include <photongrid/backends/gl/overrides/all.hpp>
-#include <photongrid/backends/vulkan/overrides/all.hpp>
+#include <photongrid/backends/cpu/cpu.hpp>
 
 #include <photongrid/backends/gl/gl.hpp>
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/backends/vulkan/vulkan.hpp>
-#include <photongrid/progressive_render.hpp>
+#include <photongrid/render/progressive_render.hpp>
 
 #include <chrono>
 #include <cstdio>

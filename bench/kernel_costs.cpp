@@ -4,8 +4,18 @@
 #include "median.hpp"
 
 #include <photongrid/backends/vulkan/vulkan.hpp>
-#include <photongrid/bitonic_sort.hpp>
-#include <photongrid/trace_kernels.hpp>
+#include <photongrid/estimate/gather_photons.kernel.hpp>
+#include <photongrid/estimate/knn_visit.kernel.hpp>
+#include <photongrid/estimate/kth_distance.kernel.hpp>
+#include <photongrid/map/bitonic_sort.hpp>
+#include <photongrid/map/bitonic_step.kernel.hpp>
+#include <photongrid/map/first_in_cell.kernel.hpp>
+#include <photongrid/map/photon_cell.kernel.hpp>
+#include <photongrid/map/route_photon.kernel.hpp>
+#include <photongrid/trace/bounce_photon.kernel.hpp>
+#include <photongrid/trace/direct_light.kernel.hpp>
+#include <photongrid/trace/emit_photon.kernel.hpp>
+#include <photongrid/trace/eye_bounce.kernel.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -15,13 +25,13 @@
 #include <random>
 #include <set>
 
-#include <photongrid/kernels/begin.hpp>
+#include <photongrid/backend/begin.hpp>
 namespace photongrid::kernels {
 struct bitonic_step_float {
 #include "kernels/bitonic_step_float.glsl"
 };
 } // namespace photongrid::kernels
-#include <photongrid/kernels/end.hpp>
+#include <photongrid/backend/end.hpp>
 
 namespace {
 

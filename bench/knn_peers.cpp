@@ -1,7 +1,7 @@
-// The k nearest photons against CGAL, FLANN and nanoflann: docs/measures.md. All at the same number of threads, same
-// points, same k, unbounded radius, exact; every k-th squared distance is compared. Prints PASS or FAIL per data set;
-// exits 1 where one is too slow or takes too much memory, 3 where distances differ. On one thread of the cpu backend it
-// also builds maps against trees, and searches on two threads.
+// The k nearest photons against CGAL, FLANN and nanoflann: docs/reference/measures.md. All at the same number of
+// threads, same points, same k, unbounded radius, exact; every k-th squared distance is compared. Prints PASS or FAIL
+// per data set; exits 1 where one is too slow or takes too much memory, 3 where distances differ. On one thread of the
+// cpu backend it also builds maps against trees, and searches on two threads.
 //
 //   knn_peers [--backend cpu|vulkan|gl] [--threads N] [--sets 12345] [--seconds S] [--shuffle] [--avx2]
 //
@@ -15,10 +15,10 @@
 #include "data_sets.hpp"
 #include "median.hpp"
 
-#include <photongrid/backends/cpu/overrides/all.hpp>
-#include <photongrid/backends/gl/overrides/all.hpp>
-#include <photongrid/backends/vulkan/overrides/all.hpp>
-#include <photongrid/fitting_grid.hpp>
+#include <photongrid/backends/cpu/cpu.hpp>
+#include <photongrid/backends/gl/gl.hpp>
+#include <photongrid/backends/vulkan/vulkan.hpp>
+#include <photongrid/map/fitting_grid.hpp>
 
 #include <CGAL/Orthogonal_k_neighbor_search.h>
 #include <CGAL/Search_traits_3.h>
@@ -196,7 +196,7 @@ double wanted(const arguments& a, int number)
 /// Points a second of whole estimates, all points again and again for as long as a peer gets, after one run to warm up,
 /// as a peer has. `e`: the last ones.
 template <backend B>
-double rate(B& b, const photon_map<B>& map, const buffer_of<B, vec4>& points, const knn_settings& settings,
+double rate(B& b, const map_buffers<B>& map, const buffer_of<B, vec4>& points, const knn_settings& settings,
     double seconds, std::optional<knn_estimates<B>>& e)
 {
     e = knn_grid_estimate(b, map, points, settings);
@@ -229,7 +229,7 @@ public:
 
 private:
     cpu_backend b_{2};
-    photon_map<cpu_backend> map_;
+    map_buffers<cpu_backend> map_;
     cpu_backend::buffer<vec4> points_;
     std::optional<knn_estimates<cpu_backend>> last_;
 };
@@ -252,7 +252,7 @@ int measure(B& b, int number, const arguments& a)
     const knn_settings settings{.k = s.k, .max_radius = 1e18f};
     std::vector<double> builds, searches, searches_by_two, peer_rates[8];
     std::vector<float> known;
-    photon_map<B> map;
+    map_buffers<B> map;
     for (int repetition = 0; repetition < 9; ++repetition) {
         auto p = upload_photons(b, s);
         builds.push_back(seconds_of([&] {

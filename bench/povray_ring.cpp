@@ -3,7 +3,7 @@
 //
 //   povray_ring export SCENE.json PHOTONS        prints a .pov file with so many photons, 0 for none
 //   povray_ring compare SCENE.json OURS.exr POV.exr POV_WITHOUT.exr
-#include <photongrid/reference.hpp>
+#include <photongrid/reference/reference.hpp>
 
 #include "image_file.hpp"
 #include "scene_file.hpp"
@@ -29,7 +29,7 @@ std::string vec(const dvec3& v)
 /// left-handed: a negative `right` mirrors them back.
 void print_pov(const scene& s, long photons)
 {
-    if (!s.cones.empty() || !s.paraboloids.empty() || !s.disks.empty())
+    if (count_shapes(s) != s.spheres.size() + s.polygons.size() + s.cylinders.size())
         throw std::invalid_argument("povray_ring: only polygons, cylinders and spheres are exported");
     const auto surface = [&](std::uint32_t id) {
         const auto& m = s.materials[id];

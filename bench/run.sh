@@ -14,12 +14,14 @@
 #   --inclusion   what including the headers costs a user's compiler, and the size of the smallest programs
 #   --write       puts what is printed, and the Cornell box's plot, into docs/ too (bench/write_measures.sh)
 #   --built       builds nothing: takes those programs that tests/run.sh has built in build-tests/
+#
+# Whether another commit drew the same pictures as this tree, and as fast: bench/against.sh.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
 
 usage() {
-  sed -n '2,17s/^# \{0,1\}//p' bench/run.sh >&2
+  sed -n '2,19s/^# \{0,1\}//p' bench/run.sh >&2
   exit 2
 }
 install=yes gpu=no smoke=no write=no build=build-bench parts=()

@@ -1,17 +1,16 @@
-// How long the searches take on S3, the faces of a room with two boxes, k = 500, by grid: docs/measures.md. Every
-// backend in one run, searches alternating; the estimates are compared with brute force (float distances, sums in
+// How long the searches take on S3, the faces of a room with two boxes, k = 500, by grid: docs/reference/measures.md.
+// Every backend in one run, searches alternating; the estimates are compared with brute force (float distances, sums in
 // double).
 //
 //   search_times [REPETITIONS [BACKEND [POINTS]]]
 #include "data_sets.hpp"
 
 #include <photongrid/backends/cpu/cpu.hpp>
-#include <photongrid/backends/cpu/overrides/all.hpp>
 #include <photongrid/backends/gl/gl.hpp>
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/backends/vulkan/vulkan.hpp>
-#include <photongrid/build_map.hpp>
-#include <photongrid/knn_grid_estimate.hpp>
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/map/build_map.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -1,6 +1,6 @@
 // How much the sorting network gains on GPUs' APIs by more steps in a pass, in place, and by two pairs to a texel,
-// against the plain one, a step a pass: docs/measures.md. Prints PASS or FAIL per row; exits 1 where one is too slow, 3
-// where the order differs.
+// against the plain one, a step a pass: docs/reference/measures.md. Prints PASS or FAIL per row; exits 1 where one is
+// too slow, 3 where the order differs.
 //
 //   sort_passes [NUMBER OF PAIRS]
 #include "median.hpp"

@@ -1,6 +1,6 @@
 // Sorting pairs of a 32-bit key and a 32-bit value against std::sort, Highway's vqsort and TBB's parallel_sort, all on
-// the same pairs, compared whole: docs/measures.md. Prints PASS or FAIL per row; exits 1 where one is too slow, 3 where
-// the order differs.
+// the same pairs, compared whole: docs/reference/measures.md. Prints PASS or FAIL per row; exits 1 where one is too
+// slow, 3 where the order differs.
 //
 //   sort_peers [THREADS [LARGEST NUMBER OF PAIRS]]
 #include "median.hpp"

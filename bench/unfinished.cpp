@@ -7,11 +7,11 @@
 #include "data_sets.hpp"
 #include "median.hpp"
 
-#include <photongrid/backends/gl/overrides/all.hpp>
-#include <photongrid/backends/vulkan/overrides/all.hpp>
-#include <photongrid/build_map.hpp>
-#include <photongrid/fitting_grid.hpp>
-#include <photongrid/knn_grid_estimate.hpp>
+#include <photongrid/backends/gl/gl.hpp>
+#include <photongrid/backends/vulkan/vulkan.hpp>
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/fitting_grid.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -59,7 +59,7 @@ template <class B>
 version with(std::string name, B& b, const data_set& s, uint visits)
 {
     struct prepared {
-        photon_map<B> map;
+        map_buffers<B> map;
         buffer_of<B, vec4> points;
     };
     photons<B> p{b.upload(std::span<const vec4>(s.positions)), b.upload(std::span<const vec4>(s.powers))};

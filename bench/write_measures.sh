@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Puts what bench/run.sh printed into docs/measures.md: each section's text between `<!-- bench: TITLE -->` and `<!-- /bench -->`,
+# Puts what bench/run.sh printed into docs/reference/measures.md: each section's text between `<!-- bench: TITLE -->` and `<!-- /bench -->`,
 # with the machine, the day and the commit under it. Sections that were not measured stay as they are.
 #
-#   bench/write_measures.sh MEASURED [PAGE]      PAGE: docs/measures.md
+#   bench/write_measures.sh MEASURED [PAGE]      PAGE: docs/reference/measures.md
 set -euo pipefail
-measured=${1:?"the output of bench/run.sh is wanted"} page=${2:-$(dirname "${BASH_SOURCE[0]}")/../docs/measures.md}
+measured=${1:?"the output of bench/run.sh is wanted"} page=${2:-$(dirname "${BASH_SOURCE[0]}")/../docs/reference/measures.md}
 written=$(mktemp)
 trap 'rm -f "$written"' EXIT
 awk '

@@ -1,9 +1,10 @@
 # photongrid_add_kernels(target [NAMESPACE name] KERNELS file... [INCLUDED file...])
 #
-# Kernels of your own, for every backend. Gives `target` the header <NAME_kernels.hpp>, in which each of KERNELS is a struct of
-# its file's name (mean.glsl: mean) in the namespace NAME (without one: `target`), to be run as device.run<NAME::mean>(...). Kernels
-# may #include "..." those of INCLUDED, which are guarded like headers and hold `inline` functions, and photongrid's own.
-# Their texts go into the program, so that nothing is read when it runs; a mistake in one is reported at its own file and line.
+# Kernels of your own, for every backend. Gives `target` the header <NAME_kernels.hpp>, in which each of KERNELS is a
+# struct of its file's name (mean.glsl: mean) in the namespace NAME (without one: `target`), to be run as
+# device.run<NAME::mean>(...). Kernels may #include "..." those of INCLUDED, which are guarded like headers and hold
+# `inline` functions, and photongrid's own as <photongrid/...glsl>. Their texts go into the program, so that nothing is
+# read when it runs; a mistake in one is reported at its own file and line.
 function(photongrid_add_kernels target)
   cmake_parse_arguments(arg "" "NAMESPACE" "KERNELS;INCLUDED" ${ARGN})
   if(NOT TARGET ${target})
@@ -15,9 +16,11 @@ function(photongrid_add_kernels target)
   if(NOT arg_NAMESPACE)
     set(arg_NAMESPACE ${target})
   endif()
+  get_property(root GLOBAL PROPERTY photongrid_include_folder)
   set(includes "")
   set(structs "")
   set(files "")
+  set(library "")
   foreach(kind IN ITEMS INCLUDED KERNELS)
     foreach(file IN LISTS arg_${kind})
       get_filename_component(path "${file}" ABSOLUTE)
@@ -25,6 +28,8 @@ function(photongrid_add_kernels target)
       if(NOT EXISTS "${path}")
         message(FATAL_ERROR "photongrid_add_kernels(${target}): there is no file ${path}")
       endif()
+      photongrid_included_kernels("${path}" "${root}" included)
+      list(APPEND library ${included})
       list(APPEND files "${path}")
       if(kind STREQUAL INCLUDED)
         string(APPEND includes "#include \"${path}\"\n")
@@ -35,18 +40,25 @@ function(photongrid_add_kernels target)
       endif()
     endforeach()
   endforeach()
+  list(REMOVE_DUPLICATES library)
+  set(headers "")
+  foreach(path IN LISTS library)
+    string(REPLACE ".glsl" ".kernel.hpp" header "${path}")
+    string(APPEND headers "#include <${header}>\n")
+    list(APPEND files "${root}/${path}")
+  endforeach()
 
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/${target}_kernels)
   photongrid_embed(OUTPUT ${folder}/${arg_NAMESPACE}_kernel_text.hpp TABLE kernel_texts NAMESPACE ${arg_NAMESPACE} BASE ${CMAKE_CURRENT_SOURCE_DIR} FILES ${files})
-  file(CONFIGURE OUTPUT ${folder}/${arg_NAMESPACE}_kernels.hpp CONTENT "// Made by CMake (photongrid_add_kernels); do not edit.
+  photongrid_write_if_changed(${folder}/${arg_NAMESPACE}_kernels.hpp "// Made by CMake (photongrid_add_kernels); do not edit.
 #pragma once
 
 #include <${arg_NAMESPACE}_kernel_text.hpp>
-#include <photongrid/kernel.hpp>
+${headers}#include <photongrid/backend/kernel.hpp>
 
 #include <span>
 
-#include <photongrid/kernels/begin.hpp>
+#include <photongrid/backend/begin.hpp>
 
 namespace ${arg_NAMESPACE} {
 
@@ -56,9 +68,13 @@ ${includes}
 ${structs}
 } // namespace ${arg_NAMESPACE}
 
-#include <photongrid/kernels/end.hpp>
-" @ONLY)
-  get_property(kernel_folder GLOBAL PROPERTY photongrid_kernel_folder)
-  target_include_directories(${target} PRIVATE ${folder} ${kernel_folder})
-  target_link_libraries(${target} PRIVATE photongrid::photongrid)
+#include <photongrid/backend/end.hpp>
+")
+  get_target_property(type ${target} TYPE)
+  set(scope PRIVATE)
+  if(type STREQUAL INTERFACE_LIBRARY)
+    set(scope INTERFACE)
+  endif()
+  target_include_directories(${target} ${scope} ${folder})
+  target_link_libraries(${target} ${scope} photongrid::photongrid)
 endfunction()

@@ -9,4 +9,15 @@ endif()
 
 photongrid_backend(cpu)
 target_link_libraries(photongrid_cpu INTERFACE TBB::tbb hwy::hwy)
-target_compile_options(photongrid_cpu INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-ffp-contract=off>)
+
+# photongrid::cpu_compiled: the same backend and the same headers, with all that takes the compiler long in a library. Its
+# users read nothing of oneTBB's or Highway's vector code that they need not, and may have vector code of their own.
+# Machines with SSSE3 and no SSE4 (2006) run its baseline: one instruction set less to compile.
+add_library(photongrid_cpu_compiled STATIC ${PROJECT_SOURCE_DIR}/backends/cpu/compiled.cpp)
+add_library(photongrid::cpu_compiled ALIAS photongrid_cpu_compiled)
+set_target_properties(photongrid_cpu_compiled PROPERTIES EXPORT_NAME cpu_compiled OUTPUT_NAME photongrid_cpu POSITION_INDEPENDENT_CODE ON)
+if(NOT PROJECT_IS_TOP_LEVEL)
+  set_target_properties(photongrid_cpu_compiled PROPERTIES EXCLUDE_FROM_ALL TRUE)
+endif()
+target_link_libraries(photongrid_cpu_compiled PUBLIC photongrid_cpu)
+target_compile_definitions(photongrid_cpu_compiled PUBLIC PHOTONGRID_CPU_COMPILED PRIVATE HWY_DISABLED_TARGETS=HWY_SSSE3)

@@ -1,5 +1,5 @@
-# What is installed, in two components: `dev`, the headers with CMake's and pkg-config's files, none of which depends on the
-# processor, and `program`. CPack makes a Debian package of each: cpack -G DEB.
+# What is installed, in three components: `dev`, the headers with CMake's and pkg-config's files, none of which depends on the
+# processor; `compiled`, the libraries that spare their users compiling them; and `program`. CPack makes a Debian package of each: cpack -G DEB.
 include(CMakePackageConfigHelpers)
 
 # --- dev: headers, find_package ---------------------------------------------------------------------------------------
@@ -8,27 +8,34 @@ set(config_dir ${CMAKE_INSTALL_DATADIR}/cmake/photongrid)
 set(photongrid_components "")
 install(TARGETS photongrid EXPORT photongrid-core FILE_SET HEADERS COMPONENT dev)
 install(EXPORT photongrid-core NAMESPACE photongrid:: DESTINATION ${config_dir} COMPONENT dev)
-foreach(component IN ITEMS serial cpu gl vulkan backend_tests)
+foreach(component IN ITEMS serial cpu cpu_compiled gl vulkan backend_tests)
   if(TARGET photongrid_${component})
     list(APPEND photongrid_components ${component})
-    install(TARGETS photongrid_${component} EXPORT photongrid-${component} FILE_SET HEADERS COMPONENT dev)
-    install(EXPORT photongrid-${component} NAMESPACE photongrid:: DESTINATION ${config_dir} COMPONENT dev)
+    set(part dev)
+    if(component STREQUAL "cpu_compiled")
+      set(part compiled)
+      install(TARGETS photongrid_${component} EXPORT photongrid-${component} ARCHIVE COMPONENT ${part})
+    else()
+      install(TARGETS photongrid_${component} EXPORT photongrid-${component} FILE_SET HEADERS COMPONENT ${part})
+    endif()
+    install(EXPORT photongrid-${component} NAMESPACE photongrid:: DESTINATION ${config_dir} COMPONENT ${part})
   endif()
 endforeach()
-# Kernels are headers to C++ too, kernels/begin.hpp and end.hpp are to those who write their own.
-install(DIRECTORY include/photongrid/kernels DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/photongrid COMPONENT dev)
+# Kernels are headers to C++ too; begin.hpp and end.hpp are for those who write their own.
+install(DIRECTORY include/photongrid DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev FILES_MATCHING PATTERN "*.glsl" PATTERN "begin.hpp" PATTERN "end.hpp" PATTERN "exact_*.hpp")
 if(TARGET photongrid_gl)
   install(DIRECTORY backends/gl/overrides DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/photongrid/backends/gl COMPONENT dev FILES_MATCHING PATTERN "*.glsl")
 endif()
 if(TARGET photongrid_backend_tests)
   set(folder ${CMAKE_INSTALL_INCLUDEDIR}/photongrid/backend_tests)
-  install(DIRECTORY tests/kernels/verbs DESTINATION ${folder}/kernels COMPONENT dev)
-  install(FILES tests/known_answers.cpp tests/serial_algorithms.cpp DESTINATION ${folder} COMPONENT dev)
+  install(DIRECTORY tests/backend/verbs DESTINATION ${folder}/backend COMPONENT dev)
+  install(FILES tests/estimate/known_answers.cpp DESTINATION ${folder}/estimate COMPONENT dev)
+  install(FILES tests/backends/serial_algorithms.cpp DESTINATION ${folder}/backends COMPONENT dev)
 endif()
 configure_package_config_file(cmake/photongrid-config.cmake.in ${PROJECT_BINARY_DIR}/photongrid-config.cmake INSTALL_DESTINATION ${config_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/photongrid-config-version.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES ${PROJECT_BINARY_DIR}/photongrid-config.cmake ${PROJECT_BINARY_DIR}/photongrid-config-version.cmake DESTINATION ${config_dir} COMPONENT dev)
-install(FILES cmake/embed.cmake cmake/add_kernels.cmake DESTINATION ${config_dir} COMPONENT dev)
+install(FILES cmake/embed.cmake cmake/kernel_headers.cmake cmake/add_kernels.cmake DESTINATION ${config_dir} COMPONENT dev)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/photongrid-dev RENAME copyright COMPONENT dev)
 
 # --- dev: pkg-config --------------------------------------------------------------------------------------------------
@@ -36,18 +43,26 @@ set(pkg_config_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
 file(RELATIVE_PATH to_prefix /prefix/${pkg_config_dir} /prefix)
 string(REGEX REPLACE "/$" "" to_prefix ${to_prefix})
 
-# photongrid_pkg_config(NAME DESCRIPTION [REQUIRES text] [CFLAGS text] [LIBS text]): the file NAME.pc, which finds its headers
+# photongrid_pkg_config(NAME DESCRIPTION [REQUIRES text] [CFLAGS text] [LIBS text] [COMPONENT name]): the file NAME.pc, which finds its headers
 # by where it lies itself.
 function(photongrid_pkg_config name description)
-  cmake_parse_arguments(arg "" "REQUIRES;CFLAGS;LIBS" "" ${ARGN})
+  cmake_parse_arguments(arg "" "REQUIRES;CFLAGS;LIBS;COMPONENT" "" ${ARGN})
+  if(NOT arg_COMPONENT)
+    set(arg_COMPONENT dev)
+  endif()
   configure_file(cmake/photongrid.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
-  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${pkg_config_dir} COMPONENT dev)
+  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${pkg_config_dir} COMPONENT ${arg_COMPONENT})
 endfunction()
 
 photongrid_pkg_config(photongrid "${PROJECT_DESCRIPTION}" REQUIRES glm CFLAGS "-I\${includedir}")
-photongrid_pkg_config(photongrid-serial "photongrid on one thread, the specification" REQUIRES photongrid CFLAGS -ffp-contract=off)
+photongrid_pkg_config(photongrid-serial "photongrid on one thread, the specification" REQUIRES photongrid)
 if(TARGET photongrid_cpu)
-  photongrid_pkg_config(photongrid-cpu "photongrid on threads and SIMD" REQUIRES "photongrid, tbb, libhwy" CFLAGS -ffp-contract=off)
+  photongrid_pkg_config(photongrid-cpu "photongrid on threads and SIMD" REQUIRES "photongrid, tbb, libhwy")
+endif()
+if(TARGET photongrid_cpu_compiled)
+  file(RELATIVE_PATH to_library ${CMAKE_INSTALL_FULL_DATADIR}/pkgconfig ${CMAKE_INSTALL_FULL_LIBDIR})
+  photongrid_pkg_config(photongrid-cpu_compiled "photongrid on threads and SIMD, compiled" REQUIRES "photongrid-cpu" CFLAGS -DPHOTONGRID_CPU_COMPILED
+    LIBS "-L\${pcfiledir}/${to_library} -lphotongrid_cpu -ltbb -lhwy" COMPONENT compiled)
 endif()
 if(TARGET photongrid_gl)
   photongrid_pkg_config(photongrid-gl "photongrid on OpenGL, by EGL" REQUIRES "photongrid, egl")
@@ -60,7 +75,9 @@ endif()
 # --- program ----------------------------------------------------------------------------------------------------------
 if(TARGET photongrid_program)
   install(TARGETS photongrid_program RUNTIME COMPONENT program)
-  install(DIRECTORY examples/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/photongrid COMPONENT program FILES_MATCHING PATTERN "*.json")
+  install(DIRECTORY examples/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/photongrid COMPONENT program FILES_MATCHING PATTERN "*.json" PATTERN "*.schema.json" EXCLUDE)
+  # In the tree it is a link beside the scenes.
+  install(FILES docs/reference/photongrid-scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/photongrid/scenes COMPONENT program)
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/photongrid RENAME copyright COMPONENT program)
 endif()
 

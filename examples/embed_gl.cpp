@@ -1,7 +1,7 @@
 // A program with an OpenGL context of its own: the library sorts what lies in the program's texture, and hands back a
 // texture.
-#include <photongrid/backends/gl/overrides/all.hpp>
-#include <photongrid/grid_index.hpp>
+#include <photongrid/backends/gl/gl.hpp>
+#include <photongrid/map/grid_index.hpp>
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

@@ -1,6 +1,5 @@
 // A program with a Vulkan device of its own: the library sorts what lies in the program's buffer, and the program's
 // commands on the same queue read the result. Nobody waits between them.
-#include <photongrid/backends/vulkan/overrides/all.hpp>
 #include <photongrid/backends/vulkan/vulkan.hpp>
 
 #include <cstring>

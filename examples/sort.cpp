@@ -1,6 +1,6 @@
 // The library without the renderer: sort (key, value) pairs on a backend. Change the backend's line to sort on a GPU.
 #include <photongrid/backends/serial/serial.hpp>
-#include <photongrid/bitonic_sort.hpp>
+#include <photongrid/map/bitonic_sort.hpp>
 
 #include <iostream>
 

@@ -1,9 +1,6 @@
-// docs/tutorial.md, whole: photons of one's own, and how bright they make a floor.
+// docs/guide/tutorial.md, whole: photons of one's own, and how bright they make a floor.
 #include <photongrid/backends/serial/serial.hpp>
-#include <photongrid/build_map.hpp>
-#include <photongrid/knn_grid_estimate.hpp>
-#include <photongrid/knn_neighbours.hpp>
-#include <photongrid/own_photons.hpp>
+#include <photongrid/photon_map.hpp>
 
 #include <cstdio>
 #include <random>
@@ -27,19 +24,14 @@ int main()
         photons.push_back({{2 * unit(random), 2 * unit(random), 0}, {12e-5, 12e-5, 12e-5}});
 
     photongrid::serial_backend device; // cpu_backend, gl_backend, vulkan_backend: nothing else changes
-    const auto map = photongrid::fitted_map(device, photongrid::upload_photons(device, photons), 400);
+    const photongrid::photon_map map(device, photons, {.k = 400});
 
     const std::vector<my_vector> places{{1, 1, 0}, {0.5, 1.4, 0}};
-    const auto points = photongrid::upload_points(device, places);
-    const auto estimates = photongrid::knn_grid_estimate(device, map, points, {.k = 400, .errors = true});
+    for (const auto& e : map.irradiance(places, {.standard_error = true}))
+        std::printf("%.2f +- %.2f W/m^2 within %.0f mm\n", static_cast<double>(e.value.r),
+            static_cast<double>(e.error.r), 1000 * static_cast<double>(e.radius));
 
-    const auto irradiance = device.download(estimates.irradiance);
-    const auto error = device.download(estimates.standard_error);
-    for (std::size_t i = 0; i < places.size(); ++i)
-        std::printf("%.2f +- %.2f W/m^2 within %.0f mm\n", static_cast<double>(irradiance[i].x),
-            static_cast<double>(error[i].x), 1000 * std::sqrt(static_cast<double>(irradiance[i].w)));
-
-    const auto nearest = photongrid::knn_neighbours(device, map, points, {.k = 3});
-    const auto ids = device.download(nearest.ids);
-    std::printf("nearest to the middle: photons %u, %u, %u\n", ids[0], ids[1], ids[2]);
+    std::printf("nearest to the middle: photons");
+    map.for_each_nearest(places[0], 3, [](photongrid::photon_id id, float) { std::printf(" %u", id); });
+    std::printf("\n");
 }

@@ -3,15 +3,15 @@
 //
 //   PHOTONGRID_TEST_BACKEND(mine, my_backend, my_backend(my_options{}))
 //
-// docs/backend.md says what they ask.
+// docs/reference/backend.md says what they ask.
 #pragma once
 
-#include <photongrid/backend_tests/algorithm_tests.hpp>
-#include <photongrid/backend_tests/estimator_tests.hpp>
-#include <photongrid/backend_tests/map_file_tests.hpp>
-#include <photongrid/backend_tests/neighbour_tests.hpp>
-#include <photongrid/backend_tests/number_tests.hpp>
-#include <photongrid/backend_tests/verb_tests.hpp>
+#include <photongrid/backend_tests/backend/number_tests.hpp>
+#include <photongrid/backend_tests/backend/verb_tests.hpp>
+#include <photongrid/backend_tests/estimate/estimator_tests.hpp>
+#include <photongrid/backend_tests/estimate/neighbour_tests.hpp>
+#include <photongrid/backend_tests/map/algorithm_tests.hpp>
+#include <photongrid/backend_tests/map/map_file_tests.hpp>
 
 /// Runs all suites on the backend TYPE, of which the rest, an expression, makes one; tests are called NAME/...
 #define PHOTONGRID_TEST_BACKEND(NAME, TYPE, ...)                                                                       \

@@ -4,79 +4,82 @@
 # installs.
 #
 #   tests/planted_faults.sh [FAULT...]     only those whose name contains one of these words
+#   tests/planted_faults.sh --check        only whether each file still holds what a fault replaces; builds nothing
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-work=$PWD/build-faults
-rm -rf "$work"
-mkdir "$work"
 
 # name | file | what to replace | by what (plain text, which must be there)
 faults=(
-  "sort loses ties|include/photongrid/kernels/bitonic_step.glsl|(mine.x == partner.x && mine.y < partner.y)|mine.x == partner.x"
-  "sort ignores values|include/photongrid/kernels/bitonic_step.glsl| \|\| (mine.x == partner.x && mine.y < partner.y)|"
-  "index off by one|include/photongrid/kernels/first_in_cell.glsl|keys_below(i + 1u) - first|keys_below(i + 1u) - first + (first > 3u ? 1u : 0u)"
-  "index takes equal keys|include/photongrid/kernels/first_in_cell.glsl|.x < key|.x <= key"
+  "sort loses ties|include/photongrid/map/bitonic_step.glsl|(mine.x == partner.x && mine.y < partner.y)|mine.x == partner.x"
+  "sort ignores values|include/photongrid/map/bitonic_step.glsl| \|\| (mine.x == partner.x && mine.y < partner.y)|"
+  "index off by one|include/photongrid/map/first_in_cell.glsl|keys_below(i + 1u) - first|keys_below(i + 1u) - first + (first > 3u ? 1u : 0u)"
+  "index takes equal keys|include/photongrid/map/first_in_cell.glsl|.x < key|.x <= key"
   "routing keeps one less|backends/serial/serial.hpp|arrived[d] < capacity|arrived[d] + 1 < capacity"
   "verbs: a pass begins too early|backends/serial/serial.hpp|for (uint i = l.first; i != l.first + l.elements; ++i) {|for (uint i = l.first / 2; i != l.first + l.elements; ++i) {"
   "verbs: switches are all on|backends/serial/serial.hpp|turn_switches(k, l.switches)|turn_switches(k, l.switches + ~l.switches)"
   "verbs: what is done is written|backends/serial/serial.hpp|if (q > 0)|if (q + 1 > 0)"
   "verbs: the last is not counted|backends/serial/serial.hpp|k.holds(i) ?|k.holds(i) && i + 1 != l.first + l.elements ?"
   "verbs: memory is never given back|backends/serial/serial.hpp|account_->now -= data_.size()|account_->now -= 0 * data_.size()"
-  "routing drops surplus power|include/photongrid/kernels/routed_cell.glsl|scale.y = total.y / sum.y|scale.y = 1.0f"
-  "routing draws in order of id|include/photongrid/kernels/route_photon.glsl|permuted(i, args.photons, args.seed)|i"
-  "search ends a ring early|include/photongrid/kernels/knn_visit.glsl|reach * reach > limit2)|reach * reach > 0.25f * limit2)"
-  "search takes all within the maximum radius|include/photongrid/kernels/knn_visit.glsl|d2 <= (held < args.wanted ? args.max_radius2 : radius2)|d2 <= args.max_radius2"
-  "search skips the last photon|include/photongrid/kernels/knn_visit.glsl|end = final.x + final.y;|end = final.x + final.y - (final.y > 4u ? 1u : 0u);"
-  "cells without clamp at the top|include/photongrid/kernels/grid.glsl|f = f < last ? f : last;|f = last < 0.0f ? last : f;"
-  "cells clamped to a rounded number|include/photongrid/kernels/grid.glsl|min(uint(f), resolution - 1u)|min(uint(f), resolution)"
-  "wrong normalisation|include/photongrid/kernels/knn_result.glsl|3.14159265f|3.0f"
-  "direct light stored too|include/photongrid/kernels/tally_path.glsl|frame == 1u|frame == 0u"
-  "power not divided by survival|include/photongrid/kernels/bounce_photon.glsl|(material.x / survival)|material.x"
-  "one path forgotten|include/photongrid/trace_photons.hpp|p.emitted = t.emitted;|p.emitted = t.emitted - 1;"
-  "Fresnel without polarisation|include/photongrid/kernels/scene_hit.glsl|0.5f * (parallel * parallel + perpendicular * perpendicular)|parallel * parallel"
-  "ties take one id more|include/photongrid/kernels/kth_tie.glsl|count.x >= wanted|count.x > wanted"
-  "ties ignored|include/photongrid/kernels/kth_result.glsl|bool tie = kth &&|bool tie = !kth &&"
-  "exactly k is not enough|include/photongrid/kernels/kth_result.glsl|tally.x >= args.wanted|tally.x > args.wanted"
-  "grown radius forgets its photon|include/photongrid/kernels/grown_radius.glsl|n.x >= args.wanted|n.x > args.wanted"
-  "given radius leaves out its rim|include/photongrid/kernels/given_radius.glsl|0xFFFFFFFFu|0u"
-  "k-th photon is not left out|include/photongrid/kernels/gather_photons.glsl|LEAVE_OUT && reach.y > 0.0f|LEAVE_OUT && reach.y > 1.0f"
-  "wrong norm of the cone|include/photongrid/knn_settings.hpp|norms[] = {1, 3, 2, 3}|norms[] = {1, 2, 2, 3}"
-  "sums without compensation|include/photongrid/kernels/gather_photons.glsl|term = flux - rest|term = flux - (rest - rest)"
-  "side reversed|include/photongrid/kernels/photon_distance.glsl|!(arrival < 0.0f)|arrival < 0.0f"
-  "normals reversed|include/photongrid/kernels/photon_distance.glsl|agreement >= args.leaks.x|agreement <= args.leaks.x"
-  "flattening ignored|include/photongrid/kernels/photon_distance.glsl|longer = d2 + args.leaks.y * (h * h)|longer = d2 + 0.0f * args.leaks.y * (h * h)"
-  "standard error without the spread|include/photongrid/kernels/irradiance_estimate.glsl|terms / float(n.x - 2u)|terms / terms"
-  "standard error of one channel|include/photongrid/kernels/gather_photons.glsl|all * all|flux.x * flux.x + 0.0f * all"
-  "disc without floor|include/photongrid/kernels/irradiance_estimate.glsl|max(r.x, args.min_radius2)|r.x"
-  "rows without a wider radius|include/photongrid/kernels/search_rows.glsl|sqrt(radius2) * 1.00000095f + 1.1e-19f|sqrt(radius2)"
-  "rows of a shorter radius|include/photongrid/kernels/search_rows.glsl|sqrt(radius2) * 1.00000095f|sqrt(radius2) * 0.99999f"
-  "packed cells begin late|include/photongrid/kernels/packed_cell.glsl|sums(i) - count,|sums(i) - count + (count > 3u ? 1u : 0u),"
-  "packed photons of the wrong cell|include/photongrid/kernels/packed_photon.glsl|sums(middle) > i|sums(middle) >= i"
-  "running sums skip a step|include/photongrid/prefix_sums.hpp|stride *= 4|stride *= 8"
-  "parts of the light swapped|include/photongrid/kernels/grid.glsl|position.w == 1.0f ? 2u : 1u|position.w == 1.0f ? 1u : 2u"
-  "photons left out counted wrongly|include/photongrid/kernels/other_part.glsl|!is_of_parts|is_of_parts"
-  "rays start on the surface|include/photongrid/kernels/scene_layout.glsl|* 1.9073486328125e-6f + s.scale.x|* 0.0f + 0.0f * s.scale.x"
-  "samples not shared out|include/photongrid/kernels/shade.glsl|light.y * args.share|light.y"
-  "NaN pixels shown|include/photongrid/progressive_view.hpp|finite ? glm::vec3(p) * scale : glm::vec3(0)|glm::vec3(p) * scale"
-  "samples to come are dark|include/photongrid/progressive_view.hpp|static_cast<float>(settings_.spp) / static_cast<float>(samples)|1.0f"
-  "a look keeps its rays for another|include/photongrid/progressive_view.hpp|looks_[look_ + 1].divisor : 1u) == divisor()|looks_[look_ + 1].divisor : 1u) <= divisor()"
-  "a ray is drawn twice|include/photongrid/progressive_view.hpp|ray_ = s.rays;|ray_ = s.rays - 1;"
-  "a moved lamp keeps its map|include/photongrid/scene_map.hpp| && a.rectangle_lights == b.rectangle_lights|"
-  "another seed keeps its map|include/photongrid/scene_map.hpp| && as.seed == bs.seed|"
-  "a moved camera drops the map|include/photongrid/progressive_render.hpp|if (!same_map(|if (scene_.camera != s.camera \|\| !same_map("
-  "the early map stays|include/photongrid/progressive_render.hpp|built_is_early_ = built_with_.photons < settings_.photons;|built_is_early_ = false;"
-  "looks are dark|include/photongrid/progressive_view.hpp|looking() ? 1.0f : 1.0f / static_cast<float>(settings_.spp), canvas_|looking() ? 0.8f : 1.0f / static_cast<float>(settings_.spp), canvas_"
-  "ties of the k-th unseen|include/photongrid/kernels/kth_distance.glsl|before > 0u && component(below, before - 1u) == kth ? 1u : 0u|before > 9u ? 1u : 0u"
-  "photon at the pivot on the far side|include/photongrid/kernels/kth_distance.glsl|inside && key <= middle ? 1u : 0u|inside && key < middle ? 1u : 0u"
-  "share of the outer edges added|include/photongrid/kernels/covered_share.glsl|d < 0.0f ? -rim : rim|rim"
-  "edges of estimates not corrected|include/photongrid/progressive_view.hpp|settings_.edges != edge_correction::none|settings_.edges == edge_correction::none"
-  "lamp twice as bright|include/photongrid/kernels/direct_light.glsl|3.18309886e-1f * share|6.36619772e-1f * share"
-  'shafts forget the margin of the light|include/photongrid/kernels/scene_hit.glsl|precise float reach = (s.w + radius) * 1.00001f;|precise float reach = s.w * 1.00001f;'
-  'shafts look at one corner|include/photongrid/kernels/scene_hit.glsl|+ (by_u < 0.0f ? by_u : 0.0f) + (by_v < 0.0f ? by_v : 0.0f);|+ 0.0f;'
-  "lists forget ties|include/photongrid/kernels/list_neighbours.glsl|list(at) <= last_id|list(at) < last_id"
-  "lists end a row early|include/photongrid/kernels/list_neighbours.glsl|next = max(next, at);|next = max(next, end);"
-  "lists are not in order|include/photongrid/kernels/sort_neighbours.glsl|(entry & args.run) == 0u|(entry & args.run) == args.run"
-  "lists swap neighbours|include/photongrid/kernels/neighbour.glsl|entry * args.points + point|(entry ^ 1u) * args.points + point"
+  "routing drops surplus power|include/photongrid/map/routed_cell.glsl|scale.y = total.y / sum.y|scale.y = 1.0f"
+  "routing draws in order of id|include/photongrid/map/route_photon.glsl|permuted(i, args.photons, args.seed)|i"
+  "search ends a ring early|include/photongrid/estimate/knn_visit.glsl|reach * reach > limit2)|reach * reach > 0.25f * limit2)"
+  "search takes all within the maximum radius|include/photongrid/estimate/knn_visit.glsl|d2 <= (held < args.wanted ? args.max_radius2 : radius2)|d2 <= args.max_radius2"
+  "search skips the last photon|include/photongrid/estimate/knn_visit.glsl|end = final.x + final.y;|end = final.x + final.y - (final.y > 4u ? 1u : 0u);"
+  "cells without clamp at the top|include/photongrid/map/grid.glsl|f = f < last ? f : last;|f = last < 0.0f ? last : f;"
+  "cells clamped to a rounded number|include/photongrid/map/grid.glsl|min(uint(f), resolution - 1u)|min(uint(f), resolution)"
+  "wrong normalisation|include/photongrid/estimate/knn_result.glsl|3.14159265f|3.0f"
+  "direct light stored too|include/photongrid/trace/tally_path.glsl|frame == 1u|frame == 0u"
+  "power not divided by survival|include/photongrid/trace/bounce_photon.glsl|(colour.x / survival)|colour.x"
+  "one path forgotten|include/photongrid/trace/trace_photons.hpp|p.emitted = t.emitted;|p.emitted = t.emitted - 1;"
+  "Fresnel without polarisation|include/photongrid/trace/optics.glsl|0.5f * (parallel * parallel + perpendicular * perpendicular)|parallel * parallel"
+  "ties take one id more|include/photongrid/estimate/kth_tie.glsl|count.x >= wanted|count.x > wanted"
+  "ties ignored|include/photongrid/estimate/kth_result.glsl|bool tie = kth &&|bool tie = !kth &&"
+  "exactly k is not enough|include/photongrid/estimate/kth_result.glsl|tally.x >= args.wanted|tally.x > args.wanted"
+  "grown radius forgets its photon|include/photongrid/estimate/grown_radius.glsl|n.x >= args.wanted|n.x > args.wanted"
+  "given radius leaves out its rim|include/photongrid/estimate/given_radius.glsl|0xFFFFFFFFu|0u"
+  "k-th photon is not left out|include/photongrid/estimate/gather_photons.glsl|LEAVE_OUT && reach.y > 0.0f|LEAVE_OUT && reach.y > 1.0f"
+  "wrong norm of the cone|include/photongrid/estimate/knn_settings.hpp|norms[] = {1, 3, 2, 3}|norms[] = {1, 2, 2, 3}"
+  "sums without compensation|include/photongrid/estimate/gather_photons.glsl|term = flux - rest|term = flux - (rest - rest)"
+  "side reversed|include/photongrid/estimate/photon_distance.glsl|!(arrival < 0.0f)|arrival < 0.0f"
+  "normals reversed|include/photongrid/estimate/photon_distance.glsl|agreement >= args.leaks.x|agreement <= args.leaks.x"
+  "flattening ignored|include/photongrid/estimate/photon_distance.glsl|longer = d2 + args.leaks.y * (h * h)|longer = d2 + 0.0f * args.leaks.y * (h * h)"
+  "standard error without the spread|include/photongrid/estimate/irradiance_estimate.glsl|terms / float(n.x - 2u)|terms / terms"
+  "standard error of one channel|include/photongrid/estimate/gather_photons.glsl|all * all|flux.x * flux.x + 0.0f * all"
+  "disc without floor|include/photongrid/estimate/irradiance_estimate.glsl|max(r.x, args.min_radius2)|r.x"
+  "rows without a wider radius|include/photongrid/estimate/search_rows.glsl|sqrt(radius2) * 1.00000095f + 1.1e-19f|sqrt(radius2)"
+  "rows of a shorter radius|include/photongrid/estimate/search_rows.glsl|sqrt(radius2) * 1.00000095f|sqrt(radius2) * 0.99999f"
+  "packed cells begin late|include/photongrid/map/packed_cell.glsl|sums(i) - count,|sums(i) - count + (count > 3u ? 1u : 0u),"
+  "packed photons of the wrong cell|include/photongrid/map/packed_photon.glsl|sums(middle) > i|sums(middle) >= i"
+  "running sums skip a step|include/photongrid/map/prefix_sums.hpp|stride *= 4|stride *= 8"
+  "parts of the light swapped|include/photongrid/map/grid.glsl|position.w == 1.0f ? 2u : 1u|position.w == 1.0f ? 1u : 2u"
+  "photons left out counted wrongly|include/photongrid/map/other_part.glsl|!is_of_parts|is_of_parts"
+  "rays start on the surface|include/photongrid/trace/scene_layout.glsl|* 1.9073486328125e-6f + round_share|* 0.0f + 0.0f * round_share"
+  "samples not shared out|include/photongrid/render/shade.glsl|light.y * args.share|light.y"
+  "NaN pixels shown|include/photongrid/render/film.hpp|finite(p) ? glm::vec3(p) : glm::vec3(0)|glm::vec3(p)"
+  "samples to come are dark|include/photongrid/render/progressive_render.hpp|static_cast<float>(settings_.spp) / static_cast<float>(samples_shown_)|1.0f"
+  "a preview keeps its rays for another|include/photongrid/render/view_pass.hpp|k->direct.size() != r.size()|k->direct.size() > r.size()"
+  "a ray is drawn twice|include/photongrid/render/render.hpp|steps.repeat(v.light().rays, v.rays(),|steps.repeat(v.light().rays > 0 ? v.light().rays - 1 : 0, v.rays(),"
+  "a moved lamp keeps its map|include/photongrid/scene/scene.hpp| && light_lists(a) == light_lists(b)|"
+  "another seed keeps its map|include/photongrid/render/scene_map.hpp| && as.seed == bs.seed|"
+  "a moved camera drops the map|include/photongrid/render/map_keeper.hpp|return built_ && of_.same(wanted);|return built_ && of_.scene.camera == wanted.scene.camera && of_.same(wanted);"
+  "the early map stays|include/photongrid/render/map_keeper.hpp|return built_ && of_.same(wanted);|return built_ && (of_.same(wanted) \|\| of_.is_preview_of(wanted));"
+  "previews are dark|include/photongrid/render/view_pass.hpp|is_preview() ? 1.0f : 1.0f / static_cast<float>(settings_.spp);|is_preview() ? 0.8f : 1.0f / static_cast<float>(settings_.spp);"
+  "ties of the k-th unseen|include/photongrid/estimate/kth_distance.glsl|before > 0u && component(below, before - 1u) == kth ? 1u : 0u|before > 9u ? 1u : 0u"
+  "photon at the pivot on the far side|include/photongrid/estimate/kth_distance.glsl|inside && key <= middle ? 1u : 0u|inside && key < middle ? 1u : 0u"
+  "share of the outer edges added|include/photongrid/estimate/covered_share.glsl|d < 0.0f ? -rim : rim|rim"
+  "passes have the same photons|include/photongrid/render/passes.hpp|if (pass > 0) {|if (pass > 65535) {"
+  "a pass is forgotten|include/photongrid/render/film.hpp|add_up(*std::exchange(only_, std::nullopt));|only_.reset();"
+  "passes are rounded in turn|include/photongrid/render/exact_sum.hpp|high_ += high + (low_ < low ? 1u : 0u);|high_ += high;"
+  "noise of one pass|include/photongrid/render/film.hpp|std::sqrt(std::max(variance, 0.0) / n)|std::sqrt(std::max(variance, 0.0))"
+  "samples share a stratum|include/photongrid/trace/eye_ray.glsl|(float(column) + r.x)|(0.0f * float(column) + r.x)"
+  "edges of estimates not corrected|include/photongrid/render/view_pass.hpp|settings_.edges != edge_correction::none|settings_.edges == edge_correction::none"
+  "lamp twice as bright|include/photongrid/trace/direct_light.glsl|3.18309886e-1f * share|6.36619772e-1f * share"
+  'shafts forget the margin of the light|include/photongrid/trace/intersect/sphere.glsl|precise float both = (s.w + radius) * 1.00001f;|precise float both = s.w * 1.00001f;'
+  'shafts look at one corner|include/photongrid/trace/intersect/polygon.glsl|+ (by_u < 0.0f ? by_u : 0.0f) + (by_v < 0.0f ? by_v : 0.0f);|+ 0.0f;'
+  "lists forget ties|include/photongrid/estimate/list_neighbours.glsl|list(at) <= last_id|list(at) < last_id"
+  "lists end a row early|include/photongrid/estimate/list_neighbours.glsl|next = max(next, at);|next = max(next, end);"
+  "lists are not in order|include/photongrid/estimate/sort_neighbours.glsl|(entry & args.run) == 0u|(entry & args.run) == args.run"
+  "lists swap neighbours|include/photongrid/estimate/neighbour.glsl|entry * args.points + point|(entry ^ 1u) * args.points + point"
   "cpu: lists are not in order|backends/cpu/overrides/search_simd.hpp|std::sort(keys.begin(), keys.end());|std::sort(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(held / 2));"
   "cpu: the k-th is one further|backends/cpu/overrides/search_simd.hpp|near.of(packet::kept), found.y, j.wanted - found.x,|near.of(packet::kept), found.y, j.wanted - found.x + (found.y > j.wanted - found.x ? 1u : 0u),"
   "cpu: packets are trusted too far|backends/cpu/overrides/search_simd.hpp|(reach - distance_between(q.at, center) * 1.000001f)|(reach - 0.5f * distance_between(q.at, center))"
@@ -96,6 +99,29 @@ faults=(
   "gl: tiles end with one element left|backends/gl/gl.hpp|live[t] = n != 0;|live[t] = n > 1;"
 )
 
+# The separator is a bar, so bars inside are written \|.
+# parse FAULT: sets name, file, from and to
+parse() {
+  local rest=${1//\\|/$'\001'}
+  IFS='|' read -r name file from to <<<"$rest"
+  from=${from//$'\001'/|} to=${to//$'\001'/|}
+}
+if [[ ${1:-} == --check ]]; then
+  stale=0
+  for fault in "${faults[@]}"; do
+    parse "$fault"
+    if [[ ! -r $file || $(cat "$file") != *"$from"* ]]; then
+      echo "planted_faults: \"$name\": $file no longer holds: $from; move the fault to the text that took its place" >&2
+      stale=1
+    fi
+  done
+  echo "planted_faults: ${#faults[@]} faults looked up"
+  exit $stale
+fi
+
+work=$PWD/build-faults
+rm -rf "$work"
+mkdir "$work"
 # Each worker has a copy of the sources and a build of its own, since the tests of one backend are one large file. A run
 # ends at the first test that fails.
 # tests_of FILE: the program that should see a fault there; of serial's tests the half that has to do with it
@@ -104,21 +130,18 @@ tests_of() {
     backends/cpu/*) echo on_cpu ;;
     backends/gl/*) echo on_gl ;;
     backends/vulkan/*) echo on_vulkan ;;
-    */render.hpp | */progressive_*.hpp | */scene_map.hpp | */eye_rays.hpp | */trace_photons.hpp) echo on_serial_pictures ;;
-    */bounce_photon.glsl | */covered_share.glsl | */direct_light.glsl | */scene_*.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
+    */film.hpp | */exact_sum.hpp) echo passes ;;
+    */scene/scene.hpp | */render/*.hpp | */eye_ray*| */trace_photons.hpp) echo on_serial_pictures ;;
+    */bounce_photon.glsl | */covered_share.glsl | */direct_light.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
     *) echo on_serial_algorithms ;;
   esac
 }
 built() { cmake --build "$1/build" --target "$2" >"$1/log" 2>&1; }
 suite() { RC_PARAMS=seed=20031 NODEVICE_SELECT=1 timeout 900 "$1/build/tests/$2" --gtest_fail_fast --gtest_filter='-*long_*:*scene_files*:GoogleTestVerification*' >"$1/log" 2>&1; }
 plant() { # worker's folder, fault
-  local name=${2%%|*} rest=${2#*|} file from to text program
-  file=${rest%%|*} rest=${rest#*|}
+  local name file from to text program
+  parse "$2"
   program=$(tests_of "$file")
-  # The separator is a bar, so bars inside are written \|.
-  rest=${rest//\\|/$'\001'}
-  from=${rest%%|*} to=${rest#*|}
-  from=${from//$'\001'/|} to=${to//$'\001'/|}
   text=$(cat "$1/tree/$file")
   if [[ $text != *"$from"* ]]; then
     echo "MISSED  $name: $file no longer holds: $from"

@@ -2,26 +2,38 @@
 # Builds photongrid with warnings as errors and runs all tests; this is what CI runs.
 #
 #   tests/run.sh [--full] [--device hardware] [--no-install]
+#   tests/run.sh --quick | --only NAME [--filter WORD]... | --filter WORD...
 #
-#   --full             adds the long runs, the manual, the benches on little data, planted faults and GPU-assisted validation, and the
-#                      sanitizers over all tests on every backend instead of the quick ones on the serial one, and users'
-#                      projects with clang
+#   --full             adds the long runs, the manual, all benches, planted faults, clang-tidy, GPU-assisted validation,
+#                      the sanitizers over all tests on every backend, and users' projects with clang
 #   --device hardware  every backend on a real GPU; software devices are refused (no sanitizers, no clang)
 #   --no-install       only say which Debian packages are missing, do not install them
+#   --quick            after an edit: builds what it makes stale with g++ and runs the short tests of that; where the
+#                      serial backend's are among them, not those of the other backends
+#   --only NAME        a backend (serial, cpu, gl, vulkan), a folder of tests/, or one test program
+#   --filter WORD      only cases with WORD in their names, long ones too; on the serial backend without --only
 #
-# First the serial backend under the address and undefined behaviour sanitizers (build-asan/), then clang 14 (build-clang/)
-# and its fuzzer on the scene reader for 20 s, in full 300 s (build-fuzz/), then everything with g++, assertions on
-# (build-tests/), and some of the benches on little data; in full then GPU-assisted validation, all benches on little data and
-# the planted faults. It stops where something fails.
+# Without options: clang-format, the serial backend under the address and undefined behaviour sanitizers (build-asan/),
+# clang 14 (build-clang/) and its fuzzer on the scene reader for 20 s, in full 300 s (build-fuzz/), then everything with
+# g++, assertions on (build-tests/), and some of the benches. It stops where something fails.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
 
-install=yes full=no device=any
+install=yes full=no device=any quick=no only='' words=()
 while (($# > 0)); do
   case $1 in
     --full) full=yes ;;
     --no-install) install=no ;;
+    --quick) quick=yes ;;
+    --only | --filter)
+      if [[ -z ${2:-} ]]; then
+        echo "$1: expected a name; see tests/run.sh --help" >&2
+        exit 2
+      fi
+      if [[ $1 == --only ]]; then only=$2; else words+=("$2"); fi
+      shift
+      ;;
     --device)
       device=${2:-}
       if [[ $device != hardware ]]; then
@@ -31,7 +43,7 @@ while (($# > 0)); do
       shift
       ;;
     -h | --help)
-      sed -n '2,15s/^# \{0,1\}//p' tests/run.sh
+      sed -n '2,/^set /s/^# \{0,1\}//p' tests/run.sh
       exit 0
       ;;
     *)
@@ -41,11 +53,13 @@ while (($# > 0)); do
   esac
   shift
 done
-manual_packages=()
+full_packages=()
 if [[ $full == yes ]]; then
-  manual_packages=(doxygen)
+  full_packages=(doxygen clang-tidy-14)
 fi
-require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev libnanoflann-dev vulkan-validationlayers clang-14 libclang-rt-14-dev dpkg-dev file xvfb libx11-dev libxtst-dev "${smoke_packages[@]}" "${manual_packages[@]}"
+require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev libnanoflann-dev \
+  vulkan-validationlayers clang-14 clang-format-14 libclang-rt-14-dev dpkg-dev file xvfb libx11-dev libxtst-dev \
+  "${smoke_packages[@]}" "${full_packages[@]}"
 
 export CMAKE_GENERATOR=Ninja          # for the projects that tests configure; a bare Debian has no make
 export NODEVICE_SELECT=1              # the implicit layer crashes processes that start side by side
@@ -67,12 +81,27 @@ configure() {
 run_tests() {
   local folder=$1
   shift
-  ctest --test-dir "$folder" --output-on-failure --no-tests=error -j2 "$@"
+  # A program that was not built fails as a whole; its cases are not known.
+  ctest --test-dir "$folder" --output-on-failure --no-tests=error -j2 --exclude-regex "_NOT_BUILT$skipped" "$@"
 }
+skipped=
+source tests/part.sh
+if [[ $quick == yes ]]; then
+  run_stale
+  exit
+elif [[ -n $only ]] || ((${#words[@]} > 0)); then
+  run_part "${only:-serial}" "${words[@]}"
+  exit
+fi
+
 short=(--label-exclude "long|full") sanitized=(--label-exclude "long|heavy|full") sanitized_target=photongrid_quick_tests fuzz_seconds=20 everything=OFF
 if [[ $full == yes ]]; then
   short=() sanitized=(--label-exclude long) sanitized_target=all fuzz_seconds=300 everything=ON
 fi
+
+echo "== formatting, texts of planted faults"
+git ls-files -z '*.hpp' '*.cpp' | xargs -0 clang-format-14 --dry-run --Werror
+tests/planted_faults.sh --check
 
 if [[ $device == hardware ]]; then
   export PHOTONGRID_DEVICE=hardware
@@ -91,7 +120,9 @@ else
   fi
   cmake --build build-asan --target "$sanitized_target"
   # OSMesa's run differs from EGL's by its context only, which gl_backend tests with both.
-  run_tests build-asan "${sanitized[@]}" --exclude-regex on_gl_osmesa
+  skipped="|on_gl_osmesa"
+  run_tests build-asan "${sanitized[@]}"
+  skipped=
 
   echo "== clang"
   configure clang
@@ -107,7 +138,7 @@ else
   cmake --build build-fuzz --target fuzz_scene
   # New inputs go to the first folder, one that breaks the reader to build-fuzz/crash-….
   mkdir -p build-fuzz/corpus
-  build-fuzz/tests/fuzz_scene -verbosity=0 -print_final_stats=1 -max_total_time=$fuzz_seconds -max_len=4096 -dict=tests/scene_corpus.dict -artifact_prefix=build-fuzz/ build-fuzz/corpus tests/scene_corpus
+  build-fuzz/tests/fuzz_scene -verbosity=0 -print_final_stats=1 -max_total_time=$fuzz_seconds -max_len=4096 -dict=tests/io/scene_corpus.dict -artifact_prefix=build-fuzz/ build-fuzz/corpus tests/io/scene_corpus
 fi
 
 echo "== g++, all tests"
@@ -127,6 +158,9 @@ if [[ $full == yes && $device == any ]]; then
   arguments=(--smoke)
   [[ $install == yes ]] || arguments+=(--no-install)
   bench/run.sh "${arguments[@]}"
+
+  echo "== clang-tidy"
+  tests/tidy.sh
 
   echo "== planted faults"
   tests/planted_faults.sh

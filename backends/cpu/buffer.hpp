@@ -3,7 +3,7 @@
 // turned over when it lies the other way.
 #pragma once
 
-#include <photongrid/backend.hpp>
+#include <photongrid/backend/backend.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -18,8 +18,10 @@
 #include <sys/mman.h>
 #endif
 
+#include <photongrid/backend/exact_begin.hpp>
+
 namespace photongrid {
-class cpu_backend;
+class cpu_by_kernels;
 }
 
 namespace photongrid::cpu {
@@ -130,7 +132,7 @@ public:
     std::size_t size() const noexcept { return size_; }
 
 private:
-    friend photongrid::cpu_backend;
+    friend photongrid::cpu_by_kernels;
     buffer(std::shared_ptr<account> a, std::size_t n)
         : account_(std::move(a)), data_(account_->take(bytes(n))), size_(n)
     {
@@ -160,3 +162,5 @@ private:
 };
 
 } // namespace photongrid::cpu
+
+#include <photongrid/backend/exact_end.hpp>

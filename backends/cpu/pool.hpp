@@ -13,6 +13,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <photongrid/backend/exact_begin.hpp>
+
 namespace photongrid::cpu {
 
 /// Threads to share work among. Blocks do not depend on the number of threads, so that neither does what is computed
@@ -65,3 +67,5 @@ private:
 };
 
 } // namespace photongrid::cpu
+
+#include <photongrid/backend/exact_end.hpp>

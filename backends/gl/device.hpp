@@ -144,7 +144,8 @@ public:
             static_cast<GLfloat>(height));
     }
 
-    /// An uninitialised texture. \throws backend_error with the numbers when the device refuses.
+    /// An uninitialised texture.
+    /// \throws backend_error with the numbers when the device refuses.
     texture make(GLenum internal, uint width, uint height, std::size_t texel_bytes, const std::string& what);
     /// A texture of the caller's, which stays that.
     texture adopt(GLuint id, uint width, uint height);
@@ -194,7 +195,7 @@ public:
                   "prescribes");
     }
 
-    /// The values of a kernel's Params, which std140 lays out as C++ does (docs/design.md).
+    /// The values of a kernel's Params, which std140 lays out as C++ does (docs/design/design.md).
     void set_uniforms(const void* data, std::size_t size)
     {
         const auto* first = static_cast<const std::byte*>(data);

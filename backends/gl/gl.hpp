@@ -2,9 +2,9 @@
 // compute shaders, no storage buffers, and nothing is read back between passes but occlusion queries.
 #pragma once
 
+#include <photongrid/backend/self_test.hpp>
 #include <photongrid/backends/gl/hand_over.hpp>
 #include <photongrid/backends/gl/routing.hpp>
-#include <photongrid/self_test.hpp>
 
 namespace photongrid {
 
@@ -23,7 +23,7 @@ struct gl_options {
 /// after an exception: every binding, switch and mask, and the errors that it left to glGetError. Verbs that draw throw
 /// backend_error where they would disturb what nobody can put back: an active query that counts samples or primitives,
 /// active transform feedback, conditional rendering, a program in use that is marked for deletion
-/// (docs/embed_in_opengl.md).
+/// (docs/guide/embed_in_opengl.md).
 /// \headerfile backends/gl/gl.hpp <photongrid/backends/gl/gl.hpp>
 /// \snippet snippets_gl.cpp gl_backend
 class gl_backend {
@@ -376,7 +376,8 @@ public:
 
     /// @}
 
-    /// Compiles kernel K for every verb that it serves, without running it. \throws backend_error with the compiler's
+    /// Compiles kernel K for every verb that it serves, without running it.
+    /// \throws backend_error with the compiler's
     /// log.
     template <kernel_struct K>
     void compile(uint switches = ~0u)
@@ -471,41 +472,32 @@ private:
             "OpenGL passes have at most 8 inputs and 8 outputs");
         device_->prepare_passes();
         device_->set_uniforms(&args, sizeof args);
-        if constexpr (input_count < K >> 0)
-            [&]<std::size_t... I>(std::index_sequence<I...>)
-            {
-                (device_->bind_texture(I, std::get<I>(reads).texture_.id), ...);
-            }
-        (std::make_index_sequence<input_count<K>>{});
-        if constexpr (std::tuple_size_v < Writes >> 0)
-            [&]<std::size_t... I>(std::index_sequence<I...>)
-            {
-                ((K::is_state(slot<I>{}) ? device_->bind_texture(gl::state_unit + I, std::get<I>(writes).texture_.id)
-                                         : void()),
-                    ...);
-            }
-        (std::make_index_sequence<output_count<K>>{});
+        if constexpr (input_count<K> != 0)
+            detail::for_each_slot<input_count<K>>(
+                [&](auto s) { device_->bind_texture(s.index, std::get<s.index>(reads).texture_.id); });
+        if constexpr (std::tuple_size_v<Writes> != 0)
+            detail::for_each_slot<output_count<K>>([&](auto s) {
+                if constexpr (K::is_state(s))
+                    device_->bind_texture(gl::state_unit + s.index, std::get<s.index>(writes).texture_.id);
+            });
     }
     /// Makes the written buffers the render targets. True when the pass also reads one of them.
     template <class K, class Reads, class Writes>
     bool target(const Reads& reads, const Writes& writes)
     {
-        static_assert(output_count<K> > 0, "a kernel needs an OUTPUT or STATE to run");
+        static_assert(output_count<K> != 0, "a kernel needs an OUTPUT or STATE to run");
         bool feedback = false;
         std::array<GLuint, output_count<K>> targets{};
-        [&]<std::size_t... I>(std::index_sequence<I...>)
-        {
-            ((targets[I] = std::get<I>(writes).texture_.id, feedback = feedback || K::is_state(slot<I>{})), ...);
-        }
-        (std::make_index_sequence<output_count<K>>{});
-        if constexpr (input_count < K >> 0)
-            [&]<std::size_t... I>(std::index_sequence<I...>)
-            {
-                ((feedback = feedback
-                         || std::find(targets.begin(), targets.end(), std::get<I>(reads).texture_.id) != targets.end()),
-                    ...);
-            }
-        (std::make_index_sequence<input_count<K>>{});
+        if constexpr (output_count<K> != 0)
+            detail::for_each_slot<output_count<K>>([&](auto s) {
+                targets[s.index] = std::get<s.index>(writes).texture_.id;
+                feedback = feedback || K::is_state(s);
+            });
+        if constexpr (input_count<K> != 0)
+            detail::for_each_slot<input_count<K>>([&](auto s) {
+                feedback = feedback
+                    || std::find(targets.begin(), targets.end(), std::get<s.index>(reads).texture_.id) != targets.end();
+            });
         device_->draw_into(targets);
         return feedback;
     }
@@ -589,3 +581,6 @@ private:
 static_assert(backend<gl_backend>);
 
 } // namespace photongrid
+
+// Declared wherever the backend is, so that no two files of a program can take different ways.
+#include <photongrid/backends/gl/overrides/bitonic_sort.hpp>

@@ -1,9 +1,9 @@
 // Kernels as OpenGL programs: each is compiled once per verb and set of switches.
 #pragma once
 
+#include <photongrid/backend/kernel_source.hpp>
 #include <photongrid/backend_texts/gl.hpp>
 #include <photongrid/backends/gl/device.hpp>
-#include <photongrid/kernel_source.hpp>
 
 #include <chrono>
 
@@ -12,7 +12,8 @@ namespace photongrid::gl {
 /// What a kernel's program does.
 enum class verb { run, until_done, not_done, holds, route_payload, route_amount };
 
-/// A shader. \throws backend_error whose text is the compiler's log with each message at its own file and line.
+/// A shader.
+/// \throws backend_error whose text is the compiler's log with each message at its own file and line.
 inline GLuint compile(device& d, GLenum stage, const spliced_source& source, const std::string& what)
 {
     functions& gl = d.call;
@@ -32,7 +33,8 @@ inline GLuint compile(device& d, GLenum stage, const spliced_source& source, con
     throw backend_error(d.name() + ": " + what + ": the OpenGL compiler refuses it:\n" + translate_log(log, source));
 }
 
-/// A program of two shaders, which it takes over. \throws backend_error with the linker's log.
+/// A program of two shaders, which it takes over.
+/// \throws backend_error with the linker's log.
 inline GLuint link(device& d, GLuint vertex, GLuint fragment, const std::string& what)
 {
     functions& gl = d.call;
@@ -57,11 +59,7 @@ inline GLuint link(device& d, GLuint vertex, GLuint fragment, const std::string&
 /// The programs of one backend, made when first asked for.
 class programs {
 public:
-    explicit programs(std::shared_ptr<device> d) : device_(std::move(d))
-    {
-        add_texts(kernel_texts);
-        add_texts(gl_texts);
-    }
+    explicit programs(std::shared_ptr<device> d) : device_(std::move(d)) { add_texts(gl_texts); }
     programs(const programs&) = delete;
     programs& operator=(const programs&) = delete;
     ~programs()
@@ -139,24 +137,14 @@ private:
         return gl::compile(*device_, stage, s.take(), file);
     }
     template <class K>
-    static constexpr uint known_switches()
-    {
-        return []<std::size_t... B>(std::index_sequence<B...>)
-        {
-            return ((requires(K k) { k.turn(slot<B>{}, true); } ? 1u << B : 0u) | ...);
-        }
-        (std::make_index_sequence<32>{});
-    }
-    template <class K>
     static std::string load_states()
     {
         std::string calls;
-        if constexpr (output_count < K >> 0)
-            [&]<std::size_t... B>(std::index_sequence<B...>)
-            {
-                ((calls += K::is_state(slot<B>{}) ? "load_state_" + std::to_string(B) + "(at); " : ""), ...);
-            }
-        (std::make_index_sequence<output_count<K>>{});
+        if constexpr (output_count<K> != 0)
+            photongrid::detail::for_each_slot<output_count<K>>([&](auto s) {
+                if (K::is_state(s))
+                    calls += "load_state_" + std::to_string(s.index) + "(at); ";
+            });
         return calls;
     }
     /// Params reach the program as bytes: the driver's layout must be C++'s.
@@ -170,7 +158,7 @@ private:
         if (static_cast<std::size_t>(bytes) != (size + 15) / 16 * 16)
             throw backend_error(device_->name() + ": " + what + ": its Params have " + std::to_string(size)
                 + " bytes in C++ and " + std::to_string(bytes)
-                + " in std140; put members of 16 bytes first and use no vec3 (docs/design.md)");
+                + " in std140; put members of 16 bytes first and use no vec3 (docs/design/design.md)");
     }
 
     std::shared_ptr<device> device_;

@@ -131,7 +131,7 @@ private:
         gl.UseProgram(payload);
         gl.ProgramUniform4ui(payload, 1, columns, destinations, m, rows);
         gl.ProgramUniform4ui(payload, 2, 1, draws.elements, draws.first, 0);
-        // GL_INCR stops at 255, beyond every reference value: a full destination stays full (docs/decisions.md).
+        // GL_INCR stops at 255, beyond every reference value: a full destination stays full (docs/design/decisions.md).
         gl.StencilFunc(GL_EQUAL, static_cast<GLint>(capacity - 1), 0xFFu);
         gl.StencilOp(GL_INCR, GL_INCR, GL_INCR);
         gl.DrawArrays(GL_POINTS, static_cast<GLint>(draws.first), static_cast<GLsizei>(draws.elements));

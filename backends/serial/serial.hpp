@@ -1,12 +1,13 @@
 // The serial backend: plain loops over the kernel structs. It is the specification that the other backends are held
 // to, and the sanitizer of all kernels: its accessors check every index in debug builds.
-// Compile with -ffp-contract=off (target photongrid::serial does), or results differ in the last bit from the GPUs'.
 #pragma once
 
-#include <photongrid/backend.hpp>
+#include <photongrid/backend/backend.hpp>
 
 #include <algorithm>
 #include <memory>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -190,35 +191,25 @@ private:
         K k{};
         k.args = args;
         turn_switches(k, l.switches);
-        if constexpr (input_count < K >> 0)
-            [&]<std::size_t... I>(std::index_sequence<I...>)
-            {
-                (k.bind(slot<I>{}, std::span<const input_t<K, I>>(std::get<I>(reads).data_)), ...);
-            }
-        (std::make_index_sequence<input_count<K>>{});
+        if constexpr (input_count<K> != 0)
+            detail::for_each_slot<input_count<K>>(
+                [&](auto s) { k.bind(s, std::span<const input_t<K, s.index>>(std::get<s.index>(reads).data_)); });
         return k;
     }
     template <class K, class Writes>
     static void load(K& k, uint i, Writes& writes)
     {
-        [&]<std::size_t... I>(std::index_sequence<I...>)
-        {
-            const auto one = [&]<std::size_t J>(slot<J> s) {
+        if constexpr (output_count<K> != 0)
+            detail::for_each_slot<output_count<K>>([&](auto s) {
                 if constexpr (K::is_state(s))
-                    k.output(s) = std::get<J>(writes).data_[i];
-            };
-            (one(slot<I>{}), ...);
-        }
-        (std::make_index_sequence<output_count<K>>{});
+                    k.output(s) = std::get<s.index>(writes).data_[i];
+            });
     }
     template <class K, class Writes>
     static void store(K& k, uint i, Writes& writes)
     {
-        [&]<std::size_t... I>(std::index_sequence<I...>)
-        {
-            ((std::get<I>(writes).data_[i] = k.output(slot<I>{})), ...);
-        }
-        (std::make_index_sequence<output_count<K>>{});
+        if constexpr (output_count<K> != 0)
+            detail::for_each_slot<output_count<K>>([&](auto s) { std::get<s.index>(writes).data_[i] = k.output(s); });
     }
 
     capabilities caps_;
@@ -229,3 +220,5 @@ private:
 static_assert(backend<serial_backend>);
 
 } // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

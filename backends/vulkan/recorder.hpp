@@ -113,7 +113,8 @@ private:
 /// Records operations and submits them in batches. Every operation sees what all earlier ones wrote.
 class recorder {
 public:
-    /// `timed`: measure passes. \throws backend_error where the device has no clock.
+    /// `timed`: measure passes.
+    /// \throws backend_error where the device has no clock.
     explicit recorder(std::shared_ptr<context> c, bool timed) : context_(std::move(c)), timed_(timed)
     {
         if (timed && timestamp_bits(context_->physical(), context_->family()) == 0)

@@ -1,8 +1,8 @@
 // GLSL to SPIR-V: glslang, then the SPIRV-Tools optimizer, with NoContraction on all float arithmetic.
 #pragma once
 
-#include <photongrid/backend.hpp>
-#include <photongrid/kernel_source.hpp>
+#include <photongrid/backend/backend.hpp>
+#include <photongrid/backend/kernel_source.hpp>
 
 #include <cstdint>
 #include <glslang/Include/glslang_c_interface.h>

@@ -1,10 +1,10 @@
-// The Vulkan backend: compute shaders over storage buffers, many passes a submission (docs/design.md).
+// The Vulkan backend: compute shaders over storage buffers, many passes a submission (docs/design/design.md).
 #pragma once
 
+#include <photongrid/backend/self_test.hpp>
 #include <photongrid/backend_texts/vulkan.hpp>
 #include <photongrid/backends/vulkan/compiled_kernels.hpp>
 #include <photongrid/backends/vulkan/recorder.hpp>
-#include <photongrid/self_test.hpp>
 
 #include <bit>
 #include <cassert>
@@ -156,7 +156,8 @@ public:
     /// A buffer over the first n elements of one that the caller has on the same device, and goes on owning: it must
     /// live, and keep its memory, until the buffer is gone and finish() has returned. Not counted in bytes(). As with
     /// handle(), commands on the queue take turns.
-    /// \throws std::invalid_argument for a null handle, 0 elements or more than the device binds.
+    /// \throws std::invalid_argument for a null handle, 0 elements or more
+    /// than the device binds.
     /// \snippet snippets_vulkan.cpp adopt
     template <element T>
     buffer<T> adopt(VkBuffer callers, std::size_t n)
@@ -379,8 +380,7 @@ private:
 
     vulkan_backend(std::shared_ptr<vulkan_detail::context> c, const vulkan_options& options)
         : context_(std::move(c)), kernels_(context_, options.cache_folder, !options.gpu_assisted),
-          texts_(std::begin(kernel_texts), std::end(kernel_texts)), recorder_(context_, options.time_passes),
-          empty_(allocate(0))
+          recorder_(context_, options.time_passes), empty_(allocate(0))
     {
         const auto info = vulkan_detail::describe(context_->physical(), 0);
         if (!info.unusable.empty())
@@ -419,11 +419,12 @@ private:
     std::vector<memory> bound(const Reads& reads, const Writes& writes) const
     {
         std::vector<memory> all;
-        const auto add = [&]<class... B>(const B&... b) {
-            (all.push_back(b.memory_ ? b.memory_ : allocate(0, format_of<typename B::value_type>)), ...);
+        const auto add = [&](const auto& b) {
+            using value_type = typename std::remove_cvref_t<decltype(b)>::value_type;
+            all.push_back(b.memory_ ? b.memory_ : allocate(0, format_of<value_type>));
         };
-        std::apply(add, reads);
-        std::apply(add, writes);
+        std::apply([&](const auto&... b) { (add(b), ...); }, reads);
+        std::apply([&](const auto&... b) { (add(b), ...); }, writes);
         return all;
     }
 
@@ -497,17 +498,6 @@ private:
     kernel_cost& cost()
     {
         return costs_[std::string(kernel_name<K>())];
-    }
-
-    /// The switches that K has, so that the others make no further specialisation.
-    template <class K>
-    static constexpr uint known_switches()
-    {
-        return []<std::size_t... B>(std::index_sequence<B...>)
-        {
-            return (0u | ... | (requires(K & k) { k.turn(slot<B>{}, true); } ? 1u << B : 0u));
-        }
-        (std::make_index_sequence<32>{});
     }
 
     std::string defines(std::size_t outputs, uint switches, bool listing, bool texels, uint lanes) const
@@ -608,3 +598,7 @@ private:
 static_assert(backend<vulkan_backend>);
 
 } // namespace photongrid
+
+// Declared wherever the backend is, so that no two files of a program can take different ways.
+#include <photongrid/backends/vulkan/overrides/bitonic_sort.hpp>
+#include <photongrid/backends/vulkan/overrides/trace_batch.hpp>

@@ -2,10 +2,10 @@
 #include "tracing_backend.hpp"
 
 #include <photongrid/backends/serial/serial.hpp>
-#include <photongrid/build_map.hpp>
-#include <photongrid/knn_grid_estimate.hpp>
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/map/build_map.hpp>
 #ifdef PHOTONGRID_TRACE_CPU
-#include <photongrid/backends/cpu/cpu.hpp>
+#include <photongrid/backends/cpu/cpu_by_kernels.hpp>
 #endif
 
 #include <iostream>
@@ -45,7 +45,7 @@ int main()
     serial_backend serial;
     trace_on(serial);
 #ifdef PHOTONGRID_TRACE_CPU
-    cpu_backend cpu;
+    cpu_by_kernels cpu;
     trace_on(cpu);
 #endif
 }

@@ -1,7 +1,7 @@
 // A complete small backend: it wraps any other, hands every verb on to it, and keeps account of what was asked.
 #pragma once
 
-#include <photongrid/backend.hpp>
+#include <photongrid/backend/backend.hpp>
 
 #include <chrono>
 #include <iomanip>

@@ -2,16 +2,14 @@
 #include "caustics.hpp"
 
 #if __has_include(                                                                                                     \
-    <photongrid/backends/cpu/cpu.hpp>) // CMakeLists.txt links photongrid::cpu, or without it photongrid::serial
-#include <photongrid/backends/cpu/overrides/all.hpp>
+    <photongrid/backends/cpu/cpu.hpp>) // CMakeLists.txt links photongrid::cpu_compiled or photongrid::serial
+#include <photongrid/backends/cpu/cpu.hpp>
 using device_type = photongrid::cpu_backend;
 #else
 #include <photongrid/backends/serial/serial.hpp>
 using device_type = photongrid::serial_backend;
 #endif
-#include <photongrid/build_map.hpp>
-#include <photongrid/knn_grid_estimate.hpp>
-#include <photongrid/own_photons.hpp>
+#include <photongrid/photon_map.hpp>
 
 namespace host {
 struct photon {
@@ -40,25 +38,16 @@ static std::vector<photon> shoot(const scene& s, int count, std::uint64_t seed)
 
 irradiance_source caustics_of(const scene& s, int photons, std::uint64_t seed)
 {
-    const auto device = std::make_shared<device_type>();
-    const photongrid::knn_settings how{.k = 50,
-        .max_radius = 0.1f,
-        .kernel = photongrid::filter_kernel::silverman,
-        .leaks = {.side = true, .min_cosine = 0.9f}};
-    const auto map = std::make_shared<const photongrid::photon_map<device_type>>(
-        photongrid::fitted_map(*device, photongrid::upload_photons(*device, shoot(s, photons, seed)), how.k));
-    return [=](const std::vector<gather_point>& points) {
-        std::vector<vec3> at, normals;
-        for (const auto& p : points) {
-            at.push_back(p.where);
-            normals.push_back(p.normal);
-        }
-        const auto found = photongrid::knn_grid_estimate(
-            *device, *map, photongrid::upload_points(*device, at), photongrid::upload_normals(*device, normals), how);
-        std::vector<vec3> irradiance;
-        for (const auto& e : device->download(found.irradiance))
-            irradiance.push_back({e.x, e.y, e.z});
-        return irradiance;
+    device_type device; // searches for one place need it no more once the map is built
+    const auto map = std::make_shared<const photongrid::photon_map<device_type>>(device, shoot(s, photons, seed),
+        photongrid::knn_settings{.k = 50,
+            .max_radius = 0.1f,
+            .kernel = photongrid::filter_kernel::silverman,
+            .leaks = {.side = true, .min_cosine = 0.9f}});
+    return [map](vec3 where, vec3 normal) -> vec3 {
+        thread_local photongrid::query_scratch scratch;
+        const auto e = map->irradiance(where, normal, scratch).value;
+        return {e.r, e.g, e.b};
     };
 }
 } // namespace host

@@ -18,9 +18,8 @@ namespace {
         return (cos_here * cos_lamp * s.lamp.area() / (pi * distance2)) * h.of.colour * s.lamp.of.colour;
     }
 
-    /// One path from the eye: its radiance, and the points where caustic light is missing.
-    vec3 trace(
-        const scene& s, ray r, int pixel, bool keeps_specks, random_stream& random, std::vector<gather_point>& points)
+    /// The radiance of one path from the eye.
+    vec3 trace(const scene& s, ray r, bool keeps_specks, random_stream& random, const irradiance_source& caustics)
     {
         vec3 radiance, throughput{1, 1, 1};
         bool met_diffuse = false, from_specular = false;
@@ -40,7 +39,8 @@ namespace {
                 break;
             case surface::diffuse:
                 radiance = radiance + throughput * direct_light(s, *h, random);
-                points.push_back({h->where, h->normal, (1 / pi) * throughput * h->of.colour, pixel});
+                if (caustics)
+                    radiance = radiance + (1 / pi) * throughput * h->of.colour * caustics(h->where, h->normal);
                 r = {h->where, cosine_direction(h->normal, random)};
                 met_diffuse = true;
                 from_specular = false;
@@ -73,11 +73,8 @@ std::vector<vec3> render(const scene& s, const render_settings& settings, const 
     const int size = settings.size;
     const vec3 eye{0, 3, 5.2};
     std::vector<vec3> picture(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
-    std::vector<std::vector<gather_point>> points_of_rows(static_cast<std::size_t>(size));
     for (int sample = 0; sample < settings.samples; ++sample) {
         in_parallel(size, settings.threads, [&](int y) {
-            auto& points = points_of_rows[static_cast<std::size_t>(y)];
-            points.clear();
             for (int x = 0; x < size; ++x) {
                 const int pixel = y * size + x;
                 random_stream random(
@@ -85,20 +82,10 @@ std::vector<vec3> render(const scene& s, const render_settings& settings, const 
                 // The picture's frame is the box's open front, 2 m a side at z = 1.
                 const vec3 through{2 * (x + random.next()) / size - 1, 2 - 2 * (y + random.next()) / size, 1};
                 auto& radiance = picture[static_cast<std::size_t>(pixel)];
-                radiance = radiance
-                    + trace(s, {eye, normalized(through - eye)}, pixel, settings.keeps_specks, random, points);
+                radiance
+                    = radiance + trace(s, {eye, normalized(through - eye)}, settings.keeps_specks, random, caustics);
             }
         });
-        if (!caustics)
-            continue;
-        std::vector<gather_point> points;
-        for (const auto& row : points_of_rows)
-            points.insert(points.end(), row.begin(), row.end());
-        const auto irradiance = caustics(points);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            auto& radiance = picture[static_cast<std::size_t>(points[i].pixel)];
-            radiance = radiance + points[i].weight * irradiance[i];
-        }
     }
     for (auto& radiance : picture)
         radiance = (1.0 / settings.samples) * radiance;

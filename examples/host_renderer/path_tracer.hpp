@@ -7,14 +7,9 @@
 
 namespace host {
 
-/// A point that light paths visit, whose caustic light the renderer cannot find itself.
-struct gather_point {
-    vec3 where, normal; ///< normal: unit vector, towards the side that is looked at
-    vec3 weight;        ///< what the pixel gains by irradiance 1 here: throughput x albedo / pi, 1/sr
-    int pixel;
-};
-/// Irradiance, W/m^2, at each of some points, of light that reaches them by mirrors and glass alone.
-using irradiance_source = std::function<std::vector<vec3>(const std::vector<gather_point>&)>;
+/// Irradiance, W/m^2, of light that reaches a point by mirrors and glass alone. `normal`: unit vector, towards the side
+/// that is looked at. Called from many threads at once.
+using irradiance_source = std::function<vec3(vec3 where, vec3 normal)>;
 
 struct render_settings {
     int size = 400;   ///< pixels a side

@@ -2,9 +2,10 @@
 // each), or a function that says why it is not there; CMake chooses.
 #pragma once
 
-#include <photongrid/backend.hpp>
-#include <photongrid/render_progress.hpp>
-#include <photongrid/render_stats.hpp>
+#include <photongrid/backend/backend.hpp>
+#include <photongrid/render/previews.hpp>
+#include <photongrid/render/render_state.hpp>
+#include <photongrid/render/render_stats.hpp>
 
 #include <map>
 #include <memory>
@@ -23,9 +24,9 @@ public:
     virtual ~renderer() = default;
 
     // See progressive_render.
-    virtual void start(const scene& s, const render_settings& settings, const first_looks& looks) = 0;
-    virtual void resume(view_state state) = 0;
-    virtual view_state state() = 0;
+    virtual void start(const scene& s, const render_settings& settings, const preview_settings& previews) = 0;
+    virtual void resume(render_state state) = 0;
+    virtual render_state state() = 0;
     virtual bool step(double budget_ms) = 0; ///< infinite: to the end
     virtual void cancel() = 0;
     virtual bool finished() const = 0;

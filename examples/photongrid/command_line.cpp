@@ -227,7 +227,9 @@ Exit codes:
               [&o](const std::string& text) { o.size = parsed_list<2>("--size", text, 'x', "width and height: WxH"); },
               "pixels")
             ->type_name("WxH");
-        add_whole(to, "--spp", o.spp, "eye rays a pixel");
+        add_whole(to, "--spp", o.spp, "eye rays per pixel and pass");
+        add_whole(to, "--passes", o.passes,
+            "the picture is the mean of so many, each with photons, eye rays and shadow rays of its own");
         add_whole(to, "--light-samples", o.light_samples, "shadow rays an area light and eye ray");
         add_whole(to, "--depth", o.depth, "reflections and refractions an eye ray follows");
         add_whole(to, "--seed", o.seed, "same seed, same picture");
@@ -246,8 +248,8 @@ Exit codes:
             ->allow_extra_args(false)
             ->type_name("OUT.png|.exr|.pfm");
         to.add_flag("--aov", o.aov,
-            "EXR: layers estimate.radius (m), estimate.count (photons) and estimate.relative_error (standard error "
-            "over value) beside the picture");
+            "EXR: layers estimate.radius (m), estimate.count (photons), estimate.relative_error (standard error over "
+            "value) and, of several passes, noise (standard error of the pixel, W/(m^2 sr)) beside the picture");
         to.add_option("--stats", o.stats, "statistics, as JSON")->type_name("OUT.json");
         to.add_flag("--time-passes", o.time_passes,
             "with --backend vulkan, gl or gl-osmesa, and --stats: measure each pass by the device's clock");
@@ -421,6 +423,7 @@ render_settings settings_for(const scene& s, const render_options& o)
     r.photons = o.photons.value_or(r.photons);
     r.k = o.k.value_or(r.k);
     r.spp = o.spp.value_or(r.spp);
+    r.passes = o.passes.value_or(r.passes);
     r.light_samples = o.light_samples.value_or(r.light_samples);
     r.depth = o.depth.value_or(r.depth);
     r.seed = o.seed.value_or(r.seed);

@@ -4,7 +4,7 @@
 #include "picture_series.hpp"
 
 #include <photongrid/reference/settings.hpp>
-#include <photongrid/scene.hpp>
+#include <photongrid/scene/scene.hpp>
 
 #include <limits>
 #include <optional>
@@ -29,7 +29,7 @@ enum exit_code {
 struct render_options {
     std::string scene_path, backend = "auto", device;
     std::optional<map_builder> map;
-    std::optional<std::uint32_t> slots, photons, k, spp, light_samples, depth, seed, threads;
+    std::optional<std::uint32_t> slots, photons, k, spp, passes, light_samples, depth, seed, threads;
     std::optional<glm::uvec3> grid;
     std::optional<glm::uvec2> size;
     std::optional<double> max_radius, exposure;

@@ -1,7 +1,8 @@
-// Pictures on disk: PNG for looking at, EXR and PFM for measuring. docs/scenes.md describes the tone map.
+// Pictures on disk: PNG for looking at, EXR and PFM for measuring. docs/guide/scenes.md describes the tone map.
 #pragma once
 
-#include <photongrid/scene.hpp>
+#include <photongrid/render/image.hpp>
+#include <photongrid/scene/scene.hpp>
 
 #include <array>
 #include <map>
@@ -30,8 +31,8 @@ bool holds_layers(const std::string& path);
 
 /// Writes a picture in the format of its ending. All or nothing: on an error, or when the program dies, `path` is
 /// what it was before. `exposure` (EV) is used by PNG only. EXR holds the picture's layers too, as single precision
-/// channels estimate.radius (m), estimate.count and estimate.relative_error; PNG and PFM leave them out. Throws
-/// file_error.
+/// channels estimate.radius (m), estimate.count, estimate.relative_error and, of several passes, noise; PNG and PFM
+/// leave them out. Throws file_error.
 void write_image(const std::string& path, const image& picture, double exposure = 0, const image_notes& notes = {});
 
 /// Reads an EXR or PFM file; of an EXR's channels R, G and B alone. Throws file_error.

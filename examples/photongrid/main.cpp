@@ -78,10 +78,8 @@ namespace {
     exit_code run(const check_options& o)
     {
         const auto s = read_scene(o.scene_path);
-        const auto shapes = s.spheres.size() + s.cylinders.size() + s.cones.size() + s.paraboloids.size()
-            + s.disks.size() + s.polygons.size();
-        std::cout << o.scene_path << ": \"" << s.name << "\": " << shapes << " shapes, " << s.materials.size()
-                  << " materials, " << s.point_lights.size() + s.rectangle_lights.size() << " lights\n";
+        std::cout << o.scene_path << ": \"" << s.name << "\": " << count_shapes(s) << " shapes, " << s.materials.size()
+                  << " materials, " << count_lights(s) << " lights\n";
         return success;
     }
 

@@ -33,7 +33,8 @@ struct series_options {
 /// and to the reference.
 class picture_series {
 public:
-    /// \throws file_error when the folder cannot be made or the reference not be read, std::invalid_argument when the reference
+    /// \throws file_error when the folder cannot be made or the reference not be read, std::invalid_argument when the
+    /// reference
     ///         is of another size or the crop does not lie in the picture.
     explicit picture_series(series_options o);
 
@@ -41,7 +42,8 @@ public:
     /// Whether it is time for another picture.
     bool due() const;
     void add(const image& picture);
-    /// Adds the last picture, and writes table and strip. \throws file_error.
+    /// Adds the last picture, and writes table and strip.
+    /// \throws file_error.
     void finish(const image& picture);
 
     /// ms of the stages in the strip.

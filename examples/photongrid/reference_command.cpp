@@ -4,7 +4,7 @@
 #include "progress_bar.hpp"
 #include "scene_file.hpp"
 
-#include <photongrid/reference.hpp>
+#include <photongrid/reference/reference.hpp>
 
 #include <nlohmann/json.hpp>
 

@@ -32,7 +32,8 @@ namespace {
     /// A picture on its way, and the file that it can go on from.
     class resumable {
     public:
-        /// An empty path: there is no file. \throws file_error for a file of another picture.
+        /// An empty path: there is no file.
+        /// \throws file_error for a file of another picture.
         resumable(renderer& drawing, std::string path, const scene& s, const render_settings& settings)
             : drawing_(drawing), path_(std::move(path))
         {
@@ -50,7 +51,7 @@ namespace {
                 return false;
             saved_ = clock::now();
             const auto state = drawing_.state();
-            if (state.rays > 0)
+            if (!state.empty())
                 write_resume_file(path_, identity_, state);
             return std::filesystem::exists(path_);
         }

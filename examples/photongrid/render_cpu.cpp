@@ -1,4 +1,4 @@
-#include <photongrid/backends/cpu/overrides/all.hpp>
+#include <photongrid/backends/cpu/cpu.hpp>
 
 #include "renderer_on.hpp"
 

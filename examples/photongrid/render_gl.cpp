@@ -1,4 +1,3 @@
-#include <photongrid/backends/gl/overrides/all.hpp>
 
 #include "renderer_on.hpp"
 

@@ -1,4 +1,4 @@
-#include <photongrid/backends/vulkan/overrides/all.hpp>
+#include <photongrid/backends/vulkan/vulkan.hpp>
 
 #include "renderer_on.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "backends.hpp"
 
-#include <photongrid/progressive_render.hpp>
+#include <photongrid/render/progressive_render.hpp>
 
 namespace photongrid {
 
@@ -15,12 +15,12 @@ public:
     {
     }
 
-    void start(const scene& s, const render_settings& settings, const first_looks& looks) override
+    void start(const scene& s, const render_settings& settings, const preview_settings& previews) override
     {
-        drawing_.start(s, settings, looks);
+        drawing_.start(s, settings, previews);
     }
-    void resume(view_state state) override { drawing_.resume(std::move(state)); }
-    view_state state() override { return drawing_.state(); }
+    void resume(render_state state) override { drawing_.resume(std::move(state)); }
+    render_state state() override { return drawing_.state(); }
     bool step(double budget_ms) override { return drawing_.step(std::chrono::duration<double, std::milli>(budget_ms)); }
     void cancel() override { drawing_.cancel(); }
     bool finished() const override { return drawing_.finished(); }

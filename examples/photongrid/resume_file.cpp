@@ -15,7 +15,7 @@ namespace photongrid {
 
 namespace {
     using json = nlohmann::ordered_json;
-    constexpr const char* first_line = "photongrid unfinished picture 1";
+    constexpr const char* first_line = "photongrid unfinished picture 2";
 
     /// Fowler, Noll and Vo's hash (FNV-1a).
     std::uint64_t hash(const std::string& bytes)
@@ -26,10 +26,10 @@ namespace {
         return h;
     }
 
-    std::string bytes_of(const view_state& s)
+    std::string bytes_of(const pass_pixels& light)
     {
         std::string bytes;
-        for (const auto* part : {&s.pixels, &s.searches, &s.errors})
+        for (const auto* part : {&light.pixels, &light.searches, &light.errors})
             bytes.append(reinterpret_cast<const char*>(part->data()), part->size() * sizeof(glm::vec4));
         return bytes;
     }
@@ -43,15 +43,16 @@ std::string picture_identity(const scene& s, const render_settings& settings, co
     return all.dump();
 }
 
-void write_resume_file(const std::string& path, const std::string& identity, const view_state& state)
+void write_resume_file(const std::string& path, const std::string& identity, const render_state& state)
 {
-    const auto bytes = bytes_of(state);
-    const json head = {{"rays", state.rays}, {"pixels", state.pixels.size()}, {"layers", !state.errors.empty()},
-        {"hash", hash(identity + bytes)}};
+    const auto film = state.film.bytes(), bytes = bytes_of(state.pass.light) + film;
+    const json head
+        = {{"pass", state.pass.number}, {"rays", state.pass.rays}, {"pixels", state.pass.light.pixels.size()},
+            {"layers", !state.pass.light.errors.empty()}, {"film", film.size()}, {"hash", hash(identity + bytes)}};
     write_file(path, std::string(first_line) + "\n" + identity + "\n" + head.dump() + "\n" + bytes);
 }
 
-std::optional<view_state> read_resume_file(const std::string& path, const std::string& identity)
+std::optional<render_state> read_resume_file(const std::string& path, const std::string& identity)
 {
     if (!std::filesystem::exists(path))
         return std::nullopt;
@@ -77,9 +78,10 @@ std::optional<view_state> read_resume_file(const std::string& path, const std::s
         return head.is_object() && head.contains(key) && head[key].is_number_unsigned() ? head[key].get<std::uint64_t>()
                                                                                         : 0;
     };
-    const std::size_t pixels = number("pixels");
+    const std::size_t pixels = number("pixels"), film_size = number("film");
     const bool layers = head.is_object() && head.contains("layers") && head["layers"] == true;
-    if (pixels == 0 || pixels > bytes.size() || bytes.size() != pixels * sizeof(glm::vec4) * (layers ? 3u : 2u)
+    if (pixels > bytes.size() || film_size > bytes.size()
+        || bytes.size() - film_size != pixels * sizeof(glm::vec4) * (layers ? 3u : 2u)
         || hash(theirs + bytes) != number("hash"))
         fail("is damaged");
     if (theirs != identity) {
@@ -92,14 +94,21 @@ std::optional<view_state> read_resume_file(const std::string& path, const std::s
                             : ""));
         fail("was begun by another program");
     }
-    view_state s;
-    s.rays = static_cast<uint>(number("rays"));
+    render_state s;
+    s.pass.number = static_cast<std::uint32_t>(number("pass"));
+    s.pass.rays = static_cast<std::uint32_t>(number("rays"));
+    auto& light = s.pass.light;
     const char* from = bytes.data();
-    for (auto* part : {&s.pixels, &s.searches, &s.errors}) {
-        part->resize(part == &s.errors && !layers ? 0 : pixels);
+    for (auto* part : {&light.pixels, &light.searches, &light.errors}) {
+        part->resize(part == &light.errors && !layers ? 0 : pixels);
         if (!part->empty())
             std::memcpy(part->data(), from, part->size() * sizeof(glm::vec4));
         from += part->size() * sizeof(glm::vec4);
+    }
+    try {
+        s.film = film::from_bytes(std::string_view(bytes).substr(bytes.size() - film_size));
+    } catch (const std::invalid_argument&) {
+        fail("is damaged");
     }
     return s;
 }

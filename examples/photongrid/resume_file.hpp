@@ -3,8 +3,8 @@
 
 #include "image_file.hpp"
 
-#include <photongrid/backend.hpp>
-#include <photongrid/render_progress.hpp>
+#include <photongrid/backend/backend.hpp>
+#include <photongrid/render/render_state.hpp>
 
 #include <optional>
 #include <string>
@@ -15,10 +15,10 @@ namespace photongrid {
 std::string picture_identity(const scene& s, const render_settings& settings, const capabilities& caps);
 
 /// Writes a state, whole or not at all. Throws file_error.
-void write_resume_file(const std::string& path, const std::string& identity, const view_state& state);
+void write_resume_file(const std::string& path, const std::string& identity, const render_state& state);
 
 /// Reads the state of the picture with this identity; nothing where there is no such file. Throws file_error for a file
 /// that is damaged, or another picture's.
-std::optional<view_state> read_resume_file(const std::string& path, const std::string& identity);
+std::optional<render_state> read_resume_file(const std::string& path, const std::string& identity);
 
 } // namespace photongrid

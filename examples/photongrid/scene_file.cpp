@@ -20,29 +20,62 @@ namespace {
     constexpr scene_key reflecting_keys[] = {{"type", must}, {"reflectance", must}};
     constexpr scene_key mirror_keys[] = {{"type", must}, {"reflectance", may}};
     constexpr scene_key glass_keys[] = {{"type", must}, {"index_of_refraction", must}, {"transmittance", may}};
-    constexpr scene_key sphere_keys[] = {{"type", must}, {"center", must}, {"radius", must}, {"material", must}};
-    constexpr scene_key cylinder_keys[]
-        = {{"type", must}, {"base", must}, {"top", must}, {"radius", must}, {"material", must}};
-    constexpr scene_key cone_keys[]
-        = {{"type", must}, {"base", must}, {"apex", must}, {"radius", must}, {"material", must}};
-    constexpr scene_key paraboloid_keys[]
-        = {{"type", must}, {"vertex", must}, {"rim", must}, {"radius", must}, {"material", must}};
-    constexpr scene_key disk_keys[]
-        = {{"type", must}, {"center", must}, {"normal", must}, {"radius", must}, {"material", must}};
-    constexpr scene_key vertices_keys[] = {{"type", must}, {"vertices", must}, {"material", must}};
-    constexpr scene_key point_keys[] = {{"type", must}, {"name", may}, {"position", must}, {"power", must}};
-    constexpr scene_key rectangle_keys[]
-        = {{"type", must}, {"name", may}, {"corner", must}, {"edge_u", must}, {"edge_v", must}, {"power", must}};
     constexpr scene_key render_keys[] = {{"size", must}, {"photons", must}, {"k", must}, {"grid", must},
-        {"max_radius", must}, {"light_samples", may}, {"spp", may}, {"depth", may}, {"photon_depth", may},
-        {"seed", may}, {"map", may}, {"slots", may}, {"exposure", may}, {"search", may}, {"kernel", may}, {"bias", may},
-        {"leaks", may}, {"edge_correction", may}};
+        {"max_radius", must}, {"light_samples", may}, {"spp", may}, {"passes", may}, {"depth", may},
+        {"photon_depth", may}, {"seed", may}, {"map", may}, {"slots", may}, {"exposure", may}, {"search", may},
+        {"kernel", may}, {"bias", may}, {"leaks", may}, {"edge_correction", may}};
     constexpr scene_key leaks_keys[] = {{"side", may}, {"normals", may}, {"disc", may}};
-    constexpr object_keys objects[] = {{"scene", scene_keys}, {"units", units_keys}, {"camera", camera_keys},
-        {"lambertian", reflecting_keys}, {"mirror", mirror_keys}, {"metal", reflecting_keys}, {"glass", glass_keys},
-        {"sphere", sphere_keys}, {"cylinder", cylinder_keys}, {"cone", cone_keys}, {"paraboloid", paraboloid_keys},
-        {"disk", disk_keys}, {"triangle", vertices_keys}, {"polygon", vertices_keys}, {"point", point_keys},
-        {"rectangle", rectangle_keys}, {"render", render_keys}, {"leaks", leaks_keys}};
+    // The keys of shapes and lights are those of the tables in scene/ (shape_kind, light_kind).
+    template <class Kind>
+    std::vector<scene_key> keys_of(Kind kind, std::vector<scene_key> before, std::vector<scene_key> after)
+    {
+        for_each_field(kind.fields, [&](const auto& f) { before.push_back({f.name, must}); });
+        before.insert(before.end(), after.begin(), after.end());
+        return before;
+    }
+
+    /// In scene files a polygon of three vertices may be called this.
+    constexpr const char* triangle = "triangle";
+
+    /// The keys of each kind of shape, or of light, by the name of the kind.
+    struct kind_keys {
+        const char* name;
+        std::vector<scene_key> keys;
+    };
+    const std::vector<kind_keys>& shape_keys()
+    {
+        static const auto all = [] {
+            std::vector<kind_keys> kinds;
+            const scene none;
+            for_each_shape(none, [&](const auto& list, auto kind) {
+                const auto keys = keys_of(kind, {{"type", must}}, {{"material", must}});
+                if constexpr (std::is_same_v<std::decay_t<decltype(list)>, std::vector<polygon>>)
+                    kinds.push_back({triangle, keys});
+                kinds.push_back({kind.name, keys});
+            });
+            return kinds;
+        }();
+        return all;
+    }
+    const std::vector<kind_keys>& light_keys()
+    {
+        static const auto all = [] {
+            std::vector<kind_keys> kinds;
+            const scene none;
+            for_each_light(none, [&](const auto&, auto kind) {
+                kinds.push_back({kind.name, keys_of(kind, {{"type", must}, {"name", may}}, {})});
+            });
+            return kinds;
+        }();
+        return all;
+    }
+    std::vector<std::string> names_of(const std::vector<kind_keys>& kinds)
+    {
+        std::vector<std::string> names;
+        for (const auto& k : kinds)
+            names.emplace_back(k.name);
+        return names;
+    }
 
     // Beyond these, single precision (squares and cubes of lengths, photon power) is no longer safe.
     constexpr double max_length = 1e9, max_power = 1e15;
@@ -61,18 +94,18 @@ namespace {
 
     /// The length (m) that a part must not lack: its axis, its least edge, a polygon's extent. Radii are read with
     /// limits.
-    double extent(const cylinder& c) { return glm::length(c.top - c.base); }
-    double extent(const cone& c) { return glm::length(c.apex - c.base); }
-    double extent(const paraboloid& p) { return glm::length(p.rim - p.vertex); }
-    double extent(const polygon& p)
+    template <class Part>
+    double least_length(const Part& p)
     {
-        double largest = 0;
-        for (const auto& v : p.vertices)
-            largest = std::max(largest, glm::length(v - p.vertices[0]));
-        return largest;
+        if constexpr (requires { shape_kind<Part>::extent(p); })
+            return shape_kind<Part>::extent(p);
+        else if constexpr (requires { light_kind<Part>::extent(p); })
+            return light_kind<Part>::extent(p);
+        else if constexpr (std::is_same_v<Part, camera>)
+            return glm::length(p.look_at - p.position);
+        else
+            return min_length;
     }
-    double extent(const rectangle_light& l) { return std::min(glm::length(l.edge_u), glm::length(l.edge_v)); }
-    double extent(const camera& c) { return glm::length(c.look_at - c.position); }
 
     /// A unit: a value in it is value * multiply / divide in SI. Two whole numbers round better than 0.001 would.
     struct unit {
@@ -97,7 +130,7 @@ namespace {
             read_materials(at(root, "materials"));
             read_list(at(root, "shapes"), max_shapes, "shapes", [&](const json_value& v) { read_shape(v); });
             read_list(at(root, "lights"), max_lights, "lights", [&](const json_value& v) { read_light(v); });
-            if (scene_.point_lights.empty() && scene_.rectangle_lights.empty())
+            if (count_lights(scene_) == 0)
                 tree_.fail(at(root, "lights").place, "lights: the scene has none; expected at least one");
             read_render(at(root, "render"));
             return std::move(scene_);
@@ -125,7 +158,8 @@ namespace {
         {
             if (v.kind != json_kind::object)
                 wrong(v, "an object with the keys of \"" + std::string(kind) + "\"");
-            const auto keys = std::find_if(std::begin(objects), std::end(objects), [&](const object_keys& o) {
+            const auto objects = known_objects();
+            const auto keys = std::find_if(objects.begin(), objects.end(), [&](const object_keys& o) {
                 return o.name == kind;
             })->keys;
             for (const auto& m : v.items) {
@@ -184,10 +218,9 @@ namespace {
                 const auto* m = v.find(what.substr(0, what.find_first_of(":, ")));
                 tree_.fail(m ? m->place : v.place, std::string(what));
             }
-            if constexpr (requires { extent(part); })
-                if (extent(part) < min_length)
-                    tree_.fail(v.place,
-                        "its points or edges are less than 1e-9 m apart; expected a larger one (are the units right?)");
+            if (least_length(part) < min_length)
+                tree_.fail(v.place,
+                    "its points or edges are less than 1e-9 m apart; expected a larger one (are the units right?)");
         }
 
         // --- numbers ---
@@ -354,69 +387,65 @@ namespace {
             return found->second;
         }
 
-        template <class Shape>
-        void add(std::vector<Shape>& shapes, const json_value& v, Shape shape) const
+        /// Reads the member of `part` that `f` names. `most`: how many points a list may have.
+        template <class Part, class Field>
+        void read_field(const json_value& v, Part& part, const Field& f, std::size_t most) const
         {
-            shape.material = material_of(v);
-            checked(v, shape);
-            shapes.push_back(std::move(shape));
+            const auto& value = at(v, f.name);
+            if constexpr (requires { (part.*f.member).push_back({}); })
+                part.*f.member = points(value, most);
+            else if constexpr (std::is_same_v<std::decay_t<decltype(part.*f.member)>, double>)
+                part.*f.member = radius(value);
+            else
+                part.*f.member = f.what_it_says == quantity::direction ? direction(value)
+                    : f.what_it_says == quantity::power                ? power(value)
+                                                                       : point(value);
+        }
+
+        std::vector<dvec3> points(const json_value& list, std::size_t most) const
+        {
+            if (list.kind != json_kind::array || list.items.size() < 3 || list.items.size() > most)
+                wrong(
+                    list, most == 3 ? "an array of 3 points" : "an array of 3 to " + std::to_string(most) + " points");
+            std::vector<dvec3> all;
+            for (const auto& p : list.items)
+                all.push_back(point(p));
+            return all;
         }
 
         void read_shape(const json_value& v)
         {
-            const auto& type
-                = type_of(v, "shape", {"sphere", "cylinder", "cone", "paraboloid", "disk", "triangle", "polygon"});
+            const auto& type = type_of(v, "shape", names_of(shape_keys()));
             open(v, type);
-            const auto p = [&](const char* key) { return point(at(v, key)); };
-            const auto r = [&] { return radius(at(v, "radius")); };
-            if (type == "sphere")
-                add(scene_.spheres, v, {.center = p("center"), .radius = r()});
-            else if (type == "cylinder")
-                add(scene_.cylinders, v, {.base = p("base"), .top = p("top"), .radius = r()});
-            else if (type == "cone")
-                add(scene_.cones, v, {.base = p("base"), .apex = p("apex"), .radius = r()});
-            else if (type == "paraboloid")
-                add(scene_.paraboloids, v, {.vertex = p("vertex"), .rim = p("rim"), .radius = r()});
-            else if (type == "disk")
-                add(scene_.disks, v, {.center = p("center"), .normal = direction(at(v, "normal")), .radius = r()});
-            else
-                read_polygon(v, type == "triangle");
-        }
-
-        void read_polygon(const json_value& v, bool triangle)
-        {
-            const auto& list = at(v, "vertices");
-            if (list.kind != json_kind::array || list.items.size() < 3
-                || list.items.size() > (triangle ? 3 : max_vertices))
-                wrong(list,
-                    triangle ? "an array of 3 points" : "an array of 3 to " + std::to_string(max_vertices) + " points");
-            polygon p;
-            for (const auto& vertex : list.items)
-                p.vertices.push_back(point(vertex));
-            add(scene_.polygons, v, std::move(p));
+            for_each_shape(scene_, [&](auto& list, auto kind) {
+                using shape = typename std::decay_t<decltype(list)>::value_type;
+                const bool is_triangle = std::is_same_v<shape, polygon> && type == triangle;
+                if (type != kind.name && !is_triangle)
+                    return;
+                shape x;
+                for_each_field(
+                    kind.fields, [&](const auto& f) { read_field(v, x, f, is_triangle ? 3 : max_vertices); });
+                x.material = material_of(v);
+                checked(v, x);
+                list.push_back(std::move(x));
+            });
         }
 
         void read_light(const json_value& v)
         {
-            const auto& type = type_of(v, "light", {"point", "rectangle"});
+            const auto& type = type_of(v, "light", names_of(light_keys()));
             open(v, type);
             const auto* given = v.find("name");
-            const auto name = given
-                ? read_name(*given)
-                : "lights[" + std::to_string(scene_.point_lights.size() + scene_.rectangle_lights.size()) + "]";
-            if (type == "point") {
-                const point_light l{.name = name, .position = point(at(v, "position")), .power = power(at(v, "power"))};
+            const auto name = given ? read_name(*given) : "lights[" + std::to_string(count_lights(scene_)) + "]";
+            for_each_light(scene_, [&](auto& list, auto kind) {
+                if (type != kind.name)
+                    return;
+                typename std::decay_t<decltype(list)>::value_type l;
+                l.name = name;
+                for_each_field(kind.fields, [&](const auto& f) { read_field(v, l, f, max_vertices); });
                 checked(v, l);
-                scene_.point_lights.push_back(l);
-            } else {
-                const rectangle_light l{.name = name,
-                    .corner = point(at(v, "corner")),
-                    .edge_u = point(at(v, "edge_u")),
-                    .edge_v = point(at(v, "edge_v")),
-                    .power = power(at(v, "power"))};
-                checked(v, l);
-                scene_.rectangle_lights.push_back(l);
-            }
+                list.push_back(std::move(l));
+            });
         }
 
         /// Policies that are not named are off, those of the default too.
@@ -465,6 +494,7 @@ namespace {
             optional("k", r.k, 1, 1u << 24);
             optional("light_samples", r.light_samples, 1, 65536);
             optional("spp", r.spp, 1, 65536);
+            optional("passes", r.passes, 1, 65536);
             optional("depth", r.depth, 0, 64);
             optional("photon_depth", r.photon_depth, 1, 64);
             optional("seed", r.seed, 0, 0xFFFFFFFFu);
@@ -493,7 +523,19 @@ namespace {
     };
 } // namespace
 
-std::span<const object_keys> known_objects() { return objects; }
+std::span<const object_keys> known_objects()
+{
+    static const auto all = [] {
+        std::vector<object_keys> objects{{"scene", scene_keys}, {"units", units_keys}, {"camera", camera_keys},
+            {"lambertian", reflecting_keys}, {"mirror", mirror_keys}, {"metal", reflecting_keys}, {"glass", glass_keys},
+            {"render", render_keys}, {"leaks", leaks_keys}};
+        for (const auto* kinds : {&shape_keys(), &light_keys()})
+            for (const auto& k : *kinds)
+                objects.push_back({k.name, k.keys});
+        return objects;
+    }();
+    return all;
+}
 
 scene parse_scene(const std::string& file, std::string text)
 {

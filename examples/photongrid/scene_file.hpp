@@ -1,9 +1,9 @@
-// Scene files: JSON in, a checked photongrid::scene in SI units out. docs/scenes.md describes the format.
+// Scene files: JSON in, a checked photongrid::scene in SI units out. docs/guide/scenes.md describes the format.
 #pragma once
 
 #include "json_tree.hpp"
 
-#include <photongrid/scene.hpp>
+#include <photongrid/scene/scene.hpp>
 
 #include <span>
 #include <string>

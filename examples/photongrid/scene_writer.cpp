@@ -39,15 +39,25 @@ namespace {
     {
         return {{"size", {s.width, s.height}}, {"photons", s.photons}, {"k", s.k},
             {"grid", s.grid == glm::uvec3(0) ? json("auto") : json{s.grid.x, s.grid.y, s.grid.z}},
-            {"max_radius", s.max_radius}, {"light_samples", s.light_samples}, {"spp", s.spp}, {"depth", s.depth},
-            {"photon_depth", s.photon_depth}, {"seed", s.seed}, {"map", name_of(map_names, s.builder)},
-            {"slots", s.slots}, {"exposure", s.exposure}, {"search", name_of(search_names, s.search)},
-            {"kernel", name_of(kernel_names, s.kernel)}, {"bias", name_of(bias_names, s.bias)},
-            {"leaks", leaks_json(s.leaks)}, {"edge_correction", name_of(edge_names, s.edges)},
-            {"only", name_of(part_names, s.only)}};
+            {"max_radius", s.max_radius}, {"light_samples", s.light_samples}, {"spp", s.spp}, {"passes", s.passes},
+            {"depth", s.depth}, {"photon_depth", s.photon_depth}, {"seed", s.seed},
+            {"map", name_of(map_names, s.builder)}, {"slots", s.slots}, {"exposure", s.exposure},
+            {"search", name_of(search_names, s.search)}, {"kernel", name_of(kernel_names, s.kernel)},
+            {"bias", name_of(bias_names, s.bias)}, {"leaks", leaks_json(s.leaks)},
+            {"edge_correction", name_of(edge_names, s.edges)}, {"only", name_of(part_names, s.only)}};
     }
 
     json three(const dvec3& v) { return {v.x, v.y, v.z}; }
+
+    json written(double v) { return v; }
+    json written(const dvec3& v) { return three(v); }
+    json written(const std::vector<dvec3>& points)
+    {
+        json all = json::array();
+        for (const auto& p : points)
+            all.push_back(three(p));
+        return all;
+    }
 
     /// A name for each material, all different.
     std::vector<std::string> names_of(const std::vector<material>& materials)
@@ -91,34 +101,21 @@ std::string scene_text(const scene& s, const render_settings& settings)
     json materials = json::object(), shapes = json::array(), lights = json::array();
     for (std::size_t i = 0; i < names.size(); ++i)
         materials[names[i]] = material_json(s.materials[i]);
-    const auto add = [&](json shape, std::uint32_t material) {
-        shape["material"] = names.at(material);
-        shapes.push_back(std::move(shape));
+    const auto with_fields = [](json object, const auto& part, const auto& fields) {
+        for_each_field(fields, [&](const auto& f) { object[f.name] = written(part.*f.member); });
+        return object;
     };
-    for (const auto& x : s.spheres)
-        add({{"type", "sphere"}, {"center", three(x.center)}, {"radius", x.radius}}, x.material);
-    for (const auto& x : s.cylinders)
-        add({{"type", "cylinder"}, {"base", three(x.base)}, {"top", three(x.top)}, {"radius", x.radius}}, x.material);
-    for (const auto& x : s.cones)
-        add({{"type", "cone"}, {"base", three(x.base)}, {"apex", three(x.apex)}, {"radius", x.radius}}, x.material);
-    for (const auto& x : s.paraboloids)
-        add({{"type", "paraboloid"}, {"vertex", three(x.vertex)}, {"rim", three(x.rim)}, {"radius", x.radius}},
-            x.material);
-    for (const auto& x : s.disks)
-        add({{"type", "disk"}, {"center", three(x.center)}, {"normal", three(x.normal)}, {"radius", x.radius}},
-            x.material);
-    for (const auto& x : s.polygons) {
-        json vertices = json::array();
-        for (const auto& v : x.vertices)
-            vertices.push_back(three(v));
-        add({{"type", "polygon"}, {"vertices", std::move(vertices)}}, x.material);
-    }
-    for (const auto& x : s.point_lights)
-        lights.push_back(
-            {{"type", "point"}, {"name", x.name}, {"position", three(x.position)}, {"power", three(x.power)}});
-    for (const auto& x : s.rectangle_lights)
-        lights.push_back({{"type", "rectangle"}, {"name", x.name}, {"corner", three(x.corner)},
-            {"edge_u", three(x.edge_u)}, {"edge_v", three(x.edge_v)}, {"power", three(x.power)}});
+    for_each_shape(s, [&](const auto& list, auto kind) {
+        for (const auto& x : list) {
+            auto shape = with_fields({{"type", kind.name}}, x, kind.fields);
+            shape["material"] = names.at(x.material);
+            shapes.push_back(std::move(shape));
+        }
+    });
+    for_each_light(s, [&](const auto& list, auto kind) {
+        for (const auto& x : list)
+            lights.push_back(with_fields({{"type", kind.name}, {"name", x.name}}, x, kind.fields));
+    });
     for (auto& light : lights)
         if (light["name"] == "")
             light.erase("name");

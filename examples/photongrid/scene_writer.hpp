@@ -1,7 +1,7 @@
-// Scenes and settings as the text of scene files; docs/scenes.md describes the format.
+// Scenes and settings as the text of scene files; docs/guide/scenes.md describes the format.
 #pragma once
 
-#include <photongrid/scene.hpp>
+#include <photongrid/scene/scene.hpp>
 
 #include <string>
 

@@ -1,7 +1,7 @@
 // The words for settings: the same on the command line, in scene files and in statistics.
 #pragma once
 
-#include <photongrid/scene.hpp>
+#include <photongrid/scene/scene.hpp>
 
 #include <stdexcept>
 #include <string>

@@ -3,10 +3,10 @@
 
 #include "forest_kernels.hpp"
 
-#include <photongrid/build_map.hpp>
-#include <photongrid/knn_grid_estimate.hpp>
-#include <photongrid/knn_neighbours.hpp>
-#include <photongrid/own_photons.hpp>
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/estimate/knn_neighbours.hpp>
+#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/own_photons.hpp>
 
 #include <vector>
 

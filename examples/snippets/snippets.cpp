@@ -2,12 +2,14 @@
 #include "expect.hpp"
 
 #include <photongrid/backends/serial/serial.hpp>
-#include <photongrid/knn_neighbours.hpp>
-#include <photongrid/map_file.hpp>
-#include <photongrid/own_photons.hpp>
-#include <photongrid/progressive_render.hpp>
-#include <photongrid/reference.hpp>
-#include <photongrid/render.hpp>
+#include <photongrid/estimate/knn_neighbours.hpp>
+#include <photongrid/map/map_file.hpp>
+#include <photongrid/map/own_photons.hpp>
+#include <photongrid/photon_map.hpp>
+#include <photongrid/point_index.hpp>
+#include <photongrid/reference/reference.hpp>
+#include <photongrid/render/progressive_render.hpp>
+#include <photongrid/render/render.hpp>
 
 #include <algorithm>
 #include <array>
@@ -156,7 +158,7 @@ void maps(device_type& device)
     expect(ready.photons.size() == mine.size() && ready.invalid == 0, "fitted_map");
 }
 
-void estimates(device_type& device, const photongrid::photon_map<device_type>& map)
+void estimates(device_type& device, const photongrid::map_buffers<device_type>& map)
 {
     //! [upload_points]
     const std::vector<glm::vec3> places{{0, 0, 0}, {0.1f, 0, 0.2f}}; // m
@@ -208,7 +210,7 @@ void estimates(device_type& device, const photongrid::photon_map<device_type>& m
         "knn_neighbours");
 }
 
-void files(device_type& device, const photongrid::photon_map<device_type>& map)
+void files(device_type& device, const photongrid::map_buffers<device_type>& map)
 {
     const std::filesystem::path file = std::filesystem::temp_directory_path()
         / ("photongrid-snippets-" + std::to_string(std::random_device()()) + ".map");
@@ -241,7 +243,7 @@ void edges(device_type& device)
     const photongrid::scene room = a_corner();
     //! [upload_scene]
     const auto scene = photongrid::upload_scene(device, room);
-    const glm::vec3 center(scene.about.center); // the origin on the device, m: photons and points are relative to it
+    const glm::vec3 center(scene.layout.center); // the origin on the device, m: photons and points are relative to it
     //! [upload_scene]
     auto mine = photons_on_a_square();
     for (auto& p : mine)
@@ -329,12 +331,39 @@ void pictures(device_type& device)
     expect(error.x > 0 && std::abs(value.x - picture.pixels[7 * 16 + 8].x) < 0.2f * value.x, "render_reference");
 }
 
+void host_maps(device_type& device)
+{
+    const std::vector<glm::vec3> places{{0, 0, 0}, {0.2f, 0, -0.1f}};
+    {
+        const auto photons = photons_on_a_square();
+        //! [photon_map]
+        const photongrid::photon_map map(device, photons, {.k = 400});
+        for (const auto& e : map.irradiance(places, {.standard_error = true}))
+            std::cout << e.value.r << " +- " << e.error.r << " W/m^2 within " << e.radius << " m\n";
+        photongrid::query_scratch scratch; // of this thread
+        const auto here = map.irradiance(glm::vec3(0.1f, 0, 0.1f), glm::vec3(0, 1, 0), scratch);
+        //! [photon_map]
+        expect(is_near(here.value.r, 1, 0.1), "photon_map");
+    }
+    {
+        const std::vector<glm::dvec3> points{{500000, 5400000, 300}, {500000.1, 5400000, 300}, {500001, 5400000, 300}};
+        //! [point_index]
+        const photongrid::point_index index(device, points);
+        const auto nearest = index.nearest(points, 2); // of every point: itself, and the next one
+        for (const auto& n : nearest[0])
+            std::cout << "point " << n.id << " at " << std::sqrt(n.distance2) << " m\n";
+        //! [point_index]
+        expect(nearest[0].size() == 2 && nearest[0][1].id == 1, "point_index");
+    }
+}
+
 } // namespace
 
 int main()
 try {
     buffers();
     device_type device;
+    host_maps(device);
     algorithms(device);
     maps(device);
     const auto map = photongrid::fitted_map(device, photongrid::upload_photons(device, photons_on_a_square()), 50);

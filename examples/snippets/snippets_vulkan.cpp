@@ -2,7 +2,7 @@
 #include "expect.hpp"
 
 #include <photongrid/backends/vulkan/vulkan.hpp>
-#include <photongrid/prefix_sums.hpp>
+#include <photongrid/map/prefix_sums.hpp>
 
 #include <iostream>
 

@@ -1,96 +1,173 @@
-// What a photon map is: photons cell by cell, a uniform grid over them, and where each cell's photons begin. Sorting
-// (2.2.1) and stencil routing (2.2.2) both end in this form, so one estimate serves both. Cells follow each other
-// without gaps, x fastest, so the photons of a row of neighbouring cells are one range.
+// A photon map as a host sees it: photons of the host's in, irradiance out.
+//
+//     const photongrid::photon_map map(device, photons, {.k = 400});
+//     for (const auto& e : map.irradiance(places, {.standard_error = true}))
+//         use(e.value, e.error, e.radius, e.count);
+//
+// Buffers, kernels and searches that can be interrupted lie underneath: map/, estimate/.
 #pragma once
 
-#include <photongrid/backend.hpp>
-#include <photongrid/kernels.hpp>
+#include <photongrid/estimate/host_search.hpp>
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/vector_view.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <string>
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
 
-/// Photons in buffers of backend B, one element each, all of the same length.
-template <backend B>
-struct photons {
-    buffer_of<B, glm::vec4> positions;    ///< xyz, m; w: 1 for caustic photons, else 0
-    buffer_of<B, glm::vec4> powers;       ///< rgb flux, W
-    buffer_of<B, glm::vec4> directions{}; ///< xyz: unit vector of travel; empty where nobody asks for it
-    buffer_of<B, glm::vec4> normals{}; ///< xyz: unit normal of the surface they are on; empty where nobody asks for it
-
-    /// Photons.
-    uint size() const { return static_cast<uint>(positions.size()); }
+/// What is wanted of irradiance.
+struct irradiance_options {
+    bool standard_error = false; ///< also how far off the values are likely to be
 };
 
-// Parts of the light that a map may be made of, as bits.
-inline constexpr uint other_part = 1u;   ///< photons with 0 in the w of their position
-inline constexpr uint caustic_part = 2u; ///< photons with 1 there: the tracer's caustic photons
-inline constexpr uint every_part = 3u;   ///< both
-
-/// A uniform grid: origin, cell edges (m) and resolution, as kernels read it.
-using grid = kernels::Grid;
-
-/// A grid of `resolution` cells over the box from `low` to `high` (m). An axis without extent gets a thin one, so that
-/// planar photons need no special care. Points outside belong to the border cells.
-/// \throws std::invalid_argument for a resolution of 0, more than 2^31 cells, or a box that is not finite.
-/// \snippet snippets.cpp make_grid
-inline grid make_grid(glm::vec3 low, glm::vec3 high, glm::uvec3 resolution)
-{
-    const auto cells = std::uint64_t{resolution.x} * resolution.y * resolution.z;
-    if (resolution.x < 1 || resolution.y < 1 || resolution.z < 1
-        || std::uint64_t{resolution.x} * resolution.y > (1u << 31) || cells > (1u << 31))
-        throw std::invalid_argument("make_grid: resolution: " + std::to_string(resolution.x) + " x "
-            + std::to_string(resolution.y) + " x " + std::to_string(resolution.z)
-            + " cells; each axis needs at least 1, all together at most 2^31");
-    grid g{};
-    g.resolution = glm::uvec4(resolution, static_cast<uint>(cells));
-    const float scale = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x), std::abs(high.y),
-        std::abs(high.z), high.x - low.x, high.y - low.y, high.z - low.z});
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!std::isfinite(low[axis]) || !std::isfinite(high[axis]) || !std::isfinite(high[axis] - low[axis])
-            || high[axis] < low[axis])
-            throw std::invalid_argument("make_grid: low, high: axis " + std::to_string(axis) + " goes from "
-                + std::to_string(low[axis]) + " to " + std::to_string(high[axis])
-                + "; both must be finite and the first not larger");
-        const float extent = std::max({high[axis] - low[axis], 1e-6f * scale, 1e-30f});
-        g.origin[axis] = low[axis];
-        g.cell[axis] = extent / static_cast<float>(resolution[axis]);
-        g.inverse_cell[axis] = static_cast<float>(resolution[axis]) / extent;
+/// Photons, found again by where they are. It remembers how it is searched.
+///
+/// Searches for many places run on the device, which must still be there; one thread at a time may use it. Searches for
+/// one place are const work of the calling thread on a copy of the map in the host's memory (see host_search): any
+/// number of threads may run them at once.
+///
+/// Doubles are measured from the middle of the photons, so that places 10^6 m from 0 and 0.1 m apart are told apart.
+/// Distances are in single precision.
+/// \snippet snippets.cpp photon_map
+template <backend B>
+class photon_map {
+public:
+    /// Photons of the host's, any contiguous range that photon_reader reads; `search` says how they are searched. The
+    /// grid is fitted to them.
+    /// \throws std::invalid_argument for settings that make no sense, backend_error where the device has no room.
+    template <std::ranges::contiguous_range Range>
+    requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_t<Range>> photon_map(
+        B& device, const Range& photons, const knn_settings& search = {})
+        : photon_map(device, detail::attributes_of(photons), search)
+    {
     }
-    return g;
-}
+    /// Photons whose attributes are apart: {.positions = p, .powers = w}.
+    photon_map(B& device, const photon_attributes& photons, const knn_settings& search = {})
+        : device_(&device), origin_(detail::origin_of(photons.positions)),
+          map_(fitted_map(device, uploaded(device, photons, origin_), std::max(search.k, 1u))),
+          host_(device, map_, search, true)
+    {
+    }
 
-/// How many cells `g` has.
-inline uint cell_count(const grid& g) { return g.resolution.w; }
+    /// Photons that it was made from.
+    uint size() const { return map_.photons.size(); }
+    /// How it is searched.
+    const knn_settings& search() const { return host_.settings(); }
+    /// The map on the device.
+    const map_buffers<B>& buffers() const& { return map_; }
+    const map_buffers<B>& buffers() const&& = delete;
+    /// What positions on the device are measured from.
+    const glm::dvec3& origin() const { return origin_; }
 
-/// A photon map: see the top of this file. Cell c's photons are elements cells[c].x and the next cells[c].y of every
-/// buffer of `photons` and of `list`; past the last cell's stand those that are in no cell.
-template <backend B>
-struct photon_map {
-    grid cells_of{};                ///< the grid that the cells are of
-    photongrid::photons<B> photons; ///< cell by cell
-    buffer_of<B, glm::uvec2> cells; ///< x: first, y: count
-    buffer_of<B, uint> list; ///< ids: which of the photons that the map was made from stands here; 0xFFFFFFFF: none
-    uint invalid = 0;        ///< photons in no cell: NaN or infinite
-    uint left_out = 0;       ///< photons in no cell: of a part of the light that was not wanted
-    uint overfull_cells = 0; ///< cells for which more photons were destined than they have slots (routed)
-    buffer_of<B, glm::vec4>
-        surpluses; ///< routed: per cell, w: flux of photons not kept, W, given to the kept; empty when sorted
+    /// Irradiance at many places, in their order.
+    /// \throws backend_error where the device has no room.
+    [[nodiscard]] std::vector<irradiance_at_point> irradiance(
+        const vector_view& places, const irradiance_options& options = {}) const
+    {
+        return searched(places, nullptr, options);
+    }
+    /// With the unit normal of the surface at each place, which leak policies need.
+    [[nodiscard]] std::vector<irradiance_at_point> irradiance(
+        const vector_view& places, const vector_view& normals, const irradiance_options& options = {}) const
+    {
+        return searched(places, &normals, options);
+    }
+    /// Irradiance at one place, with its standard error. From any thread, each with a scratch of its own.
+    /// \throws std::invalid_argument where the search is at_least_k.
+    template <detail::vector_like V, detail::vector_like N>
+    [[nodiscard]] irradiance_at_point irradiance(const V& place, const N& normal, query_scratch& scratch) const
+    {
+        return host_.irradiance(local(place), detail::to_vec3(normal), scratch);
+    }
+
+    /// Calls f(photon_id, float distance2) for every photon within `radius`, m, in no particular order. From any
+    /// thread.
+    template <detail::vector_like V, class F>
+    void for_each_within(const V& place, float radius, const F& f) const
+    {
+        host_.for_each_within(local(place), radius, f);
+    }
+    /// The same for the k nearest, nearest first; of equally near ones, the smallest id first. From any thread.
+    template <detail::vector_like V, class F>
+    void for_each_nearest(const V& place, uint k, query_scratch& scratch, const F& f) const
+    {
+        host_.for_each_nearest(local(place), k, std::numeric_limits<float>::infinity(), scratch, f);
+    }
+    /// With a scratch that each thread keeps.
+    template <detail::vector_like V, class F>
+    void for_each_nearest(const V& place, uint k, const F& f) const
+    {
+        thread_local query_scratch scratch;
+        for_each_nearest(place, k, scratch, f);
+    }
+
+private:
+    static photons<B> uploaded(B& b, const photon_attributes& a, const glm::dvec3& origin)
+    {
+        const auto check = [&](const char* name, std::size_t n, bool may_lack) {
+            if (n != a.positions.size() && !(may_lack && n == 0))
+                throw std::invalid_argument(std::string("photon_map: ") + name + ": " + std::to_string(n)
+                    + " elements for " + std::to_string(a.positions.size()) + " photons; each needs one");
+        };
+        check("powers", a.powers.size(), false);
+        check("directions", a.directions.size(), true);
+        check("normals", a.normals.size(), true);
+        if (a.positions.size() > std::numeric_limits<uint>::max())
+            throw std::invalid_argument(
+                "photon_map: photons: " + std::to_string(a.positions.size()) + " are more than 2^32 - 1");
+        const glm::dvec3 zero(0);
+        return {detail::upload_view(b, a.positions, origin, 0.0f), detail::upload_view(b, a.powers, zero, 0.0f),
+            detail::upload_view(b, a.directions, zero, 0.0f), detail::upload_view(b, a.normals, zero, 0.0f)};
+    }
+
+    template <class V>
+    glm::vec3 local(const V& place) const
+    {
+        return glm::vec3(detail::to_dvec3(place) - origin_);
+    }
+
+    std::vector<irradiance_at_point> searched(
+        const vector_view& places, const vector_view* normals, const irradiance_options& options) const
+    {
+        B& b = *device_;
+        auto s = search();
+        s.errors = options.standard_error;
+        const auto points = detail::upload_view(b, places, origin_, 1.0f);
+        const auto estimates = [&] {
+            if (normals == nullptr)
+                return knn_grid_estimate(b, map_, points, s);
+            const auto on = detail::upload_view(b, *normals, glm::dvec3(0), 0.0f);
+            return knn_grid_estimate(b, map_, points, on, s);
+        }();
+        const auto values = b.download(estimates.irradiance), errors = b.download(estimates.standard_error);
+        const auto used = b.download(estimates.used);
+        std::vector<irradiance_at_point> all(values.size());
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            all[i] = {.value = glm::vec3(values[i]), .radius = std::sqrt(values[i].w), .count = used[i].x};
+            if (options.standard_error) {
+                all[i].error = glm::vec3(errors[i]);
+                all[i].error_of_sum = errors[i].w;
+            }
+        }
+        return all;
+    }
+
+    B* device_;
+    glm::dvec3 origin_;
+    map_buffers<B> map_;
+    host_search host_;
 };
 
-/// Flux (W, all channels together) that stencil routing took from photons it could not keep and gave to the others of
-/// their cells; 0 for a sorted map (2.2.2). Reads the surpluses back.
-/// \throws backend_error when the device fails.
-/// \snippet snippets.cpp redistributed_flux
+template <backend B, class Range>
+photon_map(B&, const Range&, const knn_settings&) -> photon_map<B>;
+template <backend B, class Range>
+photon_map(B&, const Range&) -> photon_map<B>;
 template <backend B>
-double redistributed_flux(B& b, const photon_map<B>& map)
-{
-    double sum = 0;
-    for (const auto& s : b.download(map.surpluses))
-        sum += static_cast<double>(s.w);
-    return sum;
-}
+photon_map(B&, const photon_attributes&, const knn_settings&) -> photon_map<B>;
+template <backend B>
+photon_map(B&, const photon_attributes&) -> photon_map<B>;
 
 } // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

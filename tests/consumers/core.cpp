@@ -1,6 +1,6 @@
 // A user of the core headers alone, without a backend: the radiance of a white floor under a point light.
-#include <photongrid/reference.hpp>
-#include <photongrid/render.hpp> // for its warnings
+#include <photongrid/reference/reference.hpp>
+#include <photongrid/render/render.hpp> // for its warnings
 #include <photongrid/version.hpp>
 
 #include <cmath>

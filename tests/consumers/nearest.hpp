@@ -1,9 +1,9 @@
 // A user's program on any backend: a photon map of the user's own photons, and an estimate of the light at a point.
 #pragma once
 
-#include <photongrid/build_map.hpp>
-#include <photongrid/knn_grid_estimate.hpp>
-#include <photongrid/own_photons.hpp>
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/own_photons.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ inline constexpr glm::vec4 point{0.45f, 0.55f, 0.4f, 1.0f};
 inline constexpr photongrid::uint k = 8;
 
 template <photongrid::backend B>
-photongrid::photon_map<B> make_map(B& device)
+photongrid::map_buffers<B> make_map(B& device)
 {
     return photongrid::sorted_map(device, photongrid::upload_photons(device, photons()),
         photongrid::make_grid(glm::vec3(0), glm::vec3(1), {10, 10, 10}));
@@ -39,7 +39,7 @@ photongrid::photon_map<B> make_map(B& device)
 
 /// Irradiance at the point from the k nearest photons, W/m^2; w: squared distance of the k-th, m^2.
 template <photongrid::backend B>
-glm::vec4 estimate(B& device, const photongrid::photon_map<B>& map)
+glm::vec4 estimate(B& device, const photongrid::map_buffers<B>& map)
 {
     const auto points = device.upload(std::span(&point, 1));
     return device.download(

@@ -1,5 +1,4 @@
 #include <photongrid/backends/cpu/cpu.hpp>
-#include <photongrid/backends/cpu/overrides/all.hpp>
 
 #include "nearest.hpp"
 

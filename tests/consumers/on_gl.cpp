@@ -1,5 +1,4 @@
 #include <photongrid/backends/gl/gl.hpp>
-#include <photongrid/backends/gl/overrides/all.hpp>
 
 #include "nearest.hpp"
 

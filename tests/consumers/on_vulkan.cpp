@@ -1,4 +1,3 @@
-#include <photongrid/backends/vulkan/overrides/all.hpp>
 #include <photongrid/backends/vulkan/vulkan.hpp>
 
 #include "nearest.hpp"

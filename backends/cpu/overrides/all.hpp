@@ -1,9 +1,4 @@
-// Everything that the cpu backend does faster than by kernels. Include it before the algorithms are used with a
-// cpu_backend.
+// What cpu.hpp includes anyway; kept for programs that name this file.
 #pragma once
 
-#include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>
-#include <photongrid/backends/cpu/overrides/grid_index.hpp>
-#include <photongrid/backends/cpu/overrides/knn_grid_estimate.hpp>
-#include <photongrid/backends/cpu/overrides/knn_neighbours.hpp>
-#include <photongrid/backends/cpu/overrides/sorted_map.hpp>
+#include <photongrid/backends/cpu/cpu.hpp>

@@ -1,14 +1,20 @@
 // The cpu backend's way to do what bitonic_sort does: a radix sort.
 #pragma once
 
-#include <photongrid/backends/cpu/cpu.hpp>
+#include <photongrid/backends/cpu/cpu_backend.hpp>
 #include <photongrid/backends/cpu/overrides/radix_sort.hpp>
-#include <photongrid/bitonic_sort.hpp>
+#include <photongrid/map/bitonic_sort.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
 
 /// Same pairs in the same order as the generic bitonic_sort. `steps` is the network's, `passes` is the radix sort's.
-inline sort_report bitonic_sort(cpu_backend& b, cpu_backend::buffer<glm::uvec2>& pairs)
+#if !defined(PHOTONGRID_CPU_COMPILED)
+inline
+#endif
+    sort_report
+    bitonic_sort(cpu_backend& b, cpu_backend::buffer<glm::uvec2>& pairs)
 {
     const std::size_t n = pairs.size();
     sort_report report;
@@ -27,3 +33,5 @@ inline sort_report bitonic_sort(cpu_backend& b, cpu_backend::buffer<glm::uvec2>&
 }
 
 } // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

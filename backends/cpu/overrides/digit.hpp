@@ -1,9 +1,11 @@
 // A digit of a pair's key or value, as radix_sort.hpp takes one after the other.
 #pragma once
 
-#include <photongrid/kernel.hpp>
+#include <photongrid/backend/kernel.hpp>
 
 #include <algorithm>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid::cpu {
 
@@ -20,3 +22,5 @@ struct digit {
 inline constexpr std::size_t pairs_a_line = 8; ///< of 8 bytes, in a cache line of 64
 
 } // namespace photongrid::cpu
+
+#include <photongrid/backend/exact_end.hpp>

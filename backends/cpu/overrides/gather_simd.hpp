@@ -3,6 +3,10 @@
 //
 // Sums have 16 lanes whatever a register's width, so that results are the same to the bit on every machine.
 #include <photongrid/backends/cpu/overrides/packet_simd.hpp>
+#include <photongrid/estimate/irradiance_estimate.kernel.hpp>
+#include <photongrid/map/grid.kernel.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
@@ -213,3 +217,5 @@ inline void finish(const search_job& j, uint point, chosen_radius r, const gathe
 
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,14 +1,19 @@
 // The cpu backend's way to find where cells begin: one walk over the sorted pairs.
 #pragma once
 
-#include <photongrid/backends/cpu/cpu.hpp>
-#include <photongrid/grid_index.hpp>
+#include <photongrid/backends/cpu/cpu_backend.hpp>
+#include <photongrid/map/grid_index.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
 
 /// Same cells as the generic grid_index.
-inline cpu_backend::buffer<glm::uvec2> grid_index(
-    cpu_backend& b, const cpu_backend::buffer<glm::uvec2>& pairs, uint cells)
+#if !defined(PHOTONGRID_CPU_COMPILED)
+inline
+#endif
+    cpu_backend::buffer<glm::uvec2>
+    grid_index(cpu_backend& b, const cpu_backend::buffer<glm::uvec2>& pairs, uint cells)
 {
     const cpu_backend::stopwatch watch;
     auto index = b.make<glm::uvec2>(cells);
@@ -38,3 +43,5 @@ inline cpu_backend::buffer<glm::uvec2> grid_index(
 }
 
 } // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -5,8 +5,11 @@
 // all within the maximum radius are; the one that makes k sets the radius, and from then on all within that are. So
 // only the register in which the k-th is found has to be looked at photon by photon.
 #include <photongrid/backends/cpu/overrides/gather_simd.hpp>
+#include <photongrid/map/grid.kernel.hpp>
 
 #include <bit>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
@@ -281,3 +284,5 @@ HWY_NOINLINE void grow_points(const search_job& j, std::size_t begin, std::size_
 
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+
+#include <photongrid/backend/exact_end.hpp>

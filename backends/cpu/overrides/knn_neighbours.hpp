@@ -2,7 +2,9 @@
 #pragma once
 
 #include <photongrid/backends/cpu/overrides/search.hpp>
-#include <photongrid/knn_neighbours.hpp>
+#include <photongrid/estimate/knn_neighbours.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -24,17 +26,27 @@ namespace cpu {
     }
 } // namespace cpu
 
-inline neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& b, const photon_map<cpu_backend>& map,
-    const cpu::buffer<glm::vec4>& points, const knn_settings& settings)
+#if !defined(PHOTONGRID_CPU_COMPILED)
+inline
+#endif
+    neighbour_lists<cpu_backend>
+    knn_neighbours(cpu_backend& b, const map_buffers<cpu_backend>& map, const cpu::buffer<glm::vec4>& points,
+        const knn_settings& settings)
 {
     detail::check_lists(settings, points.size(), b.caps().max_elements);
     return cpu::list_neighbours(detail::search_inputs<cpu_backend>(b, map, points, nullptr, settings));
 }
-inline neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& b, const photon_map<cpu_backend>& map,
-    const cpu::buffer<glm::vec4>& points, const cpu::buffer<glm::vec4>& normals, const knn_settings& settings)
+#if !defined(PHOTONGRID_CPU_COMPILED)
+inline
+#endif
+    neighbour_lists<cpu_backend>
+    knn_neighbours(cpu_backend& b, const map_buffers<cpu_backend>& map, const cpu::buffer<glm::vec4>& points,
+        const cpu::buffer<glm::vec4>& normals, const knn_settings& settings)
 {
     detail::check_lists(settings, points.size(), b.caps().max_elements);
     return cpu::list_neighbours(detail::search_inputs<cpu_backend>(b, map, points, &normals, settings));
 }
 
 } // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <photongrid/backends/cpu/buffer.hpp>
-#include <photongrid/photon_map.hpp>
+#include <photongrid/map/map_buffers.hpp>
 
 #include <algorithm>
 #include <vector>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid::cpu {
 
@@ -49,3 +51,5 @@ struct bucket_scratch {
 };
 
 } // namespace photongrid::cpu
+
+#include <photongrid/backend/exact_end.hpp>

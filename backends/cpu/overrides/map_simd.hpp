@@ -8,6 +8,9 @@
 #include <hwy/highway.h>
 
 #include <photongrid/backends/cpu/overrides/map_job.hpp>
+#include <photongrid/map/grid.kernel.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
@@ -182,3 +185,5 @@ inline void order_bucket(map_job j, uint bucket, std::size_t begin, std::size_t 
 
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+
+#include <photongrid/backend/exact_end.hpp>

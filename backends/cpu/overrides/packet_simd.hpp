@@ -5,11 +5,14 @@
 
 #include <photongrid/backends/cpu/overrides/compress_table.hpp>
 #include <photongrid/backends/cpu/overrides/search_job.hpp>
+#include <photongrid/map/grid.kernel.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
@@ -336,3 +339,5 @@ private:
 
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+
+#include <photongrid/backend/exact_end.hpp>

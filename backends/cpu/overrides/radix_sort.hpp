@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include <photongrid/backend/exact_begin.hpp>
+
 namespace photongrid::cpu {
 
 /// What a sort did.
@@ -216,3 +218,5 @@ inline radix_report radix_sort(pool& threads, glm::uvec2* pairs, glm::uvec2* scr
 }
 
 } // namespace photongrid::cpu
+
+#include <photongrid/backend/exact_end.hpp>

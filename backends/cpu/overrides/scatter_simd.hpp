@@ -5,6 +5,8 @@
 
 #include <photongrid/backends/cpu/overrides/digit.hpp>
 
+#include <photongrid/backend/exact_begin.hpp>
+
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -56,3 +58,5 @@ inline void scatter_pairs(const digit& by, const glm::uvec2* from, std::size_t f
 
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+
+#include <photongrid/backend/exact_end.hpp>

@@ -2,10 +2,12 @@
 // code.
 #pragma once
 
-#include <photongrid/backends/cpu/cpu.hpp>
+#include <photongrid/backends/cpu/cpu_backend.hpp>
 #include <photongrid/backends/cpu/overrides/radix_sort.hpp>
 #include <photongrid/backends/cpu/overrides/simd.hpp>
-#include <photongrid/knn_settings.hpp>
+#include <photongrid/estimate/knn_settings.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid::cpu {
 
@@ -84,3 +86,5 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
 }
 
 } // namespace photongrid::cpu
+
+#include <photongrid/backend/exact_end.hpp>

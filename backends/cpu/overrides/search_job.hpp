@@ -2,10 +2,12 @@
 #pragma once
 
 #include <photongrid/backends/cpu/buffer.hpp>
-#include <photongrid/estimate_settings.hpp>
-#include <photongrid/photon_map.hpp>
+#include <photongrid/estimate/estimate_settings.hpp>
+#include <photongrid/map/map_buffers.hpp>
 
 #include <span>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid::cpu {
 
@@ -42,3 +44,5 @@ struct search_job {
 };
 
 } // namespace photongrid::cpu
+
+#include <photongrid/backend/exact_end.hpp>

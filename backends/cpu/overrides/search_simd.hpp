@@ -10,8 +10,11 @@
 // selected among these few. The counts prove the result; where they say that it lies elsewhere, the scan is repeated
 // without the band, and where the packet does not reach far enough, a new one is made.
 #include <photongrid/backends/cpu/overrides/grow_simd.hpp>
+#include <photongrid/estimate/kth_guess.kernel.hpp>
 
 #include <bit>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
@@ -100,7 +103,7 @@ inline void end_list(const search_job& j, uint point, std::size_t held)
 
 /// Lists the photons within the radius, nearest first, by the distances that scan() wrote. `keys` is scratch. Not
 /// inlined: sorting would take registers from the search for estimates.
-HWY_NOINLINE void list(
+HWY_NOINLINE inline void list(
     const search_job& j, uint point, chosen_radius r, const packet& near, std::vector<std::uint64_t>& keys)
 {
     const floats d;
@@ -296,3 +299,5 @@ inline void search_block(const search_job& j, std::size_t begin, std::size_t end
 
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+
+#include <photongrid/backend/exact_end.hpp>

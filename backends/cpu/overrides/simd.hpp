@@ -8,6 +8,11 @@
 #define HWY_WANT_AVX3_DL
 #define PHOTONGRID_WANTS_AVX3_DL
 #endif
+// Highway reads one file's vector code for every instruction set, once.
+#if defined(HIGHWAY_HWY_FOREACH_TARGET_H_)
+#error                                                                                                                 \
+    "photongrid: vector code of your own precedes <photongrid/backends/cpu/cpu.hpp>; link photongrid::cpu_compiled, or include cpu.hpp in another file"
+#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "photongrid/backends/cpu/overrides/for_each_target.hpp"
 #include <hwy/foreach_target.h>

@@ -5,7 +5,9 @@
 #include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>
 #include <photongrid/backends/cpu/overrides/grid_index.hpp>
 #include <photongrid/backends/cpu/overrides/simd.hpp>
-#include <photongrid/build_map.hpp>
+#include <photongrid/map/build_map.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -35,8 +37,11 @@ namespace cpu {
 } // namespace cpu
 
 /// Same map as the generic sorted_map, which also builds those of 2^27 cells and more. Scratch: 44 bytes a photon.
-inline photon_map<cpu_backend> sorted_map(
-    cpu_backend& b, photons<cpu_backend> p, const grid& g, uint parts = every_part)
+#if !defined(PHOTONGRID_CPU_COMPILED)
+inline
+#endif
+    map_buffers<cpu_backend>
+    sorted_map(cpu_backend& b, photons<cpu_backend> p, const grid& g, uint parts)
 {
     const uint n = p.size();
     cpu::map_job j;
@@ -52,7 +57,7 @@ inline photon_map<cpu_backend> sorted_map(
         return sorted_map<cpu_backend>(b, std::move(p), g, parts);
 
     const cpu_backend::stopwatch watch;
-    photon_map<cpu_backend> map;
+    map_buffers<cpu_backend> map;
     map.cells_of = g;
     map.cells = b.make<glm::uvec2>(j.cells);
     map.list = b.make<uint>(n);
@@ -116,3 +121,5 @@ inline photon_map<cpu_backend> sorted_map(
 }
 
 } // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,5 +1,4 @@
-// Everything that the OpenGL backend does faster than by the generic algorithms. Include it before these are used with
-// a gl_backend.
+// What gl.hpp includes anyway; kept for programs that name this file.
 #pragma once
 
-#include <photongrid/backends/gl/overrides/bitonic_sort.hpp>
+#include <photongrid/backends/gl/gl.hpp>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <photongrid/backends/gl/gl.hpp>
-#include <photongrid/bitonic_sort.hpp>
+#include <photongrid/map/bitonic_sort.hpp>
 
-#include <photongrid/kernels/begin.hpp>
+#include <photongrid/backend/begin.hpp>
 namespace photongrid::gl::kernels {
 
 using namespace glm; // kernels are GLSL: its names are GLM's
@@ -22,7 +22,7 @@ struct unpack_pairs {
 };
 
 } // namespace photongrid::gl::kernels
-#include <photongrid/kernels/end.hpp>
+#include <photongrid/backend/end.hpp>
 
 namespace photongrid {
 

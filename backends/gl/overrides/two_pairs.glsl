@@ -1,12 +1,12 @@
 // A texel of two (key, value) pairs, for a sorting network.
 
-bool is_less(uvec2 a, uvec2 b)
+inline bool is_less(uvec2 a, uvec2 b)
 {
     return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
 
 // What stays here of a comparison with the partner's pairs: the smaller of each two, or the larger.
-uvec4 kept_of(uvec4 mine, uvec4 partner, bool smaller)
+inline uvec4 kept_of(uvec4 mine, uvec4 partner, bool smaller)
 {
     bool first = is_less(uvec2(mine.x, mine.y), uvec2(partner.x, partner.y)) == smaller;
     bool second = is_less(uvec2(mine.z, mine.w), uvec2(partner.z, partner.w)) == smaller;
@@ -14,7 +14,7 @@ uvec4 kept_of(uvec4 mine, uvec4 partner, bool smaller)
 }
 
 // The step of stride 1: within the texel.
-uvec4 in_order(uvec4 t, bool rising)
+inline uvec4 in_order(uvec4 t, bool rising)
 {
     bool stays = is_less(uvec2(t.x, t.y), uvec2(t.z, t.w)) == rising;
     return stays ? t : uvec4(t.z, t.w, t.x, t.y);

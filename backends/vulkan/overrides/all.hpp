@@ -1,6 +1,4 @@
-// Everything that the Vulkan backend does faster than by kernels. Include it before the algorithms are used with a
-// vulkan_backend.
+// What vulkan.hpp includes anyway; kept for programs that name this file.
 #pragma once
 
-#include <photongrid/backends/vulkan/overrides/bitonic_sort.hpp>
-#include <photongrid/backends/vulkan/overrides/trace_batch.hpp>
+#include <photongrid/backends/vulkan/vulkan.hpp>

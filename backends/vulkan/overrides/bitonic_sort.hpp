@@ -2,7 +2,8 @@
 #pragma once
 
 #include <photongrid/backends/vulkan/vulkan.hpp>
-#include <photongrid/bitonic_sort.hpp>
+#include <photongrid/map/bitonic_sort.hpp>
+#include <photongrid/map/pad_pairs.kernel.hpp>
 
 namespace photongrid {
 

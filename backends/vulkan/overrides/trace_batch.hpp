@@ -2,7 +2,10 @@
 #pragma once
 
 #include <photongrid/backends/vulkan/vulkan.hpp>
-#include <photongrid/trace_photons.hpp>
+#include <photongrid/trace/bounce_photon.kernel.hpp>
+#include <photongrid/trace/emit_photon.kernel.hpp>
+#include <photongrid/trace/photon_event.kernel.hpp>
+#include <photongrid/trace/trace_photons.hpp>
 
 namespace photongrid {
 
@@ -11,10 +14,9 @@ namespace photongrid {
 inline uint trace_batch(vulkan_backend& b, const device_scene<vulkan_backend>& s,
     detail::photon_frames<vulkan_backend>& f, uint paths, uint first, const render_settings& settings)
 {
-    const auto& about = s.about;
-    b.run<kernels::emit_photon>({paths, 0u, about.features},
-        {.scene_layout = about.layout, .first_path = first, .seed = settings.seed}, reads(s.records),
-        writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
+    const auto& layout = s.layout;
+    b.run<kernels::emit_photon>({paths, 0u, layout.features}, {.first_path = first, .seed = settings.seed},
+        reads(s.records), writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
     constexpr uint together = 8;
     uint frame = 1;
     for (bool finished = false; !finished && frame <= settings.photon_depth;) {
@@ -23,12 +25,8 @@ inline uint trace_batch(vulkan_backend& b, const device_scene<vulkan_backend>& s
         const auto ended = std::bit_cast<uint>(
             kernels::event_code(kernels::NO_SURFACE, kernels::ENDED_BEFORE, kernels::NOTHING_BEFORE));
         b.fill(f.positions, std::size_t{frame} * paths, std::size_t{passes} * paths, ended);
-        const auto p = b.run_frames<kernels::bounce_photon>({paths, frame * paths, about.features}, paths,
-            {.scene_layout = about.layout,
-                .paths = paths,
-                .first_path = first,
-                .last_frame = settings.photon_depth,
-                .seed = settings.seed},
+        const auto p = b.run_frames<kernels::bounce_photon>({paths, frame * paths, layout.features}, paths,
+            {.paths = paths, .first_path = first, .last_frame = settings.photon_depth, .seed = settings.seed},
             reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions), passes);
         frame += p.passes;

@@ -1,7 +1,7 @@
 // Stands for the window where CMake found no GLFW or no Dear ImGui.
 #include "view_command.hpp"
 
-#include <photongrid/backend.hpp>
+#include <photongrid/backend/backend.hpp>
 
 namespace photongrid {
 

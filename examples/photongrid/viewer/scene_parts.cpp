@@ -47,66 +47,49 @@ namespace {
     }
 } // namespace
 
+namespace {
+    /// Polygons that share corners are one part.
+    void add_polygons(std::vector<scene_part>& parts, const scene& s, std::size_t list)
+    {
+        const auto groups = groups_of(s.polygons);
+        for (std::size_t g = 0; g < groups.size(); ++g) {
+            scene_part p;
+            for (std::size_t i = 0; i < groups.size(); ++i)
+                if (groups[i] == g)
+                    p.items.push_back({list, i});
+            if (p.items.empty())
+                continue;
+            p.name = named(p.items.size() == 1 ? "polygon" : (std::to_string(p.items.size()) + " polygons").c_str(), s,
+                s.polygons[p.items[0].index].material);
+            parts.push_back(std::move(p));
+        }
+    }
+} // namespace
+
 std::vector<scene_part> parts_of(const scene& s)
 {
     std::vector<scene_part> parts;
-    const auto each = [&](const auto& shapes, const char* kind, auto member) {
-        for (std::size_t i = 0; i < shapes.size(); ++i) {
-            scene_part p;
-            (p.*member).push_back(i);
-            p.name = named(kind, s, shapes[i].material);
-            parts.push_back(std::move(p));
+    for_each_list(s, [&](const auto& list, auto kind, std::size_t number) {
+        using item = typename std::decay_t<decltype(list)>::value_type;
+        if constexpr (std::is_same_v<item, polygon>) {
+            add_polygons(parts, s, number);
+        } else {
+            for (std::size_t i = 0; i < list.size(); ++i) {
+                scene_part p{{{number, i}}};
+                if constexpr (requires { list[i].material; })
+                    p.name = named(kind.name, s, list[i].material);
+                else
+                    p.name = list[i].name.empty() ? std::string(kind.name) + " light" : list[i].name;
+                parts.push_back(std::move(p));
+            }
         }
-    };
-    each(s.spheres, "sphere", &scene_part::spheres);
-    each(s.cylinders, "cylinder", &scene_part::cylinders);
-    each(s.cones, "cone", &scene_part::cones);
-    each(s.paraboloids, "paraboloid", &scene_part::paraboloids);
-    each(s.disks, "disk", &scene_part::disks);
-    const auto groups = groups_of(s.polygons);
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        scene_part p;
-        for (std::size_t i = 0; i < groups.size(); ++i)
-            if (groups[i] == g)
-                p.polygons.push_back(i);
-        if (p.polygons.empty())
-            continue;
-        p.name = named(p.polygons.size() == 1 ? "polygon" : (std::to_string(p.polygons.size()) + " polygons").c_str(),
-            s, s.polygons[p.polygons[0]].material);
-        parts.push_back(std::move(p));
-    }
-    const auto lights = [&](const auto& all, const char* kind, auto member) {
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            scene_part p;
-            (p.*member).push_back(i);
-            p.name = all[i].name.empty() ? kind : all[i].name;
-            parts.push_back(std::move(p));
-        }
-    };
-    lights(s.point_lights, "point light", &scene_part::point_lights);
-    lights(s.rectangle_lights, "rectangle light", &scene_part::rectangle_lights);
+    });
     return parts;
 }
 
 void move(scene& s, const scene_part& part, const dvec3& by)
 {
-    for (const auto i : part.spheres)
-        s.spheres.at(i).center += by;
-    for (const auto i : part.cylinders)
-        s.cylinders.at(i).base += by, s.cylinders[i].top += by;
-    for (const auto i : part.cones)
-        s.cones.at(i).base += by, s.cones[i].apex += by;
-    for (const auto i : part.paraboloids)
-        s.paraboloids.at(i).vertex += by, s.paraboloids[i].rim += by;
-    for (const auto i : part.disks)
-        s.disks.at(i).center += by;
-    for (const auto i : part.polygons)
-        for (auto& v : s.polygons.at(i).vertices)
-            v += by;
-    for (const auto i : part.point_lights)
-        s.point_lights.at(i).position += by;
-    for (const auto i : part.rectangle_lights)
-        s.rectangle_lights.at(i).corner += by;
+    for_each_item(s, part, [&](auto& item, auto kind) { photongrid::detail::move_points(item, kind.fields, by); });
 }
 
 sight_line sight_line_at(const camera& c, double width, double height, double x, double y)
@@ -128,31 +111,26 @@ std::optional<grip> pick(
     // Point lights, by how far their place in the picture is.
     const double pixel = 2 * std::tan(glm::radians(s.camera.vertical_fov) / 2) / height; // at 1 m
     for (std::size_t p = 0; p < parts.size(); ++p)
-        for (const auto i : parts[p].point_lights) {
-            const dvec3 to = s.point_lights[i].position - line.origin;
+        for (const auto* light : items_of<point_light>(s, parts[p])) {
+            const dvec3 to = light->position - line.origin;
             const double along = glm::dot(to, line.direction);
             if (along > 0 && glm::length(to - along * line.direction) <= 12 * pixel * along && along < hit.t)
-                return grip{p, s.point_lights[i].position};
+                return grip{p, light->position};
         }
     if (hit.shape == reference::nothing)
         return std::nullopt;
 
-    // The reference numbers shapes in this order.
-    std::size_t number = hit.shape;
-    for (const auto& [count, member] : {std::pair{s.spheres.size(), &scene_part::spheres},
-             {s.cylinders.size(), &scene_part::cylinders}, {s.cones.size(), &scene_part::cones},
-             {s.paraboloids.size(), &scene_part::paraboloids}, {s.disks.size(), &scene_part::disks},
-             {s.polygons.size(), &scene_part::polygons}, {s.rectangle_lights.size(), &scene_part::rectangle_lights}}) {
-        if (number >= count) {
-            number -= count;
-            continue;
-        }
-        for (std::size_t p = 0; p < parts.size(); ++p)
-            if (const auto& of_kind = parts[p].*member;
-                std::find(of_kind.begin(), of_kind.end(), number) != of_kind.end())
-                return grip{p, hit.position};
-        break;
-    }
+    // The reference numbers shapes in the order of the lists, then rectangle lights, which are the next list.
+    std::size_t before = 0;
+    std::optional<scene_item> met;
+    for_each_list(s, [&](const auto& list, auto, std::size_t number) {
+        if (!met && hit.shape < before + list.size())
+            met = scene_item{number, hit.shape - before};
+        before += list.size();
+    });
+    for (std::size_t p = 0; p < parts.size(); ++p)
+        if (met && std::find(parts[p].items.begin(), parts[p].items.end(), *met) != parts[p].items.end())
+            return grip{p, hit.position};
     return std::nullopt;
 }
 

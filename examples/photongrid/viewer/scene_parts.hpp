@@ -1,7 +1,7 @@
 // What a user can take hold of in a scene: its shapes, polygons that share corners as one, and its lights.
 #pragma once
 
-#include <photongrid/scene.hpp>
+#include <photongrid/scene/scene.hpp>
 
 #include <optional>
 #include <string>
@@ -9,14 +9,55 @@
 
 namespace photongrid::viewer {
 
-/// Shapes and lights that move together: indices into the scene's vectors.
+/// A shape or a light of the scene: a list, numbered as shape_lists() and then light_lists() have them, and its place
+/// there.
+struct scene_item {
+    std::size_t list = 0;  ///< number of the list
+    std::size_t index = 0; ///< in the list
+
+    bool operator==(const scene_item&) const = default; ///< of every member
+};
+
+/// Shapes and lights that move together.
 struct scene_part {
-    std::vector<std::size_t> spheres{}, cylinders{}, cones{}, paraboloids{}, disks{}, polygons{}, point_lights{},
-        rectangle_lights{};
-    std::string name{}; ///< what it is, and its material or its own name
+    std::vector<scene_item> items{}; ///< one at least
+    std::string name{};              ///< what it is, and its material or its own name
 
     bool operator==(const scene_part&) const = default; ///< of every member
 };
+
+/// Calls f(list, kind, number) for each list of shapes and of lights (shape_kind, light_kind).
+template <class Scene, class F>
+void for_each_list(Scene& s, F&& f)
+{
+    std::size_t number = 0;
+    const auto next = [&](auto& list, auto kind) { f(list, kind, number++); };
+    for_each_shape(s, next);
+    for_each_light(s, next);
+}
+
+/// Calls f(item, kind) for each shape or light of `part`.
+template <class Scene, class F>
+void for_each_item(Scene& s, const scene_part& part, F&& f)
+{
+    for_each_list(s, [&](auto& list, auto kind, std::size_t number) {
+        for (const auto& item : part.items)
+            if (item.list == number)
+                f(list.at(item.index), kind);
+    });
+}
+
+/// Those of a part's shapes or lights that are a T.
+template <class T>
+std::vector<const T*> items_of(const scene& s, const scene_part& part)
+{
+    std::vector<const T*> all;
+    for_each_item(s, part, [&](const auto& item, auto) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(item)>, T>)
+            all.push_back(&item);
+    });
+    return all;
+}
 
 /// Everything in the scene, each thing in one part.
 std::vector<scene_part> parts_of(const scene& s);

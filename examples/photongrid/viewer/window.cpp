@@ -5,8 +5,6 @@
 #include "../setting_names.hpp"
 #include "render_thread.hpp"
 
-#include <photongrid/device_scene.hpp>
-
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
@@ -104,25 +102,8 @@ namespace {
     /// Where a part of the scene stands in the picture; nothing where some of it is behind the camera.
     std::optional<frame_box> box_of(const scene& s, const scene_part& part, double width, double height)
     {
-        photongrid::detail::box b;
-        const auto add = [&](const auto& chosen, const auto& shapes) {
-            for (const auto i : chosen)
-                photongrid::detail::add_bounds(b, shapes[i]);
-        };
-        add(part.spheres, s.spheres);
-        add(part.cylinders, s.cylinders);
-        add(part.cones, s.cones);
-        add(part.paraboloids, s.paraboloids);
-        add(part.disks, s.disks);
-        add(part.polygons, s.polygons);
-        for (const auto i : part.point_lights)
-            b.add(s.point_lights[i].position);
-        for (const auto i : part.rectangle_lights) {
-            const auto& l = s.rectangle_lights[i];
-            for (const auto& corner :
-                {l.corner, l.corner + l.edge_u, l.corner + l.edge_v, l.corner + l.edge_u + l.edge_v})
-                b.add(corner);
-        }
+        bounds b;
+        for_each_item(s, part, [&](const auto& item, auto kind) { kind.add_bounds(b, item); });
         const auto& c = s.camera;
         const auto [forward, right, up] = photongrid::detail::camera_axes(c);
         const double reach = std::tan(glm::radians(c.vertical_fov) / 2);
@@ -509,7 +490,11 @@ namespace {
                     "Cells have slots x slots places. More lose fewer photons and take more memory.");
             ImGui::Separator();
             number("eye rays", &render_settings::spp, 1, 64,
-                "Eye rays a pixel. Speed: proportional. Error: smooth edges, less noise of glass and lamps.");
+                "Eye rays per pixel. Speed: proportional. Error: smooth edges, less noise of glass and lamps.");
+            number("passes", &render_settings::passes, 1, 1024,
+                "The picture is the mean of so many, each with photons and rays of its own. Speed: proportional. "
+                "Error: "
+                "noise and blotches fade as they come.");
             number("light samples", &render_settings::light_samples, 1, 256,
                 "Shadow rays a lamp and eye ray. Speed: proportional for direct light. Error: smoother half-shadows.");
             choice("light", &render_settings::only, part_names,

@@ -1,7 +1,10 @@
-// How surfaces answer light, for the reference renderer. Conventions are the photon-map renderer's (docs/reference.md).
+// How surfaces answer light, for the reference renderer. Conventions are the photon-map renderer's
+// (docs/reference/reference_renderer.md).
 #pragma once
 
 #include <photongrid/reference/intersect.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid::reference {
 
@@ -59,3 +62,5 @@ inline specular_bounce specular(const material& m, const dvec3& d, const dvec3& 
 }
 
 } // namespace photongrid::reference
+
+#include <photongrid/backend/exact_end.hpp>

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <photongrid/reference/bsdf.hpp>
+#include <photongrid/reference/intersect.hpp>
 #include <photongrid/reference/random_stream.hpp>
 #include <photongrid/reference/settings.hpp>
-#include <photongrid/reference/surface_bins.hpp>
 #include <photongrid/reference/work.hpp>
 
 #include <optional>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid::reference {
 
@@ -24,7 +26,8 @@ public:
     /// No bins.
     caustic_bins() = default;
 
-    /// No bins where no light in question can make a caustic. \throws std::invalid_argument for too many bins,
+    /// No bins where no light in question can make a caustic.
+    /// \throws std::invalid_argument for too many bins,
     /// render_cancelled.
     caustic_bins(const scene& s, const geometry& shapes, const reference_settings& settings,
         const render_observer& observer, reference_stats& stats)
@@ -86,21 +89,15 @@ private:
     void cut(const scene& s, const reference_settings& settings)
     {
         const auto each_shape = [&](auto visit) {
-            const auto all = [&](const auto& shapes) {
-                for (const auto& x : shapes)
+            for_each_shape(s, [&](const auto& list, auto) {
+                for (const auto& x : list)
                     visit(x, s.materials[x.material].kind == material_kind::lambertian);
-            };
-            all(s.spheres);
-            all(s.cylinders);
-            all(s.cones);
-            all(s.paraboloids);
-            all(s.disks);
-            all(s.polygons);
+            });
         };
         double area = 0;
         bool shiny = false;
         each_shape([&](const auto& x, bool diffuse) {
-            area += diffuse ? area_of_shape(x) : 0;
+            area += diffuse ? surface_area(x) : 0;
             shiny = shiny || !diffuse;
         });
         if (!shiny || !(area > 0))
@@ -113,20 +110,11 @@ private:
             surfaces_.emplace_back();
             if (!diffuse)
                 return;
-            if constexpr (std::is_same_v<std::decay_t<decltype(x)>, polygon>)
-                surfaces_.back().bins.emplace(plane_bins(x, bin_));
-            else
-                surfaces_.back().bins.emplace(ring_bins(x, bin_));
+            surfaces_.back().bins.emplace(bins_of(x, bin_));
             surfaces_.back().first = size_;
             size_ += 2 * std::visit([](const auto& b) { return b.size(); }, *surfaces_.back().bins);
             require_few_bins(size_, bin_);
         });
-    }
-    static double area_of_shape(const polygon& p) { return glm::length(area_vector(p)); }
-    template <class Round>
-    static double area_of_shape(const Round& r)
-    {
-        return ring_bins(r, infinity).area_of_all();
     }
 
     /// A bin of the side that faces against d.
@@ -222,3 +210,5 @@ private:
 };
 
 } // namespace photongrid::reference
+
+#include <photongrid/backend/exact_end.hpp>

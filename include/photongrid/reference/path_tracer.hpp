@@ -3,6 +3,8 @@
 
 #include <photongrid/reference/light_tracer.hpp>
 
+#include <photongrid/backend/exact_begin.hpp>
+
 namespace photongrid::reference {
 
 /// Finds the radiance that comes along rays; each call is one sample.
@@ -120,3 +122,5 @@ private:
 };
 
 } // namespace photongrid::reference
+
+#include <photongrid/backend/exact_end.hpp>

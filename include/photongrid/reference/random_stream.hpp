@@ -1,8 +1,10 @@
 // Random numbers of the reference renderer: one stream a pixel and one a group of light paths, so that the result does
-// not depend on which thread does what. Nothing is shared with kernels/random.glsl.
+// not depend on which thread does what. Nothing is shared with backend/random.glsl.
 #pragma once
 
 #include <cstdint>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid::reference {
 
@@ -44,3 +46,5 @@ private:
 };
 
 } // namespace photongrid::reference
+
+#include <photongrid/backend/exact_end.hpp>

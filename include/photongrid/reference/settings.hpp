@@ -1,7 +1,11 @@
-// What is asked of the reference renderer, and what it did. <photongrid/reference.hpp> is the header to include.
+// What is asked of the reference renderer, and what it did. <photongrid/reference/reference.hpp> is the header to
+// include.
 #pragma once
 
-#include <photongrid/scene.hpp>
+#include <photongrid/render/image.hpp>
+#include <photongrid/scene/scene.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -75,3 +79,5 @@ struct reference_picture {
 };
 
 } // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,11 +1,13 @@
 // Surfaces cut into bins whose areas are known exactly: where light paths leave their flux. Flat polygons are cut by a
-// square grid, clipped; surfaces of revolution into rings of sectors.
+// square grid, clipped; turned.hpp has the rings of surfaces of revolution.
 #pragma once
 
-#include <photongrid/reference/intersect.hpp>
+#include <photongrid/reference/ray.hpp>
 
+#include <algorithm>
 #include <string>
-#include <variant>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid::reference {
 
@@ -51,7 +53,8 @@ inline double area_of(const std::vector<glm::dvec2>& p)
 /// is joined to a neighbour, since little area means much noise.
 class plane_bins {
 public:
-    /// `size`: m. \throws std::invalid_argument for more bins than most_bins.
+    /// `size`: m.
+    /// \throws std::invalid_argument for more bins than most_bins.
     plane_bins(const polygon& p, double size)
         : corner_(p.vertices[0]), u_(across(glm::normalize(area_vector(p)))),
           v_(glm::cross(glm::normalize(area_vector(p)), u_))
@@ -126,134 +129,6 @@ private:
     std::vector<double> areas_;
 };
 
-/// Bins of a surface of revolution: rings along its profile, each in as many sectors as keep bins about square.
-class ring_bins {
-public:
-    /// \name Bins of about `size`, m
-    /// @{
-
-    /// \throws std::invalid_argument for more bins than most_bins.
-    ring_bins(const sphere& s, double size) : ring_bins(form::sphere, s.center, dvec3(0, 0, 1), s.radius, 0, M_PI, size)
-    {
-    }
-    ring_bins(const disk& d, double size)
-        : ring_bins(form::disk, d.center, glm::normalize(d.normal), d.radius, 0, d.radius, size)
-    {
-    }
-    ring_bins(const cylinder& c, double size)
-        : ring_bins(form::cylinder, c.base, glm::normalize(c.top - c.base), c.radius, glm::length(c.top - c.base),
-            glm::length(c.top - c.base), size)
-    {
-    }
-    ring_bins(const cone& c, double size) // measured from the apex
-        : ring_bins(form::cone, c.apex, glm::normalize(c.base - c.apex), c.radius, glm::length(c.base - c.apex),
-            std::hypot(glm::length(c.base - c.apex), c.radius), size)
-    {
-    }
-    ring_bins(const paraboloid& p, double size)
-        : ring_bins(form::paraboloid, p.vertex, glm::normalize(p.rim - p.vertex), p.radius,
-            glm::length(p.rim - p.vertex), p.radius, size)
-    {
-    }
-    /// @}
-
-    /// Bins.
-    std::uint32_t size() const { return first_.back(); }
-    /// m^2
-    double area(std::uint32_t bin) const
-    {
-        const auto ring
-            = static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), bin) - first_.begin()) - 1;
-        return (area_within(edges_[ring + 1]) - area_within(edges_[ring])) / (first_[ring + 1] - first_[ring]);
-    }
-    /// m^2, of the whole surface.
-    double area_of_all() const { return area_within(edges_.back()); }
-    /// The bin of a point of the surface, m.
-    std::uint32_t at(const dvec3& p) const
-    {
-        const dvec3 f = p - origin_;
-        const double z = glm::dot(f, axis_), x = glm::dot(f, u_), y = glm::dot(f, v_);
-        const double s = profile_coordinate(z, std::hypot(x, y));
-        const auto inner = std::upper_bound(edges_.begin() + 1, edges_.end() - 1, s) - edges_.begin();
-        const auto ring = static_cast<std::size_t>(inner) - 1;
-        const double sectors = first_[ring + 1] - first_[ring];
-        const double turn = std::atan2(y, x) / (2 * M_PI) + 0.5;
-        return first_[ring] + static_cast<std::uint32_t>(std::clamp(std::floor(turn * sectors), 0.0, sectors - 1));
-    }
-
-private:
-    enum class form { sphere, disk, cylinder, cone, paraboloid };
-
-    /// `length`: the last profile coordinate, an angle for a sphere, m for the others.
-    ring_bins(form f, const dvec3& origin, const dvec3& axis, double radius, double height, double length, double size)
-        : form_(f), origin_(origin), axis_(axis), u_(across(axis)), v_(glm::cross(axis, u_)), radius_(radius),
-          height_(height)
-    {
-        const double step = f == form::sphere ? size / radius : size;
-        require_few_bins(length / step, size);
-        edges_.push_back(0);
-        if (f == form::paraboloid) { // rings as wide along the bowl as elsewhere: d(arc) = sqrt(1 + (2 height rho /
-                                     // radius^2)^2) d(rho)
-            require_few_bins(2 * (radius + height) / size, size);
-            while (edges_.back() < length)
-                edges_.push_back(std::min(
-                    length, edges_.back() + step / std::hypot(1.0, 2 * height * edges_.back() / (radius * radius))));
-        } else {
-            const double rings = std::max(1.0, std::ceil(length / step - 1e-9));
-            for (double i = 1; i <= rings; ++i)
-                edges_.push_back(length * (i / rings));
-        }
-        double bins = 0;
-        first_.push_back(0);
-        for (std::size_t i = 0; i + 1 < edges_.size(); ++i) {
-            bins += std::max(1.0, std::round(2 * M_PI * radius_at(0.5 * (edges_[i] + edges_[i + 1])) / size));
-            require_few_bins(bins, size);
-            first_.push_back(static_cast<std::uint32_t>(bins));
-        }
-    }
-
-    double profile_coordinate(double z, double rho) const
-    {
-        switch (form_) {
-        case form::sphere: return std::atan2(rho, z);
-        case form::cylinder: return z;
-        case form::cone: return std::hypot(rho, z);
-        default: return rho;
-        }
-    }
-    /// Distance from the axis at profile coordinate s.
-    double radius_at(double s) const
-    {
-        switch (form_) {
-        case form::sphere: return radius_ * std::sin(s);
-        case form::cylinder: return radius_;
-        case form::cone: return radius_ * s / std::hypot(height_, radius_);
-        default: return s;
-        }
-    }
-    /// Area from coordinate 0 to s.
-    double area_within(double s) const
-    {
-        switch (form_) {
-        case form::sphere: return 4 * M_PI * radius_ * radius_ * std::sin(0.5 * s) * std::sin(0.5 * s);
-        case form::disk: return M_PI * s * s;
-        case form::cylinder: return 2 * M_PI * radius_ * s;
-        case form::cone: return M_PI * radius_ / std::hypot(height_, radius_) * s * s;
-        default: break;
-        }
-        // z = a rho^2: pi / (6 a^2) ((1 + 4 a^2 rho^2)^(3/2) - 1), written so that a shallow bowl does not cancel.
-        const double a = height_ / (radius_ * radius_), x = 4 * a * a * s * s;
-        return x > 0 ? M_PI / (6 * a * a) * std::expm1(1.5 * std::log1p(x)) : M_PI * s * s;
-    }
-
-    form form_;
-    dvec3 origin_, axis_, u_, v_;
-    double radius_, height_;
-    std::vector<double> edges_;        ///< of the rings
-    std::vector<std::uint32_t> first_; ///< first bin of each ring, and how many bins there are
-};
-
-/// The bins of any surface.
-using surface_bins = std::variant<ring_bins, plane_bins>;
-
 } // namespace photongrid::reference
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,7 +1,7 @@
 // Jobs shared out among threads, with someone watching.
 #pragma once
 
-#include <photongrid/render_stats.hpp>
+#include <photongrid/render/render_stats.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -11,6 +11,8 @@
 #include <string_view>
 #include <thread>
 #include <vector>
+
+#include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid::reference {
 
@@ -61,7 +63,8 @@ inline std::uint32_t threads_for(std::uint32_t asked)
 }
 
 /// Runs job(i, watch) for i = 0 … n-1, in any order, on `threads` threads of which the caller is one; `units` is the
-/// work of all jobs together. \throws render_cancelled, or what a job throws.
+/// work of all jobs together.
+/// \throws render_cancelled, or what a job throws.
 template <class Job>
 void share_out(std::uint32_t n, std::uint32_t threads, std::string_view stage, double units,
     const render_observer& observer, Job job)
@@ -113,3 +116,5 @@ void share_out(std::uint32_t n, std::uint32_t threads, std::string_view stage, d
 }
 
 } // namespace photongrid::reference
+
+#include <photongrid/backend/exact_end.hpp>

@@ -4,12 +4,12 @@
 #include "../nearest.hpp"
 
 #include <photongrid/backends/serial/serial.hpp>
-#include <photongrid/map_file.hpp>
+#include <photongrid/map/map_file.hpp>
 
 namespace consumer {
 
 using device = photongrid::serial_backend;
-using map = photongrid::photon_map<device>;
+using map = photongrid::map_buffers<device>;
 
 // Library `search`, a function in each of its two files.
 [[gnu::visibility("default")]] map map_of_photons(device& d);

@@ -1,0 +1,320 @@
+// Kernels on as many threads as the caller wants: the cpu backend (cpu.hpp) without its overrides. It gives the same
+// results several times more slowly, and compiles in a third of the time. Tests compare the two.
+#pragma once
+
+#include <photongrid/backend/backend.hpp>
+#include <photongrid/backends/cpu/buffer.hpp>
+#include <photongrid/backends/cpu/pool.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// Kernels, and nothing but kernels, on several threads: what cpu_backend does where it has no better way.
+/// \headerfile backends/cpu/cpu_by_kernels.hpp <photongrid/backends/cpu/cpu_by_kernels.hpp>
+class cpu_by_kernels {
+public:
+    /// Elements in memory: value_type, size(), moved and not copied. It belongs to the thread that drives the backend.
+    template <element T>
+    using buffer = cpu::buffer<T>;
+
+    /// `threads`: 0 for as many as the machine has; with 1 no pool is made.
+    explicit cpu_by_kernels(uint threads = 0) : pool_(threads)
+    {
+        caps_.backend = "cpu";
+        caps_.device = "this CPU, " + std::to_string(pool_.threads()) + (pool_.threads() == 1 ? " thread" : " threads");
+        caps_.max_elements = std::uint64_t{1} << 31;
+        caps_.cells_a_radius = 1;
+        caps_.max_route_slots = 16;
+        caps_.exact_division = true; // IEEE 754, as C++ on every platform with std::numeric_limits<float>::is_iec559
+        caps_.exact_sqrt = true;
+        static_assert(std::numeric_limits<float>::is_iec559);
+    }
+
+    /// \name The verbs of a backend, as backend.hpp describes them
+    /// @{
+
+    /// As the concept photongrid::backend says.
+    template <element T>
+    buffer<T> make(std::size_t n)
+    {
+        const auto refuse = [&](const std::string& why) {
+            throw backend_error("cpu: a buffer of " + std::to_string(n) + " elements was asked for; " + why);
+        };
+        if (n > caps_.max_elements)
+            refuse("the limit is " + std::to_string(caps_.max_elements));
+        try {
+            return buffer<T>(account_, n);
+        } catch (const std::bad_alloc&) {
+            refuse("there is no memory for it");
+            throw;
+        }
+    }
+    template <element T, std::size_t E>
+    buffer<T> upload(std::span<const T, E> data)
+    {
+        auto b = make<T>(data.size());
+        if (!data.empty())
+            std::memcpy(b.rows(), data.data(), data.size_bytes());
+        return b;
+    }
+    template <element T>
+    std::vector<T> download(const buffer<T>& b)
+    {
+        const auto r = rows(b);
+        return {r.begin(), r.end()};
+    }
+
+    template <gather_kernel K, class Reads, class Writes>
+    void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
+    {
+        detail::check_call<K>("run", l, reads, writes);
+        const stopwatch watch;
+        const K prepared = prepare<K>(l, args, reads);
+        const auto out = rows_of<K>(writes);
+        pool_.for_blocks(l.elements, block, [&](std::size_t first, std::size_t past) {
+            K k = prepared;
+            for (uint i = l.first + static_cast<uint>(first); i != l.first + static_cast<uint>(past); ++i) {
+                load(k, i, out);
+                k.kernel(i);
+                store(k, i, out);
+            }
+        });
+        count_passes(kernel_name<K>(), 1, watch);
+    }
+
+    template <iterative_kernel K, class Reads, class Writes>
+    progress run_until_done(launch l, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
+    {
+        detail::check_call<K>("run_until_done", l, reads, writes);
+        const stopwatch watch;
+        const K prepared = prepare<K>(l, args, reads);
+        const auto out = rows_of<K>(writes);
+        std::mutex adding;
+        std::atomic<bool> finished = true;
+        std::vector<std::uint64_t> ended; // ended[q]: elements that took q passes
+        pool_.for_blocks(l.elements, iterative_block, [&](std::size_t first, std::size_t past) {
+            K k = prepared;
+            std::vector<std::uint64_t> mine;
+            for (uint i = l.first + static_cast<uint>(first); i != l.first + static_cast<uint>(past); ++i) {
+                load(k, i, out);
+                uint q = 0;
+                for (; q < max_passes && !k.done(); ++q)
+                    k.kernel(i);
+                if (!k.done())
+                    finished = false;
+                if (q > 0) // else its outputs are still the last element's
+                    store(k, i, out);
+                if (q >= mine.size())
+                    mine.resize(q + std::size_t{1});
+                ++mine[q];
+            }
+            const std::lock_guard lock(adding);
+            ended.resize(std::max(ended.size(), mine.size()));
+            for (std::size_t q = 0; q < mine.size(); ++q)
+                ended[q] += mine[q];
+        });
+        progress p;
+        p.finished = finished;
+        p.passes = ended.empty() ? 0u : static_cast<uint>(ended.size() - 1);
+        p.active.assign(p.passes, 0);
+        for (std::uint64_t q = p.passes, still = 0; q > 0; --q)
+            p.active[q - 1] = still += ended[q];
+        count_passes(kernel_name<K>(), p.passes, watch);
+        return p;
+    }
+
+    template <predicate_kernel K, class Reads>
+    std::uint64_t count(launch l, const typename K::Params& args, Reads reads)
+    {
+        detail::check_call<K>("count", l, reads, std::tuple<>{});
+        const stopwatch watch;
+        const K prepared = prepare<K>(l, args, reads);
+        std::atomic<std::uint64_t> n = 0;
+        pool_.for_blocks(l.elements, block, [&](std::size_t first, std::size_t past) {
+            K k = prepared;
+            std::uint64_t mine = 0;
+            for (uint i = l.first + static_cast<uint>(first); i != l.first + static_cast<uint>(past); ++i)
+                mine += k.holds(i) ? 1u : 0u;
+            n += mine;
+        });
+        count_passes(kernel_name<K>(), 1, watch);
+        return n;
+    }
+
+    /// Draws are computed by all threads and delivered by one, in order.
+    template <route_kernel K, class Reads>
+    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots,
+        buffer<glm::vec4>& totals)
+    {
+        detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
+        const stopwatch watch;
+        const K prepared = prepare<K>(l, args, reads);
+        struct draw {
+            uint destination, payload;
+            glm::vec4 amount;
+        };
+        constexpr std::size_t batch = 65536; // draws held at a time
+        std::vector<draw> draws(std::min<std::size_t>(batch, l.elements));
+        const uint capacity = route_capacity(m);
+        const uint parts = route_parts(totals.size(), destinations);
+        const uint part = route_block(l.elements, parts);
+        std::vector<uint> arrived(destinations);
+        const auto slot_rows = rows_to_write(slots);
+        const auto total_rows = rows_to_write(totals);
+        std::fill(slot_rows.begin(), slot_rows.end(), nowhere);
+        std::fill(total_rows.begin(), total_rows.end(), glm::vec4(0));
+        for (std::size_t begin = 0; begin < l.elements; begin += batch) {
+            const std::size_t n = std::min(batch, l.elements - begin);
+            pool_.for_blocks(n, block, [&](std::size_t first, std::size_t past) {
+                K k = prepared;
+                for (std::size_t i = first; i != past; ++i) {
+                    k.kernel(l.first + static_cast<uint>(begin + i));
+                    draws[i] = {k.output(slot<0>{}), k.output(slot<1>{}), k.output(slot<2>{})};
+                }
+            });
+            for (std::size_t i = 0; i < n; ++i) {
+                const auto& [d, payload, amount] = draws[i];
+                if (d >= destinations)
+                    continue;
+                if (arrived[d] < capacity)
+                    slot_rows[std::size_t{d} * capacity + arrived[d]++] = payload;
+                total_rows[std::size_t{d} * parts + (begin + i) / part] += amount;
+            }
+        }
+        count_passes(kernel_name<K>(), 1, watch);
+    }
+
+    void finish() {}
+    const capabilities& caps() const { return caps_; }
+    std::uint64_t bytes() const { return account_->now; }
+    std::uint64_t peak_bytes() const { return account_->peak; }
+    const std::map<std::string, kernel_cost>& costs() const { return costs_; }
+    /// @}
+
+    // --- for overrides
+    // ------------------------------------------------------------------------------------------------
+    /// The threads that passes run on, the caller's among them.
+    cpu::pool& threads() { return pool_; }
+
+    /// A buffer's elements in a row each.
+    template <element T>
+    std::span<const T> rows(const buffer<T>& b)
+    {
+        if constexpr (std::same_as<T, glm::vec4>)
+            turn_over(b, false);
+        return {b.rows(), b.size()};
+    }
+    /// The same, to be written; what they hold is kept.
+    template <element T>
+    std::span<T> rows_to_write(buffer<T>& b)
+    {
+        rows(b);
+        return {b.rows(), b.size()};
+    }
+    /// A buffer's elements in planes.
+    cpu::planes<const float> planes(const buffer<glm::vec4>& b)
+    {
+        turn_over(b, true);
+        const auto p = b.in_planes();
+        return {p.x, p.y, p.z, p.w};
+    }
+    /// A buffer's planes, whose contents are lost.
+    cpu::planes<float> planes_to_write(buffer<glm::vec4>& b)
+    {
+        b.as_planes_ = true;
+        return b.in_planes();
+    }
+    /// Runs from when it is made.
+    /// \headerfile backends/cpu/cpu_by_kernels.hpp <photongrid/backends/cpu/cpu_by_kernels.hpp>
+    class stopwatch {
+    public:
+        /// Milliseconds so far.
+        double ms() const
+        {
+            return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+        }
+
+    private:
+        std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    };
+    /// Adds to costs(): a kernel's passes, or an override's under a name of its own, and their time.
+    void count_passes(std::string_view name, uint passes, const stopwatch& watch)
+    {
+        auto& cost = costs_[std::string(name)];
+        cost.passes += passes;
+        cost.ms += watch.ms();
+    }
+
+private:
+    static constexpr std::size_t block = 2048, iterative_block = 256; // elements that a thread takes at a time
+
+    void turn_over(const buffer<glm::vec4>& b, bool to_planes)
+    {
+        if (b.as_planes_ == to_planes)
+            return;
+        buffer<glm::vec4> other = make<glm::vec4>(b.size());
+        const auto p = to_planes ? other.in_planes() : b.in_planes();
+        glm::vec4* const r = to_planes ? b.rows() : other.rows();
+        pool_.for_blocks(b.size(), 16 * block, [&](std::size_t first, std::size_t past) {
+            for (std::size_t i = first; i != past; ++i) {
+                if (to_planes) {
+                    p.x[i] = r[i].x;
+                    p.y[i] = r[i].y;
+                    p.z[i] = r[i].z;
+                    p.w[i] = r[i].w;
+                } else {
+                    r[i] = {p.x[i], p.y[i], p.z[i], p.w[i]};
+                }
+            }
+        });
+        std::swap(b.data_, other.data_);
+        b.as_planes_ = to_planes;
+    }
+
+    template <class K, class Reads>
+    K prepare(const launch& l, const typename K::Params& args, [[maybe_unused]] const Reads& reads)
+    {
+        K k{};
+        k.args = args;
+        turn_switches(k, l.switches);
+        if constexpr (input_count<K> != 0)
+            detail::for_each_slot<input_count<K>>([&](auto s) { k.bind(s, rows(std::get<s.index>(reads))); });
+        return k;
+    }
+    template <class K, class Writes>
+    auto rows_of(Writes& writes)
+    {
+        return std::apply([&](auto&... b) { return std::tuple{rows_to_write(b).data()...}; }, writes);
+    }
+    template <class K, class Rows>
+    static void load(K& k, uint i, const Rows& out)
+    {
+        if constexpr (output_count<K> != 0)
+            detail::for_each_slot<output_count<K>>([&](auto s) {
+                if constexpr (K::is_state(s))
+                    k.output(s) = std::get<s.index>(out)[i];
+            });
+    }
+    template <class K, class Rows>
+    static void store(K& k, uint i, const Rows& out)
+    {
+        if constexpr (output_count<K> != 0)
+            detail::for_each_slot<output_count<K>>([&](auto s) { std::get<s.index>(out)[i] = k.output(s); });
+    }
+
+    cpu::pool pool_;
+    capabilities caps_;
+    std::shared_ptr<cpu::account> account_ = std::make_shared<cpu::account>();
+    std::map<std::string, kernel_cost> costs_;
+};
+
+static_assert(backend<cpu_by_kernels>);
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,287 @@
+// What a backend is: buffers and a few verbs, each from the paper (docs/design/design.md has the table).
+#pragma once
+
+#include <photongrid/backend/kernel.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <ranges>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+/// The library. Lengths are in m, flux in W, irradiance in W/m^2, radiance in W/(m^2 sr), linear rgb.
+namespace photongrid {
+
+/// A driver that is missing, a context that cannot be had, a device limit exceeded, a device lost. The text says what
+/// was tried, what failed, and what to install or change.
+struct backend_error : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Which elements a pass computes: `first`, `first + 1`, … `first + elements - 1`. Bit B of `switches` is the kernel's
+/// SWITCH B. A launch converts from a plain count.
+struct launch {
+    uint elements = 0;   ///< how many; 0: the pass does nothing
+    uint first = 0;      ///< index of the first
+    uint switches = ~0u; ///< ~0: all on
+
+    /// \throws std::invalid_argument for an index beyond 2^32 - 1.
+    constexpr launch(std::size_t elements_, uint first_ = 0, uint switches_ = ~0u)
+        : elements(static_cast<uint>(elements_)), first(first_), switches(switches_)
+    {
+        if (elements_ > std::numeric_limits<uint>::max() - first_)
+            throw std::invalid_argument("launch: elements: more than 2^32 - 1 elements in one pass");
+    }
+};
+
+/// The buffers that a kernel reads, in the order of its INPUT slots.
+template <class... Buffers>
+std::tuple<const Buffers&...> reads(const Buffers&... buffers)
+{
+    return {buffers...};
+}
+
+/// The buffers that a kernel writes, in the order of its OUTPUT and STATE slots.
+template <class... Buffers>
+std::tuple<Buffers&...> writes(Buffers&... buffers)
+{
+    return {buffers...};
+}
+
+/// What run_until_done did.
+struct progress {
+    uint passes = 0;                   ///< passes run
+    bool finished = false;             ///< true when every element is done
+    std::vector<std::uint64_t> active; ///< per pass: elements that were not yet done when it began
+};
+
+/// What was spent on one kernel.
+struct kernel_cost {
+    std::uint64_t instructions = 0; ///< SPIR-V instructions, 0 where the backend compiles none
+    double compile_ms = 0;          ///< all specialisations together
+    double ms = 0;            ///< its passes, where the backend times them: cpu always, vulkan and gl with time_passes
+    std::uint64_t passes = 0; ///< passes run so far
+};
+
+/// What a device is and can do. Algorithms may ask; nothing here changes after construction.
+struct capabilities {
+    std::string backend;            ///< "serial", "gl", "gl-osmesa", "vulkan"
+    std::string device;             ///< the driver's own words
+    bool software = true;           ///< true where the device is a CPU
+    std::uint64_t max_elements = 0; ///< in one buffer
+    uint max_route_slots = 0;       ///< largest m of route's m x m slots a destination
+    bool exact_division = false;    ///< a / b rounds correctly (self-test at start)
+    bool exact_sqrt = false;        ///< sqrt rounds correctly (self-test at start)
+    float cells_a_radius = 2;       ///< how fine a grid searches like best: its cells to the radius of a search
+    uint loop_limit = 0;            ///< iterations after which the driver silently ends loops; 0: none known
+};
+
+namespace detail {
+    /// Whose buffers are whose does not matter, or cannot be mistaken.
+    inline constexpr auto any_owner = [](const auto&) { return true; };
+
+    inline void check_owner(bool owned, const char* verb, std::string_view kernel, std::string_view name)
+    {
+        if (!owned)
+            throw std::invalid_argument(std::string(verb) + "<" + std::string(kernel) + ">: buffer '"
+                + std::string(name) + "' belongs to another backend; download it there and upload it here");
+    }
+
+    /// Checks what a call is to read against kernel K: types at compile time, by `owns` at run time whose it is.
+    template <kernel_struct K, class Reads, class Owns>
+    void check_reads(
+        [[maybe_unused]] const char* verb, [[maybe_unused]] const Reads& reads, [[maybe_unused]] const Owns& owns)
+    {
+        static_assert(
+            std::tuple_size_v<Reads> == input_count<K>, "reads(...) must name one buffer per INPUT of the kernel");
+        if constexpr (input_count<K> != 0)
+            for_each_slot<input_count<K>>([&](auto s) {
+                using buffer = std::remove_cvref_t<std::tuple_element_t<s.index, Reads>>;
+                static_assert(std::same_as<typename buffer::value_type, input_t<K, s.index>>,
+                    "a buffer's element type differs from the kernel's INPUT");
+                check_owner(owns(std::get<s.index>(reads)), verb, kernel_name<K>(), K::input_name(s));
+            });
+    }
+
+    /// Checks the arguments of one call against kernel K: types at compile time, sizes and owners at run time.
+    template <kernel_struct K, class Reads, class Writes, class Owns = decltype(any_owner)>
+    void check_call(const char* verb, const launch& l, const Reads& reads, [[maybe_unused]] const Writes& writes,
+        const Owns& owns = any_owner)
+    {
+        check_reads<K>(verb, reads, owns);
+        static_assert(
+            std::tuple_size_v<Writes> == output_count<K>, "writes(...) must name one buffer per OUTPUT and STATE");
+        [[maybe_unused]] const auto fail = [&](std::string_view name, std::size_t size) {
+            throw std::invalid_argument(std::string(verb) + "<" + std::string(kernel_name<K>()) + ">: buffer '"
+                + std::string(name) + "' holds " + std::to_string(size) + " elements; the pass writes elements "
+                + std::to_string(l.first) + " to " + std::to_string(std::uint64_t{l.first} + l.elements)
+                + " (exclusive)");
+        };
+        if constexpr (output_count<K> != 0)
+            for_each_slot<output_count<K>>([&](auto s) {
+                using buffer = std::remove_cvref_t<std::tuple_element_t<s.index, Writes>>;
+                static_assert(std::same_as<typename buffer::value_type, output_t<K, s.index>>,
+                    "a buffer's element type differs from the kernel's OUTPUT or STATE");
+                if (const std::size_t size = std::get<s.index>(writes).size();
+                    size < std::uint64_t{l.first} + l.elements)
+                    fail(K::output_name(s), size);
+                check_owner(owns(std::get<s.index>(writes)), verb, kernel_name<K>(), K::output_name(s));
+            });
+    }
+
+    /// Checks the sizes of a route call; `limit` is the device's largest m.
+    inline void check_route(uint destinations, uint m, uint limit, std::size_t slots, std::size_t totals)
+    {
+        const std::uint64_t capacity = m * m < 255u ? m * m : 255u;
+        if (m < 1 || m > limit)
+            throw std::invalid_argument("route: m: " + std::to_string(m) + " by " + std::to_string(m)
+                + " slots asked for; this device takes 1 to " + std::to_string(limit));
+        if (slots < destinations * capacity || totals < destinations)
+            throw std::invalid_argument("route: slots, totals: " + std::to_string(destinations) + " destinations of "
+                + std::to_string(capacity) + " slots need buffers of " + std::to_string(destinations * capacity)
+                + " and " + std::to_string(destinations) + " elements, not " + std::to_string(slots) + " and "
+                + std::to_string(totals));
+    }
+
+    /// A kernel with one input and one output, for the concept below.
+    struct concept_probe {
+        struct Params {
+            uint unused;
+        };
+        Params args{};
+        static constexpr std::string_view path = "concept_probe.glsl";
+        static uint input_type(slot<0>);
+        static constexpr std::string_view input_name(slot<0>) { return "in"; }
+        void bind(slot<0>, std::span<const uint>) {}
+        uint out{};
+        uint& output(slot<0>) { return out; }
+        static constexpr std::string_view output_name(slot<0>) { return "out"; }
+        static constexpr bool is_state(slot<0>) { return true; }
+        void kernel(uint) {}
+        bool done() { return true; }
+        bool holds(uint) { return true; }
+    };
+
+    struct route_probe : concept_probe {
+        uint payload{};
+        glm::vec4 amount{};
+        using concept_probe::is_state;
+        using concept_probe::output;
+        using concept_probe::output_name;
+        uint& output(slot<1>) { return payload; }
+        glm::vec4& output(slot<2>) { return amount; }
+        static constexpr std::string_view output_name(slot<1>) { return "payload"; }
+        static constexpr std::string_view output_name(slot<2>) { return "amount"; }
+        static constexpr bool is_state(slot<1>) { return false; }
+        static constexpr bool is_state(slot<2>) { return false; }
+    };
+} // namespace detail
+
+/// A backend runs kernels over buffers. Work may be deferred; `download` and `finish` wait for it. Every verb throws
+/// backend_error when the device refuses and std::invalid_argument when a buffer is too small.
+///
+/// After a backend_error every buffer is still freed by its destructor, what the failed verb was to write is undefined,
+/// and the backend may be used again, unless the device was lost: then every verb throws. Algorithms pass exceptions
+/// on; what they took over or were sorting is then undefined. Kernels trust the ids that other passes wrote; host code
+/// refuses, by backend_error, a count from the device that cannot be.
+///
+/// A verb sees what all before it wrote. A pass may read a buffer that it also writes, if it reads none of the elements
+/// that it writes (a STATE is its own element's old value); outputs of one pass are different buffers. Elements outside
+/// the launch keep their values.
+///
+/// - `make<T>(n)`: a buffer of n elements, n from 0 up, contents undefined
+/// - `upload(span<const T>)`: a buffer with a copy of these contents, every bit
+/// - `download(buffer)`: its contents as std::vector<T>, every bit
+/// - `run<K>(launch, params, reads(…), writes(…))`: one pass (the paper's screen-sized quad)
+/// - `run_until_done<K>(launch, params, reads, writes, passes)`: passes over the elements not yet done (3.3, 4.3), at
+///   most `passes` of them; call it again to go on. Elements that are done are not written
+/// - `count<K>(launch, params, reads(…))`: how many elements `holds` is true for (occlusion query)
+/// - `route<K>(launch, params, reads, destinations, m, slots, totals)`: many-to-one scatter (2.2.2). With
+///   cap = min(m*m, 255), slots[d*cap + r] is the payload of the r-th draw (in index order) with destination d, for
+///   r < cap; the rest is 0xFFFFFFFF. totals[d] is the sum of all amounts with destination d, added in that order.
+///   Draws with a destination past the last are dropped. With room for P totals per destination there are P partial
+///   sums: totals[d*P + p] adds up, in order, the draws of the p-th of P equal blocks. Shorter sums round less
+/// - `finish()`: waits until all passes are done
+/// - `caps()`, `bytes()`, `peak_bytes()`, `costs()`: what the device is, what buffers hold now, what they held at most,
+///   and what each kernel has spent: a pass for each run, count and route, and those of run_until_done
+///
+/// A buffer moves and is not copied; one that was moved from has no elements. It may go as soon as the call that names
+/// it has returned, and may outlive the backend.
+// Not formatted: clang-format 14 breaks each of these lines in three.
+// clang-format off
+template <class B>
+concept backend = requires(B& b, const B& cb, typename B::template buffer<uint>& u, typename B::template buffer<glm::vec4>& v,
+    launch l, detail::concept_probe::Params p, std::span<const uint> host) {
+    { b.template make<uint>(std::size_t{}) } -> std::same_as<typename B::template buffer<uint>>;
+    { b.upload(host) } -> std::same_as<typename B::template buffer<uint>>;
+    { b.download(u) } -> std::same_as<std::vector<uint>>;
+    { u.size() } -> std::same_as<std::size_t>;
+    b.template run<detail::concept_probe>(l, p, reads(u), writes(u));
+    { b.template run_until_done<detail::concept_probe>(l, p, reads(u), writes(u), uint{}) } -> std::same_as<progress>;
+    { b.template count<detail::concept_probe>(l, p, reads(u)) } -> std::same_as<std::uint64_t>;
+    b.template route<detail::route_probe>(l, p, reads(u), uint{}, uint{}, u, v);
+    b.finish();
+    { cb.caps() } -> std::same_as<const capabilities&>;
+    { cb.bytes() } -> std::same_as<std::uint64_t>;
+    { cb.peak_bytes() } -> std::same_as<std::uint64_t>;
+    { cb.costs() } -> std::same_as<const std::map<std::string, kernel_cost>&>;
+};
+// clang-format on
+
+namespace detail {
+    /// How many elements predicate K is true for, as the device says; a backend_error when it says more than there are.
+    template <predicate_kernel K, backend B, class Reads>
+    uint checked_count(B& b, launch l, const typename K::Params& args, Reads reads)
+    {
+        const std::uint64_t n = b.template count<K>(l, args, reads);
+        if (n > l.elements)
+            throw backend_error(b.caps().backend + ": count<" + std::string(kernel_name<K>())
+                + ">: the device returned " + std::to_string(n) + "; there are " + std::to_string(l.elements)
+                + " elements");
+        return static_cast<uint>(n);
+    }
+} // namespace detail
+
+/// The buffers of backend B.
+template <class B, element T>
+using buffer_of = typename B::template buffer<T>;
+
+/// A buffer with the elements of a contiguous range: b.upload() for what is not a std::span.
+/// \throws backend_error where the device has no room.
+/// \snippet snippets.cpp upload
+template <backend B, std::ranges::contiguous_range Range>
+requires std::ranges::sized_range<Range> && element<std::ranges::range_value_t<Range>>
+    buffer_of<B, std::ranges::range_value_t<Range>> upload(B& b, const Range& elements)
+{
+    return b.upload(std::span<const std::ranges::range_value_t<Range>>(elements));
+}
+
+/// Slots that a routed destination really has: m*m, but 255 at most, since an 8-bit stencil cannot count further
+/// (docs/design/decisions.md).
+constexpr uint route_capacity(uint m) { return m * m < 255u ? m * m : 255u; }
+
+/// Partial sums that a destination has in route: P where `totals` elements are room for P of each.
+constexpr uint route_parts(std::size_t totals, uint destinations)
+{
+    return destinations == 0 ? 1u : static_cast<uint>(totals / destinations);
+}
+/// Draws that share a partial sum in route: `draws` cut into `parts` equal blocks, the last of which may be shorter. 1
+/// at least.
+constexpr uint route_block(uint draws, uint parts)
+{
+    const uint block = draws / parts + (draws % parts != 0 ? 1u : 0u);
+    return block > 0 ? block : 1u;
+}
+
+/// Marks "no destination" and "no payload" in route.
+inline constexpr uint nowhere = 0xFFFFFFFFu;
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

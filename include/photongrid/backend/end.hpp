@@ -1,0 +1,29 @@
+// Takes the dialect of backend/begin.hpp back, so that no word of it reaches a user's code.
+#undef PHOTONGRID_SHARED_IS_READ
+#undef PARAMS
+#pragma pop_macro("PARAMS")
+#undef INPUT
+#pragma pop_macro("INPUT")
+#undef PHOTONGRID_VARIABLE
+#undef OUTPUT
+#pragma pop_macro("OUTPUT")
+#undef STATE
+#pragma pop_macro("STATE")
+#undef SWITCH
+#pragma pop_macro("SWITCH")
+#undef GROUP_LANES
+#pragma pop_macro("GROUP_LANES")
+#undef EACH_LANE
+#pragma pop_macro("EACH_LANE")
+#undef IN_GROUPS
+#pragma pop_macro("IN_GROUPS")
+#undef PHOTON_OF
+#pragma pop_macro("PHOTON_OF")
+#undef EACH_PHOTON
+#pragma pop_macro("EACH_PHOTON")
+#undef precise
+#pragma pop_macro("precise")
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+#include <photongrid/backend/exact_end.hpp>

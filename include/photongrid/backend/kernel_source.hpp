@@ -1,0 +1,210 @@
+// Kernel texts as GPUs need them: a prelude and a kernel file spliced into one source, and a compiler's messages
+// translated back to the kernel's own file and line.
+#pragma once
+
+#include <photongrid/backend/text_file.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace photongrid {
+
+/// A source text made of several files. Line L of file F is numbered (F + 1) * 100000 + L by `#line`, in one integer,
+/// because drivers lose the file number of `#line` with two (docs/design/design.md, "Errors that point home").
+struct spliced_source {
+    std::string text;               ///< what the compiler is given
+    std::vector<std::string> files; ///< F -> name
+    std::vector<std::string> texts; ///< F -> the file's own text, for quoting
+};
+
+namespace detail {
+    inline constexpr unsigned lines_per_file = 100000;
+
+    class splicer {
+    public:
+        explicit splicer(std::span<const text_file> library) : library_(library) {}
+
+        void append(const text_file& source, std::string_view defines = "")
+        {
+            const auto file = out_.files.size();
+            const std::string_view name = source.name;
+            std::string_view text = source.text;
+            out_.files.emplace_back(name);
+            out_.texts.emplace_back(text);
+            const auto line_directive = [&](std::size_t line) {
+                out_.text += "#line " + std::to_string((file + 1) * lines_per_file + line) + "\n";
+            };
+            std::size_t line = 1;
+            if (!text.starts_with("#version"))
+                line_directive(1);
+            while (!text.empty()) {
+                const auto end = std::min(text.find('\n'), text.size());
+                const auto row = text.substr(0, end);
+                text.remove_prefix(std::min(end + 1, text.size()));
+                ++line;
+                if (row.starts_with("#version")) {
+                    out_.text += std::string(row) + "\n" + std::string(defines);
+                    line_directive(line);
+                } else if (row.starts_with("#include \"") || row.starts_with("#include <")) {
+                    const std::string_view path = row.substr(10, row.find_first_of("\">", 10) - 10);
+                    include(path.substr(path.rfind('/') + 1), name, line - 1); // npos + 1 is 0
+                    line_directive(line);
+                } else {
+                    out_.text += std::string(row) + "\n";
+                }
+            }
+        }
+        spliced_source take() { return std::move(out_); }
+
+    private:
+        void include(std::string_view wanted, std::string_view from, std::size_t line)
+        {
+            for (const auto& f : library_) {
+                if (f.name.substr(f.name.rfind('/') + 1) != wanted)
+                    continue;
+                if (once_.insert(f.name).second)
+                    append(f);
+                return;
+            }
+            throw std::runtime_error(std::string(from) + ":" + std::to_string(line) + ": error: no kernel file named \""
+                + std::string(wanted) + "\"");
+        }
+        std::span<const text_file> library_;
+        std::set<std::string_view> once_;
+        spliced_source out_;
+    };
+} // namespace detail
+
+/// Puts `prelude` before `kernel`, then `epilogue` (a wrapper's main), with every `#include` of an x.glsl replaced by
+/// that file of `library`, each once. Defines go after the prelude's `#version` line as they are.
+/// \throws std::runtime_error that names file and line, where an included file is not in `library`.
+inline spliced_source splice(const text_file& prelude, std::string_view defines, const text_file& kernel,
+    const text_file& epilogue, std::span<const text_file> library)
+{
+    detail::splicer s(library);
+    s.append(prelude, defines);
+    s.append(kernel);
+    s.append(epilogue);
+    return s.take();
+}
+
+/// The embedded text of a kernel by the path that its C++ struct carries.
+/// \throws std::runtime_error when no such text was embedded.
+inline const text_file& find_kernel_text(std::string_view path, std::span<const text_file> library)
+{
+    const auto base = path.substr(path.find_last_of("/\\") + 1);
+    for (const auto& f : library)
+        if (f.name.substr(f.name.rfind('/') + 1) == base)
+            return f;
+    throw std::runtime_error(
+        "kernel text '" + std::string(path) + "' was not embedded; give it to photongrid_add_kernels() in CMake");
+}
+
+/// The texts that kernel K can be made of: those that it carries, before those of `library`, a backend's own.
+template <class K>
+std::vector<text_file> texts_of(std::span<const text_file> library)
+{
+    std::vector<text_file> texts;
+    if constexpr (requires { K::own_texts(); })
+        texts.assign(K::own_texts().begin(), K::own_texts().end());
+    texts.insert(texts.end(), library.begin(), library.end());
+    return texts;
+}
+
+namespace detail {
+    /// What one row of a compiler's log says.
+    struct log_row {
+        unsigned long number = 0; ///< of the line, as #line made it
+        std::string_view kind, message;
+    };
+
+    /// The number that ends just before place `end`, which moves to where it begins; nothing if no digit stands there.
+    inline std::optional<unsigned long> number_before(std::string_view text, std::size_t& end)
+    {
+        std::size_t begin = end;
+        while (begin > 0 && text[begin - 1] >= '0' && text[begin - 1] <= '9')
+            --begin;
+        unsigned long number = 0;
+        const auto result = std::from_chars(text.data() + begin, text.data() + end, number);
+        if (begin == end || result.ec != std::errc())
+            return {};
+        end = begin;
+        return number;
+    }
+
+    /// Reads Mesa's rows, `0:300010(5): error: ...`, NVIDIA's, `0(300010) : error ...`, and glslang's, `ERROR:
+    /// name:300010: ...`. Without <regex>, which takes a compiler three seconds in every file.
+    inline std::optional<log_row> parse_log_row(std::string_view row)
+    {
+        for (const std::string_view kind : {"error", "warning"}) {
+            for (const std::string_view stage : {"", "preprocessor "}) {
+                const std::string words = "): " + std::string(stage) + std::string(kind) + ": ";
+                std::size_t at = row.find(words);
+                if (at == row.npos)
+                    continue;
+                const auto message = row.substr(at + words.size());
+                if (number_before(row, at) && at > 0 && row[--at] == '(') // the column
+                    if (const auto line = number_before(row, at); line && at > 0 && row[at - 1] == ':')
+                        return log_row{*line, kind, message};
+            }
+            const std::string words = ") : " + std::string(kind) + " ";
+            if (std::size_t at = row.find(words); at != row.npos) {
+                const auto message = row.substr(at + words.size());
+                if (const auto line = number_before(row, at); line && at > 0 && row[at - 1] == '(')
+                    return log_row{*line, kind, message};
+            }
+            const std::string_view loud = kind == "error" ? "ERROR: " : "WARNING: ";
+            if (const std::size_t begin = row.find(loud); begin != row.npos) {
+                const std::size_t name_end = row.find(':', begin + loud.size());
+                const std::size_t line_end = name_end == row.npos ? row.npos : row.find(": ", name_end + 1);
+                if (line_end != row.npos)
+                    if (std::size_t at = line_end; const auto line = number_before(row, at))
+                        if (at == name_end + 1)
+                            return log_row{*line, kind, row.substr(line_end + 2)};
+            }
+        }
+        return {};
+    }
+
+    /// Takes the first line off `text`; nothing at its end.
+    inline std::optional<std::string_view> next_line(std::string_view& text)
+    {
+        if (text.empty())
+            return {};
+        const auto line = text.substr(0, text.find('\n'));
+        text.remove_prefix(std::min(line.size() + 1, text.size()));
+        return line;
+    }
+} // namespace detail
+
+/// Rewrites a compiler's log so that each message reads `kernel.glsl:line: error: …` with the source line quoted below
+/// it. Understands Mesa's, glslang's and NVIDIA's forms; what matches none is kept as it is.
+inline std::string translate_log(std::string_view log, const spliced_source& source)
+{
+    std::string out;
+    while (const auto row = detail::next_line(log)) {
+        const auto said = detail::parse_log_row(*row);
+        const auto file = said ? said->number / detail::lines_per_file : 0;
+        if (file < 1 || file > source.files.size()) {
+            out += std::string(*row) + "\n";
+            continue;
+        }
+        const auto line = said->number % detail::lines_per_file;
+        out += source.files[file - 1] + ":" + std::to_string(line) + ": " + std::string(said->kind) + ": "
+            + std::string(said->message) + "\n";
+        std::string_view text = source.texts[file - 1], quoted;
+        for (unsigned long l = 0; l < line; ++l)
+            quoted = detail::next_line(text).value_or("");
+        out += "    " + std::string(quoted) + "\n";
+    }
+    return out;
+}
+
+} // namespace photongrid

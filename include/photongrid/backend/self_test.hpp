@@ -1,0 +1,32 @@
+// What a device's arithmetic is worth: Vulkan and GL allow a division 2.5 units in the last place off. Where division
+// and square root round correctly, traced photons equal the serial backend's bit for bit (docs/design/design.md).
+#pragma once
+
+#include <photongrid/backend/arithmetic_probe.kernel.hpp>
+#include <photongrid/backend/backend.hpp>
+
+#include <cmath>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// Runs 65,536 quotients and square roots on `b` and compares them with the host's.
+/// Returns {division is exact, square root is exact}.
+template <class B>
+std::pair<bool, bool> test_arithmetic(B& b)
+{
+    constexpr uint n = 65536;
+    auto result = b.template make<glm::vec4>(n);
+    b.template run<kernels::arithmetic_probe>(n, {.seed = 1u}, reads(), writes(result));
+    bool division = true, square_root = true;
+    for (const auto& r : b.download(result)) {
+        division = division && r.x / r.y == r.z;
+        square_root = square_root && std::sqrt(r.x) == r.w;
+    }
+    return {division, square_root};
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

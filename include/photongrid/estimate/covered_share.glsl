@@ -1,0 +1,152 @@
+// The share of an estimate's disc that lies on polygons, each of its parts weighed as the estimate's kernel weighs photons
+// there: 1 far from all edges, 1/2 on a straight edge, 1/4 in a right corner. A bounded number of polygons a pass.
+//
+// The integral of a radial weight over polygon and disc is a sum over the polygon's edges (polar coordinates about the
+// centre): of an edge at signed distance d, F(rho) dphi between its ends, where F is the integral of the weight times radius
+// up to rho, the distance of the edge or of the disc's rim, whichever is nearer. On the edge's part within the disc dphi is
+// d ds / rho^2 and the integral is a polynomial in s, but for the cone's, which has a logarithm; on the rim it is an angle.
+//
+// Polygons count that lie in the plane of the point, whichever side they were drawn to show, for they have two; and those
+// in planes tilted against it by up to 2.5 degrees that come near it within the disc, so that gently bent walls do not
+// fall apart. Others do not: their photons must be refused (leak policy `normals`).
+#include <photongrid/backend/vector.glsl>
+#include <photongrid/backend/natural_log.glsl>
+#include <photongrid/trace/scene_layout.glsl>
+
+struct Params {
+    float min_radius2; // m^2; discs are never smaller
+    uint first;        // record of the first polygon of this pass
+    uint polygons;     // how many
+};
+PARAMS(Params)
+SWITCH(0, CONE)         // weight 1 - d / r
+SWITCH(1, EPANECHNIKOV) // 1 - d^2 / r^2
+SWITCH(2, SILVERMAN)    // (1 - d^2 / r^2)^2; none of the three: 1
+INPUT(0, vec4, scene)
+INPUT(1, vec4, points)    // xyz, m; w > 0: an estimate was wanted
+INPUT(2, vec4, surfaces)  // xyz: unit normal
+INPUT(3, vec4, estimates) // w: squared radius, m^2
+STATE(0, vec4, cover)     // x: sum of shares; y: 1 where the point lies on one of the polygons
+
+#include <photongrid/trace/materials.glsl>
+#include <photongrid/trace/polygon_record.glsl>
+
+// 2 pi / d times the indefinite integral along an edge's part within the unit disc, at s from the foot of its centre; the
+// whole disc counts as 1.
+float edge_integral(float d, float s)
+{
+    precise float d2 = d * d;
+    precise float s2 = s * s;
+    precise float value = s;
+    if (CONE) {
+        precise float rho = sqrt(d2 + s2);
+        float logarithm = 0.0f; // its share vanishes with d
+        if (d2 > 1e-8f) {
+            precise float ratio = (abs(s) + rho) / abs(d);
+            logarithm = natural_log(ratio);
+        }
+        logarithm = s < 0.0f ? -logarithm : logarithm;
+        precise float with_cone = 3.0f * s - s * rho - d2 * logarithm;
+        value = with_cone;
+    }
+    if (EPANECHNIKOV) {
+        precise float with_epanechnikov = s * (2.0f - d2 - 0.333333333f * s2);
+        value = with_epanechnikov;
+    }
+    if (SILVERMAN) {
+        precise float with_silverman = s * (3.0f - 3.0f * d2 - s2 + d2 * d2 + 0.666666667f * d2 * s2 + 0.2f * s2 * s2);
+        value = with_silverman;
+    }
+    return value;
+}
+
+// The angle that an edge at distance d subtends between a and b, a <= b.
+float subtended(float d, float a, float b)
+{
+    precise float sine = abs(d) * (b - a);
+    precise float cosine = d * d + a * b;
+    return sine > 0.0f ? angle_of(sine, cosine) : 0.0f;
+}
+
+// An edge's part of the share: signed distance d of the disc's centre, positive inside, ends at a <= b, all over the radius.
+float edge_share(float d, float a, float b)
+{
+    precise float chord2 = 1.0f - d * d;
+    precise float chord = sqrt(chord2 > 0.0f ? chord2 : 0.0f); // half of it
+    float from = a < -chord ? -chord : a > chord ? chord : a;
+    float to = b < -chord ? -chord : b > chord ? chord : b;
+    float rim = 0.0f;
+    float within = 0.0f;
+    if (from == to) {
+        rim = subtended(d, a, b);
+    } else {
+        precise float outside = subtended(d, a, from) + subtended(d, to, b);
+        precise float inside = d * (edge_integral(d, to) - edge_integral(d, from));
+        rim = outside;
+        within = inside;
+    }
+    precise float share = (within + (d < 0.0f ? -rim : rim)) * 0.159154943f; // 1 / (2 pi)
+    return share;
+}
+
+void kernel(uint i)
+{
+    vec4 point = points(i);
+    if (!(point.w > 0.0f))
+        return;
+    vec3 p = vec3(point);
+    vec3 n = vec3(surfaces(i));
+    precise float radius = sqrt(max(estimates(i).w, args.min_radius2));
+    precise float inverse = 1.0f / radius;
+    float sum = cover.x;
+    float found = cover.y;
+    uint next = args.first;
+    for (uint polygon = 0u; polygon < args.polygons; ++polygon) {
+        uint at = next;
+        vec4 plane = polygon_plane(at);
+        vec3 up = vec3(plane);
+        float error = polygon_error(at);
+        uint edges = polygon_edges(at);
+        uint vertices = polygon_vertices(at, edges);
+        next = at + polygon_stride(edges);
+        precise float above = dot3(up, p) - plane.w;
+        vec3 turn = cross3(n, up);
+        float sine2 = dot3(turn, turn);
+        precise float reach = error + radius * sqrt(sine2);
+        if (!(sine2 <= 0.0019f) || !(abs(above) <= reach))
+            continue;
+        if (is_light_surface(at) || material_of(polygon_material(at)).kind != LAMBERTIAN_SURFACE)
+            continue; // holds no photons
+
+        float nearest = 3.0e38f; // edge's line, m; positive inside
+        for (uint e = 0u; e < edges; ++e) {
+            precise vec3 f = p - vec3(scene(vertices + e));
+            float d = dot3(vec3(polygon_edge(at, e)), f);
+            nearest = d < nearest ? d : nearest;
+        }
+        if (sine2 <= 1e-10f && abs(above) <= error && nearest >= -2.0f * error)
+            found = 1.0f;
+        if (nearest <= -radius)
+            continue;
+        precise float share = 0.0f;
+        if (nearest >= radius) {
+            share = 1.0f;
+        } else {
+            precise vec3 a = vec3(scene(vertices)) - p;
+            for (uint e = 0u; e < edges; ++e) {
+                precise vec3 b = vec3(scene(vertices + (e + 1u == edges ? 0u : e + 1u))) - p;
+                vec3 inward = vec3(polygon_edge(at, e));
+                vec3 way = cross3(inward, up); // from a to b
+                precise float d = -dot3(inward, a) * inverse;
+                precise float s = dot3(way, a) * inverse;
+                precise float t = dot3(way, b) * inverse;
+                precise float more = share + edge_share(d, s, t);
+                share = more;
+                a = b;
+            }
+        }
+        precise float all = sum + share;
+        sum = all;
+    }
+    cover = vec4(sum, found, 0.0f, 0.0f);
+}

@@ -1,0 +1,97 @@
+// Edge correction of density estimates: each is divided by the share of its kernel's mass that lies on the surface
+// ("cut and normalise", Gasser and Müller 1979; Diggle, Applied Statistics 34(2), 1985). Without it an estimate at a
+// straight edge reads half of the truth, in a right corner a quarter.
+#pragma once
+
+#include <photongrid/estimate/covered_share.kernel.hpp>
+#include <photongrid/estimate/divide_by_share.kernel.hpp>
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/render/no_light.kernel.hpp>
+#include <photongrid/trace/device_scene.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+namespace detail {
+    /// Some polygons that follow each other in the records.
+    struct polygon_range {
+        uint first = 0; ///< record
+        uint polygons = 0;
+    };
+
+    /// A scene's polygons, lamps among them, in parts that one pass may look at: drivers end loops after 65,535
+    /// iterations, those of up to 16 lanes added up.
+    /// \throws std::invalid_argument for a polygon that is too much for
+    /// one pass.
+    inline std::vector<polygon_range> ranges_of_polygons(const scene_layout& s)
+    {
+        constexpr uint a_pass = 4000;
+        std::vector<polygon_range> ranges;
+        const auto polygons = s.table(shape_kind<polygon>::number);
+        uint at = polygons.first, left = 0;
+        for (uint i = 0; i < polygons.count; ++i) {
+            const uint edges = static_cast<uint>(s.records[at + 1].x);
+            const uint work = 1 + 2 * edges;
+            if (work > a_pass)
+                throw std::invalid_argument("edge_correction: polygons[" + std::to_string(i) + "] has "
+                    + std::to_string(edges) + " vertices; at most " + std::to_string((a_pass - 1) / 2)
+                    + " can be corrected, so split it");
+            if (work > left) {
+                ranges.push_back({at, 0});
+                left = a_pass;
+            }
+            left -= work;
+            ++ranges.back().polygons;
+            at += 2 + 2 * edges;
+        }
+        return ranges;
+    }
+} // namespace detail
+
+/// The share, 0 to about 1, of each estimate's disc that lies on polygons of the scene, weighed by the kernel: x; y: 1
+/// for points on one of them, 0 for others, whose share means nothing. Polygons in one plane are one surface, whichever
+/// way they are wound; where they overlap they count twice. Mirrors, glass and lamps hold no photons and do not count.
+///
+/// `points` (recentred, m; w > 0: wanted), `normals` (unit) and `irradiances` (w: squared radius, m^2) are those of the
+/// estimate, `min_radius` (m) is that of its settings. The error is about 1e-6 and what 2^-22 of the scene's size is of
+/// the radius.
+/// \throws std::invalid_argument for a polygon of more than 1,999 vertices.
+template <backend B>
+buffer_of<B, glm::vec4> covered_shares(B& b, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
+    const buffer_of<B, glm::vec4>& normals, const buffer_of<B, glm::vec4>& irradiances, filter_kernel kernel,
+    float min_radius)
+{
+    const auto n = points.size();
+    auto cover = b.template make<glm::vec4>(n);
+    b.template run<kernels::no_light>(n, {}, reads(), writes(cover));
+    const uint weight = kernel == filter_kernel::constant ? 0u : 1u << (static_cast<uint>(kernel) - 1);
+    for (const auto& range : detail::ranges_of_polygons(s.layout))
+        b.template run<kernels::covered_share>({n, 0u, weight},
+            {.min_radius2 = std::max(min_radius * min_radius, 1e-36f),
+                .first = range.first,
+                .polygons = range.polygons},
+            reads(s.records, points, normals, irradiances), writes(cover));
+    return cover;
+}
+
+/// Corrects estimates, and their standard errors where there are any, at points on polygons. No share is taken for less
+/// than 2^-8, the tip of a needle of 1.4 degrees. Right where the light that the estimate counts lies on the surface
+/// itself: the search must refuse photons of adjoining surfaces (leak_policy::min_cosine). Radius and counts stay.
+/// \throws std::invalid_argument as covered_shares does.
+/// \snippet snippets.cpp correct_edges
+template <backend B>
+void correct_edges(B& b, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
+    const buffer_of<B, glm::vec4>& normals, knn_estimates<B>& estimates, filter_kernel kernel, float min_radius)
+{
+    constexpr float least = 0x1p-8f;
+    const auto cover = covered_shares(b, s, points, normals, estimates.irradiance, kernel, min_radius);
+    b.template run<kernels::divide_by_share>(
+        estimates.irradiance.size(), {.least = least, .keeps_w = 1u}, reads(cover), writes(estimates.irradiance));
+    b.template run<kernels::divide_by_share>(estimates.standard_error.size(), {.least = least, .keeps_w = 0u},
+        reads(cover), writes(estimates.standard_error));
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,25 @@
+// The beginning of a gathering (gather_photons.glsl). A point that is not wanted (w <= 0) or not finite is done at once.
+#include <photongrid/map/grid.glsl>
+
+struct Params {
+    uint searching; // 0: no search can find anything (no photons, none wanted, no radius)
+};
+PARAMS(Params)
+INPUT(0, vec4, points) // xyz: query point, m; w > 0: wanted
+INPUT(1, uvec4, chosen)
+OUTPUT(0, vec4, sum)
+OUTPUT(1, vec4, lost)
+OUTPUT(2, vec4, squares)
+OUTPUT(3, uvec4, cursor)
+OUTPUT(4, uvec4, tally)
+
+void kernel(uint i)
+{
+    vec4 p = points(i);
+    sum = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    lost = sum;
+    squares = sum;
+    cursor = uvec4(0u, 0u, 0u, 0u);
+    bool wanted = args.searching != 0u && p.w > 0.0f && is_finite(p);
+    tally = uvec4(0u, chosen(i).y, 0u, wanted ? 0u : 1u);
+}

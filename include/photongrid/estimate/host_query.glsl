@@ -1,0 +1,25 @@
+// What the host's own searches (host_search.hpp) share with the kernels: how far a photon is, and which photons of a row
+// of cells can lie within a radius. Never run by a device; a kernel so that the two cannot differ.
+#include <photongrid/map/grid.glsl>
+
+struct Params {
+    Grid grid;
+    vec4 leaks; // see photon_distance.glsl
+};
+PARAMS(Params)
+SWITCH(0, SIDE)
+SWITCH(1, NORMALS)
+SWITCH(2, FLATTEN)
+INPUT(0, uvec2, cells)         // x: first photon, y: count
+INPUT(1, vec4, positions)      // xyz, m, cell by cell
+INPUT(2, vec4, directions)
+INPUT(3, vec4, photon_normals)
+OUTPUT(0, float, distance2)
+
+#include <photongrid/estimate/photon_distance.glsl>
+#include <photongrid/estimate/search_rows.glsl>
+
+void kernel(uint i)
+{
+    distance2 = photon_distance2(i, vec4(0.0f, 0.0f, 0.0f, 1.0f), vec4(0.0f, 0.0f, 1.0f, 0.0f));
+}

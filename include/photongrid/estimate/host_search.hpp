@@ -1,0 +1,251 @@
+// Searches for one point at a time, on the host: const, from any thread, over a copy of a map. They find the photons
+// that the kernels find, to the bit: distances and rows of cells are those of the kernels' own text (host_query.glsl).
+#pragma once
+
+#include <photongrid/estimate/host_query.kernel.hpp>
+#include <photongrid/estimate/irradiance_estimate.kernel.hpp>
+#include <photongrid/estimate/knn_settings.hpp>
+#include <photongrid/estimate/kth_guess.kernel.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// Which photon or point: its place in the range that the map was made from.
+using photon_id = uint;
+
+/// Light that arrives at a point.
+struct irradiance_at_point {
+    glm::vec3 value{0};     ///< W/m^2
+    glm::vec3 error{0};     ///< standard error of value, W/m^2; 0 where none was asked for
+    float error_of_sum = 0; ///< standard error of the channels' sum, W/m^2; 0 where none was asked for
+    float radius = 0;       ///< of the disc that the photons lay in, m
+    uint count = 0;         ///< photons in it
+};
+
+/// Room that a search for one point needs. Each thread has its own; once it has held the largest search, none
+/// allocates.
+class query_scratch {
+public:
+    query_scratch() = default;
+
+private:
+    friend class host_search;
+    struct candidate {
+        std::uint64_t key; ///< squared distance above, id below: in this order photons are taken
+        uint place;        ///< in the map
+        bool operator<(const candidate& other) const { return key < other.key; }
+    };
+    std::vector<candidate> found_;
+};
+
+/// A map's photons in the host's memory. It takes 36 bytes a photon, and 16 more for each of directions and normals
+/// that the policies of the search need.
+class host_search {
+public:
+    host_search() = default;
+    template <backend B>
+    host_search(B& b, const map_buffers<B>& map, const knn_settings& settings, bool powers)
+        : grid_(map.cells_of), cells_(b.download(map.cells)), list_(b.download(map.list)),
+          positions_(b.download(map.photons.positions))
+    {
+        const auto& leaks = settings.leaks;
+        settings_ = detail::checked(settings, map, 1, leaks.needs_any() ? 1 : 0);
+        if (powers)
+            powers_ = b.download(map.photons.powers);
+        if (leaks.side)
+            directions_ = b.download(map.photons.directions);
+        if (leaks.needs_normals())
+            normals_ = b.download(map.photons.normals);
+    }
+
+    const knn_settings& settings() const { return settings_; }
+
+    /// Calls f(id, squared distance) for every photon within `radius` of p, in no particular order. Asks no policy.
+    template <class F>
+    void for_each_within(const glm::vec3& p, float radius, const F& f) const
+    {
+        const auto q = query({}, 0);
+        const float radius2 = radius > 0 ? std::min(radius * radius, 1e38f) : -1.0f;
+        visit(q, glm::vec4(p, 1), glm::vec4(0), radius2, [&](uint place, float d2) { f(photon_id{list_[place]}, d2); });
+    }
+
+    /// Calls f(id, squared distance) for the k nearest photons, nearest first; of equally near ones, the smallest id
+    /// first.
+    template <class F>
+    void for_each_nearest(const glm::vec3& p, uint k, float max_radius, query_scratch& scratch, const F& f) const
+    {
+        auto s = settings_;
+        s.k = k;
+        s.max_radius = max_radius;
+        s.search = search_kind::exact_k;
+        s.leaks = {};
+        const auto q = query({}, 0);
+        const std::size_t n = collect(q, glm::vec4(p, 1), glm::vec4(0), s, scratch);
+        auto& found = scratch.found_;
+        std::sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(n));
+        for (std::size_t i = 0; i < n; ++i)
+            f(photon_id{static_cast<uint>(found[i].key)}, distance2_of(found[i]));
+    }
+
+    /// The estimate at p, by the settings. Same photons and radius as a search for many points finds; sums differ by
+    /// 10^-6 at most. `normal`: of the surface, where a policy needs it.
+    irradiance_at_point irradiance(const glm::vec3& p, const glm::vec3& normal, query_scratch& scratch) const
+    {
+        const auto& s = settings_;
+        if (s.search == search_kind::at_least_k)
+            throw std::invalid_argument(
+                "photon_map::irradiance: search: at_least_k depends on the order of all cells and "
+                "is for many points at once; take exact_k or fixed_radius");
+        const auto q = query(s.leaks, policies(s.leaks));
+        const std::size_t n = collect(q, glm::vec4(p, 1), glm::vec4(normal, 0), s, scratch);
+        const bool by_photon = s.search == search_kind::exact_k && n >= s.k;
+        auto& found = scratch.found_;
+        const auto last = by_photon ? std::max_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(n))
+                                    : found.begin();
+        const float max2 = detail::max_radius2(s), min2 = detail::min_radius2(s);
+        const float radius2 = by_photon ? distance2_of(*last) : max2;
+        const bool left_out = s.bias == bias_kind::unbiased;
+        const float inverse = 1.0f / std::max(radius2, min2);
+        glm::dvec4 sum(0), squares(0);
+        for (std::size_t i = 0; i < n; ++i) {
+            if (left_out && by_photon && radius2 >= min2 && found[i].key == last->key)
+                continue;
+            const float t = std::min(distance2_of(found[i]) * inverse, 1.0f);
+            const glm::vec4 flux = powers_[found[i].place] * weight(s.kernel, t);
+            const float all = flux.x + flux.y + flux.z;
+            sum += glm::dvec4(flux);
+            squares += glm::dvec4(flux.x * flux.x, flux.y * flux.y, flux.z * flux.z, all * all);
+        }
+        return made_of({radius2, by_photon ? 1.0f : 0.0f, 0, 0}, glm::vec4(sum), glm::vec4(squares),
+            static_cast<uint>(n), left_out);
+    }
+
+private:
+    static float distance2_of(const query_scratch::candidate& c)
+    {
+        return std::bit_cast<float>(static_cast<uint>(c.key >> 32));
+    }
+    static uint policies(const leak_policy& l)
+    {
+        return (l.side ? 1u : 0u) | (l.needs_normals() ? 2u : 0u) | (l.compression > 1 ? 4u : 0u);
+    }
+    static float weight(filter_kernel kernel, float t)
+    {
+        switch (kernel) {
+        case filter_kernel::cone: return 1.0f - std::sqrt(t);
+        case filter_kernel::epanechnikov: return 1.0f - t;
+        case filter_kernel::silverman: return (1.0f - t) * (1.0f - t);
+        case filter_kernel::constant: break;
+        }
+        return 1.0f;
+    }
+
+    kernels::host_query query(const leak_policy& l, uint switches) const
+    {
+        kernels::host_query q;
+        q.args = {.grid = grid_, .leaks = {l.min_cosine, l.compression * l.compression - 1.0f, 0, 0}};
+        turn_switches(q, switches);
+        q.bind(slot<0>{}, cells_);
+        q.bind(slot<1>{}, positions_);
+        q.bind(slot<2>{}, directions_);
+        q.bind(slot<3>{}, normals_);
+        return q;
+    }
+
+    /// Calls f(place, squared distance) for the photons within radius2. Few of a row of cells are, so that f may take
+    /// its time.
+    template <class F>
+    static void visit(kernels::host_query q, const glm::vec4& p, const glm::vec4& n, float radius2, const F& f)
+    {
+        if (!(radius2 >= 0) || q.positions_data.empty() || !kernels::is_finite(p))
+            return;
+        const auto& g = q.args.grid;
+        const auto c = kernels::cell_coordinates(g, p);
+        const float wide = q.wider(radius2);
+        const auto rows_y = q.cells_within(p.y, wide, g.origin.y, g.inverse_cell.y, g.resolution.y),
+                   rows_z = q.cells_within(p.z, wide, g.origin.z, g.inverse_cell.z, g.resolution.z);
+        for (uint z = rows_z.x; z <= rows_z.y; ++z)
+            for (uint y = rows_y.x; y <= rows_y.y; ++y) {
+                const auto row = q.photons_of_row(p, y, z, c, radius2);
+                for (uint place = row.x; place < row.y; ++place)
+                    if (const float d2 = q.photon_distance2(place, p, n); d2 <= radius2)
+                        f(place, d2);
+            }
+    }
+
+    /// The first `n` that are returned of scratch are the photons that count, in no order.
+    std::size_t collect(const kernels::host_query& q, const glm::vec4& p, const glm::vec4& n, const knn_settings& s,
+        query_scratch& scratch) const
+    {
+        auto& found = scratch.found_;
+        found.clear();
+        if (!detail::is_searching(s, static_cast<uint>(positions_.size())) || !kernels::is_finite(p))
+            return 0;
+        const float max2 = detail::max_radius2(s);
+        const bool exact = s.search == search_kind::exact_k;
+        float radius2 = exact ? std::min(1.3f * guess(p, s.k, max2), max2) : max2;
+        const auto extent = glm::vec3(grid_.cell) * glm::vec3(grid_.resolution);
+        const float far2 = 16 * (extent.x * extent.x + extent.y * extent.y + extent.z * extent.z);
+        for (;;) {
+            found.clear();
+            visit(q, p, n, radius2, [&](uint place, float d2) {
+                found.push_back({std::uint64_t{std::bit_cast<uint>(d2)} << 32 | list_[place], place});
+            });
+            if (!exact)
+                return found.size();
+            if (found.size() >= s.k) {
+                std::nth_element(found.begin(), found.begin() + (s.k - 1), found.end());
+                return s.k;
+            }
+            if (radius2 >= max2)
+                return found.size();
+            const float missing
+                = 1.3f * static_cast<float>(s.k) / static_cast<float>(std::max<std::size_t>(found.size(), 1));
+            radius2
+                = radius2 > far2 ? max2 : std::min(max2, std::max(radius2, 1e-30f) * std::clamp(missing, 1.5f, 8.0f));
+        }
+    }
+
+    /// A first guess at the squared distance of the k-th nearest, from cell counts.
+    float guess(const glm::vec4& p, uint k, float max2) const
+    {
+        kernels::kth_guess g;
+        g.args = {.grid = grid_, .wanted = k, .max_radius2 = max2, .rows = 1023u, .searching = 1u};
+        g.bind(slot<0>{}, std::span<const glm::vec4>(&p, 1));
+        g.bind(slot<1>{}, cells_);
+        g.kernel(0);
+        return g.pivots.y;
+    }
+
+    irradiance_at_point made_of(
+        const glm::vec4& reach, const glm::vec4& sum, const glm::vec4& squares, uint held, bool left_out) const
+    {
+        const glm::uvec4 tally(held, 0, 0, 0);
+        kernels::irradiance_estimate e;
+        e.args = {.norm = detail::norm_of(settings_.kernel),
+            .min_radius2 = detail::min_radius2(settings_),
+            .left_out = left_out ? 1u : 0u};
+        e.bind(slot<0>{}, std::span(&reach, 1));
+        e.bind(slot<1>{}, std::span(&sum, 1));
+        e.bind(slot<2>{}, std::span(&squares, 1));
+        e.bind(slot<3>{}, std::span(&tally, 1));
+        e.kernel(0);
+        return {
+            glm::vec3(e.irradiance), glm::vec3(e.standard_error), e.standard_error.w, std::sqrt(e.irradiance.w), held};
+    }
+
+    grid grid_{};
+    std::vector<glm::uvec2> cells_;
+    std::vector<uint> list_;
+    std::vector<glm::vec4> positions_, powers_, directions_, normals_;
+    knn_settings settings_;
+};
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,272 @@
+// The kNN-grid radiance estimate (section 2.3, figure 6) and what goes beyond it: a search that finds at least k
+// photons, the k nearest, or all within a radius, then a density estimate from them, with its standard error. A bounded
+// amount of work a pass.
+//
+//     at_least_k:   knn_visit ----------------> knn_result          (the paper's: constant kernel, no error asked for)
+//                             \-> grown_radius -> gather_photons -> irradiance_estimate
+//     exact_k:      kth_guess -> kth_distance -> kth_result -> kth_tie -> gather_photons -> irradiance_estimate
+//     fixed_radius: given_radius -------------------------------------> gather_photons -> irradiance_estimate
+#pragma once
+
+#include <photongrid/estimate/gather_photons.kernel.hpp>
+#include <photongrid/estimate/gather_start.kernel.hpp>
+#include <photongrid/estimate/grown_radius.kernel.hpp>
+#include <photongrid/estimate/irradiance_estimate.kernel.hpp>
+#include <photongrid/estimate/knn_reach.hpp>
+#include <photongrid/estimate/knn_result.kernel.hpp>
+#include <photongrid/estimate/knn_start.kernel.hpp>
+#include <photongrid/estimate/knn_visit.kernel.hpp>
+#include <photongrid/estimate/no_estimate.kernel.hpp>
+
+#include <optional>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// Estimates per query point, in buffers.
+template <backend B>
+struct knn_estimates {
+    buffer_of<B, glm::vec4> irradiance; ///< rgb, W/m^2: flux / (pi r^2), weighted; w: r^2, m^2
+    buffer_of<B, glm::uvec2> used;      ///< x: photons within r, y: photons visited
+    /// rgb: standard error of irradiance, W/m^2; w: of the sum of its channels. Empty where none was asked for. It
+    /// takes the photons as independent; it does not see bias. 0 where no photon was found; meaningless for k < 3,
+    /// whose variance is infinite.
+    buffer_of<B, glm::vec4> standard_error;
+};
+
+/// A search for many points at once, that can be advanced, looked at and advanced again.
+///
+/// Which photons count is stated at search_kind; "distance" is compared as squares, in single precision, summed x, y, z
+/// as photon_distance.glsl writes it, so that every backend finds the same set. With fewer than k, r is max_radius.
+/// Radiance of a Lambertian surface is irradiance x reflectance / pi.
+template <backend B>
+class knn_search_by_kernels {
+public:
+    /// Points, normals and sums.
+    using vectors = buffer_of<B, glm::vec4>;
+
+    /// Points: xyz in m; w > 0 marks a point that wants an estimate. `map` and `points` must outlive the search.
+    /// \throws std::invalid_argument for a radius that is NaN, and for leak policies, which need normals of the points.
+    knn_search_by_kernels(B& b, const map_buffers<B>& map, const vectors& points, const knn_settings& s)
+        : knn_search_by_kernels(b, map, points, nullptr, s)
+    {
+    }
+    /// With the unit normals of the surfaces that the points lie on, towards the side that is looked at. They must
+    /// outlive the search too.
+    knn_search_by_kernels(
+        B& b, const map_buffers<B>& map, const vectors& points, const vectors& normals, const knn_settings& s)
+        : knn_search_by_kernels(b, map, points, &normals, s)
+    {
+    }
+
+    // A search refers to both until it is gone.
+    knn_search_by_kernels(B&, const map_buffers<B>&&, const vectors&, const knn_settings&) = delete;
+    knn_search_by_kernels(B&, const map_buffers<B>&, const vectors&&, const knn_settings&) = delete;
+    knn_search_by_kernels(B&, const map_buffers<B>&&, const vectors&, const vectors&, const knn_settings&) = delete;
+    knn_search_by_kernels(B&, const map_buffers<B>&, const vectors&&, const vectors&, const knn_settings&) = delete;
+    knn_search_by_kernels(B&, const map_buffers<B>&, const vectors&, const vectors&&, const knn_settings&) = delete;
+
+    /// Is light added up while a search for `s` still runs, so that estimates() is worth a look before it has finished
+    /// (3.4)?
+    static bool shows_running_estimate(const knn_settings& s)
+    {
+        return s.search == search_kind::at_least_k && s.kernel == filter_kernel::constant && s.bias == bias_kind::paper
+            && !s.errors;
+    }
+
+    /// Runs at most `passes` more passes over the points not yet done, each a bounded amount of work for a point.
+    progress advance(uint passes = nowhere)
+    {
+        return detail::run_stages(
+            passes, [this] { return stage_ == stage::finished; }, [this](uint left) { return run_stage(left); },
+            [this] { next_stage(); });
+    }
+
+    /// The estimates from what is held now. Final ones when the search has finished; before, running ones where
+    /// shows_running_estimate(), else what was added up so far, which is too little.
+    knn_estimates<B> estimates()
+    {
+        B& b = *in_.b;
+        const auto n = in_.points->size();
+        const auto& s = in_.s;
+        knn_estimates<B> e{b.template make<glm::vec4>(n), b.template make<glm::uvec2>(n),
+            b.template make<glm::vec4>(s.errors ? n : 0)};
+        if (gathered_.size() > 0 || n == 0) {
+            b.template run<kernels::knn_result>(n,
+                {.wanted = s.k, .max_radius2 = in_.max_radius2(), .min_radius2 = in_.min_radius2()},
+                reads(gathered_, found_), writes(e.irradiance, e.used));
+            return e;
+        }
+        if (stage_ == stage::reach) {
+            b.template run<kernels::no_estimate>(
+                n, {.radius2 = in_.max_radius2()}, reads(reach_->visited()), writes(e.irradiance, e.used));
+            return e;
+        }
+        auto errors = s.errors ? std::move(e.standard_error) : b.template make<glm::vec4>(n);
+        b.template run<kernels::irradiance_estimate>(n,
+            {.norm = detail::norm_of(s.kernel),
+                .min_radius2 = in_.min_radius2(),
+                .left_out = s.bias == bias_kind::unbiased ? 1u : 0u},
+            reads(radius_, sum_, squares_, tally_), writes(e.irradiance, e.used, errors));
+        if (s.errors)
+            e.standard_error = std::move(errors);
+        return e;
+    }
+
+private:
+    enum class stage { grow, reach, gather, finished };
+
+    knn_search_by_kernels(
+        B& b, const map_buffers<B>& map, const vectors& points, const vectors* normals, const knn_settings& s)
+        : in_(b, map, points, normals, s)
+    {
+        if (in_.s.search == search_kind::at_least_k) {
+            start_growing();
+            return;
+        }
+        stage_ = stage::reach;
+        reach_.emplace(in_);
+        if (reach_->finished())
+            next_stage();
+    }
+
+    void start_growing()
+    {
+        stage_ = stage::grow;
+        gathered_ = in_.template make<glm::vec4>();
+        found_ = in_.template make<glm::uvec4>();
+        cursor_ = in_.template make<glm::uvec4>();
+        in_.b->template run<kernels::knn_start>(in_.points->size(),
+            {.grid = in_.map->cells_of, .searching = in_.searching() ? 1u : 0u}, reads(*in_.points),
+            writes(gathered_, found_, cursor_));
+    }
+
+    void start_gathering()
+    {
+        stage_ = stage::gather;
+        sum_ = in_.template make<glm::vec4>();
+        lost_ = in_.template make<glm::vec4>();
+        squares_ = in_.template make<glm::vec4>();
+        cursor_ = in_.template make<glm::uvec4>();
+        tally_ = in_.template make<glm::uvec4>();
+        in_.b->template run<kernels::gather_start>(in_.points->size(), {.searching = in_.searching() ? 1u : 0u},
+            reads(*in_.points, chosen_), writes(sum_, lost_, squares_, cursor_, tally_));
+    }
+
+    void next_stage()
+    {
+        switch (stage_) {
+        case stage::grow:
+            if (shows_running_estimate(in_.s)) {
+                stage_ = stage::finished; // the growing search has added up the photons
+                return;
+            }
+            radius_ = in_.template make<glm::vec4>();
+            chosen_ = in_.template make<glm::uvec4>();
+            in_.b->template run<kernels::grown_radius>(in_.points->size(),
+                {.wanted = in_.s.k, .max_radius2 = in_.max_radius2()}, reads(gathered_, found_),
+                writes(radius_, chosen_));
+            gathered_ = {};
+            found_ = {};
+            start_gathering();
+            return;
+        case stage::reach:
+            radius_ = std::move(reach_->radius);
+            chosen_ = std::move(reach_->chosen);
+            reach_.reset();
+            start_gathering();
+            return;
+        case stage::gather:
+            stage_ = stage::finished;
+            lost_ = {};
+            cursor_ = {};
+            return;
+        case stage::finished: return;
+        }
+    }
+
+    progress run_stage(uint passes)
+    {
+        B& b = *in_.b;
+        const map_buffers<B>& m = *in_.map;
+        const auto& s = in_.s;
+        switch (stage_) {
+        case stage::grow:
+            return b.template run_until_done<kernels::knn_visit>({in_.points->size(), 0u, in_.policies()},
+                {.grid = m.cells_of,
+                    .leaks = in_.leaks(),
+                    .wanted = s.k,
+                    .max_radius2 = in_.max_radius2(),
+                    .visits = s.visits_per_pass,
+                    .ranges = s.ranges_per_pass},
+                reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
+                    in_.photon_normals(), m.photons.powers),
+                writes(gathered_, found_, cursor_), passes);
+        case stage::reach: return reach_->advance(passes);
+        case stage::gather: {
+            const uint kernel
+                = s.kernel == filter_kernel::constant ? 0u : 4u << static_cast<uint>(s.kernel); // SWITCHes 3 to 5
+            const uint how = in_.policies() | kernel | (s.bias == bias_kind::unbiased ? 1u << 6 : 0u)
+                | (s.errors ? 1u << 7 : 0u) | in_.template together<kernels::gather_photons>();
+            return b.template run_until_done<kernels::gather_photons>({in_.points->size(), 0u, how},
+                {.grid = m.cells_of,
+                    .leaks = in_.leaks(),
+                    .min_radius2 = in_.min_radius2(),
+                    .visits = s.visits_per_pass,
+                    .ranges = s.ranges_per_pass},
+                reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
+                    in_.photon_normals(), m.list, m.photons.powers),
+                writes(radius_, chosen_, sum_, lost_, squares_, cursor_, tally_), passes);
+        }
+        case stage::finished: break;
+        }
+        progress nothing;
+        nothing.finished = true;
+        return nothing;
+    }
+
+    detail::search_inputs<B> in_;
+    stage stage_ = stage::finished;
+    std::optional<knn_reach<B>> reach_;
+    // States; each stage holds its own and gives up the last one's.
+    vectors gathered_, radius_, sum_, lost_, squares_;
+    buffer_of<B, glm::uvec4> found_, chosen_, cursor_, tally_;
+};
+
+/// The search of backend B: by kernels, unless the backend has another (its folder overrides/).
+/// \snippet snippets.cpp knn_search
+template <backend B>
+class knn_search : public knn_search_by_kernels<B> {
+public:
+    using knn_search_by_kernels<B>::knn_search_by_kernels;
+};
+/// The backend is found from the first argument.
+template <backend B, class... Rest>
+knn_search(B&, const map_buffers<B>&, const Rest&...) -> knn_search<B>;
+
+/// The whole search at once (2.3). Points: xyz in m; w > 0 marks a point that wants an estimate.
+/// \throws std::invalid_argument as knn_search does, backend_error when the device cannot hold the search.
+/// \snippet snippets.cpp knn_grid_estimate
+template <backend B>
+knn_estimates<B> knn_grid_estimate(
+    B& b, const map_buffers<B>& map, const buffer_of<B, glm::vec4>& points, const knn_settings& settings)
+{
+    knn_search<B> search(b, map, points, settings);
+    search.advance();
+    return std::move(search).estimates();
+}
+/// With the unit normals of the surfaces that the points lie on, for leak policies.
+/// \snippet snippets.cpp upload_normals
+template <backend B>
+knn_estimates<B> knn_grid_estimate(B& b, const map_buffers<B>& map, const buffer_of<B, glm::vec4>& points,
+    const buffer_of<B, glm::vec4>& normals, const knn_settings& settings)
+{
+    knn_search<B> search(b, map, points, normals, settings);
+    search.advance();
+    return std::move(search).estimates();
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,126 @@
+// Lists of the k nearest photons of each point: ids and squared distances. What an estimate adds up can then be
+// anything that a kernel of the caller's own can add up (docs/guide/own_kernels.md).
+//
+//     knn_reach -> list_neighbours -> neighbour_pair -> sort_neighbours -> neighbour
+#pragma once
+
+#include <photongrid/estimate/knn_reach.hpp>
+#include <photongrid/estimate/list_neighbours.kernel.hpp>
+#include <photongrid/estimate/neighbour.kernel.hpp>
+#include <photongrid/estimate/neighbour_pair.kernel.hpp>
+#include <photongrid/estimate/neighbours_start.kernel.hpp>
+#include <photongrid/estimate/sort_neighbours.kernel.hpp>
+
+#include <bit>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// The nearest photons of each point, nearest first; of several at one distance, those with the smallest ids first.
+template <backend B>
+struct neighbour_lists {
+    uint k = 0;             ///< entries to a list
+    buffer_of<B, uint> ids; ///< point p's at p * k and the k - 1 after it: places in what the map was made from;
+                            ///< 0xFFFFFFFF: there are no more
+    buffer_of<B, float> distances2; ///< m^2, of the same photons; infinity where there is none
+};
+
+namespace detail {
+    /// What is wrong with lists of this length, as an exception; else nothing.
+    inline void check_lists(const knn_settings& s, std::size_t points, std::uint64_t most)
+    {
+        if (s.search != search_kind::exact_k)
+            throw std::invalid_argument(
+                "knn_neighbours: search: lists hold the k nearest photons; only search_kind::exact_k gives them");
+        if (std::bit_ceil(std::uint64_t{s.k}) * std::max<std::uint64_t>(points, 1) > most)
+            throw std::invalid_argument("knn_neighbours: k: " + std::to_string(s.k) + " neighbours of "
+                + std::to_string(points) + " points are more than the " + std::to_string(most)
+                + " entries that this device holds; ask for fewer points at a time");
+    }
+
+    template <backend B>
+    neighbour_lists<B> list_neighbours(const search_inputs<B>& in)
+    {
+        B& b = *in.b;
+        const auto& m = *in.map;
+        const uint n = static_cast<uint>(in.points->size()), k = in.s.k, padded = std::bit_ceil(k);
+        neighbour_lists<B> lists{
+            k, b.template make<uint>(std::size_t{n} * k), b.template make<float>(std::size_t{n} * k)};
+        if (n == 0)
+            return lists;
+        auto pairs = b.template make<glm::uvec2>(std::size_t{n} * padded);
+        const auto put = [&](uint entry, uint entries, bool held, const auto& places, const auto& tally) {
+            b.template run<kernels::neighbour_pair>(
+                {std::size_t{n} * entries, entry * n, in.policies() | (held ? 8u : 0u)},
+                {.leaks = in.leaks(), .points = n},
+                reads(*in.points, in.point_normals(), m.photons.positions, in.directions(), in.photon_normals(), m.list,
+                    places, tally),
+                writes(pairs));
+        };
+        {
+            knn_reach<B> reach(in);
+            reach.advance();
+            constexpr uint part = 16; // entries found at a time
+            buffer_of<B, glm::uvec4> places[] = {in.template make<glm::uvec4>(), in.template make<glm::uvec4>(),
+                in.template make<glm::uvec4>(), in.template make<glm::uvec4>()};
+            auto cursor = in.template make<glm::uvec4>(), tally = in.template make<glm::uvec4>();
+            for (uint first = 0; first < k; first += part) {
+                b.template run<kernels::neighbours_start>({n, 0u, first > 0 ? 1u : 0u},
+                    {.searching = in.searching() ? 1u : 0u}, reads(*in.points, reach.chosen), writes(cursor, tally));
+                b.template run_until_done<kernels::list_neighbours>({n, 0u, in.policies()},
+                    {.grid = m.cells_of,
+                        .leaks = in.leaks(),
+                        .visits = in.s.visits_per_pass,
+                        .ranges = in.s.ranges_per_pass},
+                    reads(*in.points, in.point_normals(), m.cells, m.photons.positions, in.directions(),
+                        in.photon_normals(), m.list, reach.radius),
+                    writes(places[0], places[1], places[2], places[3], cursor, tally), nowhere);
+                for (uint four = 0; four < part && first + four < padded; four += 4)
+                    put(first + four, std::min(4u, padded - (first + four)), true, places[four / 4], tally);
+            }
+            const uint filled = std::min((k + part - 1) / part * part, padded);
+            if (filled < padded)
+                put(filled, padded - filled, false, places[0], tally);
+        }
+        if (padded > 1) {
+            auto next = b.template make<glm::uvec2>(pairs.size());
+            for (uint run = 2; run <= padded; run *= 2)
+                for (uint stride = run / 2; stride > 0; stride /= 2) {
+                    b.template run<kernels::sort_neighbours>(
+                        pairs.size(), {.points = n, .run = run, .stride = stride}, reads(pairs), writes(next));
+                    std::swap(pairs, next);
+                }
+        }
+        b.template run<kernels::neighbour>(
+            lists.ids.size(), {.points = n, .wanted = k}, reads(pairs), writes(lists.ids, lists.distances2));
+        return lists;
+    }
+} // namespace detail
+
+/// The k nearest photons of each point within settings.max_radius, by exact search on the device. Points: xyz in m; a
+/// point that is not finite, or whose w is not above 0, has none. Kernel, bias and errors of the settings have no
+/// meaning here. It takes 16 bytes an entry, and half of that again, while it runs; k is rounded up to a power of two
+/// for that.
+/// \throws std::invalid_argument for k = 0, a radius that is NaN, another search than exact_k, leak policies
+/// without normals, or more entries than the device holds in one buffer.
+/// \snippet snippets.cpp knn_neighbours
+template <backend B>
+neighbour_lists<B> knn_neighbours(
+    B& b, const map_buffers<B>& map, const buffer_of<B, glm::vec4>& points, const knn_settings& settings)
+{
+    detail::check_lists(settings, points.size(), b.caps().max_elements);
+    return detail::list_neighbours(detail::search_inputs<B>(b, map, points, nullptr, settings));
+}
+/// With the unit normals of the surfaces that the points lie on, for leak policies.
+template <backend B>
+neighbour_lists<B> knn_neighbours(B& b, const map_buffers<B>& map, const buffer_of<B, glm::vec4>& points,
+    const buffer_of<B, glm::vec4>& normals, const knn_settings& settings)
+{
+    detail::check_lists(settings, points.size(), b.caps().max_elements);
+    return detail::list_neighbours(detail::search_inputs<B>(b, map, points, &normals, settings));
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

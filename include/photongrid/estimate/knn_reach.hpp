@@ -1,0 +1,136 @@
+// How far the photons of an estimate or a list reach: to each point's k-th nearest (exact_k), or to a given radius
+// (fixed_radius). A bounded amount of work a pass.
+//
+//     exact_k:      kth_guess -> kth_distance -> kth_result -> kth_tie
+//     fixed_radius: given_radius
+#pragma once
+
+#include <photongrid/estimate/given_radius.kernel.hpp>
+#include <photongrid/estimate/knn_settings.hpp>
+#include <photongrid/estimate/kth_distance.kernel.hpp>
+#include <photongrid/estimate/kth_guess.kernel.hpp>
+#include <photongrid/estimate/kth_result.kernel.hpp>
+#include <photongrid/estimate/kth_tie.kernel.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// The reach of many points' photons, that can be advanced and advanced again. Those that count lie nearer than the
+/// radius, or at it with an id no larger than the last one.
+template <backend B>
+class knn_reach {
+public:
+    /// Of which search is in `in`, not at_least_k.
+    explicit knn_reach(const detail::search_inputs<B>& in) : in_(in)
+    {
+        if (in_.s.search == search_kind::exact_k) {
+            start_distances();
+            return;
+        }
+        radius = in_.template make<glm::vec4>();
+        chosen = in_.template make<glm::uvec4>();
+        in_.b->template run<kernels::given_radius>(
+            in_.points->size(), {.radius2 = in_.max_radius2()}, reads(), writes(radius, chosen));
+    }
+
+    /// Runs at most `passes` more passes over the points not yet done.
+    progress advance(uint passes = nowhere)
+    {
+        return detail::run_stages(
+            passes, [this] { return finished(); }, [this](uint left) { return run_stage(left); },
+            [this] { stage_ == stage::distance ? start_ties() : finish(); });
+    }
+    /// True when the radius of every point is known.
+    bool finished() const { return stage_ == stage::finished; }
+
+    /// Per point, y: photons looked at so far.
+    const buffer_of<B, glm::uvec4>& visited() const { return stage_ == stage::distance ? tally_ : chosen; }
+
+    buffer_of<B, glm::vec4>
+        radius{}; ///< once finished: x: squared radius, m^2; y: 1 where a photon set it, 0 where it was given
+    buffer_of<B, glm::uvec4>
+        chosen{}; ///< photons within; photons visited; the last id that counts at the radius itself
+
+private:
+    enum class stage { distance, tie, finished };
+
+    void start_distances()
+    {
+        stage_ = stage::distance;
+        pivots_ = in_.template make<glm::vec4>();
+        counts_ = in_.template make<glm::uvec4>();
+        outer_ = in_.template make<glm::uvec4>();
+        bracket_ = in_.template make<glm::uvec4>();
+        cursor_ = in_.template make<glm::uvec4>();
+        tally_ = in_.template make<glm::uvec4>();
+        in_.b->template run<kernels::kth_guess>({in_.points->size(), 0u, in_.template together<kernels::kth_guess>()},
+            {.grid = in_.map->cells_of,
+                .wanted = in_.s.k,
+                .max_radius2 = in_.max_radius2(),
+                .rows = 1023u,
+                .searching = in_.searching() ? 1u : 0u},
+            reads(*in_.points, in_.map->cells), writes(pivots_, counts_, outer_, bracket_, cursor_, tally_));
+    }
+    void start_ties()
+    {
+        stage_ = stage::tie;
+        radius = in_.template make<glm::vec4>();
+        chosen = in_.template make<glm::uvec4>();
+        auto ids = in_.template make<glm::uvec4>();
+        in_.b->template run<kernels::kth_result>(in_.points->size(),
+            {.wanted = in_.s.k, .photons = in_.map->photons.size(), .max_radius2 = in_.max_radius2()},
+            reads(bracket_, tally_), writes(radius, chosen, ids, counts_, cursor_));
+        bracket_ = std::move(ids);
+        pivots_ = {};
+        outer_ = {};
+        tally_ = {};
+    }
+    void finish()
+    {
+        stage_ = stage::finished;
+        bracket_ = {};
+        counts_ = {};
+        cursor_ = {};
+    }
+
+    progress run_stage(uint passes)
+    {
+        B& b = *in_.b;
+        const map_buffers<B>& m = *in_.map;
+        const auto& s = in_.s;
+        if (stage_ == stage::distance)
+            return b.template run_until_done<kernels::kth_distance>(
+                {in_.points->size(), 0u, in_.policies() | in_.template together<kernels::kth_distance>()},
+                {.grid = m.cells_of,
+                    .leaks = in_.leaks(),
+                    .wanted = s.k,
+                    .max_radius2 = in_.max_radius2(),
+                    .visits = s.visits_per_pass,
+                    .ranges = s.ranges_per_pass},
+                reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
+                    in_.photon_normals()),
+                writes(pivots_, counts_, outer_, bracket_, cursor_, tally_), passes);
+        return b.template run_until_done<kernels::kth_tie>(
+            {in_.points->size(), 0u, in_.policies() | in_.template together<kernels::kth_tie>()},
+            {.grid = m.cells_of,
+                .leaks = in_.leaks(),
+                .wanted = s.k,
+                .photons = m.photons.size(),
+                .visits = s.visits_per_pass,
+                .ranges = s.ranges_per_pass},
+            reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
+                in_.photon_normals(), m.list, radius),
+            writes(chosen, bracket_, counts_, cursor_), passes);
+    }
+
+    detail::search_inputs<B> in_;
+    stage stage_ = stage::finished;
+    // States; each stage holds its own and gives up the last one's.
+    buffer_of<B, glm::vec4> pivots_;
+    buffer_of<B, glm::uvec4> counts_, outer_, bracket_, cursor_, tally_;
+};
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,184 @@
+// What a search looks for, and how a caller's words become the kernels' numbers.
+#pragma once
+
+#include <photongrid/estimate/estimate_settings.hpp>
+#include <photongrid/map/map_buffers.hpp>
+
+#include <limits>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// What to search for.
+struct knn_settings {
+    uint k = 50; ///< photons wanted; all within max_radius are taken when there are fewer. Not for fixed_radius
+    float max_radius = std::numeric_limits<float>::infinity(); ///< m; photons farther away are always rejected. 0 or
+                                                               ///< less: nothing is found. fixed_radius needs one
+    float min_radius = 0; ///< m; the disc of the estimate is never smaller. 0: 2^-20 of the grid's largest extent
+    search_kind search = search_kind::exact_k;      ///< which photons count
+    filter_kernel kernel = filter_kernel::constant; ///< their weight by distance
+    bias_kind bias = bias_kind::unbiased;           ///< does the photon that sets the radius count?
+    leak_policy leaks{};                            ///< photons that are refused; none, as it stands
+    bool errors = false;                            ///< standard errors are wanted
+    /// Photons that one query examines in a pass at most, 1 at least. Any value gives the same result, as any of
+    /// ranges_per_pass does. 16 lanes x (visits + ranges) must stay well below 65,535, after which llvmpipe and
+    /// lavapipe end loops in silence: some loops more go round once a scan.
+    uint visits_per_pass = 3072;
+    uint ranges_per_pass = 896; ///< rows of cells that one query opens in a pass at most, 2 at least
+};
+
+/// The radius, m, below which the disc of an estimate never shrinks where the caller names none: 2^-20 of the largest
+/// extent.
+inline float least_radius(const grid& g)
+{
+    const auto extent = glm::vec3(g.cell) * glm::vec3(g.resolution);
+    return std::max({extent.x, extent.y, extent.z}) * 0x1p-20f;
+}
+
+/// The paper's own choice (2.3): at least k, constant kernel, no policy. k, radii and errors stay.
+/// \snippet snippets.cpp as_paper
+inline knn_settings as_paper(knn_settings s)
+{
+    s.search = search_kind::at_least_k;
+    s.kernel = filter_kernel::constant;
+    s.bias = bias_kind::paper;
+    s.leaks = {};
+    return s;
+}
+
+namespace detail {
+    /// `s` with the least radius filled in, or an exception that says what is wrong with it for this map and these
+    /// points.
+    template <backend B>
+    knn_settings checked(knn_settings s, const map_buffers<B>& map, std::size_t points, std::size_t normals)
+    {
+        if (std::isnan(s.max_radius) || std::isnan(s.min_radius))
+            throw std::invalid_argument("knn_search: max_radius, min_radius: NaN");
+        if (s.search == search_kind::fixed_radius && std::isinf(s.max_radius) && s.max_radius > 0)
+            throw std::invalid_argument(
+                "knn_search: max_radius: infinite; search_kind::fixed_radius takes all photons within it, so name one");
+        if (s.k < 1 && s.search != search_kind::fixed_radius)
+            throw std::invalid_argument("knn_search: k: 0 photons wanted; ask for 1 at least, or for all within a "
+                                        "radius (search_kind::fixed_radius)");
+        if (s.visits_per_pass < 1 || s.ranges_per_pass < 2)
+            throw std::invalid_argument(
+                "knn_search: visits_per_pass, ranges_per_pass: need at least 1 and 2, or a pass gets nowhere");
+        if (!(s.leaks.compression >= 1) || !(s.leaks.compression <= 1e6f) || !(s.leaks.min_cosine >= -1)
+            || !(s.leaks.min_cosine <= 1))
+            throw std::invalid_argument(
+                "knn_search: leaks: compression must be from 1 to 10^6, min_cosine from -1 to 1");
+        if (s.leaks.needs_any() && normals < points)
+            throw std::invalid_argument("knn_search: leaks: a policy needs the surface normal of every query point");
+        if (s.leaks.side && map.photons.size() > 0 && map.photons.directions.size() == 0)
+            throw std::invalid_argument(
+                "knn_search: leaks: side needs the photons' directions, which this map does not keep");
+        if (s.leaks.needs_normals() && map.photons.size() > 0 && map.photons.normals.size() == 0)
+            throw std::invalid_argument(
+                "knn_search: leaks: min_cosine needs the photons' surface normals, which this map does not keep");
+        if (!(s.min_radius > 0))
+            s.min_radius = least_radius(map.cells_of);
+        return s;
+    }
+    /// True when something can be found at all.
+    inline bool is_searching(const knn_settings& s, uint photons)
+    {
+        return photons > 0 && s.max_radius > 0 && (s.k > 0 || s.search == search_kind::fixed_radius);
+    }
+    /// The squares that kernels take, m^2.
+    inline float max_radius2(const knn_settings& s)
+    {
+        const float r = s.max_radius;
+        return r > 0 ? std::min(r * r, 1e38f) : 0.0f;
+    }
+    inline float min_radius2(const knn_settings& s) { return std::max(s.min_radius * s.min_radius, 1e-36f); }
+    /// Do points lie so close to each other that neighbours should search together? Where the radius that is to be
+    /// expected is eight times their distance; both are of as many as lie on the largest side of the grid's box,
+    /// evenly.
+    template <backend B>
+    bool are_close(const knn_settings& s, const map_buffers<B>& map, std::size_t points)
+    {
+        const auto e = glm::dvec3(map.cells_of.cell) * glm::dvec3(map.cells_of.resolution);
+        const double area = std::max({e.x * e.y, e.y * e.z, e.z * e.x});
+        const double photons = std::max(1.0, static_cast<double>(map.photons.size()));
+        double disc = 3.14159265 * static_cast<double>(max_radius2(s));
+        if (s.search != search_kind::fixed_radius)
+            disc = std::min(disc, area * static_cast<double>(s.k) / photons);
+        return disc / 3.14159265 * static_cast<double>(points) >= 64 * area;
+    }
+    /// A search and what its kernels read. Everything that it points to must outlive it.
+    template <backend B>
+    struct search_inputs {
+        using vectors = buffer_of<B, glm::vec4>;
+        B* b;
+        const map_buffers<B>* map;
+        const vectors* points;
+        const vectors* normals; ///< of the points; none: null
+        knn_settings s;
+
+        search_inputs(
+            B& b_, const map_buffers<B>& map_, const vectors& points_, const vectors* normals_, const knn_settings& s_)
+            : b(&b_), map(&map_), points(&points_), normals(normals_),
+              s(checked(s_, map_, points_.size(), normals_ != nullptr ? normals_->size() : 0))
+        {
+        }
+        template <element T>
+        buffer_of<B, T> make() const
+        {
+            return b->template make<T>(points->size());
+        }
+        bool searching() const { return is_searching(s, map->photons.size()); }
+        float max_radius2() const { return detail::max_radius2(s); }
+        float min_radius2() const { return detail::min_radius2(s); }
+        // What no policy asks for is never read; any buffer stands in for it.
+        const vectors& point_normals() const { return normals != nullptr ? *normals : *points; }
+        const vectors& directions() const { return s.leaks.side ? map->photons.directions : map->photons.positions; }
+        const vectors& photon_normals() const
+        {
+            return s.leaks.needs_normals() ? map->photons.normals : map->photons.positions;
+        }
+        /// For photon_distance.glsl.
+        glm::vec4 leaks() const
+        {
+            return {s.leaks.min_cosine, s.leaks.compression * s.leaks.compression - 1.0f, 0.0f, 0.0f};
+        }
+        /// Its SWITCHes.
+        uint policies() const
+        {
+            return (s.leaks.side ? 1u : 0u) | (s.leaks.needs_normals() ? 2u : 0u) | (s.leaks.compression > 1 ? 4u : 0u);
+        }
+        /// The SWITCH of kernel K that lets neighbours search together.
+        template <class K>
+        uint together() const
+        {
+            return are_close(s, *map, points->size()) ? 1u << K::group_switch : 0u;
+        }
+    };
+    /// Runs stage after stage, at most `passes` passes in all: `run(left)` some of a stage's, `next()` goes on from one
+    /// that has finished, `finished()` says whether that was the last.
+    template <class Finished, class Run, class Next>
+    progress run_stages(uint passes, Finished finished, Run run, Next next)
+    {
+        progress all;
+        while (!finished() && all.passes < passes) {
+            const progress p = run(passes - all.passes);
+            all.passes += p.passes;
+            all.active.insert(all.active.end(), p.active.begin(), p.active.end());
+            if (!p.finished)
+                break;
+            next();
+        }
+        all.finished = finished();
+        return all;
+    }
+    /// 1 / mean of the kernel over its disc.
+    constexpr float norm_of(filter_kernel k)
+    {
+        constexpr float norms[] = {1, 3, 2, 3};
+        return norms[static_cast<int>(k)];
+    }
+} // namespace detail
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

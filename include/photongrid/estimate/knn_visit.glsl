@@ -1,0 +1,170 @@
+// The kNN-grid search (2.3, figure 6): cells in concentric sets about the query point. While fewer than k photons are
+// held the radius grows to take each new one in; then it stays, and photons inside it are still added. Photons outside
+// the maximum radius are always rejected. The search ends only when no unexplored cell can reach into the radius.
+//
+// The order of visits is part of the result: ring by ring, in a ring z, y, x ascending, photons in map order. Skipping
+// rows of cells that cannot reach the radius, and reading a row of cells as one range, keep that order.
+//
+// Bounded work a pass: drivers cut long loops silently (docs/design/decisions.md). The state between passes is the answer
+// so far, so it can be shown at any time (3.4).
+#include <photongrid/map/grid.glsl>
+
+struct Params {
+    Grid grid;
+    vec4 leaks;         // see photon_distance.glsl
+    uint wanted;        // k
+    float max_radius2;  // m^2
+    uint visits;        // photons examined in a pass at most ...
+    uint ranges;        // ... in this many rows of cells at most
+};
+PARAMS(Params)
+SWITCH(0, SIDE)
+SWITCH(1, NORMALS)
+SWITCH(2, FLATTEN)
+INPUT(0, vec4, points)         // xyz: query point, m
+INPUT(1, vec4, normals)        // xyz: unit normal of the surface there
+INPUT(2, uvec2, cells)         // x: first photon, y: count
+INPUT(3, vec4, positions)      // xyz, m, cell by cell
+INPUT(4, vec4, directions)
+INPUT(5, vec4, photon_normals)
+INPUT(6, vec4, powers)         // rgb, W
+STATE(0, vec4, gathered)    // rgb: flux of the photons held, W; w: squared radius that holds them, m^2
+STATE(1, uvec4, found)      // photons held, photons visited, next and end of the row being read
+STATE(2, uvec4, cursor)     // ring, z, y, x of the next cell to open; ring 0xFFFFFFFF: done
+
+#include <photongrid/estimate/photon_distance.glsl>
+
+bool done()
+{
+    return cursor.x == 0xFFFFFFFFu;
+}
+
+// The smaller of `reach` and the gap to `cell`, if that cell exists.
+float nearer(float reach, bool exists, float u, uint c, uint cell, float size)
+{
+    if (!exists)
+        return reach;
+    float g = gap(u, c, cell, size);
+    return g < reach ? g : reach;
+}
+
+void kernel(uint i)
+{
+    vec4 p = points(i);
+    vec4 n = normals(i);
+    uvec4 c = cell_coordinates(args.grid, p);
+    float ux = in_cells(p.x, args.grid.origin.x, args.grid.inverse_cell.x);
+    float uy = in_cells(p.y, args.grid.origin.y, args.grid.inverse_cell.y);
+    float uz = in_cells(p.z, args.grid.origin.z, args.grid.inverse_cell.z);
+    uint last_x = args.grid.resolution.x - 1u;
+    uint last_y = args.grid.resolution.y - 1u;
+    uint last_z = args.grid.resolution.z - 1u;
+
+    vec4 sum = gathered;
+    float radius2 = gathered.w;
+    uint held = found.x;
+    uint at = found.z;
+    uint end = found.w;
+    uint visited = found.y;
+    uint ring = cursor.x;
+    uint z = cursor.y;
+    uint y = cursor.z;
+    uint x = cursor.w;
+
+    uint left = args.visits;
+    uint steps = args.ranges;
+    // A loop over rings around one over rows: drivers that run lanes in lockstep pay for a whole turn of a loop, and this
+    // keeps the rows of neighbouring points in step and the end of a ring out of them.
+    while (steps > 0u && ring != 0xFFFFFFFFu) {
+        // The box of cells that rings 0 … ring cover.
+        uint low_x = c.x > ring ? c.x - ring : 0u;
+        uint low_y = c.y > ring ? c.y - ring : 0u;
+        uint low_z = c.z > ring ? c.z - ring : 0u;
+        uint high_x = min(c.x + ring, last_x);
+        uint high_y = min(c.y + ring, last_y);
+        uint high_z = min(c.z + ring, last_z);
+
+        while (steps > 0u && (at < end || z <= high_z)) {
+            --steps;
+            // Examine the rest of the open range, as far as the budget goes.
+            uint stop = end - at > left ? at + left : end;
+            left -= stop - at;
+            visited += stop - at;
+            for (; at < stop; ++at) {
+                float d2 = photon_distance2(at, p, n);
+                if (d2 <= (held < args.wanted ? args.max_radius2 : radius2)) {
+                    if (held < args.wanted && d2 > radius2)
+                        radius2 = d2;
+                    ++held;
+                    precise vec4 more = sum + powers(at);
+                    sum = more;
+                }
+            }
+            if (at < end) {
+                steps = 0u; // budget spent
+            } else if (z <= high_z) {
+                // The next cells of this ring: all of row (z, y) on the ring's faces, else its two ends, of which the grid
+                // may lack either.
+                float limit2 = held < args.wanted ? args.max_radius2 : radius2;
+                float gap_y = gap(uy, c.y, y, args.grid.cell.y);
+                float gap_z = gap(uz, c.z, z, args.grid.cell.z);
+                float row2 = gap_y * gap_y + gap_z * gap_z;
+                float away2 = row2;
+                bool face = y + ring == c.y || y == c.y + ring || z + ring == c.z || z == c.z + ring;
+                bool lower = x + ring == c.x;
+                uint begin_x = face || lower ? x : c.x + ring;
+                uint end_x = face ? high_x : begin_x;
+                x = !face && lower ? c.x + ring : end_x + 1u;
+                if (begin_x == end_x) {
+                    float gap_x = gap(ux, c.x, begin_x, args.grid.cell.x);
+                    away2 = away2 + gap_x * gap_x;
+                }
+                if (away2 <= limit2 && begin_x <= last_x) {
+                    uint row = cell_number(args.grid, 0u, y, z);
+                    uvec2 first = cells(row + begin_x);
+                    uvec2 final = cells(row + end_x);
+                    at = first.x;
+                    end = final.x + final.y;
+                }
+                if (row2 > limit2)
+                    x = high_x + 1u; // no cell of the row reaches
+                if (gap_z * gap_z > limit2)
+                    y = high_y; // no row of the layer does
+                if (x > high_x) {
+                    x = low_x;
+                    ++y;
+                }
+                if (y > high_y) {
+                    y = low_y;
+                    ++z;
+                }
+            }
+        }
+
+        if (steps > 0u) {
+            // The ring is explored. Can any cell beyond it reach into the radius?
+            --steps;
+            float limit2 = held < args.wanted ? args.max_radius2 : radius2;
+            float reach = 3.4028234e38f;
+            reach = nearer(reach, high_x < last_x, ux, c.x, high_x + 1u, args.grid.cell.x);
+            reach = nearer(reach, high_y < last_y, uy, c.y, high_y + 1u, args.grid.cell.y);
+            reach = nearer(reach, high_z < last_z, uz, c.z, high_z + 1u, args.grid.cell.z);
+            reach = nearer(reach, low_x > 0u, ux, c.x, low_x - 1u, args.grid.cell.x);
+            reach = nearer(reach, low_y > 0u, uy, c.y, low_y - 1u, args.grid.cell.y);
+            reach = nearer(reach, low_z > 0u, uz, c.z, low_z - 1u, args.grid.cell.z);
+            bool everything = low_x == 0u && low_y == 0u && low_z == 0u && high_x == last_x && high_y == last_y && high_z == last_z;
+            if (everything || reach * reach > limit2) {
+                ring = 0xFFFFFFFFu;
+            } else {
+                ++ring;
+                z = c.z > ring ? c.z - ring : 0u;
+                y = c.y > ring ? c.y - ring : 0u;
+                x = c.x > ring ? c.x - ring : 0u;
+            }
+        }
+    }
+
+    gathered = vec4(sum.x, sum.y, sum.z, radius2);
+    found = uvec4(held, visited, at, end);
+    cursor = uvec4(ring, z, y, x);
+}

@@ -1,0 +1,114 @@
+// A first guess at the squared distance of the k-th nearest photon, from cell counts alone: boxes of cells about the query
+// point, each about twice as wide as the last, until one holds k photons. A guess costs time when it is wrong, never truth.
+#include <photongrid/map/grid.glsl>
+
+struct Params {
+    Grid grid;
+    uint wanted;       // k
+    float max_radius2; // m^2
+    uint rows;         // rows of cells in a box at most
+    uint searching;    // 0: no search can find anything (no photons, none wanted, no radius)
+};
+PARAMS(Params)
+IN_GROUPS(0)
+INPUT(0, vec4, points) // xyz: query point, m; w > 0: wanted
+INPUT(1, uvec2, cells)
+OUTPUT(0, vec4, pivots)   // see kth_distance.glsl, whose states these are
+OUTPUT(1, uvec4, inner)
+OUTPUT(2, uvec4, outer)
+OUTPUT(3, uvec4, bracket)
+OUTPUT(4, uvec4, cursor)
+OUTPUT(5, uvec4, tally)
+
+#include <photongrid/backend/group_middle.glsl>
+
+// Photons in the cells of a box. Points of a group take its rows in turn.
+uint photons_inside(uvec4 low, uvec4 high)
+{
+    uint held = 0u;
+    uint rows_y = high.y - low.y + 1u;
+    uint rows = rows_y * (high.z - low.z + 1u);
+    uint y = low.y;
+    uint z = low.z;
+    for (uint row = group_lane(); row < rows; row += GROUP_LANES) {
+        if (GROUP_LANES > 1u) {
+            y = low.y + row % rows_y;
+            z = low.z + row / rows_y;
+        }
+        uint first = cell_number(args.grid, 0u, y, z);
+        uvec2 last = cells(first + high.x);
+        held += last.x + last.y - cells(first + low.x).x;
+        ++y;
+        if (y > high.y) {
+            y = low.y;
+            ++z;
+        }
+    }
+    return lane_value(group_sum_up_to(held), GROUP_LANES - 1u);
+}
+
+// The guess for a point in cell c.
+float guessed(uvec4 c)
+{
+    uvec4 largest = uvec4(args.grid.resolution.x - 1u, args.grid.resolution.y - 1u, args.grid.resolution.z - 1u, 0u);
+    float guess = args.max_radius2;
+    uint half_width = 1u;
+    uint inside = 0u; // photons of the last box, and its area
+    float inside_area = 0.0f;
+    bool looking = true;
+    while (looking) {
+        uvec4 low = uvec4(c.x - min(c.x, half_width), c.y - min(c.y, half_width), c.z - min(c.z, half_width), 0u);
+        uvec4 high = uvec4(min(c.x + half_width, largest.x), min(c.y + half_width, largest.y), min(c.z + half_width, largest.z), 0u);
+        uint rows = high.y - low.y + 1u;
+        rows = rows > args.rows ? rows : rows * (high.z - low.z + 1u);
+        looking = rows <= args.rows;
+        if (looking) {
+            uint held = photons_inside(low, high);
+            // Photons lie on surfaces: as many as the largest section of the box shows area, and between two boxes evenly. A
+            // square with 4/pi k photons has a disc with k inside it, whose squared radius is a quarter of the square.
+            float x = float(high.x - low.x + 1u) * args.grid.cell.x;
+            float y = float(high.y - low.y + 1u) * args.grid.cell.y;
+            float z = float(high.z - low.z + 1u) * args.grid.cell.z;
+            precise float area = max(x * y, max(y * z, z * x));
+            if (held > inside) {
+                precise float share = (1.2732395f * float(args.wanted) - float(inside)) / float(held - inside);
+                precise float radius2 = 0.25f * (inside_area + (area - inside_area) * share);
+                guess = max(radius2, 1e-30f);
+            }
+            inside = held;
+            inside_area = area;
+            bool everything = low == uvec4(0u, 0u, 0u, 0u) && high == largest;
+            looking = float(held) < 1.2732395f * float(args.wanted) && !everything;
+            half_width *= 2u;
+        }
+    }
+    return min(guess, args.max_radius2);
+}
+
+void kernel(uint i)
+{
+    vec4 p = points(i);
+    pivots = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    inner = uvec4(0u, 0u, 0u, 0u);
+    outer = uvec4(0u, 0u, 0u, 0u);
+    bracket = uvec4(0u, 0u, 0u, 0xFFFFFFFFu);
+    cursor = uvec4(0u, 0u, 0u, 0u);
+    bool wanted = args.searching != 0u && p.w > 0.0f && is_finite(p);
+    tally = uvec4(0u, 0u, 0u, wanted ? 0u : 3u); // counting; found: nothing
+
+    uvec4 c = cell_coordinates(args.grid, p);
+    bool looking = wanted;
+    while (group_any(looking)) {
+        // What holds for one holds for those close to it.
+        uint middle = group_middle(looking);
+        vec4 there = lane_value(p, middle);
+        float guess = guessed(lane_value(c, middle));
+        float x = p.x - there.x;
+        float y = p.y - there.y;
+        float z = p.z - there.z;
+        bool mine = looking && !(x * x + y * y + z * z > 0.0625f * guess);
+        if (mine)
+            pivots.y = guess;
+        looking = looking && !mine;
+    }
+}

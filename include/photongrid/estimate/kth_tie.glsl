@@ -1,0 +1,111 @@
+// Where several photons share the k-th distance, the first of them by id belong to the k nearest: which is the last id
+// that does? Scans count the ids within four pivots, as kth_distance.glsl does with distances.
+#include <photongrid/map/grid.glsl>
+
+struct Params {
+    Grid grid;
+    vec4 leaks;        // see photon_distance.glsl
+    uint wanted;       // k
+    uint photons;      // ids are below this
+    uint visits;       // photons examined in a pass at most ...
+    uint ranges;       // ... in this many rows of cells at most
+};
+PARAMS(Params)
+SWITCH(0, SIDE)
+SWITCH(1, NORMALS)
+SWITCH(2, FLATTEN)
+IN_GROUPS(3)
+INPUT(0, vec4, points)         // xyz: query point, m
+INPUT(1, vec4, normals)        // xyz: unit normal of the surface there
+INPUT(2, uvec2, cells)         // x: first photon, y: count
+INPUT(3, vec4, positions)      // xyz, m, cell by cell
+INPUT(4, vec4, directions)
+INPUT(5, vec4, photon_normals)
+INPUT(6, uint, list)           // photon ids
+INPUT(7, vec4, reach)          // x: squared distance of the k-th photon, m^2
+STATE(0, uvec4, chosen)        // see kth_result.glsl; z: the last id, once found
+STATE(1, uvec4, bracket)       // the id lies above x - 1 and is y - 1 at most; z: photons of this scan that are nearer; w: done
+STATE(2, uvec4, counts)        // photons of this scan within each pivot
+STATE(3, uvec4, cursor)        // y, z of the row to go on with; the first photon not yet visited
+
+#include <photongrid/estimate/photon_distance.glsl>
+#include <photongrid/estimate/search_rows.glsl>
+#include <photongrid/estimate/photon_walk.glsl>
+
+uint chunk_id;
+void take_ids(uint nth, uint all)
+{
+    take_chunk(nth, all);
+    chunk_id = list(chunk_place);
+}
+
+bool done()
+{
+    return bracket.w != 0u;
+}
+
+void kernel(uint i)
+{
+    vec4 p = points(i);
+    vec4 n = normals(i);
+    uvec4 c = cell_coordinates(args.grid, p);
+    float radius2 = reach(i).x;
+    uvec4 between = bracket;
+    uvec4 count = counts;
+    uvec4 place = cursor;
+    uint visited = chosen.y;
+
+    walk_visits = args.visits;
+    walk_steps = args.ranges;
+    while (walk_steps > 0u && group_any(between.w == 0u)) {
+        uint fifth = max((between.y - between.x) / 5u, 1u);
+        uvec4 pivot = uvec4(between.x + fifth, between.x + 2u * fifth, between.x + 3u * fifth, between.x + 4u * fifth);
+        bool mine = joins_walk(between.w == 0u, p, c, radius2, place);
+        vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the others count nothing
+        while (walks_on()) {
+            uint photons = next_rows();
+            visited += mine ? photons : 0u;
+#define VISIT(LANE)                                                                                                                \
+    {                                                                                                                              \
+        float d2 = distance2_of(PHOTON_OF(LANE), from, n);                                                                         \
+        between.z += d2 < radius2 ? 1u : 0u;                                                                                       \
+        uint id = from_lane(chunk_id, LANE);                                                                                       \
+        uint key = d2 == radius2 ? id + 1u : 0xFFFFFFFFu;                                                                          \
+        count += uvec4(key <= pivot.x ? 1u : 0u, key <= pivot.y ? 1u : 0u, key <= pivot.z ? 1u : 0u, key <= pivot.w ? 1u : 0u);    \
+    }
+            if (photons > 0u)
+                EACH_PHOTON(photons, take_ids, VISIT)
+#undef VISIT
+        }
+        if (mine)
+            place = uvec4(walk.x, walk.y, walk.z, 0u);
+        if (mine && has_walked()) {
+            uint wanted = args.wanted - between.z;
+            uvec2 range = uvec2(between.x, between.y);
+            if (count.w >= wanted)
+                range.y = min(range.y, pivot.w);
+            else
+                range.x = pivot.w;
+            if (count.z >= wanted)
+                range.y = min(range.y, pivot.z);
+            else
+                range.x = max(range.x, pivot.z);
+            if (count.y >= wanted)
+                range.y = min(range.y, pivot.y);
+            else
+                range.x = max(range.x, pivot.y);
+            if (count.x >= wanted)
+                range.y = min(range.y, pivot.x);
+            else
+                range.x = max(range.x, pivot.x);
+            between = uvec4(range.x, range.y, 0u, range.y <= range.x + 1u ? 1u : 0u);
+            count = uvec4(0u, 0u, 0u, 0u);
+            place = uvec4(0u, 0u, 0u, 0u);
+        }
+    }
+
+    chosen = uvec4(between.w != 0u ? args.wanted : chosen.x, visited, between.w != 0u ? between.y - 1u : chosen.z, chosen.w);
+    bracket = between;
+    counts = count;
+    cursor = place;
+}

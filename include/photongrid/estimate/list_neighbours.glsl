@@ -1,0 +1,96 @@
+// Where the photons within a point's reach stand in the map, in the order of the map, sixteen at a time: a kernel has no
+// arrays, and writes no element but its own. What comes next goes on where this left off, so that all parts together walk
+// through the photons once.
+#include <photongrid/map/grid.glsl>
+
+struct Params {
+    Grid grid;
+    vec4 leaks;        // see photon_distance.glsl
+    uint visits;       // photons examined in a pass at most ...
+    uint ranges;       // ... in this many rows of cells at most
+};
+PARAMS(Params)
+SWITCH(0, SIDE)
+SWITCH(1, NORMALS)
+SWITCH(2, FLATTEN)
+INPUT(0, vec4, points)         // xyz: query point, m
+INPUT(1, vec4, normals)        // xyz: unit normal of the surface there
+INPUT(2, uvec2, cells)         // x: first photon, y: count
+INPUT(3, vec4, positions)      // xyz, m, cell by cell
+INPUT(4, vec4, directions)
+INPUT(5, vec4, photon_normals)
+INPUT(6, uint, list)           // photon ids
+INPUT(7, vec4, reach)          // x: squared radius, m^2
+STATE(0, uvec4, first_four)    // places of photons, the last one found first
+STATE(1, uvec4, second_four)
+STATE(2, uvec4, third_four)
+STATE(3, uvec4, fourth_four)
+STATE(4, uvec4, cursor)        // y, z of the row to go on with, counted from the reach's first; the first photon not yet visited
+STATE(5, uvec4, tally)         // photons held in this part; 1: there are no more; z: the last id that counts at the radius itself
+
+#include <photongrid/estimate/photon_distance.glsl>
+#include <photongrid/estimate/search_rows.glsl>
+
+bool done()
+{
+    return tally.y != 0u || tally.x == 16u;
+}
+
+void kernel(uint i)
+{
+    vec4 p = points(i);
+    vec4 n = normals(i);
+    uvec4 c = cell_coordinates(args.grid, p);
+    float radius2 = reach(i).x;
+    float radius = wider(radius2);
+    uvec2 rows_y = cells_within(p.y, radius, args.grid.origin.y, args.grid.inverse_cell.y, args.grid.resolution.y);
+    uvec2 rows_z = cells_within(p.z, radius, args.grid.origin.z, args.grid.inverse_cell.z, args.grid.resolution.z);
+    uvec4 a = first_four;
+    uvec4 b = second_four;
+    uvec4 d = third_four;
+    uvec4 e = fourth_four;
+    uint y = rows_y.x + cursor.x;
+    uint z = rows_z.x + cursor.y;
+    uint next = cursor.z;
+    uint held = tally.x;
+    uint last_id = tally.z;
+
+    uint left = args.visits;
+    uint steps = args.ranges;
+    while (steps > 0u && held < 16u && z <= rows_z.y) {
+        --steps;
+        uvec2 row = photons_of_row(p, y, z, c, radius2);
+        uint at = max(row.x, next);
+        uint end = max(row.y, at);
+        uint stop = end - at > left ? at + left : end;
+        uint begun = at;
+        for (; at < stop && held < 16u; ++at) {
+            float d2 = photon_distance2(at, p, n);
+            if (d2 < radius2 || (d2 == radius2 && list(at) <= last_id)) {
+                e = uvec4(d.w, e.x, e.y, e.z);
+                d = uvec4(b.w, d.x, d.y, d.z);
+                b = uvec4(a.w, b.x, b.y, b.z);
+                a = uvec4(at, a.x, a.y, a.z);
+                ++held;
+            }
+        }
+        left -= at - begun;
+        next = max(next, at);
+        if (at < end) {
+            steps = 0u; // the budget is spent, or this part is full
+        } else {
+            ++y;
+            if (y > rows_y.y) {
+                y = rows_y.x;
+                ++z;
+            }
+        }
+    }
+
+    first_four = a;
+    second_four = b;
+    third_four = d;
+    fourth_four = e;
+    cursor = uvec4(y - rows_y.x, z - rows_z.x, next, 0u);
+    tally = uvec4(held, z > rows_z.y ? 1u : 0u, last_id, 0u);
+}

@@ -1,0 +1,24 @@
+// The beginning of a list of neighbours (list_neighbours.glsl), or, with GOES_ON, of its next part. A point that is not wanted
+// (w <= 0) or not finite has none.
+#include <photongrid/map/grid.glsl>
+
+struct Params {
+    uint searching; // 0: no search can find anything (no photons, no radius)
+};
+PARAMS(Params)
+SWITCH(0, GOES_ON)
+INPUT(0, vec4, points)  // xyz: query point, m; w > 0: wanted
+INPUT(1, uvec4, chosen) // see kth_result.glsl
+STATE(0, uvec4, cursor)
+STATE(1, uvec4, tally)
+
+void kernel(uint i)
+{
+    vec4 p = points(i);
+    if (GOES_ON) {
+        tally.x = 0u;
+    } else {
+        cursor = uvec4(0u, 0u, 0u, 0u);
+        tally = uvec4(0u, args.searching != 0u && p.w > 0.0f && is_finite(p) ? 0u : 1u, chosen(i).z, 0u);
+    }
+}

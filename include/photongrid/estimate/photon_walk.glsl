@@ -1,0 +1,126 @@
+// How some points that search together (IN_GROUPS, backend/begin.hpp), or one alone, visit the photons near them: in the order
+// in which they are stored, as many rows of cells at once as there are points in a group, and of the photons in these as many
+// at once, each read by one point and handed to all. Included by kernels after search_rows.glsl and photon_distance.glsl.
+#include <photongrid/backend/group_middle.glsl>
+
+vec4 walk_center; // of a ball that holds these points' own; its cell, squared radius, and rows of cells, first and last
+uvec4 walk_cell;
+float walk_radius2;
+uvec2 walk_y;
+uvec2 walk_z;
+uvec4 walk;            // y, z of the next row; photons before this one are not visited again; phase of the points' search
+uint walk_visits = 0u; // what is left of this pass: photons, and rows
+uint walk_steps = 0u;
+uint rows_end = 0u;    // photons of the rows at hand up to this point's row, and that row's; and what a place there is ahead by
+uint rows_shift = 0u;
+uint chunk_place = 0u; // the photon that this point reads for all
+vec4 chunk_position;
+vec4 chunk_direction;
+vec4 chunk_normal;
+
+// Does this point search along with the one in the middle of those in its group that are not done? If it lies close by and has
+// come as far; `place`: y, z, next photon, phase. Begins the walk of those that do.
+bool joins_walk(bool searching, vec4 p, uvec4 c, float radius2, uvec4 place)
+{
+    uint middle = group_middle(searching);
+    float radius = wider(radius2);
+    walk_center = lane_value(p, middle);
+    walk_cell = lane_value(c, middle);
+    walk = lane_value(place, middle);
+    float most = lane_value(radius, middle);
+    float dx = abs(p.x - walk_center.x);
+    float dy = abs(p.y - walk_center.y);
+    float dz = abs(p.z - walk_center.z);
+    bool mine = searching && !(max(dx, max(dy, dz)) > 0.4f * most) && !(radius > 1.5f * most) && place == walk;
+    walk_radius2 = radius2;
+    if (GROUP_LANES > 1u) {
+        float extent = mine ? (sqrt(dx * dx + dy * dy + dz * dz) + radius) * 1.000001f : 0.0f;
+        radius = uintBitsToFloat(group_max(floatBitsToUint(extent)));
+        walk_radius2 = radius * radius * 1.000001f;
+    }
+    walk_y = cells_within(walk_center.y, radius, args.grid.origin.y, args.grid.inverse_cell.y, args.grid.resolution.y);
+    walk_z = cells_within(walk_center.z, radius, args.grid.origin.z, args.grid.inverse_cell.z, args.grid.resolution.z);
+    if (walk.y < walk_z.x) {
+        walk.x = 0u;
+        walk.y = walk_z.x;
+    }
+    walk.x = max(walk.x, walk_y.x);
+    if (walk.x > walk_y.y) {
+        walk.x = walk_y.x;
+        ++walk.y;
+    }
+    return mine;
+}
+
+bool has_walked() { return walk.y > walk_z.y; }
+bool walks_on() { return walk_steps > 0u && !has_walked(); }
+
+// The place of photon `nth` of the rows at hand.
+uint place_of(uint nth)
+{
+    uint row = 0u;
+    for (uint step = GROUP_LANES / 2u; step > 0u; step /= 2u)
+        row += lane_value(rows_end, row + step - 1u) <= nth ? step : 0u;
+    return nth + lane_value(rows_shift, row);
+}
+
+// Takes the next rows. How many photons to visit they hold: all, or what the pass has left, which then ends.
+uint next_rows()
+{
+    --walk_steps;
+    uint y = walk.x;
+    uint z = walk.y;
+    if (GROUP_LANES > 1u) { // no loop: drivers that end loops count all of them
+        uint rows = walk_y.y - walk_y.x + 1u;
+        uint on = y - walk_y.x + group_lane();
+        z += on / rows;
+        y = walk_y.x + on % rows;
+    }
+    uvec2 row = photons_of_row(walk_center, y, min(z, walk_z.y), walk_cell, walk_radius2);
+    uint first = max(row.x, walk.z);
+    uint held = z <= walk_z.y && first < row.y ? row.y - first : 0u;
+    rows_end = group_sum_up_to(held);
+    rows_shift = first - (rows_end - held);
+    uint all = lane_value(rows_end, GROUP_LANES - 1u);
+    if (all > walk_visits) {
+        all = walk_visits;
+        walk.z = place_of(all);
+        walk_steps = 0u;
+    } else {
+        walk.x = lane_value(y, GROUP_LANES - 1u) + 1u;
+        walk.y = lane_value(z, GROUP_LANES - 1u);
+        if (walk.x > walk_y.y) {
+            walk.x = walk_y.x;
+            ++walk.y;
+        }
+    }
+    walk_visits -= all;
+    return all;
+}
+
+// Reads photons nth, nth + 1 ... of the `all` in the rows at hand. What a place beyond the last shows is not near anything.
+void take_chunk(uint nth, uint all)
+{
+    uint mine = nth + group_lane();
+    chunk_place = place_of(min(mine, all - 1u));
+    chunk_position = positions(chunk_place);
+    if (GROUP_LANES > 1u && mine >= all)
+        chunk_position.x = 3.0e38f;
+    chunk_direction = chunk_position;
+    chunk_normal = chunk_position;
+    if (SIDE)
+        chunk_direction = directions(chunk_place);
+    if (NORMALS)
+        chunk_normal = photon_normals(chunk_place);
+}
+#define PHOTON_OF(LANE) from_lane(chunk_position, LANE), from_lane(chunk_direction, LANE), from_lane(chunk_normal, LANE)
+// VISIT(LANE) for each of the PHOTONS, one at least, in the rows at hand; TAKE is take_chunk or what reads more than that.
+#define EACH_PHOTON(PHOTONS, TAKE, VISIT)    \
+    {                                        \
+        uint nth = 0u;                       \
+        do {                                 \
+            TAKE(nth, PHOTONS);              \
+            EACH_LANE(VISIT)                 \
+            nth += GROUP_LANES;              \
+        } while (nth < PHOTONS);             \
+    }

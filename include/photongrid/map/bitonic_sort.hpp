@@ -1,0 +1,57 @@
+// Bitonic merge sort (section 2.2.1, figures 2 and 3; Batcher 1968): a sorting network, so that where each element goes
+// next is known in advance and every step is one gather pass.
+#pragma once
+
+#include <photongrid/backend/backend.hpp>
+#include <photongrid/map/bitonic_step.kernel.hpp>
+#include <photongrid/map/pad_pairs.kernel.hpp>
+
+#include <bit>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// What a sort did.
+struct sort_report {
+    uint steps = 0;  ///< steps of the network, L(L+1)/2 with L = ceil(log2 n): 136 for 65,536, 210 for 1,048,576
+    uint passes = 0; ///< passes run for them; equal to `steps` in this plain version
+};
+
+/// Sorts (key, value) pairs ascending, compared whole, in place; any n from 0 up. Equal keys keep every value, ordered.
+/// Scratch: one more buffer of n pairs, both rounded up to a power of two while it runs.
+/// \throws backend_error when the device cannot hold them.
+/// \snippet snippets.cpp bitonic_sort
+template <backend B>
+sort_report bitonic_sort(B& b, buffer_of<B, glm::uvec2>& pairs)
+{
+    const std::size_t n = pairs.size();
+    sort_report report;
+    if (n < 2)
+        return report;
+    const std::size_t padded = std::bit_ceil(n);
+    auto next = b.template make<glm::uvec2>(padded);
+    if (padded != n) {
+        auto copy = b.template make<glm::uvec2>(padded);
+        b.template run<kernels::pad_pairs>(padded, {.pairs = static_cast<uint>(n)}, reads(pairs), writes(copy));
+        std::swap(pairs, copy);
+    }
+    for (std::size_t run = 2; run <= padded; run *= 2)
+        for (std::size_t stride = run / 2; stride > 0; stride /= 2) {
+            b.template run<kernels::bitonic_step>(padded,
+                {.run = static_cast<uint>(run), .stride = static_cast<uint>(stride)}, reads(pairs), writes(next));
+            std::swap(pairs, next);
+            ++report.steps;
+            ++report.passes;
+        }
+    if (padded != n) {
+        auto trimmed = b.template make<glm::uvec2>(n);
+        b.template run<kernels::pad_pairs>(n, {.pairs = static_cast<uint>(n)}, reads(pairs), writes(trimmed));
+        std::swap(pairs, trimmed);
+    }
+    return report;
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,113 @@
+// The two ways to a photon map, composed of the algorithms (section 2.2).
+#pragma once
+
+#include <photongrid/map/bitonic_sort.hpp>
+#include <photongrid/map/fitting_grid.hpp>
+#include <photongrid/map/grid_index.hpp>
+#include <photongrid/map/invalid_photon.kernel.hpp>
+#include <photongrid/map/map_buffers.hpp>
+#include <photongrid/map/other_part.kernel.hpp>
+#include <photongrid/map/packed_cell.kernel.hpp>
+#include <photongrid/map/packed_photon.kernel.hpp>
+#include <photongrid/map/pair_value.kernel.hpp>
+#include <photongrid/map/photon_cell.kernel.hpp>
+#include <photongrid/map/prefix_sums.hpp>
+#include <photongrid/map/stencil_route.hpp>
+#include <photongrid/map/take_vector.kernel.hpp>
+
+#include <bit>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+namespace detail {
+    /// Puts photons in the order of `list`, one attribute after the other, so that only one is held twice.
+    template <backend B>
+    void reorder(B& b, photons<B>& p, const buffer_of<B, uint>& list)
+    {
+        const uint n = p.size();
+        for (auto* attribute : {&p.positions, &p.powers, &p.directions, &p.normals}) {
+            if (attribute->size() == 0)
+                continue;
+            auto taken = b.template make<glm::vec4>(n);
+            b.template run<kernels::take_vector>(n, {.photons = n}, reads(list, *attribute), writes(taken));
+            *attribute = std::move(taken);
+        }
+    }
+} // namespace detail
+
+/// A photon map by sorting (2.2.1): exact, L(L+1)/2 + 5 passes and one per attribute. Takes the photons over. Those
+/// that are not of `parts` are in no cell.
+/// \throws backend_error when the device cannot hold them.
+/// \snippet snippets.cpp sorted_map
+template <backend B>
+map_buffers<B> sorted_map(B& b, photons<B> p, const grid& g, uint parts = every_part)
+{
+    const uint n = p.size();
+    map_buffers<B> map;
+    map.cells_of = g;
+    map.invalid = detail::checked_count<kernels::invalid_photon>(b, n, {}, reads(p.positions, p.powers));
+    {
+        // The pairs are made with their padding, so that the sort need not copy them.
+        auto pairs = b.template make<glm::uvec2>(n == 0 ? 0 : std::bit_ceil(n));
+        b.template run<kernels::photon_cell>(
+            pairs.size(), {.grid = g, .photons = n, .parts = parts}, reads(p.positions, p.powers), writes(pairs));
+        bitonic_sort(b, pairs);
+        map.cells = grid_index(b, pairs, cell_count(g));
+        map.list = b.template make<uint>(n);
+        b.template run<kernels::pair_value>(n, {}, reads(pairs), writes(map.list));
+    }
+    if (parts != every_part)
+        map.left_out = detail::checked_count<kernels::other_part>(b, n, {.parts = parts}, reads(p.positions));
+    detail::reorder(b, p, map.list);
+    map.photons = std::move(p);
+    return map;
+}
+
+/// A photon map by stencil routing with m x m slots a cell (2.2.2): approximate where cells overflow, few passes. The
+/// gaps that routing leaves between cells are closed afterwards. Takes the photons over. `seed` orders the drawing.
+/// \throws std::invalid_argument for m outside 1 to 16, backend_error when cells x slots exceed the device.
+/// \snippet snippets.cpp routed_map
+template <backend B>
+map_buffers<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 0, uint parts = every_part)
+{
+    const uint n = p.size();
+    const uint cells = cell_count(g);
+    map_buffers<B> map;
+    map.cells_of = g;
+    map.invalid = detail::checked_count<kernels::invalid_photon>(b, n, {}, reads(p.positions, p.powers));
+    {
+        auto routed = stencil_route(b, p, g, m, seed, parts);
+        map.surpluses = std::move(routed.surpluses);
+        map.overfull_cells = static_cast<uint>(routed.overfull_cells);
+        p.powers = std::move(routed.powers);
+        auto kept = b.template make<uint>(cells);
+        b.template run<kernels::pair_value>(cells, {}, reads(routed.cells), writes(kept));
+        const auto sums = prefix_sums(b, kept);
+        map.cells = b.template make<glm::uvec2>(cells);
+        b.template run<kernels::packed_cell>(cells, {}, reads(sums, routed.cells), writes(map.cells));
+        map.list = b.template make<uint>(n);
+        b.template run<kernels::packed_photon>(
+            n, {.cells = cells}, reads(sums, routed.cells, routed.list), writes(map.list));
+    }
+    if (parts != every_part)
+        map.left_out = detail::checked_count<kernels::other_part>(b, n, {.parts = parts}, reads(p.positions));
+    detail::reorder(b, p, map.list);
+    map.photons = std::move(p);
+    return map;
+}
+
+/// A photon map by sorting, in a grid that fits the photons themselves for estimates from the k nearest (fitting_grid).
+/// \throws backend_error when the device cannot hold it.
+/// \snippet snippets.cpp fitted_map
+template <backend B>
+map_buffers<B> fitted_map(B& b, photons<B> p, uint k)
+{
+    const grid g = fitting_grid(b, p, k, b.caps().cells_a_radius);
+    return sorted_map(b, std::move(p), g);
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,112 @@
+// A grid that fits the photons themselves, so that nobody need choose one.
+#pragma once
+
+#include <photongrid/map/map_buffers.hpp>
+#include <photongrid/map/take_vector.kernel.hpp>
+
+#include <algorithm>
+#include <vector>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+namespace detail {
+    /// Positions of up to `wanted` photons spread over all, those left out that are not finite.
+    template <backend B>
+    std::vector<glm::vec3> sample_positions(B& b, const photons<B>& p, uint wanted)
+    {
+        const uint n = p.size();
+        std::vector<uint> ids;
+        for (uint i = 0; i < std::min(n, wanted); ++i)
+            ids.push_back(static_cast<uint>(std::uint64_t{i} * n / std::min(n, wanted)));
+        auto taken = b.template make<glm::vec4>(ids.size());
+        b.template run<kernels::take_vector>(
+            ids.size(), {.photons = n}, reads(b.upload(std::span<const uint>(ids)), p.positions), writes(taken));
+        std::vector<glm::vec3> positions;
+        for (const auto& v : b.download(taken))
+            if (std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z))
+                positions.emplace_back(v);
+        return positions;
+    }
+
+    /// How many cubes of edge `edge` hold any of the points.
+    inline std::size_t occupied_cubes(const std::vector<glm::vec3>& points, glm::vec3 low, double edge)
+    {
+        std::vector<std::uint64_t> cubes;
+        cubes.reserve(points.size());
+        for (const auto& p : points) {
+            std::uint64_t cube = 0;
+            for (int axis = 0; axis < 3; ++axis) {
+                const double u = static_cast<double>(p[axis] - low[axis]) / edge;
+                cube = cube << 21 | static_cast<std::uint64_t>(std::clamp(u, 0.0, 2097151.0));
+            }
+            cubes.push_back(cube);
+        }
+        std::sort(cubes.begin(), cubes.end());
+        return static_cast<std::size_t>(std::unique(cubes.begin(), cubes.end()) - cubes.begin());
+    }
+} // namespace detail
+
+/// A grid for estimates from k of these photons: `cells_a_radius` cells to the distance of the k-th nearest (see
+/// capabilities), twice as many along x, where rows are cut off at the radius; at most 5/4 cells a photon. The box
+/// is that of the photons but for one in 500 at either end of each axis, so that a stray one does not make all cells
+/// useless; what lies outside belongs to border cells.
+///
+/// How photons fill space is measured on a sample of 16,384: the cubes of some edge h that hold any number h^-D, with D
+/// = 2 for photons on surfaces (box counting; Mandelbrot 1982). Same photons, same grid, on every backend. Reads the
+/// sample back.
+/// \throws backend_error when the device fails.
+/// \snippet snippets.cpp fitting_grid
+template <backend B>
+grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_a_radius = 1)
+{
+    auto sample = detail::sample_positions(b, p, 16384);
+    if (sample.empty())
+        return make_grid(glm::vec3(0), glm::vec3(1), glm::uvec3(1));
+    glm::vec3 low, high;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t stray = sample.size() / 500;
+        const auto nth = [&](std::size_t n) {
+            const auto at = sample.begin() + static_cast<std::ptrdiff_t>(n);
+            std::nth_element(
+                sample.begin(), at, sample.end(), [&](const auto& a, const auto& c) { return a[axis] < c[axis]; });
+            return (*at)[axis];
+        };
+        low[axis] = nth(stray);
+        high[axis] = nth(sample.size() - 1 - stray);
+    }
+    const double extent = static_cast<double>(std::max({high.x - low.x, high.y - low.y, high.z - low.z}));
+    if (!(extent > 0))
+        return make_grid(low, high, glm::uvec3(1));
+
+    // The finest cubes that still hold four of the sample on average, and the dimension that they show.
+    const auto size = static_cast<double>(sample.size());
+    double edge = extent, cubes = 1, dimension = 2;
+    for (int level = 1; level < 20; ++level) {
+        const auto finer = static_cast<double>(detail::occupied_cubes(sample, low, edge / 2));
+        if (finer * 4 > size && level > 1)
+            break;
+        dimension = std::clamp(std::log2(finer / cubes), 1.0, 3.0);
+        cubes = finer;
+        edge /= 2;
+    }
+    // Photons in a cube of edge h: N / cubes (h / edge)^D; in a ball of radius r about a third less than in a square or
+    // a cube of edge 2 r. So many are k at
+    const double in_ball = 0.785 * static_cast<double>(p.size()) / cubes;
+    double radius = 0.5 * edge * std::pow(static_cast<double>(std::max(k, 1u)) / in_ball, 1 / dimension);
+    radius /= static_cast<double>(cells_a_radius);
+    const double most = std::max(1.25 * static_cast<double>(p.size()), 64.0);
+    for (;; radius *= 1.05) {
+        glm::dvec3 cells;
+        for (int axis = 0; axis < 3; ++axis)
+            cells[axis] = std::max(1.0,
+                std::ceil(static_cast<double>(high[axis] - low[axis]) / (axis == 0 ? 0.5 * radius : radius) - 1e-6));
+        if (cells.x * cells.y * cells.z <= most)
+            return make_grid(low, high, glm::uvec3(cells));
+    }
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

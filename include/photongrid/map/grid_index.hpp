@@ -1,0 +1,28 @@
+// Where each cell's photons begin (section 2.2.1, figure 4): binary search in the sorted keys, all cells in one pass.
+#pragma once
+
+#include <photongrid/backend/backend.hpp>
+#include <photongrid/map/first_in_cell.kernel.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// For every key from 0 to cells - 1: x the position of its first pair, y how many pairs have it. A key that no pair
+/// has begins where the next key does. `pairs` is sorted by key; larger keys (invalid photons) are in no cell. One
+/// pass, O(log n) reads a cell (section 2.2.1, figure 4).
+/// \throws backend_error when the device cannot hold `cells`
+/// elements.
+/// \snippet snippets.cpp grid_index
+template <backend B>
+buffer_of<B, glm::uvec2> grid_index(B& b, const buffer_of<B, glm::uvec2>& pairs, uint cells)
+{
+    auto index = b.template make<glm::uvec2>(cells);
+    b.template run<kernels::first_in_cell>(
+        cells, {.pairs = static_cast<uint>(pairs.size())}, reads(pairs), writes(index));
+    return index;
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,26 @@
+// The sort key of photon i: (its cell, its id). Invalid photons, those of other parts of
+// the light, and padding carry the largest key (2.1, 2.2.1).
+#include <photongrid/map/grid.glsl>
+
+struct Params {
+    Grid grid;
+    uint photons;
+    uint parts; // which photons: bit 0 those with w of the position 0, bit 1 those with 1
+};
+PARAMS(Params)
+INPUT(0, vec4, positions)
+INPUT(1, vec4, powers)
+OUTPUT(0, uvec2, pair)
+
+void kernel(uint i)
+{
+    pair = uvec2(0xFFFFFFFFu, 0xFFFFFFFFu);
+    if (i >= args.photons)
+        return;
+    pair.y = i;
+    vec4 p = positions(i);
+    if (!is_finite(p) || !is_finite(powers(i)) || !is_of_parts(p, args.parts))
+        return;
+    uvec4 c = cell_coordinates(args.grid, p);
+    pair.x = cell_number(args.grid, c.x, c.y, c.z);
+}

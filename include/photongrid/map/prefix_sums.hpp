@@ -1,0 +1,33 @@
+// Running sums (Hillis and Steele 1986, by fours in place of twos): gather passes only.
+#pragma once
+
+#include <photongrid/backend/backend.hpp>
+#include <photongrid/map/prefix_sum_step.kernel.hpp>
+
+#include <utility>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// Inclusive sums: element i of the result is terms 0 to i added up, modulo 2^32. ceil(log4 n) passes, one at least.
+/// (Hillis and Steele 1986, by fours in place of twos.)
+/// \throws backend_error when the device cannot hold two more buffers of n.
+/// \snippet snippets.cpp prefix_sums
+template <backend B>
+buffer_of<B, uint> prefix_sums(B& b, const buffer_of<B, uint>& terms)
+{
+    const auto n = terms.size();
+    auto sums = b.template make<uint>(n);
+    auto next = b.template make<uint>(n);
+    b.template run<kernels::prefix_sum_step>(n, {.stride = 1u}, reads(terms), writes(sums));
+    for (std::size_t stride = 4; stride < n; stride *= 4) {
+        b.template run<kernels::prefix_sum_step>(n, {.stride = static_cast<uint>(stride)}, reads(sums), writes(next));
+        std::swap(sums, next);
+    }
+    return sums;
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,23 @@
+// The power of photon i after its cell's surplus was shared out (2.2.2). Photons that were not kept get theirs too; no
+// search will meet them.
+#include <photongrid/map/grid.glsl>
+
+struct Params {
+    Grid grid;
+};
+PARAMS(Params)
+INPUT(0, vec4, positions)
+INPUT(1, vec4, powers)
+INPUT(2, vec4, scales)
+INPUT(3, vec4, surpluses)
+OUTPUT(0, vec4, power)
+
+void kernel(uint i)
+{
+    uvec4 c = cell_coordinates(args.grid, positions(i));
+    uint cell = cell_number(args.grid, c.x, c.y, c.z);
+    vec4 flux = powers(i);
+    vec4 scale = scales(cell);
+    vec4 surplus = surpluses(cell);
+    power = vec4(flux.x * scale.x + surplus.x, flux.y * scale.y + surplus.y, flux.z * scale.z + surplus.z, flux.w);
+}

@@ -1,0 +1,124 @@
+// Vectors as a host has them, read one at a time: a range of the host's vectors, or a member of the host's structs.
+#pragma once
+
+#include <photongrid/map/own_photons.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+namespace detail {
+    template <class V>
+    glm::dvec3 to_dvec3(const V& v)
+    {
+        if constexpr (std::is_arithmetic_v<V>)
+            return glm::dvec3(static_cast<double>(v));
+        else if constexpr (has_xyz<V>)
+            return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+        else
+            return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+    }
+
+    /// Has V components that a float cannot hold?
+    template <class V>
+    constexpr bool has_doubles()
+    {
+        if constexpr (std::is_arithmetic_v<V>)
+            return sizeof(V) > sizeof(float);
+        else if constexpr (has_xyz<V>)
+            return sizeof(std::declval<const V&>().x) > sizeof(float);
+        else
+            return sizeof(std::declval<const V&>()[0]) > sizeof(float);
+    }
+} // namespace detail
+
+/// Vectors or numbers of the host's, which must outlive it: made from any contiguous range of vectors (as in
+/// photon_reader) or numbers. A number stands for three equal components.
+class vector_view {
+public:
+    vector_view() = default;
+    template <std::ranges::contiguous_range Range>
+    requires std::ranges::sized_range<Range> && detail::flux_like<std::ranges::range_value_t<Range>> &&(
+        !std::same_as<std::remove_cvref_t<Range>, vector_view>)vector_view(const Range& range)
+        : vector_view(
+            std::ranges::data(range), static_cast<std::size_t>(std::ranges::size(range)),
+            [](const std::ranges::range_value_t<Range>& v) -> const auto& { return v; })
+    {
+    }
+    /// A member of structs: `read` is a function without state that returns it.
+    template <class T, class Read>
+    vector_view(const T* first, std::size_t size, Read)
+        : data_(first), size_(size),
+          has_doubles_(detail::has_doubles<std::remove_cvref_t<std::invoke_result_t<Read, const T&>>>()),
+          read_(
+              [](const void* data, std::size_t i) { return detail::to_dvec3(Read{}(static_cast<const T*>(data)[i])); })
+    {
+    }
+
+    std::size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    glm::dvec3 operator[](std::size_t i) const { return read_(data_, i); }
+    /// Are there components that a float cannot hold?
+    bool has_doubles() const { return has_doubles_; }
+
+private:
+    const void* data_ = nullptr;
+    std::size_t size_ = 0;
+    bool has_doubles_ = false;
+    glm::dvec3 (*read_)(const void*, std::size_t) = nullptr;
+};
+
+/// Photons whose attributes a host keeps apart. Directions and normals may be left out; what is there has one element a
+/// photon.
+struct photon_attributes {
+    vector_view positions{};  ///< m
+    vector_view powers{};     ///< W
+    vector_view directions{}; ///< of travel, unit length
+    vector_view normals{};    ///< of the surface, unit length
+};
+
+namespace detail {
+    /// The attributes of a range of structs.
+    template <class Range>
+    photon_attributes attributes_of(const Range& photons)
+    {
+        using P = std::ranges::range_value_t<Range>;
+        using reader = photon_reader<P>;
+        const P* const first = std::ranges::data(photons);
+        const auto n = static_cast<std::size_t>(std::ranges::size(photons));
+        photon_attributes a{.positions = {first, n, [](const P& p) -> decltype(auto) { return reader::position(p); }},
+            .powers = {first, n, [](const P& p) -> decltype(auto) { return reader::flux(p); }}};
+        if constexpr (requires(const P& p) { reader::direction(p); })
+            a.directions = {first, n, [](const P& p) -> decltype(auto) { return reader::direction(p); }};
+        if constexpr (requires(const P& p) { reader::normal(p); })
+            a.normals = {first, n, [](const P& p) -> decltype(auto) { return reader::normal(p); }};
+        return a;
+    }
+
+    /// From where positions are measured on the device: the middle of doubles, so that a float tells neighbours apart
+    /// however far from 0 they lie; 0 for floats, which are taken as they are.
+    inline glm::dvec3 origin_of(const vector_view& positions)
+    {
+        constexpr double most = std::numeric_limits<double>::infinity();
+        glm::dvec3 low(most), high(-most);
+        for (std::size_t i = 0; positions.has_doubles() && i < positions.size(); ++i)
+            if (const auto p = positions[i]; std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) {
+                low = glm::min(low, p);
+                high = glm::max(high, p);
+            }
+        return low.x <= high.x ? 0.5 * low + 0.5 * high : glm::dvec3(0);
+    }
+
+    template <backend B>
+    buffer_of<B, glm::vec4> upload_view(B& b, const vector_view& vectors, const glm::dvec3& origin, float w)
+    {
+        std::vector<glm::vec4> staged(vectors.size());
+        for (std::size_t i = 0; i < staged.size(); ++i)
+            staged[i] = glm::vec4(glm::vec3(vectors[i] - origin), w);
+        return b.upload(std::span<const glm::vec4>(staged));
+    }
+} // namespace detail
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,143 @@
+// Points that are not light: which are near a place, how many, how far.
+//
+//     const photongrid::point_index index(device, points);
+//     const auto nearest = index.nearest(places, 16);
+//     for (const auto& n : nearest[0])
+//         use(points[n.id], n.distance2);
+#pragma once
+
+#include <photongrid/estimate/host_search.hpp>
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/estimate/knn_neighbours.hpp>
+#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/vector_view.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// A point near a place.
+struct point_neighbour {
+    photon_id id = nowhere; ///< its place in the range that the index was made from
+    float distance2 = 0;    ///< m^2
+
+    bool operator==(const point_neighbour&) const = default;
+};
+
+/// The neighbours of many places, those of place i in [i].
+class point_neighbours {
+public:
+    /// Places.
+    std::size_t size() const { return begin_.size() - 1; }
+    /// Neighbours of place i.
+    std::span<const point_neighbour> operator[](std::size_t i) const&
+    {
+        return std::span(all_).subspan(begin_[i], begin_[i + 1] - begin_[i]);
+    }
+    std::span<const point_neighbour> operator[](std::size_t i) const&& = delete; // they would be gone
+
+private:
+    template <backend B>
+    friend class point_index;
+    std::vector<point_neighbour> all_;
+    std::vector<std::size_t> begin_{0};
+};
+
+/// Points of the host's in a grid that is fitted to them. Searches for many places run on
+/// the device, those for one place in the calling thread, on a copy in the host's memory: see photon_map, also for
+/// doubles.
+/// \snippet snippets.cpp point_index
+template <backend B>
+class point_index {
+public:
+    /// `k`: how many neighbours searches are likely to want; the grid is fitted to it, results do not depend on it.
+    /// \throws backend_error where the device has no room.
+    point_index(B& device, const vector_view& points, uint k = 16)
+        : device_(&device), origin_(detail::origin_of(points)), map_(fitted_map(device, uploaded(device, points), k)),
+          host_(device, map_, {.k = k}, false)
+    {
+    }
+
+    /// Points that it was made from.
+    uint size() const { return map_.photons.size(); }
+
+    /// The k nearest points of each place, nearest first; of equally near ones, the smallest id first. Fewer where
+    /// there are fewer, or none farther than max_radius is wanted.
+    /// \throws std::invalid_argument for k = 0.
+    [[nodiscard]] point_neighbours nearest(
+        const vector_view& places, uint k, float max_radius = std::numeric_limits<float>::infinity()) const
+    {
+        B& b = *device_;
+        const auto lists = knn_neighbours(
+            b, map_, detail::upload_view(b, places, origin_, 1.0f), {.k = k, .max_radius = max_radius});
+        const auto ids = b.download(lists.ids);
+        const auto distances2 = b.download(lists.distances2);
+        point_neighbours n;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            for (std::size_t entry = i * k; entry < (i + 1) * k && ids[entry] != nowhere; ++entry)
+                n.all_.push_back({ids[entry], distances2[entry]});
+            n.begin_.push_back(n.all_.size());
+        }
+        return n;
+    }
+    /// All points within `radius` of each place, nearest first.
+    [[nodiscard]] point_neighbours within(const vector_view& places, float radius) const
+    {
+        point_neighbours n;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const auto first = static_cast<std::ptrdiff_t>(n.all_.size());
+            host_.for_each_within(glm::vec3(places[i] - origin_), radius, [&](photon_id id, float distance2) {
+                n.all_.push_back({id, distance2});
+            });
+            std::sort(n.all_.begin() + first, n.all_.end(), [](const point_neighbour& a, const point_neighbour& c) {
+                return a.distance2 < c.distance2 || (a.distance2 == c.distance2 && a.id < c.id);
+            });
+            n.begin_.push_back(n.all_.size());
+        }
+        return n;
+    }
+    /// How many points lie within `radius` of each place.
+    [[nodiscard]] std::vector<uint> count_within(const vector_view& places, float radius) const
+    {
+        B& b = *device_;
+        const auto points = detail::upload_view(b, places, origin_, 1.0f);
+        const auto e = knn_grid_estimate(
+            b, map_, points, {.max_radius = radius, .search = search_kind::fixed_radius, .bias = bias_kind::paper});
+        std::vector<uint> counts;
+        for (const auto& used : b.download(e.used))
+            counts.push_back(used.x);
+        return counts;
+    }
+
+    /// Calls f(photon_id, float distance2) for every point within `radius` of one place, in no particular order. From
+    /// any thread.
+    template <detail::vector_like V, class F>
+    void for_each_within(const V& place, float radius, const F& f) const
+    {
+        host_.for_each_within(glm::vec3(detail::to_dvec3(place) - origin_), radius, f);
+    }
+    /// The same for the k nearest, nearest first. From any thread, each with a scratch of its own.
+    template <detail::vector_like V, class F>
+    void for_each_nearest(const V& place, uint k, query_scratch& scratch, const F& f) const
+    {
+        host_.for_each_nearest(
+            glm::vec3(detail::to_dvec3(place) - origin_), k, std::numeric_limits<float>::infinity(), scratch, f);
+    }
+
+private:
+    photons<B> uploaded(B& b, const vector_view& points) const
+    {
+        // The searches of a map read no power; the map itself has room for one.
+        const std::vector<glm::vec4> none(points.size());
+        return {detail::upload_view(b, points, origin_, 0.0f), b.upload(std::span(none))};
+    }
+
+    B* device_;
+    glm::dvec3 origin_;
+    map_buffers<B> map_;
+    host_search host_;
+};
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

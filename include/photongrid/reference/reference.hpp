@@ -1,0 +1,92 @@
+// The reference renderer: ground truth for the photon map, on the CPU, in double precision, from none of its kernels. A
+// path tracer with shadow rays, and for caustics that eye paths cannot find a light tracer with bins.
+// docs/reference/reference_renderer.md says which conventions it shares with the photon-map renderer. Uses threads:
+// link Threads::Threads where the system asks for it.
+#pragma once
+
+#include <photongrid/reference/path_tracer.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// Renders a view without a photon map. The same scene, settings and seed give the same bytes on any number of threads.
+/// Unbiased but for the bins, which blur caustics over their own size (stats.bin_size), and for the depths of the
+/// settings.
+/// \throws std::invalid_argument for a scene, camera or settings that check() refuses, render_cancelled.
+/// \snippet snippets.cpp render_reference
+inline reference_picture render_reference(
+    const scene& s, const camera& view, const reference_settings& settings, const render_observer& observer = {})
+{
+    using clock = std::chrono::steady_clock;
+    const auto seconds_since
+        = [](clock::time_point start) { return std::chrono::duration<double>(clock::now() - start).count(); };
+    check(s);
+    check(view);
+    check(settings);
+    reference_picture out;
+    out.stats.threads = reference::threads_for(settings.threads);
+    const reference::geometry shapes(s);
+
+    const auto light_start = clock::now();
+    const reference::caustic_bins caustics(s, shapes, settings, observer, out.stats);
+    out.stats.light_seconds = seconds_since(light_start);
+
+    // Samples of a pixel that share bins are not independent; groups of samples, each with its own bins, are.
+    const std::uint32_t groups = caustics.empty() ? settings.spp : reference::light_groups;
+    const std::uint32_t a_group = (settings.spp + groups - 1) / groups;
+    out.stats.spp = groups * a_group;
+
+    const dvec3 forward = glm::normalize(view.look_at - view.position);
+    const dvec3 right = glm::normalize(glm::cross(forward, view.up));
+    const dvec3 up = glm::cross(right, forward);
+    const double pixel = 2 * std::tan(glm::radians(0.5 * view.vertical_fov)) / settings.height;
+
+    const std::size_t pixels = std::size_t{settings.width} * settings.height;
+    out.mean = {settings.width, settings.height, std::vector<glm::vec3>(pixels, glm::vec3(0))};
+    out.standard_error = out.mean;
+    std::vector<std::uint64_t> invalid(settings.height, 0);
+    const reference::path_tracer tracer(s, shapes, caustics, settings);
+    const auto eye_start = clock::now();
+    reference::share_out(settings.height, out.stats.threads, "eye_paths", static_cast<double>(pixels), observer,
+        [&](std::uint32_t y, reference::watch& w) {
+            for (std::uint32_t x = 0; x < settings.width; ++x) {
+                const std::size_t i = std::size_t{y} * settings.width + x;
+                reference::random_stream random(settings.seed, 2, i);
+                dvec3 mean(0), squares(0); // of the groups' means; squares about the mean, updated as Welford does
+                for (std::uint32_t g = 0; g < groups; ++g) {
+                    if (g % 64 == 0 && !w.goes_on(0))
+                        return;
+                    dvec3 sum(0);
+                    for (std::uint32_t n = 0; n < a_group; ++n) {
+                        const double dx = random(), dy = random();
+                        const dvec3 d = forward + (x + dx - 0.5 * settings.width) * pixel * right
+                            + (0.5 * settings.height - (y + dy)) * pixel * up;
+                        const dvec3 sample = tracer.radiance(
+                            {view.position, glm::normalize(d), reference::nothing}, random, caustics.empty() ? 0 : g);
+                        if (detail::finite(sample))
+                            sum += sample;
+                        else
+                            ++invalid[y];
+                    }
+                    const dvec3 group_mean = sum / static_cast<double>(a_group), before = group_mean - mean;
+                    mean += before / (g + 1.0);
+                    squares += before * (group_mean - mean);
+                }
+                out.mean.pixels[i] = glm::vec3(mean);
+                out.standard_error.pixels[i] = glm::vec3(glm::sqrt(squares / (groups * (groups - 1.0))));
+                if (!w.goes_on(1))
+                    return;
+            }
+        });
+    out.stats.eye_seconds = seconds_since(eye_start);
+    for (const auto n : invalid)
+        out.stats.invalid_samples += n;
+    for (const auto& e : out.standard_error.pixels)
+        out.stats.mean_standard_error += glm::dot(dvec3(e), dvec3(1.0 / 3.0)) / static_cast<double>(pixels);
+    return out;
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,73 @@
+// Sums that do not depend on the order of their terms, so that passes may come from any thread or machine.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// A sum of doubles in fixed point: 128 bits, two's complement, in steps of 2^-80. Each term is rounded to a step once,
+/// before it is added; addition is then exact, so any order of the same terms gives the same bits.
+class exact_sum {
+public:
+    static constexpr int fraction_bits = 80; ///< a step is 2^-80
+    static constexpr int integer_bits = 46;  ///< of the largest term; 2 more hold the sign and a carry
+
+    /// Whether `x` may be added: it is finite and |x| < 2^46.
+    static bool holds(double x) { return std::abs(x) < 0x1p46; } // false for NaN
+
+    /// Adds a term that holds() is true for. The sum of all terms must stay below 2^47.
+    void add(double x)
+    {
+        const auto bits = std::bit_cast<std::uint64_t>(x);
+        const int biased = static_cast<int>(bits >> 52 & 0x7FF);
+        if (biased == 0)
+            return; // 0, or far below a step
+        const std::uint64_t mantissa = (bits & 0xFFFFFFFFFFFFFu) | 0x10000000000000u;
+        const int shift = biased - 1075 + fraction_bits; // x = mantissa * 2^shift steps
+        std::uint64_t low = 0, high = 0;
+        if (shift >= 64) {
+            high = mantissa << (shift - 64);
+        } else if (shift >= 0) {
+            low = mantissa << shift;
+            high = shift == 0 ? 0 : mantissa >> (64 - shift);
+        } else if (shift > -54) {
+            low = (mantissa + (std::uint64_t{1} << (-shift - 1))) >> -shift; // half a step is rounded away from 0
+        }
+        if (x < 0) {
+            low = ~low + 1;
+            high = ~high + (low == 0 ? 1u : 0u);
+        }
+        add(low, high);
+    }
+    /// Adds another sum, as if each of its terms were added here.
+    void add(const exact_sum& other) { add(other.low_, other.high_); }
+
+    /// The sum, rounded to double.
+    double value() const
+    {
+        const bool negative = (high_ >> 63) != 0;
+        const std::uint64_t low = negative ? ~low_ + 1 : low_;
+        const std::uint64_t high = negative ? ~high_ + (low == 0 ? 1u : 0u) : high_;
+        const double size = std::ldexp(static_cast<double>(high), 64 - fraction_bits)
+            + std::ldexp(static_cast<double>(low), -fraction_bits);
+        return negative ? -size : size;
+    }
+
+    bool operator==(const exact_sum&) const = default; ///< of the sums, to the bit
+
+private:
+    void add(std::uint64_t low, std::uint64_t high)
+    {
+        low_ += low;
+        high_ += high + (low_ < low ? 1u : 0u);
+    }
+    std::uint64_t low_ = 0, high_ = 0;
+};
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

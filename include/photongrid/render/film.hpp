@@ -1,0 +1,261 @@
+// The picture as a sum of passes: each is added once, in any order, and the spread between passes is the noise.
+#pragma once
+
+#include <photongrid/render/exact_sum.hpp>
+#include <photongrid/render/image.hpp>
+#include <photongrid/scene/scene.hpp>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// What one pass adds to the picture, row by row from the top left.
+struct pass_pixels {
+    std::vector<glm::vec4> pixels;   ///< rgb: radiance, W/(m^2 sr)
+    std::vector<glm::vec4> searches; ///< sums over a pixel's searches: photons used, radius, photons visited, searches
+    std::vector<glm::vec4> errors;   ///< x: sum of relative standard errors; empty unless render_settings::aov
+};
+
+/// A picture, and how many of its pixels were NaN or infinite in some pass; they count as black there.
+struct developed_picture {
+    image picture;
+    std::uint64_t invalid_pixels = 0;
+};
+
+/// Adds passes up. Of one pass the picture has exactly the floats; the mean of several is exact up to its last
+/// rounding and does not depend on the order in which they were added.
+class film {
+public:
+    film() = default;
+    /// For pictures of width x height pixels. `unit` is a typical radiance, a power of two: sums resolve 2^-80 of it,
+    /// pixels above 2^40 of it count as infinite. `layers`: the passes' errors are wanted (render_settings::aov).
+    film(std::uint32_t width, std::uint32_t height, double unit, bool layers)
+        : width_(width), height_(height), unit_(unit), layers_(layers)
+    {
+    }
+
+    /// Adds pass number `pass`.
+    /// \throws std::invalid_argument for a pass that was added before, or one of another size.
+    void add(std::uint32_t pass, pass_pixels p)
+    {
+        const std::size_t n = size();
+        if (p.pixels.size() != n || p.searches.size() != n || p.errors.size() != (layers_ ? n : 0))
+            throw std::invalid_argument("film::add: pass " + std::to_string(pass) + ": has "
+                + std::to_string(p.pixels.size()) + " pixels; the film has " + std::to_string(n));
+        if (!passes_.insert(pass).second)
+            throw std::invalid_argument("film::add: pass " + std::to_string(pass) + " was added before");
+        if (passes_.size() == 1) {
+            only_ = std::move(p);
+            return;
+        }
+        if (only_) {
+            sums_.resize(n);
+            if (layers_)
+                layer_sums_.resize(n);
+            add_up(*std::exchange(only_, std::nullopt));
+        }
+        add_up(p);
+    }
+
+    /// Whether pass number `pass` was added.
+    bool holds(std::uint32_t pass) const { return passes_.contains(pass); }
+    /// Whether pictures of it have this size and these layers.
+    bool is_for(std::uint32_t width, std::uint32_t height, bool layers) const
+    {
+        return width == width_ && height == height_ && layers == layers_;
+    }
+    /// How many passes were added.
+    std::uint32_t passes() const { return static_cast<std::uint32_t>(passes_.size()); }
+    /// Pixels of the picture.
+    std::size_t size() const { return std::size_t{width_} * height_; }
+
+    /// All of it, for the memory of a file. The same passes give the same bytes, in whichever order they were added.
+    std::string bytes() const
+    {
+        std::string out;
+        const auto put = [&](const void* data, std::size_t size) {
+            if (size > 0)
+                out.append(static_cast<const char*>(data), size);
+        };
+        const std::uint32_t head[] = {width_, height_, layers_ ? 1u : 0u, passes()};
+        put(head, sizeof head);
+        put(&unit_, sizeof unit_);
+        for (const auto pass : passes_)
+            put(&pass, sizeof pass);
+        if (only_)
+            for (const auto* part : {&only_->pixels, &only_->searches, &only_->errors})
+                put(part->data(), part->size() * sizeof(glm::vec4));
+        put(sums_.data(), sums_.size() * sizeof(pixel_sums));
+        put(layer_sums_.data(), layer_sums_.size() * sizeof(layer_sums));
+        return out;
+    }
+    /// The film with these bytes.
+    /// \throws std::invalid_argument for bytes that are no film's.
+    static film from_bytes(std::string_view in)
+    {
+        const auto take = [&](void* data, std::size_t size) {
+            if (in.size() < size)
+                throw std::invalid_argument("film: the bytes end too early");
+            if (size > 0)
+                std::memcpy(data, in.data(), size);
+            in.remove_prefix(size);
+        };
+        std::uint32_t head[4];
+        double unit = 0;
+        take(head, sizeof head);
+        take(&unit, sizeof unit);
+        film f(head[0], head[1], unit, head[2] != 0);
+        const std::size_t n = f.size();
+        if (head[0] > 16384 || head[1] > 16384 || head[2] > 1 || head[3] > 65536 || !(unit > 0))
+            throw std::invalid_argument("film: these bytes are no film's");
+        for (std::uint32_t i = 0; i < head[3]; ++i) {
+            std::uint32_t pass = 0;
+            take(&pass, sizeof pass);
+            f.passes_.insert(pass);
+        }
+        if (head[3] == 1) {
+            const std::size_t layer = f.layers_ ? n : 0;
+            if (in.size() != (2 * n + layer) * sizeof(glm::vec4))
+                throw std::invalid_argument("film: the bytes have another length");
+            f.only_ = pass_pixels{std::vector<glm::vec4>(n), std::vector<glm::vec4>(n), std::vector<glm::vec4>(layer)};
+            for (auto* part : {&f.only_->pixels, &f.only_->searches, &f.only_->errors})
+                take(part->data(), part->size() * sizeof(glm::vec4));
+        } else if (head[3] > 1) {
+            if (in.size() != n * (sizeof(pixel_sums) + (f.layers_ ? sizeof(layer_sums) : 0)))
+                throw std::invalid_argument("film: the bytes have another length");
+            f.sums_.resize(n);
+            f.layer_sums_.resize(f.layers_ ? n : 0);
+            take(f.sums_.data(), n * sizeof(pixel_sums));
+            take(f.layer_sums_.data(), f.layer_sums_.size() * sizeof(layer_sums));
+        }
+        if (f.passes() != head[3] || !in.empty())
+            throw std::invalid_argument("film: these bytes are no film's");
+        return f;
+    }
+
+    /// The mean of the passes added so far. Its layers are filled where they were wanted: `relative_error` is that of
+    /// the mean of the passes' estimates, `noise` needs two passes.
+    /// \throws std::logic_error when no pass was added yet.
+    developed_picture picture() const
+    {
+        if (passes_.empty())
+            throw std::logic_error("film::picture: no pass was added yet");
+        developed_picture out;
+        out.picture.width = width_;
+        out.picture.height = height_;
+        out.picture.pixels.reserve(size());
+        if (only_)
+            develop_one(out);
+        else
+            develop_many(out);
+        return out;
+    }
+
+private:
+    struct pixel_sums {
+        exact_sum rgb[3];
+        exact_sum squares;                   ///< of r + g + b, for the spread
+        std::uint32_t invalid = 0;           ///< 1: some pass was NaN, infinite or too bright
+        std::uint32_t spread_is_unknown = 0; ///< 1: some pass was too bright for the sum of squares
+    };
+    struct layer_sums {
+        exact_sum searches, count, radius, error;
+    };
+
+    static bool finite(const glm::vec4& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+    void add_up(const pass_pixels& p)
+    {
+        for (std::size_t i = 0; i < sums_.size(); ++i) {
+            auto& sum = sums_[i];
+            const glm::dvec3 value = glm::dvec3(p.pixels[i]) / unit_;
+            const double all = value.x + value.y + value.z;
+            if (!(std::abs(all) < largest)) { // false for NaN
+                sum.invalid = 1;
+                continue;
+            }
+            for (int c = 0; c < 3; ++c)
+                sum.rgb[c].add(value[c]);
+            if (std::abs(all) < largest_square)
+                sum.squares.add(all * all * square_scale);
+            else
+                sum.spread_is_unknown = 1;
+        }
+        for (std::size_t i = 0; i < layer_sums_.size(); ++i) {
+            auto& sum = layer_sums_[i];
+            sum.searches.add(static_cast<double>(p.searches[i].w));
+            sum.count.add(static_cast<double>(p.searches[i].x));
+            sum.radius.add(static_cast<double>(p.searches[i].y));
+            if (exact_sum::holds(static_cast<double>(p.errors[i].x)))
+                sum.error.add(static_cast<double>(p.errors[i].x));
+        }
+    }
+
+    void develop_one(developed_picture& out) const
+    {
+        for (const auto& p : only_->pixels) {
+            out.invalid_pixels += finite(p) ? 0u : 1u;
+            out.picture.pixels.push_back(finite(p) ? glm::vec3(p) : glm::vec3(0));
+        }
+        auto& layers = out.picture.layers;
+        for (std::size_t i = 0; i < only_->errors.size(); ++i) {
+            const auto& tally = only_->searches[i];
+            const float mean = tally.w > 0 ? 1.0f / tally.w : 0.0f; // per search
+            layers.radius.push_back(tally.y * mean);
+            layers.count.push_back(tally.x * mean);
+            layers.relative_error.push_back(only_->errors[i].x * mean);
+        }
+    }
+
+    void develop_many(developed_picture& out) const
+    {
+        const double n = static_cast<double>(passes_.size());
+        auto& layers = out.picture.layers;
+        for (const auto& sum : sums_) {
+            out.invalid_pixels += sum.invalid;
+            const glm::dvec3 total(sum.rgb[0].value(), sum.rgb[1].value(), sum.rgb[2].value());
+            out.picture.pixels.emplace_back(total * (unit_ / n));
+            if (layers_) {
+                const double all = total.x + total.y + total.z;
+                const double variance = (sum.squares.value() / square_scale - all * all / n) / (n - 1);
+                layers.noise.push_back(sum.spread_is_unknown == 0
+                        ? static_cast<float>(std::sqrt(std::max(variance, 0.0) / n) / 3 * unit_)
+                        : std::numeric_limits<float>::infinity());
+            }
+        }
+        for (const auto& sum : layer_sums_) {
+            const double searches = sum.searches.value(), mean = searches > 0 ? 1 / searches : 0;
+            layers.radius.push_back(static_cast<float>(sum.radius.value() * mean));
+            layers.count.push_back(static_cast<float>(sum.count.value() * mean));
+            layers.relative_error.push_back(static_cast<float>(sum.error.value() * mean / std::sqrt(n)));
+        }
+    }
+
+    // exact_sum takes sums below 2^47: room for 2^7 passes as bright as can be, and for 2^16 of any real picture.
+    static constexpr double largest = 0x1p40;        ///< of a pixel's r + g + b, in units
+    static constexpr double largest_square = 0x1p30; ///< whose spread is known, in units
+    static constexpr double square_scale = 0x1p-20;  ///< squares go up to 2^40 with it
+
+    std::uint32_t width_ = 0, height_ = 0;
+    double unit_ = 1;
+    bool layers_ = false;
+    std::set<std::uint32_t> passes_;
+    std::optional<pass_pixels> only_; ///< while there is one pass: its own floats
+    std::vector<pixel_sums> sums_;
+    std::vector<layer_sums> layer_sums_;
+};
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,28 @@
+// Pictures.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace photongrid {
+
+/// What the estimates behind a picture say of themselves, means over each pixel's eye rays, row by row from the top
+/// left; 0 where no ray asked for an estimate.
+struct estimate_layers {
+    std::vector<float> radius;         ///< m
+    std::vector<float> count;          ///< photons within it
+    std::vector<float> relative_error; ///< standard error of the irradiance, over the irradiance (sums over channels)
+    std::vector<float> noise; ///< standard error of the mean of the passes, mean of the channels; empty for one pass
+};
+
+/// A picture: linear radiance, W/(m^2 sr), rgb, row by row from the top left.
+struct image {
+    std::uint32_t width = 0;       ///< pixels
+    std::uint32_t height = 0;      ///< pixels
+    std::vector<glm::vec3> pixels; ///< width x height of them
+    estimate_layers layers{};      ///< empty unless render_settings::aov
+};
+
+} // namespace photongrid

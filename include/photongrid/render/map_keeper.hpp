@@ -1,0 +1,107 @@
+// The photon map that is in use, and the one that is being made: a map is built again only when geometry, materials or
+// lights change, or a setting that same_map() names (figure 1).
+#pragma once
+
+#include <photongrid/render/render.hpp>
+
+#include <functional>
+#include <optional>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// What a photon map is of.
+struct map_source {
+    photongrid::scene scene;
+    render_settings settings; ///< of the pass that it is for; with fewer photons, for a preview
+    uint pass = 0;
+
+    /// Whether a map of `other` would be the same.
+    bool same(const map_source& other) const { return same_map(scene, settings, other.scene, other.settings); }
+    /// Whether a map of `whole` differs only in having more photons.
+    bool is_preview_of(const map_source& whole) const
+    {
+        auto with = settings;
+        with.photons = whole.settings.photons;
+        with.k = whole.settings.k;
+        return settings.photons < whole.settings.photons && same_map(scene, with, whole.scene, whole.settings);
+    }
+};
+
+/// Keeps a map while it serves, and makes another in steps.
+template <backend B>
+class map_keeper {
+public:
+    /// `b` must outlive it.
+    explicit map_keeper(B& b) : b_(b) {}
+
+    /// The map in use; there must be one.
+    const built_map<B>& map() const { return *built_; }
+    /// What it is of.
+    const map_source& of() const { return of_; }
+    /// Whether the map in use is one of `wanted`.
+    bool serves(const map_source& wanted) const { return built_ && of_.same(wanted); }
+    /// Whether it is one of fewer photons.
+    bool serves_preview_of(const map_source& wanted) const { return built_ && of_.is_preview_of(wanted); }
+    /// Whether a map of `wanted` is being made.
+    bool is_making(const map_source& wanted) const { return making_ && making_of_.same(wanted); }
+    /// The photons of the map being made; nothing where none is.
+    std::optional<uint> making_photons() const
+    {
+        return making_ ? std::optional(making_of_.settings.photons) : std::nullopt;
+    }
+    /// Of that map's photons, those that are traced.
+    double fraction() const { return making_ ? making_->fraction() : 0.0; }
+    /// Maps that were begun.
+    std::uint64_t begun() const { return begun_; }
+    /// What the last map that was made took.
+    const render_stats& stats() const { return stats_; }
+
+    /// The steps to a map of `wanted`: none where it is there, the rest of them where it is being made. `use` is called
+    /// when it takes the place of the map in use, just before.
+    step_list steps_to(const map_source& wanted, std::function<void()> use)
+    {
+        if (serves(wanted))
+            return {};
+        if (!is_making(wanted)) {
+            making_.reset();
+            if (built_ && !of_.is_preview_of(wanted)) { // a preview's stays until the whole one is there
+                use();
+                built_.reset();
+            }
+            making_of_ = wanted;
+            stats_ = {};
+            making_.emplace(b_, making_of_.scene, making_of_.settings, stats_);
+            ++begun_;
+        }
+        auto steps = map_steps(*making_);
+        steps.expand([this, use = std::move(use)] {
+            use();
+            built_.emplace(making_->take());
+            of_ = std::move(making_of_);
+            making_.reset();
+            return step_list();
+        });
+        return steps;
+    }
+    /// Forgets both maps.
+    void clear()
+    {
+        making_.reset();
+        built_.reset();
+    }
+
+private:
+    B& b_;
+    std::optional<built_map<B>> built_;
+    map_source of_; ///< built_
+    std::optional<map_building<B>> making_;
+    map_source making_of_;
+    render_stats stats_;
+    std::uint64_t begun_ = 0;
+};
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,119 @@
+// What makes a pass one of several: its own random numbers, its place in the sums, and its statistics.
+#pragma once
+
+#include <photongrid/render/film.hpp>
+#include <photongrid/render/previews.hpp>
+#include <photongrid/render/scene_map.hpp>
+#include <photongrid/render/step_list.hpp>
+#include <photongrid/render/view_pass.hpp>
+
+#include <bit>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// The settings of pass number `pass`: random numbers of its own. Pass 0 has the seed of `s` itself, so that a picture
+/// of one pass is the same as without passes.
+inline render_settings settings_of_pass(render_settings s, std::uint32_t pass)
+{
+    if (pass > 0) {
+        // Two rounds of splitmix64 (Steele, Lea and Flood 2014) over (seed, pass).
+        std::uint64_t x = (std::uint64_t{s.seed} << 32 | pass) + 0x9E3779B97F4A7C15u;
+        for (int round = 0; round < 2; ++round) {
+            x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+            x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+            x ^= x >> 31;
+        }
+        s.seed = static_cast<std::uint32_t>(x >> 32);
+    }
+    return s;
+}
+
+/// A power of two near the mean radiance of a scene, the unit of a film: the power of all lights over the square of the
+/// extent of the surfaces that photons can be stored on.
+inline double typical_radiance(const scene& s, const scene_layout& layout)
+{
+    double power = 0;
+    for (const auto& l : s.point_lights)
+        power += l.power.x + l.power.y + l.power.z;
+    for (const auto& l : s.rectangle_lights)
+        power += l.power.x + l.power.y + l.power.z;
+    const double extent = static_cast<double>(glm::length(layout.high - layout.low));
+    const double radiance = power / (extent * extent);
+    return std::isfinite(radiance) && radiance > 0 ? std::exp2(std::round(std::log2(radiance))) : 1.0;
+}
+
+namespace detail {
+    inline void add(photon_stats& sum, const photon_stats& p)
+    {
+        sum.emitted += p.emitted;
+        sum.absorbed += p.absorbed;
+        sum.escaped += p.escaped;
+        sum.cut_off += p.cut_off;
+        sum.invalid += p.invalid;
+        sum.diffuse_hits += p.diffuse_hits;
+        sum.stored += p.stored;
+        sum.direct += p.direct;
+        sum.dropped += p.dropped;
+    }
+
+    inline void add(stage_stats& sum, const stage_stats& s)
+    {
+        sum.ms += s.ms;
+        sum.compile_ms += s.compile_ms;
+        sum.passes += s.passes;
+        sum.device_bytes = std::max(sum.device_bytes, s.device_bytes);
+    }
+
+    /// Adds a pass's searches, each a vector of pass_pixels::searches, to the statistics.
+    inline void add(estimate_stats& sum, const glm::dvec4& searches)
+    {
+        const double before = static_cast<double>(sum.points), all = std::max(before + searches.w, 1.0);
+        sum.mean_count = (sum.mean_count * before + searches.x) / all;
+        sum.mean_radius = (sum.mean_radius * before + searches.y) / all;
+        sum.mean_visited = (sum.mean_visited * before + searches.z) / all;
+        sum.points += static_cast<std::uint64_t>(searches.w);
+    }
+} // namespace detail
+
+/// The pixels of a finished pass, read back, and its numbers added to `stats`.
+/// \throws backend_error when the device fails, or reports more searches than there were.
+template <backend B>
+pass_pixels finish_pass(B& b, const built_map<B>& built, const view_pass<B>& view, render_stats& stats)
+{
+    const auto& light = view.light();
+    pass_pixels p{b.download(light.pixels), b.download(light.searches), b.download(light.errors)};
+    const double searched = static_cast<double>(p.pixels.size()) * view.rays();
+    glm::dvec4 sum(0);
+    for (const auto& s : p.searches)
+        sum += glm::dvec4(s);
+    if (!(sum.w >= 0) || !(sum.w <= searched))
+        throw backend_error(b.caps().backend + ": shade: the device says that " + std::to_string(sum.w)
+            + " points were searched for; there are " + std::to_string(searched));
+    detail::add(stats.estimate, sum);
+    detail::add(stats.photons, count_photons(b, built.trace, built.map.photons.size()));
+    stats.map = built.about;
+    if (built.about.builder == map_builder::route)
+        stats.map.redistributed_flux = redistributed_flux(b, built.map);
+    stats.peak_device_bytes = b.peak_bytes();
+    return p;
+}
+
+/// Runs steps to their end; after each calls `ran` with the stage that it was of.
+/// \throws render_cancelled.
+template <class Ran>
+void run(step_list steps, const render_observer& observer, const Ran& ran)
+{
+    while (!steps.finished()) {
+        if (observer.cancelled && observer.cancelled())
+            throw render_cancelled();
+        const auto stage = steps.stage();
+        steps.advance();
+        ran(stage);
+    }
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

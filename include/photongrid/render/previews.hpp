@@ -1,0 +1,78 @@
+// Which previews come before a picture: plain data, made by pure functions from the settings and from what work has
+// taken so far. Larger pixels, smaller k and fewer photons make a preview noisier, not darker.
+#pragma once
+
+#include <photongrid/scene/scene.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// A picture drawn before the picture.
+struct preview {
+    std::uint32_t divisor = 1;   ///< side of its pixels, in the picture's pixels
+    std::uint32_t k_divisor = 1; ///< k is divided by it; 8 photons are sought at least, where k is not less
+
+    bool operator==(const preview&) const = default; ///< of every member
+};
+
+/// Which previews are wanted. The picture itself does not depend on them.
+struct preview_settings {
+    bool wanted = true;    ///< false: nothing is shown before the picture itself
+    double target_ms = 40; ///< time for the first map, and for the first preview drawn with it
+};
+
+/// How long work has taken; at first a guess between a GPU and one thread of a CPU.
+struct work_costs {
+    double ms_per_photon = 2e-3;                                   ///< traced and put into the map
+    double ms_per_preview_pixel = 1e-2;                            ///< of the first preview
+    double ms_per_pixel = std::numeric_limits<double>::infinity(); ///< of the picture
+};
+
+/// Photons of a map for the first preview: fewer than the picture's where tracing all of them takes too long.
+inline std::uint32_t preview_photons(const render_settings& s, const work_costs& costs, double target_ms)
+{
+    std::uint32_t divisor = 1;
+    while (divisor < 64 && s.photons / divisor > 1024 && s.photons / divisor * costs.ms_per_photon > 2 * target_ms)
+        divisor *= 2;
+    return s.photons / divisor;
+}
+
+/// The previews that are drawn with a map of `map_photons` photons: as large pixels as the time needs, then smaller
+/// ones, then estimates from more photons. With a map of fewer photons than the picture's there is one preview.
+/// `after_early_one`: such a preview was shown already.
+inline std::vector<preview> preview_schedule(const render_settings& s, std::uint32_t map_photons, bool after_early_one,
+    const work_costs& costs, double target_ms)
+{
+    const auto pixels = [&](std::uint32_t divisor) {
+        return static_cast<double>((s.width + divisor - 1) / divisor) * ((s.height + divisor - 1) / divisor);
+    };
+    const bool early = map_photons < s.photons;
+    if (!early && pixels(1) * costs.ms_per_pixel <= target_ms)
+        return {}; // the picture is as fast as a preview should be
+    std::uint32_t divisor = 1;
+    while (std::min(s.width, s.height) / divisor >= 64 // of which something can be recognised
+        && pixels(divisor) * costs.ms_per_preview_pixel > target_ms)
+        divisor *= 2;
+    if (early)
+        return {{divisor, std::max(1u, 16 / std::max(1u, s.photons / map_photons))}};
+    std::vector<preview> all;
+    for (divisor = after_early_one ? std::max(1u, divisor / 2) : divisor; divisor > 1; divisor /= 2)
+        all.push_back({divisor, 16});
+    // Where there is little light the growing search goes out to the maximum radius whatever k is, so that a preview
+    // in the picture's own pixels would take as long as the picture (3.1).
+    const bool grows = s.search == search_kind::at_least_k;
+    if (all.empty() || !grows)
+        all.push_back({1, 16});
+    if (s.k > 32 && !grows) // else k / 4 is not more than the 8 photons of the last one
+        all.push_back({1, 4});
+    return all;
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

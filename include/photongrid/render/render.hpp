@@ -1,0 +1,158 @@
+// Figure 1 of the paper, executed: a picture is a sum of passes, and a pass is
+//
+//     scene -> trace_photons -> build_map ----------------------------+
+//     camera -> trace_eye -> direct_light -> irradiance (2.3) -> shade -> film
+//
+// Each stage is a step that can be interrupted (step_list.hpp); progressive_render runs the same ones for those who
+// watch (3.4).
+#pragma once
+
+#include <photongrid/render/film.hpp>
+#include <photongrid/render/passes.hpp>
+#include <photongrid/render/scene_map.hpp>
+#include <photongrid/render/step_list.hpp>
+#include <photongrid/render/view_pass.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// The left of figure 1, needed again only when geometry, materials or lights change: photons from the lights, sorted
+/// or routed into a grid. `m` must outlive the steps.
+template <backend B>
+step_list map_steps(map_building<B>& m)
+{
+    step_list steps;
+    steps.then("trace_photons", [&m] { return m.trace_photons(); }); // 2.1
+    steps.then("build_map", [&m] { return m.build_map(); });         // 2.2
+    return steps;
+}
+
+/// The right of figure 1, for every view: where each eye ray ends, the light there, and its pixel. `v` must outlive
+/// the steps.
+template <backend B>
+step_list view_steps(view_pass<B>& v)
+{
+    step_list steps;
+    steps.repeat(v.light().rays, v.rays(), [&v](uint ray) {
+        step_list stages;
+        stages.then("trace_eye", [&v, ray] { return v.trace_eye(ray); });       // 2.4
+        stages.then("direct_light", [&v, ray] { return v.direct_light(ray); }); // 2.4
+        stages.then("irradiance", [&v, ray] { return v.irradiance(ray); });     // 2.3
+        stages.then("shade", [&v, ray] { return v.shade(ray); });               // 2.4
+        return stages;
+    });
+    return steps;
+}
+
+/// Traces photons and builds the map for a pass, to the end.
+/// \throws std::invalid_argument for a scene or settings that check() refuses, std::runtime_error when the lights store
+///         too few photons, backend_error, render_cancelled.
+/// \snippet snippets.cpp build_map
+template <backend B>
+built_map<B> build_map(
+    B& b, const scene& s, const render_settings& settings, const render_observer& observer, render_stats& stats)
+{
+    map_building<B> map(b, s, settings, stats);
+    run(map_steps(map), observer, [&](std::string_view stage) {
+        if (observer.progress)
+            observer.progress(stage, map.fraction());
+    });
+    return map.take();
+}
+
+/// The pixels of one pass over a view.
+/// \throws as draw does.
+template <backend B>
+pass_pixels draw_pass(B& b, const built_map<B>& built, const camera& view, const render_settings& settings,
+    const render_observer& observer, render_stats& stats)
+{
+    kept_samples<B> kept;
+    const bool watched = static_cast<bool>(observer.intermediate);
+    const auto size = watched || observer.cancelled ? step_size::small : step_size::largest;
+    std::uint64_t invalid = 0;
+    if (watched)
+        for (const auto& p : preview_schedule(settings, settings.photons, false, {}, preview_settings{}.target_ms)) {
+            view_pass<B> before(b, built, view, settings, {p, size, watched}, kept, stats);
+            run(view_steps(before), observer, [](std::string_view) {});
+            observer.intermediate(before.mean_of_samples(invalid));
+        }
+    view_pass<B> pass(b, built, view, settings, {{}, size, watched}, kept, stats);
+    uint seen = 0;
+    run(view_steps(pass), observer, [&](std::string_view) {
+        if (observer.progress)
+            observer.progress("radiance_estimate", pass.fraction());
+        if (watched && pass.grown() > seen)
+            observer.intermediate(pass.running_estimate(invalid));
+        seen = pass.grown();
+    });
+    return finish_pass(b, built, pass, stats);
+}
+
+/// Draws a view of a map that is there already, one pass: no photon is traced. Pixels that are NaN or infinite are set
+/// to 0 and counted in stats.invalid_pixels.
+/// \throws std::invalid_argument for a camera or settings that check() refuses, backend_error, render_cancelled.
+/// \snippet snippets.cpp draw
+template <backend B>
+image draw(B& b, const built_map<B>& built, const camera& view, const render_settings& settings,
+    const render_observer& observer, render_stats& stats)
+{
+    stats.photons = {};
+    stats.estimate = {};
+    film sum(settings.width, settings.height, 1, settings.aov);
+    sum.add(0, draw_pass(b, built, view, settings, observer, stats));
+    auto developed = sum.picture();
+    stats.invalid_pixels = developed.invalid_pixels;
+    return std::move(developed.picture);
+}
+
+/// A picture seen by the scene's own camera: settings.passes passes, each with photons, eye rays and shadow rays of its
+/// own.
+/// \throws what build_map and draw throw.
+/// \snippet snippets.cpp render
+template <backend B>
+image render(
+    B& b, const scene& s, const render_settings& settings, const render_observer& observer, render_stats& stats)
+{
+    check(settings);
+    stats.photons = {};
+    stats.estimate = {};
+    film sum;
+    for (uint pass = 0; pass < settings.passes; ++pass) {
+        const auto own = settings_of_pass(settings, pass);
+        const auto map = build_map(b, s, own, observer, stats);
+        if (pass == 0)
+            sum = film(settings.width, settings.height, typical_radiance(s, map.scene.layout), settings.aov);
+        sum.add(pass, draw_pass(b, map, s.camera, own, observer, stats));
+        if (observer.intermediate && pass + 1 < settings.passes)
+            observer.intermediate(sum.picture().picture);
+    }
+    auto developed = sum.picture();
+    stats.invalid_pixels = developed.invalid_pixels;
+    return std::move(developed.picture);
+}
+
+/// A picture, and what it took.
+struct rendered {
+    image picture;
+    render_stats stats;
+};
+
+/// The same with the scene's own settings, or others.
+template <backend B>
+[[nodiscard]] rendered render(
+    B& b, const scene& s, const render_settings& settings, const render_observer& observer = {})
+{
+    rendered out;
+    out.picture = render(b, s, settings, observer, out.stats);
+    return out;
+}
+template <backend B>
+[[nodiscard]] rendered render(B& b, const scene& s)
+{
+    return render(b, s, s.render);
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,100 @@
+// What a render did: every photon and every millisecond accounted for. The program writes it as JSON (--stats).
+#pragma once
+
+#include <photongrid/render/image.hpp>
+#include <photongrid/scene/scene.hpp>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// Where the photons went. absorbed + escaped + cut_off + invalid = emitted; stored + direct + dropped = diffuse hits.
+struct photon_stats {
+    std::uint64_t emitted = 0;      ///< paths, from the lights
+    std::uint64_t absorbed = 0;     ///< paths ended by Russian roulette, or on a light's own surface
+    std::uint64_t escaped = 0;      ///< paths that met nothing more (the paper's invalid mark)
+    std::uint64_t cut_off = 0;      ///< paths still alive at the deepest bounce allowed
+    std::uint64_t invalid = 0;      ///< paths that became NaN or infinite
+    std::uint64_t diffuse_hits = 0; ///< times that a path met a Lambertian surface
+    std::uint64_t stored = 0;       ///< diffuse hits in the map
+    std::uint64_t direct = 0;       ///< diffuse hits straight from a light, left to the shadow rays
+    std::uint64_t dropped = 0;      ///< diffuse hits of the last path beyond the number of photons asked for
+};
+
+/// The photon map that was built.
+struct map_stats {
+    map_builder builder = map_builder::sort; ///< sorted or routed (2.2)
+    std::uint64_t cells = 0;                 ///< of the whole grid
+    glm::uvec3 resolution{0};                ///< cells along each axis
+    std::uint64_t overfull_cells = 0;        ///< routed cells with more photons than slots
+    double redistributed_flux = 0;           ///< W, rgb together: flux of photons not kept, given to those kept
+    std::uint64_t sort_steps = 0;            ///< not counted: 0; stage_stats::passes has the passes of the sort
+    std::uint64_t left_out = 0; ///< photons stored, but of a part of the light that was not asked for (light_part)
+};
+
+/// One of the four stages of the paper's Table 1.
+struct stage_stats {
+    double ms = 0;                  ///< without compiling kernels
+    double compile_ms = 0;          ///< compiling those that the stage needed first
+    std::uint64_t passes = 0;       ///< run on the device
+    std::uint64_t device_bytes = 0; ///< largest amount held in buffers during the stage
+};
+
+/// The searches behind a picture, all eye rays together.
+struct estimate_stats {
+    double mean_count = 0;    ///< photons used by an estimate
+    double mean_radius = 0;   ///< m
+    double mean_visited = 0;  ///< photons looked at
+    std::uint64_t points = 0; ///< that photons were sought for
+};
+
+/// What build_map and draw did: the numbers of `--stats`.
+struct render_stats {
+    photon_stats photons;                ///< of the map, whichever view is drawn
+    map_stats map;                       ///< what build_map made
+    stage_stats trace_photons;           ///< 2.1
+    stage_stats build_map;               ///< 2.2
+    stage_stats trace_rays;              ///< eye rays and direct light (2.4)
+    stage_stats radiance_estimate;       ///< 2.3
+    estimate_stats estimate;             ///< how many photons it took, and how far away
+    std::uint64_t invalid_pixels = 0;    ///< NaN or infinite before they were set to 0
+    std::uint64_t peak_device_bytes = 0; ///< most that buffers held at once since the backend was made
+};
+
+/// Thrown out of a render when observer::cancelled said so.
+struct render_cancelled : std::runtime_error {
+    /// "cancelled"
+    render_cancelled() : std::runtime_error("cancelled") {}
+};
+
+/// Who watches a render. Any of these may be empty.
+struct render_observer {
+    std::function<void(std::string_view stage, double fraction)>
+        progress;                                   ///< "trace_photons", …; fraction of the stage, 0 to 1
+    std::function<void(const image&)> intermediate; ///< the running estimate (3.4), after some passes
+    std::function<bool()> cancelled;                ///< asked between passes
+};
+
+namespace detail {
+    /// Advances `work` until it is finished; after each pass calls `passed`.
+    /// \throws render_cancelled.
+    template <class Work, class Passed>
+    void run_to_end(Work& work, const render_observer& observer, Passed passed)
+    {
+        while (!work.finished()) {
+            if (observer.cancelled && observer.cancelled())
+                throw render_cancelled();
+            work.advance();
+            passed();
+        }
+    }
+} // namespace detail
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,117 @@
+// A scene's photon map (figure 1, left): photons are traced and put into a grid. Needed again only when geometry,
+// materials or lights change, or a setting that same_map() names.
+#pragma once
+
+#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/fitting_grid.hpp>
+#include <photongrid/render/stage_clock.hpp>
+#include <photongrid/trace/trace_photons.hpp>
+
+#include <optional>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// What build_map leaves for draw: the scene on the device and its photon map.
+template <backend B>
+struct built_map {
+    device_scene<B> scene;   ///< recentred
+    map_buffers<B> map;      ///< in the coordinates of `scene`
+    traced_photons<B> trace; ///< its photons have moved to `map`
+    map_stats about;         ///< what draw repeats in its statistics
+};
+
+/// The parts of the light (map_buffers.hpp) that a picture of `only` takes from its map.
+constexpr uint parts_of(light_part only)
+{
+    return only == light_part::caustic ? caustic_part : only == light_part::indirect ? other_part : every_part;
+}
+
+/// True where one photon map serves both scenes with these settings: same shapes, materials and lights, and the same
+/// photons in the same grid. Cameras, names and pictures' settings do not matter.
+inline bool same_map(const scene& a, const render_settings& as, const scene& b, const render_settings& bs)
+{
+    const bool fitted = as.grid == glm::uvec3(0);
+    return same_light_paths(a, b) && as.photons == bs.photons && as.grid == bs.grid && (!fitted || as.k == bs.k)
+        && as.photon_depth == bs.photon_depth && as.seed == bs.seed && as.builder == bs.builder
+        && (as.builder == map_builder::sort || as.slots == bs.slots)
+        && (as.leaks.needs_normals() || !bs.leaks.needs_normals()) && parts_of(as.only) == parts_of(bs.only);
+}
+
+/// A photon map that comes about batch by batch, so that it can be given up in between.
+template <backend B>
+class map_building {
+public:
+    /// Uploads the scene; traces nothing yet. Times go to `stats`, which must outlive it.
+    /// \throws std::invalid_argument for a scene or settings that check() refuses, backend_error.
+    map_building(B& b, const scene& s, const render_settings& settings, render_stats& stats)
+        : b_(b), settings_(settings), stats_(stats)
+    {
+        check(settings);
+        built_.scene = upload_scene(b, s);
+        detail::stage_clock<B> clock(b, stats.trace_photons);
+        tracing_.emplace(b, s, built_.scene, settings);
+        clock.stop();
+    }
+    map_building(const map_building&) = delete;
+    map_building& operator=(const map_building&) = delete;
+
+    /// Traces one more batch of photon paths; returns whether all photons are stored (2.1).
+    /// \throws std::runtime_error when the lights store too few photons, backend_error when the device refuses.
+    bool trace_photons()
+    {
+        if (!tracing_)
+            return true;
+        detail::time_stage(b_, stats_.trace_photons, [&] { tracing_->advance(); });
+        return tracing_->finished();
+    }
+    /// Sorts or routes them (2.2), in one step; returns true.
+    /// \throws backend_error when the device refuses.
+    bool build_map()
+    {
+        if (tracing_) {
+            built_.trace = tracing_->take();
+            tracing_.reset();
+            detail::time_stage(b_, stats_.build_map, [&] { build(); });
+        }
+        return true;
+    }
+
+    /// True when take() may be called.
+    bool finished() const { return !tracing_; }
+    /// Of the photons asked for, those that are traced.
+    double fraction() const { return tracing_ ? tracing_->fraction() : 1.0; }
+
+    /// The map, once finished.
+    built_map<B> take() { return std::move(built_); }
+
+private:
+    void build()
+    {
+        photons<B> p = std::move(built_.trace.photons);
+        const auto& layout = built_.scene.layout;
+        const grid g = settings_.grid == glm::uvec3(0) ? fitting_grid(b_, p, settings_.k, b_.caps().cells_a_radius)
+                                                       : make_grid(layout.low, layout.high, settings_.grid);
+        const uint parts = parts_of(settings_.only);
+        built_.map = settings_.builder == map_builder::sort
+            ? sorted_map(b_, std::move(p), g, parts)
+            : routed_map(b_, std::move(p), g, settings_.slots, settings_.seed, parts);
+        built_.about.builder = settings_.builder;
+        built_.about.cells = cell_count(g);
+        built_.about.resolution = glm::uvec3(g.resolution);
+        built_.about.overfull_cells = built_.map.overfull_cells;
+        built_.about.left_out = built_.map.left_out;
+        stats_.map = built_.about;
+    }
+
+    B& b_;
+    render_settings settings_;
+    render_stats& stats_;
+    built_map<B> built_;
+    std::optional<photon_tracing<B>> tracing_; // of built_.scene
+};
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

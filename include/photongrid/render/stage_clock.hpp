@@ -1,0 +1,66 @@
+// How long a stage of the paper's Table 1 takes, on the device.
+#pragma once
+
+#include <photongrid/backend/backend.hpp>
+#include <photongrid/render/render_stats.hpp>
+
+#include <algorithm>
+#include <chrono>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid::detail {
+
+/// Measures a stage of the paper's Table 1; waits for the device at both ends. Stages add up.
+template <backend B>
+class stage_clock {
+public:
+    stage_clock(B& b, stage_stats& out) : b_(b), out_(out)
+    {
+        b_.finish();
+        before_ = spent();
+        start_ = std::chrono::steady_clock::now();
+    }
+    stage_clock(const stage_clock&) = delete;
+    stage_clock& operator=(const stage_clock&) = delete;
+    /// Ends the stage, with its buffers still held.
+    void stop()
+    {
+        b_.finish();
+        const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+        const auto now = spent();
+        out_.compile_ms += now.compile_ms - before_.compile_ms;
+        out_.ms += ms - (now.compile_ms - before_.compile_ms);
+        out_.passes += now.passes - before_.passes;
+        out_.device_bytes = std::max(out_.device_bytes, b_.bytes());
+    }
+
+private:
+    /// On all kernels so far.
+    kernel_cost spent() const
+    {
+        kernel_cost all;
+        for (const auto& [name, cost] : b_.costs()) {
+            all.passes += cost.passes;
+            all.compile_ms += cost.compile_ms;
+        }
+        return all;
+    }
+    B& b_;
+    stage_stats& out_;
+    kernel_cost before_;
+    std::chrono::steady_clock::time_point start_;
+};
+
+/// Runs `work` and adds its time to `out`.
+template <backend B, class Work>
+void time_stage(B& b, stage_stats& out, const Work& work)
+{
+    stage_clock<B> clock(b, out);
+    work();
+    clock.stop();
+}
+
+} // namespace photongrid::detail
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,330 @@
+// The stages by which one pass turns a photon map into pixels (sections 2.4 and 2.3; figure 1, right), and what they
+// hand to each other. render.hpp runs them in order.
+#pragma once
+
+#include <photongrid/estimate/edge_correction.hpp>
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/render/copy_light.kernel.hpp>
+#include <photongrid/render/no_light.kernel.hpp>
+#include <photongrid/render/preview_image.hpp>
+#include <photongrid/render/previews.hpp>
+#include <photongrid/render/scene_map.hpp>
+#include <photongrid/render/shade.kernel.hpp>
+#include <photongrid/render/tally_error.kernel.hpp>
+
+#include <optional>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// How much work a stage does before it can be interrupted.
+enum class step_size {
+    largest, ///< as much as the device takes at once: nobody looks before the end
+    small,   ///< some ms on a CPU: somebody watches, or may give up
+};
+
+/// How a view is drawn. The picture's bytes do not depend on it.
+struct view_options {
+    std::optional<photongrid::preview> preview{}; ///< draw this; nothing: the picture itself
+    step_size size = step_size::largest;          ///< of the steps
+    bool watched = false;                         ///< running estimates are wanted, where the search has them (3.4)
+};
+
+namespace detail {
+    /// What to ask the photon map for a picture of `s`.
+    inline knn_settings estimate_settings(const render_settings& s, float min_radius)
+    {
+        knn_settings k;
+        k.k = s.k;
+        k.max_radius = s.only == light_part::direct ? 0.0f : static_cast<float>(s.max_radius);
+        k.search = s.search;
+        k.kernel = s.kernel;
+        k.bias = s.bias;
+        k.leaks = s.leaks;
+        k.errors = s.aov;
+        k.min_radius = min_radius;
+        return k;
+    }
+} // namespace detail
+
+/// Pixels that a pass is adding light to. All are of `raster`, row by row.
+template <backend B>
+struct canvas {
+    detail::raster raster;
+    uint rays = 0;                    ///< eye rays per pixel that were added, each way through glass apart
+    buffer_of<B, glm::vec4> pixels;   ///< rgb: radiance, W/(m^2 sr)
+    buffer_of<B, glm::vec4> searches; ///< sums: photons used, radius, photons visited, searches
+    buffer_of<B, glm::vec4> errors;   ///< x: sum of relative errors; empty unless wanted
+};
+
+/// One eye ray per pixel: where they ended, and the direct light there.
+template <backend B>
+struct eye_samples {
+    detail::eye_hits<B> hits;
+    buffer_of<B, glm::vec4> direct; ///< irradiance, W/m^2
+};
+
+/// The first sample's rays, for the next pass that looks through the same pixels: one for each way through glass.
+template <backend B>
+using kept_samples = std::vector<std::optional<eye_samples<B>>>;
+
+/// One pass over the pixels of a view: the picture's, or a preview's. Each stage does a part of its work for eye ray
+/// `ray` (sample x ways through glass + way) and returns whether it is done with it.
+template <backend B>
+class view_pass {
+public:
+    /// Draws nothing yet. `built`, `kept` and `stats`, where times go, must outlive it.
+    /// \throws std::invalid_argument for a camera or settings that check() refuses, backend_error.
+    view_pass(B& b, const built_map<B>& built, const camera& view, const render_settings& settings,
+        const view_options& options, kept_samples<B>& kept, render_stats& stats)
+        : b_(b), built_(built), view_(view), settings_(settings), options_(options), kept_(kept), stats_(stats),
+          ways_(1u << detail::branchings_of(built.scene.layout))
+    {
+        check(settings);
+        check(view);
+        if (const auto& p = options_.preview; p && (p->divisor < 1 || p->k_divisor < 1))
+            throw std::invalid_argument("view_pass: preview: divisor and k_divisor must be at least 1");
+        const auto r = detail::raster_of(settings_, divisor());
+        detail::time_stage(b_, stats_.trace_rays, [&] {
+            const std::size_t layers = !is_preview() && settings_.aov ? r.size() : 0;
+            canvas_ = {r, 0, dark(r.size()), dark(r.size()), dark(layers)};
+        });
+        kept_.resize(ways_);
+        for (auto& k : kept_)
+            if (k && k->direct.size() != r.size())
+                k.reset();
+    }
+    view_pass(const view_pass&) = delete;
+    view_pass& operator=(const view_pass&) = delete;
+
+    /// Eye rays per pixel, each way through glass apart: what `ray` goes up to. A preview takes one sample.
+    uint rays() const { return (is_preview() ? 1u : settings_.spp) * ways_; }
+
+    /// Camera rays through mirrors and glass to the surfaces where they end (2.4).
+    bool trace_eye(uint ray)
+    {
+        if (ray < ways_ && kept_[ray]) {
+            samples_ = std::move(kept_[ray]);
+            kept_[ray].reset();
+            lit_ = true;
+            return true;
+        }
+        if (!samples_) {
+            const auto n = canvas_.raster.size();
+            samples_.emplace(eye_samples<B>{detail::eye_hits<B>(b_, n), b_.template make<glm::vec4>(n)});
+            done_ = 0;
+            lit_ = false;
+        }
+        return over_pixels(stats_.trace_rays, [&](launch pixels) {
+            detail::trace_eye_rays(b_, built_.scene, view_, settings_, canvas_.raster, ray, pixels, samples_->hits);
+        });
+    }
+
+    /// Shadow rays from there to the lights (2.4).
+    bool direct_light(uint ray)
+    {
+        if (lit_)
+            return true;
+        const bool wanted = settings_.only == light_part::all || settings_.only == light_part::direct;
+        return over_pixels(stats_.trace_rays, [&](launch pixels) {
+            if (wanted) {
+                detail::direct_light(b_, built_.scene, samples_->hits, light_settings(), ray, pixels, samples_->direct);
+            } else {
+                b_.template run<kernels::no_light>(pixels, {}, reads(), writes(samples_->direct));
+                b_.template run<kernels::no_light>(pixels, {}, reads(), writes(samples_->hits.emissions));
+            }
+        });
+    }
+
+    /// The photon map's irradiance there (2.3).
+    bool irradiance(uint)
+    {
+        progress did;
+        detail::time_stage(b_, stats_.radiance_estimate, [&] {
+            if (!search_) {
+                grown_ = 0;
+                unfinished_ = samples_->direct.size();
+                search_.emplace(b_, built_.map, samples_->hits.points, samples_->hits.surfaces, search_settings());
+            }
+            const uint passes = options_.size == step_size::largest ? nowhere : grows() ? std::max(1u, grown_) : 8u;
+            did = search_->advance(passes);
+            if (grows()) // worth a look after 1, 2, 4, 8, ... passes
+                grown_ += passes;
+        });
+        if (did.finished)
+            unfinished_ = 0;
+        else if (!did.active.empty())
+            unfinished_ = did.active.back();
+        return did.finished;
+    }
+
+    /// Radiance from both kinds of light, added to the pixels (2.4).
+    bool shade(uint ray)
+    {
+        detail::time_stage(b_, stats_.radiance_estimate, [&] {
+            const float share = is_preview() ? 1.0f : 1.0f / static_cast<float>(settings_.spp);
+            const auto found = shade(std::move(*search_).estimates(), share, canvas_.pixels, canvas_.searches);
+            if (canvas_.errors.size() > 0)
+                b_.template run<kernels::tally_error>(canvas_.errors.size(), {},
+                    reads(samples_->hits.points, found.irradiance, found.standard_error), writes(canvas_.errors));
+        });
+        search_.reset();
+        if (is_preview())
+            kept_[ray] = std::move(samples_); // the next pass may look through the same pixels
+        samples_.reset();
+        ++canvas_.rays;
+        return true;
+    }
+
+    /// The side of its pixels, in the picture's.
+    uint divisor() const { return options_.preview ? options_.preview->divisor : 1u; }
+    bool is_preview() const { return options_.preview.has_value(); }
+    /// Approximate share of its work that is done, 0 to 1.
+    double fraction() const
+    {
+        const double pixels = static_cast<double>(canvas_.raster.size());
+        const double of_this_ray = search_ ? 1.0 - static_cast<double>(unfinished_) / pixels : 0.0;
+        return (canvas_.rays + of_this_ray) / rays();
+    }
+    /// Pixels of the eye ray in flight whose estimates are not done.
+    std::uint64_t unfinished() const { return unfinished_; }
+    /// Samples per pixel that are whole: all their ways through glass were added.
+    uint samples() const { return canvas_.rays / ways_; }
+    /// Whether no sample is begun and not whole.
+    bool has_whole_samples() const { return canvas_.rays % ways_ == 0; }
+
+    /// Times that running_estimate() has become better; 0: there is none.
+    uint grown() const { return search_ && grows() && canvas_.rays + 1 == ways_ ? grown_ : 0; }
+    /// What the first sample has so far while its last search runs (3.4), as an image of the picture's size.
+    /// \throws backend_error.
+    image running_estimate(std::uint64_t& invalid)
+    {
+        auto running = copy(canvas_.pixels);
+        auto ignored = b_.template make<glm::vec4>(running.size());
+        shade(search_->estimates(), 1.0f / static_cast<float>(settings_.spp), running, ignored);
+        return detail::to_image(
+            b_.download(running), canvas_.raster, settings_, static_cast<float>(settings_.spp), invalid);
+    }
+    /// The mean of its whole samples, as an image of the picture's size; there must be one, and no ray beyond it.
+    /// \throws backend_error.
+    image mean_of_samples(std::uint64_t& invalid)
+    {
+        const float scale = is_preview() ? 1.0f : static_cast<float>(settings_.spp) / static_cast<float>(samples());
+        return detail::to_image(b_.download(canvas_.pixels), canvas_.raster, settings_, scale, invalid);
+    }
+    /// A copy of the light so far, for looking at it later.
+    canvas<B> snapshot() { return {canvas_.raster, canvas_.rays, copy(canvas_.pixels), {}, {}}; }
+
+    /// The light of all rays so far.
+    const canvas<B>& light() const { return canvas_; }
+    canvas<B> take() { return std::move(canvas_); }
+    /// Goes on from such light, of the same map, view and settings.
+    /// \throws std::invalid_argument for light of another size.
+    void resume(canvas<B> c)
+    {
+        const auto n = canvas_.raster.size();
+        if (c.rays > rays() || c.pixels.size() != n || c.searches.size() != n
+            || c.errors.size() != canvas_.errors.size())
+            throw std::invalid_argument("view_pass::resume: is of another picture: " + std::to_string(c.pixels.size())
+                + " pixels and " + std::to_string(c.rays) + " rays per pixel; this one has " + std::to_string(n)
+                + " and " + std::to_string(rays()));
+        c.raster = canvas_.raster;
+        canvas_ = std::move(c);
+    }
+
+private:
+    /// Whether light is added up while the search runs, so that there is something to look at (3.4).
+    bool grows() const
+    {
+        return !is_preview() && options_.watched && knn_search<B>::shows_running_estimate(picture_search());
+    }
+    /// The search of the picture, previews apart.
+    knn_settings picture_search() const
+    {
+        return detail::estimate_settings(settings_, least_radius(built_.map.cells_of));
+    }
+    knn_settings search_settings() const
+    {
+        knn_settings k = picture_search();
+        if (options_.preview) {
+            k.k = std::min(k.k, std::max(8u, k.k / options_.preview->k_divisor));
+            k.errors = false;
+            if (k.search == search_kind::exact_k)
+                k.bias = bias_kind::unbiased; // the paper's reads k / (k - 1) too high, which few photons would show
+        } else if (grows()) {
+            k.visits_per_pass = 256;
+            k.ranges_per_pass = 64;
+        }
+        return k;
+    }
+    /// Fewer shadow rays where pixels are large.
+    render_settings light_settings() const
+    {
+        render_settings s = settings_;
+        if (divisor() > 1)
+            s.light_samples = std::max(1u, s.light_samples / 4);
+        return s;
+    }
+
+    /// Runs `stage` over the next part of the pixels; true when it was the last.
+    template <class Stage>
+    bool over_pixels(stage_stats& stats, const Stage& stage)
+    {
+        const auto n = canvas_.raster.size();
+        const std::size_t part
+            = options_.size == step_size::small ? std::min<std::size_t>(n - done_, 65536) : n - done_;
+        detail::time_stage(b_, stats, [&] { stage(launch(part, static_cast<uint>(done_))); });
+        done_ = done_ + part == n ? 0 : done_ + part;
+        return done_ == 0;
+    }
+
+    knn_estimates<B> shade(
+        knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches)
+    {
+        const auto& hits = samples_->hits;
+        if (settings_.edges != edge_correction::none)
+            correct_edges(b_, built_.scene, hits.points, hits.surfaces, found, settings_.kernel,
+                least_radius(built_.map.cells_of));
+        b_.template run<kernels::shade>(pixels.size(), {.share = share},
+            reads(built_.scene.records, hits.points, hits.weights, hits.surfaces, hits.emissions, samples_->direct,
+                found.irradiance, found.used),
+            writes(pixels, searches));
+        return found;
+    }
+
+    buffer_of<B, glm::vec4> dark(std::size_t n)
+    {
+        auto light = b_.template make<glm::vec4>(n);
+        b_.template run<kernels::no_light>(n, {}, reads(), writes(light));
+        return light;
+    }
+    buffer_of<B, glm::vec4> copy(const buffer_of<B, glm::vec4>& original)
+    {
+        auto light = b_.template make<glm::vec4>(original.size());
+        b_.template run<kernels::copy_light>(original.size(), {}, reads(original), writes(light));
+        return light;
+    }
+
+    B& b_;
+    const built_map<B>& built_;
+    camera view_;
+    render_settings settings_;
+    view_options options_;
+    kept_samples<B>& kept_;
+    render_stats& stats_;
+    uint ways_; ///< through glass
+
+    // What stages hand on.
+    std::optional<eye_samples<B>> samples_;
+    bool lit_ = false;     ///< the samples have their direct light already
+    std::size_t done_ = 0; ///< pixels that the stage has done
+    std::optional<knn_search<B>> search_;
+    uint grown_ = 0; ///< passes of a growing search
+    std::uint64_t unfinished_ = 0;
+    canvas<B> canvas_;
+};
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,123 @@
+// Lights.
+#pragma once
+
+#include <photongrid/scene/bounds.hpp>
+#include <photongrid/scene/polygon.hpp>
+
+#include <array>
+#include <numbers>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// A point light: power (W, rgb) sent out evenly in all directions.
+struct point_light {
+    std::string name;  ///< for messages
+    dvec3 position{0}; ///< m
+    dvec3 power{1};    ///< W, rgb; no channel below 0, one above
+
+    bool operator==(const point_light&) const = default; ///< of every member
+};
+
+/// A rectangle that sends power (W, rgb) out diffusely on the side of cross(edge_u, edge_v); its own surface is black.
+struct rectangle_light {
+    std::string name;      ///< for messages
+    dvec3 corner{0};       ///< m
+    dvec3 edge_u{1, 0, 0}; ///< m; from the corner
+    dvec3 edge_v{0, 0, 1}; ///< m; from the corner, at a right angle to edge_u
+    dvec3 power{1};        ///< W, rgb; no channel below 0, one above
+
+    bool operator==(const rectangle_light&) const = default; ///< of every member
+};
+
+/// \throws std::invalid_argument for a power (W, rgb) with a channel that is not finite or below 0, or with no light.
+inline void check_power(const dvec3& power)
+{
+    detail::require(detail::finite(power) && power.x >= 0 && power.y >= 0 && power.z >= 0,
+        "power: each channel must be finite and not negative");
+    detail::require(power.x + power.y + power.z > 0, "power: the light is black");
+}
+/// \throws std::invalid_argument for a position that is not finite, or a power as in check_power.
+inline void check(const point_light& l)
+{
+    detail::require(detail::finite(l.position), "position: must be finite");
+    check_power(l.power);
+}
+/// \throws std::invalid_argument for what is not finite, edges without area or not at right angles, or a power as in
+/// check_power.
+inline void check(const rectangle_light& l)
+{
+    detail::require(detail::finite(l.corner) && detail::finite(l.edge_u) && detail::finite(l.edge_v),
+        "corner, edge_u, edge_v: must be finite");
+    const double u = glm::length(l.edge_u), v = glm::length(l.edge_v);
+    detail::require(u > 0 && v > 0 && glm::length(glm::cross(l.edge_u, l.edge_v)) > 1e-9 * u * v,
+        "edge_u, edge_v: the rectangle has no area");
+    detail::require(std::abs(glm::dot(l.edge_u, l.edge_v)) <= 1e-6 * u * v, "edge_u, edge_v: must be at right angles");
+    check_power(l.power);
+}
+
+/// The surface of a light, in order round it.
+inline polygon surface_of(const rectangle_light& l)
+{
+    return {{l.corner, l.corner + l.edge_u, l.corner + l.edge_u + l.edge_v, l.corner + l.edge_v}, 0};
+}
+
+/// Point lights in the table of lights.
+template <>
+struct light_kind<point_light> {
+    static constexpr const char* name = "point";        ///< in scene files
+    static constexpr const char* list = "point_lights"; ///< member of scene
+    static constexpr std::tuple fields{field{"position", &point_light::position, quantity::point},
+        field{"power", &point_light::power, quantity::power}}; ///< all but the name
+    static constexpr bool is_area = false;                     ///< what Light::is_area says of it
+
+    /// \name See the general template
+    /// @{
+    static void add_bounds(bounds& b, const point_light& l) { b.add(l.position); }
+    static void write_record(record_writer& w, const point_light& l)
+    {
+        w.put_position(l.position, 0);
+        w.put(dvec3(0), 0);
+        w.put(dvec3(0), 0);
+        w.put(dvec3(0), 0);
+        w.put(l.power, 0);
+    }
+    /// @}
+};
+
+/// Rectangle lights in the table of lights.
+template <>
+struct light_kind<rectangle_light> {
+    static constexpr const char* name = "rectangle";        ///< in scene files
+    static constexpr const char* list = "rectangle_lights"; ///< member of scene
+    static constexpr std::tuple fields{field{"corner", &rectangle_light::corner, quantity::point},
+        field{"edge_u", &rectangle_light::edge_u, quantity::edge},
+        field{"edge_v", &rectangle_light::edge_v, quantity::edge},
+        field{"power", &rectangle_light::power, quantity::power}}; ///< all but the name
+    static constexpr bool is_area = true;                          ///< what Light::is_area says of it
+
+    /// \name See the general template
+    /// @{
+    static void add_bounds(bounds& b, const rectangle_light& l)
+    {
+        for (const auto& corner : surface_of(l).vertices)
+            b.add(corner);
+    }
+    static double size(const rectangle_light& l) { return std::min(glm::length(l.edge_u), glm::length(l.edge_v)); }
+    static double extent(const rectangle_light& l) { return size(l); }
+    static void write_record(record_writer& w, const rectangle_light& l)
+    {
+        const dvec3 normal = glm::cross(l.edge_u, l.edge_v);
+        w.put_position(l.corner, 1 / (std::numbers::pi * glm::length(normal)));
+        w.put(l.edge_u, 0);
+        w.put(l.edge_v, 0);
+        w.put(glm::normalize(normal), glm::length(normal));
+        w.put(l.power, 0);
+    }
+    /// @}
+};
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,112 @@
+// Convex polygons.
+#pragma once
+
+#include <photongrid/scene/bounds.hpp>
+#include <photongrid/scene/fields.hpp>
+#include <photongrid/scene/record_writer.hpp>
+
+#include <algorithm>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// A convex polygon (a triangle has three vertices), planar, vertices in order round it.
+struct polygon {
+    std::vector<dvec3> vertices; ///< m; 3 or more
+    std::uint32_t material = 0;  ///< index into scene::materials
+
+    bool operator==(const polygon&) const = default; ///< of every member
+};
+
+/// The area vector of a polygon: its normal, as long as its area, m^2 (Newell's method).
+inline dvec3 area_vector(const polygon& p)
+{
+    dvec3 sum(0);
+    for (std::size_t i = 0; i < p.vertices.size(); ++i)
+        sum += glm::cross(p.vertices[i] - p.vertices[0], p.vertices[(i + 1) % p.vertices.size()] - p.vertices[0]);
+    return 0.5 * sum;
+}
+
+/// The longest way from the first vertex to another, m.
+inline double extent(const polygon& p)
+{
+    double longest = 0;
+    for (const auto& v : p.vertices)
+        longest = std::max(longest, glm::length(v - p.vertices[0]));
+    return longest;
+}
+
+/// \throws std::invalid_argument for fewer than 3 vertices, one that is not finite or is off the plane by more than
+/// 1e-5 of the polygon's extent, a polygon without area, or one that is not convex.
+inline void check(const polygon& p)
+{
+    detail::require(p.vertices.size() >= 3, "vertices: a polygon has at least 3");
+    for (const auto& v : p.vertices)
+        detail::require(detail::finite(v), "vertices: must be finite");
+    const double longest = extent(p);
+    const dvec3 area = area_vector(p);
+    detail::require(glm::length(area) > 1e-12 * longest * longest, "vertices: the polygon has no area");
+    const dvec3 n = glm::normalize(area);
+    for (std::size_t i = 0; i < p.vertices.size(); ++i) {
+        const auto& a = p.vertices[i];
+        const auto& b = p.vertices[(i + 1) % p.vertices.size()];
+        const auto& c = p.vertices[(i + 2) % p.vertices.size()];
+        detail::require(std::abs(glm::dot(n, a - p.vertices[0])) <= 1e-5 * longest,
+            "vertices: vertex " + std::to_string(i)
+                + " lies off the plane of the others by more than 1e-5 of the polygon's extent; split it into "
+                  "triangles");
+        detail::require(glm::dot(n, glm::cross(b - a, c - b)) >= -1e-9 * longest * longest,
+            "vertices: the polygon is not convex at vertex " + std::to_string((i + 1) % p.vertices.size()));
+    }
+}
+
+namespace detail {
+    /// Writes a polygon, or the surface of light number `light` - 1.
+    inline void put_polygon(record_writer& w, const polygon& p, std::size_t light)
+    {
+        const dvec3 n = glm::normalize(area_vector(p));
+        w.put_plane(n, p.vertices[0]);
+        double off = 0; // the vertices need lie on one plane only roughly
+        for (const auto& v : p.vertices)
+            off = std::max(off, std::abs(glm::dot(n, v - p.vertices[0])));
+        w.put(dvec3(static_cast<double>(p.vertices.size()), p.material, static_cast<double>(light)),
+            w.rounding() + 2 * off);
+        for (std::size_t i = 0; i < p.vertices.size(); ++i) {
+            const auto& a = p.vertices[i];
+            const auto& b = p.vertices[(i + 1) % p.vertices.size()];
+            const dvec3 across = glm::cross(n, b - a); // into the polygon
+            const double length = glm::length(across);
+            const dvec3 inward = length > 0 ? across / length : dvec3(0);
+            w.put(inward, glm::dot(inward, a - w.center()) - w.rounding()); // inflated, so that neighbours overlap
+        }
+        for (const auto& v : p.vertices)
+            w.put_position(v, 0);
+    }
+} // namespace detail
+
+/// Polygons in the table of shapes.
+template <>
+struct shape_kind<polygon> {
+    static constexpr const char* name = "polygon";  ///< in scene files
+    static constexpr const char* list = "polygons"; ///< member of scene
+    static constexpr std::uint32_t number = 3;      ///< intersect/polygon.glsl
+    static constexpr std::tuple fields{field{"vertices", &polygon::vertices, quantity::points}}; ///< all
+
+    /// \name See the general template
+    /// @{
+    static void add_bounds(bounds& b, const polygon& p)
+    {
+        for (const auto& v : p.vertices)
+            b.add(v);
+    }
+    static double size(const polygon& p) { return photongrid::extent(p); }
+    static double round_size(const polygon&) { return 0; }
+    static double extent(const polygon& p) { return photongrid::extent(p); }
+    static void write(record_writer& w, const polygon& p) { detail::put_polygon(w, p, 0); }
+    /// @}
+};
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,50 @@
+// Writes the scene buffer: vec4 records in single precision, positions recentred.
+#pragma once
+
+#include <photongrid/scene/check.hpp>
+
+#include <cstdint>
+#include <vector>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// Shapes and lights write themselves with it. Layouts stand in the kernels' files that read them.
+class record_writer {
+public:
+    /// Appends to `out`; `center` is subtracted from positions; `scale` is half the scene's diagonal, m.
+    record_writer(std::vector<glm::vec4>& out, const dvec3& center, double scale)
+        : out_(out), center_(center), rounding_(scale * 0x1p-20)
+    {
+    }
+
+    /// Appends a record.
+    void put(const dvec3& v, double w)
+    {
+        out_.emplace_back(
+            static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w));
+    }
+    /// Appends a record with a position, m.
+    void put_position(const dvec3& v, double w) { put(v - center_, w); }
+    /// Appends a record with an index or a count.
+    void put_number(std::size_t n) { put(dvec3(static_cast<double>(n), 0, 0), 0); }
+    /// Appends the plane through `point`: unit normal and offset.
+    void put_plane(const dvec3& normal, const dvec3& point) { put(normal, glm::dot(normal, point - center_)); }
+
+    /// Subtracted from positions, m.
+    const dvec3& center() const { return center_; }
+    /// Bound on the rounding of distances from planes and edges, m.
+    double rounding() const { return rounding_; }
+    /// The record that comes next.
+    std::uint32_t next() const { return static_cast<std::uint32_t>(out_.size()); }
+
+private:
+    std::vector<glm::vec4>& out_;
+    dvec3 center_;
+    double rounding_;
+};
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

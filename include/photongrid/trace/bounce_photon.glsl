@@ -1,0 +1,119 @@
+// One bounce of all photons (2.1): frame f of the photon texture from frame f - 1. The photon that arrives is recorded;
+// Russian roulette by reflectance decides whether another leaves, so that powers change in colour only.
+#include <photongrid/backend/vector.glsl>
+#include <photongrid/backend/random.glsl>
+#include <photongrid/trace/scene_layout.glsl>
+#include <photongrid/trace/photon_event.glsl>
+
+struct Params {
+    uint paths;      // elements of a frame
+    uint first_path; // id of the path of a frame's element 0
+    uint last_frame; // the deepest bounce allowed
+    uint seed;
+};
+PARAMS(Params)
+SWITCH(4, MIRRORS)
+SWITCH(5, GLASS)
+SWITCH(7, AREA_LIGHTS)
+INPUT(0, vec4, scene)
+INPUT(1, vec4, positions)
+INPUT(2, vec4, powers)
+INPUT(3, vec4, directions)
+INPUT(4, vec4, next_origins)
+INPUT(5, vec4, next_directions)
+OUTPUT(0, vec4, position)       // xyz, m; w: event
+// w of power, next_origin and next_direction: x, y and z of the normal.
+OUTPUT(1, vec4, power)          // rgb arriving, W, not yet divided by the number of paths
+OUTPUT(2, vec4, direction)      // xyz of arrival; w: material
+OUTPUT(3, vec4, next_origin)
+OUTPUT(4, vec4, next_direction)
+
+#include <photongrid/trace/intersect.glsl>
+#include <photongrid/trace/materials.glsl>
+#include <photongrid/trace/optics.glsl>
+
+void kernel(uint i)
+{
+    uint frame = i / args.paths;
+    uint before = i - args.paths;
+    uint id = args.first_path + (i - frame * args.paths);
+    position = vec4(0.0f, 0.0f, 0.0f, event_code(NO_SURFACE, ENDED_BEFORE, NOTHING_BEFORE));
+    power = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    direction = power;
+    next_origin = power;
+    next_direction = power;
+    vec4 last = positions(before);
+    if (event_end(last) != GOES_ON)
+        return;
+
+    uint met = event_before(last);
+    if (event_kind(last) == SPECULAR_SURFACE && met == NOTHING_BEFORE)
+        met = SPECULAR_BEFORE;
+    if (event_kind(last) == DIFFUSE_SURFACE)
+        met = DIFFUSE_BEFORE;
+
+    // What left the last surface: its power there, in the colour of the material, since roulette took the rest.
+    vec4 flux = powers(before);
+    if (frame > 1u) {
+        vec3 colour = material_of(uint(directions(before).w)).reflectance;
+        float survival = largest3(colour);
+        precise vec4 tinted = vec4(flux.x * (colour.x / survival), flux.y * (colour.y / survival),
+            flux.z * (colour.z / survival), 0.0f);
+        flux = tinted;
+    }
+    vec3 o = vec3(next_origins(before));
+    vec3 d = vec3(next_directions(before));
+    direction = vec4(d.x, d.y, d.z, 0.0f);
+    power = flux;
+
+    if (!is_finite3(o) || !is_finite3(d) || !is_finite3(vec3(flux))) {
+        position.w = event_code(NO_SURFACE, NOT_A_NUMBER, NOTHING_BEFORE);
+        return;
+    }
+    Hit hit = intersect_closest(o, d);
+    if (hit.t < 0.0f) {
+        position.w = event_code(NO_SURFACE, ESCAPED, NOTHING_BEFORE);
+        return;
+    }
+    position = vec4(hit.position.x, hit.position.y, hit.position.z, event_code(NO_SURFACE, ABSORBED, met));
+    if (!is_finite3(hit.position)) {
+        position.w = event_code(NO_SURFACE, NOT_A_NUMBER, NOTHING_BEFORE);
+        return;
+    }
+    if (hit.material == NO_MATERIAL)
+        return; // lights' surfaces are black
+
+    Material material = material_of(hit.material);
+    direction.w = float(hit.material);
+    vec4 r = random4(uvec4(id, frame, 0u, args.seed));
+    uint surface = material.kind == LAMBERTIAN_SURFACE ? DIFFUSE_SURFACE : SPECULAR_SURFACE;
+    vec3 facing = dot3(hit.normal, d) > 0.0f ? -hit.normal : hit.normal;
+    power.w = facing.x;
+    next_origin.w = facing.y;
+    next_direction.w = facing.z;
+    if (!(r.x < largest3(material.reflectance))) {
+        position.w = event_code(surface, ABSORBED, met);
+        return;
+    }
+    position.w = event_code(surface, frame < args.last_frame ? GOES_ON : CUT_OFF, met);
+    vec3 next = facing;
+    if (material.kind == LAMBERTIAN_SURFACE)
+        next = cosine_direction(facing, r.y, r.z);
+    if (MIRRORS && material.kind == MIRROR_SURFACE)
+        next = reflect_direction(d, hit.normal);
+    if (GLASS && material.kind == GLASS_SURFACE) {
+        Fresnel f = fresnel(d, hit.normal, material.index_of_refraction);
+        next = f.refracted;
+        if (r.w < f.reflected)
+            next = reflect_direction(d, hit.normal);
+    }
+    vec3 start = ray_start(hit.position, hit.normal, next);
+    next_origin = vec4(start.x, start.y, start.z, facing.y);
+    next_direction = vec4(next.x, next.y, next.z, facing.z);
+}
+
+// Nothing is left to do for this path in frames beyond this one.
+bool done()
+{
+    return event_end(position) != GOES_ON;
+}

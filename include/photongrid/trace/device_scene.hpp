@@ -1,0 +1,243 @@
+// A scene as kernels read it: one buffer of vec4 records, recentred so that float keeps its precision far from the
+// origin. trace/scene_layout.glsl says where things stand in it.
+#pragma once
+
+#include <photongrid/backend/backend.hpp>
+#include <photongrid/scene/scene.hpp>
+#include <photongrid/trace/scene_layout.kernel.hpp>
+
+#include <algorithm>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// What a scene has, as the SWITCHes of the tracing kernels: code for what it lacks is not compiled. Bits of
+/// shape_kind::number, and these.
+enum scene_feature : uint {
+    has_spheres = 1u << shape_kind<sphere>::number,
+    has_quadrics = 1u << detail::quadric_number, ///< cylinders, cones and others
+    has_disks = 1u << shape_kind<disk>::number,
+    has_polygons = 1u << shape_kind<polygon>::number,
+    has_mirrors = 1u << 4, ///< and metals
+    has_glass = 1u << 5,
+    has_point_lights = 1u << 6,
+    has_area_lights = 1u << 7,
+};
+
+/// The records of a scene and what a host must know of them.
+struct scene_layout {
+    std::vector<glm::vec4> records; ///< as trace/scene_layout.glsl describes them; positions are recentred
+    uint features = 0;              ///< scene_feature bits: what shapes use, whatever else is listed
+    uint steps_per_ray = 0;         ///< about how often a ray's loops run: once a shape, and once an edge
+    dvec3 center{0};                ///< subtracted from every position, m
+    glm::vec3 low{0};               ///< m; box of the Lambertian surfaces, recentred: where photons can be stored
+    glm::vec3 high{0};              ///< m; its other corner
+
+    /// Where a table's items stand; `number` as in shape_kind, or kernels::MATERIAL_TABLE or kernels::LIGHT_TABLE.
+    kernels::Table table(uint number) const { return kernels::table_of(records[number]); }
+};
+
+namespace detail {
+    /// The scene moved by -by.
+    inline scene moved_back(scene s, const dvec3& by)
+    {
+        const auto move = [&](auto& list, auto kind) {
+            for (auto& x : list)
+                move_points(x, kind.fields, -by);
+        };
+        for_each_shape(s, move);
+        for_each_light(s, move);
+        s.camera.position -= by;
+        s.camera.look_at -= by;
+        return s;
+    }
+
+    /// A point that moves with the scene exactly: any that its lights name.
+    inline dvec3 anchor(const scene& s)
+    {
+        return s.rectangle_lights.empty() ? s.point_lights.at(0).position : s.rectangle_lights[0].corner;
+    }
+
+    /// \throws std::invalid_argument when a shape is so small beside the scene that float coordinates cannot resolve
+    /// it.
+    inline void require_resolvable(const scene& s, double scale)
+    {
+        const auto all = [&](const auto& list, auto kind) {
+            if constexpr (requires { kind.size(list[0]); })
+                for (std::size_t i = 0; i < list.size(); ++i)
+                    require(kind.size(list[i]) >= scale * 0x1p-18,
+                        kind.list + ("[" + std::to_string(i))
+                            + "]: is 2^18 times smaller than the scene or more, which single precision cannot resolve; "
+                              "leave it out, or model the large things smaller");
+        };
+        for_each_shape(s, all);
+        for_each_light(s, all);
+    }
+
+    /// Lays a scene out; each member writes one part of it.
+    class layout_writer {
+    public:
+        /// `s` stands at its anchor.
+        explicit layout_writer(const scene& s) : s_(s) {}
+
+        scene_layout write()
+        {
+            measure();
+            record_writer w(out_.records, out_.center, scale_);
+            out_.records.resize(kernels::SCENE_TABLES, glm::vec4(0));
+            out_.records[kernels::SCENE_SIZES].x
+                = static_cast<float>(std::max(round_size_ * 0x1p-19, scale_ * 0x1p-26));
+            write_shapes(w);
+            write_materials(w);
+            write_lights(w);
+            for (const auto& r : out_.records)
+                require(std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z) && std::isfinite(r.w),
+                    "scene: a size or a power is too large for single precision");
+            require(out_.records.size() <= 1u << 24,
+                "scene: takes " + std::to_string(out_.records.size())
+                    + " records, kernels can number 2^24; a vertex takes 2, so use fewer");
+            return std::move(out_);
+        }
+
+    private:
+        /// Its bounds, its middle, and what shapes use.
+        void measure()
+        {
+            bounds all, lambertian;
+            for_each_shape(s_, [&](const auto& list, auto kind) {
+                for (const auto& x : list) {
+                    const auto surface = s_.materials[x.material].kind;
+                    kind.add_bounds(all, x);
+                    if (surface == material_kind::lambertian)
+                        kind.add_bounds(lambertian, x);
+                    else
+                        out_.features |= surface == material_kind::glass ? has_glass : has_mirrors;
+                    round_size_ = std::max(round_size_, kind.round_size(x));
+                }
+                out_.features |= list.empty() ? 0u : 1u << kind.number;
+                out_.steps_per_ray += static_cast<uint>(list.size());
+            });
+            require(!lambertian.empty(),
+                "materials: no shape is lambertian, so no photon can be stored and nothing can be lit");
+            for_each_light(s_, [&](const auto& list, auto kind) {
+                for (const auto& l : list)
+                    kind.add_bounds(all, l);
+                out_.features |= list.empty() ? 0u : kind.is_area ? has_area_lights | has_polygons : has_point_lights;
+            });
+            // Polygons' edges, four as a rule; lights' surfaces are polygons.
+            out_.steps_per_ray += static_cast<uint>(4 * s_.polygons.size() + 5 * s_.rectangle_lights.size());
+            scale_ = 0.5 * glm::length(all.high - all.low);
+            require_resolvable(s_, scale_);
+            // The middle, rounded to few bits, so that the anchor plus it is exact wherever the anchor is.
+            const double step = std::exp2(std::floor(std::log2(scale_)) - 8);
+            out_.center = glm::round(0.5 * (all.low + all.high) / step) * step;
+            out_.low = glm::vec3(lambertian.low - out_.center);
+            out_.high = glm::vec3(lambertian.high - out_.center);
+        }
+
+        /// Enters `count` items from record `first` on; `stride` 0 where they differ in length.
+        void enter(uint number, uint first, std::size_t count, uint stride)
+        {
+            out_.records[number]
+                = glm::vec4(static_cast<float>(first), static_cast<float>(count), static_cast<float>(stride), 0.0f);
+        }
+
+        void write_shapes(record_writer& w)
+        {
+            uint number = kernels::NO_SHAPE, first = 0;
+            std::size_t count = 0;
+            for_each_shape(s_, [&](const auto& list, auto kind) {
+                if (kind.number != number) {
+                    number = kind.number;
+                    first = w.next();
+                    count = 0;
+                }
+                const uint begin = w.next();
+                for (const auto& x : list)
+                    kind.write(w, x);
+                count += list.size();
+                if (!list.empty())
+                    enter(number, first, count, (w.next() - begin) / static_cast<uint>(list.size()));
+            });
+            // Polygons came last: the lights' surfaces are of their table, which differ in length.
+            for (std::size_t i = 0; i < s_.rectangle_lights.size(); ++i)
+                put_polygon(w, surface_of(s_.rectangle_lights[i]), i + 1);
+            enter(number, first, s_.polygons.size() + s_.rectangle_lights.size(), 0);
+        }
+
+        void write_materials(record_writer& w)
+        {
+            enter(kernels::MATERIAL_TABLE, w.next(), s_.materials.size(), 2);
+            for (const auto& m : s_.materials) {
+                w.put(m.reflectance,
+                    m.kind == material_kind::lambertian  ? kernels::LAMBERTIAN_SURFACE
+                        : m.kind == material_kind::glass ? kernels::GLASS_SURFACE
+                                                         : kernels::MIRROR_SURFACE);
+                w.put(dvec3(m.index_of_refraction, 0, 0), 0);
+            }
+        }
+
+        /// A light is chosen in proportion to its power.
+        void write_lights(record_writer& w)
+        {
+            const auto weight = [](const dvec3& power) { return power.x + power.y + power.z; };
+            double total = 0, below = 0;
+            for_each_light(s_, [&](const auto& list, auto) {
+                for (const auto& l : list)
+                    total += weight(l.power);
+            });
+            enter(kernels::LIGHT_TABLE, w.next(), count_lights(s_), 6);
+            for_each_light(s_, [&](const auto& list, auto kind) {
+                for (const auto& l : list) {
+                    below += weight(l.power);
+                    w.put(dvec3(kind.is_area ? 1 : 0, weight(l.power) / total, below / total), 0);
+                    kind.write_record(w, l);
+                }
+            });
+        }
+
+        const scene& s_;
+        scene_layout out_;
+        double scale_ = 0;      ///< half the scene's diagonal, m
+        double round_size_ = 0; ///< the largest shape_kind::round_size, m
+    };
+} // namespace detail
+
+/// Lays a scene out for kernels.
+/// \throws std::invalid_argument as check(scene) does, when no surface is Lambertian, or
+/// when a size or a power does not fit single precision.
+inline scene_layout lay_out(const scene& original)
+{
+    check(original);
+    // All sums are of coordinates relative to a point of the scene: a scene that is moved by an exact amount then gives
+    // the same records, bit for bit.
+    const dvec3 anchor = detail::anchor(original);
+    const scene s = detail::moved_back(original, anchor);
+    auto layout = detail::layout_writer(s).write();
+    layout.center += anchor;
+    return layout;
+}
+
+/// A scene on a device.
+template <backend B>
+struct device_scene {
+    scene_layout layout;             ///< its records stay on the host too
+    buffer_of<B, glm::vec4> records; ///< as trace/scene_layout.glsl describes them
+};
+
+/// Lays a scene out and uploads it.
+/// \throws std::invalid_argument as lay_out does, backend_error where the device has no room.
+/// \snippet snippets.cpp upload_scene
+template <backend B>
+device_scene<B> upload_scene(B& b, const scene& s)
+{
+    device_scene<B> d;
+    d.layout = lay_out(s);
+    d.records = b.upload(std::span<const glm::vec4>(d.layout.records));
+    return d;
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,45 @@
+// The ray from the camera through pixel i (2.4), in the pixel's middle when there is one ray,
+// else somewhere in the ray's own stratum of the pixel.
+#include <photongrid/backend/vector.glsl>
+#include <photongrid/backend/random.glsl>
+
+struct Params {
+    vec4 position;  // of the camera, m
+    vec4 corner;    // direction to the picture's top left corner ...
+    vec4 right;     // ... and the step from pixel to pixel along a row ...
+    vec4 down;      // ... and along a column
+    uint width;     // pixels in a row
+    uint sample_id; // which eye ray of the pixel
+    uvec2 strata;   // columns and rows of a pixel, one eye ray in each; 0, 0: one ray through its middle
+    uint seed;
+};
+PARAMS(Params)
+OUTPUT(0, vec4, point)   // xyz: origin, m; w: 0 in flight
+OUTPUT(1, vec4, travel)  // xyz: direction; w: surfaces met
+OUTPUT(2, vec4, weight)  // rgb: share of the radiance that reaches the eye; w: branchings met
+OUTPUT(3, vec4, surface) // xyz: normal towards the eye; w: material
+OUTPUT(4, vec4, emitted) // rgb: radiance of a light that the ray ended on, times weight
+
+void kernel(uint i)
+{
+    uint y = i / args.width;
+    uint x = i - y * args.width;
+    float dx = 0.5f;
+    float dy = 0.5f;
+    if (args.strata.x > 0u) {
+        vec4 r = random4(uvec4(i, args.sample_id, 1000u, args.seed));
+        uint row = args.sample_id / args.strata.x;
+        uint column = args.sample_id - row * args.strata.x;
+        precise float across = (float(column) + r.x) / float(args.strata.x);
+        precise float along_column = (float(row) + r.y) / float(args.strata.y);
+        dx = across;
+        dy = along_column;
+    }
+    precise vec3 d = vec3(args.corner) + vec3(args.right) * (float(x) + dx) + vec3(args.down) * (float(y) + dy);
+    vec3 n = normalized3(d);
+    point = vec4(args.position.x, args.position.y, args.position.z, 0.0f);
+    travel = vec4(n.x, n.y, n.z, 0.0f);
+    weight = vec4(1.0f, 1.0f, 1.0f, 0.0f);
+    surface = vec4(0.0f, 0.0f, 1.0f, 0.0f);
+    emitted = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+}

@@ -1,0 +1,115 @@
+// The stochastic ray tracer's part of a picture (section 2.4): eye rays through mirrors and glass, and direct light
+// where they end.
+#pragma once
+
+#include <photongrid/render/no_light.kernel.hpp>
+#include <photongrid/trace/device_scene.hpp>
+#include <photongrid/trace/direct_light.kernel.hpp>
+#include <photongrid/trace/eye_bounce.kernel.hpp>
+#include <photongrid/trace/eye_ray.kernel.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid::detail {
+
+/// Eye rays and where they ended, one element a pixel.
+template <backend B>
+struct eye_hits {
+    buffer_of<B, glm::vec4> points, travels, weights, surfaces, emissions;
+
+    eye_hits(B& b, std::size_t n)
+        : points(b.template make<glm::vec4>(n)), travels(b.template make<glm::vec4>(n)),
+          weights(b.template make<glm::vec4>(n)), surfaces(b.template make<glm::vec4>(n)),
+          emissions(b.template make<glm::vec4>(n))
+    {
+    }
+};
+
+/// Pixels of a picture: its own, or squares of them where it is only looked at.
+struct raster {
+    uint width = 0, height = 0;
+    uint divisor = 1; ///< pixels of the picture along the side of one here
+
+    std::size_t size() const { return std::size_t{width} * height; }
+};
+
+/// The picture of `s` in squares of divisor x divisor pixels; those at its right and lower edge may hang over.
+inline raster raster_of(const render_settings& s, uint divisor)
+{
+    return {(s.width + divisor - 1) / divisor, (s.height + divisor - 1) / divisor, divisor};
+}
+
+/// As square a grid of strata as the number of samples allows: columns and rows, of which there are not more.
+inline glm::uvec2 strata_of(uint samples)
+{
+    uint rows = 1;
+    for (uint r = 2; r * r <= samples; ++r)
+        if (samples % r == 0)
+            rows = r;
+    return {samples / rows, rows};
+}
+
+/// The camera as eye_ray.glsl reads it.
+inline kernels::eye_ray::Params eye_params(
+    const camera& c, const dvec3& center, const render_settings& s, const raster& r, uint sample)
+{
+    check(c);
+    const auto [forward, right, up] = camera_axes(c);
+    const double height = 2 * std::tan(glm::radians(c.vertical_fov) / 2);
+    const double width = height * s.width / s.height;
+    const auto narrow = [](const dvec3& v) { return glm::vec4(glm::vec3(v), 0.0f); };
+    return {.position = narrow(c.position - center),
+        .corner = narrow(forward - 0.5 * width * right + 0.5 * height * up),
+        .right = narrow(right * (width / s.width * r.divisor)),
+        .down = narrow(-up * (height / s.height * r.divisor)),
+        .width = r.width,
+        .sample_id = sample,
+        .strata = s.spp > 1 || s.passes > 1 ? strata_of(s.spp) : glm::uvec2(0),
+        .seed = s.seed};
+}
+
+/// Ways of an eye ray through a scene: rays split at the first two glass surfaces, and each way is a pass over the
+/// picture.
+inline uint branchings_of(const scene_layout& layout) { return (layout.features & has_glass) != 0 ? 2u : 0u; }
+
+/// Follows eye rays to their ends, for the pixels of `pixels`: `ray` is sample x branches + branch.
+template <backend B>
+void trace_eye_rays(B& b, const device_scene<B>& s, const camera& view, const render_settings& settings,
+    const raster& r, uint ray, launch pixels, eye_hits<B>& hits)
+{
+    const auto& layout = s.layout;
+    const uint branchings = branchings_of(layout), sample = ray >> branchings;
+    b.template run<kernels::eye_ray>(pixels, eye_params(view, layout.center, settings, r, sample), reads(),
+        writes(hits.points, hits.travels, hits.weights, hits.surfaces, hits.emissions));
+    b.template run_until_done<kernels::eye_bounce>({pixels.elements, pixels.first, layout.features},
+        {.branch = ray & ((1u << branchings) - 1u),
+            .branchings = branchings,
+            .depth = settings.depth,
+            .sample_id = sample,
+            .seed = settings.seed},
+        reads(s.records), writes(hits.points, hits.travels, hits.weights, hits.surfaces, hits.emissions), nowhere);
+}
+
+/// Shadow rays to every light from the hits of `pixels`, a bounded number a pass: irradiance into `light`.
+template <backend B>
+void direct_light(B& b, const device_scene<B>& s, const eye_hits<B>& hits, const render_settings& settings, uint ray,
+    launch pixels, buffer_of<B, glm::vec4>& light)
+{
+    b.template run<kernels::no_light>(pixels, {}, reads(), writes(light));
+    const uint samples = (s.layout.features & has_area_lights) != 0 ? settings.light_samples : 1u;
+    // Drivers cut loops after 65,535 iterations, all lanes of a group together: shapes and their edges count.
+    const uint work = (s.layout.steps_per_ray + 1) * s.layout.table(kernels::LIGHT_TABLE).count;
+    const uint a_pass = std::max(1u, 8192u / std::max(1u, work));
+    for (uint first = 0; first < samples; first += a_pass)
+        b.template run<kernels::direct_light>({pixels.elements, pixels.first, s.layout.features},
+            {.strata = strata_of(samples),
+                .first = first,
+                .past = std::min(samples, first + a_pass),
+                .ray_id = ray,
+                .seed = settings.seed},
+            reads(s.records, hits.points, hits.surfaces), writes(light));
+}
+
+} // namespace photongrid::detail
+
+#include <photongrid/backend/exact_end.hpp>

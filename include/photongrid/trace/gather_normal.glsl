@@ -1,0 +1,23 @@
+// The surface normal under stored photon i, on the side that it came to; bounce_photon.glsl left it in three spare places.
+#include <photongrid/trace/photon_event.glsl>
+
+struct Params {
+    uint paths;
+    uint frames;
+    uint stored_before; // photons of earlier batches
+};
+PARAMS(Params)
+INPUT(0, uint, sums) // storable photons of paths 0 to i
+INPUT(1, vec4, positions)
+INPUT(2, vec4, powers)
+INPUT(3, vec4, next_origins)
+INPUT(4, vec4, next_directions)
+OUTPUT(0, vec4, normal)
+
+#include <photongrid/trace/stored_photon.glsl>
+
+void kernel(uint i)
+{
+    uint at = stored_photon(i);
+    normal = vec4(powers(at).w, next_origins(at).w, next_directions(at).w, 0.0f);
+}

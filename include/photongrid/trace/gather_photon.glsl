@@ -1,0 +1,27 @@
+// Stored photon i, looked up in the frames: a gather in place of the scatter that fragment programs lack.
+#include <photongrid/trace/photon_event.glsl>
+
+struct Params {
+    uint paths;
+    uint frames;
+    uint stored_before; // photons of earlier batches
+};
+PARAMS(Params)
+INPUT(0, uint, sums) // storable photons of paths 0 to i
+INPUT(1, vec4, positions)
+INPUT(2, vec4, powers)
+INPUT(3, vec4, directions)
+OUTPUT(0, vec4, position) // w: 1 for a caustic photon, 0 for one that met a diffuse surface
+OUTPUT(1, vec4, power)
+OUTPUT(2, vec4, direction)
+
+#include <photongrid/trace/stored_photon.glsl>
+
+void kernel(uint i)
+{
+    uint found = stored_photon(i);
+    vec4 p = positions(found);
+    position = vec4(p.x, p.y, p.z, event_before(p) == SPECULAR_BEFORE ? 1.0f : 0.0f);
+    power = powers(found);
+    direction = directions(found);
+}

@@ -1,0 +1,111 @@
+// Ray against scene (3.1): every shape in turn, no acceleration structure. Included by kernels after their SWITCHes of
+// lights and their scene buffer; only the kinds of shapes that the scene has are compiled in. A kind of shape is a file
+// of intersect/ and a line in each of the functions below.
+//
+// hit_x returns the distance along the ray, or `far` where shape x is not hit nearer than that; closest_x asks all x,
+// x_surface says what a hit of one found, x_block whether any stands in the way.
+#include <photongrid/backend/vector.glsl>
+#include <photongrid/trace/scene_layout.glsl>
+
+// A bit for the n-th polygon or sphere of the scene; those from the 32nd on share one.
+uint bit_of(uint n)
+{
+    return 1u << (n < 31u ? n : 31u);
+}
+
+#include <photongrid/trace/intersect/plane.glsl>
+#include <photongrid/trace/polygon_record.glsl>
+
+#include <photongrid/trace/intersect/sphere.glsl>
+#include <photongrid/trace/intersect/quadric.glsl>
+#include <photongrid/trace/intersect/disk.glsl>
+#include <photongrid/trace/intersect/box.glsl>
+#include <photongrid/trace/intersect/polygon.glsl>
+
+// What the ray from o in direction d meets first.
+Hit intersect_closest(vec3 o, vec3 d)
+{
+    Closest c;
+    c.t = 3.0e38f;
+    c.kind = NO_SHAPE;
+    c.at = 0u;
+    if (SPHERES)
+        c = closest_sphere(o, d, c);
+    if (QUADRICS)
+        c = closest_quadric(o, d, c);
+    if (DISKS)
+        c = closest_disk(o, d, c);
+    if (BOXES)
+        c = closest_box(o, d, c);
+    if (POLYGONS)
+        c = closest_polygon(o, d, c);
+
+    Hit hit;
+    hit.t = c.kind == NO_SHAPE ? -1.0f : c.t;
+    hit.material = 0u;
+    hit.light = 0u;
+    hit.position = ray_at(o, d, c.t);
+    hit.normal = vec3(0.0f, 0.0f, 1.0f);
+    if (SPHERES && c.kind == SPHERE)
+        hit = sphere_surface(c.at, hit);
+    if (QUADRICS && c.kind == QUADRIC)
+        hit = quadric_surface(c.at, hit);
+    if (DISKS && c.kind == DISK)
+        hit = disk_surface(c.at, hit);
+    if (BOXES && c.kind == BOX)
+        hit = box_surface(c.at, o, d, hit);
+    if (POLYGONS && c.kind == POLYGON)
+        hit = polygon_surface(c.at, hit);
+    return hit;
+}
+
+// Some of the polygons and spheres, a bit each (bit_of).
+struct Candidates {
+    uint polygons;
+    uint spheres;
+};
+
+// Shaft culling (Haines and Wallace, Shaft Culling for Efficient Ray-Traced Radiosity, 1991): what can come between a
+// point and a parallelogram.
+Candidates shaft(vec3 from, vec3 corner, vec3 edge_u, vec3 edge_v)
+{
+    Candidates c;
+    c.polygons = 0u;
+    c.spheres = 0u;
+    if (POLYGONS)
+        c.polygons = polygons_in_shaft(from, corner, edge_u, edge_v);
+    if (SPHERES)
+        c.spheres = spheres_in_shaft(from, corner, edge_u, edge_v);
+    return c;
+}
+
+Candidates everything()
+{
+    Candidates c;
+    c.polygons = 0xFFFFFFFFu;
+    c.spheres = 0xFFFFFFFFu;
+    return c;
+}
+
+// Does anything stand on the ray before `far`? Of polygons and spheres, the candidates are asked.
+bool occluded(vec3 o, vec3 d, float far, Candidates c)
+{
+    if (POLYGONS && c.polygons != 0u && polygons_block(o, d, far, c.polygons))
+        return true;
+    if (SPHERES && c.spheres != 0u && spheres_block(o, d, far, c.spheres))
+        return true;
+    if (QUADRICS && quadrics_block(o, d, far))
+        return true;
+    if (DISKS && disks_block(o, d, far))
+        return true;
+    if (BOXES && boxes_block(o, d, far))
+        return true;
+    return false;
+}
+
+// Where a ray that leaves the surface at p in direction d starts: off the surface, on the side it goes to.
+vec3 ray_start(vec3 p, vec3 normal, vec3 d)
+{
+    float off = ray_offset(p, scene(SCENE_SIZES).x);
+    return ray_at(p, normal, dot3(normal, d) >= 0.0f ? off : -off);
+}

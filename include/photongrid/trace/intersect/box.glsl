@@ -1,0 +1,111 @@
+// Closed boxes in any position. Records: u, v, w, unit axes at right angles, each with half the box's length along it;
+// center, material.
+SWITCH(8, BOXES)
+const uint BOX = 8u;
+
+// Where a ray is between the planes of all three pairs of faces, if it ever is: from enter to leave, enter <= leave.
+struct Passage {
+    float enter; // along the ray; through a face of the axis with this number ...
+    float leave;
+    uint enter_axis;
+    uint leave_axis; // ... and this one
+};
+
+// Slabs (Kay and Kajiya, Ray Tracing Complex Scenes, 1986). A ray from inside always leaves: each interval holds 0, and
+// so does what they have in common. A ray past an edge is judged by the same numbers for both faces: nothing slips
+// between.
+Passage box_passage(uint at, vec3 o, vec3 d)
+{
+    precise vec3 f = o - vec3(scene(at + 3u));
+    Passage p;
+    p.enter = -3.0e38f;
+    p.leave = 3.0e38f;
+    p.enter_axis = 0u;
+    p.leave_axis = 0u;
+    for (uint axis = 0u; axis < 3u; ++axis) {
+        vec4 a = scene(at + axis);
+        float place = dot3(f, vec3(a));
+        float slope = dot3(d, vec3(a));
+        // Along the faces: between them all the way, or nowhere.
+        float begins = abs(place) <= a.w ? -3.0e38f : 3.0e38f;
+        float ends = -begins;
+        if (slope != 0.0f) {
+            precise float low = (-a.w - place) / slope;
+            precise float high = (a.w - place) / slope;
+            begins = slope > 0.0f ? low : high;
+            ends = slope > 0.0f ? high : low;
+        }
+        if (begins > p.enter) {
+            p.enter = begins;
+            p.enter_axis = axis;
+        }
+        if (ends < p.leave) {
+            p.leave = ends;
+            p.leave_axis = axis;
+        }
+    }
+    return p;
+}
+
+float hit_box(uint at, vec3 o, vec3 d, float far)
+{
+    Passage p = box_passage(at, o, d);
+    float t = p.enter > 0.0f ? p.enter : p.leave;
+    return p.enter <= p.leave && t > 0.0f && t < far ? t : far;
+}
+
+Closest closest_box(vec3 o, vec3 d, Closest c)
+{
+    Table boxes = table_of(scene(BOX));
+    uint at = boxes.first;
+    for (uint n = 0u; n < boxes.count; ++n) {
+        float t = hit_box(at, o, d, c.t);
+        if (t < c.t) {
+            c.t = t;
+            c.kind = BOX;
+            c.at = at;
+        }
+        at += boxes.stride;
+    }
+    return c;
+}
+
+// The face is that which the ray passes, even where rounding puts the point nearer to another: only there it is sure
+// that the normal faces the ray from outside, and away from it inside. The point is moved onto that face and away from
+// the others, so that what leaves from it starts on the right side of all.
+Hit box_surface(uint at, vec3 o, vec3 d, Hit hit)
+{
+    Passage p = box_passage(at, o, d);
+    bool enters = p.enter > 0.0f;
+    uint face = enters ? p.enter_axis : p.leave_axis;
+    vec4 middle = scene(at + 3u);
+    float off = ray_offset(hit.position, scene(SCENE_SIZES).x);
+    for (uint axis = 0u; axis < 3u; ++axis) {
+        vec4 a = scene(at + axis);
+        precise vec3 f = hit.position - vec3(middle);
+        float place = dot3(f, vec3(a));
+        precise float inner = a.w > off ? a.w - off : 0.0f;
+        float wanted = place < -inner ? -inner : place > inner ? inner : place;
+        if (axis == face) {
+            bool along = dot3(d, vec3(a)) > 0.0f;
+            hit.normal = along == enters ? -vec3(a) : vec3(a);
+            wanted = along == enters ? -a.w : a.w;
+        }
+        precise float by = wanted - place;
+        hit.position = ray_at(hit.position, vec3(a), by);
+    }
+    hit.material = uint(middle.w);
+    return hit;
+}
+
+bool boxes_block(vec3 o, vec3 d, float far)
+{
+    Table boxes = table_of(scene(BOX));
+    uint at = boxes.first;
+    for (uint n = 0u; n < boxes.count; ++n) {
+        if (hit_box(at, o, d, far) < far)
+            return true;
+        at += boxes.stride;
+    }
+    return false;
+}

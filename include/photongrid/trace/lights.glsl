@@ -1,0 +1,40 @@
+// Lights, read from the scene buffer. Included by kernels after their scene buffer.
+struct Light {
+    bool is_area;             // a rectangle; else a point, of which there are place and power only
+    vec3 place;               // of a rectangle one corner, m
+    vec3 edge_u;              // m
+    vec3 edge_v;              // m
+    vec3 normal;              // unit; light leaves on this side
+    vec3 power;               // W
+    float radiance_per_power; // of a rectangle: 1 / (pi area), m^-2 sr^-1
+};
+
+Light light_at(uint at)
+{
+    vec4 place = scene(at + 1u);
+    Light l;
+    l.is_area = scene(at).x != 0.0f;
+    l.place = vec3(place);
+    l.edge_u = vec3(scene(at + 2u));
+    l.edge_v = vec3(scene(at + 3u));
+    l.normal = vec3(scene(at + 4u));
+    l.power = vec3(scene(at + 5u));
+    l.radiance_per_power = place.w;
+    return l;
+}
+
+Light light_of(uint number)
+{
+    Table table = table_of(scene(LIGHT_TABLE));
+    return light_at(table.first + table.stride * number);
+}
+
+// Of being chosen, in proportion to power; and of this light or one before it being chosen.
+float light_probability(uint at)
+{
+    return scene(at).y;
+}
+float cumulative_probability(uint at)
+{
+    return scene(at).z;
+}

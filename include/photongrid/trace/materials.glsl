@@ -1,0 +1,18 @@
+// Materials, read from the scene buffer. Included by kernels after their scene buffer.
+struct Material {
+    vec3 reflectance;          // of glass: transmittance of each crossing
+    uint kind;                 // LAMBERTIAN_SURFACE, MIRROR_SURFACE, GLASS_SURFACE
+    float index_of_refraction; // glass only
+};
+
+Material material_of(uint number)
+{
+    Table table = table_of(scene(MATERIAL_TABLE));
+    uint at = table.first + table.stride * number;
+    vec4 record = scene(at);
+    Material m;
+    m.reflectance = vec3(record);
+    m.kind = uint(record.w);
+    m.index_of_refraction = scene(at + 1u).x;
+    return m;
+}

@@ -1,0 +1,13 @@
+// True for a photon that leaves the surface it met.
+#include <photongrid/trace/photon_event.glsl>
+
+struct Params {
+    uint unused;
+};
+PARAMS(Params)
+INPUT(0, vec4, positions)
+
+bool holds(uint i)
+{
+    return event_end(positions(i)) == GOES_ON;
+}

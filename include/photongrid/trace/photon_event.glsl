@@ -1,0 +1,40 @@
+// What happened to a photon path at one surface, as the w of its position in a frame: kind + 4 * end
+// + 32 * what it had met before.
+#ifndef PHOTONGRID_SHARED_IS_READ // backend/begin.hpp
+
+// Kinds of surface
+const uint NO_SURFACE = 0u;
+const uint SPECULAR_SURFACE = 1u;
+const uint DIFFUSE_SURFACE = 2u;
+
+// How the path goes on
+const uint GOES_ON = 0u;
+const uint ABSORBED = 1u;
+const uint ESCAPED = 2u;      // met nothing more: the paper's "invalid" mark (2.1)
+const uint CUT_OFF = 3u;      // alive at the deepest bounce allowed
+const uint NOT_A_NUMBER = 4u; // became NaN or infinite
+const uint ENDED_BEFORE = 5u;
+
+// What the path met on its way here: straight from a light; mirrors and glass only (a caustic photon); a diffuse surface
+const uint NOTHING_BEFORE = 0u;
+const uint SPECULAR_BEFORE = 1u;
+const uint DIFFUSE_BEFORE = 2u;
+
+inline float event_code(uint kind, uint end, uint met)
+{
+    return float(kind + 4u * end + 32u * met);
+}
+inline uint event_kind(vec4 position)
+{
+    return uint(position.w) & 3u;
+}
+inline uint event_end(vec4 position)
+{
+    return (uint(position.w) >> 2u) & 7u;
+}
+inline uint event_before(vec4 position)
+{
+    return uint(position.w) >> 5u;
+}
+
+#endif

@@ -1,0 +1,41 @@
+// What became of path i, over all its frames: how it ended, and its diffuse hits. Photons that come straight from a light
+// (frame 1) are not stored, since direct light is computed with shadow rays.
+#include <photongrid/trace/photon_event.glsl>
+
+struct Params {
+    uint paths;
+    uint frames; // traced so far, frame 0 included
+};
+PARAMS(Params)
+INPUT(0, vec4, positions)
+OUTPUT(0, uint, storable) // diffuse hits after the first surface
+OUTPUT(1, uvec4, ends)    // 1 for how it ended: absorbed, escaped, cut off, not a number
+OUTPUT(2, uvec4, hits)    // diffuse hits; of them straight from a light
+
+void kernel(uint i)
+{
+    storable = 0u;
+    ends = uvec4(0u, 0u, 0u, 0u);
+    hits = uvec4(0u, 0u, 0u, 0u);
+    for (uint frame = 1u; frame < args.frames; ++frame) {
+        vec4 p = positions(frame * args.paths + i);
+        uint end = event_end(p);
+        if (end == ENDED_BEFORE)
+            break;
+        if (event_kind(p) == DIFFUSE_SURFACE) {
+            ++hits.x;
+            if (frame == 1u)
+                ++hits.y;
+            else
+                ++storable;
+        }
+        if (end == ABSORBED)
+            ends.x = 1u;
+        if (end == ESCAPED)
+            ends.y = 1u;
+        if (end == CUT_OFF)
+            ends.z = 1u;
+        if (end == NOT_A_NUMBER)
+            ends.w = 1u;
+    }
+}

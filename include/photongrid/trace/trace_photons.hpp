@@ -1,0 +1,235 @@
+// Photon tracing (section 2.1), breadth-first: all paths of a batch take one bounce a pass, each bounce into its own
+// frame of the photon texture. No pixel is read back: two counts a batch, by occlusion query, tell the host how far it
+// is.
+#pragma once
+
+#include <photongrid/map/map_buffers.hpp>
+#include <photongrid/map/prefix_sums.hpp>
+#include <photongrid/render/render_stats.hpp>
+#include <photongrid/trace/bounce_photon.kernel.hpp>
+#include <photongrid/trace/device_scene.hpp>
+#include <photongrid/trace/divide_power.kernel.hpp>
+#include <photongrid/trace/emit_photon.kernel.hpp>
+#include <photongrid/trace/gather_normal.kernel.hpp>
+#include <photongrid/trace/gather_photon.kernel.hpp>
+#include <photongrid/trace/is_found.kernel.hpp>
+#include <photongrid/trace/path_goes_on.kernel.hpp>
+#include <photongrid/trace/path_is_emitted.kernel.hpp>
+#include <photongrid/trace/sum_tallies.kernel.hpp>
+#include <photongrid/trace/tally_path.kernel.hpp>
+
+#include <bit>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// Sums over paths, one element each, still on the device.
+template <backend B>
+struct path_tally {
+    buffer_of<B, glm::uvec4> ends; ///< absorbed, escaped, cut off, invalid
+    buffer_of<B, glm::uvec4> hits; ///< diffuse hits, of them straight from a light
+};
+
+/// Photons stored, and what became of every path.
+template <backend B>
+struct traced_photons {
+    photongrid::photons<B> photons;     ///< in the order of (path, bounce)
+    std::uint64_t emitted = 0;          ///< paths, from the lights
+    std::uint64_t dropped = 0;          ///< diffuse hits of the last path beyond the photons asked for
+    std::vector<path_tally<B>> tallies; ///< one a batch of paths, of one element each
+};
+
+namespace detail {
+    /// The frames of the photon texture: frame f of path p is element f * paths + p.
+    template <backend B>
+    struct photon_frames {
+        buffer_of<B, glm::vec4> positions, powers, directions, next_origins, next_directions;
+
+        photon_frames(B& b, std::size_t n)
+            : positions(b.template make<glm::vec4>(n)), powers(b.template make<glm::vec4>(n)),
+              directions(b.template make<glm::vec4>(n)), next_origins(b.template make<glm::vec4>(n)),
+              next_directions(b.template make<glm::vec4>(n))
+        {
+        }
+    };
+
+    /// The sums of the first `n` tallies.
+    template <backend B>
+    path_tally<B> sum_tally(B& b, path_tally<B> t, uint n)
+    {
+        do {
+            const uint groups = (n + 15) / 16;
+            path_tally<B> sums{b.template make<glm::uvec4>(groups), b.template make<glm::uvec4>(groups)};
+            b.template run<kernels::sum_tallies>(
+                groups, {.terms = n}, reads(t.ends, t.hits), writes(sums.ends, sums.hits));
+            t = std::move(sums);
+            n = groups;
+        } while (n > 1);
+        return t;
+    }
+
+    inline std::string light_names(const scene& s)
+    {
+        std::string names;
+        const auto add = [&](const auto& lights) {
+            for (const auto& l : lights)
+                names += (names.empty() ? "'" : ", '") + l.name + "'";
+        };
+        add(s.rectangle_lights);
+        add(s.point_lights);
+        return names;
+    }
+} // namespace detail
+
+/// Traces `paths` paths from id `first` on; returns the frames used. Asks now and then whether any path goes on.
+template <backend B>
+uint trace_batch(B& b, const device_scene<B>& s, detail::photon_frames<B>& f, uint paths, uint first,
+    const render_settings& settings)
+{
+    const auto& layout = s.layout;
+    b.template run<kernels::emit_photon>({paths, 0u, layout.features}, {.first_path = first, .seed = settings.seed},
+        reads(s.records), writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
+    uint frame = 1;
+    for (; frame <= settings.photon_depth; ++frame) {
+        b.template run<kernels::bounce_photon>({paths, frame * paths, layout.features},
+            {.paths = paths, .first_path = first, .last_frame = settings.photon_depth, .seed = settings.seed},
+            reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions),
+            writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
+        if (frame % 8 == 0
+            && detail::checked_count<kernels::path_goes_on>(b, {paths, frame * paths}, {}, reads(f.positions)) == 0)
+            return frame + 1;
+    }
+    return frame;
+}
+
+/// Photon tracing that can be stopped between batches: emits paths in id order until settings.photons photons are
+/// stored; photon order is (path, bounce). Each photon's power is the lights' power divided by the paths emitted.
+/// Positions' w is 1 for caustic photons (light_part). Normals are kept only where the leak policy asks for them.
+template <backend B>
+class photon_tracing {
+public:
+    /// Emits nothing yet. `device` must outlive it.
+    photon_tracing(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings)
+        : b_(b), device_(device), settings_(settings), lights_(detail::light_names(s)),
+          paths_(std::clamp(std::bit_ceil(settings.photons / 2 + 1), 1024u, 32768u)),
+          frames_(b, std::size_t{paths_} * (settings.photon_depth + 1))
+    {
+        const auto make = [&] { return b.template make<glm::vec4>(settings.photons); };
+        t_.photons = {make(), make(), make(), {}};
+        if (settings.leaks.needs_normals())
+            t_.photons.normals = make();
+    }
+
+    /// True when all photons are stored.
+    bool finished() const { return stored_ == settings_.photons; }
+    /// Of the photons asked for, those that are stored.
+    double fraction() const { return static_cast<double>(stored_) / settings_.photons; }
+
+    /// Traces one more batch of paths.
+    /// \throws std::runtime_error when so few photons are stored that it would not end, naming the lights.
+    void advance()
+    {
+        if (finished())
+            return;
+        require_hope();
+        const uint wanted = settings_.photons - stored_;
+        const uint frames = trace_batch(b_, device_, frames_, paths_, static_cast<uint>(t_.emitted), settings_);
+
+        auto storable = b_.template make<uint>(paths_);
+        path_tally<B> tally{b_.template make<glm::uvec4>(paths_), b_.template make<glm::uvec4>(paths_)};
+        b_.template run<kernels::tally_path>(paths_, {.paths = paths_, .frames = frames}, reads(frames_.positions),
+            writes(storable, tally.ends, tally.hits));
+        const auto sums = prefix_sums(b_, storable);
+
+        const uint emitted
+            = detail::checked_count<kernels::path_is_emitted>(b_, paths_, {.wanted = wanted}, reads(sums, storable));
+        if (emitted == 0) // the first always is; believing it would mean tracing for ever
+            throw backend_error(b_.caps().backend + ": count<path_is_emitted>: the device returned 0; at least 1 of "
+                + std::to_string(paths_) + " paths is emitted");
+        // No path stores more photons than it takes bounces, and the last of these is the first to have stored what is
+        // wanted.
+        const auto found = detail::checked_count<kernels::is_found>(
+            b_, std::size_t{wanted} + settings_.photon_depth, {.emitted = emitted}, reads(sums));
+        const uint taken = std::min(found, wanted);
+        b_.template run<kernels::gather_photon>({taken, stored_},
+            {.paths = paths_, .frames = frames, .stored_before = stored_},
+            reads(sums, frames_.positions, frames_.powers, frames_.directions),
+            writes(t_.photons.positions, t_.photons.powers, t_.photons.directions));
+        if (settings_.leaks.needs_normals())
+            b_.template run<kernels::gather_normal>({taken, stored_},
+                {.paths = paths_, .frames = frames, .stored_before = stored_},
+                reads(sums, frames_.positions, frames_.powers, frames_.next_origins, frames_.next_directions),
+                writes(t_.photons.normals));
+        t_.tallies.push_back(detail::sum_tally(b_, std::move(tally), emitted));
+        t_.dropped += found - taken;
+        t_.emitted += emitted;
+        stored_ += taken;
+        if (finished())
+            b_.template run<kernels::divide_power>(settings_.photons, {.share = 1.0f / static_cast<float>(t_.emitted)},
+                reads(), writes(t_.photons.powers));
+    }
+
+    /// The photons, once finished.
+    traced_photons<B> take() { return std::move(t_); }
+
+private:
+    void require_hope() const
+    {
+        const std::uint64_t most_paths
+            = std::min<std::uint64_t>(std::uint64_t{settings_.photons} * 4096 + (1u << 20), 0xFFFF0000u);
+        if (t_.emitted >= most_paths || (stored_ == 0 && t_.emitted >= (1u << 22)))
+            throw std::runtime_error("trace_photons: " + std::to_string(t_.emitted) + " paths from " + lights_
+                + " stored " + std::to_string(stored_) + " of the " + std::to_string(settings_.photons)
+                + " photons asked for. Stored are diffuse hits that come not straight from a light: does the light "
+                  "reach a mirror, glass, or a second diffuse surface?");
+    }
+
+    B& b_;
+    const device_scene<B>& device_;
+    render_settings settings_;
+    std::string lights_;
+    uint paths_; // a batch
+    detail::photon_frames<B> frames_;
+    traced_photons<B> t_;
+    uint stored_ = 0;
+};
+
+/// Traces photons to the end (photon_tracing).
+/// \throws std::runtime_error as photon_tracing::advance does, render_cancelled.
+template <backend B>
+traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings,
+    const render_observer& observer = {})
+{
+    photon_tracing<B> tracing(b, s, device, settings);
+    detail::run_to_end(tracing, observer, [&] {
+        if (observer.progress)
+            observer.progress("trace_photons", tracing.fraction());
+    });
+    return tracing.take();
+}
+
+/// The account of all paths and hits, `stored` of which are in the map; reads the tallies back.
+template <backend B>
+photon_stats count_photons(B& b, const traced_photons<B>& t, std::uint64_t stored)
+{
+    photon_stats p;
+    for (const auto& tally : t.tallies) {
+        const auto ends = b.download(tally.ends).at(0);
+        const auto hits = b.download(tally.hits).at(0);
+        p.absorbed += ends.x;
+        p.escaped += ends.y;
+        p.cut_off += ends.z;
+        p.invalid += ends.w;
+        p.diffuse_hits += hits.x;
+        p.direct += hits.y;
+    }
+    p.emitted = t.emitted;
+    p.stored = stored;
+    p.dropped = t.dropped;
+    return p;
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,312 @@
+// Every algorithm and the renderer on a device that fails at its first call, its second, … its last: they end in the
+// documented exception, hold no memory afterwards, and work again on a device that does.
+#include "faulty_backend.hpp"
+#include "../backends/serial_pictures.hpp"
+#include "../map/photon_sets.hpp"
+#include "../scene/test_scenes.hpp"
+#include "image_file.hpp"
+
+#include <photongrid/render/render.hpp>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+namespace photongrid {
+namespace {
+
+    using testing::fault;
+    using faulty = testing::faulty_backend<serial_backend>;
+    static_assert(backend<faulty>);
+
+    template <class T>
+    void append(std::string& bits, const std::vector<T>& data)
+    {
+        bits.append(reinterpret_cast<const char*>(data.data()), data.size() * sizeof(T));
+    }
+
+    /// Something to do on a backend; the bits of its answer.
+    struct job {
+        const char* name;
+        std::string (*run)(faulty&);
+    };
+    std::ostream& operator<<(std::ostream& out, const job& j) { return out << j.name; }
+
+    std::string sort(faulty& b, std::uint32_t n)
+    {
+        testing::random_source u(n);
+        std::vector<glm::uvec2> pairs(n);
+        for (std::uint32_t i = 0; i < n; ++i)
+            pairs[i] = {u.below(50), i};
+        auto buffer = b.upload(std::span<const glm::uvec2>(pairs));
+        bitonic_sort(b, buffer);
+        const auto index = grid_index(b, buffer, 50);
+        std::string bits;
+        append(bits, b.download(buffer));
+        append(bits, b.download(index));
+        return bits;
+    }
+
+    std::string estimate(faulty& b, bool routed)
+    {
+        const auto set = testing::make_photons(testing::distribution::clustered, 300, {5, 4, 3}, 7);
+        auto p = testing::upload_photons(b, set);
+        const auto map = routed ? routed_map(b, std::move(p), set.g, 2) : sorted_map(b, std::move(p), set.g);
+        const auto points = b.upload(std::span<const glm::vec4>(testing::make_points(set, 40, 8)));
+        const auto e = knn_grid_estimate(b, map, points, {.k = 12, .max_radius = 0.4f});
+        std::string bits;
+        append(bits, b.download(e.irradiance));
+        append(bits, b.download(e.used));
+        append(bits, std::vector<double>{redistributed_flux(b, map)});
+        return bits;
+    }
+
+    std::string route(faulty& b)
+    {
+        const auto set = testing::make_photons(testing::distribution::clustered, 300, {5, 4, 3}, 7);
+        const auto p = testing::upload_photons(b, set);
+        const auto r = stencil_route(b, p, set.g, 2);
+        std::string bits;
+        append(bits, b.download(r.list));
+        append(bits, b.download(r.powers));
+        append(bits, std::vector<std::uint64_t>{r.overfull_cells});
+        return bits;
+    }
+
+    image picture(faulty& b, map_builder builder, render_stats& stats, const render_observer& observer = {})
+    {
+        auto s = testing::small_cornell(); // glass, a mirror, a lamp
+        s.render.width = 6;
+        s.render.height = 5;
+        s.render.photons = 300;
+        s.render.k = 8;
+        s.render.photon_depth = 9; // asks once whether any path goes on
+        s.render.light_samples = 1;
+        s.render.builder = builder;
+        return render(b, s, s.render, observer, stats);
+    }
+
+    std::string render_bits(faulty& b, map_builder builder, const render_observer& observer = {})
+    {
+        render_stats stats;
+        const auto p = picture(b, builder, stats, observer);
+        std::string bits;
+        append(bits, p.pixels);
+        append(bits,
+            std::vector<std::uint64_t>{stats.photons.emitted, stats.photons.stored, stats.photons.absorbed,
+                stats.photons.dropped, stats.map.overfull_cells});
+        return bits;
+    }
+
+    const job jobs[] = {
+        {"sort", [](faulty& b) { return sort(b, 128); }},
+        {"sort_padded", [](faulty& b) { return sort(b, 100); }},
+        {"stencil_route", route},
+        {"sorted_map_and_estimate", [](faulty& b) { return estimate(b, false); }},
+        {"routed_map_and_estimate", [](faulty& b) { return estimate(b, true); }},
+        {"render_sorted", [](faulty& b) { return render_bits(b, map_builder::sort); }},
+        {"render_routed", [](faulty& b) { return render_bits(b, map_builder::route); }},
+        {"render_watched",
+            [](faulty& b) {
+                render_observer observer;
+                observer.intermediate = [](const image&) {};
+                return render_bits(b, map_builder::sort, observer);
+            }},
+    };
+
+    class faulty_backend : public ::testing::TestWithParam<job> {
+    protected:
+        serial_backend inner;
+        faulty b{inner};
+
+        std::string run() { return GetParam().run(b); }
+        /// How many calls of an undisturbed run fault `f` counts.
+        std::uint64_t calls(fault f)
+        {
+            b.set(f, 0);
+            run();
+            return b.calls();
+        }
+        /// The n-th call fails; returns what is said.
+        std::string failure(fault f, std::uint64_t n)
+        {
+            b.set(f, n);
+            try {
+                run();
+                return "no exception";
+            } catch (const backend_error& e) {
+                return e.what();
+            }
+        }
+    };
+
+    TEST_P(faulty_backend, out_of_memory)
+    {
+        const auto whole = run();
+        const auto n = calls(fault::out_of_memory);
+        ASSERT_GE(n, 3u);
+        for (std::uint64_t i = 1; i <= n; ++i) {
+            SCOPED_TRACE("allocation " + std::to_string(i) + " of " + std::to_string(n));
+            ASSERT_EQ(failure(fault::out_of_memory, i), "injected: out of memory");
+            ASSERT_EQ(inner.bytes(), 0u) << "leaked";
+            ASSERT_TRUE(run() == whole) << "the backend works again"; // the fault is over
+            ASSERT_EQ(inner.bytes(), 0u);
+        }
+    }
+
+    TEST_P(faulty_backend, submit_failed)
+    {
+        const auto whole = run();
+        const auto n = calls(fault::submit_failed);
+        ASSERT_GE(n, 3u);
+        for (std::uint64_t i = 1; i <= n; ++i) {
+            SCOPED_TRACE("call " + std::to_string(i) + " of " + std::to_string(n));
+            ASSERT_EQ(failure(fault::submit_failed, i), "injected: submit failed");
+            ASSERT_EQ(inner.bytes(), 0u) << "leaked";
+            ASSERT_TRUE(run() == whole) << "the backend works again";
+            ASSERT_EQ(inner.bytes(), 0u);
+        }
+    }
+
+    TEST_P(faulty_backend, device_lost)
+    {
+        const auto n = calls(fault::device_lost);
+        for (std::uint64_t i = 1; i <= n; ++i) {
+            SCOPED_TRACE("call " + std::to_string(i) + " of " + std::to_string(n));
+            ASSERT_EQ(failure(fault::device_lost, i), "injected: device lost");
+            ASSERT_EQ(inner.bytes(), 0u) << "leaked";
+            ASSERT_THROW(run(), backend_error) << "lost for good";
+            ASSERT_EQ(inner.bytes(), 0u);
+        }
+    }
+
+    /// Runs with a device that is wrong, not refusing: an exception of the documented kinds, or a wrong answer.
+    void expect_wrong_or_refused(const job& j, faulty& b, serial_backend& inner)
+    {
+        try {
+            j.run(b);
+        } catch (const backend_error&) {
+        } catch (const std::runtime_error& e) {
+            EXPECT_TRUE(std::string_view(e.what()).starts_with("trace_photons: "))
+                << e.what(); // too few photons stored
+        }
+        ASSERT_EQ(inner.bytes(), 0u) << "leaked";
+    }
+
+    // Kernels whose whole numbers are counted or added up, not read by. (Running sums say where a routed map's cells
+    // begin.)
+    bool says_no_place(std::string_view kernel)
+    {
+        return kernel == "tally_path" || kernel == "sum_tallies" || kernel == "knn_result" || kernel == "no_light"
+            || kernel == "direct_light" || kernel == "shade";
+    }
+
+    TEST_P(faulty_backend, garbage)
+    {
+        const bool sorting = std::string_view(GetParam().name).starts_with("sort")
+            && std::string_view(GetParam().name) != "sorted_map_and_estimate";
+        const auto n = calls(fault::garbage);
+        ASSERT_GE(n, 3u);
+        for (std::uint64_t i = 1; i <= n; ++i) {
+            SCOPED_TRACE("pass " + std::to_string(i) + " of " + std::to_string(n));
+            b.set(fault::garbage, i, 0, [&](std::string_view kernel) { return sorting || says_no_place(kernel); });
+            expect_wrong_or_refused(GetParam(), b, inner);
+        }
+    }
+
+    TEST_P(faulty_backend, wrong_contents)
+    {
+        const auto n = calls(fault::wrong_contents);
+        ASSERT_GT(n, 0u);
+        for (std::uint64_t i = 1; i <= n; ++i) {
+            SCOPED_TRACE("download " + std::to_string(i) + " of " + std::to_string(n));
+            b.set(fault::wrong_contents, i);
+            expect_wrong_or_refused(GetParam(), b, inner);
+        }
+    }
+
+    // A count that cannot be is refused by name; one that could be, and is not, gives a wrong answer at worst.
+    TEST_P(faulty_backend, wrong_count)
+    {
+        const auto n = calls(fault::wrong_count);
+        for (std::uint64_t i = 1; i <= n; ++i) {
+            SCOPED_TRACE("count " + std::to_string(i) + " of " + std::to_string(n));
+            for (const auto wrong : {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{17}}) {
+                b.set(fault::wrong_count, i, wrong);
+                expect_wrong_or_refused(GetParam(), b, inner);
+            }
+            for (const auto wrong :
+                {std::uint64_t{1} << 24, std::uint64_t{0xFFFFFFFFu}, (std::uint64_t{1} << 32) + 1, ~std::uint64_t{0}}) {
+                b.set(fault::wrong_count, i, wrong);
+                try {
+                    run();
+                    ADD_FAILURE() << wrong << " was believed";
+                } catch (const backend_error& e) {
+                    EXPECT_NE(std::string_view(e.what()).find("the device returned " + std::to_string(wrong)),
+                        std::string_view::npos)
+                        << e.what();
+                }
+                ASSERT_EQ(inner.bytes(), 0u) << "leaked";
+            }
+        }
+    }
+
+    INSTANTIATE_TEST_SUITE_P(
+        all, faulty_backend, ::testing::ValuesIn(jobs), [](const auto& info) { return std::string(info.param.name); });
+
+    // No path emitted would mean tracing for ever.
+    TEST(faulty_tracer, refuses_that_no_path_was_emitted)
+    {
+        serial_backend inner;
+        faulty b(inner);
+        render_stats stats;
+        b.set(fault::wrong_count, 2, 0); // the first asks whether a path goes on
+        try {
+            picture(b, map_builder::sort, stats);
+            FAIL();
+        } catch (const backend_error& e) {
+            EXPECT_STREQ(
+                e.what(), "serial: count<path_is_emitted>: the device returned 0; at least 1 of 1024 paths is emitted");
+        }
+    }
+
+    // A render as the program does it: what fails before the picture is whole leaves what was there before.
+    TEST(faulty_render, leaves_the_old_file)
+    {
+        namespace fs = std::filesystem;
+        const auto folder = fs::temp_directory_path() / ("photongrid_faulty_" + std::to_string(::getpid()));
+        fs::create_directories(folder);
+        const auto path = (folder / "a.pfm").string();
+        const auto contents = [&] {
+            std::ifstream in(path, std::ios::binary);
+            return std::string(std::istreambuf_iterator<char>(in), {});
+        };
+        serial_backend inner;
+        faulty b(inner);
+        const auto render_to_file = [&] {
+            render_observer observer; // as --progressive: every picture on the way is written too
+            observer.intermediate = [&](const image& p) { write_image(path, p); };
+            render_stats stats;
+            write_image(path, picture(b, map_builder::sort, stats, observer));
+        };
+        b.set(fault::device_lost, 0);
+        render_to_file();
+        const auto n = b.calls();
+        const auto whole_size = contents().size();
+        for (const std::uint64_t at : {std::uint64_t{1}, n / 3, n / 2, n - 1, n}) {
+            std::ofstream(path) << "old";
+            b.set(fault::device_lost, at);
+            EXPECT_THROW(render_to_file(), backend_error);
+            const auto left = contents();
+            EXPECT_TRUE(left == "old" || left.size() == whole_size) << left.size() << " bytes";
+            EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1)
+                << "a temporary file is left";
+        }
+        fs::remove_all(folder);
+    }
+
+} // namespace
+} // namespace photongrid

@@ -1,0 +1,266 @@
+// What only the cpu backend promises: the same bytes at any number of threads and on any instruction set, buffers that
+// can be turned over, overrides that equal the generic algorithms.
+#pragma once
+
+#include <photongrid/backends/cpu/cpu.hpp>
+
+#include "../map/photon_sets.hpp"
+#include "serial_algorithms.hpp"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <thread>
+
+namespace photongrid::testing {
+namespace {
+    using glm::uvec2;
+    using glm::uvec3;
+    using glm::vec4;
+
+    /// Whatever a search finds, of every kind.
+    struct findings {
+        std::vector<vec4> irradiance, errors;
+        std::vector<uvec2> used, cells;
+        std::vector<uint> list;
+        bool operator==(const findings& other) const
+        {
+            return count_different_bits(irradiance, other.irradiance) + count_different_bits(errors, other.errors)
+                + count_different_bits(used, other.used) + count_different_bits(cells, other.cells)
+                + count_different_bits(list, other.list)
+                == 0;
+        }
+    };
+
+    findings find(cpu_backend& b, distribution d, search_kind search, filter_kernel kernel, const leak_policy& leaks)
+    {
+        auto set = make_photons(d, 6000, {12, 12, 12}, 3);
+        const auto points = make_points(set, 1000, 3);
+        random_source u(5);
+        std::vector<vec4> directions, normals;
+        for (std::size_t i = 0; i < set.positions.size(); ++i) {
+            directions.push_back(glm::normalize(vec4(u() - 0.5f, u() - 0.5f, u() - 0.5f, 0.0f)));
+            normals.push_back(glm::normalize(vec4(u() - 0.5f, u() - 0.5f, u() - 0.5f, 0.0f)));
+        }
+        const std::vector<vec4> up(points.size(), vec4(0, 1, 0, 0));
+        auto p = upload_photons(b, set);
+        p.directions = b.upload(std::span<const vec4>(directions));
+        p.normals = b.upload(std::span<const vec4>(normals));
+        const auto map = sorted_map(b, std::move(p), set.g);
+        knn_settings k{.k = 70, .max_radius = 0.3f};
+        k.search = search;
+        k.kernel = kernel;
+        k.leaks = leaks;
+        k.errors = search != search_kind::at_least_k || kernel != filter_kernel::constant;
+        if (!k.errors)
+            k.bias = bias_kind::paper; // adds up while it searches
+        const auto e = knn_grid_estimate(
+            b, map, b.upload(std::span<const vec4>(points)), b.upload(std::span<const vec4>(up)), k);
+        return {b.download(e.irradiance), b.download(e.standard_error), b.download(e.used), b.download(map.cells),
+            b.download(map.list)};
+    }
+} // namespace
+
+TEST(cpu_backend, threads_do_not_change_a_byte)
+{
+    for (const auto d : all_distributions)
+        for (const auto search : {search_kind::at_least_k, search_kind::exact_k, search_kind::fixed_radius}) {
+            std::vector<findings> all;
+            for (const uint threads : {1u, 2u, 5u}) {
+                cpu_backend b(threads);
+                all.push_back(find(b, d, search, filter_kernel::silverman, {.side = true}));
+            }
+            EXPECT_TRUE(all[0] == all[1] && all[0] == all[2]) << name_of(d) << " search " << static_cast<int>(search);
+        }
+}
+
+TEST(cpu_backend, instruction_sets_do_not_change_a_byte)
+{
+    cpu_backend b(1);
+    const leak_policy policies[] = {{}, {.side = true}, {.side = true, .min_cosine = -0.5f, .compression = 1.5f}};
+    const auto targets = hwy::SupportedAndGeneratedTargets();
+    ASSERT_FALSE(targets.empty());
+    for (const auto d : {distribution::uniform, distribution::clustered, distribution::box_faces})
+        for (const auto search : {search_kind::at_least_k, search_kind::exact_k})
+            for (const auto kernel : {filter_kernel::constant, filter_kernel::cone, filter_kernel::silverman})
+                for (const auto& leaks : policies) {
+                    std::vector<findings> all;
+                    for (const auto target : targets) {
+                        hwy::SetSupportedTargetsForTest(target);
+                        hwy::GetChosenTarget().DeInit();
+                        all.push_back(find(b, d, search, kernel, leaks));
+                        hwy::SetSupportedTargetsForTest(0);
+                        hwy::GetChosenTarget().DeInit();
+                    }
+                    for (std::size_t t = 1; t < all.size(); ++t)
+                        EXPECT_TRUE(all[t] == all[0])
+                            << hwy::TargetName(targets[t]) << " against " << hwy::TargetName(targets[0]) << ", "
+                            << name_of(d) << " search " << static_cast<int>(search) << " kernel "
+                            << static_cast<int>(kernel);
+                }
+    std::string names;
+    for (const auto target : targets)
+        names += std::string(" ") + hwy::TargetName(target);
+    std::printf("compared:%s\n", names.c_str());
+}
+
+TEST(cpu_backend, points_do_not_depend_on_the_others_but_for_rounding)
+{
+    // Alone, in reverse order and among others a point finds the same photons.
+    cpu_backend b(2);
+    const auto set = make_photons(distribution::clustered, 10000, {16, 16, 16}, 2);
+    const auto points = make_points(set, 500, 2);
+    const auto map = sorted_map(b, upload_photons(b, set), set.g);
+    const knn_settings k{.k = 50, .max_radius = 0.5f};
+    const auto together = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), k);
+    const auto irradiance = b.download(together.irradiance);
+    const auto used = b.download(together.used);
+    for (std::size_t i = 0; i < points.size(); i += 7) {
+        const auto alone = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(&points[i], 1)), k);
+        EXPECT_EQ(b.download(alone.irradiance)[0].w, irradiance[i].w);
+        EXPECT_EQ(b.download(alone.used)[0].x, used[i].x);
+        EXPECT_NEAR(b.download(alone.irradiance)[0].x, irradiance[i].x, 1e-6f * irradiance[i].x);
+    }
+}
+
+TEST(cpu_backend, buffers_can_be_turned_over)
+{
+    cpu_backend b(3);
+    for (const std::size_t n : {0u, 1u, 15u, 16u, 17u, 40000u}) {
+        random_source u(n);
+        std::vector<vec4> host(n);
+        for (auto& v : host)
+            v = {u(), -u(), u() * 1e30f, u() * 1e-30f};
+        const auto device = b.upload(std::span<const vec4>(host));
+        const auto before = b.bytes();
+        const auto p = b.planes(device);
+        for (std::size_t i = 0; i < n; ++i)
+            ASSERT_TRUE(p.x[i] == host[i].x && p.y[i] == host[i].y && p.z[i] == host[i].z && p.w[i] == host[i].w);
+        EXPECT_EQ(count_different_bits(b.download(device), host), 0u);
+        EXPECT_EQ(b.bytes(), before);
+    }
+}
+
+TEST(cpu_backend, radix_sort_equals_std_sort)
+{
+    cpu::pool one(1), three(3);
+    EXPECT_TRUE(rc::check("any keys and values", [&] {
+        const auto n = *rc::gen::element<std::size_t>(0, 1, 2, 3, 1000, 20000, 50001);
+        const auto keys = *rc::gen::element(1u, 3u, 2000u, 70000u, 0xFFFFFFFFu),
+                   values = *rc::gen::element(0u, 1u, 5000u, 0xFFFFFFFFu);
+        random_source u(*rc::gen::arbitrary<std::uint64_t>());
+        std::vector<uvec2> pairs(n);
+        for (std::size_t i = 0; i < n; ++i) // values 0: ascending, as ids are
+            pairs[i] = {
+                u.below(50) == 0 ? 0xFFFFFFFFu : u.below(keys), values == 0 ? static_cast<uint>(i) : u.below(values)};
+        auto expected = pairs;
+        std::sort(
+            expected.begin(), expected.end(), [](uvec2 a, uvec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+        for (auto* threads : {&one, &three}) {
+            const cpu::storage first((n + 8) * sizeof(uvec2)), second((n + 8) * sizeof(uvec2));
+            auto* const here = reinterpret_cast<uvec2*>(first.begin());
+            auto* const there = reinterpret_cast<uvec2*>(second.begin());
+            std::copy(pairs.begin(), pairs.end(), here);
+            const auto* const sorted = cpu::radix_sort(*threads, here, there, n).in_scratch ? there : here;
+            RC_ASSERT(std::equal(expected.begin(), expected.end(), sorted));
+        }
+    }));
+}
+
+TEST(cpu_backend, maps_equal_the_generic_ones)
+{
+    cpu_backend b(2);
+    serial_backend serial;
+    for (const auto d : all_distributions)
+        for (const uint parts : {every_part, caustic_part, other_part}) {
+            auto set = make_photons(d, 7000, {13, 11, 7}, 4);
+            for (std::size_t i = 0; i < set.positions.size(); i += 3)
+                set.positions[i].w = 1;
+            set.positions[100].x = std::numeric_limits<float>::quiet_NaN();
+            set.powers[101].y = std::numeric_limits<float>::infinity();
+            const auto mine = sorted_map(b, upload_photons(b, set), set.g, parts);
+            const auto theirs = sorted_map(serial, upload_photons(serial, set), set.g, parts);
+            EXPECT_EQ(mine.invalid, theirs.invalid);
+            EXPECT_EQ(mine.left_out, theirs.left_out);
+            EXPECT_EQ(count_different_bits(b.download(mine.cells), serial.download(theirs.cells)), 0u);
+            EXPECT_EQ(count_different_bits(b.download(mine.list), serial.download(theirs.list)), 0u);
+            EXPECT_EQ(
+                count_different_bits(b.download(mine.photons.positions), serial.download(theirs.photons.positions)),
+                0u);
+            EXPECT_EQ(
+                count_different_bits(b.download(mine.photons.powers), serial.download(theirs.photons.powers)), 0u);
+        }
+}
+
+TEST(cpu_backend, the_growing_search_visits_and_holds_what_serials_does)
+{
+    // What the result depends on, the order of visits among it: any grid, any number wanted, with photons enough in a
+    // cell or few.
+    cpu_backend b(2);
+    serial_backend serial;
+    EXPECT_TRUE(rc::check("held, visited, radius: the same bits", [&] {
+        const auto d = *rc::gen::elementOf(
+            std::vector<distribution>(std::begin(all_distributions), std::end(all_distributions)));
+        const auto resolution = *rc::gen::element(
+            uvec3(1, 1, 1), uvec3(20, 1, 20), uvec3(5, 5, 10), uvec3(1, 1, 40), uvec3(3, 50, 2), uvec3(17, 33, 18));
+        const auto n = *rc::gen::element<std::size_t>(0, 1, 2, 17, 700, 5000);
+        const auto k = *rc::gen::element(1u, 2u, 15u, 16u, 17u, 50u, 333u, 5000u);
+        const auto radius = *rc::gen::element(1e-4f, 0.03f, 0.2f, 0.7f, 10.0f);
+        const auto leaks = *rc::gen::element(leak_policy{}, leak_policy{.side = true},
+            leak_policy{.side = true, .min_cosine = -0.5f, .compression = 1.5f});
+        const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1000000);
+        const auto s = make_oriented(d, n, resolution, 40, seed);
+        for (const auto& kind : {bias_kind::paper, bias_kind::unbiased}) {
+            auto settings = as_paper(knn_settings{.k = k, .max_radius = radius});
+            settings.leaks = leaks;
+            settings.bias = kind;
+            const auto found = [&](auto& device) {
+                auto photons = upload_photons(device, s.photons);
+                photons.directions = device.upload(std::span<const vec4>(s.directions));
+                photons.normals = device.upload(std::span<const vec4>(s.normals));
+                const auto map = sorted_map(device, std::move(photons), s.photons.g);
+                const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(s.points)),
+                    device.upload(std::span<const vec4>(s.point_normals)), settings);
+                return std::pair{device.download(e.irradiance), device.download(e.used)};
+            };
+            const auto [light, used] = found(b);
+            const auto [light_s, used_s] = found(serial);
+            for (std::size_t i = 0; i < used.size(); ++i) {
+                RC_ASSERT(used[i].x == used_s[i].x);
+                if (kind == bias_kind::paper) { // for the other the kernels go through the photons once more
+                    RC_ASSERT(used[i].y == used_s[i].y);
+                }
+                RC_ASSERT(light[i].w == light_s[i].w);
+                for (int c = 0; c < 3; ++c)
+                    RC_ASSERT(std::abs(light[i][c] - light_s[i][c]) <= 1e-5f * light_s[i][c]);
+            }
+        }
+    }));
+}
+
+TEST(cpu_backend, refuses_what_it_cannot_do)
+{
+    EXPECT_THROW(cpu_backend(5000), std::invalid_argument);
+    cpu_backend b(1);
+    EXPECT_THROW((void)b.make<vec4>(std::size_t{1} << 40), backend_error);
+}
+
+TEST(cpu_backend, two_backends_work_side_by_side)
+{
+    findings a, c;
+    std::thread first([&] {
+        cpu_backend b(2);
+        a = find(b, distribution::uniform, search_kind::exact_k, filter_kernel::cone, {});
+    });
+    std::thread second([&] {
+        cpu_backend b(2);
+        c = find(b, distribution::uniform, search_kind::exact_k, filter_kernel::cone, {});
+    });
+    first.join();
+    second.join();
+    EXPECT_TRUE(a == c);
+}
+
+} // namespace photongrid::testing

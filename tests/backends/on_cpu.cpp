@@ -1,0 +1,44 @@
+// All backend tests on the cpu backend with its overrides, on three threads whatever the machine has, and those of its
+// own: one program, since compiling the overrides for every instruction set takes long.
+#include <photongrid/backends/cpu/cpu.hpp>
+
+#include "../backend/number_tests.hpp"
+#include "../backend/verb_tests.hpp"
+#include "../estimate/edge_tests.hpp"
+#include "../estimate/estimator_tests.hpp"
+#include "../estimate/neighbour_tests.hpp"
+#include "../map/algorithm_tests.hpp"
+#include "../map/map_file_tests.hpp"
+#include "../render/number_picture_tests.hpp"
+#include "../render/progressive_tests.hpp"
+#include "../render/render_tests.hpp"
+#include "../render/scene_picture_tests.hpp"
+#include "../trace/box_tests.hpp"
+#include "../trace/ray_tests.hpp"
+#include "cpu_backend_tests.hpp"
+
+namespace photongrid::testing {
+
+struct cpu_tag {
+    using type = cpu_backend;
+    static constexpr const char* name = "cpu";
+    /// It sorts by digits, in fewer passes than the network's, and adds up photons in another order than the kernels.
+    static constexpr bool sorts_by_network = false, adds_as_serial = false;
+    static std::unique_ptr<type> make() { return std::make_unique<type>(3u); }
+};
+
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, verbs, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, algorithms, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, estimators, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, pictures, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, hard_cases_of_pictures, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, progressive, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, hard_cases, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, boxes, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, neighbours, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, hard_cases_of_numbers, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, edges, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, map_files, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, scene_files, ::testing::Types<cpu_tag>, tag_names);
+
+} // namespace photongrid::testing

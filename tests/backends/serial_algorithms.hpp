@@ -1,0 +1,29 @@
+// The serial backend with maps and searches on it, which most test programs compare with. They are compiled once, in
+// serial_algorithms.cpp, and not again in each of these.
+#pragma once
+
+#include <photongrid/backends/serial/serial.hpp>
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/fitting_grid.hpp>
+
+#ifndef PHOTONGRID_COMPILED_HERE
+#define PHOTONGRID_COMPILED_HERE extern
+#endif
+
+namespace photongrid {
+
+PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> sorted_map(
+    serial_backend&, photons<serial_backend>, const grid&, uint);
+PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> routed_map(
+    serial_backend&, photons<serial_backend>, const grid&, uint, uint, uint);
+PHOTONGRID_COMPILED_HERE template routed_cells<serial_backend> stencil_route(
+    serial_backend&, const photons<serial_backend>&, const grid&, uint, uint, uint);
+PHOTONGRID_COMPILED_HERE template grid fitting_grid(serial_backend&, const photons<serial_backend>&, uint, float);
+PHOTONGRID_COMPILED_HERE template sort_report bitonic_sort(serial_backend&, buffer_of<serial_backend, glm::uvec2>&);
+PHOTONGRID_COMPILED_HERE template class knn_search_by_kernels<serial_backend>;
+PHOTONGRID_COMPILED_HERE template class knn_search<serial_backend>;
+
+} // namespace photongrid
+
+#undef PHOTONGRID_COMPILED_HERE

@@ -1,0 +1,2 @@
+#define PHOTONGRID_PICTURES_COMPILED_HERE
+#include "serial_pictures.hpp"

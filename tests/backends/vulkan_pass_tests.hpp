@@ -1,0 +1,270 @@
+// Passes of the Vulkan backend.
+#pragma once
+
+#include "vulkan_under_test.hpp"
+
+namespace photongrid::testing {
+
+TEST_F(vulkan, frames_of_one_buffer_are_read_and_written_in_one_pass)
+{
+    const uint n = 1000, frames = 5;
+    const auto run = [&](auto& backend) {
+        std::vector<uint> host(n * frames, 7u);
+        std::iota(host.begin(), host.begin() + n, 0u);
+        auto buffer = up(backend, host);
+        for (uint f = 1; f < frames; ++f)
+            backend.template run<test_kernels::next_frame>({n, f * n}, {.frame = n}, reads(buffer), writes(buffer));
+        return backend.download(buffer);
+    };
+    EXPECT_EQ(run(b()), run(serial));
+}
+
+TEST_F(vulkan, passes_of_many_workgroups_reach_every_element)
+{
+    const uint n = 65535u * 64u + 100u; // more groups than one dimension takes
+    const auto before = up(b(), std::vector<uint>(n, 3u));
+    auto after = b().make<uint>(n);
+    b().run<test_kernels::next_frame>(n, {.frame = 0}, reads(before), writes(after));
+    EXPECT_EQ(b().download(after), std::vector<uint>(n, 7u));
+}
+
+TEST_F(vulkan, eight_inputs_and_eight_outputs)
+{
+    const auto run = [&](auto& backend) {
+        std::vector<uint> host(300);
+        std::iota(host.begin(), host.end(), 5u);
+        const auto in = up(backend, host);
+        std::array<decltype(up(backend, host)), 8> out;
+        for (auto& o : out)
+            o = up(backend, host);
+        for (int pass = 0; pass < 2; ++pass)
+            backend.template run<test_kernels::eight_states>(host.size(), {}, reads(in, in, in, in, in, in, in, in),
+                writes(out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]));
+        std::vector<uint> all;
+        for (auto& o : out)
+            for (const uint x : backend.download(o))
+                all.push_back(x);
+        return all;
+    };
+    EXPECT_EQ(run(b()), run(serial));
+}
+
+TEST_F(vulkan, float_arithmetic_is_neither_fused_nor_folded)
+{
+    const auto host = numbers(100000, 1);
+    const auto run = [&](auto& backend) {
+        const auto in = up(backend, host);
+        auto out = backend.template make<vec4>(host.size());
+        backend.template run<test_kernels::contracts>(host.size(), {}, reads(in), writes(out));
+        return backend.download(out);
+    };
+    EXPECT_EQ(count_different_bits(run(b()), run(serial)), 0u);
+}
+
+TEST_F(vulkan, passes_over_unfinished_elements_fall_and_can_be_resumed)
+{
+    for (const uint n : {0u, 1u, 64u, 65u, 100000u}) {
+        std::vector<uvec2> host(n);
+        for (uint i = 0; i < n; ++i)
+            host[i] = uvec2(i % 21u, 0u);
+        const auto expected = [&] {
+            auto state = up(serial, host);
+            auto p = serial.run_until_done<test_kernels::countdown>(n, {.step = 1}, reads(), writes(state), nowhere);
+            return std::pair(serial.download(state), p);
+        }();
+        auto state = up(b(), host);
+        const auto p = b().run_until_done<test_kernels::countdown>(n, {.step = 1}, reads(), writes(state), nowhere);
+        EXPECT_EQ(b().download(state), expected.first);
+        EXPECT_TRUE(p.finished);
+        EXPECT_EQ(p.passes, expected.second.passes);
+        EXPECT_EQ(p.active, expected.second.active);
+        EXPECT_TRUE(std::is_sorted(p.active.rbegin(), p.active.rend()));
+
+        state = up(b(), host);
+        uint passes = 0;
+        for (bool finished = n == 0; !finished; ++passes) {
+            const auto one = b().run_until_done<test_kernels::countdown>(n, {.step = 1}, reads(), writes(state), 1);
+            ASSERT_LE(one.passes, 1u);
+            ASSERT_LT(passes, 30u);
+            finished = one.finished;
+        }
+        EXPECT_EQ(b().download(state), expected.first);
+        for (const uint most : {0u, 7u, 8u, 9u, 16u, 17u}) {
+            state = up(b(), host);
+            auto reference = up(serial, host);
+            const auto some = b().run_until_done<test_kernels::countdown>(n, {.step = 1}, reads(), writes(state), most);
+            const auto same
+                = serial.run_until_done<test_kernels::countdown>(n, {.step = 1}, reads(), writes(reference), most);
+            EXPECT_EQ(some.passes, same.passes) << most;
+            EXPECT_EQ(some.finished, same.finished) << most;
+            EXPECT_EQ(some.active, same.active) << most;
+            EXPECT_EQ(b().download(state), serial.download(reference)) << most;
+        }
+    }
+}
+
+/// Neighbours of a subgroup tell each other the truth, in all of `run` and `run_until_done`, of any number of elements,
+/// done or not; and a group is one element where the switch is off or subgroups are.
+TEST_F(vulkan, elements_of_a_group_hear_of_each_other)
+{
+    uint most_lanes = 1;
+    for (const bool staging : {false, true})
+        for (const bool subgroups : {true, false})
+            for (const uint switches : {0u, 8u})
+                for (const uint n : {1u, 7u, 64u, 1003u}) {
+                    vulkan_options o;
+                    o.validation = true;
+                    o.staging = staging;
+                    o.subgroups = subgroups;
+                    vulkan_backend device(o);
+                    device.add_texts(test_kernels::texts);
+                    random_source u(n);
+                    std::vector<uint> numbers(n);
+                    std::vector<uvec2> states(n);
+                    for (uint i = 0; i < n; ++i) {
+                        numbers[i] = u.below(1000000);
+                        states[i] = {1 + u.below(11), 0};
+                    }
+                    const auto input = up(device, numbers);
+                    auto state = up(device, states);
+                    auto over_all = device.make<uvec4>(n), of_lanes = device.make<uvec4>(n);
+                    const auto check = [&](bool whole) {
+                        const auto all = device.download(over_all), lanes = device.download(of_lanes);
+                        const uint width = lanes[0].x;
+                        ASSERT_TRUE(width >= 1 && width <= 64 && 64 % width == 0) << width;
+                        EXPECT_TRUE(width == 1 || (switches != 0 && subgroups)) << width;
+                        most_lanes = std::max(most_lanes, width);
+                        for (uint i = 0; i < n; ++i) {
+                            const uint first = i - i % width, past = std::min(first + width, n);
+                            uint low = ~0u, high = 0, up_to = 0, weighed = 0;
+                            bool any = false;
+                            for (uint j = first; j < past; ++j) {
+                                low = std::min(low, numbers[j]);
+                                high = std::max(high, numbers[j]);
+                                up_to += j <= i ? numbers[j] : 0;
+                                weighed += numbers[j] * (j - first + 1);
+                                any = any || numbers[j] % 5 == 0;
+                            }
+                            ASSERT_EQ(all[i], uvec4(low, high, up_to, any ? 1 : 0))
+                                << i << " of " << n << ", groups of " << width;
+                            ASSERT_EQ(lanes[i].y, i - first);
+                            if (whole && past - first == width) {
+                                ASSERT_EQ(lanes[i].z, numbers[first + width / 2]);
+                                ASSERT_EQ(lanes[i].w, weighed);
+                            }
+                        }
+                    };
+                    device.run<test_kernels::group_probe>(
+                        {n, 0u, switches}, {}, reads(input), writes(state, over_all, of_lanes));
+                    check(true);
+                    state = up(device, states);
+                    const auto p = device.run_until_done<test_kernels::group_probe>(
+                        {n, 0u, switches}, {}, reads(input), writes(state, over_all, of_lanes), nowhere);
+                    const auto ends = device.download(state);
+                    uint longest = 0;
+                    for (uint i = 0; i < n; ++i) {
+                        ASSERT_EQ(ends[i], uvec2(0, states[i].x)) << i;
+                        longest = std::max(longest, states[i].x);
+                    }
+                    EXPECT_EQ(p.passes, longest);
+                    ASSERT_EQ(p.active.size(), longest);
+                    for (uint q = 0; q < longest; ++q)
+                        EXPECT_EQ(p.active[q],
+                            static_cast<std::uint64_t>(
+                                std::count_if(states.begin(), states.end(), [&](uvec2 s) { return s.x > q; })));
+                    check(true);
+                    EXPECT_EQ(device.validation_messages(), std::vector<std::string>{});
+                }
+    RecordProperty("lanes", static_cast<int>(most_lanes));
+    std::printf("groups of up to %u elements\n", most_lanes);
+}
+
+/// Points that search together find what each finds alone, bit for bit: close to each other, far apart, or at one
+/// place.
+TEST_F(vulkan, points_that_search_together_find_what_each_finds_alone)
+{
+    vulkan_options apart;
+    apart.subgroups = false;
+    vulkan_options loops;
+    loops.staging = true;
+    vulkan_backend alone(apart), looping(loops);
+    std::size_t number = 0;
+    for (const auto d : all_distributions) {
+        constexpr float steps[] = {0.003f, 0.05f, 1e-5f, 2.0f};
+        const float step = steps[number++ % 4];
+        const auto s = make_photons(d, 3000, uvec3(9, 7, 5), 5);
+        random_source u(7);
+        std::vector<vec4> points;
+        for (const auto& p : make_points(s, 40, 3))
+            for (int i = 0; i < 25; ++i) // runs of neighbours that begin anywhere in a group; some unwanted
+                points.emplace_back(p.x + step * u(), p.y + step * u(), p.z + step * u(), i % 9 == 4 ? 0.0f : 1.0f);
+        // Many of many, so that guesses fail for some of a group and not for others; few, to the radius; in small
+        // passes.
+        for (auto k : {knn_settings{.k = 50, .max_radius = 0.4f},
+                 knn_settings{.k = 50, .max_radius = 0.4f, .search = search_kind::fixed_radius},
+                 knn_settings{.k = 1000, .max_radius = 50}})
+            for (const uint visits : {3072u, 50u}) {
+                k.errors = true;
+                k.visits_per_pass = k.k < 1000 ? visits : 20 * visits / 3;
+                const auto run = [&](vulkan_backend& device) {
+                    const auto map = sorted_map(device, upload_photons(device, s), s.g);
+                    const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(points)), k);
+                    return std::tuple(
+                        device.download(e.irradiance), device.download(e.standard_error), device.download(e.used));
+                };
+                const auto [light, error, used] = run(alone);
+                for (auto* device : {&b(), &looping}) {
+                    const auto [light_too, error_too, used_too] = run(*device);
+                    EXPECT_EQ(count_different_bits(light, light_too), 0u);
+                    EXPECT_EQ(count_different_bits(error, error_too), 0u);
+                    std::size_t differ = 0;
+                    for (std::size_t i = 0; i < used.size(); ++i)
+                        differ += used[i].x != used_too[i].x ? 1u : 0u;
+                    EXPECT_EQ(differ, 0u);
+                    if (device == &looping)
+                        continue;
+                    EXPECT_EQ(count_different_bits(used_too, std::get<2>(run(*device))),
+                        0u); // also what they visited, run to run
+                }
+            }
+    }
+}
+
+TEST_F(vulkan, unfinished_elements_of_a_part_of_a_buffer)
+{
+    const std::vector<uvec2> host(1000, uvec2(12u, 0u));
+    const auto run = [&](auto& backend) {
+        auto state = up(backend, host);
+        backend.template run_until_done<test_kernels::countdown>({333, 400}, {.step = 1}, reads(), writes(state), 10u);
+        return backend.download(state);
+    };
+    EXPECT_EQ(run(b()), run(serial));
+}
+
+TEST_F(vulkan, route_equals_serial_bit_for_bit)
+{
+    for (const std::size_t n : {0u, 1u, 255u, 257u, 5000u, 100000u})
+        for (const uint destinations : {1u, 15u, 16u, 1000u})
+            for (const uint m : {1u, 4u, 16u}) {
+                const auto host = numbers(n, n + destinations);
+                const auto run = [&](auto& backend) {
+                    const auto in = up(backend, host);
+                    // Larger than needed: what nothing is destined for is emptied too. Some draws have no destination.
+                    auto slots = up(backend, std::vector<uint>((destinations + 3) * route_capacity(m), 5u));
+                    auto totals = up(backend, std::vector<vec4>(destinations + 3, vec4(5)));
+                    backend.template route<test_kernels::sends>(launch(n),
+                        {.destinations = destinations + destinations / 10}, reads(in), destinations, m, slots, totals);
+                    return std::pair(backend.download(slots), backend.download(totals));
+                };
+                const auto [slots, totals] = run(b());
+                const auto [expected_slots, expected_totals] = run(serial);
+                EXPECT_EQ(slots, expected_slots) << n << " draws, " << destinations << " destinations, m " << m;
+                EXPECT_EQ(count_different_bits(totals, expected_totals), 0u)
+                    << n << " draws, " << destinations << " destinations, m " << m;
+            }
+}
+
+// --- the algorithms against serial
+// ------------------------------------------------------------------------------------
+
+} // namespace photongrid::testing

@@ -1,0 +1,29 @@
+// What the files of a host give each other. The host has macros that are called like words of photongrid's kernels.
+#pragma once
+
+#define INPUT 1
+#define OUTPUT 2
+#define STATE 3
+#define SWITCH 4
+#define PARAMS 5
+#define GROUP_LANES 6
+#define EACH_LANE 7
+#define IN_GROUPS 8
+#define precise 9
+
+#include HOST_HEADER
+
+#include "../nearest.hpp"
+
+static_assert(INPUT == 1 && OUTPUT == 2 && STATE == 3 && SWITCH == 4 && PARAMS == 5 && GROUP_LANES == 6
+    && EACH_LANE == 7 && IN_GROUPS == 8 && precise == 9);
+
+namespace host {
+
+using device = HOST_DEVICE;
+using map = photongrid::map_buffers<device>;
+
+map map_of_photons(device& d);
+glm::vec4 estimate_at_point(device& d, const map& m);
+
+} // namespace host

@@ -1,0 +1,178 @@
+// Estimates corrected at edges, on any backend.
+#pragma once
+
+#include "edges.hpp"
+
+namespace photongrid::testing {
+
+TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
+{
+    auto& b = this->b();
+    const squares all;
+    const auto scene = upload_scene(b, all.s);
+    const uint n = all.rows * all.rows, photons_each = 200;
+    random_source u(5);
+    photon_set set;
+    set.g = make_grid(scene.layout.low, scene.layout.high, {96, 1, 96});
+    for (uint i = 0; i < n * photons_each; ++i) { // so many on the average: a Poisson process
+        const dvec3 p = all.corner(u.below(n)) + dvec3(u(), 0, u()) - scene.layout.center;
+        set.positions.emplace_back(glm::vec3(p), 0.0f);
+        set.powers.emplace_back(1.0f / photons_each);
+    }
+    const auto map = sorted_map(b, upload_photons(b, set), set.g);
+    std::vector<glm::vec4> points, normals;
+    for (uint i = 0; i < n; ++i)
+        for (const auto& at : {dvec3(0.5, 0, 0.5), dvec3(0.5, 0, 0), dvec3(0.5, 0, 1), dvec3(0, 0, 0.5),
+                 dvec3(1, 0, 0.5), dvec3(0, 0, 0), dvec3(1, 0, 0), dvec3(0, 0, 1), dvec3(1, 0, 1)}) {
+            points.emplace_back(glm::vec3(all.corner(i) + at - scene.layout.center), 1.0f);
+            normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
+        }
+    const auto p = b.upload(std::span<const glm::vec4>(points)), np = b.upload(std::span<const glm::vec4>(normals));
+    for (const auto search : {search_kind::exact_k, search_kind::fixed_radius})
+        for (const auto kernel : kernels_over_discs) {
+            knn_settings k{.k = 16, .max_radius = search == search_kind::exact_k ? 0.5f : 0.3f, .min_radius = 1e-6f};
+            k.search = search;
+            k.kernel = kernel;
+            k.errors = true;
+            auto e = knn_grid_estimate(b, map, p, np, k);
+            const auto plain = b.download(e.irradiance), plain_errors = b.download(e.standard_error);
+            correct_edges(b, scene, p, np, e, kernel, k.min_radius);
+            const auto whole = b.download(e.irradiance), errors = b.download(e.standard_error);
+            const char* places[] = {"middle", "edge", "corner"};
+            for (int place = 0; place < 3; ++place) {
+                double sum = 0, squared = 0, error = 0, without = 0, m = 0;
+                for (std::size_t i = 0; i < points.size(); ++i)
+                    if ((i % 9 == 0 ? 0 : i % 9 < 5 ? 1 : 2) == place) {
+                        const double v = static_cast<double>(whole[i].x);
+                        sum += v, squared += v * v, m += 1;
+                        error += static_cast<double>(errors[i].x);
+                        without += static_cast<double>(plain[i].x);
+                        EXPECT_EQ(whole[i].w, plain[i].w) << "the radius stays";
+                        if (plain[i].x > 0) {
+                            EXPECT_NEAR(errors[i].w / whole[i].x, plain_errors[i].w / plain[i].x, 1e-5f)
+                                << "the relative error stays";
+                        }
+                    }
+                const double mean = sum / m, spread = std::sqrt(squared / m - mean * mean),
+                             known = place == 0 ? 1
+                    : place == 1                ? 0.5
+                                                : 0.25;
+                const auto where = std::string(places[place]) + ", kernel " + std::to_string(int(kernel)) + ", search "
+                    + std::to_string(int(search));
+                EXPECT_NEAR(mean, 1, 4 * spread / std::sqrt(m)) << where;
+                EXPECT_NEAR(without / m, known, 4 * known * spread / std::sqrt(m)) << where;
+                EXPECT_NEAR(error / m, spread, 0.15 * spread) << where << ": standard error reported";
+                EXPECT_LE(4 * spread / std::sqrt(m), place == 0 ? 0.12 : 0.06) << "the test sees enough";
+            }
+        }
+}
+
+TYPED_TEST_P(edges, a_floor_lit_by_a_mirror_is_right_up_to_its_rim)
+{
+    // A bulb below a mirror: caustic light falls onto the floor as from a bulb as far above the mirror.
+    scene s;
+    s.materials = {{"white", material_kind::lambertian, dvec3(0.5)}, {"mirror", material_kind::mirror, dvec3(1)}};
+    s.polygons
+        = {{{{-0.5, 0, -0.5}, {-0.5, 0, 0.5}, {0.5, 0, 0.5}}, 0}, {{{-0.5, 0, -0.5}, {0.5, 0, 0.5}, {0.5, 0, -0.5}}, 0},
+            {{{-3, 1.25, -3}, {3, 1.25, -3}, {3, 1.25, 3}, {-3, 1.25, 3}}, 1}};
+    const double height = 1.5, power = 100;
+    s.point_lights = {{"bulb", {0, 1, 0}, dvec3(power)}};
+    s.camera = {{0, 1.2, 0}, {0, 0, 0}, {0, 0, -1}, glm::degrees(2 * std::atan(0.5 / 1.2)) - 0.01};
+    s.render = {.width = 48, .height = 48, .photons = 15000, .k = 100, .grid = {40, 1, 40}, .max_radius = 0.2};
+    s.render.only = light_part::caustic;
+    s.render.leaks = {.side = true, .min_cosine = 0.5f};
+    s.render.aov = true;
+    image pictures[2];
+    render_stats stats[2];
+    const auto built = build_map(this->b(), s, s.render, {}, stats[0]);
+    for (const bool corrected : {false, true}) {
+        auto settings = s.render;
+        settings.edges = corrected ? edge_correction::polygons : edge_correction::none;
+        pictures[corrected] = draw(this->b(), built, s.camera, settings, {}, stats[corrected]);
+        double sums[3] = {}, counts[3] = {};
+        for (uint y = 0; y < 48; ++y)
+            for (uint x = 0; x < 48; ++x) {
+                const double fx = (x + 0.5) / 48 - 0.5, fz = (y + 0.5) / 48 - 0.5,
+                             d2 = height * height + fx * fx + fz * fz;
+                const double known = 0.5 / M_PI * power / (4 * M_PI) * height / (d2 * std::sqrt(d2)); // radiance
+                const uint across = std::min(x, 47 - x), down = std::min(y, 47 - y);
+                const int place = across < 1 && down < 1                   ? 2
+                    : (across < 1 && down > 5) || (down < 1 && across > 5) ? 1
+                    : across > 6 && down > 6                               ? 0
+                                                                           : -1;
+                if (place >= 0) {
+                    sums[place] += static_cast<double>(pictures[corrected].pixels[y * 48 + x].x) / known;
+                    counts[place] += 1;
+                }
+            }
+        for (double* v : {&sums[0], &sums[1], &sums[2]})
+            *v /= counts[v - sums];
+        std::printf("edges: light over the known, %s: inside %.3f, rim %.3f, corners %.3f\n",
+            corrected ? "corrected" : "as it is", sums[0], sums[1], sums[2]);
+        // Discs have some 0.045 m radius, pixels of the rim lie 0.01 m inside.
+        EXPECT_NEAR(sums[0], 1, 0.05);
+        if (corrected) {
+            EXPECT_NEAR(
+                sums[1], 1, 0.09); // four standard errors: a disc sees to 14 %, and some fifty lie along the rim
+            EXPECT_NEAR(sums[2], 1, 0.28);
+        } else {
+            EXPECT_LT(sums[1], 0.8);
+            EXPECT_LT(sums[2], 0.65);
+        }
+    }
+    // What estimates say of themselves stays.
+    EXPECT_EQ(stats[0].estimate.mean_count, stats[1].estimate.mean_count);
+    EXPECT_EQ(stats[0].estimate.mean_radius, stats[1].estimate.mean_radius);
+    EXPECT_EQ(count_different_bits(pictures[0].layers.radius, pictures[1].layers.radius), 0u);
+    for (std::size_t i = 0; i < pictures[0].pixels.size(); ++i)
+        ASSERT_NEAR(pictures[0].layers.relative_error[i], pictures[1].layers.relative_error[i], 1e-5f);
+}
+
+TYPED_TEST_P(edges, pictures_equal_the_serial_backends)
+{
+    auto& b = this->b();
+    for (auto s : {small_cornell(), all_shapes()})
+        for (const auto search : {search_kind::at_least_k, search_kind::exact_k}) {
+            s.render.width = s.render.height = 32;
+            s.render.photons = 2000;
+            s.render.edges = edge_correction::polygons;
+            s.render.leaks.min_cosine = 0.5f;
+            s.render.search = search;
+            serial_backend serial;
+            render_stats stats;
+            const auto mine = render(b, s, s.render, {}, stats);
+            EXPECT_EQ(stats.invalid_pixels, 0u);
+            if (b.caps().exact_division && b.caps().exact_sqrt) {
+                EXPECT_LE(relative_mse(mine, render(serial, s, s.render, {}, stats)), 1e-9);
+            }
+            s.render.edges = edge_correction::none;
+            EXPECT_GT(relative_mse(mine, render(b, s, s.render, {}, stats)), 1e-4);
+        }
+}
+
+TYPED_TEST_P(edges, correction_needs_the_normals_policy)
+{
+    const auto s = small_cornell();
+    for (const leak_policy& leaks :
+        {leak_policy{}, leak_policy{.side = true}, leak_policy{.side = true, .compression = 4},
+            leak_policy{.min_cosine = 0}, leak_policy{.min_cosine = -0.5f}}) {
+        auto settings = s.render;
+        settings.leaks = leaks;
+        EXPECT_NO_THROW(check(settings));
+        settings.edges = edge_correction::polygons;
+        render_stats stats;
+        try {
+            render(this->b(), s, settings, {}, stats);
+            FAIL() << "corrected with the light of adjoining walls";
+        } catch (const std::invalid_argument& e) {
+            EXPECT_EQ(std::string(e.what()).find("edge_correction: "), 0u) << e.what();
+            EXPECT_NE(std::string(e.what()).find("needs the leak policy normals"), std::string::npos) << e.what();
+        }
+        settings.leaks.min_cosine = 0.25f;
+        EXPECT_NO_THROW(check(settings));
+        EXPECT_EQ(as_paper(settings).edges, edge_correction::none);
+        EXPECT_NO_THROW(check(as_paper(settings)));
+    }
+}
+
+} // namespace photongrid::testing

@@ -1,0 +1,140 @@
+// What estimates are worth on the average: the expectation of every kernel on a uniform field, and whether the standard
+// error that an estimate reports is the spread that estimates have. On the serial backend; the others equal it bit for
+// bit.
+#include "../backends/serial_algorithms.hpp"
+#include "../map/photon_sets.hpp"
+
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+
+#include <gtest/gtest.h>
+
+namespace photongrid::testing {
+namespace {
+
+    using glm::vec4;
+
+    constexpr const char* kernel_names[] = {"constant", "cone", "epanechnikov", "silverman"};
+    constexpr filter_kernel kernels_of_estimates[]
+        = {filter_kernel::constant, filter_kernel::cone, filter_kernel::epanechnikov, filter_kernel::silverman};
+
+    /// n photons of power 1/n on the unit square: the irradiance is 1 everywhere.
+    map_buffers<serial_backend> uniform_field(serial_backend& b, std::size_t n, uint cells, std::uint64_t seed)
+    {
+        random_source u(seed);
+        photon_set s;
+        s.g = make_grid(glm::vec3(0), glm::vec3(1, 0, 1), {cells, 1, cells});
+        for (std::size_t i = 0; i < n; ++i) {
+            s.positions.emplace_back(u(), 0.0f, u(), 0.0f);
+            s.powers.emplace_back(vec4(1.0f / static_cast<float>(n)));
+        }
+        return sorted_map(b, upload_photons(b, s), s.g);
+    }
+
+    TEST(estimates, every_kernel_has_expectation_one_on_a_uniform_field)
+    {
+        serial_backend b;
+        struct row {
+            search_kind search;
+            bias_kind bias;
+            filter_kernel kernel;
+            uint k;
+            double low, high; ///< what the mean may be
+            double sum = 0, squares = 0;
+        };
+        std::vector<row> rows;
+        for (const uint k : {32u, 100u})
+            for (const auto kernel : kernels_of_estimates)
+                rows.push_back({search_kind::exact_k, bias_kind::unbiased, kernel, k, 0.995, 1.005});
+        for (const auto kernel : kernels_of_estimates)
+            rows.push_back({search_kind::fixed_radius, bias_kind::unbiased, kernel, 0, 0.995, 1.005});
+        rows.push_back(
+            {search_kind::exact_k, bias_kind::paper, filter_kernel::constant, 32, 0.995 * 32 / 31, 1.005 * 32 / 31});
+        rows.push_back({search_kind::at_least_k, bias_kind::unbiased, filter_kernel::constant, 32, 0.995, 1.022});
+        constexpr int maps = 6, points = 6000;
+        for (int m = 0; m < maps; ++m) {
+            const auto map = uniform_field(b, 400000, 160, 100 + static_cast<std::uint64_t>(m));
+            random_source u(static_cast<std::uint64_t>(m));
+            std::vector<vec4> at;
+            for (int i = 0; i < points; ++i)
+                at.emplace_back(0.1f + 0.8f * u(), 0.0f, 0.1f + 0.8f * u(), 1.0f);
+            const auto device_points = b.upload(std::span<const vec4>(at));
+            for (auto& r : rows) {
+                knn_settings s{.k = r.k, .max_radius = r.search == search_kind::fixed_radius ? 0.006f : 0.1f};
+                s.search = r.search;
+                s.bias = r.bias;
+                s.kernel = r.kernel;
+                for (const auto& e : b.download(knn_grid_estimate(b, map, device_points, s).irradiance)) {
+                    r.sum += static_cast<double>(e.x);
+                    r.squares += static_cast<double>(e.x) * static_cast<double>(e.x);
+                }
+            }
+        }
+        constexpr const char* searches[] = {"at_least_k", "exact_k", "fixed_radius"};
+        std::printf("| search | bias | kernel | k | mean | spread |\n|---|---|---|---|---|---|\n");
+        for (const auto& r : rows) {
+            const double mean = r.sum / (maps * points), spread = std::sqrt(r.squares / (maps * points) - mean * mean);
+            std::printf("| %s | %s | %s | %u | %.4f | %.3f |\n", searches[static_cast<int>(r.search)],
+                r.bias == bias_kind::paper ? "paper" : "unbiased", kernel_names[static_cast<int>(r.kernel)], r.k, mean,
+                spread);
+            EXPECT_GE(mean, r.low) << kernel_names[static_cast<int>(r.kernel)] << " k " << r.k;
+            EXPECT_LE(mean, r.high) << kernel_names[static_cast<int>(r.kernel)] << " k " << r.k;
+        }
+    }
+
+    TEST(estimates, report_the_standard_error_that_they_have)
+    {
+        // Over 1,000 maps, the mean of the reported error is within 10 % of the spread of the estimates.
+        serial_backend b;
+        struct row {
+            search_kind search;
+            bias_kind bias;
+            filter_kernel kernel;
+            double sum = 0, squares = 0, errors = 0;
+        };
+        std::vector<row> rows;
+        for (const auto kernel : kernels_of_estimates)
+            for (const auto search : {search_kind::exact_k, search_kind::fixed_radius, search_kind::at_least_k})
+                for (const auto bias : {bias_kind::unbiased, bias_kind::paper})
+                    if (bias == bias_kind::unbiased || search == search_kind::exact_k)
+                        rows.push_back({search, bias, kernel});
+        const std::vector<vec4> at(1, vec4(0.5f, 0.0f, 0.5f, 1.0f));
+        const auto points = b.upload(std::span<const vec4>(at));
+        constexpr int maps = 1000;
+        for (int m = 0; m < maps; ++m) {
+            const auto map = uniform_field(b, 2000, 16, 5000 + static_cast<std::uint64_t>(m));
+            for (auto& r : rows) {
+                knn_settings s{.k = 50, .max_radius = r.search == search_kind::fixed_radius ? 0.09f : 0.5f};
+                s.search = r.search;
+                s.bias = r.bias;
+                s.kernel = r.kernel;
+                s.errors = true;
+                const auto e = knn_grid_estimate(b, map, points, s);
+                const auto value = static_cast<double>(b.download(e.irradiance)[0].x);
+                r.sum += value;
+                r.squares += value * value;
+                r.errors += static_cast<double>(b.download(e.standard_error)[0].x);
+            }
+        }
+        for (const auto& r : rows) {
+            const double mean = r.sum / maps, spread = std::sqrt((r.squares - maps * mean * mean) / (maps - 1)),
+                         reported = r.errors / maps;
+            std::printf("search %d bias %d %s: spread %.4f, reported %.4f\n", int(r.search), int(r.bias),
+                kernel_names[static_cast<int>(r.kernel)], spread, reported);
+            EXPECT_NEAR(reported / spread, 1, 0.1) << "search " << int(r.search) << " bias " << int(r.bias) << " "
+                                                   << kernel_names[static_cast<int>(r.kernel)];
+        }
+    }
+
+    TEST(estimates, the_error_of_the_channels_sum_knows_that_channels_go_together)
+    {
+        serial_backend b;
+        const auto map = uniform_field(b, 5000, 16, 1);
+        const std::vector<vec4> at(1, vec4(0.5f, 0.0f, 0.5f, 1.0f));
+        knn_settings s{.k = 50, .max_radius = 0.5f};
+        s.errors = true;
+        const auto e = b.download(knn_grid_estimate(b, map, b.upload(std::span<const vec4>(at)), s).standard_error)[0];
+        EXPECT_NEAR(e.w, e.x + e.y + e.z, 1e-5f * e.w); // grey photons: not the root of the sum of squares
+    }
+
+} // namespace
+} // namespace photongrid::testing

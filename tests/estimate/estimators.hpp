@@ -1,0 +1,111 @@
+// The fixture of tests of estimates on any backend: brute force in double, all that can be chosen.
+#pragma once
+
+#include "../backend/under_test.hpp"
+#include "../backends/serial_algorithms.hpp"
+#include "../map/photon_sets.hpp"
+#include "known_answers.hpp"
+
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+
+namespace photongrid::testing {
+
+using glm::uvec2;
+using glm::uvec3;
+using glm::vec4;
+
+inline constexpr search_kind all_searches[]
+    = {search_kind::at_least_k, search_kind::exact_k, search_kind::fixed_radius};
+inline constexpr filter_kernel all_kernels_of_estimates[]
+    = {filter_kernel::constant, filter_kernel::cone, filter_kernel::epanechnikov, filter_kernel::silverman};
+inline constexpr bias_kind all_biases[] = {bias_kind::paper, bias_kind::unbiased};
+inline const leak_policy all_policies[] = {{}, {.side = true}, {.min_cosine = 0.3f}, {.compression = 3},
+    {.side = true, .min_cosine = -0.5f, .compression = 1.5f}};
+
+template <backend B>
+photons<B> upload_photons(B& b, const oriented_set& s)
+{
+    auto p = upload_photons(b, s.photons);
+    p.directions = b.upload(std::span<const vec4>(s.directions));
+    p.normals = b.upload(std::span<const vec4>(s.normals));
+    return p;
+}
+
+template <class Tag>
+class estimators : public on_backend<Tag> {
+protected:
+    using B = typename Tag::type;
+
+    /// A map, and what brute force has to know of it.
+    struct known_map {
+        map_buffers<B> map;
+        std::vector<uint> ids;    ///< of the photons in the map
+        std::vector<vec4> powers; ///< by id: routing has changed them
+    };
+    known_map known(const oriented_set& s, bool routed)
+    {
+        auto& b = this->b();
+        known_map m{routed ? routed_map(b, upload_photons(b, s), s.photons.g, 3, 5)
+                           : sorted_map(b, upload_photons(b, s), s.photons.g),
+            {}, std::vector<vec4>(s.photons.positions.size())};
+        const auto list = b.download(m.map.list);
+        const auto stored = b.download(m.map.photons.powers);
+        for (const auto& c : b.download(m.map.cells))
+            for (uint at = c.x; at < c.x + c.y; ++at) {
+                m.ids.push_back(list[at]);
+                m.powers[list[at]] = stored[at];
+            }
+        return m;
+    }
+
+    /// Runs one search over a map of `s` and compares every point with brute force; returns what differs, or nothing.
+    std::string difference(const oriented_set& s, const known_map& m, knn_settings settings)
+    {
+        auto& b = this->b();
+        // Errors always, but for the paper's own estimate, which has a path of its own without them.
+        settings.errors = settings.search != search_kind::at_least_k || settings.kernel != filter_kernel::constant
+            || settings.bias != bias_kind::paper;
+        const auto points = b.upload(std::span<const vec4>(s.points));
+        const auto normals = b.upload(std::span<const vec4>(s.point_normals));
+        const auto e = knn_grid_estimate(b, m.map, points, normals, settings);
+        const auto irradiance = b.download(e.irradiance);
+        const auto used = b.download(e.used);
+        const auto standard_error = b.download(e.standard_error);
+        for (std::size_t q = 0; q < s.points.size(); ++q) {
+            const auto expected = estimate_by_force(s, m.ids, m.powers, q, settings, irradiance[q].w);
+            const auto where = " at point " + std::to_string(q);
+            if (used[q].x != expected.ids.size())
+                return "used " + std::to_string(used[q].x) + ", not " + std::to_string(expected.ids.size()) + where;
+            if (static_cast<double>(irradiance[q].w) != expected.radius2)
+                return "squared radius " + std::to_string(irradiance[q].w) + ", not " + std::to_string(expected.radius2)
+                    + where;
+            // The sum is zero or tells the set: powers are random.
+            for (int c = 0; c < 3; ++c) {
+                const double error = std::abs(static_cast<double>(irradiance[q][c]) - expected.irradiance[c]);
+                if (!(error <= 4e-6 * expected.irradiance[c] + 1e-6 * expected.irradiance.x))
+                    return "channel " + std::to_string(c) + " is " + std::to_string(irradiance[q][c]) + ", not "
+                        + std::to_string(expected.irradiance[c]) + where;
+                if (error > 0)
+                    largest_error_ = std::max(largest_error_, error / expected.irradiance[c]);
+            }
+            for (int c = 0; settings.errors && c < 4; ++c)
+                if (!(std::abs(static_cast<double>(standard_error[q][c]) - expected.standard_error[c])
+                        <= 4e-6 * expected.standard_error[c] + 1e-6 * expected.irradiance.x))
+                    return "standard error " + std::to_string(c) + " is " + std::to_string(standard_error[q][c])
+                        + ", not " + std::to_string(expected.standard_error[c]) + where;
+        }
+        return {};
+    }
+
+    double largest_error_ = 0; ///< of irradiance, relative, so far
+};
+TYPED_TEST_SUITE_P(estimators);
+
+} // namespace photongrid::testing

@@ -1,0 +1,174 @@
+// Every kind of search finds the photons that brute force and FLANN find, on any backend.
+#pragma once
+
+#include "estimators.hpp"
+
+namespace photongrid::testing {
+
+TYPED_TEST_P(estimators, every_combination_equals_brute_force)
+{
+    const auto s = make_oriented(distribution::box_faces, 900, {6, 6, 12}, 60, 3);
+    for (const bool routed : {false, true}) {
+        const auto map = this->known(s, routed);
+        for (const auto search : all_searches)
+            for (const auto kernel : all_kernels_of_estimates)
+                for (const auto bias : all_biases)
+                    for (const auto& leaks : all_policies) {
+                        knn_settings k{.k = 30, .max_radius = 0.4f, .min_radius = 1e-6f};
+                        k.search = search;
+                        k.kernel = kernel;
+                        k.bias = bias;
+                        k.leaks = leaks;
+                        ASSERT_EQ(this->difference(s, map, k), "")
+                            << "search " << int(search) << " kernel " << int(kernel) << " bias " << int(bias)
+                            << " side " << leaks.side << " cosine " << leaks.min_cosine << " compression "
+                            << leaks.compression;
+                    }
+    }
+    this->report("A10_policies",
+        "largest relative error of irradiance, every search, kernel, bias and policy:", this->largest_error_);
+}
+
+TYPED_TEST_P(estimators, exact_k_finds_flanns_photons_on_every_distribution)
+{
+    auto& b = this->b();
+    EXPECT_TRUE(rc::check("k-th squared distance = FLANN's bit for bit, set = brute force, ties by id", [&] {
+        const auto d = *rc::gen::elementOf(
+            std::vector<distribution>(std::begin(all_distributions), std::end(all_distributions)));
+        const auto resolution
+            = *rc::gen::element(uvec3(1, 1, 1), uvec3(20, 1, 20), uvec3(5, 5, 10), uvec3(1, 1, 40), uvec3(7, 3, 2));
+        const auto n = *rc::gen::element(0, 1, 2, 7, 40, 700);
+        const auto k = *rc::gen::element(1u, 2u, 3u, 8u, 50u, 333u, 5000u);
+        const auto radius = *rc::gen::element(1e-4f, 0.03f, 0.2f, 0.7f, 10.0f);
+        const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1000000);
+        const auto visits = *rc::gen::element(1u, 64u, 3072u);
+        const auto s = make_oriented(d, static_cast<std::size_t>(n), resolution, 30, seed);
+        knn_settings settings{.k = k, .max_radius = radius, .min_radius = 1e-9f};
+        settings.bias = bias_kind::paper;
+        settings.visits_per_pass = visits;
+        settings.ranges_per_pass = visits == 1 ? 2 : 1023;
+        const auto what = this->difference(s, this->known(s, false), settings);
+        if (!what.empty())
+            RC_FAIL(what);
+
+        if (static_cast<uint>(n) >= k) {
+            const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
+            const auto irradiance
+                = b.download(knn_grid_estimate(b, map, b.upload(std::span<const vec4>(s.points)), settings).irradiance);
+            const auto known = kth_by_flann(s.photons.positions, s.points, k);
+            for (std::size_t q = 0; q < s.points.size(); ++q) {
+                RC_ASSERT(known[q].has_value());
+                const float kth = *known[q] < std::numeric_limits<float>::min() ? 0.0f : *known[q];
+                if (kth <= radius * radius)
+                    RC_ASSERT(irradiance[q].w == kth);
+            }
+        }
+    }));
+}
+
+TYPED_TEST_P(estimators, ties_at_the_kth_distance_go_by_id)
+{
+    // 70,000 photons at one place, 20 nearer: of the k = 520 nearest, 500 are the tied ones with the smallest ids.
+    auto& b = this->b();
+    photon_set set;
+    set.g = make_grid(glm::vec3(0), glm::vec3(1), {3, 3, 3});
+    random_source u(5);
+    for (uint i = 0; i < 70020; ++i) {
+        const bool nearer = i % 3501 == 17;
+        set.positions.emplace_back(nearer ? 0.5f : 0.75f, 0.5f, 0.5f, 0.0f);
+        set.powers.emplace_back(u(), u(), u(), 0.0f);
+    }
+    knn_settings settings{.k = 520, .max_radius = 1};
+    settings.bias = bias_kind::paper;
+    const auto map = sorted_map(b, upload_photons(b, set), set.g);
+    const std::vector<vec4> points(1, vec4(0.5f, 0.5f, 0.5f, 1.0f));
+    const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), settings);
+    glm::dvec3 flux(0);
+    uint tied = 0;
+    for (uint i = 0; i < 70020; ++i) {
+        const bool nearer = i % 3501 == 17;
+        if (nearer || tied++ < 500)
+            flux += glm::dvec3(set.powers[i]);
+    }
+    EXPECT_EQ(b.download(e.used)[0].x, 520u);
+    const auto irradiance = b.download(e.irradiance)[0];
+    EXPECT_EQ(irradiance.w, 0.0625f);
+    double largest = 0;
+    for (int c = 0; c < 3; ++c) {
+        const double expected = flux[c] / (M_PI * 0.0625);
+        largest = std::max(largest, std::abs(static_cast<double>(irradiance[c]) / expected - 1));
+        EXPECT_NEAR(irradiance[c], expected, 2e-6 * expected);
+    }
+    this->report("F3", "relative error of irradiance of the 520 nearest of 70,020, 70,000 of them tied:", largest);
+}
+
+TYPED_TEST_P(estimators, ties_in_many_cells_go_by_id)
+{
+    // A lattice has dozens of photons at the same distance, here with ids that have nothing to do with their cells.
+    oriented_set s;
+    s.photons.g = make_grid(glm::vec3(0), glm::vec3(1), {5, 4, 5});
+    for (int i = 0; i < 729; ++i)
+        s.photons.positions.emplace_back(0.125f * static_cast<float>(i % 9), 0.125f * static_cast<float>(i / 9 % 9),
+            0.125f * static_cast<float>(i / 81), 0.0f);
+    random_source u(8);
+    for (uint i = 728; i > 0; --i)
+        std::swap(s.photons.positions[i], s.photons.positions[u.below(i + 1)]);
+    for (int i = 0; i < 729; ++i)
+        s.photons.powers.emplace_back(u(), u(), u(), 0.0f);
+    for (int i = 0; i < 125; ++i)
+        s.points.emplace_back(0.25f * static_cast<float>(i % 5), 0.25f * static_cast<float>(i / 5 % 5),
+            0.25f * static_cast<float>(i / 25), 1.0f);
+    s.directions.assign(729, vec4(0, -1, 0, 0));
+    s.normals.assign(729, vec4(0, 1, 0, 0));
+    s.point_normals.assign(125, vec4(0, 1, 0, 0));
+    const auto map = this->known(s, false);
+    for (const uint k : {1u, 4u, 13u, 50u})
+        for (const auto bias : all_biases) {
+            knn_settings settings{.k = k, .max_radius = 2, .min_radius = 1e-3f};
+            settings.bias = bias;
+            EXPECT_EQ(this->difference(s, map, settings), "") << "k " << k << " bias " << int(bias);
+        }
+}
+
+TYPED_TEST_P(estimators, squared_distances_too_small_for_a_float_count_as_zero)
+{
+    // Points that follow each other, so close to a photon that from one to the next its squared distance underflows.
+    oriented_set s;
+    s.photons.g = make_grid(glm::vec3(0), glm::vec3(1), {3, 3, 3});
+    s.photons.positions = {{0.5f, 0, 0, 0}, {1.1e-19f, 0, 0, 0}, {0.25f, 0, 0, 0}, {1.12e-19f, 0, 0, 0}};
+    s.photons.powers = {{1, 2, 3, 0}, {5, 7, 11, 0}, {13, 17, 19, 0}, {23, 29, 31, 0}};
+    for (int i = 0; i < 20; ++i)
+        s.points.emplace_back(static_cast<float>(i) * 5e-21f, 0.0f, 0.0f, 1.0f);
+    s.directions.assign(4, vec4(0, -1, 0, 0));
+    s.normals.assign(4, vec4(0, 1, 0, 0));
+    s.point_normals.assign(20, vec4(0, 1, 0, 0));
+    const auto map = this->known(s, false);
+    for (const uint k : {1u, 2u, 3u}) {
+        knn_settings settings{.k = k, .max_radius = 1, .min_radius = 1e-3f};
+        settings.bias = bias_kind::paper;
+        EXPECT_EQ(this->difference(s, map, settings), "") << "k " << k;
+    }
+}
+
+TYPED_TEST_P(estimators, distances_next_to_each_other_are_told_apart)
+{
+    // Squared distances two roundings apart, some of them twice: every pivot of the k-th's search lies at a photon or
+    // next to one.
+    oriented_set s;
+    s.photons.g = make_grid(glm::vec3(0), glm::vec3(2), {1, 1, 1});
+    random_source u(31);
+    for (int i = 0; i < 300; ++i) {
+        s.photons.positions.emplace_back(1 + static_cast<float>(u.below(200)) * 0x1p-23f, 0.0f, 0.0f, 0.0f);
+        s.photons.powers.emplace_back(u(), u(), u(), 0.0f);
+    }
+    s.points = {{0.0f, 0.0f, 0.0f, 1.0f}};
+    s.point_normals = {{0.0f, 1.0f, 0.0f, 0.0f}};
+    const auto map = this->known(s, false);
+    for (uint k = 1; k <= 300; k += 13) {
+        knn_settings settings{.k = k, .max_radius = 2};
+        settings.bias = bias_kind::paper;
+        EXPECT_EQ(this->difference(s, map, settings), "") << "k " << k;
+    }
+}
+
+} // namespace photongrid::testing

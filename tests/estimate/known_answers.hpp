@@ -1,0 +1,48 @@
+// What tests compare with that is not ours: brute force, integration, FLANN. Compiled once (known_answers.cpp).
+#pragma once
+
+#include "../map/photon_sets.hpp"
+
+#include <photongrid/estimate/estimate_settings.hpp>
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace photongrid::testing {
+
+/// Photons with directions and normals, points with normals.
+struct oriented_set {
+    photon_set photons;
+    std::vector<glm::vec4> directions, normals, points, point_normals;
+};
+
+oriented_set make_oriented(
+    distribution d, std::size_t n, glm::uvec3 resolution, std::size_t points, std::uint64_t seed);
+
+/// One estimate by brute force.
+struct brute_estimate {
+    std::vector<uint> ids; ///< by (distance, id); those within the radius
+    double radius2 = 0;
+    bool kth = false; ///< a photon set the radius
+    glm::dvec3 irradiance{0};
+    glm::dvec4 standard_error{0}; ///< w: of the sum of the channels
+};
+
+/// Squared distance as the search measures it, or nothing where a policy rejects the photon. Written out in single
+/// precision, in the order that photon_distance.glsl promises.
+std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std::size_t id, const leak_policy& leaks);
+
+/// `at_least_radius2`: what the at-least-k search says it used, since that depends on the order of cells.
+brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>& in_map,
+    const std::vector<glm::vec4>& powers, std::size_t q, const knn_settings& k, float at_least_radius2);
+
+/// Squared distance of each point's k-th nearest photon by FLANN's tree, m^2; none where there are fewer than k.
+std::vector<std::optional<float>> kth_by_flann(
+    const std::vector<glm::vec4>& positions, const std::vector<glm::vec4>& points, uint k);
+
+/// The share of a disc on a convex polygon of the same plane, by kernel: lines across the disc, each cut by all edges.
+/// Lines are laid between the heights of the polygon's corners, evenly in the arc sine of their height.
+glm::dvec4 share_by_lines(const std::vector<glm::dvec2>& corners, glm::dvec2 center, double radius);
+
+} // namespace photongrid::testing

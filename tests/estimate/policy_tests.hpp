@@ -1,0 +1,199 @@
+// Faces, rims, walls, refusals and watched searches, on any backend.
+#pragma once
+
+#include "estimators.hpp"
+
+namespace photongrid::testing {
+
+TYPED_TEST_P(estimators, a_photon_on_a_face_is_found_from_any_distance)
+{
+    // One photon on a face between cells, points on its axis: its distance and the cell that the radius reaches round
+    // apart.
+    auto& b = this->b();
+    for (const int axis : {0, 1, 2})
+        for (const int face : {13, 22, 37}) {
+            photon_set set;
+            uvec3 resolution(1);
+            resolution[axis] = 40;
+            set.g = make_grid(glm::vec3(0), glm::vec3(1), resolution);
+            glm::vec3 p(0.5f);
+            p[axis] = static_cast<float>(face) / 40.0f;
+            set.positions.emplace_back(p, 0.0f);
+            set.powers.emplace_back(1.0f);
+            random_source u(static_cast<std::uint64_t>(face));
+            std::vector<vec4> points;
+            for (int i = 0; i < 5000; ++i) {
+                p[axis] = 6 * u() - 3;
+                points.emplace_back(p, 1.0f);
+            }
+            knn_settings k{.k = 1, .max_radius = 10};
+            k.bias = bias_kind::paper;
+            const auto map = sorted_map(b, upload_photons(b, set), set.g);
+            std::size_t lost = 0;
+            for (const auto& n : b.download(knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), k).used))
+                lost += n.x != 1 ? 1u : 0u;
+            EXPECT_EQ(lost, 0u) << "axis " << axis << " face " << face;
+        }
+}
+
+TYPED_TEST_P(estimators, a_radius_holds_the_photons_on_its_rim)
+{
+    // Eight photons at the radius itself, to the bit, one just beyond, one inside.
+    auto& b = this->b();
+    photon_set set;
+    set.g = make_grid(glm::vec3(0), glm::vec3(1), {4, 4, 4});
+    for (int i = 0; i < 8; ++i)
+        set.positions.emplace_back(i < 2 ? 0.5f + (i == 0 ? 0.25f : -0.25f) : 0.5f,
+            i >= 2 && i < 4 ? 0.5f + (i == 2 ? 0.25f : -0.25f) : 0.5f,
+            i >= 4 ? 0.5f + (i % 2 == 0 ? 0.25f : -0.25f) : 0.5f, 0.0f);
+    set.positions.emplace_back(0.75000006f, 0.5f, 0.5f, 0.0f);
+    set.positions.emplace_back(0.5f, 0.5f, 0.5f, 0.0f);
+    set.powers.assign(10, vec4(1.0f));
+    const auto map = sorted_map(b, upload_photons(b, set), set.g);
+    const auto points = b.upload(std::span<const vec4>(std::vector<vec4>(1, {0.5f, 0.5f, 0.5f, 1.0f})));
+    for (const auto search : all_searches)
+        for (const auto bias : all_biases) {
+            knn_settings k{.k = 100, .max_radius = 0.25f};
+            k.search = search;
+            k.bias = bias;
+            const auto e = knn_grid_estimate(b, map, points, k);
+            EXPECT_EQ(b.download(e.used)[0].x, 9u) << int(search);
+            EXPECT_NEAR(b.download(e.irradiance)[0].x, 9 / (M_PI * 0.0625), 1e-4)
+                << int(search); // the radius is given: none is left out
+        }
+}
+
+TYPED_TEST_P(estimators, no_light_comes_through_a_thin_wall)
+{
+    // A wall 0.01 thick, lit from above; photons on its upper side and on the floor of a corner beside it.
+    auto& b = this->b();
+    random_source u(9);
+    oriented_set s;
+    s.photons.g = make_grid(glm::vec3(0), glm::vec3(1), {10, 10, 10});
+    for (int i = 0; i < 2000; ++i) {
+        s.photons.positions.emplace_back(u(), 0.51f, u(), 0.0f);
+        s.photons.powers.emplace_back(1.0f);
+        s.directions.emplace_back(0.0f, -1.0f, 0.0f, 0.0f);
+        s.normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
+    }
+    s.points = {{0.5f, 0.51f, 0.5f, 1.0f}, {0.5f, 0.5f, 0.5f, 1.0f}};
+    s.point_normals = {{0.0f, 1.0f, 0.0f, 0.0f}, {0.0f, -1.0f, 0.0f, 0.0f}};
+    const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
+    const auto points = b.upload(std::span<const vec4>(s.points)),
+               normals = b.upload(std::span<const vec4>(s.point_normals));
+    double leaked = 0;
+    for (const auto search : all_searches) {
+        knn_settings k{.k = 50, .max_radius = 0.1f};
+        k.search = search;
+        const auto leaking = b.download(knn_grid_estimate(b, map, points, normals, k).irradiance);
+        EXPECT_GT(leaking[1].x, 0.5f * leaking[0].x);
+        for (const leak_policy& leaks :
+            {leak_policy{.side = true}, leak_policy{.min_cosine = 0.5f}, leak_policy{.compression = 11}}) {
+            k.leaks = leaks;
+            const auto e = knn_grid_estimate(b, map, points, normals, k);
+            const auto kept = b.download(e.irradiance);
+            EXPECT_EQ(kept[0].x, leaking[0].x); // what was right stays
+            EXPECT_EQ(kept[1].x, 0.0f);
+            EXPECT_EQ(b.download(e.used)[1].x, 0u);
+            leaked = std::max(leaked, static_cast<double>(kept[1].x));
+        }
+    }
+    this->report("A10", "irradiance on the dark side of a wall under any policy:", leaked);
+}
+
+TYPED_TEST_P(estimators, searches_refuse_what_they_cannot_do)
+{
+    auto& b = this->b();
+    const auto set = make_photons(distribution::uniform, 100, {4, 4, 4}, 1);
+    const auto map = sorted_map(b, upload_photons(b, set), set.g);
+    const auto points = b.upload(std::span<const vec4>(make_points(set, 10, 1)));
+    knn_settings k{.k = 5, .max_radius = 1};
+    k.leaks.side = true;
+    EXPECT_THROW(knn_grid_estimate(b, map, points, k), std::invalid_argument);         // no normals of points
+    EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument); // no directions of photons
+    k.leaks = {.min_cosine = 0.5f};
+    EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument); // no normals of photons
+    k.leaks = {.compression = 0.5f};
+    EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument);
+    k.leaks = {.compression = std::numeric_limits<float>::quiet_NaN()};
+    EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument);
+}
+
+TYPED_TEST_P(estimators, searches_can_be_watched_and_resumed)
+{
+    auto& b = this->b();
+    const auto s = make_oriented(distribution::clustered, 4000, {12, 12, 12}, 1200, 2);
+    const auto at = b.upload(std::span<const vec4>(s.points));
+    const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
+    for (const auto search : all_searches) {
+        knn_settings k{.k = 200, .max_radius = 0.3f};
+        k.search = search;
+        k.errors = true;
+        const auto whole = knn_grid_estimate(b, map, at, k);
+        k.visits_per_pass = 100; // another budget, the same result
+        k.ranges_per_pass = 20;
+        knn_search<typename TestFixture::B> watched(b, map, at, k);
+        std::size_t passes = 0;
+        for (bool finished = false; !finished && passes < 100000; ++passes) {
+            const auto p = watched.advance(1);
+            ASSERT_LE(p.passes, 1u);
+            finished = p.finished;
+            const auto now = watched.estimates();
+            for (const auto& e : b.download(now.irradiance))
+                ASSERT_TRUE(std::isfinite(e.x) && std::isfinite(e.w));
+            for (const auto& e : b.download(now.standard_error))
+                ASSERT_TRUE(std::isfinite(e.w) && e.w >= 0);
+            for (const auto& u : b.download(now.used))
+                ASSERT_LE(u.x, 4000u);
+        }
+        EXPECT_GT(passes, 4u);
+        EXPECT_EQ(count_different_bits(b.download(watched.estimates().irradiance), b.download(whole.irradiance)), 0u)
+            << int(search);
+        EXPECT_EQ(
+            count_different_bits(b.download(watched.estimates().standard_error), b.download(whole.standard_error)), 0u);
+        EXPECT_EQ(count_different_bits(b.download(watched.estimates().used), b.download(whole.used)), 0u);
+        EXPECT_TRUE(watched.advance(5).finished);
+    }
+}
+
+TYPED_TEST_P(estimators, equal_the_serial_backends_bit_for_bit)
+{
+    auto& b = this->b();
+    serial_backend serial;
+    for (const auto d : all_distributions)
+        for (const auto resolution : {uvec3(1, 1, 1), uvec3(9, 9, 18)})
+            for (const auto search : all_searches) {
+                const auto s = make_oriented(d, 3000, resolution, 300, 11);
+                const auto run = [&](auto& device) {
+                    knn_settings k{.k = 64, .max_radius = 0.25f};
+                    k.search = search;
+                    k.kernel = filter_kernel::epanechnikov;
+                    k.leaks = {.side = true, .compression = 2};
+                    k.errors = true;
+                    const auto map = sorted_map(device, upload_photons(device, s), s.photons.g);
+                    const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(s.points)),
+                        device.upload(std::span<const vec4>(s.point_normals)), k);
+                    return std::tuple{
+                        device.download(e.irradiance), device.download(e.used), device.download(e.standard_error)};
+                };
+                const auto [irradiance, used, errors] = run(b);
+                const auto [irradiance_s, used_s, errors_s] = run(serial);
+                const auto where = std::string(name_of(d)) + " search " + std::to_string(int(search));
+                // Which photons: the same everywhere. How many were looked at, and their light, where division rounds
+                // correctly.
+                for (std::size_t i = 0; i < used.size(); ++i) {
+                    ASSERT_EQ(used[i].x, used_s[i].x) << where;
+                    ASSERT_EQ(irradiance[i].w, irradiance_s[i].w) << where;
+                    const float tolerance = adds_as_serial<TypeParam>() ? 1e-5f : 1e-6f;
+                    ASSERT_NEAR(irradiance[i].x, irradiance_s[i].x, tolerance * irradiance_s[i].x) << where;
+                    ASSERT_NEAR(errors[i].w, errors_s[i].w, tolerance * errors_s[i].w) << where;
+                }
+                if (b.caps().exact_division && b.caps().exact_sqrt && adds_as_serial<TypeParam>()) {
+                    EXPECT_EQ(count_different_bits(irradiance, irradiance_s), 0u) << where;
+                    EXPECT_EQ(count_different_bits(used, used_s), 0u) << where;
+                    EXPECT_EQ(count_different_bits(errors, errors_s), 0u) << where;
+                }
+            }
+}
+
+} // namespace photongrid::testing

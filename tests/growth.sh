@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Is the library still cheap to add to? A shape that is named in many files is one whose neighbour must be written into as
+# many (docs/guide/add_a_shape.md). Counts the files, tests and docs apart, that name one.
+#
+#   tests/growth.sh
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+most=5
+
+status=0
+# What to look for, whatever its case: words that nothing else is called.
+for words in paraboloid 'scene/box|<box>|const box&|(hit|closest)_box'; do
+  files=$(grep -rliE "$words" --include='*.hpp' --include='*.cpp' --include='*.glsl' --include='*.json' --include='*.cmake' \
+    --include='*.sh' --include='CMakeLists.txt' include backends bench cmake examples CMakeLists.txt | sort)
+  files=$(while read -r file; do if [[ ! -L $file ]]; then echo "$file"; fi; done <<<"$files") # a link is another file's name
+  count=$(grep -c . <<<"$files" || true)
+  echo "$words: $count files"
+  if ((count == 0 || count > most)); then
+    sed 's/^/  /' <<<"$files"
+    echo "growth: expected 1 to $most files that name it: take it from for_each_shape() where the others need not know it"
+    status=1
+  fi
+done
+exit $status

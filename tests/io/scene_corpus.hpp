@@ -1,0 +1,108 @@
+// What the reader of scene files promises for any bytes at all. The fuzzer (fuzz_scene.cpp) and the replay of the
+// committed corpus (scene_corpus.cpp) hold it to the same function.
+#pragma once
+
+#include "scene_file.hpp"
+
+#include <photongrid/map/map_buffers.hpp>
+#include <photongrid/trace/device_scene.hpp>
+
+#include <algorithm>
+#include <string>
+
+namespace photongrid::testing {
+
+namespace detail {
+    /// A message for people: it names the file and a place that exists, is no novel, and cannot upset a terminal.
+    inline std::string broken_in_message(const scene_error& e, std::string_view text)
+    {
+        const std::string_view said = e.what();
+        const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
+        if (!said.starts_with("s.json") || said.find(": error: ") == std::string_view::npos)
+            return "the message names no file: " + std::string(said);
+        if (e.line > lines || e.column > text.size() + 1 || (e.line > 0 && e.column < 1))
+            return "the message names a place outside the text: " + std::string(said);
+        if (said.size() > 2000)
+            return "the message has " + std::to_string(said.size()) + " bytes";
+        if (std::any_of(
+                said.begin(), said.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }))
+            return "the message has control characters";
+        return "";
+    }
+
+    /// What kernels assume of a laid-out scene without looking: finite records, unit normals and axes, ranges that
+    /// exist.
+    inline std::string broken_in_layout(const scene_layout& r, const scene& s)
+    {
+        const auto unit = [](const glm::vec4& v) { return std::abs(glm::length(glm::dvec3(v)) - 1) < 1e-5; };
+        for (const auto& v : r.records)
+            if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z) || !std::isfinite(v.w))
+                return "a record is not finite";
+        const float round_share = r.records[kernels::SCENE_SIZES].x;
+        if (!std::isfinite(round_share) || round_share < 0)
+            return "the share of round shapes in ray offsets is not finite";
+        const auto quadrics = r.table(photongrid::detail::quadric_number), disks = r.table(shape_kind<disk>::number),
+                   polygons = r.table(shape_kind<polygon>::number), materials = r.table(kernels::MATERIAL_TABLE),
+                   lights = r.table(kernels::LIGHT_TABLE);
+        if (polygons.count != s.polygons.size() + s.rectangle_lights.size() || materials.count != s.materials.size()
+            || lights.count != count_lights(s))
+            return "a table has lost something";
+        std::size_t shapes = polygons.count, next = kernels::SCENE_TABLES;
+        for (uint number = 0; number < kernels::SCENE_TABLES; ++number)
+            if (number != shape_kind<polygon>::number && number != kernels::MATERIAL_TABLE
+                && number != kernels::SCENE_SIZES && number != kernels::LIGHT_TABLE) {
+                const auto t = r.table(number);
+                shapes += t.count;
+                next += t.count * t.stride;
+            }
+        if (shapes != count_shapes(s) + s.rectangle_lights.size())
+            return "a shape is in no table";
+        if (polygons.first != next)
+            return "the tables of the shapes do not follow each other";
+        for (uint n = 0; n < polygons.count; ++n) {
+            if (next + 1 >= r.records.size() || !unit(r.records[next]))
+                return "the normal of a polygon is not a unit vector";
+            next += 2 + 2 * static_cast<std::size_t>(r.records[next + 1].x); // each edge is a record, and each vertex
+        }
+        if (materials.first != next || lights.first != next + materials.count * materials.stride
+            || r.records.size() != lights.first + lights.count * lights.stride)
+            return "materials, lights and the end do not follow the polygons";
+        for (uint n = 0, i = quadrics.first; n < quadrics.count; ++n, i += quadrics.stride)
+            if (!unit(r.records[i + 1]) || !unit(r.records[i + 2]) || !unit(r.records[i + 3]))
+                return "the axes of a cylinder, cone or paraboloid are not unit vectors";
+        for (uint n = 0, i = disks.first; n < disks.count; ++n, i += disks.stride)
+            if (!unit(r.records[i]))
+                return "the normal of a disk is not a unit vector";
+        return "";
+    }
+} // namespace detail
+
+/// Reads `text` as a scene and lays it out for a device. Returns what was broken of the promise, or "": either a good
+/// scene_error, or a scene that check() takes and that lay_out() takes or refuses with std::invalid_argument.
+inline std::string broken_promise(std::string_view text)
+{
+    try {
+        scene s;
+        try {
+            s = parse_scene("s.json", std::string(text));
+        } catch (const scene_error& e) {
+            return detail::broken_in_message(e, text);
+        }
+        try {
+            check(s);
+        } catch (const std::invalid_argument& e) {
+            return std::string("check() refuses what the reader took: ") + e.what();
+        }
+        try {
+            const auto records = lay_out(s);
+            make_grid(records.low, records.high, s.render.grid);
+            return detail::broken_in_layout(records, s);
+        } catch (const std::invalid_argument&) {
+            return ""; // no Lambertian surface, or too large for single precision
+        }
+    } catch (const std::exception& e) {
+        return std::string("an exception that the documentation does not name: ") + e.what();
+    }
+}
+
+} // namespace photongrid::testing

@@ -1,0 +1,135 @@
+// Damage, the paper's scenes, the schema, and written scenes.
+#pragma once
+
+#include "scene_texts.hpp"
+
+namespace photongrid {
+namespace {
+
+    // Whatever is cut off or changed, the reader answers with a scene or a scene_error.
+    TEST(scene_file, survives_damage)
+    {
+        const auto whole = text(good);
+        for (std::size_t n = 0; n < whole.size() - 2; ++n)
+            EXPECT_NE(refusal(whole.substr(0, n)), "") << n;
+        std::uint32_t state = 1;
+        for (int i = 0; i < 20'000; ++i) {
+            auto damaged = whole;
+            for (int changes = 0; changes < 3; ++changes) {
+                state = state * 1664525u + 1013904223u;
+                damaged[(state >> 8) % damaged.size()] = "0-9e.,:[]{}\"\\ntx\x00\xff"[(state >> 4) % 18];
+            }
+            refusal(damaged);
+        }
+    }
+
+    // Table 1 of the paper.
+    TEST(scene_file, the_papers_scenes)
+    {
+        struct row {
+            const char* name;
+            glm::uvec2 size;
+            std::uint32_t light_samples, photons, k;
+            glm::uvec3 grid;
+        };
+        for (const auto& r : {row{"glass_ball", {512, 384}, 4, 5'000, 32, {250, 1, 250}},
+                 row{"ring", {512, 384}, 1, 16'000, 64, {250, 1, 250}},
+                 row{"cornell_box", {512, 512}, 32, 65'000, 500, {25, 25, 50}},
+                 row{"cornell_blocks", {512, 512}, 32, 65'000, 500, {25, 25, 50}}}) {
+            SCOPED_TRACE(r.name);
+            const auto s = read_scene(scenes + "/" + r.name + ".json");
+            EXPECT_NO_THROW(check(s));
+            EXPECT_EQ(s.name, r.name);
+            EXPECT_EQ(glm::uvec2(s.render.width, s.render.height), r.size);
+            EXPECT_EQ(s.render.light_samples, r.light_samples);
+            EXPECT_EQ(s.render.spp, 1u);
+            EXPECT_EQ(s.render.photons, r.photons);
+            EXPECT_EQ(s.render.k, r.k);
+            EXPECT_EQ(s.render.grid, r.grid);
+            EXPECT_EQ(s.render.search, render_settings().search) << "they leave the kind of estimate to the library";
+            EXPECT_EQ(s.render.bias, render_settings().bias);
+            EXPECT_EQ(s.render.edges, render_settings().edges);
+            EXPECT_EQ(s.render.leaks.side, render_settings().leaks.side);
+        }
+        EXPECT_EQ(read_scene(scenes + "/ring.json").point_lights.size(), 1u);
+        const auto box = read_scene(scenes + "/cornell_box.json");
+        ASSERT_EQ(box.rectangle_lights.size(), 1u);
+        const auto& lamp = box.rectangle_lights[0];
+        EXPECT_LT(glm::cross(lamp.edge_u, lamp.edge_v).y, 0) << "the lamp shines down";
+        EXPECT_DOUBLE_EQ(lamp.corner.y, 0.5487) << "a little under the ceiling";
+        EXPECT_EQ(box.spheres.size(), 2u);
+        EXPECT_EQ(read_scene(scenes + "/cornell_blocks.json").polygons.size(), 16u);
+    }
+
+    // Every object of the schema has the keys that the reader knows, and requires those that it requires.
+    TEST(scene_file, the_schema_agrees)
+    {
+        const auto schema = nlohmann::json::parse(std::ifstream(scenes + "/photongrid-scene.schema.json"));
+        std::set<std::string> objects;
+        for (const auto& [name, definition] : schema.at("$defs").items())
+            if (definition.contains("properties"))
+                objects.insert(name);
+        for (const auto& o : known_objects()) {
+            SCOPED_TRACE(o.name);
+            EXPECT_EQ(objects.erase(o.name), 1u);
+            std::set<std::string> keys{"comment"}, required;
+            for (const auto& k : o.keys) {
+                keys.insert(k.name);
+                if (k.required)
+                    required.insert(k.name);
+            }
+            const auto& definition = schema["$defs"][o.name];
+            std::set<std::string> schema_keys;
+            for (const auto& [key, about] : definition.at("properties").items())
+                schema_keys.insert(key);
+            EXPECT_EQ(schema_keys, keys);
+            EXPECT_EQ(definition.at("required").get<std::set<std::string>>(), required);
+            EXPECT_EQ(definition.at("additionalProperties"), false);
+        }
+        EXPECT_TRUE(objects.empty()) << *objects.begin();
+    }
+
+    TEST(scene_writer, what_it_writes_reads_as_the_same_scene)
+    {
+        std::size_t scenes_read = 0;
+        for (const auto& folder : {scenes, std::string(PHOTONGRID_SCENE_CORPUS)})
+            for (const auto& f : std::filesystem::directory_iterator(folder)) {
+                if (f.path().extension() != ".json" || f.path().filename() == "photongrid-scene.schema.json")
+                    continue;
+                scene s;
+                try {
+                    s = read_scene(f.path().string());
+                } catch (const scene_error&) {
+                    continue;
+                }
+                ++scenes_read;
+                const auto text = scene_text(s, s.render);
+                const auto again = parse_scene("again.json", text);
+                EXPECT_TRUE(again == s) << f.path() << " is written as\n" << text;
+                EXPECT_EQ(scene_text(again, again.render), text);
+            }
+        EXPECT_GE(scenes_read, 20u);
+    }
+
+    TEST(scene_writer, materials_are_told_apart)
+    {
+        auto s = parse_scene("s.json", text(good));
+        s.name.clear();
+        s.materials[0].name.clear();
+        s.materials.push_back(s.materials[1]); // "clear", twice
+        s.materials[2].index_of_refraction = 1.7;
+        s.materials.push_back({"material 2", material_kind::mirror, dvec3(0.1, 1.0 / 3, 0.9)});
+        s.spheres.push_back({{5, 1, 0}, 0.1, 2});
+        s.spheres.push_back({{7, 1, 0}, 0.1, 3});
+        const auto again = parse_scene("again.json", scene_text(s, s.render));
+        ASSERT_EQ(again.materials.size(), 4u);
+        for (std::size_t i = 0; i < 4; ++i) {
+            EXPECT_EQ(again.materials[i].kind, s.materials[i].kind);
+            EXPECT_EQ(again.materials[i].reflectance, s.materials[i].reflectance);
+        }
+        EXPECT_EQ(again.spheres, s.spheres);
+        EXPECT_EQ(again.materials[2].index_of_refraction, 1.7);
+    }
+
+} // namespace
+} // namespace photongrid

@@ -1,0 +1,133 @@
+// Photon maps in files that somebody or something has changed: an error each, that says what is wrong; never a crash, a
+// hang or another map. The serial backend; map_file_tests.hpp has all of them.
+#include "../backends/on_serial.hpp"
+#include "map_file_tests.hpp"
+
+namespace photongrid::testing {
+namespace {
+
+    class damaged_map_files : public ::testing::Test {
+    protected:
+        damaged_map_files()
+        {
+            const auto set = make_photons(distribution::box_faces, 100, {4, 3, 5}, 1);
+            save_map(b, sorted_map(b, upload_photons(b, set), set.g), folder / "map", "a note of 18 bytes");
+            whole = bytes_of(folder / "map");
+        }
+        /// What load_map() says of these bytes; empty when it takes them.
+        std::string complaint(const std::string& bytes)
+        {
+            write_bytes(folder / "changed", bytes);
+            try {
+                (void)load_map(b, folder / "changed");
+                return {};
+            } catch (const map_file_error& e) {
+                EXPECT_EQ(std::string(e.what()).find((folder / "changed").string()), 0u) << e.what();
+                return e.what();
+            }
+        }
+        /// The same with its checksum put right.
+        static std::string summed(std::string bytes)
+        {
+            detail::map_file_header header;
+            std::memcpy(&header, bytes.data(), sizeof header);
+            header.checksum = 0;
+            std::memcpy(bytes.data(), &header, sizeof header);
+            detail::map_file_checksum sum;
+            sum.add(reinterpret_cast<const std::byte*>(bytes.data()), bytes.size());
+            header.checksum = sum.value();
+            std::memcpy(bytes.data(), &header, sizeof header);
+            return bytes;
+        }
+
+        serial_backend b;
+        temporary_folder folder;
+        std::string whole;
+    };
+
+    TEST_F(damaged_map_files, are_told_by_any_byte)
+    {
+        ASSERT_EQ(complaint(whole), "");
+        for (std::size_t at = 0; at < whole.size(); ++at)
+            for (const int bit : {0, 7}) {
+                auto changed = whole;
+                changed[at] = static_cast<char>(changed[at] ^ (1 << bit));
+                EXPECT_NE(complaint(changed), "") << "bit " << bit << " of byte " << at;
+            }
+    }
+
+    TEST_F(damaged_map_files, keep_the_callers_note)
+    {
+        std::string note = "old";
+        (void)load_map(b, folder / "map", &note);
+        EXPECT_EQ(note, "a note of 18 bytes");
+    }
+
+    TEST_F(damaged_map_files, are_told_when_cut_short_or_longer)
+    {
+        for (std::size_t n = 0; n < whole.size(); n += n < 200 ? 1 : 61)
+            EXPECT_NE(complaint(whole.substr(0, n)), "") << n << " bytes";
+        EXPECT_NE(complaint(whole + std::string(64, '\0')), "");
+        EXPECT_NE(complaint(summed(whole + std::string(64, '\0'))), "");
+    }
+
+    TEST_F(damaged_map_files, are_refused_for_what_they_are)
+    {
+        EXPECT_THROW((void)load_map(b, folder / "none"), map_file_error);
+        EXPECT_THROW((void)load_map(b, folder / "."), map_file_error);
+        EXPECT_NE(complaint("PNG or whatever").find("is not a photon map"), std::string::npos);
+        auto newer = whole;
+        newer[8] = 2;
+        EXPECT_NE(complaint(newer).find("version 2"), std::string::npos);
+        auto other = whole;
+        std::swap(other[12], other[15]);
+        std::swap(other[13], other[14]);
+        EXPECT_NE(complaint(other).find("order of bytes"), std::string::npos);
+    }
+
+    TEST_F(damaged_map_files, made_with_care_are_refused_too)
+    {
+        ASSERT_EQ(summed(whole), whole);
+        // Every word of the header, and the first cells: a wrong one is seen, or it is one of those that only tell a
+        // number.
+        const std::size_t harmless[] = {offsetof(detail::map_file_header, invalid),
+            offsetof(detail::map_file_header, left_out), offsetof(detail::map_file_header, overfull_cells),
+            offsetof(detail::map_file_header, checksum), offsetof(detail::map_file_header, checksum) + 4};
+        for (std::size_t at = 8; at < sizeof(detail::map_file_header) + 64; at += 4) {
+            const bool is_header = at < sizeof(detail::map_file_header);
+            constexpr std::size_t lattice = offsetof(detail::map_file_header, cells_of),
+                                  resolution = lattice + offsetof(grid, resolution);
+            const bool is_lattice = at >= lattice && at < resolution;
+            if (std::find(std::begin(harmless), std::end(harmless), at) != std::end(harmless))
+                continue;
+            if (is_lattice && (at - lattice) % 16 == 12)
+                continue; // fourth components are not read
+            const std::uint32_t values[] = {0x7FC00000u, 0xFFFFFFFFu, 0xFFFFFF00u};
+            for (const auto value : values) {
+                auto changed = whole;
+                std::memcpy(changed.data() + at, &value, 4);
+                EXPECT_NE(complaint(summed(changed)), "")
+                    << "word at " << at << (is_header ? " of the header" : " of the cells") << " = " << value;
+            }
+        }
+    }
+
+    TEST_F(damaged_map_files, are_never_left_by_a_failed_save)
+    {
+        const auto set = make_photons(distribution::uniform, 10, {2, 2, 2}, 1);
+        const auto map = sorted_map(b, upload_photons(b, set), set.g);
+        EXPECT_THROW(save_map(b, map, folder / "no/such/folder"), map_file_error);
+        std::filesystem::create_directory(folder / "occupied");
+        write_bytes(folder / "occupied/file", "x");
+        EXPECT_THROW(save_map(b, map, folder / "occupied"), map_file_error);
+        EXPECT_FALSE(std::filesystem::exists(folder / "occupied.part"));
+        save_map(b, map, folder / "map"); // over an older one
+        EXPECT_EQ(load_map(b, folder / "map").photons.size(), 10u);
+        EXPECT_FALSE(std::filesystem::exists(folder / "map.part"));
+    }
+
+} // namespace
+
+INSTANTIATE_TYPED_TEST_SUITE_P(serial, map_files, ::testing::Types<serial_tag>);
+
+} // namespace photongrid::testing

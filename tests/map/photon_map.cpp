@@ -1,0 +1,332 @@
+// photon_map and point_index, as hosts use them: against brute force, FLANN, searches for many points on serial, from
+// many threads, with doubles far from 0, and what must not compile.
+#include "host_map_devices.hpp"
+#include "photon_sets.hpp"
+
+#include <photongrid/photon_map.hpp>
+#include <photongrid/point_index.hpp>
+
+#include <flann/flann.hpp>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <array>
+#include <random>
+#include <thread>
+
+namespace photongrid::testing {
+
+namespace {
+    struct host_photon {
+        glm::vec3 position;
+        glm::vec3 flux;
+        glm::vec3 direction;
+        glm::vec3 normal;
+    };
+
+    /// Photons in a slab; on a lattice of few steps where `ties` are wanted.
+    std::vector<host_photon> some_photons(uint seed, std::size_t n, bool ties)
+    {
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<float> unit(0, 1);
+        const auto number = [&] { return ties ? std::floor(8 * unit(random)) / 8 : unit(random); };
+        std::vector<host_photon> photons(n);
+        for (auto& p : photons) {
+            p.position = {2 * number(), number(), 0.25f * number()};
+            p.flux = {unit(random), unit(random), unit(random)};
+            p.direction = glm::normalize(glm::vec3(unit(random) - 0.5f, unit(random) - 0.5f, unit(random) - 0.7f));
+            p.normal = glm::normalize(glm::vec3(unit(random) - 0.5f, unit(random) - 0.5f, unit(random) + 0.2f));
+        }
+        return photons;
+    }
+    std::vector<glm::vec3> some_places(uint seed, std::size_t n, bool ties)
+    {
+        std::vector<glm::vec3> places;
+        for (const auto& p : some_photons(seed + 1000, n, ties))
+            places.push_back(p.position * 1.2f - 0.1f * (ties ? 0.0f : 1.0f));
+        return places;
+    }
+
+    using neighbours_of_point = std::vector<std::pair<float, photon_id>>;
+    /// Every photon by distance and id, the specification's distances.
+    neighbours_of_point by_brute_force(const std::vector<host_photon>& photons, glm::vec3 p)
+    {
+        neighbours_of_point all;
+        for (uint i = 0; i < photons.size(); ++i) {
+            const float dx = photons[i].position.x - p.x, dy = photons[i].position.y - p.y,
+                        dz = photons[i].position.z - p.z;
+            const float xx = dx * dx, yy = dy * dy, zz = dz * dz, xy = xx + yy;
+            all.emplace_back(xy + zz, i);
+        }
+        std::sort(all.begin(), all.end());
+        return all;
+    }
+
+    constexpr glm::vec3 up{0, 0, 1};
+} // namespace
+
+template <class B>
+class host_maps : public ::testing::Test {
+protected:
+    B device_ = make_device<B>();
+};
+TYPED_TEST_SUITE(host_maps, map_devices);
+
+RC_GTEST_PROP(host_map_properties, nearest_are_those_of_brute_force, ())
+{
+    const auto seed = *rc::gen::inRange(0u, 1000000u);
+    const auto n = *rc::gen::inRange(0u, 600u), k = *rc::gen::inRange(1u, 70u);
+    const bool ties = *rc::gen::arbitrary<bool>();
+    const auto photons = some_photons(seed, n, ties);
+    serial_backend device;
+    const photon_map map(device, photons, {.k = k});
+    query_scratch scratch;
+    for (const auto& p : some_places(seed, 20, ties)) {
+        auto expected = by_brute_force(photons, p);
+        neighbours_of_point within, nearest;
+        const float radius = 0.3f;
+        map.for_each_within(p, radius, [&](photon_id id, float d2) { within.emplace_back(d2, id); });
+        std::sort(within.begin(), within.end());
+        neighbours_of_point expected_within;
+        std::copy_if(expected.begin(), expected.end(), std::back_inserter(expected_within),
+            [&](const auto& e) { return e.first <= radius * radius; });
+        RC_ASSERT(within == expected_within);
+        expected.resize(std::min<std::size_t>(k, n));
+        map.for_each_nearest(p, k, scratch, [&](photon_id id, float d2) { nearest.emplace_back(d2, id); });
+        RC_ASSERT(nearest == expected);
+    }
+}
+
+/// Every kernel, bias and policy: the single query has the radius and the photons of the search for many points, to the
+/// bit, and its light to rounding.
+TYPED_TEST(host_maps, one_place_at_a_time_gives_what_many_give)
+{
+    serial_backend serial;
+    query_scratch scratch;
+    int cases = 0;
+    for (const bool ties : {false, true})
+        for (const auto search : {search_kind::exact_k, search_kind::fixed_radius})
+            for (const auto kernel :
+                {filter_kernel::constant, filter_kernel::cone, filter_kernel::epanechnikov, filter_kernel::silverman})
+                for (const auto bias : {bias_kind::paper, bias_kind::unbiased})
+                    for (const auto& leaks : {leak_policy{}, leak_policy{.side = true}, leak_policy{.min_cosine = 0.3f},
+                             leak_policy{.compression = 3}})
+                        for (const float most : {0.05f, 0.4f}) {
+                            const knn_settings s{.k = 20,
+                                .max_radius = most,
+                                .search = search,
+                                .kernel = kernel,
+                                .bias = bias,
+                                .leaks = leaks};
+                            const auto photons = some_photons(7 + static_cast<uint>(cases++), 800, ties);
+                            const auto places = some_places(7, 40, ties);
+                            const std::vector<glm::vec3> normals(places.size(), up);
+                            const photon_map many(serial, photons, s);
+                            const photon_map one(this->device_, photons, s);
+                            const auto expected = many.irradiance(places, normals, {.standard_error = true});
+                            for (std::size_t i = 0; i < places.size(); ++i) {
+                                const auto e = one.irradiance(places[i], up, scratch);
+                                ASSERT_EQ(e.radius, expected[i].radius);
+                                ASSERT_EQ(e.count, expected[i].count);
+                                for (int c = 0; c < 3; ++c) {
+                                    ASSERT_NEAR(
+                                        e.value[c], expected[i].value[c], 1e-5f * expected[i].value[c] + 1e-12f);
+                                    ASSERT_NEAR(
+                                        e.error[c], expected[i].error[c], 1e-4f * expected[i].error[c] + 1e-12f);
+                                }
+                                ASSERT_NEAR(e.error_of_sum, expected[i].error_of_sum,
+                                    1e-4f * expected[i].error_of_sum + 1e-12f);
+                            }
+                        }
+    EXPECT_EQ(cases, 2 * 2 * 4 * 2 * 4 * 2);
+}
+
+TYPED_TEST(host_maps, many_places_give_named_results)
+{
+    const auto photons = some_photons(3, 5000, false);
+    const auto places = some_places(3, 100, false);
+    const photon_map map(this->device_, photons, {.k = 30});
+    EXPECT_EQ(map.size(), 5000u);
+    const auto plain = map.irradiance(places), with_error = map.irradiance(places, {.standard_error = true});
+    ASSERT_EQ(plain.size(), places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const auto nearest = by_brute_force(photons, places[i]);
+        EXPECT_EQ(plain[i].count, 30u);
+        EXPECT_EQ(plain[i].radius, std::sqrt(nearest[29].first));
+        EXPECT_EQ(plain[i].value, with_error[i].value);
+        EXPECT_EQ(plain[i].error, glm::vec3(0));
+        EXPECT_GT(with_error[i].error.x, 0.0f);
+    }
+}
+
+TYPED_TEST(host_maps, attributes_that_lie_apart_give_the_same_map)
+{
+    const auto photons = some_photons(4, 3000, false);
+    std::vector<std::array<float, 3>> positions;
+    std::vector<glm::vec3> powers, normals;
+    for (const auto& p : photons) {
+        positions.push_back({p.position.x, p.position.y, p.position.z});
+        powers.push_back(p.flux);
+        normals.push_back(p.normal);
+    }
+    const auto places = some_places(4, 50, false);
+    const photon_map whole(this->device_, photons, {.k = 20});
+    const photon_map apart(this->device_, {.positions = positions, .powers = powers, .normals = normals}, {.k = 20});
+    const auto a = whole.irradiance(places), b = apart.irradiance(places);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        EXPECT_EQ(a[i].value, b[i].value);
+        EXPECT_EQ(a[i].radius, b[i].radius);
+    }
+    try {
+        photon_map(this->device_, {.positions = positions});
+        FAIL() << "photons without power";
+    } catch (const std::invalid_argument& e) {
+        EXPECT_STREQ(e.what(), "photon_map: powers: 0 elements for 3000 photons; each needs one");
+    }
+}
+
+/// Single queries from eight threads on one map, while this thread searches for many places on its device.
+TYPED_TEST(host_maps, any_thread_may_ask)
+{
+    const auto photons = some_photons(5, 20000, false);
+    const auto places = some_places(5, 400, false);
+    const photon_map map(this->device_, photons, {.k = 50});
+    std::vector<irradiance_at_point> expected;
+    query_scratch scratch;
+    for (const auto& p : places)
+        expected.push_back(map.irradiance(p, up, scratch));
+    std::atomic<int> wrong = 0;
+    {
+        std::vector<std::jthread> threads;
+        for (int t = 0; t < 8; ++t)
+            threads.emplace_back([&, t] {
+                query_scratch mine;
+                for (std::size_t i = 0; i < places.size(); ++i) {
+                    const auto at = (i + static_cast<std::size_t>(t) * 50) % places.size();
+                    const auto e = map.irradiance(places[at], up, mine);
+                    uint within = 0;
+                    map.for_each_within(places[at], e.radius, [&](photon_id, float) { ++within; });
+                    wrong += e.value != expected[at].value || within + 1 < e.count ? 1 : 0;
+                }
+            });
+        for (int round = 0; round < 3; ++round)
+            EXPECT_EQ(map.irradiance(places).size(), places.size());
+    }
+    EXPECT_EQ(wrong, 0);
+}
+
+/// Points every 0.1 m along a line, as far from 0 as UTM's coordinates are.
+TYPED_TEST(host_maps, doubles_far_from_zero_are_told_apart)
+{
+    struct surveyed {
+        double x, y, z;
+    };
+    std::vector<surveyed> points;
+    for (int i = 0; i < 1000; ++i)
+        points.push_back({500000 + 0.1 * i, 5400000.0, 310});
+    const point_index index(this->device_, points, 5);
+    const std::vector<surveyed> places{points[436], points[3]};
+    const auto nearest = index.nearest(places, 5);
+    ASSERT_EQ(nearest.size(), 2u);
+    EXPECT_EQ(nearest[0][0], (point_neighbour{436, 0}));
+    for (std::size_t i = 1; i < 5; ++i) {
+        EXPECT_NEAR(std::sqrt(nearest[0][i].distance2), 0.1 * static_cast<double>((i + 1) / 2), 1e-4);
+        EXPECT_LE(std::abs(static_cast<int>(nearest[0][i].id) - 436), 2);
+    }
+    query_scratch scratch;
+    std::vector<photon_id> ids;
+    index.for_each_nearest(places[1], 3, scratch, [&](photon_id id, float) { ids.push_back(id); });
+    std::sort(ids.begin(), ids.end());
+    EXPECT_EQ(ids, (std::vector<photon_id>{2, 3, 4}));
+}
+
+TYPED_TEST(host_maps, points_that_are_not_light_agree_with_flann)
+{
+    const auto photons = some_photons(6, 4000, false);
+    std::vector<glm::vec3> points;
+    for (const auto& p : photons)
+        points.push_back(p.position);
+    auto places = some_places(6, 100, false);
+    const point_index index(this->device_, points);
+    constexpr uint k = 12;
+    const auto nearest = index.nearest(places, k);
+
+    flann::Matrix<float> data(&points[0].x, points.size(), 3), queries(&places[0].x, places.size(), 3);
+    flann::Index<flann::L2<float>> tree(data, flann::KDTreeSingleIndexParams());
+    tree.buildIndex();
+    std::vector<std::vector<int>> ids;
+    std::vector<std::vector<float>> distances2;
+    tree.knnSearch(queries, ids, distances2, k, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+    constexpr float radius = 0.2f;
+    const auto counts = index.count_within(places, radius);
+    const auto within = index.within(places, radius);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        ASSERT_EQ(nearest[i].size(), k);
+        for (std::size_t j = 0; j < k; ++j)
+            EXPECT_FLOAT_EQ(nearest[i][j].distance2, distances2[i][j]);
+        const auto all = by_brute_force(photons, places[i]);
+        const auto expected
+            = std::count_if(all.begin(), all.end(), [](const auto& e) { return e.first <= radius * radius; });
+        EXPECT_EQ(counts[i], static_cast<uint>(expected));
+        ASSERT_EQ(within[i].size(), static_cast<std::size_t>(expected));
+        for (std::size_t j = 0; j < within[i].size(); ++j)
+            EXPECT_EQ(within[i][j], (point_neighbour{all[j].second, all[j].first}));
+    }
+}
+
+TEST(host_map, nothing_is_found_in_nothing)
+{
+    serial_backend device;
+    const std::vector<host_photon> none;
+    const photon_map map(device, none, {.k = 3});
+    query_scratch scratch;
+    const auto e = map.irradiance(glm::vec3(0), up, scratch);
+    EXPECT_EQ(e.count, 0u);
+    EXPECT_EQ(e.value, glm::vec3(0));
+    const auto not_a_number = std::numeric_limits<float>::quiet_NaN();
+    map.for_each_within(glm::vec3(not_a_number), 1, [](photon_id, float) { FAIL(); });
+    EXPECT_TRUE(map.irradiance(std::vector<glm::vec3>{}).empty());
+}
+
+TEST(host_map, the_growing_search_is_for_many_points)
+{
+    serial_backend device;
+    const photon_map map(device, some_photons(1, 100, false), as_paper({.k = 3}));
+    EXPECT_EQ(map.irradiance(std::vector<glm::vec3>{{1, 0.5f, 0.1f}}).size(), 1u);
+    query_scratch scratch;
+    EXPECT_THROW(static_cast<void>(map.irradiance(glm::vec3(0), up, scratch)), std::invalid_argument);
+}
+
+// What would refer to something that is gone does not compile.
+using device = serial_backend;
+using photon_list = std::vector<host_photon>;
+template <class Device, class Photons>
+concept makes_map = requires(Device&& d, Photons&& p)
+{
+    photon_map<device>(std::forward<Device>(d), std::forward<Photons>(p));
+};
+static_assert(makes_map<device&, photon_list&> && makes_map<device&, photon_list>); // photons are copied
+static_assert(!makes_map<device, photon_list&>);
+template <class Map>
+concept gives_buffers = requires(Map&& m)
+{
+    std::forward<Map>(m).buffers();
+};
+static_assert(gives_buffers<photon_map<device>&> && !gives_buffers<photon_map<device>>);
+template <class Lists>
+concept gives_list = requires(Lists&& l)
+{
+    std::forward<Lists>(l)[0];
+};
+static_assert(gives_list<point_neighbours&> && !gives_list<point_neighbours>);
+template <class Search, class Map, class Points>
+concept searches = requires(device& d, Map&& m, Points&& p)
+{
+    Search(d, std::forward<Map>(m), std::forward<Points>(p), knn_settings{});
+};
+using buffers = map_buffers<device>;
+using vectors = buffer_of<device, glm::vec4>;
+static_assert(searches<knn_search<device>, buffers&, vectors&>);
+static_assert(!searches<knn_search<device>, buffers, vectors&> && !searches<knn_search<device>, buffers&, vectors>);
+
+} // namespace photongrid::testing

@@ -1,0 +1,86 @@
+# shellcheck shell=bash
+# Sourced by tests/run.sh: parts of the tests, built with g++ in build-tests/.
+
+# programs_in FOLDER: the test programs of a folder of tests/
+programs_in() { sed -n 's/^ *photongrid_test(\([a-z_]*\).*/\1/p' "tests/$1/CMakeLists.txt"; }
+
+# suites_in FOLDER: of the suites that run on every backend, those of a folder of tests/
+suites_in() { sed -n 's/^TYPED_TEST_SUITE_P(\([a-z_]*\));.*/\1/p' "tests/$1"/*.hpp 2>/dev/null || true; }
+
+# run_cases PROGRAM FILTER: of a program that is built
+run_cases() {
+  RC_PARAMS=seed=20031 XDG_CACHE_HOME=$PWD/build-tests/tests/cache "build-tests/tests/$1" --gtest_brief=1 --gtest_filter="$2"
+}
+
+# run_part NAME [WORD...]: the tests of a backend, a folder or a program; those with one of the words in their names
+run_part() {
+  local name=$1 programs=() suites=() filter="" word suite program
+  shift
+  case $name in
+    serial | cpu | gl | vulkan) readarray -t programs < <(programs_in backends | grep -E "(^|_)$name(_|\$)") ;;
+    *)
+      if [[ -d tests/$name ]]; then
+        readarray -t programs < <([[ ! -r tests/$name/CMakeLists.txt ]] || programs_in "$name")
+        readarray -t suites < <(suites_in "$name")
+      elif sed -n 's/^ *photongrid_test(//p' tests/*/CMakeLists.txt | grep -q "^$name\b"; then
+        programs=("$name")
+      else
+        echo "--only $name: expected serial, cpu, gl, vulkan, a folder of tests/, or a test program" >&2
+        exit 2
+      fi
+      ;;
+  esac
+  local targets=("${programs[@]}")
+  ((${#suites[@]} == 0)) || targets+=(on_serial)
+  if [[ $name == consumers ]]; then
+    targets+=(photongrid_program host_renderer)
+  fi
+  configure tests -DPHOTONGRID_FULL_TESTS=OFF
+  cmake --build build-tests --target "${targets[@]}"
+
+  for word in "${@:-}"; do
+    filter+="${filter:+:}*$word*"
+  done
+  (($# > 0)) || filter="-*long_*"
+  for program in "${programs[@]}"; do
+    echo "== $program"
+    run_cases "$program" "$filter"
+  done
+  if ((${#suites[@]} > 0)); then
+    filter=""
+    for suite in "${suites[@]}"; do
+      for word in "${@:-}"; do
+        filter+="${filter:+:}*/$suite/*$word*"
+      done
+    done
+    (($# > 0)) || filter+=":-*long_*"
+    echo "== on_serial: ${suites[*]}"
+    run_cases on_serial "$filter"
+  fi
+  if [[ $name == consumers ]] && (($# == 0)); then
+    run_tests build-tests --tests-regex "^(consumer|host_renderer)" --label-exclude "long|full"
+  fi
+}
+
+# run_stale: builds what is not up to date, and runs the short tests of those programs that were rebuilt
+run_stale() {
+  local stale program tests=()
+  configure tests -DPHOTONGRID_FULL_TESTS=OFF
+  stale=$(ninja -C build-tests -n | sed -n 's/.*Linking CXX executable tests\/\([a-z_]*\)$/\1/p')
+  if grep -qx on_serial <<<"$stale"; then
+    stale=$(grep -vE "^(on_(cpu|gl|vulkan)|own_kernels|threads)$|^(gl|vulkan)_" <<<"$stale" || true)
+  fi
+  for program in $stale; do
+    if grep -qE "photongrid_test\($program\b" tests/*/CMakeLists.txt; then
+      tests+=("$program")
+    fi
+  done
+  if ((${#tests[@]} == 0)); then
+    echo "No test program is out of date."
+    return
+  fi
+  cmake --build build-tests --target "${tests[@]}"
+  local names
+  names=$(IFS='|' && echo "${tests[*]}")
+  run_tests build-tests --tests-regex "^($names)$"
+}

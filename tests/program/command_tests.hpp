@@ -1,0 +1,238 @@
+// What the program's commands do and refuse.
+#pragma once
+
+#include "program_under_test.hpp"
+
+namespace photongrid {
+namespace {
+
+    TEST_F(program, helps)
+    {
+        const auto help = run({"--help"});
+        EXPECT_EQ(help.code, 0);
+        for (const auto* word : {"render", "view", "compare", "check", "devices", "Exit codes", "130"})
+            EXPECT_NE(help.out.find(word), std::string::npos) << word;
+        const auto render = run({"render", "--help"});
+        EXPECT_EQ(render.code, 0);
+        for (const auto* option :
+            {"--backend", "--device", "--map", "--slots", "--photons", "--k", "--grid", "--max-radius", "--size",
+                "--spp", "--light-samples", "--depth", "--seed", "--exposure", "-o", "--search", "--kernel", "--bias",
+                "--leaks", "--edge-correction", "--only", "--aov", "--as-paper", "--stats", "--shader-cache",
+                "--time-passes", "--progressive", "--every", "--strip", "--crop", "--reference", "--resume", "--quiet"})
+            EXPECT_NE(render.out.find(option), std::string::npos) << option;
+        const auto version = run({"--version"});
+        EXPECT_EQ(version.code, 0);
+        EXPECT_EQ(version.out.substr(0, 11), "photongrid ");
+    }
+
+    TEST_F(program, refuses_wrong_command_lines)
+    {
+        EXPECT_EQ(run({}).code, 2);
+        EXPECT_EQ(run({"draw"}).code, 2);
+        EXPECT_EQ(run({"render"}).code, 2);
+        for (const auto& wrong :
+            std::vector<std::vector<std::string>>{{"--backend", "cuda"}, {"--size", "32"}, {"--size", "32x-4"},
+                {"--size", "0x4"}, {"--grid", "1,2"}, {"--grid", "1,2,3,4"}, {"--grid", "0,1,1"}, {"--photons", "1e3"},
+                {"--photons", "-1"}, {"--photons", "99999999999"}, {"--k", "0"}, {"--max-radius", "nan"},
+                {"--max-radius", "-1"}, {"--exposure", "inf"}, {"--slots", "17"}, {"--map", "hash"}, {"--device", "0"},
+                {"--time-passes"}, {"--spp", "0"}, {"--nonsense"}, {"--search", "exact"}, {"--kernel", "gauss"},
+                {"--bias", "none"}, {"--edge-correction", "disks"}, {"--edge-correction"}, {"--only", "all"},
+                {"--only", "caustics"}, {"--as-paper", "--as-paper=maybe"}}) {
+            const auto e = run([&] {
+                auto all = small;
+                // An option given twice is an error of its own.
+                for (std::size_t i = 2; i + 1 < all.size();)
+                    if (all[i] == wrong[0])
+                        all.erase(all.begin() + static_cast<std::ptrdiff_t>(i),
+                            all.begin() + static_cast<std::ptrdiff_t>(i) + 2);
+                    else
+                        i += 2;
+                all.insert(all.end(), wrong.begin(), wrong.end());
+                return all;
+            }());
+            EXPECT_EQ(e.code, 2) << wrong[0] << ": " << e.err;
+            EXPECT_NE(e.err, "");
+        }
+        EXPECT_EQ(files(), 0u);
+    }
+
+    TEST_F(program, checks_scenes)
+    {
+        for (const auto* name : {"ring", "glass_ball", "cornell_box", "cornell_blocks"})
+            EXPECT_EQ(run({"check", PHOTONGRID_SCENES + std::string("/") + name + ".json"}).code, 0);
+        std::ofstream(folder / "bad.json") << "{\"photongrid\": 1,\n \"lihgts\": []}";
+        const auto e = run({"check", "bad.json"});
+        EXPECT_EQ(e.code, 3);
+        EXPECT_EQ(e.err, "bad.json:2:2: error: unknown key \"lihgts\" in \"scene\"; expected \"lights\"?\n");
+        EXPECT_EQ(run({"render", "bad.json"}).code, 3);
+        EXPECT_EQ(run({"check", "none.json"}).code, 3);
+    }
+
+    TEST_F(program, lists_devices)
+    {
+        const auto e = run({"devices"});
+        EXPECT_EQ(e.code, 0);
+        for (const auto* name : {"serial  ", "gl  ", "gl-osmesa  ", "vulkan  "})
+            EXPECT_NE(("\n" + e.out).find(std::string("\n") + name), std::string::npos) << e.out;
+    }
+
+    TEST_F(program, same_seed_same_bytes)
+    {
+        const auto first = run(small_with({"-o", "a.png", "-o", "a.exr", "-o", "a.pfm"}));
+        ASSERT_EQ(first.code, 0) << first.err;
+        EXPECT_EQ(first.out, "a.png\na.exr\na.pfm\n");
+        EXPECT_EQ(first.err, "") << "no terminal, no progress bar";
+        ASSERT_EQ(run(small_with({"-o", "b.png", "-o", "b.exr", "-o", "b.pfm"})).code, 0);
+        for (const auto* ending : {".png", ".exr", ".pfm"})
+            EXPECT_EQ(contents(folder / (std::string("a") + ending)), contents(folder / (std::string("b") + ending)));
+        ASSERT_EQ(run(small_with({"-o", "c.pfm", "--seed", "2"})).code, 0);
+        EXPECT_NE(contents(folder / "a.pfm"), contents(folder / "c.pfm"));
+        for (const auto* note : {"serial", "seed", "photongrid ", "max_radius"})
+            EXPECT_NE(contents(folder / "a.exr").find(note), std::string::npos) << note;
+
+        EXPECT_EQ(run({"compare", "a.exr", "a.pfm", "--max-relmse", "0"}).code, 0);
+        const auto differs = run({"compare", "c.pfm", "a.pfm", "--max-relmse", "1e-12"});
+        EXPECT_EQ(differs.code, 1);
+        EXPECT_NE(differs.out.find("relMSE"), std::string::npos);
+        EXPECT_EQ(run({"compare", "c.pfm", "a.pfm"}).code, 0);
+        EXPECT_EQ(run({"compare", "a.png", "a.pfm"}).code, 5);
+        EXPECT_EQ(run({"compare", "a.pfm", "none.pfm"}).code, 5);
+        write_image((folder / "other.pfm").string(), {.width = 1, .height = 1, .pixels = {glm::vec3(1)}});
+        EXPECT_EQ(run({"compare", "a.pfm", "other.pfm"}).code, 5);
+    }
+
+    TEST_F(program, names_the_picture_after_the_scene)
+    {
+        const auto e = run(small);
+        EXPECT_EQ(e.code, 0) << e.err;
+        EXPECT_EQ(e.out, "ring.png\n");
+        EXPECT_TRUE(fs::exists(folder / "ring.png"));
+        EXPECT_EQ(files(), 1u);
+    }
+
+    TEST_F(program, fits_the_grid_when_asked)
+    {
+        auto fitted = small_with({"--stats", "stats.json", "-o", "a.pfm"});
+        std::replace(fitted.begin(), fitted.end(), std::string("32,1,32"), std::string("auto"));
+        ASSERT_EQ(run(fitted).code, 0);
+        const auto s = nlohmann::json::parse(contents(folder / "stats.json"));
+        EXPECT_EQ(s.at("settings").at("grid"), "auto");
+        const auto& resolution = s.at("map").at("resolution");
+        ASSERT_EQ(resolution.size(), 3u);
+        EXPECT_EQ(resolution[0].get<unsigned>() * resolution[1].get<unsigned>() * resolution[2].get<unsigned>(),
+            s.at("map").at("cells"));
+        EXPECT_GT(s.at("map").at("cells"), 1);
+        ASSERT_EQ(run(small_with({"-o", "b.pfm"})).code, 0);
+        EXPECT_EQ(run({"compare", "a.pfm", "b.pfm", "--max-relmse", "1e-6"}).code, 0)
+            << "the grid does not change what exact_k finds";
+    }
+
+    TEST_F(program, renders_on_threads)
+    {
+        auto with_backend = [&](std::vector<std::string> more) {
+            auto all = small_with(std::move(more));
+            for (auto& word : all)
+                if (word == "serial")
+                    word = "cpu";
+            return all;
+        };
+        const auto e = run(with_backend({"-o", "one.pfm", "--threads", "1"}));
+        if (e.code == 4 && e.err.find("built without the cpu backend") != std::string::npos)
+            GTEST_SKIP() << e.err;
+        ASSERT_EQ(e.code, 0) << e.err;
+        ASSERT_EQ(run(with_backend({"-o", "three.pfm", "--threads", "3", "--stats", "stats.json"})).code, 0);
+        EXPECT_EQ(contents(folder / "one.pfm"), contents(folder / "three.pfm"));
+        EXPECT_EQ(nlohmann::json::parse(contents(folder / "stats.json")).at("backend"), "cpu");
+        ASSERT_EQ(run(small_with({"-o", "serial.pfm"})).code, 0);
+        EXPECT_EQ(run({"compare", "one.pfm", "serial.pfm", "--max-relmse", "1e-10"}).code, 0);
+        EXPECT_EQ(run(with_backend({"--threads", "5000"})).code, 2);
+    }
+
+    TEST_F(program, keeps_compiled_kernels_where_asked)
+    {
+        auto on_vulkan = [&](std::vector<std::string> more) {
+            auto all = small_with(std::move(more));
+            for (auto& word : all)
+                if (word == "serial")
+                    word = "vulkan";
+            return run(all);
+        };
+        const auto kept = [&] {
+            return fs::exists(folder / "cache")
+                ? std::distance(fs::directory_iterator(folder / "cache"), fs::directory_iterator())
+                : 0;
+        };
+        const auto e = on_vulkan({"-o", "none.pfm", "--shader-cache", "none"});
+        if (e.code == 4 && std::getenv("PHOTONGRID_REQUIRE_BACKENDS") == nullptr)
+            GTEST_SKIP() << e.err;
+        ASSERT_EQ(e.code, 0) << e.err;
+        EXPECT_EQ(files(), 1u);
+        ASSERT_EQ(on_vulkan({"-o", "first.pfm", "--shader-cache", "cache"}).code, 0);
+        const auto files_then = kept();
+        EXPECT_GT(files_then, 10);
+        ASSERT_EQ(
+            on_vulkan({"-o", "second.pfm", "--shader-cache", "cache", "--time-passes", "--stats", "stats.json"}).code,
+            0);
+        EXPECT_EQ(kept(), files_then); // nothing was compiled anew
+        const auto stats = nlohmann::json::parse(contents(folder / "stats.json"));
+        EXPECT_TRUE(stats.contains("compile_ms"));
+        EXPECT_GT(stats.at("kernels").at("bounce_photon").at("ms"), 0);
+        EXPECT_EQ(contents(folder / "none.pfm"), contents(folder / "first.pfm"));
+        EXPECT_EQ(contents(folder / "none.pfm"), contents(folder / "second.pfm"));
+    }
+
+    TEST_F(program, refuses_outputs_before_rendering)
+    {
+        EXPECT_EQ(run(small_with({"-o", "a.jpg"})).code, 5);
+        EXPECT_EQ(run(small_with({"-o", "none/a.png"})).code, 5);
+        EXPECT_EQ(run(small_with({"-o", "a.png", "--stats", "none/a.json"})).code, 5);
+        EXPECT_EQ(files(), 0u);
+    }
+
+    TEST_F(program, accounts_for_every_photon)
+    {
+        for (const auto* map : {"sort", "route"}) {
+            SCOPED_TRACE(map);
+            ASSERT_EQ(run(small_with({"--stats", "stats.json", "--map", map, "--max-radius", "0.2"})).code, 0);
+            const auto s = nlohmann::json::parse(contents(folder / "stats.json"));
+            EXPECT_EQ(s.at("scene"), "ring");
+            EXPECT_EQ(s.at("backend"), "serial");
+            EXPECT_NE(s.at("device"), "");
+            EXPECT_EQ(s.at("seed"), 1);
+            EXPECT_TRUE(s.contains("version"));
+            const auto& set = s.at("settings");
+            EXPECT_EQ(set.at("size"), nlohmann::json({32, 24}));
+            EXPECT_EQ(set.at("photons"), 300);
+            EXPECT_EQ(set.at("map"), map);
+            EXPECT_EQ(set.at("max_radius"), 0.2);
+            const auto& p = s.at("photons");
+            const auto count = [&](const char* key) { return p.at(key).get<std::uint64_t>(); };
+            EXPECT_EQ(count("emitted"), count("absorbed") + count("escaped") + count("cut_off") + count("invalid"));
+            EXPECT_EQ(count("stored"), 300u);
+            EXPECT_GT(count("direct"), 0u);
+            EXPECT_TRUE(p.contains("dropped"));
+            EXPECT_EQ(s.at("map").at("builder"), map);
+            EXPECT_EQ(s.at("map").at("cells"), 32 * 32);
+            EXPECT_TRUE(s.at("map").contains("overfull_cells"));
+            EXPECT_TRUE(s.at("map").contains("redistributed_flux"));
+            for (const auto* stage : {"trace_photons", "build_map", "trace_rays", "radiance_estimate"}) {
+                EXPECT_GT(s.at("stages").at(stage).at("ms"), 0) << stage;
+                EXPECT_GT(s.at("stages").at(stage).at("passes"), 0) << stage;
+                EXPECT_GT(s.at("stages").at(stage).at("device_bytes"), 0) << stage;
+            }
+            EXPECT_GT(s.at("estimate").at("mean_count"), 0);
+            EXPECT_GT(s.at("estimate").at("mean_radius"), 0);
+            EXPECT_GE(s.at("estimate").at("mean_visited"), s.at("estimate").at("mean_count"));
+            EXPECT_FALSE(s.at("kernels").empty());
+            for (const auto& [name, k] : s.at("kernels").items())
+                EXPECT_TRUE(
+                    k.contains("instructions") && k.contains("compile_ms") && k.contains("ms") && k.contains("passes"))
+                    << name;
+            EXPECT_GT(s.at("peak_memory_bytes"), 1 << 20);
+            EXPECT_GT(s.at("peak_device_bytes"), 0);
+            EXPECT_GT(s.at("total_ms"), 0);
+        }
+    }
+
+} // namespace
+} // namespace photongrid

@@ -1,0 +1,178 @@
+// Options of the estimate.
+#pragma once
+
+#include "program_under_test.hpp"
+
+namespace photongrid {
+namespace {
+
+    TEST_F(program, refuses_wrong_leak_policies)
+    {
+        const std::string list
+            = "expected none, or some of side, normals, normals=COS, disc, disc=C with commas between them";
+        for (const auto& [given, expected] : std::vector<std::pair<std::string, std::string>>{
+                 {"walls", "\"walls\" given; " + list}, {"side,", "\"\" given; " + list}, {"", list},
+                 {",side", "\"\" given; " + list}, {"side=1", "\"side=1\" given; " + list},
+                 {"side, disc", "\" disc\" given; " + list}, {"none,side", "expected none alone"},
+                 {"side,none", "expected none alone"}, {"none=0", list}, {"side,side", "has side twice"},
+                 {"disc,disc=4", "has disc twice"}, {"normals=", "expected normals=COS, a cosine from -1 to 1"},
+                 {"normals=1.1", "\"1.1\" given; expected normals=COS"}, {"normals=nan", "expected normals=COS"},
+                 {"normals=half", "expected normals=COS"},
+                 {"disc=0.9", "\"0.9\" given; expected disc=C, a compression from 1 to 1e6"},
+                 {"disc=1e300", "expected disc=C"}, {"disc=4=4", "expected disc=C"}}) {
+            const auto e = run(small_with({"--leaks", given}));
+            EXPECT_EQ(e.code, 2) << given;
+            EXPECT_NE(e.err.find("--leaks"), std::string::npos) << given << ": " << e.err;
+            EXPECT_NE(e.err.find(expected), std::string::npos) << given << ": " << e.err;
+        }
+        EXPECT_EQ(files(), 0u);
+    }
+
+    TEST_F(program, obeys_what_is_said_of_the_estimate)
+    {
+        struct row {
+            std::vector<std::string> options;
+            nlohmann::json settings; ///< some of those in the statistics
+        };
+        using json = nlohmann::json;
+        const json by_default = json::parse(
+            R"({"search": "exact_k", "kernel": "silverman", "bias": "unbiased", "leaks": {"side": true}, "edge_correction": "none", "only": "all"})");
+        const json paper = json::parse(
+            R"({"search": "at_least_k", "kernel": "constant", "bias": "paper", "leaks": {}, "edge_correction": "none", "only": "all"})");
+        const auto but = [](json all, const char* more) {
+            all.update(json::parse(more));
+            return all;
+        };
+        const std::vector<row> rows{
+            {{}, by_default},
+            {{"--search", "at_least_k"}, but(by_default, R"({"search": "at_least_k"})")},
+            {{"--search", "fixed_radius", "--kernel", "cone"},
+                but(by_default, R"({"search": "fixed_radius", "kernel": "cone"})")},
+            {{"--kernel", "epanechnikov"}, but(by_default, R"({"kernel": "epanechnikov"})")},
+            {{"--kernel", "silverman", "--bias", "paper"},
+                but(by_default, R"({"kernel": "silverman", "bias": "paper"})")},
+            {{"--leaks", "none"}, but(by_default, R"({"leaks": {}})")},
+            {{"--leaks", "side"}, by_default},
+            {{"--leaks", "normals"}, but(by_default, R"({"leaks": {"normals": 0.5}})")},
+            {{"--leaks", "disc"}, but(by_default, R"({"leaks": {"disc": 4}})")},
+            {{"--leaks", "disc=2.5,side,normals=-0.3"},
+                but(by_default, R"({"leaks": {"side": true, "normals": -0.3, "disc": 2.5}})")},
+            {{"--leaks", "normals=-1,disc=1"}, but(by_default, R"({"leaks": {}})")},
+            {{"--edge-correction", "none"}, by_default},
+            {{"--leaks", "normals", "--edge-correction", "polygons"},
+                but(by_default, R"({"leaks": {"normals": 0.5}, "edge_correction": "polygons"})")},
+            {{"--as-paper", "--edge-correction", "polygons", "--leaks", "side,normals=0.2"},
+                but(paper, R"({"leaks": {"side": true, "normals": 0.2}, "edge_correction": "polygons"})")},
+            {{"--only", "direct"}, but(by_default, R"({"only": "direct"})")},
+            {{"--only", "caustic"}, but(by_default, R"({"only": "caustic"})")},
+            {{"--only", "indirect"}, but(by_default, R"({"only": "indirect"})")},
+            {{"--as-paper"}, paper},
+            {{"--kernel", "cone", "--as-paper", "--leaks", "side"},
+                but(paper, R"({"kernel": "cone", "leaks": {"side": true}})")},
+            {{"--as-paper", "--search", "exact_k", "--bias", "unbiased", "--only", "caustic"},
+                but(paper, R"({"search": "exact_k", "bias": "unbiased", "only": "caustic"})")},
+        };
+        const auto expect = [&](const std::vector<std::string>& arguments, const json& expected) {
+            const auto e = run(arguments);
+            ASSERT_EQ(e.code, 0) << e.err;
+            const auto set = json::parse(contents(folder / "stats.json")).at("settings");
+            for (const auto& [key, value] : expected.items())
+                EXPECT_EQ(set.at(key), value) << key << " of " << json(arguments);
+        };
+        for (const auto& [options, settings] : rows) {
+            auto arguments = small_with({"--stats", "stats.json"});
+            arguments.insert(arguments.end(), options.begin(), options.end());
+            expect(arguments, settings);
+        }
+        // A scene that has wishes of its own; lengths are in m, so its statistics' settings are a scene's again.
+        auto wishes = json::parse(contents(ring), nullptr, true, true);
+        wishes["render"].update(json::parse(
+            R"({"search": "fixed_radius", "kernel": "silverman", "bias": "paper", "leaks": {"normals": 0.25, "disc": 3}, "edge_correction": "polygons"})"));
+        std::ofstream(folder / "wishes.json") << wishes;
+        auto arguments = small_with({"--stats", "stats.json", "-o", "a.exr"});
+        arguments[1] = "wishes.json";
+        const auto wished = but(by_default,
+            R"({"search": "fixed_radius", "kernel": "silverman", "bias": "paper", "leaks": {"normals": 0.25, "disc": 3}, "edge_correction": "polygons"})");
+        expect(arguments, wished);
+        EXPECT_NE(
+            contents(folder / "a.exr")
+                .find(
+                    R"("search":"fixed_radius","kernel":"silverman","bias":"paper","leaks":{"normals":0.25,"disc":3.0},"edge_correction":"polygons","only":"all")"),
+            std::string::npos)
+            << "the EXR's note";
+        // A policy taken away that the scene's correction needs is refused, with the way out; nothing is drawn.
+        auto torn = arguments;
+        torn.back() = "torn.exr";
+        torn.insert(torn.end(), {"--leaks", "side"});
+        const auto refused = run(torn);
+        EXPECT_EQ(refused.code, 2);
+        EXPECT_NE(refused.err.find("on the command line: edge_correction: photons of adjoining walls would count"),
+            std::string::npos)
+            << refused.err;
+        EXPECT_NE(refused.err.find("needs the leak policy normals with a cosine above 0"), std::string::npos)
+            << refused.err;
+        EXPECT_FALSE(fs::exists(folder / "torn.exr"));
+        arguments.insert(arguments.end(), {"--kernel", "cone", "--leaks", "side", "--edge-correction", "none"});
+        expect(arguments, but(wished, R"({"kernel": "cone", "leaks": {"side": true}, "edge_correction": "none"})"));
+        arguments.emplace_back("--as-paper");
+        expect(arguments, but(paper, R"({"kernel": "cone", "leaks": {"side": true}})"));
+    }
+
+    TEST_F(program, layers_need_a_file_that_holds_them)
+    {
+        for (const auto& outputs :
+            std::vector<std::vector<std::string>>{{}, {"-o", "a.png"}, {"-o", "a.pfm", "-o", "exr"}}) {
+            auto arguments = small_with({"--aov"});
+            arguments.insert(arguments.end(), outputs.begin(), outputs.end());
+            const auto e = run(arguments);
+            EXPECT_EQ(e.code, 2);
+            EXPECT_NE(e.err.find("--aov: "), std::string::npos) << e.err;
+            EXPECT_NE(e.err.find("expected an EXR picture, which holds layers: -o OUT.exr"), std::string::npos)
+                << e.err;
+        }
+        EXPECT_EQ(files(), 0u);
+        const auto e = run(small_with({"--aov", "-o", "a.png", "-o", "a.EXR"}));
+        EXPECT_EQ(e.code, 0) << e.err;
+        ASSERT_EQ(run(small_with({"-o", "b.png", "-o", "b.exr"})).code, 0);
+        EXPECT_EQ(contents(folder / "a.png"), contents(folder / "b.png")) << "layers do not change the picture";
+        EXPECT_EQ(contents(folder / "b.exr").find("estimate."), std::string::npos);
+    }
+
+    TEST_F(program, parts_of_the_light_add_up)
+    {
+        // With a given radius and a constant kernel an estimate is linear in the photons.
+        const std::string box = PHOTONGRID_SCENES "/cornell_box.json";
+        const auto draw = [&](std::vector<std::string> more) {
+            std::vector<std::string> arguments{"render", box, "--backend", "serial", "--size", "32x32", "--photons",
+                "4000", "--search", "fixed_radius", "--max-radius", "0.2", "--kernel", "constant", "--stats", "s.json",
+                "-o", "a.exr"};
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            const auto e = run(arguments);
+            EXPECT_EQ(e.code, 0) << e.err;
+            const auto s = nlohmann::json::parse(contents(folder / "s.json"));
+            return std::pair(read_image(folder / "a.exr"), s.at("map").at("left_out").get<std::uint64_t>());
+        };
+        const auto [all, none_left_out] = draw({});
+        const auto [direct, ignored] = draw({"--only", "direct"});
+        const auto [caustic, others] = draw({"--only", "caustic"});
+        const auto [indirect, caustics] = draw({"--only", "indirect"});
+        EXPECT_EQ(none_left_out, 0u);
+        EXPECT_EQ(others + caustics, 4000u);
+        EXPECT_GT(caustics, 100u);
+        EXPECT_GT(others, 1000u);
+        for (std::size_t i = 0; i < all.pixels.size(); ++i)
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(direct.pixels[i][c] + caustic.pixels[i][c] + indirect.pixels[i][c], all.pixels[i][c],
+                    1e-5f * all.pixels[i][c] + 1e-7f)
+                    << i;
+    }
+
+    TEST_F(program, writes_layers)
+    {
+        ASSERT_EQ(run(small_with({"--aov", "-o", "a.exr"})).code, 0);
+        for (const auto* channel : {"estimate.radius", "estimate.count", "estimate.relative_error"})
+            EXPECT_NE(contents(folder / "a.exr").find(channel), std::string::npos) << channel;
+    }
+
+} // namespace
+} // namespace photongrid

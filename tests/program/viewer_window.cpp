@@ -1,0 +1,2 @@
+// The window from outside: on a display of its own (Xvfb), driven by mouse and keys, looked at by screenshots.
+#include "window_tests.hpp"

@@ -1,0 +1,223 @@
+// Convergence to the reference.
+#pragma once
+
+#include "form_factor_tests.hpp"
+#include "landed_photons.hpp"
+
+namespace photongrid::testing {
+namespace {
+
+    // --- convergence
+    // ------------------------------------------------------------------------------------------------------
+
+    /// One row of a convergence table: means over places of squared errors relative to the known value.
+    struct convergence_row {
+        double photons = 0, k = 0, bias2 = 0, variance = 0;
+        double total() const { return bias2 + variance; }
+    };
+
+    double slope(const std::vector<convergence_row>& rows, double (*of)(const convergence_row&))
+    {
+        double sx = 0, sy = 0, sxx = 0, sxy = 0;
+        for (const auto& r : rows) {
+            const double x = std::log(r.photons), y = std::log(std::max(of(r), 1e-12));
+            sx += x, sy += y, sxx += x * x, sxy += x * y;
+        }
+        const double n = static_cast<double>(rows.size());
+        return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+    }
+
+    /// From values[seed][place]: bias^2 and variance, relative, the mean's own noise and the reference's taken off
+    /// bias^2.
+    convergence_row split_error(const std::vector<std::vector<double>>& values, const std::vector<double>& known,
+        const std::vector<double>& known_error, double floor)
+    {
+        convergence_row row;
+        const double seeds = static_cast<double>(values.size()), places = static_cast<double>(known.size());
+        for (std::size_t i = 0; i < known.size(); ++i) {
+            double mean = 0, spread = 0;
+            for (const auto& v : values)
+                mean += v[i] / seeds;
+            for (const auto& v : values)
+                spread += (v[i] - mean) * (v[i] - mean) / (seeds - 1);
+            const double scale = 1 / ((known[i] + floor) * (known[i] + floor) * places);
+            row.bias2
+                += ((mean - known[i]) * (mean - known[i]) - spread / seeds - known_error[i] * known_error[i]) * scale;
+            row.variance += spread * scale;
+        }
+        return row;
+    }
+
+    void print(const char* name, const std::vector<convergence_row>& rows)
+    {
+        std::printf("%s\n\n| photons | k | bias^2 | variance | relMSE |\n|---|---|---|---|---|\n", name);
+        for (const auto& r : rows)
+            std::printf("| %.0f | %.0f | %.5f | %.5f | %.5f |\n", r.photons, r.k, r.bias2, r.variance, r.total());
+        const bool biased = std::all_of(rows.begin(), rows.end(),
+            [](const auto& r) { return r.bias2 > 0; }); // below 0: lost in the noise taken off
+        std::printf(
+            biased ? "| slope | | %.2f |" : "| slope | | - |", slope(rows, [](const auto& r) { return r.bias2; }));
+        std::printf(" %.2f | %.2f |\n\n", slope(rows, [](const auto& r) { return r.variance; }),
+            slope(rows, [](const auto& r) { return r.total(); }));
+        std::fflush(stdout);
+    }
+
+    void expect_falling(const std::vector<convergence_row>& rows)
+    {
+        for (std::size_t i = 1; i < rows.size(); ++i) {
+            EXPECT_LT(rows[i].bias2, rows[i - 1].bias2) << rows[i].photons;
+            EXPECT_LT(rows[i].variance, rows[i - 1].variance) << rows[i].photons;
+        }
+    }
+
+    TEST(validation, long_smooth_irradiance_converges_at_the_rate_of_theory)
+    {
+        // k neighbours of N photons: variance 1 / k; the disc's area goes as k / N, and so does the bias where
+        // irradiance is smooth. With k ~ N^(2/3) both squares fall as N^(-2/3).
+        const facing_discs f;
+        const std::vector<double> radii = {0, 0.05, 0.1, 0.15}; // about the maximum, where the bias has one sign
+        const int around = 8;
+        std::vector<double> known;
+        for (const double r : radii)
+            known.insert(known.end(), around, f.off_axis(r) * f.reflectance.x);
+        std::vector<convergence_row> rows;
+        for (const uint n : {2000u, 8000u, 32000u, 128000u}) {
+            const auto k = static_cast<uint>(std::lround(160 * std::pow(n / 2000.0, 2.0 / 3)));
+            const uint seeds = n <= 8000 ? 96 : 24; // few photons, many seeds
+            std::vector<std::vector<double>> values;
+            for (uint seed = 1; seed <= seeds; ++seed) {
+                values.emplace_back();
+                for (const auto& e : estimates_on_upper(f, circles(f, radii, around), n, k, seed))
+                    values.back().push_back(static_cast<double>(e.x));
+            }
+            rows.push_back(split_error(values, known, std::vector<double>(known.size(), 0.0), 0));
+            rows.back().photons = n;
+            rows.back().k = k;
+        }
+        print("facing discs", rows);
+        expect_falling(rows);
+        EXPECT_NEAR(slope(rows, [](const auto& r) { return r.bias2; }), -2.0 / 3, 0.2);
+        EXPECT_NEAR(slope(rows, [](const auto& r) { return r.variance; }), -2.0 / 3, 0.1);
+        EXPECT_NEAR(slope(rows, [](const auto& r) { return r.total(); }), -2.0 / 3, 0.15);
+    }
+
+    TEST(validation, long_cornell_blocks_converge_to_the_reference)
+    {
+        auto s = read_scene(PHOTONGRID_SCENES "/cornell_blocks.json");
+        auto wanted = reference_settings_for(s.render);
+        wanted.width = wanted.height = 32;
+        wanted.spp = 4096;
+        wanted.seed = 99;
+        const auto truth = render_reference(s, s.camera, wanted);
+
+        // Pixels over an edge of a shape or the lamp are left out: their noise is that of 32 eye rays, whatever the
+        // photons do.
+        const reference::geometry shapes(s);
+        const dvec3 forward = glm::normalize(s.camera.look_at - s.camera.position),
+                    right = glm::normalize(glm::cross(forward, s.camera.up)), up = glm::cross(right, forward);
+        const double pixel = 2 * std::tan(glm::radians(0.5 * s.camera.vertical_fov)) / wanted.height;
+        const auto shape_at = [&](double x, double y) {
+            return shapes.nearest({s.camera.position,
+                glm::normalize(
+                    forward + (x - 0.5 * wanted.width) * pixel * right + (0.5 * wanted.height - y) * pixel * up),
+                reference::nothing});
+        };
+        // Of these, pixels with nothing else and no edge near: there irradiance is smooth over the discs of the
+        // estimates.
+        const double clear = 0.1;
+        const auto is_clear = [&](const reference::hit& h) {
+            const dvec3 n = glm::dot(h.normal, s.camera.position - h.position) > 0 ? h.normal : -h.normal,
+                        u = reference::across(n), v = glm::cross(n, u);
+            for (int i = 0; i < 32; ++i) {
+                const dvec3 way = std::cos(i * M_PI / 16) * u + std::sin(i * M_PI / 16) * v;
+                if (shapes.nearest({h.position + 1e-6 * n, way, reference::nothing}).t < clear
+                    || shapes.nearest({h.position + clear * way + 1e-3 * n, -n, reference::nothing}).shape != h.shape)
+                    return false;
+            }
+            return true;
+        };
+        std::vector<std::size_t> whole;
+        std::vector<bool> smooth; // of those
+        for (std::uint32_t y = 0; y < wanted.height; ++y)
+            for (std::uint32_t x = 0; x < wanted.width; ++x) {
+                const auto middle = shape_at(x + 0.5, y + 0.5);
+                bool one = middle.shape != reference::nothing && middle.light == reference::nothing;
+                for (const auto& [dx, dy] : {std::pair{-0.1, -0.1}, {1.1, -0.1}, {-0.1, 1.1}, {1.1, 1.1}})
+                    one = one && shape_at(x + dx, y + dy).shape == middle.shape;
+                if (!one)
+                    continue;
+                whole.push_back(std::size_t{y} * wanted.width + x);
+                smooth.push_back(is_clear(middle));
+            }
+        const auto spread_out = [&](const image& im) {
+            std::vector<double> out;
+            for (const auto i : whole)
+                for (int c = 0; c < 3; ++c)
+                    out.push_back(static_cast<double>(im.pixels[i][c]));
+            return out;
+        };
+        const auto smooth_ones = [&](const std::vector<double>& all) {
+            std::vector<double> out;
+            for (std::size_t i = 0; i < all.size(); ++i)
+                if (smooth[i / 3])
+                    out.push_back(all[i]);
+            return out;
+        };
+        const auto known = spread_out(truth.mean), known_error = spread_out(truth.standard_error);
+
+        auto settings = s.render;
+        settings.width = settings.height = 32;
+        settings.spp = 32; // with the shadow rays below, noise of direct light and edges well below the photons'
+        settings.light_samples = 16;
+        settings.max_radius = 0.5;
+        serial_backend b;
+        const int seeds = 8;
+        std::vector<convergence_row> rows, smooth_rows, corrected_rows;
+        const auto row = [&](std::vector<std::vector<double>> values, bool only_smooth) {
+            if (only_smooth)
+                for (auto& v : values)
+                    v = smooth_ones(v);
+            auto r = split_error(values, only_smooth ? smooth_ones(known) : known,
+                only_smooth ? smooth_ones(known_error) : known_error, 0.01);
+            r.photons = settings.photons;
+            r.k = settings.k;
+            return r;
+        };
+        for (const uint n : {2000u, 8000u, 32000u, 128000u}) {
+            settings.photons = n;
+            settings.k = static_cast<uint>(std::lround(30 * std::pow(n / 2000.0, 2.0 / 3)));
+            std::vector<std::vector<double>> values, corrected;
+            for (uint seed = 1; seed <= seeds; ++seed) {
+                settings.seed = seed;
+                render_stats stats;
+                values.push_back(spread_out(render(b, s, settings, {}, stats)));
+                auto with_edges = settings;
+                with_edges.leaks.min_cosine = 0.5f;
+                with_edges.edges = edge_correction::polygons;
+                corrected.push_back(spread_out(render(b, s, with_edges, {}, stats)));
+            }
+            rows.push_back(row(values, false));
+            corrected_rows.push_back(row(corrected, false));
+            smooth_rows.push_back(row(values, true));
+        }
+        std::printf("%zu of %zu pixels lie within one shape, %td of them %.1f m from any edge\n", whole.size(),
+            truth.mean.pixels.size(), std::count(smooth.begin(), smooth.end(), true), clear);
+        print("cornell_blocks", rows);
+        print("cornell_blocks, edges corrected", corrected_rows);
+        print("cornell_blocks, far from edges", smooth_rows);
+        expect_falling(rows);
+        // Near edges discs reach over them and the bias is of order 1 in a strip as wide as the radius, N^(-1/6):
+        // bias^2 of a whole room falls between that and N^(-2/3). The variance keeps its rate.
+        EXPECT_NEAR(slope(rows, [](const auto& r) { return r.variance; }), -2.0 / 3, 0.2);
+        EXPECT_LT(slope(rows, [](const auto& r) { return r.bias2; }), -1.0 / 6 + 0.05);
+        EXPECT_LT(slope(rows, [](const auto& r) { return r.total(); }), -0.2);
+        EXPECT_GT(slope(rows, [](const auto& r) { return r.total(); }), -1);
+        // Far from them the picture converges to the reference at the rate of smooth irradiance.
+        EXPECT_NEAR(slope(smooth_rows, [](const auto& r) { return r.total(); }), -2.0 / 3, 0.25);
+        EXPECT_LT(
+            std::abs(smooth_rows.back().bias2), 1e-4); // 1 % of the whole irradiance; the rest is the reference's error
+        EXPECT_LT(smooth_rows.back().total(), 0.01);
+    }
+
+} // namespace
+} // namespace photongrid::testing

@@ -1,0 +1,7 @@
+// The photon mapper against answers from outside: caustics of mirrors and glass from geometrical optics, irradiance by
+// quadrature, two libraries' nearest neighbours, and the rates at which density estimates converge. Prints its numbers.
+#include "convergence_tests.hpp"
+#include "form_factor_tests.hpp"
+#include "glass_ball_tests.hpp"
+#include "mirror_tests.hpp"
+#include "nearest_tests.hpp"

@@ -1,0 +1,81 @@
+// Scenes whose light is known, and the Cornell box cut down, built in C++.
+#pragma once
+
+#include <photongrid/scene/scene.hpp>
+
+namespace photongrid::testing {
+
+/// A point light of 4 pi^2 W at the middle of a diffuse sphere of radius 1, seen from inside: an integrating sphere.
+/// Direct irradiance is pi W/m^2 everywhere, all irradiance pi / (1 - reflectance), radiance reflectance / (1 -
+/// reflectance).
+inline scene integrating_sphere(dvec3 reflectance)
+{
+    scene s;
+    s.name = "integrating_sphere";
+    s.materials = {{"wall", material_kind::lambertian, reflectance}};
+    s.spheres = {{dvec3(0), 1.0, 0}};
+    s.point_lights = {{"middle", dvec3(0), dvec3(4 * M_PI * M_PI)}};
+    s.camera = {{0.1, 0.2, 0.3}, {1, 0, 0}, {0, 1, 0}, 80};
+    s.render = {.width = 32, .height = 24, .photons = 40000, .k = 200, .grid = {12, 12, 12}, .max_radius = 0.5};
+    return s;
+}
+
+/// A box, open towards the camera, with a ball of glass and one of metal, lit from the ceiling.
+inline scene small_cornell()
+{
+    scene s;
+    s.name = "small_cornell";
+    s.materials = {{"white", material_kind::lambertian, dvec3(0.74)},
+        {"red", material_kind::lambertian, {0.47, 0.05, 0.05}}, {"green", material_kind::lambertian, {0.09, 0.4, 0.08}},
+        {"mirror", material_kind::metal, {0.9, 0.8, 0.7}}, {"glass", material_kind::glass, dvec3(1), 1.5}};
+    const auto wall = [&](dvec3 a, dvec3 b, dvec3 c, dvec3 d, std::uint32_t m) {
+        s.polygons.push_back({{a, b, c, d}, m});
+    };
+    wall({0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}, 0); // floor
+    wall({0, 1, 0}, {0, 1, 1}, {1, 1, 1}, {1, 1, 0}, 0); // ceiling
+    wall({0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, 0); // back
+    wall({0, 0, 0}, {0, 0, 1}, {0, 1, 1}, {0, 1, 0}, 1);
+    wall({1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1}, 2);
+    s.spheres = {{{0.7, 0.2, 0.65}, 0.2, 3}, {{0.3, 0.18, 0.35}, 0.18, 4}};
+    s.rectangle_lights = {{"lamp", {0.35, 0.999, 0.4}, {0.3, 0, 0}, {0, 0, 0.25}, dvec3(4, 3.5, 3)}};
+    s.camera = {{0.5, 0.5, -1.4}, {0.5, 0.5, 0}, {0, 1, 0}, 39};
+    s.render = {.width = 64,
+        .height = 64,
+        .photons = 8000,
+        .k = 80,
+        .grid = {12, 12, 12},
+        .max_radius = 0.25,
+        .light_samples = 4};
+    return s;
+}
+
+/// Every shape there is, in one scene, under a point light and a lamp.
+inline scene all_shapes()
+{
+    scene s;
+    s.name = "all_shapes";
+    s.materials = {{"white", material_kind::lambertian, dvec3(0.7)}, {"gold", material_kind::metal, {0.9, 0.7, 0.3}},
+        {"glass", material_kind::glass, dvec3(0.98), 1.5}, {"mirror", material_kind::mirror, dvec3(0.95)}};
+    s.polygons
+        = {{{{-2, 0, -2}, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}}, 0}, {{{-1, 0.1, 1}, {0, 1.2, 1.2}, {1, 0.1, 1}}, 0},
+            {{{-1.8, 0, 0.2}, {-1.8, 0, 0.8}, {-1.8, 0.5, 1.0}, {-1.8, 0.9, 0.5}, {-1.8, 0.5, 0.0}}, 0}};
+    s.spheres = {{{0, 0.3, 0}, 0.3, 2}, {{1.2, 0.25, 0.3}, 0.25, 0}};
+    s.cylinders = {{{-0.8, 0, -0.4}, {-0.8, 0.3, -0.4}, 0.35, 1}, {{0.5, 0.2, -0.9}, {0.9, 0.4, -0.7}, 0.1, 0}};
+    s.cones = {{{0.8, 0, -0.2}, {0.8, 0.6, -0.2}, 0.25, 0}};
+    s.paraboloids = {{{-0.3, 0.02, -1.0}, {-0.3, 0.3, -1.1}, 0.3, 3}};
+    s.boxes = {{{-1.5, 0, -1.4}, {0.4, 0, 0.2}, {0, 0.3, 0}, {-0.2, 0, 0.4}, 0}};
+    s.disks = {{{0.2, 0.8, 0.9}, {0, -0.5, -1}, 0.4, 3}};
+    s.point_lights = {{"bulb", {1.0, 1.8, -1.2}, dvec3(20, 18, 15)}};
+    s.rectangle_lights = {{"lamp", {-0.4, 2.0, -0.4}, {0.8, 0, 0}, {0, 0, 0.8}, dvec3(10, 11, 12)}};
+    s.camera = {{0, 1.4, -3.2}, {0, 0.3, 0}, {0, 1, 0}, 45};
+    s.render = {.width = 96,
+        .height = 64,
+        .photons = 6000,
+        .k = 40,
+        .grid = {30, 10, 30},
+        .max_radius = 0.3,
+        .light_samples = 4};
+    return s;
+}
+
+} // namespace photongrid::testing

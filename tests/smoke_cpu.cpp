@@ -1,9 +1,0 @@
-#include <photongrid/backends/cpu/overrides/all.hpp>
-
-#include "smoke.hpp"
-
-int main()
-{
-    photongrid::cpu_backend b(2);
-    return photongrid::testing::smoke(b);
-}

@@ -1,0 +1,69 @@
+// Hard case F6: far from the origin.
+#pragma once
+
+#include "hard_cases.hpp"
+
+namespace photongrid::testing {
+
+// --- F6: far from the origin
+// ------------------------------------------------------------------------------------------
+
+/// The scene moved, exactly where its coordinates and `by` are multiples of 2^-20 below 2^32.
+inline scene moved(const scene& s, const dvec3& by) { return detail::moved_back(s, -by); }
+
+/// The scene with its coordinates rounded to multiples of 2^-20.
+inline scene rounded_scene(scene s)
+{
+    const auto to_grid = [](dvec3& v) { v = glm::round(v * 0x1p20) * 0x1p-20; };
+    for (auto& x : s.spheres)
+        to_grid(x.center);
+    for (auto& x : s.cylinders)
+        to_grid(x.base), to_grid(x.top);
+    for (auto& x : s.cones)
+        to_grid(x.base), to_grid(x.apex);
+    for (auto& x : s.paraboloids)
+        to_grid(x.vertex), to_grid(x.rim);
+    for (auto& x : s.disks)
+        to_grid(x.center);
+    for (auto& x : s.boxes)
+        to_grid(x.corner);
+    for (auto& x : s.polygons)
+        for (auto& v : x.vertices)
+            to_grid(v);
+    for (auto& x : s.point_lights)
+        to_grid(x.position);
+    for (auto& x : s.rectangle_lights)
+        to_grid(x.corner), to_grid(x.edge_u), to_grid(x.edge_v);
+    to_grid(s.camera.position);
+    to_grid(s.camera.look_at);
+    return s;
+}
+
+TYPED_TEST_P(hard_cases, f6_a_scene_far_away_renders_the_same)
+{
+    auto blocks = read_scene(std::string(PHOTONGRID_SCENES) + "/cornell_blocks.json");
+    blocks.render.width = blocks.render.height = 48;
+    blocks.render.photons = 8000;
+    blocks.render.k = 80;
+    for (const auto& s : {rounded_scene(blocks), rounded_scene(all_shapes())}) {
+        const dvec3 by(1e6, -1e6, 1e6);
+        render_stats a, b;
+        const auto here = render(this->b(), s, s.render, {}, a),
+                   there = render(this->b(), moved(s, by), s.render, {}, b);
+        EXPECT_EQ(count_different_bits(here.pixels, there.pixels), 0u) << s.name;
+        EXPECT_EQ(a.photons.emitted, b.photons.emitted);
+    }
+    // Coordinates that are not multiples: rounding to double at 10^6 moves them by up to 2^-34 m.
+    auto s = all_shapes();
+    for (auto& x : s.spheres)
+        x.center += dvec3(1e-3 / 3, 0, 0);
+    s.spheres[0].center.y += 1e-4; // touches the floor
+    render_stats a, b;
+    const auto here = render(this->b(), s, s.render, {}, a),
+               there = render(this->b(), moved(s, dvec3(1e6 + 0.1, 1e6 / 3, -1e6)), s.render, {}, b);
+    const double difference = relative_mse(there, here);
+    this->report("F6", "relMSE of a scene moved by 10^6 m, coordinates not multiples of 2^-20:", difference);
+    EXPECT_LE(difference, 0.005);
+}
+
+} // namespace photongrid::testing
