@@ -75,9 +75,7 @@ endif()
 # --- program ----------------------------------------------------------------------------------------------------------
 if(TARGET photongrid_program)
   install(TARGETS photongrid_program RUNTIME COMPONENT program)
-  install(DIRECTORY examples/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/photongrid COMPONENT program FILES_MATCHING PATTERN "*.json" PATTERN "*.schema.json" EXCLUDE)
-  # In the tree it is a link beside the scenes.
-  install(FILES docs/reference/photongrid-scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/photongrid/scenes COMPONENT program)
+  install(DIRECTORY examples/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/photongrid COMPONENT program FILES_MATCHING PATTERN "*.json")
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/photongrid RENAME copyright COMPONENT program)
 endif()
 
