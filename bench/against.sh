@@ -226,9 +226,9 @@ if [[ $pictures == yes ]]; then
   once=(
     "--seed 7" "--photons 100000" "--photons 100000 --map route" "--grid auto --k 8" "--map route --slots 2" "--exposure 1 --depth 2 --light-samples 1"
     "--search at_least_k" "--search fixed_radius --max-radius 0.2" "--as-paper --search exact_k" "--as-paper --search fixed_radius --max-radius 0.2 --map route"
-    "--kernel constant" "--kernel cone" "--kernel epanechnikov --bias paper" "--kernel cone --search at_least_k --aov"
-    "--leaks none" "--leaks side,normals=0.7" "--leaks side,disc=2 --map route"
-    "--leaks side,normals --edge-correction polygons" "--leaks side,normals --edge-correction polygons --kernel constant --search at_least_k"
+    "--filter constant" "--filter cone" "--filter epanechnikov --bias paper" "--filter cone --search at_least_k --aov"
+    "--leaks none" "--leaks side,min_cosine=0.7" "--leaks side,flattening=2 --map route"
+    "--leaks side,min_cosine --edge-correction polygons" "--leaks side,min_cosine --edge-correction polygons --filter constant --search at_least_k"
     "--only direct" "--only indirect"
   )
   others=("cpu --threads 1" "cpu --threads 3" "cpu --threads 3 --photons 100000" "gl-osmesa" "reference" "reference --caustics bins" "reference --seed 7")

@@ -11,8 +11,8 @@ echo "|---|---|---|---|---|"
 for scene in cornell_blocks cornell_box; do
   reference "$scene" --spp 1024
   for kernel in constant silverman; do
-    for options in "--leaks side" "--leaks side,normals" "--leaks side,normals --edge-correction polygons"; do
-      options="--kernel $kernel $options"
+    for options in "--leaks side" "--leaks side,min_cosine" "--leaks side,min_cosine --edge-correction polygons"; do
+      options="--filter $kernel $options"
       seconds=$(median_cpu_seconds "$scene" 4 "$options")
       error=$(relmse)
       cpu_seconds "$scene" 32 "$options" >/dev/null

@@ -44,7 +44,7 @@ figure() { awk -v key="\"$1\":" '$1 == key { gsub(",", "", $2); print $2; exit }
 row() {
   local scene=$1 backend=$2 map=$3 search=$4 kernel=$5 k=$6 photons=$7
   shift 7
-  "$program" render "examples/scenes/$scene.json" --backend "$backend" --size $size --map "$map" --search "$search" --kernel "$kernel" --k "$k" --photons "$photons" --grid auto --stats "$work/stats.json" -o "$work/picture.exr" --quiet "$@" >/dev/null
+  "$program" render "examples/scenes/$scene.json" --backend "$backend" --size $size --map "$map" --search "$search" --filter "$kernel" --k "$k" --photons "$photons" --grid auto --stats "$work/stats.json" -o "$work/picture.exr" --quiet "$@" >/dev/null
   local seconds relmse
   seconds=$(awk '$1 == "\"ms\":" && inside { gsub(",", "", $2); sum += $2 } $1 == "\"stages\":" { inside = 1 } $1 == "\"estimate\":" { inside = 0 } END { printf "%.5f", sum / 1000 }' "$work/stats.json")
   relmse=$("$program" compare "$work/picture.exr" "$out/$scene-reference.exr" | awk '$1 == "relMSE" { print $2 }')

@@ -11,7 +11,7 @@ echo "|---|---|---|---|---|"
 measure() {
   local scene=$1 options pairs
   reference "$@"
-  for options in "--as-paper" "--as-paper --search exact_k" "--kernel constant --leaks none" "--kernel constant" "--kernel cone" "--kernel epanechnikov" "--kernel silverman" "--kernel silverman --leaks side,normals" "--kernel silverman --leaks side,disc"; do
+  for options in "--as-paper" "--as-paper --search exact_k" "--filter constant --leaks none" "--filter constant" "--filter cone" "--filter epanechnikov" "--filter silverman" "--filter silverman --leaks side,min_cosine" "--filter silverman --leaks side,flattening"; do
     # In turn with the paper's, since machines get slower and faster by the minute.
     pairs=$(for _ in 1 2 3; do echo "$(cpu_seconds "$scene" 4 --as-paper) $(cpu_seconds "$scene" 4 "$options")"; done)
     echo "| $scene | \`$options\` | $(relmse) | $(awk '{ print $2 }' <<<"$pairs" | median_of_three) | $(awk '{ printf "%.2f\n", $2 / $1 }' <<<"$pairs" | median_of_three) |"

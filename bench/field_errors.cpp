@@ -1,4 +1,4 @@
-// How wrong density estimates are and how long they take, on fields of light with a known answer: every search, kernel,
+// How wrong density estimates are and how long they take, on fields of light with a known answer: every search, filter,
 // k and number of photons, on every backend. Prints CSV; bench/error.sh draws it.
 //
 //   field_errors [--quick]
@@ -80,8 +80,8 @@ struct choice {
 };
 constexpr choice<search_kind> searches[] = {{"at_least_k", search_kind::at_least_k}, {"exact_k", search_kind::exact_k},
     {"fixed_radius", search_kind::fixed_radius}};
-constexpr choice<filter_kernel> kernels_of[] = {{"constant", filter_kernel::constant}, {"cone", filter_kernel::cone},
-    {"epanechnikov", filter_kernel::epanechnikov}, {"silverman", filter_kernel::silverman}};
+constexpr choice<filter_kind> filters[] = {{"constant", filter_kind::constant}, {"cone", filter_kind::cone},
+    {"epanechnikov", filter_kind::epanechnikov}, {"silverman", filter_kind::silverman}};
 
 /// Prints a row for each way to estimate `s` on backend b. Times are medians of three, with building the map apart.
 template <backend B>
@@ -110,9 +110,9 @@ void measure(B& b, const std::string& name, const field& f, const sample& s, con
         auto map = sorted_map(b, upload(), g); // kernels compile here
         const double build = seconds([&] { map = sorted_map(b, upload(), g); });
         for (const auto& search : searches)
-            for (const auto& kernel : kernels_of) {
+            for (const auto& filter : filters) {
                 const double area = (1 + 2 * margin) * (1 + 2 * margin);
-                knn_settings settings{.k = k, .max_radius = 1.0f, .search = search.value, .kernel = kernel.value};
+                knn_settings settings{.k = k, .max_radius = 1.0f, .search = search.value, .filter = filter.value};
                 if (search.value == search_kind::fixed_radius)
                     settings.max_radius = static_cast<float>(std::sqrt(k * area / (n * 3.14159265358979)));
                 std::vector<vec4> irradiance;
@@ -125,7 +125,7 @@ void measure(B& b, const std::string& name, const field& f, const sample& s, con
                     const double e = (static_cast<double>(irradiance[i].x) - s.truth[i]) / (s.truth[i] + 0.01);
                     error += e * e / static_cast<double>(s.truth.size());
                 }
-                std::printf("%s,%s,sort,%s,%s,%u,%u,%.6f,%.6f,%.6g\n", f.name, name.c_str(), search.name, kernel.name,
+                std::printf("%s,%s,sort,%s,%s,%u,%u,%.6f,%.6f,%.6g\n", f.name, name.c_str(), search.name, filter.name,
                     k, n, build, search_seconds, error);
             }
     }
@@ -141,7 +141,7 @@ int main(int argc, char** argv)
     const std::vector<uint> ks = quick ? std::vector<uint>{16} : std::vector<uint>{16, 64, 256};
     cpu_backend cpu;
     serial_backend serial;
-    std::printf("field,backend,map,search,kernel,k,photons,build_seconds,seconds,relmse\n");
+    std::printf("field,backend,map,search,filter,k,photons,build_seconds,seconds,relmse\n");
     try {
         gl_backend gl;
         vulkan_backend vulkan;

@@ -4,7 +4,7 @@
 //
 //   interactive SCENE.json [REPETITIONS [BACKEND...]]      BACKEND: cpu (default), serial, vulkan or gl
 #include "median.hpp"
-#include "scene_file.hpp"
+#include <photongrid/io/scene_file.hpp>
 
 #include <photongrid/backends/cpu/cpu.hpp>
 

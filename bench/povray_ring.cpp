@@ -5,8 +5,8 @@
 //   povray_ring compare SCENE.json OURS.exr POV.exr POV_WITHOUT.exr
 #include <photongrid/reference/reference.hpp>
 
-#include "image_file.hpp"
-#include "scene_file.hpp"
+#include <photongrid/io/image_file.hpp>
+#include <photongrid/io/scene_file.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -48,14 +48,14 @@ void print_pov(const scene& s, long photons)
     if (photons > 0)
         std::cout << " photons { count " << photons << " max_trace_level 8 gather 20, 100 autostop 0 }";
     const auto& c = s.camera;
-    const double aspect = static_cast<double>(s.render.width) / s.render.height,
+    const double aspect = static_cast<double>(s.render.output.width) / s.render.output.height,
                  half = std::tan(glm::radians(0.5 * c.vertical_fov));
     std::cout << " }\ncamera { perspective location " << vec(c.position) << " up y right " << -aspect << "*x angle "
               << 2 * glm::degrees(std::atan(half * aspect)) << " sky " << vec(c.up) << " look_at " << vec(c.look_at)
               << " }\n";
     for (const auto& l : s.point_lights)
         std::cout << "light_source { " << vec(l.position) << " rgb 1 }\n";
-    const auto side = static_cast<int>(std::lround(std::sqrt(std::max(1u, s.render.light_samples))));
+    const auto side = static_cast<int>(std::lround(std::sqrt(std::max(1u, s.render.view.light_samples))));
     for (const auto& l : s.rectangle_lights)
         std::cout << "light_source { " << vec(l.corner + 0.5 * (l.edge_u + l.edge_v)) << " rgb 1 area_light "
                   << vec(l.edge_u) << ", " << vec(l.edge_v) << ", " << side << ", " << side << " jitter }\n";

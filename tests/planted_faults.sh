@@ -66,7 +66,7 @@ faults=(
   "previews are dark|include/photongrid/render/view_pass.hpp|is_preview() ? 1.0f : 1.0f / static_cast<float>(settings_.spp);|is_preview() ? 0.8f : 1.0f / static_cast<float>(settings_.spp);"
   "ties of the k-th unseen|include/photongrid/estimate/kth_distance.glsl|before > 0u && component(below, before - 1u) == kth ? 1u : 0u|before > 9u ? 1u : 0u"
   "photon at the pivot on the far side|include/photongrid/estimate/kth_distance.glsl|inside && key <= middle ? 1u : 0u|inside && key < middle ? 1u : 0u"
-  "share of the outer edges added|include/photongrid/estimate/covered_share.glsl|d < 0.0f ? -rim : rim|rim"
+  "share of the outer edges added|include/photongrid/render/covered_share.glsl|d < 0.0f ? -rim : rim|rim"
   "passes have the same photons|include/photongrid/render/passes.hpp|if (pass > 0) {|if (pass > 65535) {"
   "a pass is forgotten|include/photongrid/render/film.hpp|add_up(*std::exchange(only_, std::nullopt));|only_.reset();"
   "passes are rounded in turn|include/photongrid/render/exact_sum.hpp|high_ += high + (low_ < low ? 1u : 0u);|high_ += high;"

@@ -42,7 +42,7 @@ irradiance_source caustics_of(const scene& s, int photons, std::uint64_t seed)
     const auto map = std::make_shared<const photongrid::photon_map<device_type>>(device, shoot(s, photons, seed),
         photongrid::knn_settings{.k = 50,
             .max_radius = 0.1f,
-            .kernel = photongrid::filter_kernel::silverman,
+            .filter = photongrid::filter_kind::silverman,
             .leaks = {.side = true, .min_cosine = 0.9f}});
     return [map](vec3 where, vec3 normal) -> vec3 {
         thread_local photongrid::query_scratch scratch;

@@ -1,13 +1,14 @@
 #include "command_line.hpp"
 
-#include "image_file.hpp"
-#include "setting_names.hpp"
+#include "option_values.hpp"
+
+#include <photongrid/io/image_file.hpp>
+#include <photongrid/scene/setting_table.hpp>
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <type_traits>
 
 namespace photongrid {
 
@@ -18,7 +19,7 @@ namespace {
   photongrid render ring.json --size 128x96 --photons 4000 --exposure 1 --quiet
   photongrid render glass_ball.json --progressive steps --every 50 --strip figure8.png --crop 96x96+180+150
   photongrid render cornell_box.json --spp 256 --resume unfinished -o box.exr
-  photongrid render ring.json --only caustic --kernel silverman --leaks side,normals=0.7 --aov -o ring.exr
+  photongrid render ring.json --only caustic --filter silverman --leaks side,min_cosine=0.7 --aov -o ring.exr
   photongrid reference ring.json -o reference.exr --error error.exr --paths 100000000
   photongrid compare ring.exr reference.exr --max-relmse 1e-3
   photongrid check my_scene.json
@@ -34,151 +35,35 @@ Exit codes:
   130  interrupted (Ctrl-C); the best picture so far is written, if there is one; nothing half-written is left
 )";
 
-    // Of --leaks normals and disc where no value is given: 60 degrees, and a disc four times as wide as high.
-    constexpr float usual_cosine = 0.5f, usual_compression = 4;
-
-    /// --only has no word for everything.
-    constexpr named<light_part> drawn_alone[] = {part_names[1], part_names[2], part_names[3]};
-
-    // std::from_chars, so that "010" is ten, "-1" no number and "1e9x" an error.
-    template <class T>
-    T parsed(const std::string& option, std::string_view text, const char* expected)
+    std::string option_name(const char* setting)
     {
-        T value{};
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error != std::errc() || end != text.data() + text.size())
-            throw CLI::ValidationError(option, "\"" + std::string(text) + "\" given; expected " + expected);
-        return value;
+        std::string name = std::string("--") + setting;
+        std::replace(name.begin(), name.end(), '_', '-');
+        return name;
     }
 
-    double parsed_number(const std::string& option, const std::string& text, const char* expected)
-    {
-        const auto value = parsed<double>(option, text, expected);
-        if (!std::isfinite(value))
-            throw CLI::ValidationError(option, "\"" + text + "\" given; expected " + expected);
-        return value;
-    }
+    // What --help says of a setting that is not given.
+    const char* without(in_scenes use) { return use == in_scenes::never ? "" : "; default: as the scene has it"; }
 
-    /// Whole numbers with `separator` between them.
-    template <glm::length_t N>
-    glm::vec<N, glm::uint> parsed_list(
-        const std::string& option, std::string_view text, char separator, const char* expected)
+    /// An option for a row of the table of settings.
+    template <class Row>
+    void add_setting(CLI::App& to, const Row& row, render_options& o)
     {
-        glm::vec<N, glm::uint> v(0);
-        for (glm::length_t i = 0; i < N; ++i) {
-            const auto end = i + 1 < N ? text.find(separator) : text.size();
-            if (end == std::string_view::npos)
-                throw CLI::ValidationError(option, std::string("expected ") + expected);
-            v[i] = parsed<glm::uint>(option, text.substr(0, end), expected);
-            text.remove_prefix(std::min(end + 1, text.size()));
-        }
-        return v;
-    }
-
-    /// Part of a picture, as X11 writes it.
-    crop parsed_crop(const std::string& option, const std::string& text)
-    {
-        const char* const expected = "a part of the picture, WxH+X+Y, with at least one pixel";
-        const auto plus = text.find('+');
-        if (plus == std::string::npos)
-            throw CLI::ValidationError(option, "\"" + text + "\" given; expected " + expected);
-        const auto size = parsed_list<2>(option, std::string_view(text).substr(0, plus), 'x', expected);
-        const auto corner = parsed_list<2>(option, std::string_view(text).substr(plus + 1), '+', expected);
-        if (size.x < 1 || size.y < 1)
-            throw CLI::ValidationError(option, "\"" + text + "\" given; expected " + expected);
-        return {corner.x, corner.y, size.x, size.y};
-    }
-
-    /// Cells along each axis; all 0 for `auto`.
-    glm::uvec3 parsed_grid(const std::string& option, const std::string& text)
-    {
-        if (text == "auto")
-            return glm::uvec3(0);
-        const auto grid = parsed_list<3>(option, text, ',', "three whole numbers, X,Y,Z, or auto");
-        if (grid.x < 1 || grid.y < 1 || grid.z < 1)
-            throw CLI::ValidationError(option, "\"" + text + "\" given; each axis needs at least one cell");
-        return grid;
-    }
-
-    /// A number at or between two limits, as single precision holds it.
-    float parsed_from(const std::string& option, const std::string& text, double low, double high, const char* expected)
-    {
-        const double value = parsed_number(option, text, expected);
-        if (value < low || value > high)
-            throw CLI::ValidationError(option, "\"" + text + "\" given; expected " + expected);
-        return static_cast<float>(value);
-    }
-
-    /// Policies with commas between them, each at most once; or `none`.
-    leak_policy parsed_leaks(const std::string& option, const std::string& text)
-    {
-        if (text == "none")
-            return {};
-        leak_policy leaks;
-        std::vector<std::string> given;
-        for (std::size_t at = 0; at <= text.size();) {
-            const auto end = std::min(text.find(',', at), text.size());
-            const auto policy = text.substr(at, end - at);
-            const auto name = policy.substr(0, policy.find('='));
-            const bool with_value = name.size() < policy.size();
-            const auto value = with_value ? policy.substr(name.size() + 1) : "";
-            if (std::find(given.begin(), given.end(), name) != given.end())
-                throw CLI::ValidationError(
-                    option, "\"" + text + "\" has " + name + " twice; expected each policy once");
-            given.push_back(name);
-            if (policy == "side")
-                leaks.side = true;
-            else if (name == "normals")
-                leaks.min_cosine = with_value ? parsed_from(option, value, -1, 1, "normals=COS, a cosine from -1 to 1")
-                                              : usual_cosine;
-            else if (name == "disc")
-                leaks.compression = with_value
-                    ? parsed_from(option, value, 1, 1e6, "disc=C, a compression from 1 to 1e6")
-                    : usual_compression;
-            else if (policy == "none")
-                throw CLI::ValidationError(option, "\"" + text + "\" given; expected none alone, or no none");
-            else
-                throw CLI::ValidationError(option,
-                    "\"" + policy
-                        + "\" given; expected none, or some of side, normals, normals=COS, disc, disc=C with commas "
-                          "between them");
-            at = end + 1;
-        }
-        return leaks;
-    }
-
-    /// An option whose value is one of a setting's words.
-    template <class Target, class Setting, std::size_t N>
-    void add_choice(CLI::App& to, const std::string& option, Target& target, const named<Setting> (&names)[N],
-        const std::string& about)
-    {
-        std::string type;
-        for (const auto& word : words(names))
-            type += (type.empty() ? "" : "|") + word;
-        to.add_option_function<std::string>(
-              option, [&target, &names](const std::string& word) { target = value_of(names, word); }, about)
-            ->check(CLI::IsMember(words(names)))
-            ->type_name(type);
-    }
-
-    void add_whole(
-        CLI::App& to, const std::string& option, std::optional<std::uint32_t>& target, const std::string& about)
-    {
+        const auto option = option_name(row.name);
         to.add_option_function<std::string>(
               option,
-              [&target, option](
-                  const std::string& text) { target = parsed<std::uint32_t>(option, text, "a whole number"); },
-              about)
-            ->type_name("N");
-    }
-
-    void add_number(CLI::App& to, const std::string& option, std::optional<double>& target, const std::string& about,
-        const char* type)
-    {
-        to.add_option_function<std::string>(
-              option, [&target, option](const std::string& text) { target = parsed_number(option, text, "a number"); },
-              about)
-            ->type_name(type);
+              [option, row, &o](const std::string& text) {
+                  const auto value = parsed_setting(option, text, row.values);
+                  o.settings.push_back([row, value](render_settings& s) {
+                      if constexpr (std::is_same_v<std::decay_t<decltype(row.values)>, setting_table::pixels>) {
+                          s.output.width = value.x;
+                          s.output.height = value.y;
+                      } else
+                          row.of(s) = value;
+                  });
+              },
+              std::string(row.about) + without(row.use))
+            ->type_name(type_of(row.values));
     }
 
     /// Scene, backend and settings: what a picture depends on, in a file or in a window.
@@ -191,49 +76,10 @@ Exit codes:
         add_whole(to, "--threads", o.threads, "of the cpu backend; default: all; the picture does not depend on it");
         to.add_option("--device", o.device, "Vulkan device (with --backend vulkan); see `photongrid devices`")
             ->type_name("NAME|INDEX");
-        add_choice(to, "--map", o.map, map_names, "build the photon map by bitonic sort or stencil routing");
-        add_whole(to, "--slots", o.slots, "routed cells have N x N slots, 1 to 16");
-        add_whole(to, "--photons", o.photons, "photons stored");
-        add_whole(to, "--k", o.k, "photons sought by an estimate; fixed_radius seeks none");
-        add_choice(to, "--search", o.search, search_names,
-            "photons used: k and a few more, as the paper has it; the k nearest; all within --max-radius; default: the "
-            "scene's, else exact_k");
-        add_choice(to, "--kernel", o.kernel, kernel_names,
-            "weight of a photon by its distance; default: the scene's, else silverman");
-        add_choice(to, "--bias", o.bias, bias_names,
-            "the photon that sets the radius counts (paper) or is left out of the sum (unbiased); default: the "
-            "scene's, else unbiased");
-        to.add_option_function<std::string>(
-              "--leaks", [&o](const std::string& text) { o.leaks = parsed_leaks("--leaks", text); },
-              "photons refused: none, or some of side (came from behind the surface), normals=COS (lie on a surface "
-              "turned away by more than this cosine; default 0.5), "
-              "disc=C (distances along the normal count C times; default 4), with commas between them; default: the "
-              "scene's, else side")
-            ->type_name("LIST");
-        add_choice(to, "--edge-correction", o.edges, edge_names,
-            "polygons: divide estimates by the share of their disc that lies on the surface, so that polygons do not "
-            "darken towards their edges; needs normals among --leaks; default: the scene's, else none");
-        add_choice(to, "--only", o.only, drawn_alone, "draw this part of the light alone; default: all of it");
+        for_each_setting([&](const auto& row) { add_setting(to, row, o); });
         to.add_flag("--as-paper", o.as_paper,
-            "the paper's estimate: --search at_least_k --kernel constant --bias paper --leaks none --edge-correction "
-            "none; each gives way to the option itself");
-        to.add_option_function<std::string>(
-              "--grid", [&o](const std::string& text) { o.grid = parsed_grid("--grid", text); },
-              "cells of the photon map over the scene, or fitted to the photons and k")
-            ->type_name("X,Y,Z|auto");
-        add_number(to, "--max-radius", o.max_radius, "largest search radius; of fixed_radius, the radius", "METRES");
-        to.add_option_function<std::string>(
-              "--size",
-              [&o](const std::string& text) { o.size = parsed_list<2>("--size", text, 'x', "width and height: WxH"); },
-              "pixels")
-            ->type_name("WxH");
-        add_whole(to, "--spp", o.spp, "eye rays per pixel and pass");
-        add_whole(to, "--passes", o.passes,
-            "the picture is the mean of so many, each with photons, eye rays and shadow rays of its own");
-        add_whole(to, "--light-samples", o.light_samples, "shadow rays an area light and eye ray");
-        add_whole(to, "--depth", o.depth, "reflections and refractions an eye ray follows");
-        add_whole(to, "--seed", o.seed, "same seed, same picture");
-        add_number(to, "--exposure", o.exposure, "PNG: pixel values times 2^EV", "EV");
+            "the paper's estimate: --search at_least_k --filter constant --bias paper --leaks none --edge-correction "
+            "none --passes 1; each gives way to the option itself");
         to.add_option("--shader-cache", o.shader_cache,
               "folder where Vulkan's compiled kernels are kept for the next start; default: photongrid in "
               "$XDG_CACHE_HOME or ~/.cache")
@@ -316,9 +162,7 @@ Exit codes:
             ->check(CLI::IsMember({"bins", "paths"}))
             ->type_name("bins|paths");
         to.add_option_function<std::string>(
-              "--size",
-              [&o](const std::string& text) { o.size = parsed_list<2>("--size", text, 'x', "width and height: WxH"); },
-              "pixels")
+              "--size", [&o](const std::string& text) { o.size = parsed_size("--size", text); }, "pixels")
             ->type_name("WxH");
         add_whole(to, "--depth", o.depth, "mirrors and glass surfaces that an eye path passes before a diffuse one");
         add_whole(to, "--photon-depth", o.photon_depth,
@@ -413,35 +257,12 @@ command read_command_line(int argc, char** argv)
 
 render_settings settings_for(const scene& s, const render_options& o)
 {
-    render_settings r = o.as_paper ? as_paper(s.render) : s.render;
-    if (o.size) {
-        r.width = o.size->x;
-        r.height = o.size->y;
-    }
-    r.builder = o.map.value_or(r.builder);
-    r.slots = o.slots.value_or(r.slots);
-    r.photons = o.photons.value_or(r.photons);
-    r.k = o.k.value_or(r.k);
-    r.spp = o.spp.value_or(r.spp);
-    r.passes = o.passes.value_or(r.passes);
-    r.light_samples = o.light_samples.value_or(r.light_samples);
-    r.depth = o.depth.value_or(r.depth);
-    r.seed = o.seed.value_or(r.seed);
-    r.grid = o.grid.value_or(r.grid);
-    r.max_radius = o.max_radius.value_or(r.max_radius);
-    r.exposure = o.exposure.value_or(r.exposure);
-    r.search = o.search.value_or(r.search);
-    r.kernel = o.kernel.value_or(r.kernel);
-    r.bias = o.bias.value_or(r.bias);
-    r.leaks = o.leaks.value_or(r.leaks);
-    r.edges = o.edges.value_or(r.edges);
-    r.only = o.only;
-    r.aov = o.aov;
-    check(r);
-    const double cells = static_cast<double>(r.grid.x) * r.grid.y * r.grid.z;
-    if (cells > 0x1p31)
-        throw std::invalid_argument("grid: more than 2^31 cells");
-    return r;
+    auto settings = o.as_paper ? as_paper(s.render) : s.render;
+    for (const auto& give : o.settings)
+        give(settings);
+    settings.output.aov = o.aov;
+    check(settings);
+    return settings;
 }
 
 } // namespace photongrid

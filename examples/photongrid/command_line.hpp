@@ -6,6 +6,7 @@
 #include <photongrid/reference/settings.hpp>
 #include <photongrid/scene/scene.hpp>
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -28,17 +29,8 @@ enum exit_code {
 /// `render`. What is empty is as the scene file has it.
 struct render_options {
     std::string scene_path, backend = "auto", device;
-    std::optional<map_builder> map;
-    std::optional<std::uint32_t> slots, photons, k, spp, passes, light_samples, depth, seed, threads;
-    std::optional<glm::uvec3> grid;
-    std::optional<glm::uvec2> size;
-    std::optional<double> max_radius, exposure;
-    std::optional<search_kind> search;
-    std::optional<filter_kernel> kernel;
-    std::optional<bias_kind> bias;
-    std::optional<leak_policy> leaks;
-    std::optional<edge_correction> edges;
-    light_part only = light_part::all;
+    std::optional<std::uint32_t> threads;
+    std::vector<std::function<void(render_settings&)>> settings; ///< that are given, each to be put into the scene's
     bool aov = false, as_paper = false;
     std::vector<std::string> outputs;
     std::string stats, progressive, strip, reference, resume;

@@ -1,11 +1,12 @@
 // The photongrid program: scene file in, picture and statistics out.
-#include "backends.hpp"
 #include "command_line.hpp"
-#include "image_file.hpp"
 #include "reference_command.hpp"
 #include "render_command.hpp"
-#include "scene_file.hpp"
 #include "viewer/view_command.hpp"
+#include <photongrid/backends/any/any.hpp>
+#include <photongrid/io/image_difference.hpp>
+#include <photongrid/io/image_file.hpp>
+#include <photongrid/io/scene_file.hpp>
 
 #include <cerrno>
 #include <csignal>
@@ -85,10 +86,7 @@ namespace {
 
     exit_code run(const devices_options&)
     {
-        std::vector<device_report> all{serial_device()};
-        for (auto&& more : {cpu_devices(), gl_devices(), vulkan_devices_report()})
-            all.insert(all.end(), more.begin(), more.end());
-        for (const auto& d : all) {
+        for (const auto& d : find_devices()) {
             std::cout << d.backend << "  "
                       << (d.works                   ? d.device
                                  : d.device.empty() ? "not available"

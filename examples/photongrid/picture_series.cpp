@@ -1,5 +1,7 @@
 #include "picture_series.hpp"
 
+#include <photongrid/io/image_difference.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -2,9 +2,10 @@
 // them.
 #pragma once
 
-#include "image_file.hpp"
+#include <photongrid/io/image_file.hpp>
 
 #include <chrono>
+#include <glm/glm.hpp>
 #include <optional>
 #include <string>
 #include <vector>

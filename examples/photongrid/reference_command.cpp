@@ -1,8 +1,8 @@
 #include "reference_command.hpp"
 
-#include "image_file.hpp"
 #include "progress_bar.hpp"
-#include "scene_file.hpp"
+#include <photongrid/io/image_file.hpp>
+#include <photongrid/io/scene_file.hpp>
 
 #include <photongrid/reference/reference.hpp>
 

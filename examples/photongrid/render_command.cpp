@@ -3,8 +3,8 @@
 #include "picture_series.hpp"
 #include "progress_bar.hpp"
 #include "resume_file.hpp"
-#include "scene_file.hpp"
 #include "stats_file.hpp"
+#include <photongrid/io/scene_file.hpp>
 
 #include <chrono>
 #include <cstdlib>
@@ -91,19 +91,14 @@ renderer_options renderer_asked(const render_options& o)
 {
     if (o.threads.value_or(0) > 4096)
         throw std::invalid_argument("--threads " + std::to_string(*o.threads) + ": at most 4,096; 0: all");
-    renderer_options r{.backend = o.backend,
+    const auto r = chosen({.backend = o.backend,
         .threads = o.threads.value_or(0),
         .device = o.device,
         .shader_cache = shader_cache_folder(o),
-        .time_passes = o.time_passes};
-    if (o.backend == "auto") {
-        const auto device = hardware_vulkan_device();
-        r.backend = device ? "vulkan" : has_cpu() ? "cpu" : "serial";
-        r.device = device.value_or("");
-        if (!o.quiet)
-            std::cerr << "photongrid: --backend auto: " << r.backend
-                      << (device ? ", device " + *device : " (no hardware Vulkan device)") << '\n';
-    }
+        .time_passes = o.time_passes});
+    if (o.backend == "auto" && !o.quiet)
+        std::cerr << "photongrid: --backend auto: " << r.backend
+                  << (r.backend == "vulkan" ? ", device " + r.device : " (no hardware Vulkan device)") << '\n';
     return r;
 }
 
@@ -128,8 +123,8 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
             .strip = o.strip,
             .strip_crop = o.strip_crop,
             .reference = o.reference,
-            .size = {settings.width, settings.height},
-            .exposure = settings.exposure,
+            .size = {settings.output.width, settings.output.height},
+            .exposure = settings.output.exposure,
             .every_ms = o.every});
     } catch (const std::invalid_argument& e) {
         std::cerr << "photongrid: error: on the command line: " << e.what() << '\n';
@@ -141,7 +136,7 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
     const auto drawing = make_renderer(backend);
     drawing->start(s, settings, {.wanted = series->wanted()});
     resumable file(*drawing, o.resume, s, settings);
-    for (std::uint64_t seen = 0; !stop_asked() && !drawing->step(series->wanted() ? 0 : 50);) {
+    for (std::uint64_t seen = 0; !stop_asked() && !drawing->step(renderer::milliseconds(series->wanted() ? 0 : 50));) {
         const auto now = drawing->progress();
         bar.show(now.stage, now.fraction);
         if (drawing->pictures() > seen && series->due()) {
@@ -167,7 +162,7 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
                   << " pixels were NaN or infinite and are black\n";
     series->finish(picture);
     for (const auto& path : outputs) {
-        write_image(path, picture, settings.exposure, picture_notes(s, settings, *drawing));
+        write_image(path, picture, settings.output.exposure, picture_notes(s, settings, *drawing));
         std::cout << path << '\n';
     }
     if (!o.strip.empty()) {

@@ -1,8 +1,8 @@
 // The command `render`: a scene's picture by its photon map.
 #pragma once
 
-#include "backends.hpp"
 #include "command_line.hpp"
+#include <photongrid/backends/any/any.hpp>
 
 #include <functional>
 

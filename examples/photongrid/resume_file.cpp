@@ -1,6 +1,6 @@
 #include "resume_file.hpp"
 
-#include "scene_writer.hpp"
+#include <photongrid/io/scene_writer.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -39,7 +39,7 @@ std::string picture_identity(const scene& s, const render_settings& settings, co
 {
     const json all = {{"version", PHOTONGRID_VERSION}, {"backend", caps.backend}, {"device", caps.device},
         {"scene", json::parse(scene_text(s, {}))}, {"set of settings", json::parse(settings_text(settings))},
-        {"choice of layers", settings.aov}};
+        {"choice of layers", settings.output.aov}};
     return all.dump();
 }
 

@@ -1,7 +1,7 @@
 // --resume: a picture that is not finished, in a file, to go on with another day.
 #pragma once
 
-#include "image_file.hpp"
+#include <photongrid/io/image_file.hpp>
 
 #include <photongrid/backend/backend.hpp>
 #include <photongrid/render/render_state.hpp>

@@ -1,7 +1,6 @@
 #include "stats_file.hpp"
 
-#include "scene_writer.hpp"
-#include "setting_names.hpp"
+#include <photongrid/io/scene_writer.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -37,7 +36,7 @@ std::string stats_json(const scene& s, const render_settings& settings, const re
             {{"emitted", p.emitted}, {"absorbed", p.absorbed}, {"escaped", p.escaped}, {"cut_off", p.cut_off},
                 {"invalid", p.invalid}, {"stored", p.stored}, {"direct", p.direct}, {"dropped", p.dropped}}},
         {"map",
-            {{"builder", name_of(map_names, r.map.builder)}, {"cells", r.map.cells},
+            {{"builder", setting_table::map.values.word_for(r.map.builder)}, {"cells", r.map.cells},
                 {"resolution", {r.map.resolution.x, r.map.resolution.y, r.map.resolution.z}},
                 {"overfull_cells", r.map.overfull_cells}, {"redistributed_flux", r.map.redistributed_flux},
                 {"left_out", r.map.left_out}}},

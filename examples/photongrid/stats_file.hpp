@@ -1,8 +1,8 @@
 // --stats: what a render did, as JSON; and the same facts as notes in an EXR.
 #pragma once
 
-#include "backends.hpp"
-#include "image_file.hpp"
+#include <photongrid/backends/any/any.hpp>
+#include <photongrid/io/image_file.hpp>
 
 namespace photongrid {
 

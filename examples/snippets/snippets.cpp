@@ -168,7 +168,7 @@ void estimates(device_type& device, const photongrid::map_buffers<device_type>& 
 
     //! [knn_grid_estimate]
     const auto found = photongrid::knn_grid_estimate(device, map, points,
-        {.k = 50, .max_radius = 0.2f, .kernel = photongrid::filter_kernel::silverman, .errors = true});
+        {.k = 50, .max_radius = 0.2f, .filter = photongrid::filter_kind::silverman, .errors = true});
     const glm::vec4 light = device.download(found.irradiance)[0];     // rgb: W/m^2, w: squared radius, m^2
     const glm::vec4 error = device.download(found.standard_error)[0]; // rgb: W/m^2
     //! [knn_grid_estimate]
@@ -178,7 +178,7 @@ void estimates(device_type& device, const photongrid::map_buffers<device_type>& 
     //! [upload_normals]
     const auto normals = photongrid::upload_normals(device, std::vector<glm::vec3>(2, {0, 1, 0}));
     photongrid::knn_settings flat{.k = 50, .max_radius = 0.2f};
-    flat.leaks.compression = 4; // distances along the normal count four times
+    flat.leaks.flattening = 4; // distances along the normal count four times
     const auto in_discs = photongrid::knn_grid_estimate(device, map, points, normals, flat);
     //! [upload_normals]
     expect(is_near(device.download(in_discs.irradiance)[0].x, 1, 0.1), "upload_normals");
@@ -258,7 +258,7 @@ void edges(device_type& device)
     // A point on the floor's edge, where half of the disc hangs over: the estimate is half of the truth until this is
     // called.
     photongrid::correct_edges(
-        device, scene, points, normals, found, settings.kernel, photongrid::least_radius(map.cells_of));
+        device, scene, points, normals, found, settings.filter, photongrid::least_radius(map.cells_of));
     //! [correct_edges]
     expect(is_near(before, 0.5, 0.15) && is_near(device.download(found.irradiance)[0].x, 1, 0.15), "correct_edges");
 }
@@ -267,12 +267,12 @@ void pictures(device_type& device)
 {
     const photongrid::scene room = a_corner();
     photongrid::render_settings settings = room.render;
-    settings.width = 16;
-    settings.height = 12;
-    settings.photons = 1000;
-    settings.k = 50;
-    settings.max_radius = 0.5;
-    settings.grid = glm::uvec3(0);
+    settings.output.width = 16;
+    settings.output.height = 12;
+    settings.map.photons = 1000;
+    settings.estimate.k = 50;
+    settings.estimate.max_radius = 0.5;
+    settings.map.grid = glm::uvec3(0);
 
     //! [build_map]
     photongrid::render_stats stats;

@@ -4,7 +4,7 @@
 #include "../backends/serial_pictures.hpp"
 #include "../map/photon_sets.hpp"
 #include "../scene/test_scenes.hpp"
-#include "image_file.hpp"
+#include <photongrid/io/image_file.hpp>
 
 #include <photongrid/render/render.hpp>
 
@@ -79,13 +79,13 @@ namespace {
     image picture(faulty& b, map_builder builder, render_stats& stats, const render_observer& observer = {})
     {
         auto s = testing::small_cornell(); // glass, a mirror, a lamp
-        s.render.width = 6;
-        s.render.height = 5;
-        s.render.photons = 300;
-        s.render.k = 8;
-        s.render.photon_depth = 9; // asks once whether any path goes on
-        s.render.light_samples = 1;
-        s.render.builder = builder;
+        s.render.output.width = 6;
+        s.render.output.height = 5;
+        s.render.map.photons = 300;
+        s.render.estimate.k = 8;
+        s.render.map.photon_depth = 9; // asks once whether any path goes on
+        s.render.view.light_samples = 1;
+        s.render.map.builder = builder;
         return render(b, s, s.render, observer, stats);
     }
 
@@ -200,7 +200,7 @@ namespace {
     // begin.)
     bool says_no_place(std::string_view kernel)
     {
-        return kernel == "tally_path" || kernel == "sum_tallies" || kernel == "knn_result" || kernel == "no_light"
+        return kernel == "tally_path" || kernel == "sum_tallies" || kernel == "knn_result" || kernel == "zero_vectors"
             || kernel == "direct_light" || kernel == "shade";
     }
 

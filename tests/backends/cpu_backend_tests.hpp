@@ -34,7 +34,7 @@ namespace {
         }
     };
 
-    findings find(cpu_backend& b, distribution d, search_kind search, filter_kernel kernel, const leak_policy& leaks)
+    findings find(cpu_backend& b, distribution d, search_kind search, filter_kind filter, const leak_policy& leaks)
     {
         auto set = make_photons(d, 6000, {12, 12, 12}, 3);
         const auto points = make_points(set, 1000, 3);
@@ -51,9 +51,9 @@ namespace {
         const auto map = sorted_map(b, std::move(p), set.g);
         knn_settings k{.k = 70, .max_radius = 0.3f};
         k.search = search;
-        k.kernel = kernel;
+        k.filter = filter;
         k.leaks = leaks;
-        k.errors = search != search_kind::at_least_k || kernel != filter_kernel::constant;
+        k.errors = search != search_kind::at_least_k || filter != filter_kind::constant;
         if (!k.errors)
             k.bias = bias_kind::paper; // adds up while it searches
         const auto e = knn_grid_estimate(
@@ -70,7 +70,7 @@ TEST(cpu_backend, threads_do_not_change_a_byte)
             std::vector<findings> all;
             for (const uint threads : {1u, 2u, 5u}) {
                 cpu_backend b(threads);
-                all.push_back(find(b, d, search, filter_kernel::silverman, {.side = true}));
+                all.push_back(find(b, d, search, filter_kind::silverman, {.side = true}));
             }
             EXPECT_TRUE(all[0] == all[1] && all[0] == all[2]) << name_of(d) << " search " << static_cast<int>(search);
         }
@@ -79,26 +79,26 @@ TEST(cpu_backend, threads_do_not_change_a_byte)
 TEST(cpu_backend, instruction_sets_do_not_change_a_byte)
 {
     cpu_backend b(1);
-    const leak_policy policies[] = {{}, {.side = true}, {.side = true, .min_cosine = -0.5f, .compression = 1.5f}};
+    const leak_policy policies[] = {{}, {.side = true}, {.side = true, .min_cosine = -0.5f, .flattening = 1.5f}};
     const auto targets = hwy::SupportedAndGeneratedTargets();
     ASSERT_FALSE(targets.empty());
     for (const auto d : {distribution::uniform, distribution::clustered, distribution::box_faces})
         for (const auto search : {search_kind::at_least_k, search_kind::exact_k})
-            for (const auto kernel : {filter_kernel::constant, filter_kernel::cone, filter_kernel::silverman})
+            for (const auto filter : {filter_kind::constant, filter_kind::cone, filter_kind::silverman})
                 for (const auto& leaks : policies) {
                     std::vector<findings> all;
                     for (const auto target : targets) {
                         hwy::SetSupportedTargetsForTest(target);
                         hwy::GetChosenTarget().DeInit();
-                        all.push_back(find(b, d, search, kernel, leaks));
+                        all.push_back(find(b, d, search, filter, leaks));
                         hwy::SetSupportedTargetsForTest(0);
                         hwy::GetChosenTarget().DeInit();
                     }
                     for (std::size_t t = 1; t < all.size(); ++t)
                         EXPECT_TRUE(all[t] == all[0])
                             << hwy::TargetName(targets[t]) << " against " << hwy::TargetName(targets[0]) << ", "
-                            << name_of(d) << " search " << static_cast<int>(search) << " kernel "
-                            << static_cast<int>(kernel);
+                            << name_of(d) << " search " << static_cast<int>(search) << " filter "
+                            << static_cast<int>(filter);
                 }
     std::string names;
     for (const auto target : targets)
@@ -209,7 +209,7 @@ TEST(cpu_backend, the_growing_search_visits_and_holds_what_serials_does)
         const auto k = *rc::gen::element(1u, 2u, 15u, 16u, 17u, 50u, 333u, 5000u);
         const auto radius = *rc::gen::element(1e-4f, 0.03f, 0.2f, 0.7f, 10.0f);
         const auto leaks = *rc::gen::element(leak_policy{}, leak_policy{.side = true},
-            leak_policy{.side = true, .min_cosine = -0.5f, .compression = 1.5f});
+            leak_policy{.side = true, .min_cosine = -0.5f, .flattening = 1.5f});
         const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1000000);
         const auto s = make_oriented(d, n, resolution, 40, seed);
         for (const auto& kind : {bias_kind::paper, bias_kind::unbiased}) {
@@ -252,11 +252,11 @@ TEST(cpu_backend, two_backends_work_side_by_side)
     findings a, c;
     std::thread first([&] {
         cpu_backend b(2);
-        a = find(b, distribution::uniform, search_kind::exact_k, filter_kernel::cone, {});
+        a = find(b, distribution::uniform, search_kind::exact_k, filter_kind::cone, {});
     });
     std::thread second([&] {
         cpu_backend b(2);
-        c = find(b, distribution::uniform, search_kind::exact_k, filter_kernel::cone, {});
+        c = find(b, distribution::uniform, search_kind::exact_k, filter_kind::cone, {});
     });
     first.join();
     second.join();

@@ -79,7 +79,7 @@ TYPED_TEST(readbacks, a_whole_picture_reads_no_pixel_back)
     const auto s = small_cornell();
     for (const auto builder : {map_builder::sort, map_builder::route}) {
         auto settings = s.render;
-        settings.builder = builder;
+        settings.map.builder = builder;
         const auto before = b.readbacks();
         std::uint64_t at_the_last_pass = 0;
         render_observer observer;

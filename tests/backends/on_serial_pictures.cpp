@@ -24,12 +24,12 @@ INSTANTIATE_TYPED_TEST_SUITE_P(serial, edges, ::testing::Types<serial_tag>, tag_
 TEST(passes, noise_falls_with_their_number)
 {
     auto s = small_cornell();
-    s.spheres.clear(); // whose caustics are rare and bright
-    s.render.spp = 2;  // so that one pass has no other eye rays than each of several
-    s.render.width = s.render.height = 16;
-    s.render.photons = 1000;
-    s.render.k = 40;
-    s.render.passes = 16;
+    s.spheres.clear();     // whose caustics are rare and bright
+    s.render.view.spp = 2; // so that one pass has no other eye rays than each of several
+    s.render.output.width = s.render.output.height = 16;
+    s.render.map.photons = 1000;
+    s.render.estimate.k = 40;
+    s.render.output.passes = 16;
     auto truth_settings = reference_settings_for(s.render);
     truth_settings.spp = 256;
     truth_settings.paths = 1 << 16;

@@ -16,7 +16,7 @@ PHOTONGRID_PICTURES_COMPILED_HERE template traced_photons<serial_backend> trace_
     serial_backend&, const scene&, const device_scene<serial_backend>&, const render_settings&, const render_observer&);
 PHOTONGRID_PICTURES_COMPILED_HERE template void correct_edges(serial_backend&, const device_scene<serial_backend>&,
     const buffer_of<serial_backend, glm::vec4>&, const buffer_of<serial_backend, glm::vec4>&,
-    knn_estimates<serial_backend>&, filter_kernel, float);
+    knn_estimates<serial_backend>&, filter_kind, float);
 PHOTONGRID_PICTURES_COMPILED_HERE template built_map<serial_backend> build_map(
     serial_backend&, const scene&, const render_settings&, const render_observer&, render_stats&);
 PHOTONGRID_PICTURES_COMPILED_HERE template image draw(serial_backend&, const built_map<serial_backend>&, const camera&,

@@ -29,14 +29,14 @@ TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
         }
     const auto p = b.upload(std::span<const glm::vec4>(points)), np = b.upload(std::span<const glm::vec4>(normals));
     for (const auto search : {search_kind::exact_k, search_kind::fixed_radius})
-        for (const auto kernel : kernels_over_discs) {
+        for (const auto filter : filters_over_discs) {
             knn_settings k{.k = 16, .max_radius = search == search_kind::exact_k ? 0.5f : 0.3f, .min_radius = 1e-6f};
             k.search = search;
-            k.kernel = kernel;
+            k.filter = filter;
             k.errors = true;
             auto e = knn_grid_estimate(b, map, p, np, k);
             const auto plain = b.download(e.irradiance), plain_errors = b.download(e.standard_error);
-            correct_edges(b, scene, p, np, e, kernel, k.min_radius);
+            correct_edges(b, scene, p, np, e, filter, k.min_radius);
             const auto whole = b.download(e.irradiance), errors = b.download(e.standard_error);
             const char* places[] = {"middle", "edge", "corner"};
             for (int place = 0; place < 3; ++place) {
@@ -57,7 +57,7 @@ TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
                              known = place == 0 ? 1
                     : place == 1                ? 0.5
                                                 : 0.25;
-                const auto where = std::string(places[place]) + ", kernel " + std::to_string(int(kernel)) + ", search "
+                const auto where = std::string(places[place]) + ", filter " + std::to_string(int(filter)) + ", search "
                     + std::to_string(int(search));
                 EXPECT_NEAR(mean, 1, 4 * spread / std::sqrt(m)) << where;
                 EXPECT_NEAR(without / m, known, 4 * known * spread / std::sqrt(m)) << where;
@@ -78,16 +78,18 @@ TYPED_TEST_P(edges, a_floor_lit_by_a_mirror_is_right_up_to_its_rim)
     const double height = 1.5, power = 100;
     s.point_lights = {{"bulb", {0, 1, 0}, dvec3(power)}};
     s.camera = {{0, 1.2, 0}, {0, 0, 0}, {0, 0, -1}, glm::degrees(2 * std::atan(0.5 / 1.2)) - 0.01};
-    s.render = {.width = 48, .height = 48, .photons = 15000, .k = 100, .grid = {40, 1, 40}, .max_radius = 0.2};
-    s.render.only = light_part::caustic;
-    s.render.leaks = {.side = true, .min_cosine = 0.5f};
-    s.render.aov = true;
+    s.render = {.map = {.photons = 15000, .grid = {40, 1, 40}},
+        .estimate = {.k = 100, .max_radius = 0.2},
+        .output = {.width = 48, .height = 48}};
+    s.render.output.only = light_part::caustic;
+    s.render.estimate.leaks = {.side = true, .min_cosine = 0.5f};
+    s.render.output.aov = true;
     image pictures[2];
     render_stats stats[2];
     const auto built = build_map(this->b(), s, s.render, {}, stats[0]);
     for (const bool corrected : {false, true}) {
         auto settings = s.render;
-        settings.edges = corrected ? edge_correction::polygons : edge_correction::none;
+        settings.estimate.edges = corrected ? edge_correction::polygons : edge_correction::none;
         pictures[corrected] = draw(this->b(), built, s.camera, settings, {}, stats[corrected]);
         double sums[3] = {}, counts[3] = {};
         for (uint y = 0; y < 48; ++y)
@@ -133,11 +135,11 @@ TYPED_TEST_P(edges, pictures_equal_the_serial_backends)
     auto& b = this->b();
     for (auto s : {small_cornell(), all_shapes()})
         for (const auto search : {search_kind::at_least_k, search_kind::exact_k}) {
-            s.render.width = s.render.height = 32;
-            s.render.photons = 2000;
-            s.render.edges = edge_correction::polygons;
-            s.render.leaks.min_cosine = 0.5f;
-            s.render.search = search;
+            s.render.output.width = s.render.output.height = 32;
+            s.render.map.photons = 2000;
+            s.render.estimate.edges = edge_correction::polygons;
+            s.render.estimate.leaks.min_cosine = 0.5f;
+            s.render.estimate.search = search;
             serial_backend serial;
             render_stats stats;
             const auto mine = render(b, s, s.render, {}, stats);
@@ -145,7 +147,7 @@ TYPED_TEST_P(edges, pictures_equal_the_serial_backends)
             if (b.caps().exact_division && b.caps().exact_sqrt) {
                 EXPECT_LE(relative_mse(mine, render(serial, s, s.render, {}, stats)), 1e-9);
             }
-            s.render.edges = edge_correction::none;
+            s.render.estimate.edges = edge_correction::none;
             EXPECT_GT(relative_mse(mine, render(b, s, s.render, {}, stats)), 1e-4);
         }
 }
@@ -154,23 +156,23 @@ TYPED_TEST_P(edges, correction_needs_the_normals_policy)
 {
     const auto s = small_cornell();
     for (const leak_policy& leaks :
-        {leak_policy{}, leak_policy{.side = true}, leak_policy{.side = true, .compression = 4},
+        {leak_policy{}, leak_policy{.side = true}, leak_policy{.side = true, .flattening = 4},
             leak_policy{.min_cosine = 0}, leak_policy{.min_cosine = -0.5f}}) {
         auto settings = s.render;
-        settings.leaks = leaks;
+        settings.estimate.leaks = leaks;
         EXPECT_NO_THROW(check(settings));
-        settings.edges = edge_correction::polygons;
+        settings.estimate.edges = edge_correction::polygons;
         render_stats stats;
         try {
             render(this->b(), s, settings, {}, stats);
             FAIL() << "corrected with the light of adjoining walls";
         } catch (const std::invalid_argument& e) {
             EXPECT_EQ(std::string(e.what()).find("edge_correction: "), 0u) << e.what();
-            EXPECT_NE(std::string(e.what()).find("needs the leak policy normals"), std::string::npos) << e.what();
+            EXPECT_NE(std::string(e.what()).find("needs the leak policy min_cosine"), std::string::npos) << e.what();
         }
-        settings.leaks.min_cosine = 0.25f;
+        settings.estimate.leaks.min_cosine = 0.25f;
         EXPECT_NO_THROW(check(settings));
-        EXPECT_EQ(as_paper(settings).edges, edge_correction::none);
+        EXPECT_EQ(as_paper(settings).estimate.edges, edge_correction::none);
         EXPECT_NO_THROW(check(as_paper(settings)));
     }
 }

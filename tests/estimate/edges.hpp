@@ -4,12 +4,12 @@
 #include "../trace/ray_tests.hpp"
 #include "known_answers.hpp"
 
-#include <photongrid/estimate/edge_correction.hpp>
+#include <photongrid/render/edge_correction.hpp>
 
 namespace photongrid::testing {
 
-inline constexpr filter_kernel kernels_over_discs[]
-    = {filter_kernel::constant, filter_kernel::cone, filter_kernel::epanechnikov, filter_kernel::silverman};
+inline constexpr filter_kind filters_over_discs[]
+    = {filter_kind::constant, filter_kind::cone, filter_kind::epanechnikov, filter_kind::silverman};
 
 /// A plane's frame, to draw polygons in.
 struct drawing_board {
@@ -69,15 +69,15 @@ protected:
 
     template <class Device>
     static std::vector<glm::vec4> cover_on(
-        Device& b, const device_scene<Device>& scene, const discs& d, filter_kernel kernel)
+        Device& b, const device_scene<Device>& scene, const discs& d, filter_kind filter)
     {
         const auto p = b.upload(std::span<const glm::vec4>(d.points)),
                    n = b.upload(std::span<const glm::vec4>(d.normals)),
                    e = b.upload(std::span<const glm::vec4>(d.estimates));
-        return b.download(covered_shares(b, scene, p, n, e, kernel, 0));
+        return b.download(covered_shares(b, scene, p, n, e, filter, 0));
     }
     /// Positions of `d` are the scene's; they are recentred here. Serial's bits are compared.
-    std::vector<glm::vec4> cover(const scene& s, discs d, filter_kernel kernel)
+    std::vector<glm::vec4> cover(const scene& s, discs d, filter_kind filter)
     {
         auto& b = this->b();
         const auto scene = upload_scene(b, s);
@@ -85,9 +85,9 @@ protected:
         const auto reference = upload_scene(serial, s);
         for (auto& p : d.points)
             p = glm::vec4(glm::vec3(dvec3(p) - scene.layout.center), p.w);
-        const auto shares = cover_on(b, scene, d, kernel);
+        const auto shares = cover_on(b, scene, d, filter);
         if (b.caps().exact_division && b.caps().exact_sqrt) {
-            EXPECT_EQ(count_different_bits(shares, cover_on(serial, reference, d, kernel)), 0u);
+            EXPECT_EQ(count_different_bits(shares, cover_on(serial, reference, d, filter)), 0u);
         }
         return shares;
     }

@@ -13,9 +13,9 @@ namespace {
 
     using glm::vec4;
 
-    constexpr const char* kernel_names[] = {"constant", "cone", "epanechnikov", "silverman"};
-    constexpr filter_kernel kernels_of_estimates[]
-        = {filter_kernel::constant, filter_kernel::cone, filter_kernel::epanechnikov, filter_kernel::silverman};
+    constexpr const char* filter_names[] = {"constant", "cone", "epanechnikov", "silverman"};
+    constexpr filter_kind kernels_of_estimates[]
+        = {filter_kind::constant, filter_kind::cone, filter_kind::epanechnikov, filter_kind::silverman};
 
     /// n photons of power 1/n on the unit square: the irradiance is 1 everywhere.
     map_buffers<serial_backend> uniform_field(serial_backend& b, std::size_t n, uint cells, std::uint64_t seed)
@@ -36,7 +36,7 @@ namespace {
         struct row {
             search_kind search;
             bias_kind bias;
-            filter_kernel kernel;
+            filter_kind filter;
             uint k;
             double low, high; ///< what the mean may be
             double sum = 0, squares = 0;
@@ -48,8 +48,8 @@ namespace {
         for (const auto kernel : kernels_of_estimates)
             rows.push_back({search_kind::fixed_radius, bias_kind::unbiased, kernel, 0, 0.995, 1.005});
         rows.push_back(
-            {search_kind::exact_k, bias_kind::paper, filter_kernel::constant, 32, 0.995 * 32 / 31, 1.005 * 32 / 31});
-        rows.push_back({search_kind::at_least_k, bias_kind::unbiased, filter_kernel::constant, 32, 0.995, 1.022});
+            {search_kind::exact_k, bias_kind::paper, filter_kind::constant, 32, 0.995 * 32 / 31, 1.005 * 32 / 31});
+        rows.push_back({search_kind::at_least_k, bias_kind::unbiased, filter_kind::constant, 32, 0.995, 1.022});
         constexpr int maps = 6, points = 6000;
         for (int m = 0; m < maps; ++m) {
             const auto map = uniform_field(b, 400000, 160, 100 + static_cast<std::uint64_t>(m));
@@ -62,7 +62,7 @@ namespace {
                 knn_settings s{.k = r.k, .max_radius = r.search == search_kind::fixed_radius ? 0.006f : 0.1f};
                 s.search = r.search;
                 s.bias = r.bias;
-                s.kernel = r.kernel;
+                s.filter = r.filter;
                 for (const auto& e : b.download(knn_grid_estimate(b, map, device_points, s).irradiance)) {
                     r.sum += static_cast<double>(e.x);
                     r.squares += static_cast<double>(e.x) * static_cast<double>(e.x);
@@ -74,10 +74,10 @@ namespace {
         for (const auto& r : rows) {
             const double mean = r.sum / (maps * points), spread = std::sqrt(r.squares / (maps * points) - mean * mean);
             std::printf("| %s | %s | %s | %u | %.4f | %.3f |\n", searches[static_cast<int>(r.search)],
-                r.bias == bias_kind::paper ? "paper" : "unbiased", kernel_names[static_cast<int>(r.kernel)], r.k, mean,
+                r.bias == bias_kind::paper ? "paper" : "unbiased", filter_names[static_cast<int>(r.filter)], r.k, mean,
                 spread);
-            EXPECT_GE(mean, r.low) << kernel_names[static_cast<int>(r.kernel)] << " k " << r.k;
-            EXPECT_LE(mean, r.high) << kernel_names[static_cast<int>(r.kernel)] << " k " << r.k;
+            EXPECT_GE(mean, r.low) << filter_names[static_cast<int>(r.filter)] << " k " << r.k;
+            EXPECT_LE(mean, r.high) << filter_names[static_cast<int>(r.filter)] << " k " << r.k;
         }
     }
 
@@ -88,7 +88,7 @@ namespace {
         struct row {
             search_kind search;
             bias_kind bias;
-            filter_kernel kernel;
+            filter_kind filter;
             double sum = 0, squares = 0, errors = 0;
         };
         std::vector<row> rows;
@@ -106,7 +106,7 @@ namespace {
                 knn_settings s{.k = 50, .max_radius = r.search == search_kind::fixed_radius ? 0.09f : 0.5f};
                 s.search = r.search;
                 s.bias = r.bias;
-                s.kernel = r.kernel;
+                s.filter = r.filter;
                 s.errors = true;
                 const auto e = knn_grid_estimate(b, map, points, s);
                 const auto value = static_cast<double>(b.download(e.irradiance)[0].x);
@@ -119,9 +119,9 @@ namespace {
             const double mean = r.sum / maps, spread = std::sqrt((r.squares - maps * mean * mean) / (maps - 1)),
                          reported = r.errors / maps;
             std::printf("search %d bias %d %s: spread %.4f, reported %.4f\n", int(r.search), int(r.bias),
-                kernel_names[static_cast<int>(r.kernel)], spread, reported);
+                filter_names[static_cast<int>(r.filter)], spread, reported);
             EXPECT_NEAR(reported / spread, 1, 0.1) << "search " << int(r.search) << " bias " << int(r.bias) << " "
-                                                   << kernel_names[static_cast<int>(r.kernel)];
+                                                   << filter_names[static_cast<int>(r.filter)];
         }
     }
 

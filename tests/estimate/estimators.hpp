@@ -23,11 +23,11 @@ using glm::vec4;
 
 inline constexpr search_kind all_searches[]
     = {search_kind::at_least_k, search_kind::exact_k, search_kind::fixed_radius};
-inline constexpr filter_kernel all_kernels_of_estimates[]
-    = {filter_kernel::constant, filter_kernel::cone, filter_kernel::epanechnikov, filter_kernel::silverman};
+inline constexpr filter_kind all_filters[]
+    = {filter_kind::constant, filter_kind::cone, filter_kind::epanechnikov, filter_kind::silverman};
 inline constexpr bias_kind all_biases[] = {bias_kind::paper, bias_kind::unbiased};
-inline const leak_policy all_policies[] = {{}, {.side = true}, {.min_cosine = 0.3f}, {.compression = 3},
-    {.side = true, .min_cosine = -0.5f, .compression = 1.5f}};
+inline const leak_policy all_policies[] = {{}, {.side = true}, {.min_cosine = 0.3f}, {.flattening = 3},
+    {.side = true, .min_cosine = -0.5f, .flattening = 1.5f}};
 
 template <backend B>
 photons<B> upload_photons(B& b, const oriented_set& s)
@@ -70,7 +70,7 @@ protected:
     {
         auto& b = this->b();
         // Errors always, but for the paper's own estimate, which has a path of its own without them.
-        settings.errors = settings.search != search_kind::at_least_k || settings.kernel != filter_kernel::constant
+        settings.errors = settings.search != search_kind::at_least_k || settings.filter != filter_kind::constant
             || settings.bias != bias_kind::paper;
         const auto points = b.upload(std::span<const vec4>(s.points));
         const auto normals = b.upload(std::span<const vec4>(s.point_normals));

@@ -11,22 +11,22 @@ TYPED_TEST_P(estimators, every_combination_equals_brute_force)
     for (const bool routed : {false, true}) {
         const auto map = this->known(s, routed);
         for (const auto search : all_searches)
-            for (const auto kernel : all_kernels_of_estimates)
+            for (const auto filter : all_filters)
                 for (const auto bias : all_biases)
                     for (const auto& leaks : all_policies) {
                         knn_settings k{.k = 30, .max_radius = 0.4f, .min_radius = 1e-6f};
                         k.search = search;
-                        k.kernel = kernel;
+                        k.filter = filter;
                         k.bias = bias;
                         k.leaks = leaks;
                         ASSERT_EQ(this->difference(s, map, k), "")
-                            << "search " << int(search) << " kernel " << int(kernel) << " bias " << int(bias)
+                            << "search " << int(search) << " filter " << int(filter) << " bias " << int(bias)
                             << " side " << leaks.side << " cosine " << leaks.min_cosine << " compression "
-                            << leaks.compression;
+                            << leaks.flattening;
                     }
     }
     this->report("A10_policies",
-        "largest relative error of irradiance, every search, kernel, bias and policy:", this->largest_error_);
+        "largest relative error of irradiance, every search, filter, bias and policy:", this->largest_error_);
 }
 
 TYPED_TEST_P(estimators, exact_k_finds_flanns_photons_on_every_distribution)

@@ -67,9 +67,9 @@ std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std:
     const vec4 a = s.photons.positions[id], p = s.points[q], n = s.point_normals[q];
     const float dx = a.x - p.x, dy = a.y - p.y, dz = a.z - p.z;
     float d2 = dx * dx + dy * dy + dz * dz;
-    if (leaks.compression > 1) {
+    if (leaks.flattening > 1) {
         const float h = dx * n.x + dy * n.y + dz * n.z;
-        d2 = d2 + (leaks.compression * leaks.compression - 1.0f) * (h * h);
+        d2 = d2 + (leaks.flattening * leaks.flattening - 1.0f) * (h * h);
     }
     const auto dot = [](const vec4& x, const vec4& y) { return x.x * y.x + x.y * y.y + x.z * y.z; };
     if (leaks.side && !(dot(s.directions[id], n) < 0))
@@ -110,12 +110,12 @@ brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>&
             continue;
         const double t = static_cast<double>(near[i].first) / disc2;
         const double w[] = {1, 1 - std::sqrt(t), 1 - t, (1 - t) * (1 - t)};
-        const glm::dvec3 flux = w[static_cast<int>(k.kernel)] * glm::dvec3(powers[near[i].second]);
+        const glm::dvec3 flux = w[static_cast<int>(k.filter)] * glm::dvec3(powers[near[i].second]);
         const double all = flux.x + flux.y + flux.z;
         e.irradiance += flux;
         e.standard_error += glm::dvec4(flux * flux, all * all);
     }
-    const double per_area = norms[static_cast<int>(k.kernel)] / (M_PI * disc2);
+    const double per_area = norms[static_cast<int>(k.filter)] / (M_PI * disc2);
     e.irradiance *= per_area;
     // Of n photons of which the n-th set the radius, n / (pi r^2) varies by 1 / (n - 2) of itself, squared, when all
     // have one power.

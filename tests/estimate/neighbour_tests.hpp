@@ -127,9 +127,9 @@ TYPED_TEST_P(neighbours, keep_every_leak_policy)
     const auto s = make_oriented(distribution::box_faces, 900, {6, 6, 12}, 60, 3);
     for (const bool routed : {false, true})
         for (const auto& leaks : {leak_policy{}, leak_policy{.side = true}, leak_policy{.min_cosine = 0.3f},
-                 leak_policy{.compression = 3}, leak_policy{.side = true, .min_cosine = -0.5f, .compression = 1.5f}})
+                 leak_policy{.flattening = 3}, leak_policy{.side = true, .min_cosine = -0.5f, .flattening = 1.5f}})
             ASSERT_EQ(this->difference(s, {.k = 30, .max_radius = 0.4f, .leaks = leaks}, routed), "")
-                << "side " << leaks.side << " cosine " << leaks.min_cosine << " compression " << leaks.compression;
+                << "side " << leaks.side << " cosine " << leaks.min_cosine << " compression " << leaks.flattening;
 }
 
 TYPED_TEST_P(neighbours, of_many_at_one_distance_have_the_smallest_ids)

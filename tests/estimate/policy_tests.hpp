@@ -88,7 +88,7 @@ TYPED_TEST_P(estimators, no_light_comes_through_a_thin_wall)
         const auto leaking = b.download(knn_grid_estimate(b, map, points, normals, k).irradiance);
         EXPECT_GT(leaking[1].x, 0.5f * leaking[0].x);
         for (const leak_policy& leaks :
-            {leak_policy{.side = true}, leak_policy{.min_cosine = 0.5f}, leak_policy{.compression = 11}}) {
+            {leak_policy{.side = true}, leak_policy{.min_cosine = 0.5f}, leak_policy{.flattening = 11}}) {
             k.leaks = leaks;
             const auto e = knn_grid_estimate(b, map, points, normals, k);
             const auto kept = b.download(e.irradiance);
@@ -113,9 +113,9 @@ TYPED_TEST_P(estimators, searches_refuse_what_they_cannot_do)
     EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument); // no directions of photons
     k.leaks = {.min_cosine = 0.5f};
     EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument); // no normals of photons
-    k.leaks = {.compression = 0.5f};
+    k.leaks = {.flattening = 0.5f};
     EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument);
-    k.leaks = {.compression = std::numeric_limits<float>::quiet_NaN()};
+    k.leaks = {.flattening = std::numeric_limits<float>::quiet_NaN()};
     EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument);
 }
 
@@ -167,8 +167,8 @@ TYPED_TEST_P(estimators, equal_the_serial_backends_bit_for_bit)
                 const auto run = [&](auto& device) {
                     knn_settings k{.k = 64, .max_radius = 0.25f};
                     k.search = search;
-                    k.kernel = filter_kernel::epanechnikov;
-                    k.leaks = {.side = true, .compression = 2};
+                    k.filter = filter_kind::epanechnikov;
+                    k.leaks = {.side = true, .flattening = 2};
                     k.errors = true;
                     const auto map = sorted_map(device, upload_photons(device, s), s.photons.g);
                     const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(s.points)),

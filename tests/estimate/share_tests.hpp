@@ -99,14 +99,14 @@ TYPED_TEST_P(edges, shares_equal_integration_over_lines)
         for (std::size_t i = 0; i < places.size(); ++i)
             for (const auto& p : parts)
                 expected[i] += share_by_lines(p, places[i].first, places[i].second);
-        for (const auto kernel : kernels_over_discs) {
-            const auto cover = this->cover(s, d, kernel);
+        for (const auto filter : filters_over_discs) {
+            const auto cover = this->cover(s, d, filter);
             for (std::size_t i = 0; i < places.size(); ++i) {
-                const double error = std::abs(static_cast<double>(cover[i].x) - expected[i][static_cast<int>(kernel)]);
+                const double error = std::abs(static_cast<double>(cover[i].x) - expected[i][static_cast<int>(filter)]);
                 largest = std::max(largest, error);
                 EXPECT_EQ(cover[i].y, 1.0f);
-                ASSERT_LE(error, 3e-6) << "kernel " << int(kernel) << ", surface " << round << ", point " << i << ": "
-                                       << cover[i].x << ", not " << expected[i][static_cast<int>(kernel)];
+                ASSERT_LE(error, 3e-6) << "filter " << int(filter) << ", surface " << round << ", point " << i << ": "
+                                       << cover[i].x << ", not " << expected[i][static_cast<int>(filter)];
             }
         }
     }
@@ -116,7 +116,7 @@ TYPED_TEST_P(edges, shares_equal_integration_over_lines)
 TYPED_TEST_P(edges, shares_have_the_known_values_of_a_square)
 {
     random_source u(3);
-    for (const auto kernel : kernels_over_discs)
+    for (const auto filter : filters_over_discs)
         for (int round = 0; round < 8; ++round) {
             const auto board = random_board(u);
             auto s = empty_scene(board.at({0.5, 0.5}) + board.normal());
@@ -143,23 +143,23 @@ TYPED_TEST_P(edges, shares_have_the_known_values_of_a_square)
                     board.at({t, v}), glm::normalize(board.normal() + 0.2 * board.up), r); // on something that meets it
                 off.add(board.at({1.01, v}), board.normal(), r);                           // beside it
             }
-            EXPECT_LE(this->largest_error(this->cover(s, inside, kernel), 1), 2e-6);
+            EXPECT_LE(this->largest_error(this->cover(s, inside, filter), 1), 2e-6);
             EXPECT_LE(
-                this->largest_error(this->cover(s, edge, kernel), 0.5), 2e-5); // rounding, over radii down to 0.01
-            EXPECT_LE(this->largest_error(this->cover(s, corner, kernel), 0.25), 2e-5);
-            for (const auto& c : this->cover(s, off, kernel))
+                this->largest_error(this->cover(s, edge, filter), 0.5), 2e-5); // rounding, over radii down to 0.01
+            EXPECT_LE(this->largest_error(this->cover(s, corner, filter), 0.25), 2e-5);
+            for (const auto& c : this->cover(s, off, filter))
                 EXPECT_EQ(c.y, 0.0f);
             discs unwanted = inside;
             for (auto& p : unwanted.points)
                 p.w = -1;
-            for (const auto& c : this->cover(s, unwanted, kernel))
+            for (const auto& c : this->cover(s, unwanted, filter))
                 EXPECT_EQ(c.x + c.y, 0.0f);
         }
 }
 
 TYPED_TEST_P(edges, bent_walls_hold_together_up_to_two_degrees_and_a_half)
 {
-    for (const auto kernel : kernels_over_discs)
+    for (const auto filter : filters_over_discs)
         for (const double degrees : {0.1, 1.0, 2.4, 2.6, 30.0}) {
             const double c = std::cos(glm::radians(degrees)), h = std::sin(glm::radians(degrees));
             auto s = empty_scene({0, 2, 0});
@@ -172,7 +172,7 @@ TYPED_TEST_P(edges, bent_walls_hold_together_up_to_two_degrees_and_a_half)
                 right.add({x * c, x * h, 0}, {-h, c, 0}, 0.3);
             }
             for (const auto& side : {left, right}) {
-                const auto cover = this->cover(s, side, kernel);
+                const auto cover = this->cover(s, side, filter);
                 if (degrees < 2.5)
                     EXPECT_LE(this->largest_error(cover, 1), 2e-3) << degrees;
                 else
@@ -201,12 +201,12 @@ TYPED_TEST_P(edges, thousands_of_polygons_take_several_passes)
         corner.add({0, 0, 1}, {0, -1, 0}, r);
     }
     const auto passes = [&] { return this->b().costs().at("covered_share").passes; };
-    this->cover(s, inside, filter_kernel::constant);
+    this->cover(s, inside, filter_kind::constant);
     const auto before = passes();
-    for (const auto kernel : kernels_over_discs) {
-        EXPECT_LE(this->largest_error(this->cover(s, inside, kernel), 1), 2e-5);
-        EXPECT_LE(this->largest_error(this->cover(s, edge, kernel), 0.5), 2e-5);
-        EXPECT_LE(this->largest_error(this->cover(s, corner, kernel), 0.25), 2e-5);
+    for (const auto filter : filters_over_discs) {
+        EXPECT_LE(this->largest_error(this->cover(s, inside, filter), 1), 2e-5);
+        EXPECT_LE(this->largest_error(this->cover(s, edge, filter), 0.5), 2e-5);
+        EXPECT_LE(this->largest_error(this->cover(s, corner, filter), 0.25), 2e-5);
     }
     EXPECT_EQ(passes() - before, 12u * 5u); // 2,592 triangles, 571 a pass
 
@@ -216,7 +216,7 @@ TYPED_TEST_P(edges, thousands_of_polygons_take_several_passes)
     for (int i = 0; i < 2000; ++i)
         s.polygons.back().vertices.emplace_back(std::cos(2 * M_PI * i / 2000), 0, -std::sin(2 * M_PI * i / 2000));
     try {
-        this->cover(s, inside, filter_kernel::cone);
+        this->cover(s, inside, filter_kind::cone);
         FAIL() << "2,000 edges in a pass";
     } catch (const std::invalid_argument& e) {
         EXPECT_STREQ(
@@ -249,7 +249,7 @@ TYPED_TEST_P(edges, shares_are_bounded_before_they_divide)
     const std::vector<glm::vec4> errors(d.points.size(), glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
     knn_estimates<typename TestFixture::B> e{b.upload(std::span<const glm::vec4>(d.estimates)),
         b.upload(std::span<const glm::uvec2>(used)), b.upload(std::span<const glm::vec4>(errors))};
-    correct_edges(b, scene, p, n, e, filter_kernel::silverman, 1e-3f);
+    correct_edges(b, scene, p, n, e, filter_kind::silverman, 1e-3f);
     const auto irradiance = b.download(e.irradiance), error = b.download(e.standard_error);
     const double corner
         = share_by_lines({{-1, 0}, {0, 0}, {0, std::tan(glm::radians(0.5))}}, {-0.0005, 0.0005}, 1e-3)[3];

@@ -1,7 +1,9 @@
 // A folder for pictures of a test.
 #pragma once
 
-#include "image_file.hpp"
+#include <photongrid/io/image_difference.hpp>
+#include <photongrid/io/image_file.hpp>
+#include <photongrid/io/tone_map.hpp>
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

@@ -2,7 +2,7 @@
 // committed corpus (scene_corpus.cpp) hold it to the same function.
 #pragma once
 
-#include "scene_file.hpp"
+#include <photongrid/io/scene_file.hpp>
 
 #include <photongrid/map/map_buffers.hpp>
 #include <photongrid/trace/device_scene.hpp>
@@ -95,7 +95,7 @@ inline std::string broken_promise(std::string_view text)
         }
         try {
             const auto records = lay_out(s);
-            make_grid(records.low, records.high, s.render.grid);
+            make_grid(records.low, records.high, s.render.map.grid);
             return detail::broken_in_layout(records, s);
         } catch (const std::invalid_argument&) {
             return ""; // no Lambertian surface, or too large for single precision

@@ -11,7 +11,7 @@ namespace {
         auto lines = good;
         auto& render = lines[12];
         render.replace(render.find("[4, 1, 4]"), 9, "\"auto\"");
-        EXPECT_EQ(parse_scene("s.json", text(lines)).render.grid, glm::uvec3(0));
+        EXPECT_EQ(parse_scene("s.json", text(lines)).render.map.grid, glm::uvec3(0));
     }
 
     TEST(scene_file, reads_every_part)
@@ -31,11 +31,11 @@ namespace {
         EXPECT_EQ(s.point_lights[0].power, dvec3(10, 20, 30));
         EXPECT_EQ(s.point_lights[0].name, "lamp");
         EXPECT_EQ(s.camera.up, dvec3(0, 1, 0));
-        EXPECT_EQ(s.render.width, 64u);
-        EXPECT_EQ(s.render.height, 48u);
-        EXPECT_EQ(s.render.photons, 1000u);
-        EXPECT_EQ(s.render.grid, glm::uvec3(4, 1, 4));
-        EXPECT_EQ(s.render.max_radius, 0.25);
+        EXPECT_EQ(s.render.output.width, 64u);
+        EXPECT_EQ(s.render.output.height, 48u);
+        EXPECT_EQ(s.render.map.photons, 1000u);
+        EXPECT_EQ(s.render.map.grid, glm::uvec3(4, 1, 4));
+        EXPECT_EQ(s.render.estimate.max_radius, 0.25);
         EXPECT_NO_THROW(check(s));
     }
 
@@ -71,7 +71,7 @@ namespace {
         EXPECT_EQ(s.spheres[0].radius, 0.005);
         EXPECT_EQ(s.camera.position, dvec3(0, 0.01, 0.05));
         EXPECT_EQ(s.point_lights[0].power, dvec3(0.01, 0.02, 0.03));
-        EXPECT_EQ(s.render.max_radius, 0.0025);
+        EXPECT_EQ(s.render.estimate.max_radius, 0.0025);
         lines[2] = R"( "units": {"length": "mm", "power": "kW"},)";
         s = parse_scene("s.json", text(lines));
         EXPECT_EQ(s.polygons[0].vertices[2], dvec3(0.001, 0, 0.001));
@@ -86,33 +86,33 @@ namespace {
             return parse_scene("s.json", text(lines)).render;
         };
         const auto plain = with("");
-        EXPECT_EQ(plain.search, search_kind::exact_k);
-        EXPECT_EQ(plain.kernel, filter_kernel::silverman);
-        EXPECT_EQ(plain.bias, bias_kind::unbiased);
-        EXPECT_EQ(plain.edges, edge_correction::none);
-        EXPECT_TRUE(plain.leaks.side);
-        EXPECT_EQ(plain.leaks.min_cosine, -1);
-        EXPECT_EQ(plain.leaks.compression, 1);
-        EXPECT_EQ(with(R"(, "search": "at_least_k")").search, search_kind::at_least_k);
-        EXPECT_EQ(with(R"(, "search": "exact_k")").search, search_kind::exact_k);
-        EXPECT_EQ(with(R"(, "search": "fixed_radius")").search, search_kind::fixed_radius);
-        EXPECT_EQ(with(R"(, "kernel": "constant")").kernel, filter_kernel::constant);
-        EXPECT_EQ(with(R"(, "kernel": "cone")").kernel, filter_kernel::cone);
-        EXPECT_EQ(with(R"(, "kernel": "epanechnikov")").kernel, filter_kernel::epanechnikov);
-        EXPECT_EQ(with(R"(, "kernel": "silverman")").kernel, filter_kernel::silverman);
-        EXPECT_EQ(with(R"(, "bias": "paper")").bias, bias_kind::paper);
-        EXPECT_EQ(with(R"(, "bias": "unbiased")").bias, bias_kind::unbiased);
-        EXPECT_EQ(with(R"(, "edge_correction": "none")").edges, edge_correction::none);
-        EXPECT_EQ(
-            with(R"(, "edge_correction": "polygons", "leaks": {"normals": 0.5})").edges, edge_correction::polygons);
-        EXPECT_FALSE(with(R"(, "leaks": {})").leaks.needs_any());
-        EXPECT_FALSE(with(R"(, "leaks": {"comment": 1, "side": false})").leaks.needs_any());
-        const auto all = with(R"(, "leaks": {"side": true, "normals": 0.25, "disc": 4})").leaks;
+        EXPECT_EQ(plain.estimate.search, search_kind::exact_k);
+        EXPECT_EQ(plain.estimate.filter, filter_kind::silverman);
+        EXPECT_EQ(plain.estimate.bias, bias_kind::unbiased);
+        EXPECT_EQ(plain.estimate.edges, edge_correction::none);
+        EXPECT_TRUE(plain.estimate.leaks.side);
+        EXPECT_EQ(plain.estimate.leaks.min_cosine, -1);
+        EXPECT_EQ(plain.estimate.leaks.flattening, 1);
+        EXPECT_EQ(with(R"(, "search": "at_least_k")").estimate.search, search_kind::at_least_k);
+        EXPECT_EQ(with(R"(, "search": "exact_k")").estimate.search, search_kind::exact_k);
+        EXPECT_EQ(with(R"(, "search": "fixed_radius")").estimate.search, search_kind::fixed_radius);
+        EXPECT_EQ(with(R"(, "filter": "constant")").estimate.filter, filter_kind::constant);
+        EXPECT_EQ(with(R"(, "filter": "cone")").estimate.filter, filter_kind::cone);
+        EXPECT_EQ(with(R"(, "filter": "epanechnikov")").estimate.filter, filter_kind::epanechnikov);
+        EXPECT_EQ(with(R"(, "filter": "silverman")").estimate.filter, filter_kind::silverman);
+        EXPECT_EQ(with(R"(, "bias": "paper")").estimate.bias, bias_kind::paper);
+        EXPECT_EQ(with(R"(, "bias": "unbiased")").estimate.bias, bias_kind::unbiased);
+        EXPECT_EQ(with(R"(, "edge_correction": "none")").estimate.edges, edge_correction::none);
+        EXPECT_EQ(with(R"(, "edge_correction": "polygons", "leaks": {"min_cosine": 0.5})").estimate.edges,
+            edge_correction::polygons);
+        EXPECT_FALSE(with(R"(, "leaks": {})").estimate.leaks.needs_any());
+        EXPECT_FALSE(with(R"(, "leaks": {"comment": 1, "side": false})").estimate.leaks.needs_any());
+        const auto all = with(R"(, "leaks": {"side": true, "min_cosine": 0.25, "flattening": 4})").estimate.leaks;
         EXPECT_TRUE(all.side);
         EXPECT_EQ(all.min_cosine, 0.25f);
-        EXPECT_EQ(all.compression, 4);
-        EXPECT_FALSE(with(R"(, "leaks": {"normals": -0.5})").leaks.side) << "what is not named is off";
-        EXPECT_EQ(with(R"(, "leaks": {"normals": 1, "disc": 1e6})").leaks.compression, 1e6f);
+        EXPECT_EQ(all.flattening, 4);
+        EXPECT_FALSE(with(R"(, "leaks": {"min_cosine": -0.5})").estimate.leaks.side) << "what is not named is off";
+        EXPECT_EQ(with(R"(, "leaks": {"min_cosine": 1, "flattening": 1e6})").estimate.leaks.flattening, 1e6f);
     }
 
     TEST(scene_file, refuses_unknown_kinds_of_estimates)
@@ -121,28 +121,27 @@ namespace {
         expect_refusal(said(R"("search": "exact")"), "13:58",
             {"found the text \"exact\"", R"(expected "at_least_k", "exact_k" or "fixed_radius")"});
         expect_refusal(said(R"("search": 1)"), "13:58", {"found the number 1", "\"fixed_radius\""});
-        expect_refusal(said(R"("kernel": "gauss")"), "13:58",
+        expect_refusal(said(R"("filter": "gauss")"), "13:58",
             {"found the text \"gauss\"", R"(expected "constant", "cone", "epanechnikov" or "silverman")"});
         expect_refusal(said(R"("bias": true)"), "13:56", {"found true", R"(expected "paper" or "unbiased")"});
         expect_refusal(said(R"("edge_correction": "disks")"), "13:67",
             {"found the text \"disks\"", R"(expected "none" or "polygons")"});
         expect_refusal(said(R"("edge_correction": "polygons")"), "13:67",
-            {"edge_correction: photons of adjoining walls would count",
-                "needs the leak policy normals with a cosine above 0"});
-        expect_refusal(said(R"("edge_correction": "polygons", "leaks": {"side": true, "normals": 0})"), "13:67",
-            {"needs the leak policy normals"});
+            {"edge_correction: photons of adjoining walls would count", "needs the leak policy min_cosine above 0"});
+        expect_refusal(said(R"("edge_correction": "polygons", "leaks": {"side": true, "min_cosine": 0})"), "13:67",
+            {"needs the leak policy min_cosine"});
         expect_refusal(said(R"("leaks": "none")"), "13:57",
-            {"found the text \"none\"", R"("side", "normals" or "disc"; {} for no policy)"});
+            {"found the text \"none\"", R"("side", "min_cosine" or "flattening"; {} for no policy)"});
         expect_refusal(said(R"("leaks": ["side"])"), "13:57", {"found an array of 1", "expected an object"});
-        expect_refusal(said(R"("leaks": {"normal": 0.5})"), "13:58",
-            {"unknown key \"normal\" in \"leaks\"", "expected \"normals\"?"});
+        expect_refusal(said(R"("leaks": {"min_cosin": 0.5})"), "13:58",
+            {"unknown key \"min_cosin\" in \"leaks\"", "expected \"min_cosine\"?"});
         expect_refusal(said(R"("leaks": {"side": 1})"), "13:66", {"found the number 1", "expected true or false"});
-        expect_refusal(said(R"("leaks": {"normals": 1.01})"), "13:69",
-            {"found the number 1.01", "expected a cosine from -1 to 1"});
-        expect_refusal(said(R"("leaks": {"normals": true})"), "13:69", {"found true"});
-        expect_refusal(said(R"("leaks": {"disc": 0.5})"), "13:66",
-            {"found the number 0.5", "expected a compression from 1 to 1e6"});
-        expect_refusal(said(R"("leaks": {"disc": 1000001})"), "13:66", {"found the number 1000001"});
+        expect_refusal(said(R"("leaks": {"min_cosine": 1.01})"), "13:72",
+            {"found the number 1.01", "expected a number from -1 to 1"});
+        expect_refusal(said(R"("leaks": {"min_cosine": true})"), "13:72", {"found true"});
+        expect_refusal(said(R"("leaks": {"flattening": 0.5})"), "13:72",
+            {"found the number 0.5", "expected a number from 1 to 1000000"});
+        expect_refusal(said(R"("leaks": {"flattening": 1000001})"), "13:72", {"found the number 1000001"});
         expect_refusal(
             said(R"("serach": "exact_k")"), "13:48", {"unknown key \"serach\" in \"render\"", "expected \"search\"?"});
         // What a picture shows is not the scene's.

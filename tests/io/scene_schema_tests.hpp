@@ -40,16 +40,17 @@ namespace {
             const auto s = read_scene(scenes + "/" + r.name + ".json");
             EXPECT_NO_THROW(check(s));
             EXPECT_EQ(s.name, r.name);
-            EXPECT_EQ(glm::uvec2(s.render.width, s.render.height), r.size);
-            EXPECT_EQ(s.render.light_samples, r.light_samples);
-            EXPECT_EQ(s.render.spp, 1u);
-            EXPECT_EQ(s.render.photons, r.photons);
-            EXPECT_EQ(s.render.k, r.k);
-            EXPECT_EQ(s.render.grid, r.grid);
-            EXPECT_EQ(s.render.search, render_settings().search) << "they leave the kind of estimate to the library";
-            EXPECT_EQ(s.render.bias, render_settings().bias);
-            EXPECT_EQ(s.render.edges, render_settings().edges);
-            EXPECT_EQ(s.render.leaks.side, render_settings().leaks.side);
+            EXPECT_EQ(glm::uvec2(s.render.output.width, s.render.output.height), r.size);
+            EXPECT_EQ(s.render.view.light_samples, r.light_samples);
+            EXPECT_EQ(s.render.view.spp, 1u);
+            EXPECT_EQ(s.render.map.photons, r.photons);
+            EXPECT_EQ(s.render.estimate.k, r.k);
+            EXPECT_EQ(s.render.map.grid, r.grid);
+            EXPECT_EQ(s.render.estimate.search, render_settings().estimate.search)
+                << "they leave the kind of estimate to the library";
+            EXPECT_EQ(s.render.estimate.bias, render_settings().estimate.bias);
+            EXPECT_EQ(s.render.estimate.edges, render_settings().estimate.edges);
+            EXPECT_EQ(s.render.estimate.leaks.side, render_settings().estimate.leaks.side);
         }
         EXPECT_EQ(read_scene(scenes + "/ring.json").point_lights.size(), 1u);
         const auto box = read_scene(scenes + "/cornell_box.json");

@@ -1,8 +1,9 @@
 // Texts of scenes, and what reading them says.
 #pragma once
 
-#include "scene_file.hpp"
-#include "scene_writer.hpp"
+#include <photongrid/io/scene_file.hpp>
+#include <photongrid/io/scene_keys.hpp>
+#include <photongrid/io/scene_writer.hpp>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -97,7 +97,7 @@ RC_GTEST_PROP(host_map_properties, nearest_are_those_of_brute_force, ())
     }
 }
 
-/// Every kernel, bias and policy: the single query has the radius and the photons of the search for many points, to the
+/// Every filter, bias and policy: the single query has the radius and the photons of the search for many points, to the
 /// bit, and its light to rounding.
 TYPED_TEST(host_maps, one_place_at_a_time_gives_what_many_give)
 {
@@ -106,16 +106,16 @@ TYPED_TEST(host_maps, one_place_at_a_time_gives_what_many_give)
     int cases = 0;
     for (const bool ties : {false, true})
         for (const auto search : {search_kind::exact_k, search_kind::fixed_radius})
-            for (const auto kernel :
-                {filter_kernel::constant, filter_kernel::cone, filter_kernel::epanechnikov, filter_kernel::silverman})
+            for (const auto filter :
+                {filter_kind::constant, filter_kind::cone, filter_kind::epanechnikov, filter_kind::silverman})
                 for (const auto bias : {bias_kind::paper, bias_kind::unbiased})
                     for (const auto& leaks : {leak_policy{}, leak_policy{.side = true}, leak_policy{.min_cosine = 0.3f},
-                             leak_policy{.compression = 3}})
+                             leak_policy{.flattening = 3}})
                         for (const float most : {0.05f, 0.4f}) {
                             const knn_settings s{.k = 20,
                                 .max_radius = most,
                                 .search = search,
-                                .kernel = kernel,
+                                .filter = filter,
                                 .bias = bias,
                                 .leaks = leaks};
                             const auto photons = some_photons(7 + static_cast<uint>(cases++), 800, ties);

@@ -16,7 +16,7 @@ namespace {
         EXPECT_EQ(render.code, 0);
         for (const auto* option :
             {"--backend", "--device", "--map", "--slots", "--photons", "--k", "--grid", "--max-radius", "--size",
-                "--spp", "--light-samples", "--depth", "--seed", "--exposure", "-o", "--search", "--kernel", "--bias",
+                "--spp", "--light-samples", "--depth", "--seed", "--exposure", "-o", "--search", "--filter", "--bias",
                 "--leaks", "--edge-correction", "--only", "--aov", "--as-paper", "--stats", "--shader-cache",
                 "--time-passes", "--progressive", "--every", "--strip", "--crop", "--reference", "--resume", "--quiet"})
             EXPECT_NE(render.out.find(option), std::string::npos) << option;
@@ -30,14 +30,13 @@ namespace {
         EXPECT_EQ(run({}).code, 2);
         EXPECT_EQ(run({"draw"}).code, 2);
         EXPECT_EQ(run({"render"}).code, 2);
-        for (const auto& wrong :
-            std::vector<std::vector<std::string>>{{"--backend", "cuda"}, {"--size", "32"}, {"--size", "32x-4"},
-                {"--size", "0x4"}, {"--grid", "1,2"}, {"--grid", "1,2,3,4"}, {"--grid", "0,1,1"}, {"--photons", "1e3"},
-                {"--photons", "-1"}, {"--photons", "99999999999"}, {"--k", "0"}, {"--max-radius", "nan"},
-                {"--max-radius", "-1"}, {"--exposure", "inf"}, {"--slots", "17"}, {"--map", "hash"}, {"--device", "0"},
-                {"--time-passes"}, {"--spp", "0"}, {"--nonsense"}, {"--search", "exact"}, {"--kernel", "gauss"},
-                {"--bias", "none"}, {"--edge-correction", "disks"}, {"--edge-correction"}, {"--only", "all"},
-                {"--only", "caustics"}, {"--as-paper", "--as-paper=maybe"}}) {
+        for (const auto& wrong : std::vector<std::vector<std::string>>{{"--backend", "cuda"}, {"--size", "32"},
+                 {"--size", "32x-4"}, {"--size", "0x4"}, {"--grid", "1,2"}, {"--grid", "1,2,3,4"}, {"--grid", "0,1,1"},
+                 {"--photons", "1e3"}, {"--photons", "-1"}, {"--photons", "99999999999"}, {"--k", "0"},
+                 {"--max-radius", "nan"}, {"--max-radius", "-1"}, {"--exposure", "inf"}, {"--slots", "17"},
+                 {"--map", "hash"}, {"--device", "0"}, {"--time-passes"}, {"--spp", "0"}, {"--nonsense"},
+                 {"--search", "exact"}, {"--filter", "gauss"}, {"--bias", "none"}, {"--edge-correction", "disks"},
+                 {"--edge-correction"}, {"--only", "caustics"}, {"--as-paper", "--as-paper=maybe"}}) {
             const auto e = run([&] {
                 auto all = small;
                 // An option given twice is an error of its own.

@@ -8,18 +8,19 @@ namespace {
 
     TEST_F(program, refuses_wrong_leak_policies)
     {
-        const std::string list
-            = "expected none, or some of side, normals, normals=COS, disc, disc=C with commas between them";
-        for (const auto& [given, expected] : std::vector<std::pair<std::string, std::string>>{
-                 {"walls", "\"walls\" given; " + list}, {"side,", "\"\" given; " + list}, {"", list},
-                 {",side", "\"\" given; " + list}, {"side=1", "\"side=1\" given; " + list},
-                 {"side, disc", "\" disc\" given; " + list}, {"none,side", "expected none alone"},
-                 {"side,none", "expected none alone"}, {"none=0", list}, {"side,side", "has side twice"},
-                 {"disc,disc=4", "has disc twice"}, {"normals=", "expected normals=COS, a cosine from -1 to 1"},
-                 {"normals=1.1", "\"1.1\" given; expected normals=COS"}, {"normals=nan", "expected normals=COS"},
-                 {"normals=half", "expected normals=COS"},
-                 {"disc=0.9", "\"0.9\" given; expected disc=C, a compression from 1 to 1e6"},
-                 {"disc=1e300", "expected disc=C"}, {"disc=4=4", "expected disc=C"}}) {
+        const std::string list = "expected none, or some of side, min_cosine, min_cosine=COS, flattening, flattening=F "
+                                 "with commas between them";
+        for (const auto& [given, expected] :
+            std::vector<std::pair<std::string, std::string>>{{"walls", "\"walls\" given; " + list},
+                {"side,", "\"\" given; " + list}, {"", list}, {",side", "\"\" given; " + list},
+                {"side=1", "\"side=1\" given; " + list}, {"side, disc", "\" disc\" given; " + list},
+                {"none,side", "expected none alone"}, {"side,none", "expected none alone"}, {"none=0", list},
+                {"side,side", "has side twice"}, {"flattening,flattening=4", "has flattening twice"},
+                {"min_cosine=", "expected min_cosine=COS, a cosine from -1 to 1"},
+                {"min_cosine=1.1", "\"1.1\" given; expected min_cosine=COS"},
+                {"min_cosine=nan", "expected min_cosine=COS"}, {"min_cosine=half", "expected min_cosine=COS"},
+                {"flattening=0.9", "\"0.9\" given; expected flattening=F, a ratio from 1 to 1e6"},
+                {"flattening=1e300", "expected flattening=F"}, {"flattening=4=4", "expected flattening=F"}}) {
             const auto e = run(small_with({"--leaks", given}));
             EXPECT_EQ(e.code, 2) << given;
             EXPECT_NE(e.err.find("--leaks"), std::string::npos) << given << ": " << e.err;
@@ -36,9 +37,9 @@ namespace {
         };
         using json = nlohmann::json;
         const json by_default = json::parse(
-            R"({"search": "exact_k", "kernel": "silverman", "bias": "unbiased", "leaks": {"side": true}, "edge_correction": "none", "only": "all"})");
+            R"({"search": "exact_k", "filter": "silverman", "bias": "unbiased", "leaks": {"side": true}, "edge_correction": "none", "only": "all"})");
         const json paper = json::parse(
-            R"({"search": "at_least_k", "kernel": "constant", "bias": "paper", "leaks": {}, "edge_correction": "none", "only": "all"})");
+            R"({"search": "at_least_k", "filter": "constant", "bias": "paper", "leaks": {}, "edge_correction": "none", "only": "all"})");
         const auto but = [](json all, const char* more) {
             all.update(json::parse(more));
             return all;
@@ -46,29 +47,29 @@ namespace {
         const std::vector<row> rows{
             {{}, by_default},
             {{"--search", "at_least_k"}, but(by_default, R"({"search": "at_least_k"})")},
-            {{"--search", "fixed_radius", "--kernel", "cone"},
-                but(by_default, R"({"search": "fixed_radius", "kernel": "cone"})")},
-            {{"--kernel", "epanechnikov"}, but(by_default, R"({"kernel": "epanechnikov"})")},
-            {{"--kernel", "silverman", "--bias", "paper"},
-                but(by_default, R"({"kernel": "silverman", "bias": "paper"})")},
+            {{"--search", "fixed_radius", "--filter", "cone"},
+                but(by_default, R"({"search": "fixed_radius", "filter": "cone"})")},
+            {{"--filter", "epanechnikov"}, but(by_default, R"({"filter": "epanechnikov"})")},
+            {{"--filter", "silverman", "--bias", "paper"},
+                but(by_default, R"({"filter": "silverman", "bias": "paper"})")},
             {{"--leaks", "none"}, but(by_default, R"({"leaks": {}})")},
             {{"--leaks", "side"}, by_default},
-            {{"--leaks", "normals"}, but(by_default, R"({"leaks": {"normals": 0.5}})")},
-            {{"--leaks", "disc"}, but(by_default, R"({"leaks": {"disc": 4}})")},
-            {{"--leaks", "disc=2.5,side,normals=-0.3"},
-                but(by_default, R"({"leaks": {"side": true, "normals": -0.3, "disc": 2.5}})")},
-            {{"--leaks", "normals=-1,disc=1"}, but(by_default, R"({"leaks": {}})")},
+            {{"--leaks", "min_cosine"}, but(by_default, R"({"leaks": {"min_cosine": 0.5}})")},
+            {{"--leaks", "flattening"}, but(by_default, R"({"leaks": {"flattening": 4}})")},
+            {{"--leaks", "flattening=2.5,side,min_cosine=-0.3"},
+                but(by_default, R"({"leaks": {"side": true, "min_cosine": -0.3, "flattening": 2.5}})")},
+            {{"--leaks", "min_cosine=-1,flattening=1"}, but(by_default, R"({"leaks": {}})")},
             {{"--edge-correction", "none"}, by_default},
-            {{"--leaks", "normals", "--edge-correction", "polygons"},
-                but(by_default, R"({"leaks": {"normals": 0.5}, "edge_correction": "polygons"})")},
-            {{"--as-paper", "--edge-correction", "polygons", "--leaks", "side,normals=0.2"},
-                but(paper, R"({"leaks": {"side": true, "normals": 0.2}, "edge_correction": "polygons"})")},
+            {{"--leaks", "min_cosine", "--edge-correction", "polygons"},
+                but(by_default, R"({"leaks": {"min_cosine": 0.5}, "edge_correction": "polygons"})")},
+            {{"--as-paper", "--edge-correction", "polygons", "--leaks", "side,min_cosine=0.2"},
+                but(paper, R"({"leaks": {"side": true, "min_cosine": 0.2}, "edge_correction": "polygons"})")},
             {{"--only", "direct"}, but(by_default, R"({"only": "direct"})")},
             {{"--only", "caustic"}, but(by_default, R"({"only": "caustic"})")},
             {{"--only", "indirect"}, but(by_default, R"({"only": "indirect"})")},
             {{"--as-paper"}, paper},
-            {{"--kernel", "cone", "--as-paper", "--leaks", "side"},
-                but(paper, R"({"kernel": "cone", "leaks": {"side": true}})")},
+            {{"--filter", "cone", "--as-paper", "--leaks", "side"},
+                but(paper, R"({"filter": "cone", "leaks": {"side": true}})")},
             {{"--as-paper", "--search", "exact_k", "--bias", "unbiased", "--only", "caustic"},
                 but(paper, R"({"search": "exact_k", "bias": "unbiased", "only": "caustic"})")},
         };
@@ -87,17 +88,17 @@ namespace {
         // A scene that has wishes of its own; lengths are in m, so its statistics' settings are a scene's again.
         auto wishes = json::parse(contents(ring), nullptr, true, true);
         wishes["render"].update(json::parse(
-            R"({"search": "fixed_radius", "kernel": "silverman", "bias": "paper", "leaks": {"normals": 0.25, "disc": 3}, "edge_correction": "polygons"})"));
+            R"({"search": "fixed_radius", "filter": "silverman", "bias": "paper", "leaks": {"min_cosine": 0.25, "flattening": 3}, "edge_correction": "polygons"})"));
         std::ofstream(folder / "wishes.json") << wishes;
         auto arguments = small_with({"--stats", "stats.json", "-o", "a.exr"});
         arguments[1] = "wishes.json";
         const auto wished = but(by_default,
-            R"({"search": "fixed_radius", "kernel": "silverman", "bias": "paper", "leaks": {"normals": 0.25, "disc": 3}, "edge_correction": "polygons"})");
+            R"({"search": "fixed_radius", "filter": "silverman", "bias": "paper", "leaks": {"min_cosine": 0.25, "flattening": 3}, "edge_correction": "polygons"})");
         expect(arguments, wished);
         EXPECT_NE(
             contents(folder / "a.exr")
                 .find(
-                    R"("search":"fixed_radius","kernel":"silverman","bias":"paper","leaks":{"normals":0.25,"disc":3.0},"edge_correction":"polygons","only":"all")"),
+                    R"("search":"fixed_radius","filter":"silverman","bias":"paper","leaks":{"min_cosine":0.25,"flattening":3.0},"edge_correction":"polygons","only":"all")"),
             std::string::npos)
             << "the EXR's note";
         // A policy taken away that the scene's correction needs is refused, with the way out; nothing is drawn.
@@ -109,13 +110,12 @@ namespace {
         EXPECT_NE(refused.err.find("on the command line: edge_correction: photons of adjoining walls would count"),
             std::string::npos)
             << refused.err;
-        EXPECT_NE(refused.err.find("needs the leak policy normals with a cosine above 0"), std::string::npos)
-            << refused.err;
+        EXPECT_NE(refused.err.find("needs the leak policy min_cosine above 0"), std::string::npos) << refused.err;
         EXPECT_FALSE(fs::exists(folder / "torn.exr"));
-        arguments.insert(arguments.end(), {"--kernel", "cone", "--leaks", "side", "--edge-correction", "none"});
-        expect(arguments, but(wished, R"({"kernel": "cone", "leaks": {"side": true}, "edge_correction": "none"})"));
+        arguments.insert(arguments.end(), {"--filter", "cone", "--leaks", "side", "--edge-correction", "none"});
+        expect(arguments, but(wished, R"({"filter": "cone", "leaks": {"side": true}, "edge_correction": "none"})"));
         arguments.emplace_back("--as-paper");
-        expect(arguments, but(paper, R"({"kernel": "cone", "leaks": {"side": true}})"));
+        expect(arguments, but(paper, R"({"filter": "cone", "leaks": {"side": true}})"));
     }
 
     TEST_F(program, layers_need_a_file_that_holds_them)
@@ -144,7 +144,7 @@ namespace {
         const std::string box = PHOTONGRID_SCENES "/cornell_box.json";
         const auto draw = [&](std::vector<std::string> more) {
             std::vector<std::string> arguments{"render", box, "--backend", "serial", "--size", "32x32", "--photons",
-                "4000", "--search", "fixed_radius", "--max-radius", "0.2", "--kernel", "constant", "--stats", "s.json",
+                "4000", "--search", "fixed_radius", "--max-radius", "0.2", "--filter", "constant", "--stats", "s.json",
                 "-o", "a.exr"};
             arguments.insert(arguments.end(), more.begin(), more.end());
             const auto e = run(arguments);

@@ -1,7 +1,9 @@
 // The program under test.
 #pragma once
 
-#include "image_file.hpp"
+#include <photongrid/io/image_difference.hpp>
+#include <photongrid/io/image_file.hpp>
+#include <photongrid/io/tone_map.hpp>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

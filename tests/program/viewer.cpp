@@ -1,9 +1,9 @@
 // What is edited in the window, and the thread that draws it, without a display.
 #include "../backends/serial_pictures.hpp"
 #include "../scene/test_scenes.hpp"
-#include "scene_file.hpp"
 #include "viewer/document.hpp"
 #include "viewer/render_thread.hpp"
+#include <photongrid/io/scene_file.hpp>
 
 #include <gtest/gtest.h>
 
@@ -146,7 +146,7 @@ namespace {
             versions.push_back(d.now());
         };
         EXPECT_EQ(d.undo(), "");
-        step("k", [](version& v) { v.settings.k = 7; });
+        step("k", [](version& v) { v.settings.estimate.k = 7; });
         step("lamp", [&](version& v) { move(v.scene, d.parts().back(), {0.1, 0, 0}); });
         step("backend", [](version& v) { v.backend = "cpu"; });
         d.begin("nothing"); // comes to nothing
@@ -254,13 +254,13 @@ namespace {
     TEST_F(drawn, a_change_ends_what_is_drawn_within_a_pass)
     {
         auto v = begun(small_cornell());
-        v.settings.spp = 60000; // minutes
+        v.settings.view.spp = 60000; // minutes
         for (int i = 0; i < 8; ++i) {
             v.settings.seed = static_cast<std::uint32_t>(i);
             const auto request = thread.show(v, false);
             ASSERT_TRUE(wait([=](const render_report& r) { return r.request == request; })) << "it was not begun";
         }
-        v.settings.spp = 1;
+        v.settings.view.spp = 1;
         ASSERT_TRUE(whole(thread.show(v, false)));
         EXPECT_EQ(thread.newer_than(0)->picture.pixels, rendered(v).pixels);
         const std::lock_guard lock(guard);

@@ -166,10 +166,10 @@ namespace {
         const auto known = spread_out(truth.mean), known_error = spread_out(truth.standard_error);
 
         auto settings = s.render;
-        settings.width = settings.height = 32;
-        settings.spp = 32; // with the shadow rays below, noise of direct light and edges well below the photons'
-        settings.light_samples = 16;
-        settings.max_radius = 0.5;
+        settings.output.width = settings.output.height = 32;
+        settings.view.spp = 32; // with the shadow rays below, noise of direct light and edges well below the photons'
+        settings.view.light_samples = 16;
+        settings.estimate.max_radius = 0.5;
         serial_backend b;
         const int seeds = 8;
         std::vector<convergence_row> rows, smooth_rows, corrected_rows;
@@ -179,21 +179,21 @@ namespace {
                     v = smooth_ones(v);
             auto r = split_error(values, only_smooth ? smooth_ones(known) : known,
                 only_smooth ? smooth_ones(known_error) : known_error, 0.01);
-            r.photons = settings.photons;
-            r.k = settings.k;
+            r.photons = settings.map.photons;
+            r.k = settings.estimate.k;
             return r;
         };
         for (const uint n : {2000u, 8000u, 32000u, 128000u}) {
-            settings.photons = n;
-            settings.k = static_cast<uint>(std::lround(30 * std::pow(n / 2000.0, 2.0 / 3)));
+            settings.map.photons = n;
+            settings.estimate.k = static_cast<uint>(std::lround(30 * std::pow(n / 2000.0, 2.0 / 3)));
             std::vector<std::vector<double>> values, corrected;
             for (uint seed = 1; seed <= seeds; ++seed) {
                 settings.seed = seed;
                 render_stats stats;
                 values.push_back(spread_out(render(b, s, settings, {}, stats)));
                 auto with_edges = settings;
-                with_edges.leaks.min_cosine = 0.5f;
-                with_edges.edges = edge_correction::polygons;
+                with_edges.estimate.leaks.min_cosine = 0.5f;
+                with_edges.estimate.edges = edge_correction::polygons;
                 corrected.push_back(spread_out(render(b, s, with_edges, {}, stats)));
             }
             rows.push_back(row(values, false));

@@ -24,7 +24,7 @@ namespace {
             s.disks = {{{0, 0, 0}, {0, 1, 0}, lower, 0}, {{0, height * (1 + 1e-4), 0}, {0, -1, 0}, upper, 1}};
             s.point_lights = {{"lamp", {0, height, 0}, dvec3(power)}};
             s.camera = {{0, 0.2, -3}, {0, 0.2, 0}, {0, 1, 0}, 45};
-            s.render = {.grid = {64, 1, 64}, .max_radius = 1, .photon_depth = 2};
+            s.render = {.map = {.photon_depth = 2, .grid = {64, 1, 64}}, .estimate = {.max_radius = 1}};
             return s;
         }
         /// At the middle of the upper disc, for reflectance 1: direct light is power / (4 pi) h / (h^2 + u)^(3/2) at
@@ -57,13 +57,13 @@ namespace {
         const facing_discs& f, const std::vector<dvec3>& points, uint photons, uint k, uint seed)
     {
         auto s = f.made();
-        s.render.photons = photons;
+        s.render.map.photons = photons;
         s.render.seed = seed;
         serial_backend b;
         const auto device = upload_scene(b, s);
         auto t = trace_photons(b, s, device, s.render);
         const auto map
-            = sorted_map(b, std::move(t.photons), make_grid(device.layout.low, device.layout.high, s.render.grid));
+            = sorted_map(b, std::move(t.photons), make_grid(device.layout.low, device.layout.high, s.render.map.grid));
         const auto where = recentred(points, device.layout.center);
         return b.download(
             knn_grid_estimate(b, map, b.upload(std::span<const vec4>(where)), {.k = k, .max_radius = 1}).irradiance);

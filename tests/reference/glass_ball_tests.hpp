@@ -53,7 +53,7 @@ namespace {
         s.spheres = {{{0, middle, 0}, radius, 1}};
         s.point_lights = {{"lamp", {0, middle + lamp, 0}, dvec3(power)}};
         s.camera = {{0, 1, -3}, {0, 0, 0}, {0, 1, 0}, 45};
-        s.render = {.photons = 150000, .k = 200, .grid = {200, 1, 200}, .max_radius = 0.5};
+        s.render = {.map = {.photons = 150000, .grid = {200, 1, 200}}, .estimate = {.k = 200, .max_radius = 0.5}};
 
         // Ray density: power spread over rings of the floor, by angle at the lamp and number of reflections.
         const int steps = 100000, orders = 24;
@@ -94,7 +94,7 @@ namespace {
         const auto device = upload_scene(b, s);
         auto t = trace_photons(b, s, device, s.render);
         const auto map
-            = sorted_map(b, std::move(t.photons), make_grid(device.layout.low, device.layout.high, s.render.grid));
+            = sorted_map(b, std::move(t.photons), make_grid(device.layout.low, device.layout.high, s.render.map.grid));
         std::vector<double> radii;
         for (double r = 0.02; r < 0.5; r += r < 0.24 ? 0.02 : 0.05)
             radii.push_back(r);
@@ -106,7 +106,7 @@ namespace {
                     r * std::cos(2 * M_PI * n / around + r), 0, r * std::sin(2 * M_PI * n / around + r));
         const auto where = recentred(points, device.layout.center);
         const auto estimates = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(where)),
-            {.k = s.render.k, .max_radius = static_cast<float>(s.render.max_radius), .errors = true});
+            {.k = s.render.estimate.k, .max_radius = static_cast<float>(s.render.estimate.max_radius), .errors = true});
         const auto irradiance = b.download(estimates.irradiance), errors = b.download(estimates.standard_error);
 
         std::printf("glass ball: light refracted twice folds at %.4f m\n| rho, m | ray density, W/m^2 | photon map | "
@@ -127,7 +127,7 @@ namespace {
                 // Given where k photons end, those before it lie anywhere in the disc: estimate over the disc's mean is
                 // 1 on average for any density, with relative variance 1 / (k - 2).
                 ratio_sum += e / known;
-                chi2 += std::pow((e - known) / (known / std::sqrt(s.render.k - 2.0)), 2);
+                chi2 += std::pow((e - known) / (known / std::sqrt(s.render.estimate.k - 2.0)), 2);
                 ++compared;
             }
             // Discs round the same circle overlap near the axis, and then their errors do not average out.

@@ -8,7 +8,7 @@
 #include <photongrid/reference/reference.hpp>
 #include <photongrid/render/render.hpp>
 
-#include "scene_file.hpp"
+#include <photongrid/io/scene_file.hpp>
 
 #include <flann/flann.hpp>
 #include <gtest/gtest.h>

@@ -94,8 +94,8 @@ namespace {
         s.disks = {{{0, 0, 0}, {0, 1, 0}, 0.999 * radius, 0}};
         s.cylinders = {{{0, 0, 0}, {0, height, 0}, radius, 1}};
         s.camera = {{0, 3, 3}, {0, 0, 0}, {0, 1, 0}, 45};
-        s.render.photon_depth = 2; // one reflection and the floor
-        s.render.photons = 200000;
+        s.render.map.photon_depth = 2; // one reflection and the floor
+        s.render.map.photons = 200000;
         return s;
     }
 
@@ -110,8 +110,8 @@ namespace {
         const dvec3 beam(std::cos(tilt), -std::sin(tilt), 0), vertex = dvec3(0, 0.5, 0) - 5.0 * beam;
         s.paraboloids = {{vertex, vertex + rim * rim / (4 * focal) * beam, rim, 1}};
         s.point_lights = {{"lamp", vertex + focal * beam, dvec3(10)}};
-        s.render.photon_depth = 3;
-        s.render.photons = 400000;
+        s.render.map.photon_depth = 3;
+        s.render.map.photons = 400000;
         std::vector<dvec2> photons;
         for (const auto& p : traced(s)) // of the beam, and turned by the cylinder
             if (std::abs(p.direction.y - beam.y) < 1e-3 && p.direction.x < 0.98 * beam.x)
@@ -144,8 +144,8 @@ namespace {
         const dvec3 lamp = s.point_lights[0].position;
         s.materials[0].reflectance = dvec3(0);
         s.materials[1].reflectance = dvec3(1);
-        s.render.photon_depth = 2;
-        s.render.photons = 200000;
+        s.render.map.photon_depth = 2;
+        s.render.map.photons = 200000;
         std::vector<dvec2> photons;
         for (const auto& p : traced(s))
             if (std::hypot(p.at.x, p.at.z) < radius) // not what the outside reflects

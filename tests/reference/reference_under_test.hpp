@@ -4,7 +4,7 @@
 #include <photongrid/reference/reference.hpp>
 
 #include "../scene/test_scenes.hpp"
-#include "image_file.hpp"
+#include <photongrid/io/image_file.hpp>
 
 #include <gtest/gtest.h>
 

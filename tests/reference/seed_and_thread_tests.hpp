@@ -111,7 +111,7 @@ namespace {
         };
         EXPECT_EQ(run("-o a.exr --error e.pfm --size 16x12 --spp 16 --paths 20000 --seed 3 --stats s.json"), 0);
         const auto mean = read_image((folder / "a.exr").string()), error = read_image((folder / "e.pfm").string());
-        const auto s = reference_settings_for(render_settings{.width = 16, .height = 12, .seed = 3});
+        const auto s = reference_settings_for(render_settings{.output = {.width = 16, .height = 12}, .seed = 3});
         EXPECT_EQ(mean.width, s.width);
         EXPECT_EQ(error.height, s.height);
         EXPECT_GT(fs::file_size(folder / "s.json"), 100u);

@@ -45,8 +45,8 @@ TYPED_TEST_P(hard_cases_of_pictures, h4_pixels_that_are_not_finite_are_counted_a
 {
     auto& b = this->b();
     auto s = small_cornell();
-    s.render.width = s.render.height = 32;
-    s.render.spp = 2;
+    s.render.output.width = s.render.output.height = 32;
+    s.render.view.spp = 2;
     render_stats clean_stats, stats;
     auto built = build_map(b, s, s.render, {}, clean_stats);
     const auto clean = draw(b, built, s.camera, s.render, {}, clean_stats);

@@ -268,42 +268,42 @@ TEST(step_list, runs_steps_in_order_until_each_is_done)
 TEST(previews, go_from_coarse_to_fine)
 {
     render_settings s;
-    s.k = 500;
+    s.estimate.k = 500;
     const work_costs slow{.ms_per_photon = 1, .ms_per_preview_pixel = 1};
-    const auto all = preview_schedule(s, s.photons, false, slow, 40);
+    const auto all = preview_schedule(s, s.map.photons, false, slow, 40);
     const std::vector<preview> expected{{16, 16}, {8, 16}, {4, 16}, {2, 16}, {1, 16}, {1, 4}};
     EXPECT_EQ(all, expected); // 32 pixels along the shorter side are the fewest
-    EXPECT_EQ(preview_schedule(s, s.photons, true, slow, 40).front(), (preview{8, 16})) << "one was shown already";
-    s.search = search_kind::at_least_k;
-    const auto paper = preview_schedule(s, s.photons, false, slow, 40);
+    EXPECT_EQ(preview_schedule(s, s.map.photons, true, slow, 40).front(), (preview{8, 16})) << "one was shown already";
+    s.estimate.search = search_kind::at_least_k;
+    const auto paper = preview_schedule(s, s.map.photons, false, slow, 40);
     EXPECT_EQ(paper, (std::vector<preview>{{16, 16}, {8, 16}, {4, 16}, {2, 16}}));
-    s.search = search_kind::exact_k;
-    s.k = 32;
-    EXPECT_EQ(preview_schedule(s, s.photons, false, slow, 40).back(), (preview{1, 16}));
+    s.estimate.search = search_kind::exact_k;
+    s.estimate.k = 32;
+    EXPECT_EQ(preview_schedule(s, s.map.photons, false, slow, 40).back(), (preview{1, 16}));
 }
 
 TEST(previews, are_as_few_as_the_time_allows)
 {
     render_settings s;
     const work_costs fast{.ms_per_photon = 1e-9, .ms_per_preview_pixel = 1e-9, .ms_per_pixel = 1e-9};
-    EXPECT_TRUE(preview_schedule(s, s.photons, false, fast, 40).empty());
-    EXPECT_EQ(preview_photons(s, fast, 40), s.photons);
+    EXPECT_TRUE(preview_schedule(s, s.map.photons, false, fast, 40).empty());
+    EXPECT_EQ(preview_photons(s, fast, 40), s.map.photons);
     const work_costs quick_previews{.ms_per_photon = 1e-9, .ms_per_preview_pixel = 1e-9};
-    EXPECT_EQ(preview_schedule(s, s.photons, false, quick_previews, 40), (std::vector<preview>{{1, 16}, {1, 4}}));
+    EXPECT_EQ(preview_schedule(s, s.map.photons, false, quick_previews, 40), (std::vector<preview>{{1, 16}, {1, 4}}));
 }
 
 TEST(previews, trace_fewer_photons_where_that_takes_long)
 {
     render_settings s;
-    s.photons = 1 << 20;
+    s.map.photons = 1 << 20;
     const work_costs slow{.ms_per_photon = 1};
     EXPECT_EQ(preview_photons(s, slow, 40), (1u << 20) / 64);
     const work_costs medium{.ms_per_photon = 160.0 / (1 << 20)};
     EXPECT_EQ(preview_photons(s, medium, 40), 1u << 19);
-    const auto early = preview_schedule(s, s.photons / 4, false, slow, 40);
+    const auto early = preview_schedule(s, s.map.photons / 4, false, slow, 40);
     ASSERT_EQ(early.size(), 1u);
     EXPECT_EQ(early[0].k_divisor, 4u) << "k is smaller already";
-    s.photons = 1000;
+    s.map.photons = 1000;
     EXPECT_EQ(preview_photons(s, slow, 40), 1000u) << "few are traced at once";
 }
 

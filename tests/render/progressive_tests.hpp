@@ -36,9 +36,9 @@ protected:
     static scene small_scene()
     {
         auto s = small_cornell();
-        s.render.width = 48;
-        s.render.height = 40;
-        s.render.photons = 4000;
+        s.render.output.width = 48;
+        s.render.output.height = 40;
+        s.render.map.photons = 4000;
         return s;
     }
     image whole(const scene& s, const render_settings& settings)
@@ -60,11 +60,11 @@ TYPED_TEST_P(progressive, ends_with_the_bytes_of_render)
     using ms = typename TestFixture::ms;
     auto s = this->small_scene();
     auto paper = as_paper(s.render), several = s.render, fixed = s.render, layers = s.render, part = s.render;
-    several.spp = 3;
-    fixed.search = search_kind::fixed_radius;
-    fixed.builder = map_builder::route;
-    layers.aov = true;
-    part.only = light_part::caustic;
+    several.view.spp = 3;
+    fixed.estimate.search = search_kind::fixed_radius;
+    fixed.map.builder = map_builder::route;
+    layers.output.aov = true;
+    part.output.only = light_part::caustic;
     for (const auto& settings : {s.render, paper, several, fixed, layers, part}) {
         const auto expected = this->whole(s, settings);
         for (const double target : {1e-6, 1e9}) { // all previews, the first from an early map; as few as there can be
@@ -76,7 +76,7 @@ TYPED_TEST_P(progressive, ends_with_the_bytes_of_render)
                 ASSERT_GE(drawing.pictures(), seen);
                 if (drawing.pictures() > seen) {
                     const auto shown = drawing.picture();
-                    ASSERT_EQ(shown.width, settings.width);
+                    ASSERT_EQ(shown.width, settings.output.width);
                     ASSERT_EQ(shown.pixels.size(), expected.pixels.size());
                 }
                 seen = drawing.pictures();
@@ -85,7 +85,7 @@ TYPED_TEST_P(progressive, ends_with_the_bytes_of_render)
             EXPECT_EQ(drawing.picture().layers.radius, expected.layers.radius);
             EXPECT_EQ(drawing.progress().stage, "finished");
             EXPECT_EQ(drawing.progress().unfinished, 0u);
-            expect_an_exact_account(drawing.stats().photons, settings.photons);
+            expect_an_exact_account(drawing.stats().photons, settings.map.photons);
             if (target < 1) {
                 EXPECT_EQ(drawing.maps(), 2u);
                 EXPECT_GE(seen, 3u);
@@ -104,11 +104,11 @@ TYPED_TEST_P(progressive, previews_are_as_bright_as_the_picture)
 {
     using ms = typename TestFixture::ms;
     auto s = this->small_scene();
-    s.render.width = s.render.height = 128;
-    s.render.k = 128;
-    s.render.photons = 16000;
+    s.render.output.width = s.render.output.height = 128;
+    s.render.estimate.k = 128;
+    s.render.map.photons = 16000;
     auto several = s.render;
-    several.spp = 3;
+    several.view.spp = 3;
     for (const auto& settings : {s.render, as_paper(s.render), several}) {
         typename TestFixture::loop drawing(this->b());
         drawing.start(s, settings, {.target_ms = 1e-6});
@@ -120,7 +120,7 @@ TYPED_TEST_P(progressive, previews_are_as_bright_as_the_picture)
             seen = drawing.pictures();
         }
         // The paper's search has previews of larger pixels only, and then shows its running estimate.
-        const bool previews_only = settings.search == search_kind::at_least_k
+        const bool previews_only = settings.estimate.search == search_kind::at_least_k
             && !knn_search<typename TestFixture::B>::shows_running_estimate(as_paper(knn_settings{}));
         ASSERT_GE(shown.size(), previews_only ? 3u : 5u);
         const double expected = brightness(shown.back());
@@ -147,10 +147,10 @@ TYPED_TEST_P(progressive, a_map_serves_until_the_light_changes)
     moved.camera.position.x += 0.2;
     moved.name = "another";
     auto settings = s.render;
-    settings.k = 50;
-    settings.kernel = filter_kernel::cone;
-    settings.exposure = 1;
-    settings.width = 32;
+    settings.estimate.k = 50;
+    settings.estimate.filter = filter_kind::cone;
+    settings.output.exposure = 1;
+    settings.output.width = 32;
     for (const auto& [scene, with] : {std::pair{moved, s.render}, {s, settings}, {moved, settings}}) {
         const auto bounces = this->passes("bounce_photon");
         drawing.start(scene, with, {.target_ms = 1e-6});
@@ -173,13 +173,13 @@ TYPED_TEST_P(progressive, a_map_serves_until_the_light_changes)
     painted.materials[0].reflectance *= 0.5;
     auto more = s.render, seeded = s.render, routed = s.render, finer = s.render, only = s.render, shallow = s.render,
          facing = s.render;
-    more.photons += 1000;
+    more.map.photons += 1000;
     seeded.seed = 7;
-    routed.builder = map_builder::route;
-    finer.grid *= 2u;
-    only.only = light_part::caustic;
-    shallow.photon_depth = 4;
-    facing.leaks.min_cosine = 0.5f;
+    routed.map.builder = map_builder::route;
+    finer.map.grid *= 2u;
+    only.output.only = light_part::caustic;
+    shallow.map.photon_depth = 4;
+    facing.estimate.leaks.min_cosine = 0.5f;
     for (const auto& [scene, with] : {std::pair{lit, s.render}, {grown, s.render}, {painted, s.render}, {s, more},
              {s, seeded}, {s, routed}, {s, finer}, {s, only}, {s, shallow}, {s, facing}}) {
         drawing.start(s, s.render, {.wanted = false}); // each differs from this in one thing
@@ -196,7 +196,7 @@ TYPED_TEST_P(progressive, a_camera_that_moves_while_photons_are_traced_does_not_
 {
     using ms = typename TestFixture::ms;
     auto s = this->small_scene();
-    s.render.photons = 60000; // two batches and more
+    s.render.map.photons = 60000; // two batches and more
     typename TestFixture::loop drawing(this->b());
     drawing.start(s, s.render, {.wanted = false});
     drawing.step(ms(0));
@@ -245,7 +245,7 @@ TYPED_TEST_P(progressive, a_cancelled_step_ends_after_its_pass)
 
     // From another thread, into a step without end: far less is done than a picture takes.
     auto long_one = s;
-    long_one.render.spp = 65536;
+    long_one.render.view.spp = 65536;
     drawing.start(long_one, long_one.render);
     std::thread impatient([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(30));
@@ -262,8 +262,8 @@ TYPED_TEST_P(progressive, a_picture_goes_on_from_its_state)
 {
     using ms = typename TestFixture::ms;
     auto s = this->small_scene();
-    s.render.spp = 4;
-    s.render.aov = true;
+    s.render.view.spp = 4;
+    s.render.output.aov = true;
     const auto expected = this->whole(s, s.render);
     render_state state;
     uint least = 1;
@@ -288,8 +288,8 @@ TYPED_TEST_P(progressive, a_picture_goes_on_from_its_state)
 
     typename TestFixture::loop other(this->b());
     auto larger = s.render, without_layers = s.render;
-    larger.width += 1;
-    without_layers.aov = false;
+    larger.output.width += 1;
+    without_layers.output.aov = false;
     for (const auto& settings : {larger, without_layers}) {
         other.start(s, settings);
         EXPECT_THROW(other.resume(state), std::invalid_argument);
@@ -307,9 +307,9 @@ TYPED_TEST_P(progressive, passes_add_up_in_any_order)
 {
     using ms = typename TestFixture::ms;
     auto s = this->small_scene();
-    s.render.photons = 1000;
-    s.render.passes = 4;
-    s.render.aov = true;
+    s.render.map.photons = 1000;
+    s.render.output.passes = 4;
+    s.render.output.aov = true;
     const auto expected = this->whole(s, s.render);
     typename TestFixture::loop drawing(this->b());
     drawing.start(s, s.render);
@@ -357,8 +357,8 @@ TYPED_TEST_P(progressive, passes_add_up_in_any_order)
     // Each pass has photons, eye rays and shadow rays of its own.
     for (const auto only : {light_part::direct, light_part::indirect}) {
         auto a = settings_of_pass(s.render, 0), b = settings_of_pass(s.render, 1);
-        a.only = b.only = only;
-        a.passes = b.passes = 1;
+        a.output.only = b.output.only = only;
+        a.output.passes = b.output.passes = 1;
         EXPECT_GT(relative_mse(this->whole(s, a), this->whole(s, b)), 1e-5);
     }
 }
@@ -377,7 +377,7 @@ TYPED_TEST_P(progressive, what_cannot_be_drawn_leaves_the_picture_alone)
     broken.spheres[0].radius = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW(drawing.start(broken, s.render), std::invalid_argument);
     auto none = s.render;
-    none.k = 0;
+    none.estimate.k = 0;
     EXPECT_THROW(drawing.start(s, none), std::invalid_argument);
     EXPECT_TRUE(drawing.finished());
     EXPECT_TRUE(same_bytes(drawing.picture(), before));

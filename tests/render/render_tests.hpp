@@ -78,14 +78,15 @@ protected:
                             "(long_statistics)";
         EXPECT_EQ(std::get<3>(mine), std::get<3>(theirs));
         EXPECT_EQ(count_different_bits(std::get<0>(mine), std::get<0>(theirs)), 0u)
-            << "positions of " << settings.photons;
-        EXPECT_EQ(count_different_bits(std::get<1>(mine), std::get<1>(theirs)), 0u) << "powers of " << settings.photons;
+            << "positions of " << settings.map.photons;
+        EXPECT_EQ(count_different_bits(std::get<1>(mine), std::get<1>(theirs)), 0u)
+            << "powers of " << settings.map.photons;
         EXPECT_EQ(count_different_bits(std::get<2>(mine), std::get<2>(theirs)), 0u)
-            << "directions of " << settings.photons;
+            << "directions of " << settings.map.photons;
 
         for (const auto builder : {map_builder::sort, map_builder::route}) {
             auto with = settings;
-            with.builder = builder;
+            with.map.builder = builder;
             render_stats a, b;
             const auto picture = render(this->b(), s, with, {}, a);
             const auto reference = render(serial, s, with, {}, b);
@@ -107,8 +108,8 @@ TYPED_TEST_P(pictures, a_closed_diffuse_sphere_has_the_known_radiance)
     const auto s = integrating_sphere(reflectance);
     for (const auto builder : {map_builder::sort, map_builder::route}) {
         auto settings = s.render;
-        settings.builder = builder;
-        settings.slots = 8;
+        settings.map.builder = builder;
+        settings.map.slots = 8;
         render_stats stats;
         const auto im = this->picture(s, settings, &stats);
         glm::dvec3 mean(0);
@@ -119,7 +120,7 @@ TYPED_TEST_P(pictures, a_closed_diffuse_sphere_has_the_known_radiance)
             EXPECT_NEAR(mean[c], known, 0.02 * known)
                 << "channel " << c; // noise of 40,000 photons, the paper's N/A bias
         }
-        expect_an_exact_account(stats.photons, settings.photons);
+        expect_an_exact_account(stats.photons, settings.map.photons);
         EXPECT_EQ(stats.photons.escaped, 0u); // closed: no ray slips out
     }
 }
@@ -142,7 +143,7 @@ TYPED_TEST_P(pictures, direct_light_of_a_rectangle_equals_the_form_factor)
     auto& b = this->b();
     const auto device = upload_scene(b, s);
     auto settings = s.render;
-    settings.light_samples = 1024;
+    settings.view.light_samples = 1024;
     std::vector<glm::vec4> points, normals;
     for (const auto& p : places) {
         points.emplace_back(glm::vec3(p.point - device.layout.center), 1.0f);
@@ -185,7 +186,9 @@ TYPED_TEST_P(pictures, a_glass_ball_focuses_the_flux_it_should)
     s.spheres = {{{0, height, 0}, radius, 1}};
     s.point_lights = {{"bulb", {0, light_height, 0}, dvec3(10)}};
     s.camera = {{0, 1, -3}, {0, 0, 0}, {0, 1, 0}, 45};
-    s.render = {.width = 8, .height = 8, .photons = 20000, .k = 50, .grid = {100, 1, 100}, .max_radius = 0.1};
+    s.render = {.map = {.photons = 20000, .grid = {100, 1, 100}},
+        .estimate = {.k = 50, .max_radius = 0.1},
+        .output = {.width = 8, .height = 8}};
 
     const double within = 0.12; // m from the axis on the floor
     const auto fresnel = [](double cos_i, double eta) {
@@ -246,11 +249,11 @@ TYPED_TEST_P(pictures, every_photon_and_every_watt_is_accounted_for)
         const auto device = upload_scene(b, s);
         const auto t = trace_photons(b, s, device, s.render);
         const auto stats = count_photons(b, t, t.photons.size());
-        expect_an_exact_account(stats, s.render.photons);
+        expect_an_exact_account(stats, s.render.map.photons);
         EXPECT_GT(stats.absorbed, 0u);
         EXPECT_GT(stats.escaped, 0u);
         EXPECT_GT(stats.direct, 0u);
-        EXPECT_LT(stats.dropped, s.render.photon_depth);
+        EXPECT_LT(stats.dropped, s.render.map.photon_depth);
         // No photon carries more than its light's power over the paths: roulette only takes colour.
         const dvec3 total = power_of_lights(s);
         for (const auto& p : b.download(t.photons.powers))
@@ -263,7 +266,7 @@ TYPED_TEST_P(pictures, flux_balances_per_channel)
     // What a light sends out is absorbed at surfaces, escapes, or is cut off; per path and channel, on average.
     for (auto s : {small_cornell(), all_shapes()}) {
         auto& b = this->b();
-        s.render.photon_depth = 6; // so that some is cut off
+        s.render.map.photon_depth = 6; // so that some is cut off
         const auto device = upload_scene(b, s);
         const uint paths = 16384;
         detail::photon_frames<typename TestFixture::B> f(b, std::size_t{paths} * 7);
@@ -304,7 +307,7 @@ TYPED_TEST_P(pictures, a_photon_takes_at_most_64_bytes)
     // Positions, powers, directions, and the pairs twice while they are sorted; grid apart.
     auto& b = this->b();
     auto s = integrating_sphere(dvec3(0.5));
-    s.render.photons = 65536;
+    s.render.map.photons = 65536;
     const auto device = upload_scene(b, s);
     auto t = trace_photons(b, s, device, s.render);
     b.finish();
@@ -322,7 +325,7 @@ TYPED_TEST_P(pictures, long_statistics_of_a_picture_equal_serials)
     // over 8 x 8 pixels agree in a z-test (0.01, Sidak over the blocks).
     serial_backend serial;
     for (const auto& s : {small_cornell(), all_shapes()}) {
-        const uint bx = s.render.width / 8, by = s.render.height / 8;
+        const uint bx = s.render.output.width / 8, by = s.render.output.height / 8;
         const auto sample = [&](auto& device, uint first_seed) {
             std::vector<std::vector<double>> blocks(std::size_t{bx} * by * 3);
             for (uint seed = first_seed; seed < first_seed + 8; ++seed) {
@@ -382,8 +385,8 @@ TYPED_TEST_P(pictures, long_statistics_of_a_picture_equal_serials)
 TYPED_TEST_P(pictures, cut_off_paths_are_counted)
 {
     auto s = integrating_sphere(dvec3(0.9));
-    s.render.photon_depth = 3;
-    s.render.photons = 2000;
+    s.render.map.photon_depth = 3;
+    s.render.map.photons = 2000;
     render_stats stats;
     this->picture(s, s.render, &stats);
     expect_an_exact_account(stats.photons, 2000);
@@ -398,9 +401,9 @@ TYPED_TEST_P(pictures, equal_the_serial_backends)
     const auto c = all_shapes();
     this->expect_serial(c, c.render);
     auto several = c.render;
-    several.spp = 3;
-    several.width = 24;
-    several.height = 16;
+    several.view.spp = 3;
+    several.output.width = 24;
+    several.output.height = 16;
     this->expect_serial(c, several);
 }
 
@@ -409,14 +412,14 @@ TYPED_TEST_P(pictures, sorting_and_routing_agree)
     const auto s = small_cornell();
     auto settings = s.render;
     const auto sorted = this->picture(s, settings);
-    settings.builder = map_builder::route;
-    settings.slots = 16; // no cell overflows: the same photons in another order
+    settings.map.builder = map_builder::route;
+    settings.map.slots = 16; // no cell overflows: the same photons in another order
     render_stats stats;
     const auto all_kept = this->picture(s, settings, &stats);
     EXPECT_EQ(stats.map.overfull_cells, 0u);
     EXPECT_LE(
         relative_mse(all_kept, sorted), 1e-3); // at least k: which photon is the k-th depends on the order of visits
-    settings.slots = 3;
+    settings.map.slots = 3;
     const auto some_kept = this->picture(s, settings, &stats);
     EXPECT_GT(stats.map.overfull_cells, 0u);
     EXPECT_GT(stats.map.redistributed_flux, 0.0);
@@ -459,8 +462,8 @@ TYPED_TEST_P(pictures, running_estimates_are_shown_and_a_render_can_be_cancelled
     auto& b = this->b();
     const auto s = small_cornell();
     auto settings = s.render;
-    settings.k = 4000; // some passes
-    settings.max_radius = 1;
+    settings.estimate.k = 4000; // some passes
+    settings.estimate.max_radius = 1;
     std::vector<image> shown;
     render_observer watch;
     watch.intermediate = [&](const image& im) { shown.push_back(im); };
@@ -486,8 +489,8 @@ TYPED_TEST_P(pictures, a_light_that_stores_no_photon_is_named)
     s.polygons = {{{{-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}}, 0}};
     s.point_lights = {{"the bulb", {0, 1, 0}, dvec3(1)}};
     s.camera = {{0, 1, -3}, {0, 0, 0}, {0, 1, 0}, 45};
-    s.render.photons = 50000; // long batches
-    s.render.photon_depth = 2;
+    s.render.map.photons = 50000; // long batches
+    s.render.map.photon_depth = 2;
     render_stats stats;
     try {
         render(this->b(), s, s.render, {}, stats);

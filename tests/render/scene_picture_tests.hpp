@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render_tests.hpp"
-#include "scene_file.hpp"
+#include <photongrid/io/scene_file.hpp>
 
 namespace photongrid::testing {
 
@@ -14,8 +14,8 @@ protected:
         const auto s = read_scene(std::string(PHOTONGRID_SCENES) + "/" + name + ".json");
         auto settings = s.render;
         if (size.x > 0) {
-            settings.width = size.x;
-            settings.height = size.y;
+            settings.output.width = size.x;
+            settings.output.height = size.y;
         }
         // What 16 slots a cell cost in each scene, twice over (docs/reference/measures.md): a sharper estimate shows
         // more of it.
@@ -28,11 +28,11 @@ private:
     {
         image pictures[2];
         for (const auto builder : {map_builder::sort, map_builder::route}) {
-            settings.builder = builder;
+            settings.map.builder = builder;
             render_stats stats;
             auto& picture = pictures[builder == map_builder::route ? 1 : 0];
             picture = render(this->b(), s, settings, {}, stats);
-            expect_an_exact_account(stats.photons, s.render.photons);
+            expect_an_exact_account(stats.photons, s.render.map.photons);
             EXPECT_EQ(stats.invalid_pixels, 0u);
             if (this->b().caps().exact_division && this->b().caps().exact_sqrt) {
                 serial_backend serial;

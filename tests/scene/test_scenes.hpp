@@ -16,7 +16,9 @@ inline scene integrating_sphere(dvec3 reflectance)
     s.spheres = {{dvec3(0), 1.0, 0}};
     s.point_lights = {{"middle", dvec3(0), dvec3(4 * M_PI * M_PI)}};
     s.camera = {{0.1, 0.2, 0.3}, {1, 0, 0}, {0, 1, 0}, 80};
-    s.render = {.width = 32, .height = 24, .photons = 40000, .k = 200, .grid = {12, 12, 12}, .max_radius = 0.5};
+    s.render = {.map = {.photons = 40000, .grid = {12, 12, 12}},
+        .estimate = {.k = 200, .max_radius = 0.5},
+        .output = {.width = 32, .height = 24}};
     return s;
 }
 
@@ -39,13 +41,10 @@ inline scene small_cornell()
     s.spheres = {{{0.7, 0.2, 0.65}, 0.2, 3}, {{0.3, 0.18, 0.35}, 0.18, 4}};
     s.rectangle_lights = {{"lamp", {0.35, 0.999, 0.4}, {0.3, 0, 0}, {0, 0, 0.25}, dvec3(4, 3.5, 3)}};
     s.camera = {{0.5, 0.5, -1.4}, {0.5, 0.5, 0}, {0, 1, 0}, 39};
-    s.render = {.width = 64,
-        .height = 64,
-        .photons = 8000,
-        .k = 80,
-        .grid = {12, 12, 12},
-        .max_radius = 0.25,
-        .light_samples = 4};
+    s.render = {.map = {.photons = 8000, .grid = {12, 12, 12}},
+        .estimate = {.k = 80, .max_radius = 0.25},
+        .view = {.light_samples = 4},
+        .output = {.width = 64, .height = 64}};
     return s;
 }
 
@@ -68,13 +67,10 @@ inline scene all_shapes()
     s.point_lights = {{"bulb", {1.0, 1.8, -1.2}, dvec3(20, 18, 15)}};
     s.rectangle_lights = {{"lamp", {-0.4, 2.0, -0.4}, {0.8, 0, 0}, {0, 0, 0.8}, dvec3(10, 11, 12)}};
     s.camera = {{0, 1.4, -3.2}, {0, 0.3, 0}, {0, 1, 0}, 45};
-    s.render = {.width = 96,
-        .height = 64,
-        .photons = 6000,
-        .k = 40,
-        .grid = {30, 10, 30},
-        .max_radius = 0.3,
-        .light_samples = 4};
+    s.render = {.map = {.photons = 6000, .grid = {30, 10, 30}},
+        .estimate = {.k = 40, .max_radius = 0.3},
+        .view = {.light_samples = 4},
+        .output = {.width = 96, .height = 64}};
     return s;
 }
 

@@ -151,7 +151,9 @@ inline scene room_under_a_lamp(double gap)
     wall({0, 0, 0}, {0, 0, 1}, {0, 1, 1}, {0, 1, 0});
     wall({1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1});
     s.rectangle_lights = {{"ceiling", {0, 1 - gap, 0}, {1, 0, 0}, {0, 0, 1}, dvec3(1)}};
-    s.render = {.width = 8, .height = 8, .photons = 20000, .k = 50, .grid = {8, 8, 8}, .max_radius = 0.3};
+    s.render = {.map = {.photons = 20000, .grid = {8, 8, 8}},
+        .estimate = {.k = 50, .max_radius = 0.3},
+        .output = {.width = 8, .height = 8}};
     return s;
 }
 

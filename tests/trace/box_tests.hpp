@@ -184,14 +184,10 @@ inline scene room_of_boxes()
         {{1.4, 0.3, 0.6}, {0.1, 0, 0.1}, {0, 0.4, 0}, {-0.1, 0, 0.1}, 2}};
     s.point_lights = {{"bulb", {1, 0.7, 0.7}, dvec3(3, 2, 1)}};
     s.camera = {{1.9, 0.5, 1.4}, {0.8, 0.4, 0.5}, {0, 1, 0}, 60};
-    s.render = {.width = 40,
-        .height = 30,
-        .photons = 30000,
-        .k = 100,
-        .grid = {20, 10, 15},
-        .max_radius = 0.3,
-        .light_samples = 4,
-        .photon_depth = 64};
+    s.render = {.map = {.photons = 30000, .photon_depth = 64, .grid = {20, 10, 15}},
+        .estimate = {.k = 100, .max_radius = 0.3},
+        .view = {.light_samples = 4},
+        .output = {.width = 40, .height = 30}};
     return s;
 }
 

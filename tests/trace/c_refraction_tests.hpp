@@ -179,7 +179,7 @@ TYPED_TEST_P(hard_cases, c4_endless_total_reflection_is_cut_off_and_counted)
     const auto device = upload_scene(b, s);
     const auto t = trace_photons(b, s, device, s.render);
     const auto stats = count_photons(b, t, t.photons.size());
-    expect_an_exact_account(stats, s.render.photons);
+    expect_an_exact_account(stats, s.render.map.photons);
     EXPECT_EQ(stats.escaped, 0u);
     // The share that is caught for ever: three cones of half angle asin(1/1.5) about each axis both ways let light out,
     // but for the little that Fresnel's share sends back in; caught for ever is 1 - 3 (1 - sqrt(1 - 1/1.5^2)), cut off
@@ -197,8 +197,8 @@ TYPED_TEST_P(hard_cases, c5_a_camera_in_glass_sees_through_it)
     auto s = room_under_a_lamp(1e-3);
     s.spheres = {{{0.5, 0.5, 0.5}, 0.2, 1}};
     s.camera = {{0.5, 0.5, 0.5}, {0.5, 1, 0.5}, {0, 0, 1}, 40};
-    s.render.depth = 1;
-    s.render.photons = 500;
+    s.render.view.depth = 1;
+    s.render.map.photons = 500;
     render_stats stats;
     const auto im = render(this->b(), s, s.render, {}, stats);
     double largest = 0;

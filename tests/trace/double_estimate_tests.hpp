@@ -41,15 +41,14 @@ public:
 
         gather_.args.grid = g;
         gather_.args.leaks = glm::dvec4(-1.0,
-            static_cast<double>(settings.leaks.compression) * static_cast<double>(settings.leaks.compression) - 1, 0,
-            0);
+            static_cast<double>(settings.leaks.flattening) * static_cast<double>(settings.leaks.flattening) - 1, 0, 0);
         gather_.args.min_radius2 = min_radius2_;
         gather_.args.visits = settings.visits_per_pass;
         gather_.args.ranges = settings.ranges_per_pass;
         // SWITCHes of gather_photons.glsl: SIDE, FLATTEN, the kernel, LEAVE_OUT, ERRORS.
         turn_switches(gather_,
-            (settings.leaks.side ? 1u : 0u) | (settings.leaks.compression > 1 ? 4u : 0u)
-                | (settings.kernel == filter_kernel::constant ? 0u : 4u << static_cast<uint>(settings.kernel)) | 1u << 6
+            (settings.leaks.side ? 1u : 0u) | (settings.leaks.flattening > 1 ? 4u : 0u)
+                | (settings.filter == filter_kind::constant ? 0u : 4u << static_cast<uint>(settings.filter)) | 1u << 6
                 | 1u << 7);
         gather_.points_data = points_;
         gather_.normals_data = normals_;
@@ -79,13 +78,13 @@ public:
                 continue;
             const double p = powers_[near[j].second].x, t = near[j].first / radius2;
             const double w[] = {1, 1 - std::sqrt(t), 1 - t, (1 - t) * (1 - t)};
-            const double weight = w[static_cast<int>(settings_.kernel)];
+            const double weight = w[static_cast<int>(settings_.filter)];
             e.unweighted += p;
             linear += weight * p * p;
             square += weight * weight * p * p;
         }
         constexpr double norms[] = {1, 3, 2, 3};
-        const double norm = norms[static_cast<int>(settings_.kernel)];
+        const double norm = norms[static_cast<int>(settings_.filter)];
         e.unweighted *= norm / (M_PI * std::max(radius2, min_radius2_));
         e.conditioning = linear / square;
 
@@ -152,21 +151,20 @@ TEST(double_oracle, estimates)
                normals = b.upload(std::span<const vec4>(s.point_normals));
     struct row {
         const char* name;
-        filter_kernel kernel;
+        filter_kind filter;
         leak_policy leaks;
         uint k;
     };
-    const leak_policy strict{.side = true, .compression = 3};
-    const row rows[] = {{"constant, k = 50", filter_kernel::constant, {}, 50},
-        {"cone, k = 50", filter_kernel::cone, {}, 50}, {"Epanechnikov, k = 50", filter_kernel::epanechnikov, {}, 50},
-        {"Silverman, k = 50", filter_kernel::silverman, {}, 50},
-        {"constant, k = 1000", filter_kernel::constant, {}, 1000},
-        {"Silverman, k = 1000", filter_kernel::silverman, {}, 1000},
-        {"Silverman, k = 50, side, flattened 3 times", filter_kernel::silverman, strict, 50}};
+    const leak_policy strict{.side = true, .flattening = 3};
+    const row rows[] = {{"constant, k = 50", filter_kind::constant, {}, 50},
+        {"cone, k = 50", filter_kind::cone, {}, 50}, {"Epanechnikov, k = 50", filter_kind::epanechnikov, {}, 50},
+        {"Silverman, k = 50", filter_kind::silverman, {}, 50}, {"constant, k = 1000", filter_kind::constant, {}, 1000},
+        {"Silverman, k = 1000", filter_kind::silverman, {}, 1000},
+        {"Silverman, k = 50, side, flattened 3 times", filter_kind::silverman, strict, 50}};
     std::size_t other = 0, compared = 0;
     for (const auto& r : rows) {
         knn_settings k{.k = r.k, .max_radius = 10, .min_radius = 1e-6f};
-        k.kernel = r.kernel;
+        k.filter = r.filter;
         k.leaks = r.leaks;
         k.errors = true;
         const auto e = knn_grid_estimate(b, map, points, normals, k);
@@ -175,11 +173,11 @@ TEST(double_oracle, estimates)
         // In units of 2^-24. A squared distance: 2 for each difference, 1 for its square, 2 for the sum; flattened, up
         // to 18. t = d^2 / r^2: two of them, and 2. A weight's error is that times its slope, and what rounds in it:
         // cone 1 for the root (its slope times t is at most 1/2) and 1, Epanechnikov 1, Silverman twice that and 1.
-        const double distance = r.leaks.compression > 1 ? 18 : 5, t = 2 * distance + 2;
-        const double weight = r.kernel == filter_kernel::constant ? 0
-            : r.kernel == filter_kernel::cone                     ? 0.5 * t + 2
-            : r.kernel == filter_kernel::epanechnikov             ? t + 1
-                                                                  : 2 * (t + 1) + 1;
+        const double distance = r.leaks.flattening > 1 ? 18 : 5, t = 2 * distance + 2;
+        const double weight = r.filter == filter_kind::constant ? 0
+            : r.filter == filter_kind::cone                     ? 0.5 * t + 2
+            : r.filter == filter_kind::epanechnikov             ? t + 1
+                                                                : 2 * (t + 1) + 1;
         // The rest: the disc, 3.14159265f, two products, a quotient, the weighted power, and 2 for a compensated sum.
         const double rest = distance + 0.5 + 3 + 1 + 2;
         std::vector<double> errors, spread_errors;

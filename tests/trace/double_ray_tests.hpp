@@ -86,7 +86,7 @@ TEST(double_oracle, refraction)
 TEST(double_oracle, photons_after_eight_bounces)
 {
     auto s = small_cornell();
-    s.render.photon_depth = 8;
+    s.render.map.photon_depth = 8;
     const uint paths = 16384, frames = 9;
     const auto layout = lay_out(s);
     const double_scene wide(layout);

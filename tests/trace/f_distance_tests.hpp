@@ -42,9 +42,9 @@ inline scene rounded_scene(scene s)
 TYPED_TEST_P(hard_cases, f6_a_scene_far_away_renders_the_same)
 {
     auto blocks = read_scene(std::string(PHOTONGRID_SCENES) + "/cornell_blocks.json");
-    blocks.render.width = blocks.render.height = 48;
-    blocks.render.photons = 8000;
-    blocks.render.k = 80;
+    blocks.render.output.width = blocks.render.output.height = 48;
+    blocks.render.map.photons = 8000;
+    blocks.render.estimate.k = 80;
     for (const auto& s : {rounded_scene(blocks), rounded_scene(all_shapes())}) {
         const dvec3 by(1e6, -1e6, 1e6);
         render_stats a, b;

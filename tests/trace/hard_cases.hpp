@@ -3,7 +3,7 @@
 
 #include "../map/photon_sets.hpp"
 #include "../render/render_tests.hpp"
-#include "scene_file.hpp"
+#include <photongrid/io/scene_file.hpp>
 #include <probes_kernels.hpp>
 
 namespace photongrid::testing {
@@ -160,7 +160,7 @@ protected:
         hits.points = b.upload(std::span<const glm::vec4>(p));
         hits.surfaces = b.upload(std::span<const glm::vec4>(n));
         auto settings = s.render;
-        settings.light_samples = samples;
+        settings.view.light_samples = samples;
         auto irradiance = b.template make<glm::vec4>(p.size());
         detail::direct_light(b, device, hits, settings, 0, p.size(), irradiance);
         return b.download(irradiance);

@@ -73,25 +73,25 @@ private:
     }
 };
 
-HWY_INLINE vector weight_of(filter_kernel kernel, vector t)
+HWY_INLINE vector weight_of(filter_kind filter, vector t)
 {
     const floats d;
     const auto one = hn::Set(d, 1.0f);
-    switch (kernel) {
-    case filter_kernel::cone: return hn::Sub(one, hn::Sqrt(t));
-    case filter_kernel::epanechnikov: return hn::Sub(one, t);
-    case filter_kernel::silverman: return hn::Mul(hn::Sub(one, t), hn::Sub(one, t));
-    case filter_kernel::constant: break;
+    switch (filter) {
+    case filter_kind::cone: return hn::Sub(one, hn::Sqrt(t));
+    case filter_kind::epanechnikov: return hn::Sub(one, t);
+    case filter_kind::silverman: return hn::Mul(hn::Sub(one, t), hn::Sub(one, t));
+    case filter_kind::constant: break;
     }
     return one;
 }
-inline float weight_of(filter_kernel kernel, float t)
+inline float weight_of(filter_kind filter, float t)
 {
-    switch (kernel) {
-    case filter_kernel::cone: return 1.0f - std::sqrt(t);
-    case filter_kernel::epanechnikov: return 1.0f - t;
-    case filter_kernel::silverman: return (1.0f - t) * (1.0f - t);
-    case filter_kernel::constant: break;
+    switch (filter) {
+    case filter_kind::cone: return 1.0f - std::sqrt(t);
+    case filter_kind::epanechnikov: return 1.0f - t;
+    case filter_kind::silverman: return (1.0f - t) * (1.0f - t);
+    case filter_kind::constant: break;
     }
     return 1.0f;
 }
@@ -120,7 +120,7 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
                        *const p_blue = near.of(packet::blue);
     const float inverse_disc2 = 1.0f / std::max(r.radius2, j.min_radius2);
     const auto radius2 = hn::Set(d, r.radius2), inverse = hn::Set(d, inverse_disc2), one = hn::Set(d, 1.0f);
-    const filter_kernel kernel = j.kernel;
+    const filter_kind filter = j.filter;
     lane_sums red, green, blue, red2, green2, blue2, all2;
     std::size_t within = 0, at_most = 0;
     for (std::size_t i = 0; i < n;) {
@@ -131,7 +131,7 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
                 const auto nearer = hn::Lt(d2, radius2);
                 within += hn::CountTrue(d, nearer);
                 at_most += hn::CountTrue(d, hn::Le(d2, radius2));
-                const auto weight = hn::IfThenElseZero(nearer, weight_of(kernel, hn::Min(hn::Mul(d2, inverse), one)));
+                const auto weight = hn::IfThenElseZero(nearer, weight_of(filter, hn::Min(hn::Mul(d2, inverse), one)));
                 const auto r1 = hn::Mul(hn::Load(d, p_red + i), weight), g1 = hn::Mul(hn::Load(d, p_green + i), weight),
                            b1 = hn::Mul(hn::Load(d, p_blue + i), weight);
                 red.add(group, r1);
@@ -171,7 +171,7 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
                 at_radius.push_back(static_cast<uint>(i));
         std::partial_sort(
             at_radius.begin(), at_radius.begin() + static_cast<std::ptrdiff_t>(counted), at_radius.end(), by_id);
-        const float at_rim = weight_of(kernel, std::min(r.radius2 * inverse_disc2, 1.0f));
+        const float at_rim = weight_of(filter, std::min(r.radius2 * inverse_disc2, 1.0f));
         for (std::size_t i = 0; i + (apart ? 1 : 0) < counted; ++i) {
             const float f[3]
                 = {p_red[at_radius[i]] * at_rim, p_green[at_radius[i]] * at_rim, p_blue[at_radius[i]] * at_rim};

@@ -254,7 +254,7 @@ HWY_INLINE void visit_rings(const search_job& j, const glm::vec4& point, Growth&
 template <int POLICIES>
 HWY_NOINLINE void grow_points(const search_job& j, std::size_t begin, std::size_t end)
 {
-    const bool store = j.kernel != filter_kernel::constant || j.leave_out || j.errors;
+    const bool store = j.filter != filter_kind::constant || j.leave_out || j.errors;
     packet held;
     std::vector<uint> at_radius;
     for (std::size_t o = begin; o < end; ++o) {

@@ -63,7 +63,7 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
     j.side = s.leaks.side;
     j.agreement = s.leaks.needs_normals();
     j.min_cosine = s.leaks.min_cosine;
-    j.flattening = s.leaks.compression > 1 ? s.leaks.compression * s.leaks.compression - 1.0f : 0.0f;
+    j.flattening = s.leaks.flattening > 1 ? s.leaks.flattening * s.leaks.flattening - 1.0f : 0.0f;
     if (j.side)
         j.directions = b.planes(photons.directions);
     if (j.agreement)
@@ -78,8 +78,8 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
     j.wanted = s.k;
     j.max_radius2 = in.max_radius2();
     j.min_radius2 = in.min_radius2();
-    j.kernel = s.kernel;
-    j.norm = detail::norm_of(s.kernel);
+    j.filter = s.filter;
+    j.norm = detail::norm_of(s.filter);
     j.leave_out = s.bias == bias_kind::unbiased;
     j.errors = s.errors;
     return j;

@@ -30,8 +30,8 @@ struct search_job {
     bool agreement = false;
     float min_cosine = -1;
     float flattening = 0; ///< c^2 - 1, see photon_distance.glsl
-    filter_kernel kernel = filter_kernel::constant;
-    float norm = 1; ///< of the kernel
+    filter_kind filter = filter_kind::constant;
+    float norm = 1; ///< of the filter
     bool leave_out = false;
     bool errors = false;
 

@@ -19,14 +19,14 @@ inline uint trace_batch(vulkan_backend& b, const device_scene<vulkan_backend>& s
         reads(s.records), writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
     constexpr uint together = 8;
     uint frame = 1;
-    for (bool finished = false; !finished && frame <= settings.photon_depth;) {
-        const uint passes = std::min(together, settings.photon_depth + 1 - frame);
+    for (bool finished = false; !finished && frame <= settings.map.photon_depth;) {
+        const uint passes = std::min(together, settings.map.photon_depth + 1 - frame);
         // A photon whose every word is this number has ended before.
         const auto ended = std::bit_cast<uint>(
             kernels::event_code(kernels::NO_SURFACE, kernels::ENDED_BEFORE, kernels::NOTHING_BEFORE));
         b.fill(f.positions, std::size_t{frame} * paths, std::size_t{passes} * paths, ended);
         const auto p = b.run_frames<kernels::bounce_photon>({paths, frame * paths, layout.features}, paths,
-            {.paths = paths, .first_path = first, .last_frame = settings.photon_depth, .seed = settings.seed},
+            {.paths = paths, .first_path = first, .last_frame = settings.map.photon_depth, .seed = settings.seed},
             reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions), passes);
         frame += p.passes;

@@ -1,6 +1,7 @@
 #include "render_thread.hpp"
 
-#include "../image_file.hpp"
+#include <photongrid/io/image_difference.hpp>
+#include <photongrid/io/image_file.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -15,7 +16,7 @@ namespace {
     double ms_since(clock::time_point t) { return std::chrono::duration<double, std::milli>(clock::now() - t).count(); }
 
     /// Time that a step may take before it is asked again what to do.
-    constexpr double step_ms = 8;
+    constexpr renderer::milliseconds step_time{8};
 
     /// Where every core renders, the window comes first: this thread, and those that the backend makes in it, give way
     /// to others.
@@ -147,7 +148,7 @@ bool render_thread::take()
 void render_thread::draw()
 {
     ++steps_;
-    const bool whole = renderer_->step(step_ms);
+    const bool whole = renderer_->step(step_time);
     const bool news = renderer_->pictures() > seen_;
     if (news) {
         seen_ = renderer_->pictures();

@@ -1,8 +1,8 @@
 // The window's renderer, in a thread of its own: takes what is to be drawn, gives back pictures as they come.
 #pragma once
 
-#include "../backends.hpp"
 #include "document.hpp"
+#include <photongrid/backends/any/any.hpp>
 
 #include <atomic>
 #include <chrono>

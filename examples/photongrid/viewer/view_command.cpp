@@ -1,8 +1,8 @@
 #include "view_command.hpp"
 
 #include "../render_command.hpp"
-#include "../scene_file.hpp"
 #include "window.hpp"
+#include <photongrid/io/scene_file.hpp>
 
 #include <iostream>
 

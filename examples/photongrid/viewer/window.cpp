@@ -1,9 +1,11 @@
 #include "window.hpp"
 
-#include "../image_file.hpp"
-#include "../scene_writer.hpp"
-#include "../setting_names.hpp"
 #include "render_thread.hpp"
+#include <photongrid/io/image_difference.hpp>
+#include <photongrid/io/image_file.hpp>
+#include <photongrid/io/scene_writer.hpp>
+#include <photongrid/io/tone_map.hpp>
+#include <photongrid/scene/setting_table.hpp>
 
 #include <GLFW/glfw3.h>
 #include <imgui.h>
@@ -172,10 +174,10 @@ namespace {
     private:
         static std::unique_ptr<GLFWwindow, window_closer> open(const render_settings& s)
         {
-            const float scale
-                = std::max(1.0f, std::min(3.0f, 640.0f / static_cast<float>(std::max(s.width, s.height))));
-            const int width = static_cast<int>(scale * static_cast<float>(s.width) + panel_width),
-                      height = std::max(720, static_cast<int>(scale * static_cast<float>(s.height)));
+            const float scale = std::max(
+                1.0f, std::min(3.0f, 640.0f / static_cast<float>(std::max(s.output.width, s.output.height))));
+            const int width = static_cast<int>(scale * static_cast<float>(s.output.width) + panel_width),
+                      height = std::max(720, static_cast<int>(scale * static_cast<float>(s.output.height)));
             glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS,
                 GLFW_LOSE_CONTEXT_ON_RESET); // so that a loss is said; ignored where it cannot be
             std::unique_ptr<GLFWwindow, window_closer> w(
@@ -204,11 +206,11 @@ namespace {
         void send_changes(bool moving)
         {
             auto now = document_.now();
-            const bool other_exposure = now.settings.exposure != sent_.settings.exposure;
+            const bool other_exposure = now.settings.output.exposure != sent_.settings.output.exposure;
             if (other_exposure)
                 upload();
             auto before = sent_;
-            before.settings.exposure = now.settings.exposure; // changes the screen, not the picture
+            before.settings.output.exposure = now.settings.output.exposure; // changes the screen, not the picture
             if (now == before)
                 sent_ = now;
             else
@@ -240,7 +242,7 @@ namespace {
             const auto& p = shown_.picture;
             if (p.pixels.empty())
                 return;
-            const tone_map to_screen(document_.now().settings.exposure);
+            const tone_map to_screen(document_.now().settings.output.exposure);
             bytes_.clear();
             for (const auto& pixel : p.pixels)
                 for (int c = 0; c < 3; ++c)
@@ -291,9 +293,9 @@ namespace {
         {
             const auto& s = document_.now().settings;
             const auto room = ImGui::GetContentRegionAvail();
-            const float scale = std::max(
-                1e-3f, std::min(room.x / static_cast<float>(s.width), room.y / static_cast<float>(s.height)));
-            const ImVec2 size(scale * static_cast<float>(s.width), scale * static_cast<float>(s.height));
+            const float scale = std::max(1e-3f,
+                std::min(room.x / static_cast<float>(s.output.width), room.y / static_cast<float>(s.output.height)));
+            const ImVec2 size(scale * static_cast<float>(s.output.width), scale * static_cast<float>(s.output.height));
             const ImVec2 corner(std::max(0.0f, 0.5f * (room.x - size.x)), std::max(0.0f, 0.5f * (room.y - size.y)));
             if (shown_.number > 0)
                 ImGui::GetWindowDrawList()->AddImage(
@@ -405,40 +407,43 @@ namespace {
             return true;
         }
 
-        /// A setting with a word for each value.
-        template <class Setting, std::size_t N>
-        void choice(
-            const char* label, Setting render_settings::*member, const named<Setting> (&names)[N], const char* about)
+        // A control for a row of the table of settings. Its label may be more than the setting's name.
+
+        /// A word for each value.
+        template <class Row>
+        void choice(const Row& row, const char* label, const char* about)
         {
-            const auto value = document_.now().settings.*member;
-            if (ImGui::BeginCombo(label, name_of(names, value))) {
-                for (const auto& n : names)
+            const auto value = row.of(document_.now().settings);
+            if (ImGui::BeginCombo(label, row.values.word_for(value))) {
+                for (const auto& n : row.values.values)
                     if (ImGui::Selectable(n.name, n.value == value))
-                        change(label, [&](render_settings& s) { s.*member = n.value; });
+                        change(label, [&](render_settings& s) { row.of(s) = n.value; });
                 ImGui::EndCombo();
             }
             tip(about);
         }
 
         /// A whole number, by a slider whose steps are even in its logarithm.
-        void number(const char* label, std::uint32_t render_settings::*member, int low, int high, const char* about)
+        template <class Row>
+        void number(const Row& row, const char* label, int low, int high, const char* about)
         {
-            int value = static_cast<int>(document_.now().settings.*member);
+            int value = static_cast<int>(row.of(document_.now().settings));
             const bool edited = ImGui::SliderInt(
                 label, &value, low, high, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
             if (begun(label) && edited)
-                document_.edit().settings.*member = static_cast<std::uint32_t>(value);
+                row.of(document_.edit().settings) = static_cast<std::uint32_t>(value);
             tip(about);
         }
 
-        void measure(const char* label, double render_settings::*member, float low, float high, const char* format,
-            bool logarithmic, const char* about)
+        template <class Row>
+        void measure(const Row& row, const char* label, float low, float high, const char* format, bool logarithmic,
+            const char* about)
         {
-            float value = static_cast<float>(document_.now().settings.*member);
+            float value = static_cast<float>(row.of(document_.now().settings));
             const bool edited = ImGui::SliderFloat(label, &value, low, high, format,
                 (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp);
             if (begun(label) && edited)
-                document_.edit().settings.*member = static_cast<double>(value);
+                row.of(document_.edit().settings) = static_cast<double>(value);
             tip(about);
         }
 
@@ -464,47 +469,47 @@ namespace {
             ImGui::Separator();
             draw_backend();
             const auto& s = document_.now().settings;
-            number("photons", &render_settings::photons, 256, 4000000,
+            number(setting_table::photons, "photons", 256, 4000000,
                 "Photons stored (N, n). Speed: tracing and sorting them takes proportionally longer. Error: noise "
                 "falls with the square root.");
-            number("k", &render_settings::k, 1, 4000,
+            number(setting_table::k, "k", 1, 4000,
                 "Photons in an estimate (K, k). Speed: more take longer. Error: more are smoother, and blur shadows "
                 "and caustics more.");
-            measure("radius, m", &render_settings::max_radius, 1e-3f, 10.0f, "%.4f", true,
+            measure(setting_table::max_radius, "radius, m", 1e-3f, 10.0f, "%.4f", true,
                 "Largest search radius (R, r). Speed: dark places search this far. Error: where fewer than k photons "
                 "lie within it, estimates are noisier instead of more blurred.");
-            choice("search", &render_settings::search, search_names,
+            choice(setting_table::search, "search",
                 "Which photons (s): the k nearest; at least k, as the paper has it, which uses more photons and is a "
                 "little too bright; or all within the radius.");
-            choice("kernel", &render_settings::kernel, kernel_names,
+            choice(setting_table::filter, "filter",
                 "Weight by distance (w). Speed: the same. Error: constant is the least noisy and shows discs; "
                 "silverman the smoothest.");
-            choice("bias", &render_settings::bias, bias_names,
+            choice(setting_table::bias, "bias",
                 "The photon that sets the radius: paper counts it, k / (k - 1) too bright; unbiased leaves it out.");
             draw_grid();
-            choice("map", &render_settings::builder, map_names,
+            choice(setting_table::map, "map",
                 "How the photon map is built (m). sort is exact; route takes fewer passes and, where cells overflow, "
                 "is approximate.");
-            if (s.builder == map_builder::route)
-                number("slots", &render_settings::slots, 1, 16,
+            if (s.map.builder == map_builder::route)
+                number(setting_table::slots, "slots", 1, 16,
                     "Cells have slots x slots places. More lose fewer photons and take more memory.");
             ImGui::Separator();
-            number("eye rays", &render_settings::spp, 1, 64,
+            number(setting_table::spp, "eye rays", 1, 64,
                 "Eye rays per pixel. Speed: proportional. Error: smooth edges, less noise of glass and lamps.");
-            number("passes", &render_settings::passes, 1, 1024,
+            number(setting_table::passes, "passes", 1, 1024,
                 "The picture is the mean of so many, each with photons and rays of its own. Speed: proportional. "
                 "Error: "
                 "noise and blotches fade as they come.");
-            number("light samples", &render_settings::light_samples, 1, 256,
+            number(setting_table::light_samples, "light samples", 1, 256,
                 "Shadow rays a lamp and eye ray. Speed: proportional for direct light. Error: smoother half-shadows.");
-            choice("light", &render_settings::only, part_names,
+            choice(setting_table::only, "light",
                 "Which part of the light is shown. Caustics or indirect light alone need a map of their own.");
-            bool side = s.leaks.side;
+            bool side = s.estimate.leaks.side;
             if (ImGui::Checkbox("side", &side))
-                change("side", [&](render_settings& r) { r.leaks.side = side; });
+                change("side", [&](render_settings& r) { r.estimate.leaks.side = side; });
             tip("Refuse photons that came from behind a surface. Speed: hardly any. Error: no light leaks through "
                 "walls.");
-            measure("exposure, EV", &render_settings::exposure, -10, 10, "%+.1f", false,
+            measure(setting_table::exposure, "exposure, EV", -10, 10, "%+.1f", false,
                 "Brightness of the screen and of saved PNGs (E, e). Draws nothing anew.");
             ImGui::Separator();
             draw_buttons();
@@ -530,21 +535,22 @@ namespace {
         /// The grid that is not fitted: the scene's, or one where it names none.
         glm::uvec3 cells_of_scene() const
         {
-            return options_.begin.settings.grid == glm::uvec3(0) ? glm::uvec3(32) : options_.begin.settings.grid;
+            return options_.begin.settings.map.grid == glm::uvec3(0) ? glm::uvec3(32)
+                                                                     : options_.begin.settings.map.grid;
         }
         void draw_grid()
         {
-            auto cells = glm::ivec3(document_.now().settings.grid);
+            auto cells = glm::ivec3(document_.now().settings.map.grid);
             bool fitted = cells == glm::ivec3(0);
             if (ImGui::Checkbox("fitted grid", &fitted))
-                change("grid", [&](render_settings& r) { r.grid = fitted ? glm::uvec3(0) : cells_of_scene(); });
+                change("grid", [&](render_settings& r) { r.map.grid = fitted ? glm::uvec3(0) : cells_of_scene(); });
             tip("Cells of the photon map fitted to photons and k (g). Speed: a grid that is too coarse or too fine "
                 "searches longer. Error: none for the k nearest; `at_least_k` depends on its cells.");
             if (!fitted) {
                 const bool edited = ImGui::SliderInt3(
                     "grid", &cells.x, 1, 256, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
                 if (begun("grid") && edited)
-                    document_.edit().settings.grid = glm::uvec3(cells);
+                    document_.edit().settings.map.grid = glm::uvec3(cells);
                 tip("Cells along x, y and z.");
             }
         }
@@ -602,35 +608,38 @@ namespace {
                 return;
             }
             const bool up = io.KeyShift;
-            const auto doubled
-                = [&](int key, const char* name, std::uint32_t render_settings::*member, std::uint32_t high) {
-                      if (pressed(key))
-                          change(name, [&](render_settings& s) {
-                              s.*member = std::clamp(up ? s.*member * 2 : s.*member / 2, 1u, high);
-                          });
-                  };
-            const auto next = [&](int key, const char* name, auto member, const auto& names) {
+            const auto doubled = [&](int key, const auto& row) {
                 if (pressed(key))
-                    change(name, [&](render_settings& s) {
-                        std::size_t i = 0;
-                        while (names[i].value != s.*member)
-                            ++i;
-                        s.*member = names[(i + 1) % std::size(names)].value;
+                    change(row.name, [&](render_settings& s) {
+                        auto& value = row.of(s);
+                        value = std::clamp(up ? value * 2 : value / 2, row.values.least, row.values.most / 2);
                     });
             };
-            doubled(GLFW_KEY_K, "k", &render_settings::k, 1u << 20);
-            doubled(GLFW_KEY_N, "photons", &render_settings::photons, 1u << 26);
-            next(GLFW_KEY_M, "map", &render_settings::builder, map_names);
-            next(GLFW_KEY_S, "search", &render_settings::search, search_names);
-            next(GLFW_KEY_W, "kernel", &render_settings::kernel, kernel_names);
+            const auto next = [&](int key, const auto& row) {
+                if (pressed(key))
+                    change(row.name, [&](render_settings& s) {
+                        const auto& all = row.values.values;
+                        std::size_t i = 0;
+                        while (all[i].value != row.of(s))
+                            ++i;
+                        row.of(s) = all[(i + 1) % std::size(all)].value;
+                    });
+            };
+            doubled(GLFW_KEY_K, setting_table::k);
+            doubled(GLFW_KEY_N, setting_table::photons);
+            next(GLFW_KEY_M, setting_table::map);
+            next(GLFW_KEY_S, setting_table::search);
+            next(GLFW_KEY_W, setting_table::filter);
             if (pressed(GLFW_KEY_R))
-                change("radius", [&](render_settings& s) { s.max_radius *= up ? 1.25 : 0.8; });
+                change("radius", [&](render_settings& s) { s.estimate.max_radius *= up ? 1.25 : 0.8; });
             if (pressed(GLFW_KEY_E))
-                change("exposure",
-                    [&](render_settings& s) { s.exposure = std::clamp(s.exposure + (up ? 0.5 : -0.5), -64.0, 64.0); });
+                change("exposure", [&](render_settings& s) {
+                    s.output.exposure = std::clamp(s.output.exposure + (up ? 0.5 : -0.5), -64.0, 64.0);
+                });
             if (pressed(GLFW_KEY_G))
-                change("grid",
-                    [&](render_settings& s) { s.grid = s.grid == glm::uvec3(0) ? cells_of_scene() : glm::uvec3(0); });
+                change("grid", [&](render_settings& s) {
+                    s.map.grid = s.map.grid == glm::uvec3(0) ? cells_of_scene() : glm::uvec3(0);
+                });
             if (pressed(GLFW_KEY_B)) {
                 document_.begin("backend");
                 auto& b = document_.edit().backend;
@@ -662,7 +671,7 @@ namespace {
             }
             try {
                 const auto png = free_name(options_.stem, ".png"), exr = png.substr(0, png.size() - 4) + ".exr";
-                write_image(png, shown_.picture, document_.now().settings.exposure);
+                write_image(png, shown_.picture, document_.now().settings.output.exposure);
                 write_image(exr, shown_.picture);
                 message_ = "saved " + png + " and " + exr;
             } catch (const file_error& e) {

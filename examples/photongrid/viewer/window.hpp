@@ -1,8 +1,8 @@
 // The window: a picture that follows what is done to its scene (section 3.4), and a panel of settings.
 #pragma once
 
-#include "../backends.hpp"
 #include "document.hpp"
+#include <photongrid/backends/any/any.hpp>
 
 #include <optional>
 #include <string>

@@ -16,7 +16,7 @@ enum class search_kind : std::uint8_t {
 };
 
 /// The weight of a photon at distance d of the radius r; each is normalised to expectation 1 over the disc.
-enum class filter_kernel : std::uint8_t {
+enum class filter_kind : std::uint8_t {
     constant,     ///< 1
     cone,         ///< 1 - d/r (Jensen's with slope 1)
     epanechnikov, ///< 1 - d^2/r^2
@@ -33,7 +33,7 @@ enum class bias_kind : std::uint8_t {
 /// What to do about the part of an estimate's disc that hangs over the edge of its surface, where no photon can be.
 enum class edge_correction : std::uint8_t {
     none,     ///< nothing: an estimate at a straight edge reads half of the truth, in a right corner a quarter
-    polygons, ///< on polygons, divide by the share of the disc that is surface, weighed by the kernel
+    polygons, ///< on polygons, divide by the share of the disc that is surface, weighted by the filter
               ///< (edge_correction.hpp)
 };
 
@@ -44,11 +44,11 @@ struct leak_policy {
                        ///< of points
     float min_cosine
         = -1; ///< reject photons stored on a surface turned away by more than this: needs normals of both; -1: off
-    float compression = 1; ///< distances along the normal count this many times: the ball becomes a disc; needs normals
-                           ///< of points; 1: off
+    float flattening = 1; ///< distances along the normal count this many times: the ball becomes a disc; needs normals
+                          ///< of points; 1: off
 
-    bool needs_normals() const { return min_cosine > -1; }                        ///< of photons
-    bool needs_any() const { return side || needs_normals() || compression > 1; } ///< of points
+    bool needs_normals() const { return min_cosine > -1; }                       ///< of photons
+    bool needs_any() const { return side || needs_normals() || flattening > 1; } ///< of points
 
     bool operator==(const leak_policy&) const = default; ///< of every member
 };

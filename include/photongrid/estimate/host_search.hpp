@@ -116,7 +116,7 @@ public:
             if (left_out && by_photon && radius2 >= min2 && found[i].key == last->key)
                 continue;
             const float t = std::min(distance2_of(found[i]) * inverse, 1.0f);
-            const glm::vec4 flux = powers_[found[i].place] * weight(s.kernel, t);
+            const glm::vec4 flux = powers_[found[i].place] * weight(s.filter, t);
             const float all = flux.x + flux.y + flux.z;
             sum += glm::dvec4(flux);
             squares += glm::dvec4(flux.x * flux.x, flux.y * flux.y, flux.z * flux.z, all * all);
@@ -132,15 +132,15 @@ private:
     }
     static uint policies(const leak_policy& l)
     {
-        return (l.side ? 1u : 0u) | (l.needs_normals() ? 2u : 0u) | (l.compression > 1 ? 4u : 0u);
+        return (l.side ? 1u : 0u) | (l.needs_normals() ? 2u : 0u) | (l.flattening > 1 ? 4u : 0u);
     }
-    static float weight(filter_kernel kernel, float t)
+    static float weight(filter_kind filter, float t)
     {
-        switch (kernel) {
-        case filter_kernel::cone: return 1.0f - std::sqrt(t);
-        case filter_kernel::epanechnikov: return 1.0f - t;
-        case filter_kernel::silverman: return (1.0f - t) * (1.0f - t);
-        case filter_kernel::constant: break;
+        switch (filter) {
+        case filter_kind::cone: return 1.0f - std::sqrt(t);
+        case filter_kind::epanechnikov: return 1.0f - t;
+        case filter_kind::silverman: return (1.0f - t) * (1.0f - t);
+        case filter_kind::constant: break;
         }
         return 1.0f;
     }
@@ -148,7 +148,7 @@ private:
     kernels::host_query query(const leak_policy& l, uint switches) const
     {
         kernels::host_query q;
-        q.args = {.grid = grid_, .leaks = {l.min_cosine, l.compression * l.compression - 1.0f, 0, 0}};
+        q.args = {.grid = grid_, .leaks = {l.min_cosine, l.flattening * l.flattening - 1.0f, 0, 0}};
         turn_switches(q, switches);
         q.bind(slot<0>{}, cells_);
         q.bind(slot<1>{}, positions_);
@@ -227,7 +227,7 @@ private:
     {
         const glm::uvec4 tally(held, 0, 0, 0);
         kernels::irradiance_estimate e;
-        e.args = {.norm = detail::norm_of(settings_.kernel),
+        e.args = {.norm = detail::norm_of(settings_.filter),
             .min_radius2 = detail::min_radius2(settings_),
             .left_out = left_out ? 1u : 0u};
         e.bind(slot<0>{}, std::span(&reach, 1));

@@ -2,12 +2,13 @@
 // photons, the k nearest, or all within a radius, then a density estimate from them, with its standard error. A bounded
 // amount of work a pass.
 //
-//     at_least_k:   knn_visit ----------------> knn_result          (the paper's: constant kernel, no error asked for)
+//     at_least_k:   knn_visit ----------------> knn_result          (the paper's: constant filter, no error asked for)
 //                             \-> grown_radius -> gather_photons -> irradiance_estimate
 //     exact_k:      kth_guess -> kth_distance -> kth_result -> kth_tie -> gather_photons -> irradiance_estimate
 //     fixed_radius: given_radius -------------------------------------> gather_photons -> irradiance_estimate
 #pragma once
 
+#include <photongrid/backend/zero_vectors.kernel.hpp>
 #include <photongrid/estimate/gather_photons.kernel.hpp>
 #include <photongrid/estimate/gather_start.kernel.hpp>
 #include <photongrid/estimate/grown_radius.kernel.hpp>
@@ -71,7 +72,7 @@ public:
     /// (3.4)?
     static bool shows_running_estimate(const knn_settings& s)
     {
-        return s.search == search_kind::at_least_k && s.kernel == filter_kernel::constant && s.bias == bias_kind::paper
+        return s.search == search_kind::at_least_k && s.filter == filter_kind::constant && s.bias == bias_kind::paper
             && !s.errors;
     }
 
@@ -92,6 +93,9 @@ public:
         const auto& s = in_.s;
         knn_estimates<B> e{b.template make<glm::vec4>(n), b.template make<glm::uvec2>(n),
             b.template make<glm::vec4>(s.errors ? n : 0)};
+        // Errors are 0 until photons are gathered; a new buffer holds anything.
+        if (s.errors && stage_ != stage::gather && stage_ != stage::finished)
+            b.template run<kernels::zero_vectors>(n, {}, reads(), writes(e.standard_error));
         if (gathered_.size() > 0 || n == 0) {
             b.template run<kernels::knn_result>(n,
                 {.wanted = s.k, .max_radius2 = in_.max_radius2(), .min_radius2 = in_.min_radius2()},
@@ -105,7 +109,7 @@ public:
         }
         auto errors = s.errors ? std::move(e.standard_error) : b.template make<glm::vec4>(n);
         b.template run<kernels::irradiance_estimate>(n,
-            {.norm = detail::norm_of(s.kernel),
+            {.norm = detail::norm_of(s.filter),
                 .min_radius2 = in_.min_radius2(),
                 .left_out = s.bias == bias_kind::unbiased ? 1u : 0u},
             reads(radius_, sum_, squares_, tally_), writes(e.irradiance, e.used, errors));
@@ -205,9 +209,9 @@ private:
                 writes(gathered_, found_, cursor_), passes);
         case stage::reach: return reach_->advance(passes);
         case stage::gather: {
-            const uint kernel
-                = s.kernel == filter_kernel::constant ? 0u : 4u << static_cast<uint>(s.kernel); // SWITCHes 3 to 5
-            const uint how = in_.policies() | kernel | (s.bias == bias_kind::unbiased ? 1u << 6 : 0u)
+            const uint filter
+                = s.filter == filter_kind::constant ? 0u : 4u << static_cast<uint>(s.filter); // SWITCHes 3 to 5
+            const uint how = in_.policies() | filter | (s.bias == bias_kind::unbiased ? 1u << 6 : 0u)
                 | (s.errors ? 1u << 7 : 0u) | in_.template together<kernels::gather_photons>();
             return b.template run_until_done<kernels::gather_photons>({in_.points->size(), 0u, how},
                 {.grid = m.cells_of,

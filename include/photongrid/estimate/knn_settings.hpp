@@ -16,11 +16,11 @@ struct knn_settings {
     float max_radius = std::numeric_limits<float>::infinity(); ///< m; photons farther away are always rejected. 0 or
                                                                ///< less: nothing is found. fixed_radius needs one
     float min_radius = 0; ///< m; the disc of the estimate is never smaller. 0: 2^-20 of the grid's largest extent
-    search_kind search = search_kind::exact_k;      ///< which photons count
-    filter_kernel kernel = filter_kernel::constant; ///< their weight by distance
-    bias_kind bias = bias_kind::unbiased;           ///< does the photon that sets the radius count?
-    leak_policy leaks{};                            ///< photons that are refused; none, as it stands
-    bool errors = false;                            ///< standard errors are wanted
+    search_kind search = search_kind::exact_k;  ///< which photons count
+    filter_kind filter = filter_kind::constant; ///< their weight by distance
+    bias_kind bias = bias_kind::unbiased;       ///< does the photon that sets the radius count?
+    leak_policy leaks{};                        ///< photons that are refused; none, as it stands
+    bool errors = false;                        ///< standard errors are wanted
     /// Photons that one query examines in a pass at most, 1 at least. Any value gives the same result, as any of
     /// ranges_per_pass does. 16 lanes x (visits + ranges) must stay well below 65,535, after which llvmpipe and
     /// lavapipe end loops in silence: some loops more go round once a scan.
@@ -36,12 +36,12 @@ inline float least_radius(const grid& g)
     return std::max({extent.x, extent.y, extent.z}) * 0x1p-20f;
 }
 
-/// The paper's own choice (2.3): at least k, constant kernel, no policy. k, radii and errors stay.
+/// The paper's own choice (2.3): at least k, constant filter, no policy. k, radii and errors stay.
 /// \snippet snippets.cpp as_paper
 inline knn_settings as_paper(knn_settings s)
 {
     s.search = search_kind::at_least_k;
-    s.kernel = filter_kernel::constant;
+    s.filter = filter_kind::constant;
     s.bias = bias_kind::paper;
     s.leaks = {};
     return s;
@@ -64,7 +64,7 @@ namespace detail {
         if (s.visits_per_pass < 1 || s.ranges_per_pass < 2)
             throw std::invalid_argument(
                 "knn_search: visits_per_pass, ranges_per_pass: need at least 1 and 2, or a pass gets nowhere");
-        if (!(s.leaks.compression >= 1) || !(s.leaks.compression <= 1e6f) || !(s.leaks.min_cosine >= -1)
+        if (!(s.leaks.flattening >= 1) || !(s.leaks.flattening <= 1e6f) || !(s.leaks.min_cosine >= -1)
             || !(s.leaks.min_cosine <= 1))
             throw std::invalid_argument(
                 "knn_search: leaks: compression must be from 1 to 10^6, min_cosine from -1 to 1");
@@ -140,12 +140,12 @@ namespace detail {
         /// For photon_distance.glsl.
         glm::vec4 leaks() const
         {
-            return {s.leaks.min_cosine, s.leaks.compression * s.leaks.compression - 1.0f, 0.0f, 0.0f};
+            return {s.leaks.min_cosine, s.leaks.flattening * s.leaks.flattening - 1.0f, 0.0f, 0.0f};
         }
         /// Its SWITCHes.
         uint policies() const
         {
-            return (s.leaks.side ? 1u : 0u) | (s.leaks.needs_normals() ? 2u : 0u) | (s.leaks.compression > 1 ? 4u : 0u);
+            return (s.leaks.side ? 1u : 0u) | (s.leaks.needs_normals() ? 2u : 0u) | (s.leaks.flattening > 1 ? 4u : 0u);
         }
         /// The SWITCH of kernel K that lets neighbours search together.
         template <class K>
@@ -171,8 +171,8 @@ namespace detail {
         all.finished = finished();
         return all;
     }
-    /// 1 / mean of the kernel over its disc.
-    constexpr float norm_of(filter_kernel k)
+    /// 1 / mean of the filter over its disc.
+    constexpr float norm_of(filter_kind k)
     {
         constexpr float norms[] = {1, 3, 2, 3};
         return norms[static_cast<int>(k)];

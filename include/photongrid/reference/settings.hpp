@@ -35,11 +35,11 @@ struct reference_settings {
 inline reference_settings reference_settings_for(const render_settings& s)
 {
     reference_settings r;
-    r.width = s.width;
-    r.height = s.height;
+    r.width = s.output.width;
+    r.height = s.output.height;
     r.seed = s.seed;
-    r.depth = s.depth;
-    r.photon_depth = s.photon_depth;
+    r.depth = s.view.depth;
+    r.photon_depth = s.map.photon_depth;
     return r;
 }
 

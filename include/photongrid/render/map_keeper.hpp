@@ -23,9 +23,9 @@ struct map_source {
     bool is_preview_of(const map_source& whole) const
     {
         auto with = settings;
-        with.photons = whole.settings.photons;
-        with.k = whole.settings.k;
-        return settings.photons < whole.settings.photons && same_map(scene, with, whole.scene, whole.settings);
+        with.map.photons = whole.settings.map.photons;
+        with.estimate.k = whole.settings.estimate.k;
+        return settings.map.photons < whole.settings.map.photons && same_map(scene, with, whole.scene, whole.settings);
     }
 };
 
@@ -49,7 +49,7 @@ public:
     /// The photons of the map being made; nothing where none is.
     std::optional<uint> making_photons() const
     {
-        return making_ ? std::optional(making_of_.settings.photons) : std::nullopt;
+        return making_ ? std::optional(making_of_.settings.map.photons) : std::nullopt;
     }
     /// Of that map's photons, those that are traced.
     double fraction() const { return making_ ? making_->fraction() : 0.0; }

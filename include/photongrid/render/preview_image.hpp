@@ -45,22 +45,22 @@ inline image to_image(const std::vector<glm::vec4>& pixels, const raster& r, con
     std::uint64_t& invalid)
 {
     image out;
-    out.width = s.width;
-    out.height = s.height;
+    out.width = s.output.width;
+    out.height = s.output.height;
     invalid = 0;
     auto good = finite_pixels(pixels, scale, invalid);
     if (r.divisor == 1) {
         out.pixels = std::move(good);
         return out;
     }
-    out.pixels.reserve(std::size_t{s.width} * s.height);
+    out.pixels.reserve(std::size_t{s.output.width} * s.output.height);
     std::vector<between_pixels> columns;
-    for (uint x = 0; x < s.width; ++x)
+    for (uint x = 0; x < s.output.width; ++x)
         columns.push_back(between(x, r.divisor, r.width));
-    const float exposure = static_cast<float>(std::exp2(s.exposure));
+    const float exposure = static_cast<float>(std::exp2(s.output.exposure));
     for (auto& p : good)
         p = glm::min(p / (1.0f + p * exposure), 0.999999f / exposure);
-    for (uint y = 0; y < s.height; ++y) {
+    for (uint y = 0; y < s.output.height; ++y) {
         const auto row = between(y, r.divisor, r.height);
         const auto* above = &good[std::size_t{row.low} * r.width];
         const auto* below = &good[std::size_t{row.high} * r.width];

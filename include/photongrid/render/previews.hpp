@@ -37,9 +37,10 @@ struct work_costs {
 inline std::uint32_t preview_photons(const render_settings& s, const work_costs& costs, double target_ms)
 {
     std::uint32_t divisor = 1;
-    while (divisor < 64 && s.photons / divisor > 1024 && s.photons / divisor * costs.ms_per_photon > 2 * target_ms)
+    while (
+        divisor < 64 && s.map.photons / divisor > 1024 && s.map.photons / divisor * costs.ms_per_photon > 2 * target_ms)
         divisor *= 2;
-    return s.photons / divisor;
+    return s.map.photons / divisor;
 }
 
 /// The previews that are drawn with a map of `map_photons` photons: as large pixels as the time needs, then smaller
@@ -49,26 +50,27 @@ inline std::vector<preview> preview_schedule(const render_settings& s, std::uint
     const work_costs& costs, double target_ms)
 {
     const auto pixels = [&](std::uint32_t divisor) {
-        return static_cast<double>((s.width + divisor - 1) / divisor) * ((s.height + divisor - 1) / divisor);
+        return static_cast<double>((s.output.width + divisor - 1) / divisor)
+            * ((s.output.height + divisor - 1) / divisor);
     };
-    const bool early = map_photons < s.photons;
+    const bool early = map_photons < s.map.photons;
     if (!early && pixels(1) * costs.ms_per_pixel <= target_ms)
         return {}; // the picture is as fast as a preview should be
     std::uint32_t divisor = 1;
-    while (std::min(s.width, s.height) / divisor >= 64 // of which something can be recognised
+    while (std::min(s.output.width, s.output.height) / divisor >= 64 // of which something can be recognised
         && pixels(divisor) * costs.ms_per_preview_pixel > target_ms)
         divisor *= 2;
     if (early)
-        return {{divisor, std::max(1u, 16 / std::max(1u, s.photons / map_photons))}};
+        return {{divisor, std::max(1u, 16 / std::max(1u, s.map.photons / map_photons))}};
     std::vector<preview> all;
     for (divisor = after_early_one ? std::max(1u, divisor / 2) : divisor; divisor > 1; divisor /= 2)
         all.push_back({divisor, 16});
     // Where there is little light the growing search goes out to the maximum radius whatever k is, so that a preview
     // in the picture's own pixels would take as long as the picture (3.1).
-    const bool grows = s.search == search_kind::at_least_k;
+    const bool grows = s.estimate.search == search_kind::at_least_k;
     if (all.empty() || !grows)
         all.push_back({1, 16});
-    if (s.k > 32 && !grows) // else k / 4 is not more than the 8 photons of the last one
+    if (s.estimate.k > 32 && !grows) // else k / 4 is not more than the 8 photons of the last one
         all.push_back({1, 4});
     return all;
 }

@@ -9,34 +9,23 @@
 
 #include <photongrid/render/map_keeper.hpp>
 #include <photongrid/render/render.hpp>
-#include <photongrid/render/render_state.hpp>
+#include <photongrid/render/renderer.hpp>
 
-#include <atomic>
 #include <chrono>
-#include <limits>
 #include <optional>
 
 #include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
 
-/// A picture that comes about step by step. One thread starts, steps and looks; any may cancel.
+/// A renderer on one backend.
 template <backend B>
-class progressive_render {
+class progressive_render : public renderer {
 public:
-    using milliseconds = std::chrono::duration<double, std::milli>; ///< of a step
-    static constexpr milliseconds no_limit{
-        std::numeric_limits<double>::infinity()}; ///< a step that ends with the picture
-
     /// `b` must outlive it.
     explicit progressive_render(B& b) : b_(b), maps_(b) {}
 
-    /// From now on draws `s`, seen by its camera. Work in flight is given up, but for a map that serves the new picture
-    /// too (same_map). Cheap: all work is step's.
-    /// \throws std::invalid_argument for a scene or settings that check() refuses; what was drawn before is then still
-    ///         there.
-    /// \snippet snippets.cpp progressive_render
-    void start(const scene& s, const render_settings& settings, const preview_settings& previews = {})
+    void start(const scene& s, const render_settings& settings, const preview_settings& previews = {}) override
     {
         check(s);
         check(settings);
@@ -47,27 +36,24 @@ public:
         begin_picture();
         started_ = true;
     }
-    /// Goes on from a state() of the same scene, settings and device, without previews: the picture ends with the same
-    /// bytes. To be called after start() and before step().
-    /// \throws std::invalid_argument for a state of another size; step() for one with more rays than there are.
-    void resume(render_state s)
+    void resume(render_state s) override
     {
-        const std::size_t n = std::size_t{settings_.width} * settings_.height;
+        const std::size_t n = std::size_t{settings_.output.width} * settings_.output.height;
         const auto& light = s.pass.light;
-        if ((s.film.passes() > 0 && !s.film.is_for(settings_.width, settings_.height, settings_.aov))
+        if ((s.film.passes() > 0
+                && !s.film.is_for(settings_.output.width, settings_.output.height, settings_.output.aov))
             || (s.pass.rays > 0
                 && (light.pixels.size() != n || light.searches.size() != n
-                    || light.errors.size() != (settings_.aov ? n : 0))))
+                    || light.errors.size() != (settings_.output.aov ? n : 0))))
             throw std::invalid_argument("progressive_render::resume: state: is of another picture than "
-                + std::to_string(settings_.width) + " x " + std::to_string(settings_.height) + " pixels"
-                + (settings_.aov ? " with layers" : ""));
+                + std::to_string(settings_.output.width) + " x " + std::to_string(settings_.output.height) + " pixels"
+                + (settings_.output.aov ? " with layers" : ""));
         film_ = std::move(s.film);
         unfinished_ = std::move(s.pass);
         previews_.wanted = false;
         steps_ = picture_steps();
     }
-    /// What the picture has so far, for resume().
-    render_state state()
+    render_state state() override
     {
         render_state s{film_, unfinished_};
         if (view_ && !view_->is_preview()) {
@@ -78,11 +64,7 @@ public:
         return s;
     }
 
-    /// Works for about `budget`: whole steps, at least one, until time is up, the picture is finished, or another
-    /// thread cancels. Returns whether the picture is finished.
-    /// \throws std::logic_error before start(), std::runtime_error when the lights store too few photons,
-    ///         backend_error. The next step begins the picture anew.
-    bool step(milliseconds budget = no_limit)
+    bool step(milliseconds budget = no_limit) override
     {
         if (!started_)
             throw std::logic_error("progressive_render::step: nothing was started; call start()");
@@ -103,18 +85,7 @@ public:
         return finished();
     }
 
-    /// Makes the step that runs in another thread end after the pass of the device in flight, whatever its budget. The
-    /// next step goes on; start() begins anew.
-    void cancel() { stop_asked_ = true; }
-
-    /// True when picture() is the picture.
-    bool finished() const { return started_ && film_.passes() == settings_.passes; }
-    /// How many pictures there have been since start(), each better than the last; 0: picture() has nothing to show.
-    std::uint64_t pictures() const { return pictures_; }
-    /// The best picture so far, in the whole size: the mean of the finished passes; before there is one, the mean of
-    /// the first pass's samples, a running estimate (3.4), or the last preview. NaN and infinite pixels are 0.
-    /// \throws std::logic_error when there is none yet, backend_error.
-    image picture()
+    image picture() override
     {
         if (pictures_ == 0)
             throw std::logic_error("progressive_render::picture: there is none yet; see pictures()");
@@ -129,22 +100,20 @@ public:
         return detail::to_image(b_.download(shown_->pixels), shown_->raster, settings_, shown_scale_, invalid);
     }
 
-    /// Where it is.
-    render_progress progress() const
+    render_progress progress() const override
     {
-        const std::uint64_t pixels = std::uint64_t{settings_.width} * settings_.height;
+        const std::uint64_t pixels = std::uint64_t{settings_.output.width} * settings_.output.height;
         if (finished())
-            return {"finished", 1, 0, 1, settings_.photons, film_.passes()};
+            return {"finished", 1, 0, 1, settings_.map.photons, film_.passes()};
         if (const auto photons = maps_.making_photons(); photons || !view_)
             return {maps_.fraction() < 1 ? "trace_photons" : "build_map", maps_.fraction(), pixels, 1,
-                photons.value_or(settings_.photons), film_.passes()};
+                photons.value_or(settings_.map.photons), film_.passes()};
         return {view_->is_preview() ? "preview" : "radiance_estimate", view_->fraction(), view_->unfinished(),
-            view_->divisor(), maps_.of().settings.photons, film_.passes()};
+            view_->divisor(), maps_.of().settings.map.photons, film_.passes()};
     }
-    /// Of the maps and passes so far; whole when finished.
-    const render_stats& stats() const { return stats_; }
-    /// Maps that were begun since this object was made.
-    std::uint64_t maps() const { return maps_.begun(); }
+    std::uint64_t maps() const override { return maps_.begun(); }
+    const capabilities& caps() const override { return b_.caps(); }
+    const std::map<std::string, kernel_cost>& costs() const override { return b_.costs(); }
 
 private:
     void begin_picture()
@@ -174,7 +143,7 @@ private:
         steps.expand([this] { return early_preview_steps(); });
         steps.expand([this] { return steps_to_map(pass(next_pass())); });
         steps.expand([this] { return preview_steps(); });
-        steps.repeat(film_.passes(), settings_.passes, [this](uint) { return pass_steps(next_pass()); });
+        steps.repeat(film_.passes(), settings_.output.passes, [this](uint) { return pass_steps(next_pass()); });
         return steps;
     }
     /// Where there is no map yet, and tracing all photons would take long: a preview from fewer.
@@ -187,10 +156,10 @@ private:
         if (!maps_.serves_preview_of(fewer)) {
             auto& with = fewer.settings;
             const uint photons = preview_photons(with, costs_, previews_.target_ms);
-            if (photons == with.photons || maps_.is_making(fewer))
+            if (photons == with.map.photons || maps_.is_making(fewer))
                 return {};
-            with.k = std::max(1u, with.k / (with.photons / photons));
-            with.photons = photons;
+            with.estimate.k = std::max(1u, with.estimate.k / (with.map.photons / photons));
+            with.map.photons = photons;
             steps.expand([this, fewer] { return steps_to_map(fewer); });
         }
         steps.expand([this] { return preview_steps(); });
@@ -201,7 +170,7 @@ private:
         step_list steps;
         if (!previews_.wanted)
             return steps;
-        const uint photons = maps_.of().settings.photons;
+        const uint photons = maps_.of().settings.map.photons;
         for (const auto& p : preview_schedule(settings_, photons, early_shown_, costs_, previews_.target_ms)) {
             steps.expand([this, p] { return steps_of_view(next_pass(), p); });
             steps.expand([this] { return end_preview(); });
@@ -223,7 +192,7 @@ private:
         if (unfinished_.rays > 0)
             return unfinished_.number;
         const uint kept = maps_.of().pass;
-        if (kept < settings_.passes && !film_.holds(kept) && maps_.serves(pass(kept)))
+        if (kept < settings_.output.passes && !film_.holds(kept) && maps_.serves(pass(kept)))
             return kept;
         uint first = 0;
         while (film_.holds(first))
@@ -249,7 +218,7 @@ private:
         detail::add(stats_.trace_photons, made.trace_photons);
         detail::add(stats_.build_map, made.build_map);
         stats_.map = made.map;
-        costs_.ms_per_photon = (made.trace_photons.ms + made.build_map.ms) / maps_.of().settings.photons;
+        costs_.ms_per_photon = (made.trace_photons.ms + made.build_map.ms) / maps_.of().settings.map.photons;
         return {};
     }
 
@@ -260,14 +229,15 @@ private:
         pass_ = number;
         auto with = settings_of_pass(settings_, number);
         if (p)
-            with.k = std::max(1u, with.k / std::max(1u, with.photons / maps_.of().settings.photons));
+            with.estimate.k
+                = std::max(1u, with.estimate.k / std::max(1u, with.map.photons / maps_.of().settings.map.photons));
         ms_before_ = ms_of_views();
         samples_shown_ = grown_shown_ = 0;
         view_.emplace(
             b_, maps_.map(), scene_.camera, with, view_options{p, step_size::small, previews_.wanted}, kept_, stats_);
         if (!p && film_.size() == 0)
-            film_ = film(
-                settings_.width, settings_.height, typical_radiance(scene_, maps_.map().scene.layout), settings_.aov);
+            film_ = film(settings_.output.width, settings_.output.height,
+                typical_radiance(scene_, maps_.map().scene.layout), settings_.output.aov);
         if (!p && unfinished_.rays > 0) {
             const auto& light = unfinished_.light;
             view_->resume(
@@ -285,7 +255,7 @@ private:
     {
         if (pictures_ == 0)
             costs_.ms_per_preview_pixel = ms_per_pixel_of_view();
-        early_shown_ = settings_.photons > maps_.of().settings.photons;
+        early_shown_ = settings_.map.photons > maps_.of().settings.map.photons;
         show(view_->take(), 1);
         view_.reset();
         return {};
@@ -316,32 +286,26 @@ private:
         }
         if (view_->has_whole_samples() && view_->samples() > samples_shown_) {
             samples_shown_ = view_->samples();
-            show(view_->snapshot(), static_cast<float>(settings_.spp) / static_cast<float>(samples_shown_));
+            show(view_->snapshot(), static_cast<float>(settings_.view.spp) / static_cast<float>(samples_shown_));
         }
     }
 
     B& b_;
-    bool started_ = false;
     scene scene_;
-    render_settings settings_;
     preview_settings previews_;
     work_costs costs_;
-    render_stats stats_;
-    std::atomic<bool> stop_asked_ = false;
     step_list steps_; ///< to the picture
 
     map_keeper<B> maps_;
 
     // Pictures.
-    film film_;
     unfinished_pass unfinished_; ///< to go on from
     std::optional<view_pass<B>> view_;
     uint pass_ = 0; ///< of view_
     kept_samples<B> kept_;
     std::optional<canvas<B>> shown_; ///< before the first pass is finished
     float shown_scale_ = 1;
-    bool early_shown_ = false; ///< a preview from fewer photons was shown
-    std::uint64_t pictures_ = 0;
+    bool early_shown_ = false;                 ///< a preview from fewer photons was shown
     uint samples_shown_ = 0, grown_shown_ = 0; ///< of view_
     double ms_before_ = 0;                     ///< spent on views before view_
 };

@@ -72,7 +72,8 @@ pass_pixels draw_pass(B& b, const built_map<B>& built, const camera& view, const
     const auto size = watched || observer.cancelled ? step_size::small : step_size::largest;
     std::uint64_t invalid = 0;
     if (watched)
-        for (const auto& p : preview_schedule(settings, settings.photons, false, {}, preview_settings{}.target_ms)) {
+        for (const auto& p :
+            preview_schedule(settings, settings.map.photons, false, {}, preview_settings{}.target_ms)) {
             view_pass<B> before(b, built, view, settings, {p, size, watched}, kept, stats);
             run(view_steps(before), observer, [](std::string_view) {});
             observer.intermediate(before.mean_of_samples(invalid));
@@ -99,7 +100,7 @@ image draw(B& b, const built_map<B>& built, const camera& view, const render_set
 {
     stats.photons = {};
     stats.estimate = {};
-    film sum(settings.width, settings.height, 1, settings.aov);
+    film sum(settings.output.width, settings.output.height, 1, settings.output.aov);
     sum.add(0, draw_pass(b, built, view, settings, observer, stats));
     auto developed = sum.picture();
     stats.invalid_pixels = developed.invalid_pixels;
@@ -118,25 +119,20 @@ image render(
     stats.photons = {};
     stats.estimate = {};
     film sum;
-    for (uint pass = 0; pass < settings.passes; ++pass) {
+    for (uint pass = 0; pass < settings.output.passes; ++pass) {
         const auto own = settings_of_pass(settings, pass);
         const auto map = build_map(b, s, own, observer, stats);
         if (pass == 0)
-            sum = film(settings.width, settings.height, typical_radiance(s, map.scene.layout), settings.aov);
+            sum = film(settings.output.width, settings.output.height, typical_radiance(s, map.scene.layout),
+                settings.output.aov);
         sum.add(pass, draw_pass(b, map, s.camera, own, observer, stats));
-        if (observer.intermediate && pass + 1 < settings.passes)
+        if (observer.intermediate && pass + 1 < settings.output.passes)
             observer.intermediate(sum.picture().picture);
     }
     auto developed = sum.picture();
     stats.invalid_pixels = developed.invalid_pixels;
     return std::move(developed.picture);
 }
-
-/// A picture, and what it took.
-struct rendered {
-    image picture;
-    render_stats stats;
-};
 
 /// The same with the scene's own settings, or others.
 template <backend B>

@@ -2,29 +2,15 @@
 #pragma once
 
 #include <photongrid/render/image.hpp>
-#include <photongrid/scene/scene.hpp>
+#include <photongrid/scene/render_settings.hpp>
+#include <photongrid/trace/photon_stats.hpp>
+#include <photongrid/trace/render_observer.hpp>
 
-#include <array>
 #include <cstdint>
-#include <functional>
-#include <string_view>
 
 #include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
-
-/// Where the photons went. absorbed + escaped + cut_off + invalid = emitted; stored + direct + dropped = diffuse hits.
-struct photon_stats {
-    std::uint64_t emitted = 0;      ///< paths, from the lights
-    std::uint64_t absorbed = 0;     ///< paths ended by Russian roulette, or on a light's own surface
-    std::uint64_t escaped = 0;      ///< paths that met nothing more (the paper's invalid mark)
-    std::uint64_t cut_off = 0;      ///< paths still alive at the deepest bounce allowed
-    std::uint64_t invalid = 0;      ///< paths that became NaN or infinite
-    std::uint64_t diffuse_hits = 0; ///< times that a path met a Lambertian surface
-    std::uint64_t stored = 0;       ///< diffuse hits in the map
-    std::uint64_t direct = 0;       ///< diffuse hits straight from a light, left to the shadow rays
-    std::uint64_t dropped = 0;      ///< diffuse hits of the last path beyond the number of photons asked for
-};
 
 /// The photon map that was built.
 struct map_stats {
@@ -66,34 +52,11 @@ struct render_stats {
     std::uint64_t peak_device_bytes = 0; ///< most that buffers held at once since the backend was made
 };
 
-/// Thrown out of a render when observer::cancelled said so.
-struct render_cancelled : std::runtime_error {
-    /// "cancelled"
-    render_cancelled() : std::runtime_error("cancelled") {}
+/// A picture, and what it took.
+struct rendered {
+    image picture;
+    render_stats stats;
 };
-
-/// Who watches a render. Any of these may be empty.
-struct render_observer {
-    std::function<void(std::string_view stage, double fraction)>
-        progress;                                   ///< "trace_photons", …; fraction of the stage, 0 to 1
-    std::function<void(const image&)> intermediate; ///< the running estimate (3.4), after some passes
-    std::function<bool()> cancelled;                ///< asked between passes
-};
-
-namespace detail {
-    /// Advances `work` until it is finished; after each pass calls `passed`.
-    /// \throws render_cancelled.
-    template <class Work, class Passed>
-    void run_to_end(Work& work, const render_observer& observer, Passed passed)
-    {
-        while (!work.finished()) {
-            if (observer.cancelled && observer.cancelled())
-                throw render_cancelled();
-            work.advance();
-            passed();
-        }
-    }
-} // namespace detail
 
 } // namespace photongrid
 

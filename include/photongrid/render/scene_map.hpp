@@ -28,15 +28,15 @@ constexpr uint parts_of(light_part only)
     return only == light_part::caustic ? caustic_part : only == light_part::indirect ? other_part : every_part;
 }
 
-/// True where one photon map serves both scenes with these settings: same shapes, materials and lights, and the same
-/// photons in the same grid. Cameras, names and pictures' settings do not matter.
+/// True where a photon map of the scene `a` with settings `as` serves the scene `b` with `bs`: same shapes, materials
+/// and lights, and the same photons in the same grid. Cameras, names and the other stages' settings do not matter.
 inline bool same_map(const scene& a, const render_settings& as, const scene& b, const render_settings& bs)
 {
-    const bool fitted = as.grid == glm::uvec3(0);
-    return same_light_paths(a, b) && as.photons == bs.photons && as.grid == bs.grid && (!fitted || as.k == bs.k)
-        && as.photon_depth == bs.photon_depth && as.seed == bs.seed && as.builder == bs.builder
-        && (as.builder == map_builder::sort || as.slots == bs.slots)
-        && (as.leaks.needs_normals() || !bs.leaks.needs_normals()) && parts_of(as.only) == parts_of(bs.only);
+    const bool fitted = as.map.grid == glm::uvec3(0);
+    return same_light_paths(a, b) && as.seed == bs.seed && as.map.in_use() == bs.map.in_use()
+        && (!fitted || as.estimate.k == bs.estimate.k) // fitting_grid looks at it
+        && (as.estimate.leaks.needs_normals() || !bs.estimate.leaks.needs_normals())
+        && parts_of(as.output.only) == parts_of(bs.output.only);
 }
 
 /// A photon map that comes about batch by batch, so that it can be given up in between.
@@ -91,13 +91,14 @@ private:
     {
         photons<B> p = std::move(built_.trace.photons);
         const auto& layout = built_.scene.layout;
-        const grid g = settings_.grid == glm::uvec3(0) ? fitting_grid(b_, p, settings_.k, b_.caps().cells_a_radius)
-                                                       : make_grid(layout.low, layout.high, settings_.grid);
-        const uint parts = parts_of(settings_.only);
-        built_.map = settings_.builder == map_builder::sort
+        const grid g = settings_.map.grid == glm::uvec3(0)
+            ? fitting_grid(b_, p, settings_.estimate.k, b_.caps().cells_a_radius)
+            : make_grid(layout.low, layout.high, settings_.map.grid);
+        const uint parts = parts_of(settings_.output.only);
+        built_.map = settings_.map.builder == map_builder::sort
             ? sorted_map(b_, std::move(p), g, parts)
-            : routed_map(b_, std::move(p), g, settings_.slots, settings_.seed, parts);
-        built_.about.builder = settings_.builder;
+            : routed_map(b_, std::move(p), g, settings_.map.slots, settings_.seed, parts);
+        built_.about.builder = settings_.map.builder;
         built_.about.cells = cell_count(g);
         built_.about.resolution = glm::uvec3(g.resolution);
         built_.about.overfull_cells = built_.map.overfull_cells;

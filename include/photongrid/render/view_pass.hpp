@@ -2,10 +2,10 @@
 // hand to each other. render.hpp runs them in order.
 #pragma once
 
-#include <photongrid/estimate/edge_correction.hpp>
+#include <photongrid/backend/zero_vectors.kernel.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/render/copy_light.kernel.hpp>
-#include <photongrid/render/no_light.kernel.hpp>
+#include <photongrid/render/edge_correction.hpp>
 #include <photongrid/render/preview_image.hpp>
 #include <photongrid/render/previews.hpp>
 #include <photongrid/render/scene_map.hpp>
@@ -33,16 +33,16 @@ struct view_options {
 
 namespace detail {
     /// What to ask the photon map for a picture of `s`.
-    inline knn_settings estimate_settings(const render_settings& s, float min_radius)
+    inline knn_settings search_for(const render_settings& s, float min_radius)
     {
         knn_settings k;
-        k.k = s.k;
-        k.max_radius = s.only == light_part::direct ? 0.0f : static_cast<float>(s.max_radius);
-        k.search = s.search;
-        k.kernel = s.kernel;
-        k.bias = s.bias;
-        k.leaks = s.leaks;
-        k.errors = s.aov;
+        k.k = s.estimate.k;
+        k.max_radius = s.output.only == light_part::direct ? 0.0f : static_cast<float>(s.estimate.max_radius);
+        k.search = s.estimate.search;
+        k.filter = s.estimate.filter;
+        k.bias = s.estimate.bias;
+        k.leaks = s.estimate.leaks;
+        k.errors = s.output.aov;
         k.min_radius = min_radius;
         return k;
     }
@@ -87,7 +87,7 @@ public:
             throw std::invalid_argument("view_pass: preview: divisor and k_divisor must be at least 1");
         const auto r = detail::raster_of(settings_, divisor());
         detail::time_stage(b_, stats_.trace_rays, [&] {
-            const std::size_t layers = !is_preview() && settings_.aov ? r.size() : 0;
+            const std::size_t layers = !is_preview() && settings_.output.aov ? r.size() : 0;
             canvas_ = {r, 0, dark(r.size()), dark(r.size()), dark(layers)};
         });
         kept_.resize(ways_);
@@ -99,7 +99,7 @@ public:
     view_pass& operator=(const view_pass&) = delete;
 
     /// Eye rays per pixel, each way through glass apart: what `ray` goes up to. A preview takes one sample.
-    uint rays() const { return (is_preview() ? 1u : settings_.spp) * ways_; }
+    uint rays() const { return (is_preview() ? 1u : settings_.view.spp) * ways_; }
 
     /// Camera rays through mirrors and glass to the surfaces where they end (2.4).
     bool trace_eye(uint ray)
@@ -126,13 +126,13 @@ public:
     {
         if (lit_)
             return true;
-        const bool wanted = settings_.only == light_part::all || settings_.only == light_part::direct;
+        const bool wanted = settings_.output.only == light_part::all || settings_.output.only == light_part::direct;
         return over_pixels(stats_.trace_rays, [&](launch pixels) {
             if (wanted) {
                 detail::direct_light(b_, built_.scene, samples_->hits, light_settings(), ray, pixels, samples_->direct);
             } else {
-                b_.template run<kernels::no_light>(pixels, {}, reads(), writes(samples_->direct));
-                b_.template run<kernels::no_light>(pixels, {}, reads(), writes(samples_->hits.emissions));
+                b_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->direct));
+                b_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->hits.emissions));
             }
         });
     }
@@ -163,7 +163,7 @@ public:
     bool shade(uint ray)
     {
         detail::time_stage(b_, stats_.radiance_estimate, [&] {
-            const float share = is_preview() ? 1.0f : 1.0f / static_cast<float>(settings_.spp);
+            const float share = is_preview() ? 1.0f : 1.0f / static_cast<float>(settings_.view.spp);
             const auto found = shade(std::move(*search_).estimates(), share, canvas_.pixels, canvas_.searches);
             if (canvas_.errors.size() > 0)
                 b_.template run<kernels::tally_error>(canvas_.errors.size(), {},
@@ -202,15 +202,16 @@ public:
     {
         auto running = copy(canvas_.pixels);
         auto ignored = b_.template make<glm::vec4>(running.size());
-        shade(search_->estimates(), 1.0f / static_cast<float>(settings_.spp), running, ignored);
+        shade(search_->estimates(), 1.0f / static_cast<float>(settings_.view.spp), running, ignored);
         return detail::to_image(
-            b_.download(running), canvas_.raster, settings_, static_cast<float>(settings_.spp), invalid);
+            b_.download(running), canvas_.raster, settings_, static_cast<float>(settings_.view.spp), invalid);
     }
     /// The mean of its whole samples, as an image of the picture's size; there must be one, and no ray beyond it.
     /// \throws backend_error.
     image mean_of_samples(std::uint64_t& invalid)
     {
-        const float scale = is_preview() ? 1.0f : static_cast<float>(settings_.spp) / static_cast<float>(samples());
+        const float scale
+            = is_preview() ? 1.0f : static_cast<float>(settings_.view.spp) / static_cast<float>(samples());
         return detail::to_image(b_.download(canvas_.pixels), canvas_.raster, settings_, scale, invalid);
     }
     /// A copy of the light so far, for looking at it later.
@@ -240,10 +241,7 @@ private:
         return !is_preview() && options_.watched && knn_search<B>::shows_running_estimate(picture_search());
     }
     /// The search of the picture, previews apart.
-    knn_settings picture_search() const
-    {
-        return detail::estimate_settings(settings_, least_radius(built_.map.cells_of));
-    }
+    knn_settings picture_search() const { return detail::search_for(settings_, least_radius(built_.map.cells_of)); }
     knn_settings search_settings() const
     {
         knn_settings k = picture_search();
@@ -263,7 +261,7 @@ private:
     {
         render_settings s = settings_;
         if (divisor() > 1)
-            s.light_samples = std::max(1u, s.light_samples / 4);
+            s.view.light_samples = std::max(1u, s.view.light_samples / 4);
         return s;
     }
 
@@ -283,8 +281,8 @@ private:
         knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches)
     {
         const auto& hits = samples_->hits;
-        if (settings_.edges != edge_correction::none)
-            correct_edges(b_, built_.scene, hits.points, hits.surfaces, found, settings_.kernel,
+        if (settings_.estimate.edges != edge_correction::none)
+            correct_edges(b_, built_.scene, hits.points, hits.surfaces, found, settings_.estimate.filter,
                 least_radius(built_.map.cells_of));
         b_.template run<kernels::shade>(pixels.size(), {.share = share},
             reads(built_.scene.records, hits.points, hits.weights, hits.surfaces, hits.emissions, samples_->direct,
@@ -296,7 +294,7 @@ private:
     buffer_of<B, glm::vec4> dark(std::size_t n)
     {
         auto light = b_.template make<glm::vec4>(n);
-        b_.template run<kernels::no_light>(n, {}, reads(), writes(light));
+        b_.template run<kernels::zero_vectors>(n, {}, reads(), writes(light));
         return light;
     }
     buffer_of<B, glm::vec4> copy(const buffer_of<B, glm::vec4>& original)

@@ -11,7 +11,7 @@
 #include <photongrid/scene/material.hpp>
 #include <photongrid/scene/paraboloid.hpp>
 #include <photongrid/scene/polygon.hpp>
-#include <photongrid/scene/render_settings.hpp>
+#include <photongrid/scene/setting_table.hpp>
 #include <photongrid/scene/sphere.hpp>
 
 #include <string_view>

@@ -2,7 +2,7 @@
 // where they end.
 #pragma once
 
-#include <photongrid/render/no_light.kernel.hpp>
+#include <photongrid/backend/zero_vectors.kernel.hpp>
 #include <photongrid/trace/device_scene.hpp>
 #include <photongrid/trace/direct_light.kernel.hpp>
 #include <photongrid/trace/eye_bounce.kernel.hpp>
@@ -36,7 +36,7 @@ struct raster {
 /// The picture of `s` in squares of divisor x divisor pixels; those at its right and lower edge may hang over.
 inline raster raster_of(const render_settings& s, uint divisor)
 {
-    return {(s.width + divisor - 1) / divisor, (s.height + divisor - 1) / divisor, divisor};
+    return {(s.output.width + divisor - 1) / divisor, (s.output.height + divisor - 1) / divisor, divisor};
 }
 
 /// As square a grid of strata as the number of samples allows: columns and rows, of which there are not more.
@@ -56,15 +56,15 @@ inline kernels::eye_ray::Params eye_params(
     check(c);
     const auto [forward, right, up] = camera_axes(c);
     const double height = 2 * std::tan(glm::radians(c.vertical_fov) / 2);
-    const double width = height * s.width / s.height;
+    const double width = height * s.output.width / s.output.height;
     const auto narrow = [](const dvec3& v) { return glm::vec4(glm::vec3(v), 0.0f); };
     return {.position = narrow(c.position - center),
         .corner = narrow(forward - 0.5 * width * right + 0.5 * height * up),
-        .right = narrow(right * (width / s.width * r.divisor)),
-        .down = narrow(-up * (height / s.height * r.divisor)),
+        .right = narrow(right * (width / s.output.width * r.divisor)),
+        .down = narrow(-up * (height / s.output.height * r.divisor)),
         .width = r.width,
         .sample_id = sample,
-        .strata = s.spp > 1 || s.passes > 1 ? strata_of(s.spp) : glm::uvec2(0),
+        .strata = s.view.spp > 1 || s.output.passes > 1 ? strata_of(s.view.spp) : glm::uvec2(0),
         .seed = s.seed};
 }
 
@@ -84,7 +84,7 @@ void trace_eye_rays(B& b, const device_scene<B>& s, const camera& view, const re
     b.template run_until_done<kernels::eye_bounce>({pixels.elements, pixels.first, layout.features},
         {.branch = ray & ((1u << branchings) - 1u),
             .branchings = branchings,
-            .depth = settings.depth,
+            .depth = settings.view.depth,
             .sample_id = sample,
             .seed = settings.seed},
         reads(s.records), writes(hits.points, hits.travels, hits.weights, hits.surfaces, hits.emissions), nowhere);
@@ -95,8 +95,8 @@ template <backend B>
 void direct_light(B& b, const device_scene<B>& s, const eye_hits<B>& hits, const render_settings& settings, uint ray,
     launch pixels, buffer_of<B, glm::vec4>& light)
 {
-    b.template run<kernels::no_light>(pixels, {}, reads(), writes(light));
-    const uint samples = (s.layout.features & has_area_lights) != 0 ? settings.light_samples : 1u;
+    b.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
+    const uint samples = (s.layout.features & has_area_lights) != 0 ? settings.view.light_samples : 1u;
     // Drivers cut loops after 65,535 iterations, all lanes of a group together: shapes and their edges count.
     const uint work = (s.layout.steps_per_ray + 1) * s.layout.table(kernels::LIGHT_TABLE).count;
     const uint a_pass = std::max(1u, 8192u / std::max(1u, work));

@@ -5,7 +5,6 @@
 
 #include <photongrid/map/map_buffers.hpp>
 #include <photongrid/map/prefix_sums.hpp>
-#include <photongrid/render/render_stats.hpp>
 #include <photongrid/trace/bounce_photon.kernel.hpp>
 #include <photongrid/trace/device_scene.hpp>
 #include <photongrid/trace/divide_power.kernel.hpp>
@@ -15,6 +14,8 @@
 #include <photongrid/trace/is_found.kernel.hpp>
 #include <photongrid/trace/path_goes_on.kernel.hpp>
 #include <photongrid/trace/path_is_emitted.kernel.hpp>
+#include <photongrid/trace/photon_stats.hpp>
+#include <photongrid/trace/render_observer.hpp>
 #include <photongrid/trace/sum_tallies.kernel.hpp>
 #include <photongrid/trace/tally_path.kernel.hpp>
 
@@ -91,9 +92,9 @@ uint trace_batch(B& b, const device_scene<B>& s, detail::photon_frames<B>& f, ui
     b.template run<kernels::emit_photon>({paths, 0u, layout.features}, {.first_path = first, .seed = settings.seed},
         reads(s.records), writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
     uint frame = 1;
-    for (; frame <= settings.photon_depth; ++frame) {
+    for (; frame <= settings.map.photon_depth; ++frame) {
         b.template run<kernels::bounce_photon>({paths, frame * paths, layout.features},
-            {.paths = paths, .first_path = first, .last_frame = settings.photon_depth, .seed = settings.seed},
+            {.paths = paths, .first_path = first, .last_frame = settings.map.photon_depth, .seed = settings.seed},
             reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
         if (frame % 8 == 0
@@ -112,19 +113,19 @@ public:
     /// Emits nothing yet. `device` must outlive it.
     photon_tracing(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings)
         : b_(b), device_(device), settings_(settings), lights_(detail::light_names(s)),
-          paths_(std::clamp(std::bit_ceil(settings.photons / 2 + 1), 1024u, 32768u)),
-          frames_(b, std::size_t{paths_} * (settings.photon_depth + 1))
+          paths_(std::clamp(std::bit_ceil(settings.map.photons / 2 + 1), 1024u, 32768u)),
+          frames_(b, std::size_t{paths_} * (settings.map.photon_depth + 1))
     {
-        const auto make = [&] { return b.template make<glm::vec4>(settings.photons); };
+        const auto make = [&] { return b.template make<glm::vec4>(settings.map.photons); };
         t_.photons = {make(), make(), make(), {}};
-        if (settings.leaks.needs_normals())
+        if (settings.estimate.leaks.needs_normals())
             t_.photons.normals = make();
     }
 
     /// True when all photons are stored.
-    bool finished() const { return stored_ == settings_.photons; }
+    bool finished() const { return stored_ == settings_.map.photons; }
     /// Of the photons asked for, those that are stored.
-    double fraction() const { return static_cast<double>(stored_) / settings_.photons; }
+    double fraction() const { return static_cast<double>(stored_) / settings_.map.photons; }
 
     /// Traces one more batch of paths.
     /// \throws std::runtime_error when so few photons are stored that it would not end, naming the lights.
@@ -133,7 +134,7 @@ public:
         if (finished())
             return;
         require_hope();
-        const uint wanted = settings_.photons - stored_;
+        const uint wanted = settings_.map.photons - stored_;
         const uint frames = trace_batch(b_, device_, frames_, paths_, static_cast<uint>(t_.emitted), settings_);
 
         auto storable = b_.template make<uint>(paths_);
@@ -150,13 +151,13 @@ public:
         // No path stores more photons than it takes bounces, and the last of these is the first to have stored what is
         // wanted.
         const auto found = detail::checked_count<kernels::is_found>(
-            b_, std::size_t{wanted} + settings_.photon_depth, {.emitted = emitted}, reads(sums));
+            b_, std::size_t{wanted} + settings_.map.photon_depth, {.emitted = emitted}, reads(sums));
         const uint taken = std::min(found, wanted);
         b_.template run<kernels::gather_photon>({taken, stored_},
             {.paths = paths_, .frames = frames, .stored_before = stored_},
             reads(sums, frames_.positions, frames_.powers, frames_.directions),
             writes(t_.photons.positions, t_.photons.powers, t_.photons.directions));
-        if (settings_.leaks.needs_normals())
+        if (settings_.estimate.leaks.needs_normals())
             b_.template run<kernels::gather_normal>({taken, stored_},
                 {.paths = paths_, .frames = frames, .stored_before = stored_},
                 reads(sums, frames_.positions, frames_.powers, frames_.next_origins, frames_.next_directions),
@@ -166,8 +167,8 @@ public:
         t_.emitted += emitted;
         stored_ += taken;
         if (finished())
-            b_.template run<kernels::divide_power>(settings_.photons, {.share = 1.0f / static_cast<float>(t_.emitted)},
-                reads(), writes(t_.photons.powers));
+            b_.template run<kernels::divide_power>(settings_.map.photons,
+                {.share = 1.0f / static_cast<float>(t_.emitted)}, reads(), writes(t_.photons.powers));
     }
 
     /// The photons, once finished.
@@ -177,10 +178,10 @@ private:
     void require_hope() const
     {
         const std::uint64_t most_paths
-            = std::min<std::uint64_t>(std::uint64_t{settings_.photons} * 4096 + (1u << 20), 0xFFFF0000u);
+            = std::min<std::uint64_t>(std::uint64_t{settings_.map.photons} * 4096 + (1u << 20), 0xFFFF0000u);
         if (t_.emitted >= most_paths || (stored_ == 0 && t_.emitted >= (1u << 22)))
             throw std::runtime_error("trace_photons: " + std::to_string(t_.emitted) + " paths from " + lights_
-                + " stored " + std::to_string(stored_) + " of the " + std::to_string(settings_.photons)
+                + " stored " + std::to_string(stored_) + " of the " + std::to_string(settings_.map.photons)
                 + " photons asked for. Stored are diffuse hits that come not straight from a light: does the light "
                   "reach a mirror, glass, or a second diffuse surface?");
     }

@@ -2,26 +2,15 @@
 // about a scene file is worth little without a line.
 #pragma once
 
+#include <photongrid/io/scene_error.hpp>
+
 #include <cstddef>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace photongrid {
-
-/// What is wrong with a scene file and where: "file:line:column: error: what was found and what was expected".
-/// Lines and columns count from 1, columns in characters. Line 0: the file as a whole ("file: error: …").
-struct scene_error : std::runtime_error {
-    scene_error(const std::string& file, std::size_t line_, std::size_t column_, const std::string& what_)
-        : std::runtime_error(file + (line_ > 0 ? ":" + std::to_string(line_) + ":" + std::to_string(column_) : "")
-            + ": error: " + what_),
-          line(line_), column(column_)
-    {
-    }
-    std::size_t line = 0, column = 0;
-};
 
 enum class json_kind { null, boolean, number, string, array, object };
 

@@ -1,12 +1,9 @@
-// Scene files: JSON in, a checked photongrid::scene in SI units out. docs/guide/scenes.md describes the format.
+// The keys that objects of a scene file may have, from the tables of shapes, lights and settings.
 #pragma once
-
-#include "json_tree.hpp"
-
-#include <photongrid/scene/scene.hpp>
 
 #include <span>
 #include <string>
+#include <vector>
 
 namespace photongrid {
 
@@ -23,13 +20,14 @@ struct object_keys {
     std::span<const scene_key> keys;
 };
 
-/// Everything the reader knows.
+/// In scene files a polygon of three vertices may be called this.
+inline constexpr const char* triangle_name = "triangle";
+
+/// Every kind of object.
 std::span<const object_keys> known_objects();
 
-/// Reads the scene in `text`; `file` is its name in messages. Throws scene_error.
-scene parse_scene(const std::string& file, std::string text);
-
-/// Reads a scene file. Throws scene_error.
-scene read_scene(const std::string& path);
+/// The names of all kinds of shapes; of all kinds of lights.
+std::vector<std::string> shape_names();
+std::vector<std::string> light_names();
 
 } // namespace photongrid

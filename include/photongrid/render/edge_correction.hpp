@@ -1,12 +1,12 @@
-// Edge correction of density estimates: each is divided by the share of its kernel's mass that lies on the surface
+// Edge correction of density estimates: each is divided by the share of its filter's mass that lies on the surface
 // ("cut and normalise", Gasser and Müller 1979; Diggle, Applied Statistics 34(2), 1985). Without it an estimate at a
 // straight edge reads half of the truth, in a right corner a quarter.
 #pragma once
 
-#include <photongrid/estimate/covered_share.kernel.hpp>
-#include <photongrid/estimate/divide_by_share.kernel.hpp>
+#include <photongrid/backend/zero_vectors.kernel.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
-#include <photongrid/render/no_light.kernel.hpp>
+#include <photongrid/render/covered_share.kernel.hpp>
+#include <photongrid/render/divide_by_share.kernel.hpp>
 #include <photongrid/trace/device_scene.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -49,7 +49,7 @@ namespace detail {
     }
 } // namespace detail
 
-/// The share, 0 to about 1, of each estimate's disc that lies on polygons of the scene, weighed by the kernel: x; y: 1
+/// The share, 0 to about 1, of each estimate's disc that lies on polygons of the scene, weighted by the filter: x; y: 1
 /// for points on one of them, 0 for others, whose share means nothing. Polygons in one plane are one surface, whichever
 /// way they are wound; where they overlap they count twice. Mirrors, glass and lamps hold no photons and do not count.
 ///
@@ -59,13 +59,13 @@ namespace detail {
 /// \throws std::invalid_argument for a polygon of more than 1,999 vertices.
 template <backend B>
 buffer_of<B, glm::vec4> covered_shares(B& b, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
-    const buffer_of<B, glm::vec4>& normals, const buffer_of<B, glm::vec4>& irradiances, filter_kernel kernel,
+    const buffer_of<B, glm::vec4>& normals, const buffer_of<B, glm::vec4>& irradiances, filter_kind filter,
     float min_radius)
 {
     const auto n = points.size();
     auto cover = b.template make<glm::vec4>(n);
-    b.template run<kernels::no_light>(n, {}, reads(), writes(cover));
-    const uint weight = kernel == filter_kernel::constant ? 0u : 1u << (static_cast<uint>(kernel) - 1);
+    b.template run<kernels::zero_vectors>(n, {}, reads(), writes(cover));
+    const uint weight = filter == filter_kind::constant ? 0u : 1u << (static_cast<uint>(filter) - 1);
     for (const auto& range : detail::ranges_of_polygons(s.layout))
         b.template run<kernels::covered_share>({n, 0u, weight},
             {.min_radius2 = std::max(min_radius * min_radius, 1e-36f),
@@ -82,10 +82,10 @@ buffer_of<B, glm::vec4> covered_shares(B& b, const device_scene<B>& s, const buf
 /// \snippet snippets.cpp correct_edges
 template <backend B>
 void correct_edges(B& b, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
-    const buffer_of<B, glm::vec4>& normals, knn_estimates<B>& estimates, filter_kernel kernel, float min_radius)
+    const buffer_of<B, glm::vec4>& normals, knn_estimates<B>& estimates, filter_kind filter, float min_radius)
 {
     constexpr float least = 0x1p-8f;
-    const auto cover = covered_shares(b, s, points, normals, estimates.irradiance, kernel, min_radius);
+    const auto cover = covered_shares(b, s, points, normals, estimates.irradiance, filter, min_radius);
     b.template run<kernels::divide_by_share>(
         estimates.irradiance.size(), {.least = least, .keeps_w = 1u}, reads(cover), writes(estimates.irradiance));
     b.template run<kernels::divide_by_share>(estimates.standard_error.size(), {.least = least, .keeps_w = 0u},

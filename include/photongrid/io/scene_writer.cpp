@@ -1,6 +1,4 @@
-#include "scene_writer.hpp"
-
-#include "setting_names.hpp"
+#include <photongrid/io/scene_writer.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -29,22 +27,10 @@ namespace {
         if (l.side)
             leaks["side"] = true;
         if (l.needs_normals())
-            leaks["normals"] = as_written(l.min_cosine);
-        if (l.compression > 1)
-            leaks["disc"] = as_written(l.compression);
+            leaks["min_cosine"] = as_written(l.min_cosine);
+        if (l.flattening > 1)
+            leaks["flattening"] = as_written(l.flattening);
         return leaks;
-    }
-
-    json settings_json(const render_settings& s)
-    {
-        return {{"size", {s.width, s.height}}, {"photons", s.photons}, {"k", s.k},
-            {"grid", s.grid == glm::uvec3(0) ? json("auto") : json{s.grid.x, s.grid.y, s.grid.z}},
-            {"max_radius", s.max_radius}, {"light_samples", s.light_samples}, {"spp", s.spp}, {"passes", s.passes},
-            {"depth", s.depth}, {"photon_depth", s.photon_depth}, {"seed", s.seed},
-            {"map", name_of(map_names, s.builder)}, {"slots", s.slots}, {"exposure", s.exposure},
-            {"search", name_of(search_names, s.search)}, {"kernel", name_of(kernel_names, s.kernel)},
-            {"bias", name_of(bias_names, s.bias)}, {"leaks", leaks_json(s.leaks)},
-            {"edge_correction", name_of(edge_names, s.edges)}, {"only", name_of(part_names, s.only)}};
     }
 
     json three(const dvec3& v) { return {v.x, v.y, v.z}; }
@@ -56,6 +42,29 @@ namespace {
         json all = json::array();
         for (const auto& p : points)
             all.push_back(three(p));
+        return all;
+    }
+
+    // A setting as scene files have it.
+    json written(const setting_table::pixels&, const output_settings& s) { return {s.width, s.height}; }
+    json written(const setting_table::whole_range&, std::uint32_t v) { return v; }
+    json written(const setting_table::real_range&, double v) { return v; }
+    json written(const setting_table::any_length&, double v) { return v; }
+    template <class Value, std::size_t N>
+    json written(const setting_table::one_of<Value, N>& choice, Value v)
+    {
+        return choice.word_for(v);
+    }
+    json written(const setting_table::cells&, const glm::uvec3& v)
+    {
+        return v == glm::uvec3(0) ? json("auto") : json{v.x, v.y, v.z};
+    }
+    json written(const setting_table::policies&, const leak_policy& l) { return leaks_json(l); }
+
+    json settings_json(const render_settings& s)
+    {
+        json all = json::object();
+        for_each_setting([&](const auto& row) { all[row.name] = written(row.values, row.of(s)); });
         return all;
     }
 

@@ -1,4 +1,4 @@
-#include "json_tree.hpp"
+#include <photongrid/io/json_tree.hpp>
 
 #include <nlohmann/json.hpp>
 

@@ -1,0 +1,21 @@
+#include <photongrid/backends/any/owning_renderer.hpp>
+#include <photongrid/backends/serial/serial.hpp>
+
+namespace photongrid::any {
+
+namespace {
+    std::unique_ptr<renderer> make(const renderer_options&)
+    {
+        return std::make_unique<owning_renderer<serial_backend>>();
+    }
+
+    std::vector<device_report> devices()
+    {
+        const serial_backend b;
+        return {{.backend = "serial", .device = b.caps().device, .works = true, .about = limits(b.caps())}};
+    }
+} // namespace
+
+backend_entry serial_entry() { return {{"serial"}, make, devices, nullptr}; }
+
+} // namespace photongrid::any

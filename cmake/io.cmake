@@ -1,0 +1,20 @@
+# photongrid::io: scene files and pictures. Its headers name none of the libraries it is made with.
+find_package(nlohmann_json QUIET)
+find_package(OpenEXR QUIET)
+find_package(PNG QUIET)
+if(NOT TARGET nlohmann_json::nlohmann_json OR NOT TARGET OpenEXR::OpenEXR OR NOT TARGET PNG::PNG)
+  message(STATUS "photongrid: no scene files or pictures, and no program (Debian packages nlohmann-json3-dev, libopenexr-dev, libpng-dev)")
+  return()
+endif()
+file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/photongrid/io/*.cpp)
+add_library(photongrid_io STATIC ${sources})
+add_library(photongrid::io ALIAS photongrid_io)
+set_target_properties(photongrid_io PROPERTIES EXPORT_NAME io POSITION_INDEPENDENT_CODE ON)
+set(folder ${PROJECT_SOURCE_DIR}/include/photongrid/io)
+target_sources(photongrid_io PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include
+  FILES ${folder}/files.hpp ${folder}/image_difference.hpp ${folder}/image_file.hpp ${folder}/scene_error.hpp ${folder}/scene_file.hpp ${folder}/scene_writer.hpp ${folder}/tone_map.hpp)
+target_link_libraries(photongrid_io PUBLIC photongrid PRIVATE $<BUILD_INTERFACE:photongrid_warnings>
+  $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> OpenEXR::OpenEXR PNG::PNG)
+if(NOT PROJECT_IS_TOP_LEVEL)
+  set_target_properties(photongrid_io PROPERTIES EXCLUDE_FROM_ALL TRUE)
+endif()

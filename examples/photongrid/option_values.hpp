@@ -1,0 +1,71 @@
+// Values of the command line, from text. Each throws CLI::ValidationError, which names the option.
+#pragma once
+
+#include "picture_series.hpp"
+
+#include <photongrid/scene/setting_table.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace photongrid {
+
+// std::from_chars, so that "010" is ten, "-1" no number and "1e9x" an error.
+template <class T>
+T parsed(const std::string& option, std::string_view text, const char* expected)
+{
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size())
+        throw CLI::ValidationError(option, "\"" + std::string(text) + "\" given; expected " + expected);
+    return value;
+}
+
+/// A finite number.
+double parsed_number(const std::string& option, const std::string& text, const char* expected);
+/// Width and height: WxH.
+glm::uvec2 parsed_size(const std::string& option, const std::string& text);
+/// Part of a picture, as X11 writes it: WxH+X+Y.
+crop parsed_crop(const std::string& option, const std::string& text);
+
+void add_whole(CLI::App& to, const std::string& option, std::optional<std::uint32_t>& target, const std::string& about);
+void add_number(CLI::App& to, const std::string& option, std::optional<double>& target, const std::string& about,
+    const char* type);
+
+// A setting's value, and the type that --help shows for it.
+std::uint32_t parsed_setting(const std::string& option, const std::string& text, const setting_table::whole_range&);
+double parsed_setting(const std::string& option, const std::string& text, const setting_table::real_range&);
+double parsed_setting(const std::string& option, const std::string& text, const setting_table::any_length&);
+/// Width and height in what are otherwise the settings of a default.
+glm::uvec2 parsed_setting(const std::string& option, const std::string& text, const setting_table::pixels&);
+glm::uvec3 parsed_setting(const std::string& option, const std::string& text, const setting_table::cells&);
+leak_policy parsed_setting(const std::string& option, const std::string& text, const setting_table::policies&);
+template <class Value, std::size_t N>
+Value parsed_setting(const std::string& option, const std::string& text, const setting_table::one_of<Value, N>& words)
+{
+    if (const auto* value = words.find(text))
+        return *value;
+    throw CLI::ValidationError(option, "\"" + text + "\" given; expected " + type_of(words));
+}
+
+inline std::string type_of(const setting_table::whole_range&) { return "N"; }
+inline std::string type_of(const setting_table::real_range& r) { return r.unit + 1; }
+inline std::string type_of(const setting_table::any_length&) { return "METRES"; }
+inline std::string type_of(const setting_table::pixels&) { return "WxH"; }
+inline std::string type_of(const setting_table::cells&) { return "X,Y,Z|auto"; }
+inline std::string type_of(const setting_table::policies&) { return "LIST"; }
+template <class Value, std::size_t N>
+std::string type_of(const setting_table::one_of<Value, N>& words)
+{
+    std::string all;
+    for (const auto& n : words.values)
+        all += (all.empty() ? "" : "|") + std::string(n.name);
+    return all;
+}
+
+} // namespace photongrid

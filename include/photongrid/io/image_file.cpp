@@ -1,0 +1,83 @@
+#include <photongrid/io/image_file.hpp>
+#include <photongrid/io/image_formats.hpp>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace photongrid {
+
+namespace fs = std::filesystem;
+using image_formats::fail_file;
+
+void image_formats::fail_file(const std::string& path, const std::string& reason)
+{
+    throw file_error(path + ": " + reason);
+}
+
+void image_formats::check_read_size(const std::string& path, std::int64_t width, std::int64_t height)
+{
+    constexpr std::int64_t max_edge = 65536, max_pixels = std::int64_t{1} << 28;
+    if (width < 1 || height < 1 || width > max_edge || height > max_edge || width * height > max_pixels)
+        fail_file(path,
+            "is " + std::to_string(width) + " x " + std::to_string(height)
+                + " pixels; expected 1 to 65536 a side and at most 2^28");
+}
+
+namespace {
+    std::string ending(const std::string& path)
+    {
+        auto e = fs::path(path).extension().string();
+        std::transform(e.begin(), e.end(), e.begin(),
+            [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
+        return e;
+    }
+} // namespace
+
+bool holds_layers(const std::string& path) { return ending(path) == ".exr"; }
+
+void check_image_path(const std::string& path)
+{
+    const auto e = ending(path);
+    if (e != ".png" && e != ".exr" && e != ".pfm")
+        fail_file(path, "has no known ending; expected .png, .exr or .pfm");
+    check_file_path(path);
+}
+
+void write_image(const std::string& path, const image& picture, double exposure, const image_notes& notes)
+{
+    check_image_path(path);
+    if (picture.width == 0 || picture.height == 0
+        || picture.pixels.size() != std::size_t{picture.width} * picture.height)
+        fail_file(path,
+            "the picture has " + std::to_string(picture.pixels.size()) + " pixels for " + std::to_string(picture.width)
+                + " x " + std::to_string(picture.height));
+    const auto e = ending(path);
+    std::string bytes;
+    try {
+        bytes = e == ".png" ? image_formats::png_bytes(picture, exposure)
+            : e == ".exr"   ? image_formats::exr_bytes(picture, notes)
+                            : image_formats::pfm_bytes(picture);
+    } catch (const std::exception& what) {
+        fail_file(path, std::string("cannot be encoded: ") + what.what());
+    }
+    write_file(path, bytes);
+}
+
+image read_image(const std::string& path)
+{
+    const auto e = ending(path);
+    if (e != ".exr" && e != ".pfm")
+        fail_file(
+            path, "has no known ending; expected .exr or .pfm (a PNG is tone-mapped and clamped, hence no measure)");
+    if (std::error_code none; fs::is_directory(path, none))
+        fail_file(path, "is a folder");
+    try {
+        return e == ".exr" ? image_formats::read_exr(path) : image_formats::read_pfm(path);
+    } catch (const file_error&) {
+        throw;
+    } catch (const std::exception& what) {
+        fail_file(path, std::string("cannot be read: ") + what.what());
+    }
+}
+
+} // namespace photongrid

@@ -1,0 +1,20 @@
+// The formats of image_file.hpp, each in a file that includes its own library.
+#pragma once
+
+#include <photongrid/io/image_file.hpp>
+
+namespace photongrid::image_formats {
+
+// Encoders throw std::exception where a library refuses; readers that, or file_error.
+std::string png_bytes(const image& picture, double exposure);
+std::string exr_bytes(const image& picture, const image_notes& notes);
+std::string pfm_bytes(const image& picture);
+image read_exr(const std::string& path);
+image read_pfm(const std::string& path);
+
+/// Throws file_error "path: reason".
+[[noreturn]] void fail_file(const std::string& path, const std::string& reason);
+/// Throws file_error for a picture that is empty or too large to hold.
+void check_read_size(const std::string& path, std::int64_t width, std::int64_t height);
+
+} // namespace photongrid::image_formats

@@ -1,0 +1,275 @@
+#include <photongrid/io/scene_file.hpp>
+#include <photongrid/io/scene_values.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+namespace photongrid {
+
+namespace {
+    constexpr std::size_t max_shapes = 65'536, max_materials = 4'096, max_lights = 1'024, max_vertices = 1'024;
+
+    /// The length (m) that a part must not lack: its axis, its least edge, a polygon's extent. Radii are read with
+    /// limits.
+    template <class Part>
+    double least_length(const Part& p)
+    {
+        if constexpr (requires { shape_kind<Part>::extent(p); })
+            return shape_kind<Part>::extent(p);
+        else if constexpr (requires { light_kind<Part>::extent(p); })
+            return light_kind<Part>::extent(p);
+        else if constexpr (std::is_same_v<Part, camera>)
+            return glm::length(p.look_at - p.position);
+        else
+            return scene_values::min_length;
+    }
+
+    class reader : scene_values {
+    public:
+        using scene_values::scene_values;
+
+        scene read(const std::string& default_name)
+        {
+            open(root(), "scene");
+            if (const auto& version = at(root(), "photongrid");
+                version.kind != json_kind::number || version.number != 1)
+                wrong(version, "the format's version, 1");
+            read_units(at(root(), "units"));
+            scene_.name = default_name;
+            if (const auto* name = root().find("name"))
+                scene_.name = read_name(*name);
+            read_camera(at(root(), "camera"));
+            read_materials(at(root(), "materials"));
+            read_list(at(root(), "shapes"), max_shapes, "shapes", [&](const json_value& v) { read_shape(v); });
+            read_list(at(root(), "lights"), max_lights, "lights", [&](const json_value& v) { read_light(v); });
+            if (count_lights(scene_) == 0)
+                fail(at(root(), "lights").place, "lights: the scene has none; expected at least one");
+            read_render(at(root(), "render"));
+            return std::move(scene_);
+        }
+
+    private:
+        /// Runs photongrid::check on a part and puts the place of the member at fault before its words.
+        template <class Part>
+        void checked(const json_value& v, const Part& part) const
+        {
+            try {
+                check(part);
+            } catch (const std::invalid_argument& e) {
+                const std::string_view what = e.what();
+                const auto* m = v.find(what.substr(0, what.find_first_of(":, ")));
+                fail(m ? m->place : v.place, std::string(what));
+            }
+            if (least_length(part) < min_length)
+                fail(v.place,
+                    "its points or edges are less than 1e-9 m apart; expected a larger one (are the units right?)");
+        }
+
+        // --- parts ---
+        void read_camera(const json_value& v)
+        {
+            open(v, "camera");
+            auto& c = scene_.camera;
+            c.position = point(at(v, "position"));
+            c.look_at = point(at(v, "look_at"));
+            if (const auto* up = v.find("up"))
+                c.up = direction(*up);
+            c.vertical_fov = number(at(v, "vertical_fov"), 1e-3, 178.9, "an angle of 0.001 to 178.9 degrees");
+            checked(v, c);
+        }
+
+        void read_materials(const json_value& v)
+        {
+            if (v.kind != json_kind::object)
+                wrong(v, "an object: materials by name");
+            if (v.items.size() > max_materials)
+                fail(v.items[max_materials].key_place,
+                    std::to_string(v.items.size()) + " materials; expected at most " + std::to_string(max_materials));
+            for (const auto& m : v.items)
+                if (m.key != "comment") {
+                    if (!is_name(m.key))
+                        fail(m.key_place,
+                            "found the key " + described({.kind = json_kind::string, .text = m.key}).substr(9)
+                                + "; expected a material's name of 1 to 100 bytes without control characters");
+                    material_index_[m.key] = static_cast<std::uint32_t>(scene_.materials.size());
+                    material_names_.push_back(m.key);
+                    scene_.materials.push_back(read_material(m));
+                }
+        }
+
+        material read_material(const json_value& v) const
+        {
+            const auto& type = type_of(v, "material", {"lambertian", "mirror", "metal", "glass"});
+            open(v, type);
+            material made{.name = v.key};
+            made.kind = type == "lambertian" ? material_kind::lambertian
+                : type == "mirror"           ? material_kind::mirror
+                : type == "metal"            ? material_kind::metal
+                                             : material_kind::glass;
+            const auto* colour = v.find(type == "glass" ? "transmittance" : "reflectance");
+            made.reflectance = colour ? fraction(*colour) : dvec3(1);
+            if (const auto* ior = v.find("index_of_refraction"))
+                made.index_of_refraction = number(*ior, 1, 10, "an index of refraction from 1 to 10");
+            checked(v, made);
+            return made;
+        }
+
+        std::uint32_t material_of(const json_value& shape) const
+        {
+            const auto& v = at(shape, "material");
+            if (v.kind != json_kind::string)
+                wrong(v, "the name of a material");
+            const auto found = material_index_.find(v.text);
+            if (found == material_index_.end()) {
+                const auto near = nearest(v.text, material_names_);
+                wrong(
+                    v, "the name of a material in \"materials\"" + (near.empty() ? "" : ", perhaps \"" + near + "\""));
+            }
+            return found->second;
+        }
+
+        /// Reads the member of `part` that `f` names. `most`: how many points a list may have.
+        template <class Part, class Field>
+        void read_field(const json_value& v, Part& part, const Field& f, std::size_t most) const
+        {
+            const auto& value = at(v, f.name);
+            if constexpr (requires { (part.*f.member).push_back({}); })
+                part.*f.member = points(value, most);
+            else if constexpr (std::is_same_v<std::decay_t<decltype(part.*f.member)>, double>)
+                part.*f.member = radius(value);
+            else
+                part.*f.member = f.what_it_says == quantity::direction ? direction(value)
+                    : f.what_it_says == quantity::power                ? power(value)
+                                                                       : point(value);
+        }
+
+        std::vector<dvec3> points(const json_value& list, std::size_t most) const
+        {
+            if (list.kind != json_kind::array || list.items.size() < 3 || list.items.size() > most)
+                wrong(
+                    list, most == 3 ? "an array of 3 points" : "an array of 3 to " + std::to_string(most) + " points");
+            std::vector<dvec3> all;
+            for (const auto& p : list.items)
+                all.push_back(point(p));
+            return all;
+        }
+
+        void read_shape(const json_value& v)
+        {
+            const auto& type = type_of(v, "shape", shape_names());
+            open(v, type);
+            for_each_shape(scene_, [&](auto& list, auto kind) {
+                using shape = typename std::decay_t<decltype(list)>::value_type;
+                const bool is_triangle = std::is_same_v<shape, polygon> && type == triangle_name;
+                if (type != kind.name && !is_triangle)
+                    return;
+                shape x;
+                for_each_field(
+                    kind.fields, [&](const auto& f) { read_field(v, x, f, is_triangle ? 3 : max_vertices); });
+                x.material = material_of(v);
+                checked(v, x);
+                list.push_back(std::move(x));
+            });
+        }
+
+        void read_light(const json_value& v)
+        {
+            const auto& type = type_of(v, "light", light_names());
+            open(v, type);
+            const auto* given = v.find("name");
+            const auto name = given ? read_name(*given) : "lights[" + std::to_string(count_lights(scene_)) + "]";
+            for_each_light(scene_, [&](auto& list, auto kind) {
+                if (type != kind.name)
+                    return;
+                typename std::decay_t<decltype(list)>::value_type l;
+                l.name = name;
+                for_each_field(kind.fields, [&](const auto& f) { read_field(v, l, f, max_vertices); });
+                checked(v, l);
+                list.push_back(std::move(l));
+            });
+        }
+
+        // --- settings ---
+        void set(const json_value& v, const setting_table::whole_range& r, std::uint32_t& to) const
+        {
+            to = whole(v, r.least, r.most);
+        }
+        void set(const json_value& v, const setting_table::real_range& r, double& to) const { to = in_range(v, r); }
+        void set(const json_value& v, const setting_table::any_length&, double& to) const { to = radius(v); }
+        template <class Value, std::size_t N>
+        void set(const json_value& v, const setting_table::one_of<Value, N>& choice, Value& to) const
+        {
+            std::vector<std::string> words;
+            for (const auto& n : choice.values)
+                words.emplace_back(n.name);
+            to = *choice.find(one_of(v, words));
+        }
+        void set(const json_value& v, const setting_table::pixels& p, output_settings& to) const
+        {
+            if (v.kind != json_kind::array || v.items.size() != 2)
+                wrong(v, "a size: [width, height] in pixels");
+            to.width = whole(v.items[0], 1, p.most);
+            to.height = whole(v.items[1], 1, p.most);
+        }
+        void set(const json_value& v, const setting_table::cells& c, glm::uvec3& to) const
+        {
+            if (v.kind == json_kind::string && v.text == "auto") {
+                to = glm::uvec3(0);
+                return;
+            }
+            const auto along = three(v, "a grid: [x, y, z] cells, or \"auto\"",
+                [&](const json_value& n) { return static_cast<double>(whole(n, 1, c.most_per_axis)); });
+            if (along.x * along.y * along.z > c.most)
+                wrong(v, "at most 2^31 cells");
+            to = glm::uvec3(along);
+        }
+        /// Policies that are not named are off, those of the default too.
+        void set(const json_value& v, const setting_table::policies& p, leak_policy& to) const
+        {
+            if (v.kind != json_kind::object)
+                wrong(
+                    v, "an object with some of the keys \"side\", \"min_cosine\" or \"flattening\"; {} for no policy");
+            open(v, "leaks");
+            to = {};
+            if (const auto* side = v.find("side")) {
+                if (side->kind != json_kind::boolean)
+                    wrong(*side, "true or false");
+                to.side = side->truth;
+            }
+            if (const auto* cosine = v.find("min_cosine"))
+                to.min_cosine = static_cast<float>(in_range(*cosine, p.min_cosine));
+            if (const auto* flattening = v.find("flattening"))
+                to.flattening = static_cast<float>(in_range(*flattening, p.flattening));
+        }
+        double in_range(const json_value& v, const setting_table::real_range& r) const
+        {
+            return number(v, r.least, r.most, "a number from " + r.ends());
+        }
+
+        void read_render(const json_value& v)
+        {
+            open(v, "render");
+            for_each_setting([&](const auto& row) {
+                if (const auto* given = row.use == in_scenes::never ? nullptr : v.find(row.name))
+                    set(*given, row.values, row.of(scene_.render));
+            });
+            checked(v, scene_.render);
+        }
+
+        scene scene_;
+        std::map<std::string, std::uint32_t> material_index_;
+        std::vector<std::string> material_names_;
+    };
+} // namespace
+
+scene parse_scene(const std::string& file, std::string text)
+{
+    return reader(file, std::move(text)).read(std::filesystem::path(file).stem().string());
+}
+
+scene read_scene(const std::string& path) { return parse_scene(path, read_scene_text(path)); }
+
+} // namespace photongrid

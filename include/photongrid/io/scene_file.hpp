@@ -1,0 +1,19 @@
+// Scene files: JSON in, a checked photongrid::scene in SI units out. docs/guide/scenes.md describes the format.
+#pragma once
+
+#include <photongrid/io/scene_error.hpp>
+#include <photongrid/scene/scene.hpp>
+
+#include <string>
+
+namespace photongrid {
+
+/// Reads the scene in `text`; `file` is its name in messages.
+/// \throws scene_error.
+scene parse_scene(const std::string& file, std::string text);
+
+/// Reads a scene file.
+/// \throws scene_error.
+scene read_scene(const std::string& path);
+
+} // namespace photongrid

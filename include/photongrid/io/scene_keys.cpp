@@ -1,0 +1,97 @@
+#include <photongrid/io/scene_keys.hpp>
+#include <photongrid/scene/scene.hpp>
+
+#include <type_traits>
+
+namespace photongrid {
+
+namespace {
+    constexpr bool must = true, may = false;
+    constexpr scene_key scene_keys[] = {{"$schema", may}, {"photongrid", must}, {"name", may}, {"units", must},
+        {"camera", must}, {"materials", must}, {"shapes", must}, {"lights", must}, {"render", must}};
+    constexpr scene_key units_keys[] = {{"length", must}, {"power", must}};
+    constexpr scene_key camera_keys[] = {{"position", must}, {"look_at", must}, {"up", may}, {"vertical_fov", must}};
+    constexpr scene_key reflecting_keys[] = {{"type", must}, {"reflectance", must}};
+    constexpr scene_key mirror_keys[] = {{"type", must}, {"reflectance", may}};
+    constexpr scene_key glass_keys[] = {{"type", must}, {"index_of_refraction", must}, {"transmittance", may}};
+    constexpr scene_key leaks_keys[] = {{"side", may}, {"min_cosine", may}, {"flattening", may}};
+    // The keys of shapes and lights are those of the tables in scene/ (shape_kind, light_kind).
+    template <class Kind>
+    std::vector<scene_key> keys_of(Kind kind, std::vector<scene_key> before, std::vector<scene_key> after)
+    {
+        for_each_field(kind.fields, [&](const auto& f) { before.push_back({f.name, must}); });
+        before.insert(before.end(), after.begin(), after.end());
+        return before;
+    }
+
+    /// The keys of each kind of shape, or of light, by the name of the kind.
+    struct kind_keys {
+        const char* name;
+        std::vector<scene_key> keys;
+    };
+    const std::vector<kind_keys>& shape_keys()
+    {
+        static const auto all = [] {
+            std::vector<kind_keys> kinds;
+            const scene none;
+            for_each_shape(none, [&](const auto& list, auto kind) {
+                const auto keys = keys_of(kind, {{"type", must}}, {{"material", must}});
+                if constexpr (std::is_same_v<std::decay_t<decltype(list)>, std::vector<polygon>>)
+                    kinds.push_back({triangle_name, keys});
+                kinds.push_back({kind.name, keys});
+            });
+            return kinds;
+        }();
+        return all;
+    }
+    const std::vector<kind_keys>& light_keys()
+    {
+        static const auto all = [] {
+            std::vector<kind_keys> kinds;
+            const scene none;
+            for_each_light(none, [&](const auto&, auto kind) {
+                kinds.push_back({kind.name, keys_of(kind, {{"type", must}, {"name", may}}, {})});
+            });
+            return kinds;
+        }();
+        return all;
+    }
+    const std::vector<scene_key>& render_keys()
+    {
+        static const auto all = [] {
+            std::vector<scene_key> keys;
+            for_each_setting([&](const auto& row) {
+                if (row.use != in_scenes::never)
+                    keys.push_back({row.name, row.use == in_scenes::required});
+            });
+            return keys;
+        }();
+        return all;
+    }
+    std::vector<std::string> names_of(const std::vector<kind_keys>& kinds)
+    {
+        std::vector<std::string> names;
+        for (const auto& k : kinds)
+            names.emplace_back(k.name);
+        return names;
+    }
+} // namespace
+
+std::vector<std::string> shape_names() { return names_of(shape_keys()); }
+std::vector<std::string> light_names() { return names_of(light_keys()); }
+
+std::span<const object_keys> known_objects()
+{
+    static const auto all = [] {
+        std::vector<object_keys> objects{{"scene", scene_keys}, {"units", units_keys}, {"camera", camera_keys},
+            {"lambertian", reflecting_keys}, {"mirror", mirror_keys}, {"metal", reflecting_keys}, {"glass", glass_keys},
+            {"render", render_keys()}, {"leaks", leaks_keys}};
+        for (const auto* kinds : {&shape_keys(), &light_keys()})
+            for (const auto& k : *kinds)
+                objects.push_back({k.name, k.keys});
+        return objects;
+    }();
+    return all;
+}
+
+} // namespace photongrid

@@ -1,0 +1,185 @@
+// Values of a scene file: numbers in range, lengths and powers in the file's units, names, words. Each function throws
+// scene_error "found …; expected …" at the value's line and column.
+#pragma once
+
+#include <photongrid/io/json_tree.hpp>
+#include <photongrid/io/scene_keys.hpp>
+#include <photongrid/scene/scene.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace photongrid {
+
+/// `"a", "b" or "c"`.
+std::string joined(const std::vector<std::string>& words);
+
+/// A unit: a value in it is value * multiply / divide in SI. Two whole numbers round better than 0.001 would.
+struct unit {
+    double multiply = 1, divide = 1;
+};
+
+/// A scene file's text as a tree, and what its values say.
+class scene_values {
+public:
+    // Beyond these, single precision (squares and cubes of lengths, photon power) is no longer safe.
+    static constexpr double max_length = 1e9, max_power = 1e15;
+    // Below this, squares and cubes of lengths leave even double precision, and normals made of them are no unit
+    // vectors.
+    static constexpr double min_length = 1e-9;
+
+    scene_values(const std::string& file, std::string text) : tree_(file, std::move(text)) {}
+
+    const json_value& root() const { return tree_.root(); }
+    [[noreturn]] void fail(std::size_t place, const std::string& what) const { tree_.fail(place, what); }
+
+    /// Lengths and powers are in the units of `v` from now on.
+    void read_units(const json_value& v);
+
+    [[noreturn]] void wrong(const json_value& v, const std::string& expected) const
+    {
+        fail(v.place, "found " + described(v) + "; expected " + expected);
+    }
+
+    static const json_value& at(const json_value& object, std::string_view key) { return *object.find(key); }
+
+    static std::vector<std::string> names(std::span<const scene_key> keys)
+    {
+        std::vector<std::string> all;
+        for (const auto& k : keys)
+            all.emplace_back(k.name);
+        return all;
+    }
+
+    /// Holds `v` to the keys of `kind`: all required ones there, no unknown ones.
+    void open(const json_value& v, std::string_view kind) const;
+
+    /// The value of "type", one of `types`.
+    const std::string& type_of(const json_value& v, const char* what, const std::vector<std::string>& types) const
+    {
+        if (v.kind != json_kind::object)
+            wrong(v, std::string("an object: a ") + what);
+        const auto* type = v.find("type");
+        if (!type)
+            fail(v.place, std::string("a ") + what + " lacks the key \"type\"; expected " + joined(types));
+        return one_of(*type, types);
+    }
+
+    const std::string& one_of(const json_value& v, const std::vector<std::string>& words) const
+    {
+        if (v.kind != json_kind::string || std::find(words.begin(), words.end(), v.text) == words.end())
+            wrong(v, joined(words));
+        return v.text;
+    }
+
+    template <class Read>
+    void read_list(const json_value& v, std::size_t limit, const char* what, Read&& read) const
+    {
+        if (v.kind != json_kind::array)
+            wrong(v, std::string("an array of ") + what);
+        if (v.items.size() > limit)
+            fail(v.items[limit].place,
+                std::to_string(v.items.size()) + " " + what + "; expected at most " + std::to_string(limit));
+        for (const auto& item : v.items)
+            read(item);
+    }
+
+    // --- numbers ---
+    double number(const json_value& v, double low, double high, const std::string& expected) const
+    {
+        if (v.kind != json_kind::number || !(v.number >= low && v.number <= high))
+            wrong(v, expected);
+        return v.number;
+    }
+
+    std::uint32_t whole(const json_value& v, std::uint32_t low, std::uint32_t high) const
+    {
+        const auto expected = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+        const double d = number(v, low, high, expected);
+        if (d != std::floor(d))
+            wrong(v, expected);
+        return static_cast<std::uint32_t>(d);
+    }
+
+    double in_units(const json_value& v, const unit& u, double low, double high, const std::string& expected) const
+    {
+        if (v.kind != json_kind::number)
+            wrong(v, expected);
+        const double d = v.number * u.multiply / u.divide;
+        if (!(d >= low && d <= high))
+            wrong(v, expected);
+        return d;
+    }
+
+    double length(const json_value& v) const
+    {
+        return in_units(v, length_, -max_length, max_length, "a length of at most 1e9 m");
+    }
+    double radius(const json_value& v) const
+    {
+        return in_units(v, length_, min_length, max_length, "a length from 1e-9 m to 1e9 m");
+    }
+
+    template <class Element>
+    dvec3 three(const json_value& v, const char* expected, Element&& element) const
+    {
+        if (v.kind != json_kind::array || v.items.size() != 3)
+            wrong(v, expected);
+        return {element(v.items[0]), element(v.items[1]), element(v.items[2])};
+    }
+
+    dvec3 point(const json_value& v) const
+    {
+        return three(v, "a point: [x, y, z]", [&](const json_value& c) { return length(c); });
+    }
+
+    dvec3 direction(const json_value& v) const
+    {
+        const auto d = three(v, "a direction: [x, y, z]",
+            [&](const json_value& c) { return number(c, -1e9, 1e9, "a number from -1e9 to 1e9"); });
+        if (glm::length(d) < 1e-9)
+            fail(v.place, "found a direction shorter than 1e-9; expected a longer one");
+        return d;
+    }
+
+    /// Three channels, or one number for all of them.
+    template <class Element>
+    dvec3 rgb(const json_value& v, const char* expected, Element&& element) const
+    {
+        return v.kind == json_kind::number ? dvec3(element(v)) : three(v, expected, element);
+    }
+
+    dvec3 fraction(const json_value& v) const
+    {
+        return rgb(v, "[red, green, blue] or one number, each from 0 to 1",
+            [&](const json_value& c) { return number(c, 0, 1, "a number from 0 to 1"); });
+    }
+
+    dvec3 power(const json_value& v) const
+    {
+        return rgb(v, "[red, green, blue] or one number: power",
+            [&](const json_value& c) { return in_units(c, power_, 0, max_power, "a power from 0 to 1e15 W"); });
+    }
+
+    /// Names stand in messages, so a terminal must bear them.
+    static bool is_name(const std::string& text)
+    {
+        return !text.empty() && text.size() <= 100 && std::none_of(text.begin(), text.end(), [](char c) {
+            return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+        });
+    }
+
+    std::string read_name(const json_value& v) const
+    {
+        if (v.kind != json_kind::string || !is_name(v.text))
+            wrong(v, "a name: text of 1 to 100 bytes without control characters");
+        return v.text;
+    }
+
+private:
+    json_tree tree_;
+    unit length_, power_;
+};
+
+} // namespace photongrid

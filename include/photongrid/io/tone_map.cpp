@@ -1,0 +1,37 @@
+#include <photongrid/io/tone_map.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace photongrid {
+
+unsigned char tone_mapped(float linear, double exposure)
+{
+    const double v = static_cast<double>(linear) * std::exp2(exposure);
+    if (!(v > 0)) // NaN too
+        return 0;
+    const double c = std::min(v, 1.0);
+    const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+    return static_cast<unsigned char>(std::lround(255 * encoded));
+}
+
+tone_map::tone_map(double exposure)
+{
+    // Positive floats are in the order of their bits.
+    for (unsigned step = 0; step < steps_.size(); ++step) {
+        std::uint32_t low = 0, high = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
+        while (low < high) {
+            const auto middle = low + (high - low) / 2;
+            if (tone_mapped(std::bit_cast<float>(middle), exposure) > step)
+                high = middle;
+            else
+                low = middle + 1;
+        }
+        steps_[step] = std::bit_cast<float>(high);
+    }
+}
+
+} // namespace photongrid

@@ -1,0 +1,30 @@
+// Radiance to the eight bits of a screen.
+#pragma once
+
+#include <array>
+
+namespace photongrid {
+
+/// Linear radiance to an 8-bit sRGB value: clamp(2^exposure * linear, 0, 1) through the sRGB transfer function
+/// (IEC 61966-2-1).
+unsigned char tone_mapped(float linear, double exposure);
+
+/// The same for many values at one exposure, bit for bit, some twenty times as fast: by the values at which it changes.
+class tone_map {
+public:
+    explicit tone_map(double exposure);
+    unsigned char operator()(float linear) const
+    {
+        if (!(linear > 0)) // NaN too
+            return 0;
+        unsigned n = 0; // of the steps, those at or below `linear`
+        for (unsigned half = 128; half > 0; half /= 2)
+            n += steps_[n + half - 1] <= linear ? half : 0;
+        return static_cast<unsigned char>(n);
+    }
+
+private:
+    std::array<float, 255> steps_{}; ///< the smallest value that becomes 1, 2, …
+};
+
+} // namespace photongrid

@@ -1,0 +1,281 @@
+// Every setting once: its name, its place in render_settings, its range, what it is for. Scene files, statistics, the
+// command line and the window read, write and check settings by this table. A new setting is a member of a stage's
+// struct and a row here.
+#pragma once
+
+#include <photongrid/scene/check.hpp>
+#include <photongrid/scene/render_settings.hpp>
+
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// A value of a setting and the word for it.
+template <class Value>
+struct named {
+    const char* name;
+    Value value;
+};
+template <class Value>
+named(const char*, Value) -> named<Value>;
+
+namespace setting_table {
+
+    // What a setting may be. Each has check(), which throws std::invalid_argument "name: must be …".
+
+    /// A whole number; both ends are allowed.
+    struct whole_range {
+        std::uint32_t least, most;
+        void check(const char* name, std::uint32_t v) const
+        {
+            detail::require(v >= least && v <= most,
+                std::string(name) + ": must be from " + std::to_string(least) + " to " + std::to_string(most));
+        }
+    };
+    /// A number; both ends are allowed.
+    struct real_range {
+        double least, most;
+        const char* unit; ///< with a space before it
+        /// "-64 to 64 EV"
+        std::string ends() const
+        {
+            return std::to_string(std::lround(least)) + " to " + std::to_string(std::lround(most)) + unit;
+        }
+        void check(const char* name, double v) const
+        {
+            detail::require(v >= least && v <= most, std::string(name) + ": must be from " + ends());
+        }
+    };
+    /// A length, m.
+    struct any_length {
+        void check(const char* name, double v) const
+        {
+            detail::require(detail::finite(v) && v > 0, std::string(name) + ": must be finite and greater than 0");
+        }
+    };
+    /// One of some words.
+    template <class Value, std::size_t N>
+    struct one_of {
+        named<Value> values[N];
+
+        constexpr const char* word_for(Value v) const
+        {
+            for (const auto& n : values)
+                if (n.value == v)
+                    return n.name;
+            return nullptr;
+        }
+        /// Null for a word that is none of them.
+        constexpr const Value* find(std::string_view word) const
+        {
+            for (const auto& n : values)
+                if (n.name == word)
+                    return &n.value;
+            return nullptr;
+        }
+        void check(const char* name, Value v) const
+        {
+            detail::require(word_for(v) != nullptr, std::string(name) + ": must be one of the enumerators");
+        }
+    };
+    template <class Value, std::size_t N>
+    one_of(const named<Value> (&)[N]) -> one_of<Value, N>;
+    /// Cells of the photon map along three axes, or 0, 0, 0.
+    struct cells {
+        std::uint32_t most_per_axis;
+        double most;
+        void check(const char* name, const glm::uvec3& v) const
+        {
+            const bool fitted = v == glm::uvec3(0);
+            detail::require(fitted || (v.x >= 1 && v.y >= 1 && v.z >= 1),
+                std::string(name) + ": each axis needs at least one cell (or all three 0: fitted to the photons)");
+            detail::require(v.x <= most_per_axis && v.y <= most_per_axis && v.z <= most_per_axis,
+                std::string(name) + ": must be at most " + std::to_string(most_per_axis) + " cells along an axis");
+            detail::require(static_cast<double>(v.x) * v.y * v.z <= most, std::string(name) + ": more than 2^31 cells");
+        }
+    };
+    /// Width and height.
+    struct pixels {
+        std::uint32_t most;
+        void check(const char* name, const output_settings& s) const
+        {
+            detail::require(s.width >= 1 && s.height >= 1 && s.width <= most && s.height <= most,
+                std::string(name) + ": width and height must be from 1 to " + std::to_string(most) + " pixels");
+        }
+    };
+    /// Photons that are refused.
+    struct policies {
+        real_range min_cosine, flattening;
+        void check(const char* name, const leak_policy& l) const
+        {
+            min_cosine.check((std::string(name) + ": min_cosine").c_str(), static_cast<double>(l.min_cosine));
+            flattening.check((std::string(name) + ": flattening").c_str(), static_cast<double>(l.flattening));
+        }
+    };
+} // namespace setting_table
+
+/// Whether scene files have a setting.
+enum class in_scenes { required, optional, never };
+
+/// A row: `of(s)` is the member of the render_settings `s`.
+template <class Member, class Values>
+struct setting {
+    const char* name; ///< in scene files and statistics; on the command line --name, with - for _
+    Member of;
+    Values values;
+    in_scenes use;
+    const char* about; ///< for --help
+};
+template <class Member, class Values>
+setting(const char*, Member, Values, in_scenes, const char*) -> setting<Member, Values>;
+
+/// The rows.
+namespace setting_table {
+
+    inline constexpr setting size{"size", [](auto& s) -> auto& {return s.output;
+}
+, pixels{16384}, in_scenes::required, "pixels"
+}; // namespace photongrid
+inline constexpr setting photons{"photons", [](auto& s) -> auto& {return s.map.photons;
+}
+, whole_range{1, 1u << 27}, in_scenes::required, "photons stored"
+}
+;
+inline constexpr setting k{"k", [](auto& s) -> auto& {return s.estimate.k;
+}
+, whole_range{1, 1u << 24}, in_scenes::required, "photons sought by an estimate; fixed_radius seeks none"
+}
+;
+inline constexpr setting grid{"grid", [](auto& s) -> auto& {return s.map.grid;
+}
+, cells{1u << 20, 0x1p31}, in_scenes::required, "cells of the photon map over the scene, or fitted to the photons and k"
+}
+;
+inline constexpr setting max_radius{"max_radius", [](auto& s) -> auto& {return s.estimate.max_radius;
+}
+, any_length{}, in_scenes::required, "largest search radius; of fixed_radius, the radius"
+}
+;
+inline constexpr setting light_samples{"light_samples", [](auto& s) -> auto& {return s.view.light_samples;
+}
+, whole_range{1, 65536}, in_scenes::optional, "shadow rays per area light and eye ray"
+}
+;
+inline constexpr setting spp{"spp", [](auto& s) -> auto& {return s.view.spp;
+}
+, whole_range{1, 65536}, in_scenes::optional, "eye rays per pixel and pass"
+}
+;
+inline constexpr setting passes{"passes", [](auto& s) -> auto& {return s.output.passes;
+}
+, whole_range{1, 65536}, in_scenes::optional,
+    "the picture is the mean of so many, each with photons, eye rays and shadow rays of its own"
+}
+;
+inline constexpr setting depth{"depth", [](auto& s) -> auto& {return s.view.depth;
+}
+, whole_range{0, 64}, in_scenes::optional, "reflections and refractions an eye ray follows"
+}
+;
+inline constexpr setting photon_depth{"photon_depth", [](auto& s) -> auto& {return s.map.photon_depth;
+}
+, whole_range{1, 64}, in_scenes::optional, "surfaces a photon path meets at most"
+}
+;
+inline constexpr setting seed{"seed", [](auto& s) -> auto& {return s.seed;
+}
+, whole_range{0, 0xFFFFFFFFu}, in_scenes::optional, "same seed, same picture"
+}
+;
+inline constexpr setting map{"map", [](auto& s) -> auto& {return s.map.builder;
+}
+, one_of{{named{"sort", map_builder::sort}, {"route", map_builder::route}}}, in_scenes::optional,
+    "build the photon map by bitonic sort or stencil routing"
+}
+;
+inline constexpr setting slots{"slots", [](auto& s) -> auto& {return s.map.slots;
+}
+, whole_range{1, 16}, in_scenes::optional, "routed cells have N x N slots"
+}
+;
+inline constexpr setting exposure{"exposure", [](auto& s) -> auto& {return s.output.exposure;
+}
+, real_range{-64, 64, " EV"}, in_scenes::optional, "PNG: pixel values times 2^EV"
+}
+;
+inline constexpr setting search{"search", [](auto& s) -> auto& {return s.estimate.search;
+}
+,
+    one_of{{named{"at_least_k", search_kind::at_least_k}, {"exact_k", search_kind::exact_k},
+        {"fixed_radius", search_kind::fixed_radius}}},
+    in_scenes::optional, "photons used: k and a few more, as the paper has it; the k nearest; all within --max-radius"
+}
+;
+inline constexpr setting filter{"filter", [](auto& s) -> auto& {return s.estimate.filter;
+}
+,
+    one_of{{named{"constant", filter_kind::constant}, {"cone", filter_kind::cone},
+        {"epanechnikov", filter_kind::epanechnikov}, {"silverman", filter_kind::silverman}}},
+    in_scenes::optional, "weight of a photon by its distance"
+}
+;
+inline constexpr setting bias{"bias", [](auto& s) -> auto& {return s.estimate.bias;
+}
+, one_of{{named{"paper", bias_kind::paper}, {"unbiased", bias_kind::unbiased}}}, in_scenes::optional,
+    "the photon that sets the radius counts (paper) or is left out of the sum (unbiased)"
+}
+;
+inline constexpr setting leaks{"leaks", [](auto& s) -> auto& {return s.estimate.leaks;
+}
+, policies{{-1, 1, ""}, {1, 1e6, ""}}, in_scenes::optional,
+    "photons refused: none, or some of side (came from behind the surface), min_cosine=COS (lie on a surface "
+    "turned away by more than this cosine; 0.5 where none is given), flattening=F (distances along the normal "
+    "count F times; 4 where none is given), with commas between them"
+}
+;
+inline constexpr setting edge_correction{"edge_correction", [](auto& s) -> auto& {return s.estimate.edges;
+}
+, one_of{{named{"none", photongrid::edge_correction::none}, {"polygons", photongrid::edge_correction::polygons}}},
+    in_scenes::optional,
+    "polygons: divide estimates by the share of their disc that lies on the surface, so that polygons do not "
+    "darken towards their edges; needs min_cosine among --leaks"
+}
+;
+inline constexpr setting only{"only", [](auto& s) -> auto& {return s.output.only;
+}
+,
+    one_of{{named{"all", light_part::all}, {"direct", light_part::direct}, {"caustic", light_part::caustic},
+        {"indirect", light_part::indirect}}},
+    in_scenes::never, "draw this part of the light alone"
+}
+;
+
+} // namespace setting_table
+
+/// Calls visit(row) for every setting that has a name, in the order of scene files.
+template <class Visit>
+constexpr void for_each_setting(const Visit& visit)
+{
+    namespace t = setting_table;
+    const auto all = [&](const auto&... row) { (visit(row), ...); };
+    all(t::size, t::photons, t::k, t::grid, t::max_radius, t::light_samples, t::spp, t::passes, t::depth,
+        t::photon_depth, t::seed, t::map, t::slots, t::exposure, t::search, t::filter, t::bias, t::leaks,
+        t::edge_correction, t::only);
+}
+
+/// \throws std::invalid_argument "name: must be …" for a setting out of its range, or for two that exclude each other.
+inline void check(const render_settings& s)
+{
+    for_each_setting([&](const auto& row) { row.values.check(row.name, row.of(s)); });
+    detail::require(s.estimate.edges == edge_correction::none || s.estimate.leaks.min_cosine > 0,
+        "edge_correction: photons of adjoining walls would count, though their area does not; it needs the leak policy "
+        "min_cosine above 0, for example 0.5 (or edge_correction none)");
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>
