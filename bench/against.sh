@@ -58,10 +58,13 @@ scenes=(cornell_box cornell_blocks ring glass_ball)
 option_for_base() {
   local word
   for word; do
-    case $word in
-      # --new-name) echo --old-name ;;
-      *) echo "$word" ;;
-    esac
+    if [[ $old_words == yes ]]; then
+      case $word in
+        --filter) word=--kernel ;;
+        *min_cosine* | *flattening*) word=${word//min_cosine/normals} word=${word//flattening/disc} ;;
+      esac
+    fi
+    echo "$word"
   done
 }
 
@@ -111,6 +114,8 @@ for scene in "${scenes[@]}"; do
   git show "$rev:examples/scenes/$scene.json" >"$work/base/$scene.json"
   cp "examples/scenes/$scene.json" "$work/head/$scene.json"
 done
+old_words=no # of November 2026
+[[ $("${program[base]}" render --help) == *--filter* ]] || old_words=yes
 echo "base: $(git log -1 --format='%h %s' "$rev")"
 echo "head: $(git log -1 --format='%h %s')$(git diff --quiet HEAD || echo ', and what is not committed')"
 if [[ $built == yes ]]; then
