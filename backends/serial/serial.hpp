@@ -100,8 +100,9 @@ public:
         return b.data_;
     }
 
+    // Flattened: else g++ may leave a kernel out of line, which costs a twentieth of tracing.
     template <gather_kernel K, class Reads, class Writes>
-    void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
+    [[gnu::noinline, gnu::flatten]] void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
     {
         detail::check_call<K>("run", l, reads, writes);
         K k = prepare<K>(l, args, reads);

@@ -275,24 +275,21 @@ void pictures(device_type& device)
     settings.map.grid = glm::uvec3(0);
 
     //! [build_map]
-    photongrid::render_stats stats;
-    const auto built = photongrid::build_map(device, room, settings, {}, stats); // again only when the scene changes
+    const auto built = photongrid::build_map(device, room, settings); // again only when the scene changes
     //! [build_map]
-    expect(stats.map.cells > 0 && built.map.photons.size() == 1000, "build_map");
+    expect(built.stats.map.cells > 0 && built.map.photons.size() == 1000, "build_map");
 
     //! [draw]
     const photongrid::camera from_above{.position = {0, 2, 0.5}, .look_at = {0, 0, 0}};
-    const photongrid::image above
-        = photongrid::draw(device, built, from_above, settings, {}, stats); // no photon is traced
-    const glm::vec3 radiance = above.pixels[6 * 16 + 8];                    // W/(m^2 sr)
+    const auto [above, stats] = photongrid::draw(device, built, from_above, settings); // no photon is traced
+    const glm::vec3 radiance = above.pixels[6 * 16 + 8];                               // W/(m^2 sr)
     //! [draw]
     expect(radiance.x > 0 && stats.invalid_pixels == 0 && above.pixels.size() == 16 * 12, "draw");
 
     //! [render]
-    const photongrid::image picture
-        = photongrid::render(device, room, settings, {}, stats); // by the scene's own camera
+    const photongrid::image picture = photongrid::render(device, room, settings).picture; // by the scene's own camera
     //! [render]
-    expect(picture.pixels == photongrid::draw(device, built, room.camera, settings, {}, stats).pixels, "render");
+    expect(picture.pixels == photongrid::draw(device, built, room.camera, settings).picture.pixels, "render");
 
     {
         using namespace std::chrono_literals;
@@ -319,7 +316,7 @@ void pictures(device_type& device)
         //! [progressive_render]
         expect(drawing.step() && drawing.maps() >= 2, "progressive_render");
         expect(window.size() >= 2
-                && window[window.size() - 2].pixels == photongrid::render(device, room, settings, {}, stats).pixels,
+                && window[window.size() - 2].pixels == photongrid::render(device, room, settings).picture.pixels,
             "its last picture");
     }
 

@@ -76,7 +76,7 @@ namespace {
         return bits;
     }
 
-    image picture(faulty& b, map_builder builder, render_stats& stats, const render_observer& observer = {})
+    rendered picture(faulty& b, map_builder builder, const render_observer& observer = {})
     {
         auto s = testing::small_cornell(); // glass, a mirror, a lamp
         s.render.output.width = 6;
@@ -86,13 +86,12 @@ namespace {
         s.render.map.photon_depth = 9; // asks once whether any path goes on
         s.render.view.light_samples = 1;
         s.render.map.builder = builder;
-        return render(b, s, s.render, observer, stats);
+        return render(b, s, s.render, observer);
     }
 
     std::string render_bits(faulty& b, map_builder builder, const render_observer& observer = {})
     {
-        render_stats stats;
-        const auto p = picture(b, builder, stats, observer);
+        const auto [p, stats] = picture(b, builder, observer);
         std::string bits;
         append(bits, p.pixels);
         append(bits,
@@ -262,10 +261,9 @@ namespace {
     {
         serial_backend inner;
         faulty b(inner);
-        render_stats stats;
         b.set(fault::wrong_count, 2, 0); // the first asks whether a path goes on
         try {
-            picture(b, map_builder::sort, stats);
+            (void)picture(b, map_builder::sort);
             FAIL();
         } catch (const backend_error& e) {
             EXPECT_STREQ(
@@ -289,8 +287,7 @@ namespace {
         const auto render_to_file = [&] {
             render_observer observer; // as --progressive: every picture on the way is written too
             observer.intermediate = [&](const image& p) { write_image(path, p); };
-            render_stats stats;
-            write_image(path, picture(b, map_builder::sort, stats, observer));
+            write_image(path, picture(b, map_builder::sort, observer).picture);
         };
         b.set(fault::device_lost, 0);
         render_to_file();

@@ -2,8 +2,8 @@
 #include "kernel_files.hpp"
 
 #include <photongrid/backend/kernel_source.hpp>
-#include <photongrid/estimate/knn_visit.kernel.hpp>
-#include <photongrid/render/shade.kernel.hpp>
+#include <photongrid/map/bitonic_step.kernel.hpp>
+#include <photongrid/map/photon_cell.kernel.hpp>
 
 #include <gtest/gtest.h>
 
@@ -79,12 +79,13 @@ TEST(translate_log, understands_three_drivers)
 
 TEST(kernel_texts, a_kernel_carries_its_text_and_those_that_it_includes)
 {
-    const auto texts = texts_of<kernels::knn_visit>({});
-    EXPECT_EQ(find_kernel_text(kernels::knn_visit::path, texts).name, "include/photongrid/estimate/knn_visit.glsl");
+    const auto texts = texts_of<kernels::photon_cell>({});
+    EXPECT_EQ(find_kernel_text(kernels::photon_cell::path, texts).name, "include/photongrid/map/photon_cell.glsl");
     EXPECT_NE(find_kernel_text("grid.glsl", texts).text.find("struct Grid"), std::string_view::npos);
-    EXPECT_THROW(find_kernel_text("shade.glsl", texts), std::runtime_error);
-    const auto shade = texts_of<kernels::shade>({});
-    EXPECT_NE(find_kernel_text(kernels::shade::path, shade).text.find("void kernel(uint i)"), std::string_view::npos);
+    EXPECT_THROW(find_kernel_text("bitonic_step.glsl", texts), std::runtime_error);
+    const auto step = texts_of<kernels::bitonic_step>({});
+    EXPECT_NE(
+        find_kernel_text(kernels::bitonic_step::path, step).text.find("void kernel(uint i)"), std::string_view::npos);
 }
 
 // Hard cases G4, G7: what is fused, cut at NaN, or approximated differently from device to device is not in the

@@ -43,7 +43,7 @@ TEST(passes, noise_falls_with_their_number)
             auto settings = settings_of_pass(s.render, pass);
             serial_backend b;
             render_stats stats;
-            const auto built = build_map(b, s, settings, {}, stats);
+            const auto built = build_map(b, s, settings);
             const auto pixels = draw_pass(b, built, s.camera, settings, {}, stats);
             film one(16, 16, 1, false);
             one.add(0, pixels);

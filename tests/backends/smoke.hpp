@@ -14,12 +14,11 @@ template <backend B>
 int smoke(B& b)
 {
     auto s = small_cornell();
-    s.render.width = s.render.height = 16;
-    s.render.photons = 2000;
+    s.render.output.width = s.render.output.height = 16;
+    s.render.map.photons = 2000;
     for (const auto builder : {map_builder::sort, map_builder::route}) {
-        s.render.builder = builder;
-        render_stats stats;
-        const auto picture = render(b, s, s.render, {}, stats);
+        s.render.map.builder = builder;
+        const auto [picture, stats] = render(b, s);
         double sum = 0;
         for (const auto& p : picture.pixels)
             sum += static_cast<double>(p.x + p.y + p.z);

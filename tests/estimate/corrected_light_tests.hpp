@@ -86,11 +86,13 @@ TYPED_TEST_P(edges, a_floor_lit_by_a_mirror_is_right_up_to_its_rim)
     s.render.output.aov = true;
     image pictures[2];
     render_stats stats[2];
-    const auto built = build_map(this->b(), s, s.render, {}, stats[0]);
+    const auto built = build_map(this->b(), s, s.render);
     for (const bool corrected : {false, true}) {
         auto settings = s.render;
         settings.estimate.edges = corrected ? edge_correction::polygons : edge_correction::none;
-        pictures[corrected] = draw(this->b(), built, s.camera, settings, {}, stats[corrected]);
+        auto drawn = draw(this->b(), built, s.camera, settings);
+        pictures[corrected] = std::move(drawn.picture);
+        stats[corrected] = drawn.stats;
         double sums[3] = {}, counts[3] = {};
         for (uint y = 0; y < 48; ++y)
             for (uint x = 0; x < 48; ++x) {
@@ -141,14 +143,13 @@ TYPED_TEST_P(edges, pictures_equal_the_serial_backends)
             s.render.estimate.leaks.min_cosine = 0.5f;
             s.render.estimate.search = search;
             serial_backend serial;
-            render_stats stats;
-            const auto mine = render(b, s, s.render, {}, stats);
+            const auto [mine, stats] = render(b, s);
             EXPECT_EQ(stats.invalid_pixels, 0u);
             if (b.caps().exact_division && b.caps().exact_sqrt) {
-                EXPECT_LE(relative_mse(mine, render(serial, s, s.render, {}, stats)), 1e-9);
+                EXPECT_LE(relative_mse(mine, render(serial, s).picture), 1e-9);
             }
             s.render.estimate.edges = edge_correction::none;
-            EXPECT_GT(relative_mse(mine, render(b, s, s.render, {}, stats)), 1e-4);
+            EXPECT_GT(relative_mse(mine, render(b, s).picture), 1e-4);
         }
 }
 
@@ -162,9 +163,8 @@ TYPED_TEST_P(edges, correction_needs_the_normals_policy)
         settings.estimate.leaks = leaks;
         EXPECT_NO_THROW(check(settings));
         settings.estimate.edges = edge_correction::polygons;
-        render_stats stats;
         try {
-            render(this->b(), s, settings, {}, stats);
+            (void)render(this->b(), s, settings);
             FAIL() << "corrected with the light of adjoining walls";
         } catch (const std::invalid_argument& e) {
             EXPECT_EQ(std::string(e.what()).find("edge_correction: "), 0u) << e.what();

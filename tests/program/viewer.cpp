@@ -1,5 +1,5 @@
 // What is edited in the window, and the thread that draws it, without a display.
-#include "../backends/serial_pictures.hpp"
+#include "../backends/serial_picture.hpp"
 #include "../scene/test_scenes.hpp"
 #include "viewer/document.hpp"
 #include "viewer/render_thread.hpp"
@@ -223,12 +223,7 @@ namespace {
         render_thread thread; // last: its thread ends first
     };
 
-    image rendered(const version& v)
-    {
-        serial_backend b;
-        render_stats stats;
-        return render(b, v.scene, v.settings, {}, stats);
-    }
+    image rendered(const version& v) { return serial_picture(v.scene, v.settings); }
 
     TEST_F(drawn, ends_with_the_bytes_of_render)
     {

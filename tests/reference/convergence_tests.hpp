@@ -1,6 +1,7 @@
 // Convergence to the reference.
 #pragma once
 
+#include "../backends/serial_picture.hpp"
 #include "form_factor_tests.hpp"
 #include "landed_photons.hpp"
 
@@ -189,12 +190,11 @@ namespace {
             std::vector<std::vector<double>> values, corrected;
             for (uint seed = 1; seed <= seeds; ++seed) {
                 settings.seed = seed;
-                render_stats stats;
-                values.push_back(spread_out(render(b, s, settings, {}, stats)));
+                values.push_back(spread_out(serial_picture(s, settings)));
                 auto with_edges = settings;
                 with_edges.estimate.leaks.min_cosine = 0.5f;
                 with_edges.estimate.edges = edge_correction::polygons;
-                corrected.push_back(spread_out(render(b, s, with_edges, {}, stats)));
+                corrected.push_back(spread_out(serial_picture(s, with_edges)));
             }
             rows.push_back(row(values, false));
             corrected_rows.push_back(row(corrected, false));

@@ -41,11 +41,7 @@ protected:
         s.render.map.photons = 4000;
         return s;
     }
-    image whole(const scene& s, const render_settings& settings)
-    {
-        render_stats stats;
-        return render(this->b(), s, settings, {}, stats);
-    }
+    image whole(const scene& s, const render_settings& settings) { return render(this->b(), s, settings).picture; }
     /// Passes of a kernel so far.
     std::uint64_t passes(const char* kernel)
     {

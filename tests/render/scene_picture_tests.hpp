@@ -29,14 +29,13 @@ private:
         image pictures[2];
         for (const auto builder : {map_builder::sort, map_builder::route}) {
             settings.map.builder = builder;
-            render_stats stats;
-            auto& picture = pictures[builder == map_builder::route ? 1 : 0];
-            picture = render(this->b(), s, settings, {}, stats);
+            auto [drawn, stats] = render(this->b(), s, settings);
+            auto& picture = pictures[builder == map_builder::route ? 1 : 0] = std::move(drawn);
             expect_an_exact_account(stats.photons, s.render.map.photons);
             EXPECT_EQ(stats.invalid_pixels, 0u);
             if (this->b().caps().exact_division && this->b().caps().exact_sqrt) {
                 serial_backend serial;
-                EXPECT_LE(relative_mse(picture, render(serial, s, settings, {}, stats)), 1e-9) << name;
+                EXPECT_LE(relative_mse(picture, render(serial, s, settings).picture), 1e-9) << name;
             }
         }
         const double difference = relative_mse(pictures[1], pictures[0]);

@@ -199,8 +199,7 @@ TYPED_TEST_P(hard_cases, c5_a_camera_in_glass_sees_through_it)
     s.camera = {{0.5, 0.5, 0.5}, {0.5, 1, 0.5}, {0, 0, 1}, 40};
     s.render.view.depth = 1;
     s.render.map.photons = 500;
-    render_stats stats;
-    const auto im = render(this->b(), s, s.render, {}, stats);
+    const auto im = render(this->b(), s).picture;
     double largest = 0;
     for (const auto& p : im.pixels)
         largest = std::max(largest, std::abs(static_cast<double>(p.x) / (0.96 / M_PI) - 1));

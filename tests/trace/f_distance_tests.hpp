@@ -47,20 +47,17 @@ TYPED_TEST_P(hard_cases, f6_a_scene_far_away_renders_the_same)
     blocks.render.estimate.k = 80;
     for (const auto& s : {rounded_scene(blocks), rounded_scene(all_shapes())}) {
         const dvec3 by(1e6, -1e6, 1e6);
-        render_stats a, b;
-        const auto here = render(this->b(), s, s.render, {}, a),
-                   there = render(this->b(), moved(s, by), s.render, {}, b);
-        EXPECT_EQ(count_different_bits(here.pixels, there.pixels), 0u) << s.name;
-        EXPECT_EQ(a.photons.emitted, b.photons.emitted);
+        const auto here = render(this->b(), s), there = render(this->b(), moved(s, by));
+        EXPECT_EQ(count_different_bits(here.picture.pixels, there.picture.pixels), 0u) << s.name;
+        EXPECT_EQ(here.stats.photons.emitted, there.stats.photons.emitted);
     }
     // Coordinates that are not multiples: rounding to double at 10^6 moves them by up to 2^-34 m.
     auto s = all_shapes();
     for (auto& x : s.spheres)
         x.center += dvec3(1e-3 / 3, 0, 0);
     s.spheres[0].center.y += 1e-4; // touches the floor
-    render_stats a, b;
-    const auto here = render(this->b(), s, s.render, {}, a),
-               there = render(this->b(), moved(s, dvec3(1e6 + 0.1, 1e6 / 3, -1e6)), s.render, {}, b);
+    const auto here = render(this->b(), s).picture,
+               there = render(this->b(), moved(s, dvec3(1e6 + 0.1, 1e6 / 3, -1e6))).picture;
     const double difference = relative_mse(there, here);
     this->report("F6", "relMSE of a scene moved by 10^6 m, coordinates not multiples of 2^-20:", difference);
     EXPECT_LE(difference, 0.005);

@@ -71,6 +71,15 @@ struct grip {
     dvec3 position{0};    ///< m; where it is met
 };
 
+/// A rectangle of the picture's pixels.
+struct picture_box {
+    double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
+};
+
+/// Where a part of the scene stands in a picture of width x height pixels; nothing where some of it is behind the
+/// camera.
+std::optional<picture_box> box_of(const scene& s, const scene_part& part, double width, double height);
+
 /// A ray of the camera's, through a point of a picture.
 struct sight_line {
     dvec3 origin{0};          ///< m

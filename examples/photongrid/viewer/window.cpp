@@ -1,14 +1,12 @@
 #include "window.hpp"
 
+#include "display.hpp"
 #include "render_thread.hpp"
+#include "settings_panel.hpp"
 #include <photongrid/io/image_difference.hpp>
 #include <photongrid/io/image_file.hpp>
 #include <photongrid/io/scene_writer.hpp>
 #include <photongrid/io/tone_map.hpp>
-#include <photongrid/scene/setting_table.hpp>
-
-#include <GLFW/glfw3.h>
-#include <imgui.h>
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
@@ -25,68 +23,6 @@ namespace {
     constexpr float panel_width = 330;
     constexpr GLenum context_lost = 0x0507; // GL_CONTEXT_LOST
 
-    /// GLFW, open for as long as this lives. What it says last is in `said`.
-    class glfw {
-    public:
-        glfw()
-        {
-            glfwSetErrorCallback([](int, const char* text) { said() = text; });
-            if (glfwInit() != GLFW_TRUE)
-                throw backend_error("view: no window can be opened: " + said()
-                    + ". Is there a display (DISPLAY or WAYLAND_DISPLAY set; over ssh: -X)? Without one, `photongrid "
-                      "render --progressive DIR` writes the same pictures to files, and `xvfb-run photongrid view …` "
-                      "opens the window unseen");
-        }
-        glfw(const glfw&) = delete;
-        glfw& operator=(const glfw&) = delete;
-        ~glfw() { glfwTerminate(); }
-        static std::string& said()
-        {
-            static std::string text;
-            return text;
-        }
-    };
-
-    struct window_closer {
-        void operator()(GLFWwindow* w) const { glfwDestroyWindow(w); }
-    };
-
-    /// ImGui on a window.
-    class interface {
-    public:
-        explicit interface(GLFWwindow* w)
-        {
-            IMGUI_CHECKVERSION();
-            ImGui::CreateContext();
-            ImGui::GetIO().IniFilename = nullptr; // nothing of ours is written where nobody asked for it
-            ImGui::StyleColorsDark();
-            ImGui_ImplGlfw_InitForOpenGL(w, true);
-            if (!ImGui_ImplOpenGL3_Init("#version 130"))
-                throw backend_error("view: the panel cannot be drawn: this OpenGL has no shaders (Debian: apt install "
-                                    "libgl1-mesa-dri)");
-        }
-        interface(const interface&) = delete;
-        interface& operator=(const interface&) = delete;
-        ~interface()
-        {
-            ImGui_ImplOpenGL3_Shutdown();
-            ImGui_ImplGlfw_Shutdown();
-            ImGui::DestroyContext();
-        }
-    };
-
-    /// What the last item does, where the mouse rests on it.
-    void tip(const char* text)
-    {
-        if (!ImGui::IsItemHovered())
-            return;
-        ImGui::BeginTooltip();
-        ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
-        ImGui::TextUnformatted(text);
-        ImGui::PopTextWrapPos();
-        ImGui::EndTooltip();
-    }
-
     /// A file's name that is not taken: STEM.png, STEM-2.png, …
     std::string free_name(const std::string& stem, const std::string& ending)
     {
@@ -96,40 +32,11 @@ namespace {
         return name;
     }
 
-    /// A rectangle of the picture's pixels.
-    struct frame_box {
-        double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
-    };
-
-    /// Where a part of the scene stands in the picture; nothing where some of it is behind the camera.
-    std::optional<frame_box> box_of(const scene& s, const scene_part& part, double width, double height)
-    {
-        bounds b;
-        for_each_item(s, part, [&](const auto& item, auto kind) { kind.add_bounds(b, item); });
-        const auto& c = s.camera;
-        const auto [forward, right, up] = photongrid::detail::camera_axes(c);
-        const double reach = std::tan(glm::radians(c.vertical_fov) / 2);
-        frame_box f;
-        for (int corner = 0; corner < 8; ++corner) {
-            const dvec3 to = dvec3(corner & 1 ? b.high.x : b.low.x, corner & 2 ? b.high.y : b.low.y,
-                                 corner & 4 ? b.high.z : b.low.z)
-                - c.position;
-            const double depth = glm::dot(to, forward);
-            if (depth <= 0)
-                return std::nullopt;
-            const double x = 0.5 * width + 0.5 * height * glm::dot(to, right) / (depth * reach),
-                         y = 0.5 * height - 0.5 * height * glm::dot(to, up) / (depth * reach);
-            f.left = std::min(f.left, x), f.right = std::max(f.right, x), f.top = std::min(f.top, y),
-            f.bottom = std::max(f.bottom, y);
-        }
-        return f;
-    }
-
     class window {
     public:
         window(const window_options& o, bool (*stop_asked)())
-            : options_(o), stop_asked_(stop_asked), handle_(open(o.begin.settings)), interface_(handle_.get()),
-              document_(o.begin), journal_(o.journal),
+            : options_(o), stop_asked_(stop_asked), handle_(open_window(o.begin.settings, panel_width)),
+              interface_(handle_.get()), document_(o.begin), panel_(document_), journal_(o.journal),
               renderer_(
                   o.renderer, [] { glfwPostEmptyEvent(); },
                   o.journal.empty() ? journal() : [this](const std::string& line) { note(line); })
@@ -172,25 +79,6 @@ namespace {
         }
 
     private:
-        static std::unique_ptr<GLFWwindow, window_closer> open(const render_settings& s)
-        {
-            const float scale = std::max(
-                1.0f, std::min(3.0f, 640.0f / static_cast<float>(std::max(s.output.width, s.output.height))));
-            const int width = static_cast<int>(scale * static_cast<float>(s.output.width) + panel_width),
-                      height = std::max(720, static_cast<int>(scale * static_cast<float>(s.output.height)));
-            glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS,
-                GLFW_LOSE_CONTEXT_ON_RESET); // so that a loss is said; ignored where it cannot be
-            std::unique_ptr<GLFWwindow, window_closer> w(
-                glfwCreateWindow(std::min(width, 1600), std::min(height, 1000), "photongrid", nullptr, nullptr));
-            if (!w)
-                throw backend_error("view: the display gives no OpenGL context: " + glfw::said()
-                    + " (Debian: apt install libgl1-mesa-dri libglx-mesa0); `photongrid render --progressive DIR` "
-                      "needs none");
-            glfwMakeContextCurrent(w.get());
-            glfwSwapInterval(1);
-            return w;
-        }
-
         void note(const std::string& line)
         {
             const std::lock_guard lock(journal_guard_);
@@ -392,68 +280,6 @@ namespace {
             pressed_->position = *to;
         }
 
-        // --- settings ---
-        /// After an item that changes settings: one step of undo for as long as it is held.
-        bool begun(const char* name)
-        {
-            if (ImGui::IsItemActivated())
-                held_ = document_.now();
-            if (!ImGui::IsItemEdited())
-                return false;
-            if (held_) {
-                document_.begin(name);
-                held_.reset();
-            }
-            return true;
-        }
-
-        // A control for a row of the table of settings. Its label may be more than the setting's name.
-
-        /// A word for each value.
-        template <class Row>
-        void choice(const Row& row, const char* label, const char* about)
-        {
-            const auto value = row.of(document_.now().settings);
-            if (ImGui::BeginCombo(label, row.values.word_for(value))) {
-                for (const auto& n : row.values.values)
-                    if (ImGui::Selectable(n.name, n.value == value))
-                        change(label, [&](render_settings& s) { row.of(s) = n.value; });
-                ImGui::EndCombo();
-            }
-            tip(about);
-        }
-
-        /// A whole number, by a slider whose steps are even in its logarithm.
-        template <class Row>
-        void number(const Row& row, const char* label, int low, int high, const char* about)
-        {
-            int value = static_cast<int>(row.of(document_.now().settings));
-            const bool edited = ImGui::SliderInt(
-                label, &value, low, high, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-            if (begun(label) && edited)
-                row.of(document_.edit().settings) = static_cast<std::uint32_t>(value);
-            tip(about);
-        }
-
-        template <class Row>
-        void measure(const Row& row, const char* label, float low, float high, const char* format, bool logarithmic,
-            const char* about)
-        {
-            float value = static_cast<float>(row.of(document_.now().settings));
-            const bool edited = ImGui::SliderFloat(label, &value, low, high, format,
-                (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp);
-            if (begun(label) && edited)
-                row.of(document_.edit().settings) = static_cast<double>(value);
-            tip(about);
-        }
-
-        template <class Change>
-        void change(const std::string& name, Change apply)
-        {
-            document_.begin(name);
-            apply(document_.edit().settings);
-        }
-
         void draw_panel()
         {
             ImGui::PushItemWidth(170);
@@ -466,93 +292,11 @@ namespace {
                 "elsewhere it turns the camera. Right or middle button, or Shift: pans. Wheel: zooms. A moving camera "
                 "keeps the photon map; "
                 "what moves in the scene needs a new one.");
-            ImGui::Separator();
-            draw_backend();
-            const auto& s = document_.now().settings;
-            number(setting_table::photons, "photons", 256, 4000000,
-                "Photons stored (N, n). Speed: tracing and sorting them takes proportionally longer. Error: noise "
-                "falls with the square root.");
-            number(setting_table::k, "k", 1, 4000,
-                "Photons in an estimate (K, k). Speed: more take longer. Error: more are smoother, and blur shadows "
-                "and caustics more.");
-            measure(setting_table::max_radius, "radius, m", 1e-3f, 10.0f, "%.4f", true,
-                "Largest search radius (R, r). Speed: dark places search this far. Error: where fewer than k photons "
-                "lie within it, estimates are noisier instead of more blurred.");
-            choice(setting_table::search, "search",
-                "Which photons (s): the k nearest; at least k, as the paper has it, which uses more photons and is a "
-                "little too bright; or all within the radius.");
-            choice(setting_table::filter, "filter",
-                "Weight by distance (w). Speed: the same. Error: constant is the least noisy and shows discs; "
-                "silverman the smoothest.");
-            choice(setting_table::bias, "bias",
-                "The photon that sets the radius: paper counts it, k / (k - 1) too bright; unbiased leaves it out.");
-            draw_grid();
-            choice(setting_table::map, "map",
-                "How the photon map is built (m). sort is exact; route takes fewer passes and, where cells overflow, "
-                "is approximate.");
-            if (s.map.builder == map_builder::route)
-                number(setting_table::slots, "slots", 1, 16,
-                    "Cells have slots x slots places. More lose fewer photons and take more memory.");
-            ImGui::Separator();
-            number(setting_table::spp, "eye rays", 1, 64,
-                "Eye rays per pixel. Speed: proportional. Error: smooth edges, less noise of glass and lamps.");
-            number(setting_table::passes, "passes", 1, 1024,
-                "The picture is the mean of so many, each with photons and rays of its own. Speed: proportional. "
-                "Error: "
-                "noise and blotches fade as they come.");
-            number(setting_table::light_samples, "light samples", 1, 256,
-                "Shadow rays a lamp and eye ray. Speed: proportional for direct light. Error: smoother half-shadows.");
-            choice(setting_table::only, "light",
-                "Which part of the light is shown. Caustics or indirect light alone need a map of their own.");
-            bool side = s.estimate.leaks.side;
-            if (ImGui::Checkbox("side", &side))
-                change("side", [&](render_settings& r) { r.estimate.leaks.side = side; });
-            tip("Refuse photons that came from behind a surface. Speed: hardly any. Error: no light leaks through "
-                "walls.");
-            measure(setting_table::exposure, "exposure, EV", -10, 10, "%+.1f", false,
-                "Brightness of the screen and of saved PNGs (E, e). Draws nothing anew.");
+            panel_.draw();
             ImGui::Separator();
             draw_buttons();
             draw_curve();
             ImGui::PopItemWidth();
-        }
-
-        void draw_backend()
-        {
-            const auto& now = document_.now().backend;
-            if (ImGui::BeginCombo("backend", now.c_str())) {
-                for (const auto* name : {"serial", "cpu", "gl", "gl-osmesa", "vulkan"})
-                    if (ImGui::Selectable(name, now == name)) {
-                        document_.begin("backend");
-                        document_.edit().backend = name;
-                    }
-                ImGui::EndCombo();
-            }
-            tip("What draws (b). The same photons give the same picture on all; speed differs. cpu is the fastest "
-                "without a GPU.");
-        }
-
-        /// The grid that is not fitted: the scene's, or one where it names none.
-        glm::uvec3 cells_of_scene() const
-        {
-            return options_.begin.settings.map.grid == glm::uvec3(0) ? glm::uvec3(32)
-                                                                     : options_.begin.settings.map.grid;
-        }
-        void draw_grid()
-        {
-            auto cells = glm::ivec3(document_.now().settings.map.grid);
-            bool fitted = cells == glm::ivec3(0);
-            if (ImGui::Checkbox("fitted grid", &fitted))
-                change("grid", [&](render_settings& r) { r.map.grid = fitted ? glm::uvec3(0) : cells_of_scene(); });
-            tip("Cells of the photon map fitted to photons and k (g). Speed: a grid that is too coarse or too fine "
-                "searches longer. Error: none for the k nearest; `at_least_k` depends on its cells.");
-            if (!fitted) {
-                const bool edited = ImGui::SliderInt3(
-                    "grid", &cells.x, 1, 256, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-                if (begun("grid") && edited)
-                    document_.edit().settings.map.grid = glm::uvec3(cells);
-                tip("Cells along x, y and z.");
-            }
         }
 
         void draw_buttons()
@@ -607,44 +351,7 @@ namespace {
                     save_scene();
                 return;
             }
-            const bool up = io.KeyShift;
-            const auto doubled = [&](int key, const auto& row) {
-                if (pressed(key))
-                    change(row.name, [&](render_settings& s) {
-                        auto& value = row.of(s);
-                        value = std::clamp(up ? value * 2 : value / 2, row.values.least, row.values.most / 2);
-                    });
-            };
-            const auto next = [&](int key, const auto& row) {
-                if (pressed(key))
-                    change(row.name, [&](render_settings& s) {
-                        const auto& all = row.values.values;
-                        std::size_t i = 0;
-                        while (all[i].value != row.of(s))
-                            ++i;
-                        row.of(s) = all[(i + 1) % std::size(all)].value;
-                    });
-            };
-            doubled(GLFW_KEY_K, setting_table::k);
-            doubled(GLFW_KEY_N, setting_table::photons);
-            next(GLFW_KEY_M, setting_table::map);
-            next(GLFW_KEY_S, setting_table::search);
-            next(GLFW_KEY_W, setting_table::filter);
-            if (pressed(GLFW_KEY_R))
-                change("radius", [&](render_settings& s) { s.estimate.max_radius *= up ? 1.25 : 0.8; });
-            if (pressed(GLFW_KEY_E))
-                change("exposure", [&](render_settings& s) {
-                    s.output.exposure = std::clamp(s.output.exposure + (up ? 0.5 : -0.5), -64.0, 64.0);
-                });
-            if (pressed(GLFW_KEY_G))
-                change("grid", [&](render_settings& s) {
-                    s.map.grid = s.map.grid == glm::uvec3(0) ? cells_of_scene() : glm::uvec3(0);
-                });
-            if (pressed(GLFW_KEY_B)) {
-                document_.begin("backend");
-                auto& b = document_.edit().backend;
-                b = b == "serial" ? "cpu" : b == "cpu" ? "gl" : b == "gl" ? "vulkan" : "serial";
-            }
+            panel_.keys();
             if (pressed(GLFW_KEY_P))
                 save_picture();
             if (pressed(GLFW_KEY_O))
@@ -692,9 +399,10 @@ namespace {
         window_options options_;
         bool (*stop_asked_)();
         glfw glfw_;
-        std::unique_ptr<GLFWwindow, window_closer> handle_;
+        window_handle handle_;
         interface interface_;
         document document_;
+        settings_panel panel_;
         std::mutex journal_guard_;
         std::ofstream journal_;
 
@@ -708,8 +416,7 @@ namespace {
         bool overlay_ = true;
         std::optional<grip> pressed_; ///< where a button went down
         bool moved_ = false, moves_part_ = false;
-        std::optional<version> held_; ///< before the item that is held was edited
-        render_thread renderer_;      ///< last: its thread ends first
+        render_thread renderer_; ///< last: its thread ends first
     };
 } // namespace
 

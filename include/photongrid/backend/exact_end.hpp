@@ -1,5 +1,6 @@
 // Ends what backend/exact_begin.hpp began.
-#if defined(__clang__)
+#if defined(PHOTONGRID_CONTRACTION_IS_OFF)
+#elif defined(__clang__)
 #pragma float_control(pop)
 #elif defined(__GNUC__)
 #pragma GCC pop_options

@@ -55,8 +55,6 @@ public:
     double fraction() const { return making_ ? making_->fraction() : 0.0; }
     /// Maps that were begun.
     std::uint64_t begun() const { return begun_; }
-    /// What the last map that was made took.
-    const render_stats& stats() const { return stats_; }
 
     /// The steps to a map of `wanted`: none where it is there, the rest of them where it is being made. `use` is called
     /// when it takes the place of the map in use, just before.
@@ -71,8 +69,7 @@ public:
                 built_.reset();
             }
             making_of_ = wanted;
-            stats_ = {};
-            making_.emplace(b_, making_of_.scene, making_of_.settings, stats_);
+            making_.emplace(b_, making_of_.scene, making_of_.settings);
             ++begun_;
         }
         auto steps = map_steps(*making_);
@@ -98,7 +95,6 @@ private:
     map_source of_; ///< built_
     std::optional<map_building<B>> making_;
     map_source making_of_;
-    render_stats stats_;
     std::uint64_t begun_ = 0;
 };
 

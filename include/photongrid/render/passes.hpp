@@ -66,6 +66,14 @@ namespace detail {
         sum.device_bytes = std::max(sum.device_bytes, s.device_bytes);
     }
 
+    /// Adds what the map of a pass took.
+    inline void add_map(render_stats& sum, const render_stats& map)
+    {
+        add(sum.trace_photons, map.trace_photons);
+        add(sum.build_map, map.build_map);
+        sum.map = map.map;
+    }
+
     /// Adds a pass's searches, each a vector of pass_pixels::searches, to the statistics.
     inline void add(estimate_stats& sum, const glm::dvec4& searches)
     {
@@ -93,11 +101,19 @@ pass_pixels finish_pass(B& b, const built_map<B>& built, const view_pass<B>& vie
             + " points were searched for; there are " + std::to_string(searched));
     detail::add(stats.estimate, sum);
     detail::add(stats.photons, count_photons(b, built.trace, built.map.photons.size()));
-    stats.map = built.about;
-    if (built.about.builder == map_builder::route)
+    stats.map = built.stats.map;
+    if (built.stats.map.builder == map_builder::route)
         stats.map.redistributed_flux = redistributed_flux(b, built.map);
     stats.peak_device_bytes = b.peak_bytes();
     return p;
+}
+
+/// Puts the picture of a film into `out`.
+inline void finish_picture(const film& sum, rendered& out)
+{
+    auto developed = sum.picture();
+    out.picture = std::move(developed.picture);
+    out.stats.invalid_pixels = developed.invalid_pixels;
 }
 
 /// Runs steps to their end; after each calls `ran` with the stage that it was of.

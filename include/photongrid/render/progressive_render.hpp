@@ -212,12 +212,10 @@ private:
     }
     step_list use_map()
     {
-        const auto& made = maps_.stats();
+        const auto& made = maps_.map().stats;
         if (film_.passes() == 0)
             stats_.trace_photons = stats_.build_map = {};
-        detail::add(stats_.trace_photons, made.trace_photons);
-        detail::add(stats_.build_map, made.build_map);
-        stats_.map = made.map;
+        detail::add_map(stats_, made);
         costs_.ms_per_photon = (made.trace_photons.ms + made.build_map.ms) / maps_.of().settings.map.photons;
         return {};
     }

@@ -50,10 +50,9 @@ step_list view_steps(view_pass<B>& v)
 ///         too few photons, backend_error, render_cancelled.
 /// \snippet snippets.cpp build_map
 template <backend B>
-built_map<B> build_map(
-    B& b, const scene& s, const render_settings& settings, const render_observer& observer, render_stats& stats)
+built_map<B> build_map(B& b, const scene& s, const render_settings& settings, const render_observer& observer = {})
 {
-    map_building<B> map(b, s, settings, stats);
+    map_building<B> map(b, s, settings);
     run(map_steps(map), observer, [&](std::string_view stage) {
         if (observer.progress)
             observer.progress(stage, map.fraction());
@@ -61,7 +60,7 @@ built_map<B> build_map(
     return map.take();
 }
 
-/// The pixels of one pass over a view.
+/// The pixels of one pass over a view. Times and counts are added to `stats`.
 /// \throws as draw does.
 template <backend B>
 pass_pixels draw_pass(B& b, const built_map<B>& built, const camera& view, const render_settings& settings,
@@ -91,58 +90,46 @@ pass_pixels draw_pass(B& b, const built_map<B>& built, const camera& view, const
 }
 
 /// Draws a view of a map that is there already, one pass: no photon is traced. Pixels that are NaN or infinite are set
-/// to 0 and counted in stats.invalid_pixels.
+/// to 0 and counted in stats.invalid_pixels. The statistics have the map's share too.
 /// \throws std::invalid_argument for a camera or settings that check() refuses, backend_error, render_cancelled.
 /// \snippet snippets.cpp draw
 template <backend B>
-image draw(B& b, const built_map<B>& built, const camera& view, const render_settings& settings,
-    const render_observer& observer, render_stats& stats)
+[[nodiscard]] rendered draw(B& b, const built_map<B>& built, const camera& view, const render_settings& settings,
+    const render_observer& observer = {})
 {
-    stats.photons = {};
-    stats.estimate = {};
+    rendered out{{}, built.stats};
     film sum(settings.output.width, settings.output.height, 1, settings.output.aov);
-    sum.add(0, draw_pass(b, built, view, settings, observer, stats));
-    auto developed = sum.picture();
-    stats.invalid_pixels = developed.invalid_pixels;
-    return std::move(developed.picture);
+    sum.add(0, draw_pass(b, built, view, settings, observer, out.stats));
+    finish_picture(sum, out);
+    return out;
 }
 
-/// A picture seen by the scene's own camera: settings.passes passes, each with photons, eye rays and shadow rays of its
-/// own.
+/// A picture seen by the scene's own camera: settings.output.passes passes, each with photons, eye rays and shadow rays
+/// of its own.
 /// \throws what build_map and draw throw.
 /// \snippet snippets.cpp render
-template <backend B>
-image render(
-    B& b, const scene& s, const render_settings& settings, const render_observer& observer, render_stats& stats)
-{
-    check(settings);
-    stats.photons = {};
-    stats.estimate = {};
-    film sum;
-    for (uint pass = 0; pass < settings.output.passes; ++pass) {
-        const auto own = settings_of_pass(settings, pass);
-        const auto map = build_map(b, s, own, observer, stats);
-        if (pass == 0)
-            sum = film(settings.output.width, settings.output.height, typical_radiance(s, map.scene.layout),
-                settings.output.aov);
-        sum.add(pass, draw_pass(b, map, s.camera, own, observer, stats));
-        if (observer.intermediate && pass + 1 < settings.output.passes)
-            observer.intermediate(sum.picture().picture);
-    }
-    auto developed = sum.picture();
-    stats.invalid_pixels = developed.invalid_pixels;
-    return std::move(developed.picture);
-}
-
-/// The same with the scene's own settings, or others.
 template <backend B>
 [[nodiscard]] rendered render(
     B& b, const scene& s, const render_settings& settings, const render_observer& observer = {})
 {
+    check(settings);
     rendered out;
-    out.picture = render(b, s, settings, observer, out.stats);
+    film sum;
+    for (uint pass = 0; pass < settings.output.passes; ++pass) {
+        const auto own = settings_of_pass(settings, pass);
+        const auto map = build_map(b, s, own, observer);
+        detail::add_map(out.stats, map.stats);
+        if (pass == 0)
+            sum = film(settings.output.width, settings.output.height, typical_radiance(s, map.scene.layout),
+                settings.output.aov);
+        sum.add(pass, draw_pass(b, map, s.camera, own, observer, out.stats));
+        if (observer.intermediate && pass + 1 < settings.output.passes)
+            observer.intermediate(sum.picture().picture);
+    }
+    finish_picture(sum, out);
     return out;
 }
+/// The same with the scene's own settings.
 template <backend B>
 [[nodiscard]] rendered render(B& b, const scene& s)
 {

@@ -19,7 +19,7 @@ struct built_map {
     device_scene<B> scene;   ///< recentred
     map_buffers<B> map;      ///< in the coordinates of `scene`
     traced_photons<B> trace; ///< its photons have moved to `map`
-    map_stats about;         ///< what draw repeats in its statistics
+    render_stats stats;      ///< of making it: trace_photons, build_map and map
 };
 
 /// The parts of the light (map_buffers.hpp) that a picture of `only` takes from its map.
@@ -43,14 +43,13 @@ inline bool same_map(const scene& a, const render_settings& as, const scene& b, 
 template <backend B>
 class map_building {
 public:
-    /// Uploads the scene; traces nothing yet. Times go to `stats`, which must outlive it.
+    /// Uploads the scene; traces nothing yet.
     /// \throws std::invalid_argument for a scene or settings that check() refuses, backend_error.
-    map_building(B& b, const scene& s, const render_settings& settings, render_stats& stats)
-        : b_(b), settings_(settings), stats_(stats)
+    map_building(B& b, const scene& s, const render_settings& settings) : b_(b), settings_(settings)
     {
         check(settings);
         built_.scene = upload_scene(b, s);
-        detail::stage_clock<B> clock(b, stats.trace_photons);
+        detail::stage_clock<B> clock(b, built_.stats.trace_photons);
         tracing_.emplace(b, s, built_.scene, settings);
         clock.stop();
     }
@@ -63,7 +62,7 @@ public:
     {
         if (!tracing_)
             return true;
-        detail::time_stage(b_, stats_.trace_photons, [&] { tracing_->advance(); });
+        detail::time_stage(b_, built_.stats.trace_photons, [&] { tracing_->advance(); });
         return tracing_->finished();
     }
     /// Sorts or routes them (2.2), in one step; returns true.
@@ -73,7 +72,7 @@ public:
         if (tracing_) {
             built_.trace = tracing_->take();
             tracing_.reset();
-            detail::time_stage(b_, stats_.build_map, [&] { build(); });
+            detail::time_stage(b_, built_.stats.build_map, [&] { build(); });
         }
         return true;
     }
@@ -98,17 +97,16 @@ private:
         built_.map = settings_.map.builder == map_builder::sort
             ? sorted_map(b_, std::move(p), g, parts)
             : routed_map(b_, std::move(p), g, settings_.map.slots, settings_.seed, parts);
-        built_.about.builder = settings_.map.builder;
-        built_.about.cells = cell_count(g);
-        built_.about.resolution = glm::uvec3(g.resolution);
-        built_.about.overfull_cells = built_.map.overfull_cells;
-        built_.about.left_out = built_.map.left_out;
-        stats_.map = built_.about;
+        auto& made = built_.stats.map;
+        made.builder = settings_.map.builder;
+        made.cells = cell_count(g);
+        made.resolution = glm::uvec3(g.resolution);
+        made.overfull_cells = built_.map.overfull_cells;
+        made.left_out = built_.map.left_out;
     }
 
     B& b_;
     render_settings settings_;
-    render_stats& stats_;
     built_map<B> built_;
     std::optional<photon_tracing<B>> tracing_; // of built_.scene
 };

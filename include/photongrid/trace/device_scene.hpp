@@ -88,8 +88,8 @@ namespace detail {
             out_.records.resize(kernels::SCENE_TABLES, glm::vec4(0));
             out_.records[kernels::SCENE_SIZES].x
                 = static_cast<float>(std::max(round_size_ * 0x1p-19, scale_ * 0x1p-26));
-            write_shapes(w);
             write_materials(w);
+            write_shapes(w);
             write_lights(w);
             for (const auto& r : out_.records)
                 require(std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z) && std::isfinite(r.w),
@@ -168,7 +168,7 @@ namespace detail {
 
         void write_materials(record_writer& w)
         {
-            enter(kernels::MATERIAL_TABLE, w.next(), s_.materials.size(), 2);
+            enter(kernels::MATERIAL_TABLE, w.next(), s_.materials.size(), kernels::MATERIAL_RECORDS);
             for (const auto& m : s_.materials) {
                 w.put(m.reflectance,
                     m.kind == material_kind::lambertian  ? kernels::LAMBERTIAN_SURFACE

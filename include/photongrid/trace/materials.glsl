@@ -7,8 +7,7 @@ struct Material {
 
 Material material_of(uint number)
 {
-    Table table = table_of(scene(MATERIAL_TABLE));
-    uint at = table.first + table.stride * number;
+    uint at = FIRST_MATERIAL + MATERIAL_RECORDS * number;
     vec4 record = scene(at);
     Material m;
     m.reflectance = vec3(record);

@@ -6,6 +6,8 @@ const uint SCENE_TABLES = 16u;
 const uint MATERIAL_TABLE = 4u; // no kind of shape has the numbers 4 to 7, the SWITCHes of materials and lights
 const uint SCENE_SIZES = 5u;    // x: what ray_offset adds for round shapes, m
 const uint LIGHT_TABLE = 6u;
+const uint FIRST_MATERIAL = SCENE_TABLES; // materials come first, so that kernels need not look their table up
+const uint MATERIAL_RECORDS = 2u;
 
 // Shapes of one kind, or materials, or lights: they follow each other.
 struct Table {

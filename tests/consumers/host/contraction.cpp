@@ -16,6 +16,5 @@ int nearest_of_photons()
 photongrid::image picture(const photongrid::scene& s)
 {
     photongrid::serial_backend device;
-    photongrid::render_stats stats;
-    return photongrid::render(device, s, s.render, {}, stats);
+    return photongrid::render(device, s).picture;
 }

@@ -1,0 +1,199 @@
+#include "settings_panel.hpp"
+
+#include "display.hpp"
+
+#include <photongrid/scene/setting_table.hpp>
+
+#include <algorithm>
+#include <iterator>
+
+namespace photongrid::viewer {
+
+settings_panel::settings_panel(document& d)
+    : document_(d), grid_(d.now().settings.map.grid == glm::uvec3(0) ? glm::uvec3(32) : d.now().settings.map.grid)
+{
+}
+
+/// After an item that changes settings: one step of undo for as long as it is held.
+bool settings_panel::begun(const char* name)
+{
+    if (ImGui::IsItemActivated())
+        held_ = document_.now();
+    if (!ImGui::IsItemEdited())
+        return false;
+    if (held_) {
+        document_.begin(name);
+        held_.reset();
+    }
+    return true;
+}
+
+// A control for a row of the table of settings. Its label may be more than the setting's name.
+
+/// A word for each value.
+template <class Row>
+void settings_panel::choice(const Row& row, const char* label, const char* about)
+{
+    const auto value = row.of(document_.now().settings);
+    if (ImGui::BeginCombo(label, row.values.word_for(value))) {
+        for (const auto& n : row.values.values)
+            if (ImGui::Selectable(n.name, n.value == value))
+                change(label, [&](render_settings& s) { row.of(s) = n.value; });
+        ImGui::EndCombo();
+    }
+    tip(about);
+}
+
+/// A whole number, by a slider whose steps are even in its logarithm.
+template <class Row>
+void settings_panel::number(const Row& row, const char* label, int low, int high, const char* about)
+{
+    int value = static_cast<int>(row.of(document_.now().settings));
+    const bool edited
+        = ImGui::SliderInt(label, &value, low, high, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    if (begun(label) && edited)
+        row.of(document_.edit().settings) = static_cast<std::uint32_t>(value);
+    tip(about);
+}
+
+template <class Row>
+void settings_panel::measure(
+    const Row& row, const char* label, float low, float high, const char* format, bool logarithmic, const char* about)
+{
+    float value = static_cast<float>(row.of(document_.now().settings));
+    const bool edited = ImGui::SliderFloat(label, &value, low, high, format,
+        (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp);
+    if (begun(label) && edited)
+        row.of(document_.edit().settings) = static_cast<double>(value);
+    tip(about);
+}
+
+template <class Change>
+void settings_panel::change(const std::string& name, Change apply)
+{
+    document_.begin(name);
+    apply(document_.edit().settings);
+}
+
+void settings_panel::draw()
+{
+    draw_backend();
+    const auto& s = document_.now().settings;
+    number(setting_table::photons, "photons", 256, 4000000,
+        "Photons stored (N, n). Speed: tracing and sorting them takes proportionally longer. Error: noise "
+        "falls with the square root.");
+    number(setting_table::k, "k", 1, 4000,
+        "Photons in an estimate (K, k). Speed: more take longer. Error: more are smoother, and blur shadows "
+        "and caustics more.");
+    measure(setting_table::max_radius, "radius, m", 1e-3f, 10.0f, "%.4f", true,
+        "Largest search radius (R, r). Speed: dark places search this far. Error: where fewer than k photons "
+        "lie within it, estimates are noisier instead of more blurred.");
+    choice(setting_table::search, "search",
+        "Which photons (s): the k nearest; at least k, as the paper has it, which uses more photons and is a "
+        "little too bright; or all within the radius.");
+    choice(setting_table::filter, "filter",
+        "Weight by distance (w). Speed: the same. Error: constant is the least noisy and shows discs; "
+        "silverman the smoothest.");
+    choice(setting_table::bias, "bias",
+        "The photon that sets the radius: paper counts it, k / (k - 1) too bright; unbiased leaves it out.");
+    draw_grid();
+    choice(setting_table::map, "map",
+        "How the photon map is built (m). sort is exact; route takes fewer passes and, where cells overflow, "
+        "is approximate.");
+    if (s.map.builder == map_builder::route)
+        number(setting_table::slots, "slots", 1, 16,
+            "Cells have slots x slots places. More lose fewer photons and take more memory.");
+    ImGui::Separator();
+    number(setting_table::spp, "eye rays", 1, 64,
+        "Eye rays per pixel. Speed: proportional. Error: smooth edges, less noise of glass and lamps.");
+    number(setting_table::passes, "passes", 1, 1024,
+        "The picture is the mean of so many, each with photons and rays of its own. Speed: proportional. "
+        "Error: "
+        "noise and blotches fade as they come.");
+    number(setting_table::light_samples, "light samples", 1, 256,
+        "Shadow rays a lamp and eye ray. Speed: proportional for direct light. Error: smoother half-shadows.");
+    choice(setting_table::only, "light",
+        "Which part of the light is shown. Caustics or indirect light alone need a map of their own.");
+    bool side = s.estimate.leaks.side;
+    if (ImGui::Checkbox("side", &side))
+        change("side", [&](render_settings& r) { r.estimate.leaks.side = side; });
+    tip("Refuse photons that came from behind a surface. Speed: hardly any. Error: no light leaks through "
+        "walls.");
+    measure(setting_table::exposure, "exposure, EV", -10, 10, "%+.1f", false,
+        "Brightness of the screen and of saved PNGs (E, e). Draws nothing anew.");
+}
+
+void settings_panel::draw_backend()
+{
+    const auto& now = document_.now().backend;
+    if (ImGui::BeginCombo("backend", now.c_str())) {
+        for (const auto* name : {"serial", "cpu", "gl", "gl-osmesa", "vulkan"})
+            if (ImGui::Selectable(name, now == name)) {
+                document_.begin("backend");
+                document_.edit().backend = name;
+            }
+        ImGui::EndCombo();
+    }
+    tip("What draws (b). The same photons give the same picture on all; speed differs. cpu is the fastest "
+        "without a GPU.");
+}
+
+void settings_panel::draw_grid()
+{
+    auto cells = glm::ivec3(document_.now().settings.map.grid);
+    bool fitted = cells == glm::ivec3(0);
+    if (ImGui::Checkbox("fitted grid", &fitted))
+        change("grid", [&](render_settings& r) { r.map.grid = fitted ? glm::uvec3(0) : grid_; });
+    tip("Cells of the photon map fitted to photons and k (g). Speed: a grid that is too coarse or too fine "
+        "searches longer. Error: none for the k nearest; `at_least_k` depends on its cells.");
+    if (!fitted) {
+        const bool edited = ImGui::SliderInt3(
+            "grid", &cells.x, 1, 256, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+        if (begun("grid") && edited)
+            document_.edit().settings.map.grid = glm::uvec3(cells);
+        tip("Cells along x, y and z.");
+    }
+}
+
+void settings_panel::keys()
+{
+    const auto pressed = [](int key) { return ImGui::IsKeyPressed(key); };
+    const bool up = ImGui::GetIO().KeyShift;
+    const auto doubled = [&](int key, const auto& row) {
+        if (pressed(key))
+            change(row.name, [&](render_settings& s) {
+                auto& value = row.of(s);
+                value = std::clamp(up ? value * 2 : value / 2, row.values.least, row.values.most / 2);
+            });
+    };
+    const auto next = [&](int key, const auto& row) {
+        if (pressed(key))
+            change(row.name, [&](render_settings& s) {
+                const auto& all = row.values.values;
+                std::size_t i = 0;
+                while (all[i].value != row.of(s))
+                    ++i;
+                row.of(s) = all[(i + 1) % std::size(all)].value;
+            });
+    };
+    doubled(GLFW_KEY_K, setting_table::k);
+    doubled(GLFW_KEY_N, setting_table::photons);
+    next(GLFW_KEY_M, setting_table::map);
+    next(GLFW_KEY_S, setting_table::search);
+    next(GLFW_KEY_W, setting_table::filter);
+    if (pressed(GLFW_KEY_R))
+        change("radius", [&](render_settings& s) { s.estimate.max_radius *= up ? 1.25 : 0.8; });
+    if (pressed(GLFW_KEY_E))
+        change("exposure", [&](render_settings& s) {
+            s.output.exposure = std::clamp(s.output.exposure + (up ? 0.5 : -0.5), -64.0, 64.0);
+        });
+    if (pressed(GLFW_KEY_G))
+        change("grid", [&](render_settings& s) { s.map.grid = s.map.grid == glm::uvec3(0) ? grid_ : glm::uvec3(0); });
+    if (pressed(GLFW_KEY_B)) {
+        document_.begin("backend");
+        auto& b = document_.edit().backend;
+        b = b == "serial" ? "cpu" : b == "cpu" ? "gl" : b == "gl" ? "vulkan" : "serial";
+    }
+}
+
+} // namespace photongrid::viewer

@@ -1,0 +1,39 @@
+// The panel's controls for settings and backend, and their keys: by the rows of setting_table.hpp.
+#pragma once
+
+#include "document.hpp"
+
+#include <optional>
+
+namespace photongrid::viewer {
+
+class settings_panel {
+public:
+    /// `d` must outlive it. Its grid, or one of 32 x 32 x 32 where it names none, is what "fitted grid" goes back to.
+    explicit settings_panel(document& d);
+
+    /// Within an ImGui window.
+    void draw();
+    /// Where no text is being typed and Ctrl is not held.
+    void keys();
+
+private:
+    template <class Row>
+    void choice(const Row& row, const char* label, const char* about);
+    template <class Row>
+    void number(const Row& row, const char* label, int low, int high, const char* about);
+    template <class Row>
+    void measure(const Row& row, const char* label, float low, float high, const char* format, bool logarithmic,
+        const char* about);
+    template <class Change>
+    void change(const std::string& name, Change apply);
+    bool begun(const char* name);
+    void draw_backend();
+    void draw_grid();
+
+    document& document_;
+    glm::uvec3 grid_;             ///< that is not fitted
+    std::optional<version> held_; ///< before the item that is held was edited
+};
+
+} // namespace photongrid::viewer
