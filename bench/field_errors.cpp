@@ -29,7 +29,7 @@ struct field {
     std::function<double(double, double)> irradiance;
 };
 constexpr double margin = 0.25;
-constexpr int points_a_side = 64;
+constexpr int points_per_side = 64;
 
 std::vector<field> fields()
 {
@@ -64,9 +64,9 @@ sample sampled(const field& f, uint photons)
             s.positions.emplace_back(static_cast<float>(x), 0.0f, static_cast<float>(z), 0.0f);
     }
     s.powers.assign(photons, vec4(power, power, power, 0));
-    for (int i = 0; i < points_a_side; ++i)
-        for (int k = 0; k < points_a_side; ++k) {
-            const double x = (k + 0.5) / points_a_side, z = (i + 0.5) / points_a_side;
+    for (int i = 0; i < points_per_side; ++i)
+        for (int k = 0; k < points_per_side; ++k) {
+            const double x = (k + 0.5) / points_per_side, z = (i + 0.5) / points_per_side;
             s.points.emplace_back(static_cast<float>(x), 0.0f, static_cast<float>(z), 1.0f);
             s.truth.push_back(f.irradiance(x, z));
         }

@@ -26,8 +26,8 @@ int main()
         const auto& s = surveys[p];
         std::printf("%4.0f m east, %4.0f m north: %3.0f +- %2.0f trees a hectare, %4.1f m high; the nearest is tree "
                     "%6u, %.1f m away\n",
-            static_cast<double>(places[p].x), static_cast<double>(places[p].y), static_cast<double>(s.trees_a_hectare),
-            static_cast<double>(s.standard_error), static_cast<double>(s.mean_height), s.nearest[0],
-            static_cast<double>(s.distances[0]));
+            static_cast<double>(places[p].x), static_cast<double>(places[p].y),
+            static_cast<double>(s.trees_per_hectare), static_cast<double>(s.standard_error),
+            static_cast<double>(s.mean_height), s.nearest[0], static_cast<double>(s.distances[0]));
     }
 }

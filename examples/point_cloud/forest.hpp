@@ -25,7 +25,7 @@ struct photongrid::photon_reader<tree> {
 
 /// What is found about one place.
 struct survey {
-    float trees_a_hectare = 0;
+    float trees_per_hectare = 0;
     float standard_error = 0;           ///< of it
     float mean_height = 0;              ///< m
     std::vector<std::uint32_t> nearest; ///< places in the vector of trees
@@ -62,7 +62,7 @@ std::vector<survey> survey_forest(
     const auto ids = device.download(neighbours.ids);
     std::vector<survey> found(places.size());
     for (std::size_t p = 0; p < found.size(); ++p) {
-        found[p].trees_a_hectare = 1e4f * per_square_metre[p].x;
+        found[p].trees_per_hectare = 1e4f * per_square_metre[p].x;
         found[p].standard_error = 1e4f * errors[p].x;
         found[p].mean_height = means[p];
         for (std::size_t n = p * k; n < (p + 1) * k && ids[n] != photongrid::nowhere; ++n) {

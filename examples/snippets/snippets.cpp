@@ -119,7 +119,7 @@ void maps(device_type& device)
 
     //! [fitting_grid]
     const photongrid::grid fitted
-        = photongrid::fitting_grid(device, p, 50, device.caps().cells_a_radius); // for the 50 nearest
+        = photongrid::fitting_grid(device, p, 50, device.caps().cells_per_radius); // for the 50 nearest
     //! [fitting_grid]
     expect(photongrid::cell_count(fitted) > 100 && photongrid::cell_count(fitted) <= 12500, "fitting_grid");
 

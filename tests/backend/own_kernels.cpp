@@ -68,7 +68,7 @@ TYPED_TEST(own_kernels, survey_a_forest)
         }
         EXPECT_NEAR(static_cast<double>(surveys[p].mean_height), height / weights, 1e-5 * height / weights);
         const double per_hectare = 1e4 * (k - 1) / (M_PI * expected[k - 1].first);
-        EXPECT_NEAR(static_cast<double>(surveys[p].trees_a_hectare), per_hectare, 1e-5 * per_hectare);
+        EXPECT_NEAR(static_cast<double>(surveys[p].trees_per_hectare), per_hectare, 1e-5 * per_hectare);
     }
 }
 

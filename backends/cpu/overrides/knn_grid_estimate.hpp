@@ -46,10 +46,10 @@ inline
     auto& b = *in_.b;
     const cpu_backend::stopwatch watch;
     const std::size_t n = in_.points->size(), begin = done_;
-    const std::size_t a_pass = cpu::search_block_size * std::max(1u, in_.s.visits_per_pass / 128u);
-    const std::size_t left = (n - begin + a_pass - 1) / a_pass;
+    const std::size_t per_pass = cpu::search_block_size * std::max(1u, in_.s.visits_per_pass / 128u);
+    const std::size_t left = (n - begin + per_pass - 1) / per_pass;
     const auto now = static_cast<uint>(std::min<std::size_t>(passes, left));
-    done_ = std::min(n, begin + now * a_pass);
+    done_ = std::min(n, begin + now * per_pass);
     if (done_ > begin) {
         auto job = cpu::make_search_job(in_, order_);
         job.irradiance = b.rows_to_write(e_.irradiance).data();
@@ -63,7 +63,7 @@ inline
     progress p;
     p.passes = now;
     for (uint i = 0; i < now; ++i)
-        p.active.push_back(n - begin - i * a_pass);
+        p.active.push_back(n - begin - i * per_pass);
     p.finished = done_ == n;
     return p;
 }

@@ -40,9 +40,9 @@ struct map_job {
 
 /// Collects what goes to each bucket until it fills a cache line.
 struct scatter_lines {
-    static constexpr std::size_t records_a_line = 2, pairs_a_line = 8;
-    alignas(64) photon_record records[map_job::most_buckets][records_a_line];
-    alignas(64) glm::uvec2 pairs[map_job::most_buckets][pairs_a_line];
+    static constexpr std::size_t records_per_line = 2, pairs_per_line = 8;
+    alignas(64) photon_record records[map_job::most_buckets][records_per_line];
+    alignas(64) glm::uvec2 pairs[map_job::most_buckets][pairs_per_line];
 };
 
 /// Room for ordering one bucket.

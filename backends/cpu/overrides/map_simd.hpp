@@ -93,7 +93,7 @@ inline void scatter_photons(map_job j, std::size_t first, std::size_t past, uint
                 to[p] = line[p % size];
         }
     };
-    constexpr uint records = scatter_lines::records_a_line, pairs = scatter_lines::pairs_a_line;
+    constexpr uint records = scatter_lines::records_per_line, pairs = scatter_lines::pairs_per_line;
     for (std::size_t i = first; i < past; ++i) {
         const uint key = j.keys[i], v = key >> j.shift, at = next[v]++;
         lines.records[v][at % records] = {j.positions[i], j.powers[i]};

@@ -42,7 +42,7 @@ inline void count_digits(digit by, const glm::uvec2* from, std::size_t first, st
 /// Moves n pairs to where a digit puts them, one after the other.
 inline void scatter_in_cache(digit by, const glm::uvec2* from, glm::uvec2* to, std::size_t n)
 {
-    for (std::size_t i = 0; i < n; i += pairs_a_line)
+    for (std::size_t i = 0; i < n; i += pairs_per_line)
         __builtin_prefetch(to + i, 1);
     std::array<uint, digit::most> next; // the first mask + 1 of them
     std::fill_n(next.begin(), by.mask + 1, 0u);
@@ -77,7 +77,7 @@ inline std::vector<uint> scatter_counted(pool& threads, const digit& by, const g
         });
         return begin;
     }
-    constexpr std::size_t line_pairs = digit::most * pairs_a_line;
+    constexpr std::size_t line_pairs = digit::most * pairs_per_line;
     storage line_memory(next.size() * line_pairs * sizeof(glm::uvec2));
     auto* const lines = reinterpret_cast<glm::uvec2*>(line_memory.begin());
     threads.for_blocks(n, part, [&](std::size_t first, std::size_t past) {

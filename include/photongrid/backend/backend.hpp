@@ -78,7 +78,7 @@ struct capabilities {
     uint max_route_slots = 0;       ///< largest m of route's m x m slots a destination
     bool exact_division = false;    ///< a / b rounds correctly (self-test at start)
     bool exact_sqrt = false;        ///< sqrt rounds correctly (self-test at start)
-    float cells_a_radius = 2;       ///< how fine a grid searches like best: its cells to the radius of a search
+    float cells_per_radius = 2;     ///< how fine a grid searches like best: its cells to the radius of a search
     uint loop_limit = 0;            ///< iterations after which the driver silently ends loops; 0: none known
 };
 

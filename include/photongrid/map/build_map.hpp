@@ -104,7 +104,7 @@ map_buffers<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed =
 template <backend B>
 map_buffers<B> fitted_map(B& b, photons<B> p, uint k)
 {
-    const grid g = fitting_grid(b, p, k, b.caps().cells_a_radius);
+    const grid g = fitting_grid(b, p, k, b.caps().cells_per_radius);
     return sorted_map(b, std::move(p), g);
 }
 

@@ -48,7 +48,7 @@ namespace detail {
     }
 } // namespace detail
 
-/// A grid for estimates from k of these photons: `cells_a_radius` cells to the distance of the k-th nearest (see
+/// A grid for estimates from k of these photons: `cells_per_radius` cells to the distance of the k-th nearest (see
 /// capabilities), twice as many along x, where rows are cut off at the radius; at most 5/4 cells a photon. The box
 /// is that of the photons but for one in 500 at either end of each axis, so that a stray one does not make all cells
 /// useless; what lies outside belongs to border cells.
@@ -59,7 +59,7 @@ namespace detail {
 /// \throws backend_error when the device fails.
 /// \snippet snippets.cpp fitting_grid
 template <backend B>
-grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_a_radius = 1)
+grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_per_radius = 1)
 {
     auto sample = detail::sample_positions(b, p, 16384);
     if (sample.empty())
@@ -95,7 +95,7 @@ grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_a_radius = 1)
     // a cube of edge 2 r. So many are k at
     const double in_ball = 0.785 * static_cast<double>(p.size()) / cubes;
     double radius = 0.5 * edge * std::pow(static_cast<double>(std::max(k, 1u)) / in_ball, 1 / dimension);
-    radius /= static_cast<double>(cells_a_radius);
+    radius /= static_cast<double>(cells_per_radius);
     const double most = std::max(1.25 * static_cast<double>(p.size()), 64.0);
     for (;; radius *= 1.05) {
         glm::dvec3 cells;

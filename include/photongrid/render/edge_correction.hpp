@@ -26,20 +26,20 @@ namespace detail {
     /// one pass.
     inline std::vector<polygon_range> ranges_of_polygons(const scene_layout& s)
     {
-        constexpr uint a_pass = 4000;
+        constexpr uint per_pass = 4000;
         std::vector<polygon_range> ranges;
         const auto polygons = s.table(shape_kind<polygon>::number);
         uint at = polygons.first, left = 0;
         for (uint i = 0; i < polygons.count; ++i) {
             const uint edges = static_cast<uint>(s.records[at + 1].x);
             const uint work = 1 + 2 * edges;
-            if (work > a_pass)
+            if (work > per_pass)
                 throw std::invalid_argument("edge_correction: polygons[" + std::to_string(i) + "] has "
-                    + std::to_string(edges) + " vertices; at most " + std::to_string((a_pass - 1) / 2)
+                    + std::to_string(edges) + " vertices; at most " + std::to_string((per_pass - 1) / 2)
                     + " can be corrected, so split it");
             if (work > left) {
                 ranges.push_back({at, 0});
-                left = a_pass;
+                left = per_pass;
             }
             left -= work;
             ++ranges.back().polygons;

@@ -92,7 +92,7 @@ private:
         photons<B> p = std::move(built_.trace.photons);
         const auto& layout = built_.scene.layout;
         const grid g = settings_.map.grid == glm::uvec3(0)
-            ? fitting_grid(b_, p, settings_.estimate.k, b_.caps().cells_a_radius)
+            ? fitting_grid(b_, p, settings_.estimate.k, b_.caps().cells_per_radius)
             : make_grid(layout.low, layout.high, settings_.map.grid);
         const uint parts = parts_of(settings_.output.only);
         built_.map = settings_.map.builder == map_builder::sort

@@ -99,12 +99,12 @@ void direct_light(B& b, const device_scene<B>& s, const eye_hits<B>& hits, const
     const uint samples = (s.layout.features & has_area_lights) != 0 ? settings.view.light_samples : 1u;
     // Drivers cut loops after 65,535 iterations, all lanes of a group together: shapes and their edges count.
     const uint work = (s.layout.steps_per_ray + 1) * s.layout.table(kernels::LIGHT_TABLE).count;
-    const uint a_pass = std::max(1u, 8192u / std::max(1u, work));
-    for (uint first = 0; first < samples; first += a_pass)
+    const uint per_pass = std::max(1u, 8192u / std::max(1u, work));
+    for (uint first = 0; first < samples; first += per_pass)
         b.template run<kernels::direct_light>({pixels.elements, pixels.first, s.layout.features},
             {.strata = strata_of(samples),
                 .first = first,
-                .past = std::min(samples, first + a_pass),
+                .past = std::min(samples, first + per_pass),
                 .ray_id = ray,
                 .seed = settings.seed},
             reads(s.records, hits.points, hits.surfaces), writes(light));
