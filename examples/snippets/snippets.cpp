@@ -129,7 +129,8 @@ void maps(device_type& device)
         = device.download(routed.list);                             // 16 ids a cell, 0xFFFFFFFF where there are no more
     const glm::uvec2 first_cell = device.download(routed.cells)[0]; // (0, 16): it is full
     //! [stencil_route]
-    expect(slots.size() == 6400 && first_cell == glm::uvec2(0, 16) && slots[0] < p.size() && routed.overfull_cells > 0,
+    expect(
+        slots.size() == 6400 && first_cell == glm::uvec2(0, 16) && slots[0] < p.size() && routed.overflowing_cells > 0,
         "stencil_route");
 
     //! [sorted_map]
@@ -144,12 +145,12 @@ void maps(device_type& device)
     const auto approximate
         = photongrid::routed_map(device, photongrid::upload_photons(device, mine), cells, 4); // 4 x 4 slots a cell
     //! [routed_map]
-    expect(approximate.overfull_cells > 0 && device.download(approximate.cells)[0].y == 16, "routed_map");
+    expect(approximate.overflowing_cells > 0 && device.download(approximate.cells)[0].y == 16, "routed_map");
 
-    //! [redistributed_flux]
-    const double moved = photongrid::redistributed_flux(device, approximate); // W, of 3 W in three channels
-    //! [redistributed_flux]
-    expect(moved > 0.5 && moved < 3 && photongrid::redistributed_flux(device, map) == 0, "redistributed_flux");
+    //! [redistributed_power]
+    const double moved = photongrid::redistributed_power(device, approximate); // W, of 3 W in three channels
+    //! [redistributed_power]
+    expect(moved > 0.5 && moved < 3 && photongrid::redistributed_power(device, map) == 0, "redistributed_power");
 
     //! [fitted_map]
     const auto ready

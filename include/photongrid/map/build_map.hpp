@@ -3,6 +3,7 @@
 
 #include <photongrid/map/bitonic_sort.hpp>
 #include <photongrid/map/fitting_grid.hpp>
+#include <photongrid/map/gather_vector.kernel.hpp>
 #include <photongrid/map/grid_index.hpp>
 #include <photongrid/map/invalid_photon.kernel.hpp>
 #include <photongrid/map/map_buffers.hpp>
@@ -13,7 +14,6 @@
 #include <photongrid/map/photon_cell.kernel.hpp>
 #include <photongrid/map/prefix_sums.hpp>
 #include <photongrid/map/stencil_route.hpp>
-#include <photongrid/map/take_vector.kernel.hpp>
 
 #include <bit>
 
@@ -31,7 +31,7 @@ namespace detail {
             if (attribute->size() == 0)
                 continue;
             auto taken = b.template make<glm::vec4>(n);
-            b.template run<kernels::take_vector>(n, {.photons = n}, reads(list, *attribute), writes(taken));
+            b.template run<kernels::gather_vector>(n, {.photons = n}, reads(list, *attribute), writes(taken));
             *attribute = std::move(taken);
         }
     }
@@ -80,7 +80,7 @@ map_buffers<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed =
     {
         auto routed = stencil_route(b, p, g, m, seed, parts);
         map.surpluses = std::move(routed.surpluses);
-        map.overfull_cells = static_cast<uint>(routed.overfull_cells);
+        map.overflowing_cells = static_cast<uint>(routed.overflowing_cells);
         p.powers = std::move(routed.powers);
         auto kept = b.template make<uint>(cells);
         b.template run<kernels::pair_value>(cells, {}, reads(routed.cells), writes(kept));

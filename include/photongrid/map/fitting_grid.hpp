@@ -1,8 +1,8 @@
 // A grid that fits the photons themselves, so that nobody need choose one.
 #pragma once
 
+#include <photongrid/map/gather_vector.kernel.hpp>
 #include <photongrid/map/map_buffers.hpp>
-#include <photongrid/map/take_vector.kernel.hpp>
 
 #include <algorithm>
 #include <vector>
@@ -21,7 +21,7 @@ namespace detail {
         for (uint i = 0; i < std::min(n, wanted); ++i)
             ids.push_back(static_cast<uint>(std::uint64_t{i} * n / std::min(n, wanted)));
         auto taken = b.template make<glm::vec4>(ids.size());
-        b.template run<kernels::take_vector>(
+        b.template run<kernels::gather_vector>(
             ids.size(), {.photons = n}, reads(b.upload(std::span<const uint>(ids)), p.positions), writes(taken));
         std::vector<glm::vec3> positions;
         for (const auto& v : b.download(taken))

@@ -74,10 +74,10 @@ struct map_buffers {
     grid cells_of{};                ///< the grid that the cells are of
     photongrid::photons<B> photons; ///< cell by cell
     buffer_of<B, glm::uvec2> cells; ///< x: first, y: count
-    buffer_of<B, uint> list; ///< ids: which of the photons that the map was made from stands here; 0xFFFFFFFF: none
-    uint invalid = 0;        ///< photons in no cell: NaN or infinite
-    uint left_out = 0;       ///< photons in no cell: of a part of the light that was not wanted
-    uint overfull_cells = 0; ///< cells for which more photons were destined than they have slots (routed)
+    buffer_of<B, uint> list;    ///< ids: which of the photons that the map was made from stands here; 0xFFFFFFFF: none
+    uint invalid = 0;           ///< photons in no cell: NaN or infinite
+    uint left_out = 0;          ///< photons in no cell: of a part of the light that was not wanted
+    uint overflowing_cells = 0; ///< cells for which more photons were destined than they have slots (routed)
     buffer_of<B, glm::vec4>
         surpluses; ///< routed: per cell, w: flux of photons not kept, W, given to the kept; empty when sorted
 };
@@ -85,9 +85,9 @@ struct map_buffers {
 /// Flux (W, all channels together) that stencil routing took from photons it could not keep and gave to the others of
 /// their cells; 0 for a sorted map (2.2.2). Reads the surpluses back.
 /// \throws backend_error when the device fails.
-/// \snippet snippets.cpp redistributed_flux
+/// \snippet snippets.cpp redistributed_power
 template <backend B>
-double redistributed_flux(B& b, const map_buffers<B>& map)
+double redistributed_power(B& b, const map_buffers<B>& map)
 {
     double sum = 0;
     for (const auto& s : b.download(map.surpluses))

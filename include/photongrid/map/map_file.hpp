@@ -52,7 +52,7 @@ namespace detail {
         std::uint32_t cells = 0;
         std::uint32_t surpluses = 0;  ///< elements; 0 or as many as cells
         std::uint32_t attributes = 0; ///< bit 0: directions, bit 1: normals
-        std::uint32_t invalid = 0, left_out = 0, overfull_cells = 0;
+        std::uint32_t invalid = 0, left_out = 0, overflowing_cells = 0;
         std::uint32_t note = 0;     ///< bytes
         std::uint64_t bytes = 0;    ///< of the whole file
         std::uint64_t checksum = 0; ///< of the whole file, taken with 0 here
@@ -170,7 +170,7 @@ void save_map(B& b, const map_buffers<B>& map, const std::filesystem::path& file
     header.attributes = (directions.empty() ? 0u : 1u) | (normals.empty() ? 0u : 2u);
     header.invalid = map.invalid;
     header.left_out = map.left_out;
-    header.overfull_cells = map.overfull_cells;
+    header.overflowing_cells = map.overflowing_cells;
     header.note = static_cast<std::uint32_t>(note.size());
     const auto each_buffer = [&](auto&& f) {
         f(cells);
@@ -306,7 +306,7 @@ map_buffers<B> load_map(B& b, const std::filesystem::path& file, std::string* no
         note->assign(reinterpret_cast<const char*>(at), header.note);
     map.invalid = header.invalid;
     map.left_out = header.left_out;
-    map.overfull_cells = header.overfull_cells;
+    map.overflowing_cells = header.overflowing_cells;
     return map;
 }
 

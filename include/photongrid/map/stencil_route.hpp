@@ -3,7 +3,7 @@
 #pragma once
 
 #include <photongrid/map/map_buffers.hpp>
-#include <photongrid/map/overfull_cell.kernel.hpp>
+#include <photongrid/map/overflowing_cell.kernel.hpp>
 #include <photongrid/map/redistribute_power.kernel.hpp>
 #include <photongrid/map/route_photon.kernel.hpp>
 #include <photongrid/map/routed_cell.kernel.hpp>
@@ -16,12 +16,12 @@ namespace photongrid {
 /// - 1.
 template <backend B>
 struct routed_cells {
-    buffer_of<B, uint> list;           ///< per slot a photon id; 0xFFFFFFFF: empty
-    buffer_of<B, glm::uvec2> cells;    ///< x: first slot, y: photons kept
-    buffer_of<B, glm::vec4> powers;    ///< per photon, W: with the surplus of its cell shared out
-    buffer_of<B, glm::vec4> totals;    ///< per cell: flux destined for it, W, and how many photons
-    buffer_of<B, glm::vec4> surpluses; ///< per cell: rgb W added to each kept photon, w flux moved, W
-    std::uint64_t overfull_cells = 0;  ///< cells that more photons were destined for than they have slots
+    buffer_of<B, uint> list;             ///< per slot a photon id; 0xFFFFFFFF: empty
+    buffer_of<B, glm::uvec2> cells;      ///< x: first slot, y: photons kept
+    buffer_of<B, glm::vec4> powers;      ///< per photon, W: with the surplus of its cell shared out
+    buffer_of<B, glm::vec4> totals;      ///< per cell: flux destined for it, W, and how many photons
+    buffer_of<B, glm::vec4> surpluses;   ///< per cell: rgb W added to each kept photon, w flux moved, W
+    std::uint64_t overflowing_cells = 0; ///< cells that more photons were destined for than they have slots
 };
 
 /// Routes photons to m x m slots a cell. Kept are the first min(m*m, 255) of each cell in *draw order*, a permutation
@@ -62,7 +62,8 @@ routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, 
     r.powers = b.template make<glm::vec4>(n);
     b.template run<kernels::redistribute_power>(
         n, {.grid = g}, reads(p.positions, p.powers, scales, r.surpluses), writes(r.powers));
-    r.overfull_cells = detail::checked_count<kernels::overfull_cell>(b, cells, {.capacity = capacity}, reads(r.totals));
+    r.overflowing_cells
+        = detail::checked_count<kernels::overflowing_cell>(b, cells, {.capacity = capacity}, reads(r.totals));
     return r;
 }
 

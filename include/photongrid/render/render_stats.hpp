@@ -17,8 +17,8 @@ struct map_stats {
     map_builder builder = map_builder::sort; ///< sorted or routed (2.2)
     std::uint64_t cells = 0;                 ///< of the whole grid
     glm::uvec3 resolution{0};                ///< cells along each axis
-    std::uint64_t overfull_cells = 0;        ///< routed cells with more photons than slots
-    double redistributed_flux = 0;           ///< W, rgb together: flux of photons not kept, given to those kept
+    std::uint64_t overflowing_cells = 0;     ///< routed cells with more photons than slots
+    double redistributed_power = 0;          ///< W, rgb together: flux of photons not kept, given to those kept
     std::uint64_t sort_steps = 0;            ///< not counted: 0; stage_stats::passes has the passes of the sort
     std::uint64_t left_out = 0; ///< photons stored, but of a part of the light that was not asked for (light_part)
 };

@@ -101,7 +101,7 @@ private:
         built_.about.builder = settings_.map.builder;
         built_.about.cells = cell_count(g);
         built_.about.resolution = glm::uvec3(g.resolution);
-        built_.about.overfull_cells = built_.map.overfull_cells;
+        built_.about.overflowing_cells = built_.map.overflowing_cells;
         built_.about.left_out = built_.map.left_out;
         stats_.map = built_.about;
     }
