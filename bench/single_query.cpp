@@ -17,7 +17,7 @@ namespace {
 
 struct host_photon {
     glm::vec3 position;
-    float flux;
+    float power;
 };
 
 struct cloud {

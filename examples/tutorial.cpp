@@ -5,13 +5,13 @@
 #include <cstdio>
 #include <random>
 
-// A photon as your renderer has it: your vectors, your names. photongrid looks for `position` and `flux`.
+// A photon as your renderer has it: your vectors, your names. photongrid looks for `position` and `power`.
 struct my_vector {
     double x, y, z;
 };
 struct my_photon {
     my_vector position; // m
-    my_vector flux;     // W, red, green, blue
+    my_vector power;    // W, red, green, blue
 };
 
 int main()

@@ -16,11 +16,11 @@ struct tree {
     float height;       // m
 };
 
-/// How photongrid reads it: as a photon of flux 1, so that an estimate counts trees.
+/// How photongrid reads it: as a photon of power 1, so that an estimate counts trees.
 template <>
 struct photongrid::photon_reader<tree> {
     static glm::dvec3 position(const tree& t) { return {t.east, t.north, 0}; }
-    static float flux(const tree&) { return 1; }
+    static float power(const tree&) { return 1; }
 };
 
 /// What is found about one place.

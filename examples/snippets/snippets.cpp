@@ -25,7 +25,7 @@ using vectors = std::vector<glm::vec4>;
 /// A photon as a program may have it.
 struct photon {
     glm::vec3 position; // m
-    glm::vec3 flux;     // W
+    glm::vec3 power;    // W
 };
 
 //! [photon_reader]
@@ -36,7 +36,7 @@ struct particle {
 template <>
 struct photongrid::photon_reader<particle> {
     static auto position(const particle& p) { return std::span(p.where); }
-    static float flux(const particle& p) { return p.mass; }
+    static float power(const particle& p) { return p.mass; }
 };
 //! [photon_reader]
 
@@ -107,7 +107,7 @@ void maps(device_type& device)
 
     //! [upload_photons]
     photongrid::photons<device_type> p
-        = photongrid::upload_photons(device, mine); // a vector of { vec3 position; vec3 flux; }
+        = photongrid::upload_photons(device, mine); // a vector of { vec3 position; vec3 power; }
     //! [upload_photons]
     expect(
         p.size() == mine.size() && device.download(p.powers)[0] == glm::vec4(1e-4f, 1e-4f, 1e-4f, 0), "upload_photons");

@@ -4,7 +4,7 @@
 //     template <>
 //     struct photongrid::photon_reader<particle> {
 //         static auto position(const particle& p) { return std::span(p.where); }
-//         static float flux(const particle& p) { return p.mass; }
+//         static float power(const particle& p) { return p.mass; }
 //     };
 //     auto map = photongrid::sorted_map(device, photongrid::upload_photons(device, particles), grid);
 //
@@ -24,24 +24,24 @@
 
 namespace photongrid {
 
-/// How photons of type P are read. As it stands it takes the members `position` (m) and `flux` (W), and, where P has
+/// How photons of type P are read. As it stands it takes the members `position` (m) and `power` (W), and, where P has
 /// them, `direction` (of travel, a unit vector), `normal` (of the surface, a unit vector) and `caustic` (whether the
 /// photon counts as caustic light). Specialise it for structs with other names.
 ///
-/// Positions, directions and normals are anything with members x, y, z or elements [0] to [2]; a flux is the same, its
+/// Positions, directions and normals are anything with members x, y, z or elements [0] to [2]; a power is the same, its
 /// channels red, green and blue, or one number for all three.
 /// \snippet snippets.cpp photon_reader
 template <class P>
 struct photon_reader {
-    /// \name What a specialisation may have; position and flux are needed
+    /// \name What a specialisation may have; position and power are needed
     /// @{
     static const auto& position(const P& p) requires requires { p.position; }
     {
         return p.position;
     } ///< m
-    static const auto& flux(const P& p) requires requires { p.flux; }
+    static const auto& power(const P& p) requires requires { p.power; }
     {
-        return p.flux;
+        return p.power;
     } ///< W
     static const auto& direction(const P& p) requires requires { p.direction; }
     {
@@ -74,7 +74,7 @@ namespace detail {
     template <class V>
     concept vector_like = has_xyz<V> || has_elements<V>;
     template <class V>
-    concept flux_like = vector_like<V> || std::is_arithmetic_v<std::remove_cvref_t<V>>;
+    concept power_like = vector_like<V> || std::is_arithmetic_v<std::remove_cvref_t<V>>;
 
     template <class V>
     glm::vec3 to_vec3(const V& v)
@@ -96,8 +96,8 @@ concept own_photon = requires(const P& p)
         photon_reader<P>::position(p)
         } -> detail::vector_like;
     {
-        photon_reader<P>::flux(p)
-        } -> detail::flux_like;
+        photon_reader<P>::power(p)
+        } -> detail::power_like;
 };
 
 /// The caller's photons in buffers of `b`, in their order. Directions and normals only where the type has them. Beside
@@ -128,7 +128,7 @@ requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_
             caustic = reader::caustic(o);
         return glm::vec4(detail::to_vec3(reader::position(o)), caustic ? 1.0f : 0.0f);
     });
-    p.powers = upload([](const P& o) { return glm::vec4(detail::to_vec3(reader::flux(o)), 0.0f); });
+    p.powers = upload([](const P& o) { return glm::vec4(detail::to_vec3(reader::power(o)), 0.0f); });
     if constexpr (requires(const P& o) { reader::direction(o); })
         p.directions = upload([](const P& o) { return glm::vec4(detail::to_vec3(reader::direction(o)), 0.0f); });
     if constexpr (requires(const P& o) { reader::normal(o); })

@@ -38,7 +38,7 @@ class vector_view {
 public:
     vector_view() = default;
     template <std::ranges::contiguous_range Range>
-    requires std::ranges::sized_range<Range> && detail::flux_like<std::ranges::range_value_t<Range>> &&(
+    requires std::ranges::sized_range<Range> && detail::power_like<std::ranges::range_value_t<Range>> &&(
         !std::same_as<std::remove_cvref_t<Range>, vector_view>)vector_view(const Range& range)
         : vector_view(
             std::ranges::data(range), static_cast<std::size_t>(std::ranges::size(range)),
@@ -87,7 +87,7 @@ namespace detail {
         const P* const first = std::ranges::data(photons);
         const auto n = static_cast<std::size_t>(std::ranges::size(photons));
         photon_attributes a{.positions = {first, n, [](const P& p) -> decltype(auto) { return reader::position(p); }},
-            .powers = {first, n, [](const P& p) -> decltype(auto) { return reader::flux(p); }}};
+            .powers = {first, n, [](const P& p) -> decltype(auto) { return reader::power(p); }}};
         if constexpr (requires(const P& p) { reader::direction(p); })
             a.directions = {first, n, [](const P& p) -> decltype(auto) { return reader::direction(p); }};
         if constexpr (requires(const P& p) { reader::normal(p); })
