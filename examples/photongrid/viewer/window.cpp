@@ -411,7 +411,7 @@ namespace {
 
         /// A word for each value.
         template <class Row>
-        void choice(const Row& row, const char* label, const char* about)
+        void choice(const Row& row, const char* label, const char* text)
         {
             const auto value = row.of(document_.now().settings);
             if (ImGui::BeginCombo(label, row.values.word_for(value))) {
@@ -420,31 +420,31 @@ namespace {
                         change(label, [&](render_settings& s) { row.of(s) = n.value; });
                 ImGui::EndCombo();
             }
-            tip(about);
+            tip(text);
         }
 
         /// A whole number, by a slider whose steps are even in its logarithm.
         template <class Row>
-        void number(const Row& row, const char* label, int low, int high, const char* about)
+        void number(const Row& row, const char* label, int low, int high, const char* text)
         {
             int value = static_cast<int>(row.of(document_.now().settings));
             const bool edited = ImGui::SliderInt(
                 label, &value, low, high, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
             if (begun(label) && edited)
                 row.of(document_.edit().settings) = static_cast<std::uint32_t>(value);
-            tip(about);
+            tip(text);
         }
 
         template <class Row>
         void measure(const Row& row, const char* label, float low, float high, const char* format, bool logarithmic,
-            const char* about)
+            const char* text)
         {
             float value = static_cast<float>(row.of(document_.now().settings));
             const bool edited = ImGui::SliderFloat(label, &value, low, high, format,
                 (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp);
             if (begun(label) && edited)
                 row.of(document_.edit().settings) = static_cast<double>(value);
-            tip(about);
+            tip(text);
         }
 
         template <class Change>
@@ -580,12 +580,12 @@ namespace {
 
         void draw_curve()
         {
-            const auto plot = [](const char* label, const std::vector<float>& values, const char* about) {
+            const auto plot = [](const char* label, const std::vector<float>& values, const char* text) {
                 char last[48] = "";
                 if (!values.empty())
                     std::snprintf(last, sizeof last, "%.2g", std::pow(10.0, static_cast<double>(values.back())));
                 ImGui::PlotLines(label, values.data(), static_cast<int>(values.size()), 0, last, -8, 2, {170, 60});
-                tip(about);
+                tip(text);
             };
             plot("change", changes_,
                 "relMSE from picture to picture since the last change of yours, logarithmic: from 100 down to 1e-8.");

@@ -88,17 +88,17 @@ namespace detail {
             const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
             if (descriptor < 0)
                 throw map_file_error(file, "cannot be opened: " + std::generic_category().message(errno));
-            struct ::stat about {};
-            const bool known = ::fstat(descriptor, &about) == 0 && S_ISREG(about.st_mode);
-            if (known && about.st_size > 0)
+            struct ::stat status {};
+            const bool known = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
+            if (known && status.st_size > 0)
                 mapped_
-                    = ::mmap(nullptr, static_cast<std::size_t>(about.st_size), PROT_READ, MAP_PRIVATE, descriptor, 0);
+                    = ::mmap(nullptr, static_cast<std::size_t>(status.st_size), PROT_READ, MAP_PRIVATE, descriptor, 0);
             ::close(descriptor);
             if (!known || mapped_ == MAP_FAILED) {
                 mapped_ = nullptr;
                 throw map_file_error(file, known ? "cannot be mapped into memory" : "is not a regular file");
             }
-            size_ = static_cast<std::size_t>(about.st_size);
+            size_ = static_cast<std::size_t>(status.st_size);
 #else
             std::ifstream in(file, std::ios::binary | std::ios::ate);
             if (!in)

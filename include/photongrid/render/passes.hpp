@@ -93,8 +93,8 @@ pass_pixels finish_pass(B& b, const built_map<B>& built, const view_pass<B>& vie
             + " points were searched for; there are " + std::to_string(searched));
     detail::add(stats.estimate, sum);
     detail::add(stats.photons, count_photons(b, built.trace, built.map.photons.size()));
-    stats.map = built.about;
-    if (built.about.builder == map_builder::route)
+    stats.map = built.stats;
+    if (built.stats.builder == map_builder::route)
         stats.map.redistributed_power = redistributed_power(b, built.map);
     stats.peak_device_bytes = b.peak_bytes();
     return p;

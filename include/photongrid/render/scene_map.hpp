@@ -19,7 +19,7 @@ struct built_map {
     device_scene<B> scene;   ///< recentred
     map_buffers<B> map;      ///< in the coordinates of `scene`
     traced_photons<B> trace; ///< its photons have moved to `map`
-    map_stats about;         ///< what draw repeats in its statistics
+    map_stats stats;         ///< what draw repeats in its statistics
 };
 
 /// The parts of the light (map_buffers.hpp) that a picture of `only` takes from its map.
@@ -98,12 +98,12 @@ private:
         built_.map = settings_.map.builder == map_builder::sort
             ? sorted_map(b_, std::move(p), g, parts)
             : routed_map(b_, std::move(p), g, settings_.map.slots, settings_.seed, parts);
-        built_.about.builder = settings_.map.builder;
-        built_.about.cells = cell_count(g);
-        built_.about.resolution = glm::uvec3(g.resolution);
-        built_.about.overflowing_cells = built_.map.overflowing_cells;
-        built_.about.left_out = built_.map.left_out;
-        stats_.map = built_.about;
+        built_.stats.builder = settings_.map.builder;
+        built_.stats.cells = cell_count(g);
+        built_.stats.resolution = glm::uvec3(g.resolution);
+        built_.stats.overflowing_cells = built_.map.overflowing_cells;
+        built_.stats.left_out = built_.map.left_out;
+        stats_.map = built_.stats;
     }
 
     B& b_;
