@@ -98,7 +98,7 @@ public:
         gather_.reach = reach[0];
         gather_.chosen = chosen[0];
         gather_.sum = start.sum;
-        gather_.lost = start.lost;
+        gather_.compensation = start.compensation;
         gather_.squares = start.squares;
         gather_.cursor = start.cursor;
         gather_.tally = start.tally;

@@ -33,7 +33,7 @@ INPUT(7, vec4, powers)         // rgb, W
 STATE(0, vec4, reach)          // see kth_result.glsl
 STATE(1, uvec4, chosen)
 STATE(2, vec4, sum)            // rgb: weighted flux, W
-STATE(3, vec4, lost)           // rgb: what rounding took from it
+STATE(3, vec4, compensation)   // rgb: rounding error of the sum so far (Kahan)
 STATE(4, vec4, squares)        // rgb: squares of the weighted fluxes; w: of their sums over channels
 STATE(5, uvec4, cursor)        // y, z of the row to go on with; the first photon not yet visited
 STATE(6, uvec4, tally)         // photons held, photons visited, place + 1 of the one left out, done
@@ -44,7 +44,7 @@ STATE(6, uvec4, tally)         // photons held, photons visited, place + 1 of th
 
 uint chunk_id;
 vec4 chunk_power;
-void take_flux(uint nth, uint all)
+void take_powers(uint nth, uint all)
 {
     take_chunk(nth, all);
     chunk_id = list(chunk_place);
@@ -66,7 +66,7 @@ void kernel(uint i)
     float inverse_disc2 = 1.0f / max(radius2, args.min_radius2);
     uint last_id = chosen.z;
     vec4 total = sum;
-    vec4 rest = lost;
+    vec4 correction = compensation;
     vec4 square = squares;
     uvec4 place = cursor;
     uint held = tally.x;
@@ -89,46 +89,47 @@ void kernel(uint i)
             uint photons = next_rows();
             visited += mine ? photons : 0u;
             // Of several photons at the radius itself, the one with the largest id is left out.
-#define VISIT(LANE)                                                                                 \
-    {                                                                                               \
-        float d2 = distance2_of(PHOTON_OF(LANE), from, n);                                          \
-        if (GROUP_LANES > 1u || d2 <= radius2) {                                                    \
-            uint at = from_lane(chunk_place, LANE);                                                 \
-            uint id = from_lane(chunk_id, LANE);                                                    \
-            vec4 power = from_lane(chunk_power, LANE);                                              \
-            bool at_radius = d2 == radius2 && id <= last_id;                                        \
-            bool counts = d2 < radius2 || at_radius;                                                \
-            held += counts ? 1u : 0u;                                                               \
-            bool swaps = apart && at_radius && (left_out == 0u || id > left_id);                    \
-            counts = counts && !(swaps && left_out == 0u);                                          \
-            vec4 added = swaps ? left_power : power;                                                \
-            left_out = swaps ? at + 1u : left_out;                                                  \
-            left_id = swaps ? id : left_id;                                                         \
-            left_power = swaps ? power : left_power;                                                \
-            float t = d2 * inverse_disc2;                                                           \
-            t = t < 1.0f ? t : 1.0f;                                                                \
-            float weight = 1.0f;                                                                    \
-            if (CONE)                                                                               \
-                weight = 1.0f - sqrt(t);                                                            \
-            if (EPANECHNIKOV)                                                                       \
-                weight = 1.0f - t;                                                                  \
-            if (SILVERMAN)                                                                          \
-                weight = (1.0f - t) * (1.0f - t);                                                   \
-            precise vec4 flux = added * weight;                                                     \
-            precise vec4 term = flux - rest;                                                        \
-            precise vec4 more = total + term;                                                       \
-            precise vec4 error = (more - total) - term;                                             \
-            total = counts ? more : total;                                                          \
-            rest = counts ? error : rest;                                                           \
-            if (ERRORS) {                                                                           \
-                float all = flux.x + flux.y + flux.z;                                               \
-                vec4 flux2 = vec4(flux.x * flux.x, flux.y * flux.y, flux.z * flux.z, all * all);    \
-                square = counts ? square + flux2 : square;                                          \
-            }                                                                                       \
-        }                                                                                           \
+#define VISIT(LANE)                                                                        \
+    {                                                                                      \
+        float d2 = distance2_of(PHOTON_OF(LANE), from, n);                                 \
+        if (GROUP_LANES > 1u || d2 <= radius2) {                                           \
+            uint at = from_lane(chunk_place, LANE);                                        \
+            uint id = from_lane(chunk_id, LANE);                                           \
+            vec4 power = from_lane(chunk_power, LANE);                                     \
+            bool at_radius = d2 == radius2 && id <= last_id;                               \
+            bool counts = d2 < radius2 || at_radius;                                       \
+            held += counts ? 1u : 0u;                                                      \
+            bool swaps = apart && at_radius && (left_out == 0u || id > left_id);           \
+            counts = counts && !(swaps && left_out == 0u);                                 \
+            vec4 added = swaps ? left_power : power;                                       \
+            left_out = swaps ? at + 1u : left_out;                                         \
+            left_id = swaps ? id : left_id;                                                \
+            left_power = swaps ? power : left_power;                                       \
+            float t = d2 * inverse_disc2;                                                  \
+            t = t < 1.0f ? t : 1.0f;                                                       \
+            float weight = 1.0f;                                                           \
+            if (CONE)                                                                      \
+                weight = 1.0f - sqrt(t);                                                   \
+            if (EPANECHNIKOV)                                                              \
+                weight = 1.0f - t;                                                         \
+            if (SILVERMAN)                                                                 \
+                weight = (1.0f - t) * (1.0f - t);                                          \
+            precise vec4 weighted = added * weight;                                        \
+            precise vec4 term = weighted - correction;                                     \
+            precise vec4 more = total + term;                                              \
+            precise vec4 error = (more - total) - term;                                    \
+            total = counts ? more : total;                                                 \
+            correction = counts ? error : correction;                                      \
+            if (ERRORS) {                                                                  \
+                float all = weighted.x + weighted.y + weighted.z;                          \
+                vec4 weighted2 = vec4(weighted.x * weighted.x, weighted.y * weighted.y,    \
+                    weighted.z * weighted.z, all * all);                                   \
+                square = counts ? square + weighted2 : square;                             \
+            }                                                                              \
+        }                                                                                  \
     }
             if (photons > 0u)
-                EACH_PHOTON(photons, take_flux, VISIT)
+                EACH_PHOTON(photons, take_powers, VISIT)
 #undef VISIT
         }
         if (mine) {
@@ -138,7 +139,7 @@ void kernel(uint i)
     }
 
     sum = total;
-    lost = rest;
+    compensation = correction;
     squares = square;
     cursor = place;
     tally = uvec4(held, visited, left_out, finished ? 1u : 0u);

@@ -8,7 +8,7 @@ PARAMS(Params)
 INPUT(0, vec4, points) // xyz: query point, m; w > 0: wanted
 INPUT(1, uvec4, chosen)
 OUTPUT(0, vec4, sum)
-OUTPUT(1, vec4, lost)
+OUTPUT(1, vec4, compensation)
 OUTPUT(2, vec4, squares)
 OUTPUT(3, uvec4, cursor)
 OUTPUT(4, uvec4, tally)
@@ -17,7 +17,7 @@ void kernel(uint i)
 {
     vec4 p = points(i);
     sum = vec4(0.0f, 0.0f, 0.0f, 0.0f);
-    lost = sum;
+    compensation = sum;
     squares = sum;
     cursor = uvec4(0u, 0u, 0u, 0u);
     bool wanted = args.searching != 0u && p.w > 0.0f && is_finite(p);

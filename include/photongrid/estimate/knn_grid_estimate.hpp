@@ -150,12 +150,12 @@ private:
     {
         stage_ = stage::gather;
         sum_ = in_.template make<glm::vec4>();
-        lost_ = in_.template make<glm::vec4>();
+        compensation_ = in_.template make<glm::vec4>();
         squares_ = in_.template make<glm::vec4>();
         cursor_ = in_.template make<glm::uvec4>();
         tally_ = in_.template make<glm::uvec4>();
         in_.b->template run<kernels::gather_start>(in_.points->size(), {.searching = in_.searching() ? 1u : 0u},
-            reads(*in_.points, chosen_), writes(sum_, lost_, squares_, cursor_, tally_));
+            reads(*in_.points, chosen_), writes(sum_, compensation_, squares_, cursor_, tally_));
     }
 
     void next_stage()
@@ -183,7 +183,7 @@ private:
             return;
         case stage::gather:
             stage_ = stage::finished;
-            lost_ = {};
+            compensation_ = {};
             cursor_ = {};
             return;
         case stage::finished: return;
@@ -221,7 +221,7 @@ private:
                     .ranges = s.ranges_per_pass},
                 reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
                     in_.photon_normals(), m.list, m.photons.powers),
-                writes(radius_, chosen_, sum_, lost_, squares_, cursor_, tally_), passes);
+                writes(radius_, chosen_, sum_, compensation_, squares_, cursor_, tally_), passes);
         }
         case stage::finished: break;
         }
@@ -234,7 +234,7 @@ private:
     stage stage_ = stage::finished;
     std::optional<knn_reach<B>> reach_;
     // States; each stage holds its own and gives up the last one's.
-    vectors gathered_, radius_, sum_, lost_, squares_;
+    vectors gathered_, radius_, sum_, compensation_, squares_;
     buffer_of<B, glm::uvec4> found_, chosen_, cursor_, tally_;
 };
 
