@@ -79,7 +79,7 @@ public:
     view_pass(B& b, const built_map<B>& built, const camera& view, const render_settings& settings,
         const view_options& options, kept_samples<B>& kept, render_stats& stats)
         : b_(b), built_(built), view_(view), settings_(settings), options_(options), kept_(kept), stats_(stats),
-          ways_(1u << detail::branchings_of(built.scene.layout))
+          branches_(1u << detail::splits_of(built.scene.layout))
     {
         check(settings);
         check(view);
@@ -90,7 +90,7 @@ public:
             const std::size_t layers = !is_preview() && settings_.output.aov ? r.size() : 0;
             canvas_ = {r, 0, dark(r.size()), dark(r.size()), dark(layers)};
         });
-        kept_.resize(ways_);
+        kept_.resize(branches_);
         for (auto& k : kept_)
             if (k && k->direct.size() != r.size())
                 k.reset();
@@ -99,12 +99,12 @@ public:
     view_pass& operator=(const view_pass&) = delete;
 
     /// Eye rays per pixel, each way through glass apart: what `ray` goes up to. A preview takes one sample.
-    uint rays() const { return (is_preview() ? 1u : settings_.view.spp) * ways_; }
+    uint rays() const { return (is_preview() ? 1u : settings_.view.spp) * branches_; }
 
     /// Camera rays through mirrors and glass to the surfaces where they end (2.4).
     bool trace_eye(uint ray)
     {
-        if (ray < ways_ && kept_[ray]) {
+        if (ray < branches_ && kept_[ray]) {
             samples_ = std::move(kept_[ray]);
             kept_[ray].reset();
             lit_ = true;
@@ -190,12 +190,12 @@ public:
     /// Pixels of the eye ray in flight whose estimates are not done.
     std::uint64_t unfinished() const { return unfinished_; }
     /// Samples per pixel that are whole: all their ways through glass were added.
-    uint samples() const { return canvas_.rays / ways_; }
+    uint samples() const { return canvas_.rays / branches_; }
     /// Whether no sample is begun and not whole.
-    bool has_whole_samples() const { return canvas_.rays % ways_ == 0; }
+    bool has_whole_samples() const { return canvas_.rays % branches_ == 0; }
 
     /// Times that running_estimate() has become better; 0: there is none.
-    uint grown() const { return search_ && grows() && canvas_.rays + 1 == ways_ ? grown_ : 0; }
+    uint grown() const { return search_ && grows() && canvas_.rays + 1 == branches_ ? grown_ : 0; }
     /// What the first sample has so far while its last search runs (3.4), as an image of the picture's size.
     /// \throws backend_error.
     image running_estimate(std::uint64_t& invalid)
@@ -285,7 +285,7 @@ private:
             correct_edges(b_, built_.scene, hits.points, hits.surfaces, found, settings_.estimate.filter,
                 least_radius(built_.map.cells_of));
         b_.template run<kernels::shade>(pixels.size(), {.share = share},
-            reads(built_.scene.records, hits.points, hits.weights, hits.surfaces, hits.emissions, samples_->direct,
+            reads(built_.scene.records, hits.points, hits.throughputs, hits.surfaces, hits.emissions, samples_->direct,
                 found.irradiance, found.used),
             writes(pixels, searches));
         return found;
@@ -311,7 +311,7 @@ private:
     view_options options_;
     kept_samples<B>& kept_;
     render_stats& stats_;
-    uint ways_; ///< through glass
+    uint branches_; ///< combinations of Fresnel branches, a pass over the pixels each
 
     // What stages hand on.
     std::optional<eye_samples<B>> samples_;

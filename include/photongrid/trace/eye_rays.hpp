@@ -15,11 +15,11 @@ namespace photongrid::detail {
 /// Eye rays and where they ended, one element a pixel.
 template <backend B>
 struct eye_hits {
-    buffer_of<B, glm::vec4> points, travels, weights, surfaces, emissions;
+    buffer_of<B, glm::vec4> points, directions, throughputs, surfaces, emissions;
 
     eye_hits(B& b, std::size_t n)
-        : points(b.template make<glm::vec4>(n)), travels(b.template make<glm::vec4>(n)),
-          weights(b.template make<glm::vec4>(n)), surfaces(b.template make<glm::vec4>(n)),
+        : points(b.template make<glm::vec4>(n)), directions(b.template make<glm::vec4>(n)),
+          throughputs(b.template make<glm::vec4>(n)), surfaces(b.template make<glm::vec4>(n)),
           emissions(b.template make<glm::vec4>(n))
     {
     }
@@ -68,26 +68,27 @@ inline kernels::eye_ray::Params eye_params(
         .seed = s.seed};
 }
 
-/// Ways of an eye ray through a scene: rays split at the first two glass surfaces, and each way is a pass over the
-/// picture.
-inline uint branchings_of(const scene_layout& layout) { return (layout.features & has_glass) != 0 ? 2u : 0u; }
+/// How many glass surfaces split an eye ray into its two Fresnel branches. Each combination of branches is a pass over
+/// the picture.
+inline uint splits_of(const scene_layout& layout) { return (layout.features & has_glass) != 0 ? 2u : 0u; }
 
-/// Follows eye rays to their ends, for the pixels of `pixels`: `ray` is sample x branches + branch.
+/// Traces eye rays to their ends, for the pixels of `pixels`: `ray` is sample x branches + branch.
 template <backend B>
 void trace_eye_rays(B& b, const device_scene<B>& s, const camera& view, const render_settings& settings,
     const raster& r, uint ray, launch pixels, eye_hits<B>& hits)
 {
     const auto& layout = s.layout;
-    const uint branchings = branchings_of(layout), sample = ray >> branchings;
+    const uint splits = splits_of(layout), sample = ray >> splits;
     b.template run<kernels::eye_ray>(pixels, eye_params(view, layout.center, settings, r, sample), reads(),
-        writes(hits.points, hits.travels, hits.weights, hits.surfaces, hits.emissions));
+        writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions));
     b.template run_until_done<kernels::eye_bounce>({pixels.elements, pixels.first, layout.features},
-        {.branch = ray & ((1u << branchings) - 1u),
-            .branchings = branchings,
+        {.branch = ray & ((1u << splits) - 1u),
+            .splits = splits,
             .depth = settings.view.depth,
             .sample_id = sample,
             .seed = settings.seed},
-        reads(s.records), writes(hits.points, hits.travels, hits.weights, hits.surfaces, hits.emissions), nowhere);
+        reads(s.records), writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions),
+        nowhere);
 }
 
 /// Shadow rays to every light from the hits of `pixels`, a bounded number a pass: irradiance into `light`.
