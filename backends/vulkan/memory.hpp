@@ -53,10 +53,10 @@ public:
     std::uint64_t peak_bytes() const { return peak_; }
     void forget(const block& b) { named_ -= b.bytes; }
 
-    block acquire(VkDeviceSize wanted, memory_kind kind)
+    block acquire(VkDeviceSize size, memory_kind kind)
     {
         // Sizes in steps of 256 bytes, 16 at least: a buffer of no elements can be bound too.
-        const VkDeviceSize bytes = (std::max<VkDeviceSize>(wanted, 16) + 255) / 256 * 256;
+        const VkDeviceSize bytes = (std::max<VkDeviceSize>(size, 16) + 255) / 256 * 256;
         auto& free = free_[kind];
         block b;
         if (const auto found = free.find(bytes); found != free.end()) {
@@ -120,10 +120,10 @@ private:
     static constexpr VkMemoryPropertyFlags shared_memory
         = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | host_memory | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
 
-    std::uint32_t find_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const
+    std::uint32_t find_type(std::uint32_t allowed, VkMemoryPropertyFlags properties) const
     {
         for (std::uint32_t t = 0; t < memory_.memoryTypeCount; ++t)
-            if (((allowed >> t) & 1u) != 0 && (memory_.memoryTypes[t].propertyFlags & wanted) == wanted)
+            if (((allowed >> t) & 1u) != 0 && (memory_.memoryTypes[t].propertyFlags & properties) == properties)
                 return t;
         return none;
     }

@@ -42,9 +42,9 @@ struct photongrid::photon_reader<particle> {
 
 namespace {
 
-bool is_near(float value, double truth, double tolerance)
+bool is_near(float value, double expected, double tolerance)
 {
-    return std::abs(static_cast<double>(value) - truth) <= tolerance * truth;
+    return std::abs(static_cast<double>(value) - expected) <= tolerance * expected;
 }
 
 /// 1 W on a square of 1 m about the origin: 1 W/m^2 everywhere. Spread by multiples of irrational numbers.
@@ -256,8 +256,8 @@ void edges(device_type& device)
     auto found = photongrid::knn_grid_estimate(device, map, points, settings);
     const float before = device.download(found.irradiance)[0].x;
     //! [correct_edges]
-    // A point on the floor's edge, where half of the disc hangs over: the estimate is half of the truth until this is
-    // called.
+    // A point on the floor's edge, where half of the disc hangs over: the estimate is half of the irradiance until
+    // this is called.
     photongrid::correct_edges(
         device, scene, points, normals, found, settings.filter, photongrid::least_radius(map.cells_of));
     //! [correct_edges]
@@ -325,9 +325,9 @@ void pictures(device_type& device)
     }
 
     //! [render_reference]
-    const auto truth = photongrid::render_reference(room, room.camera, {.width = 16, .height = 12, .spp = 64});
-    const glm::vec3 value = truth.mean.pixels[7 * 16 + 8],
-                    error = truth.standard_error.pixels[7 * 16 + 8]; // W/(m^2 sr)
+    const auto drawn = photongrid::render_reference(room, room.camera, {.width = 16, .height = 12, .spp = 64});
+    const glm::vec3 value = drawn.mean.pixels[7 * 16 + 8],
+                    error = drawn.standard_error.pixels[7 * 16 + 8]; // W/(m^2 sr)
     //! [render_reference]
     expect(error.x > 0 && std::abs(value.x - picture.pixels[7 * 16 + 8].x) < 0.2f * value.x, "render_reference");
 }

@@ -150,11 +150,11 @@ namespace {
                 const dvec3 p((x + 0.5) * 2 / cells - 1, 0.5, (z + 0.5) * 2 / cells - 1);
                 const reference::hit floor = shapes.nearest({{p.x, 1e-9, p.z}, {0, -1, 0}, reference::nothing});
                 const double traced = bins.irradiance(floor, {0, -1, 0}).first.x * (4.0 / (cells * cells)),
-                             wanted = expected[static_cast<std::size_t>(z * cells + x)];
+                             exact = expected[static_cast<std::size_t>(z * cells + x)];
                 EXPECT_EQ(bins.irradiance(floor, {0, 1, 0}).first, dvec3(0)) << "the floor's other side";
-                EXPECT_NEAR(traced, wanted, 5 * std::sqrt((wanted + 10 * power / 4e6) * power / 4e6) + 2e-3 * wanted)
+                EXPECT_NEAR(traced, exact, 5 * std::sqrt((exact + 10 * power / 4e6) * power / 4e6) + 2e-3 * exact)
                     << x << ", " << z;
-                total += wanted;
+                total += exact;
             }
         EXPECT_GT(total, 0.2);
     }

@@ -183,7 +183,7 @@ TEST(double_oracle, estimates)
         std::vector<double> errors, spread_errors;
         double nearest_limit = 0, nearest_spread_limit = 0;
         for (uint q = 0; q < s.points.size(); ++q) {
-            const auto truth = wide(q);
+            const auto exact = wide(q);
             std::vector<uint> ids;
             uint at_the_radius = 0;
             for (uint id = 0; id < s.photons.positions.size(); ++id)
@@ -193,22 +193,22 @@ TEST(double_oracle, estimates)
                 }
             // The k-th and its neighbour may have changed places or become one distance in float, so that another is
             // left out; or a photon that grazes the surface has changed its side.
-            auto expected = truth.ids;
+            auto expected = exact.ids;
             std::sort(expected.begin(), expected.end());
             ++compared;
             if (expected != ids || at_the_radius != 1
-                || *policy_distance2(s, q, truth.ids.back(), r.leaks) != irradiance[q].w) {
+                || *policy_distance2(s, q, exact.ids.back(), r.leaks) != irradiance[q].w) {
                 ++other;
                 continue;
             }
-            const double error = std::abs(static_cast<double>(irradiance[q].x) - truth.irradiance.x);
+            const double error = std::abs(static_cast<double>(irradiance[q].x) - exact.irradiance.x);
             nearest_limit
-                = std::max(nearest_limit, error * 0x1p24 / (rest * truth.irradiance.x + weight * truth.unweighted));
-            errors.push_back(error / truth.irradiance.x);
+                = std::max(nearest_limit, error * 0x1p24 / (rest * exact.irradiance.x + weight * exact.unweighted));
+            errors.push_back(error / exact.irradiance.x);
             // Half the error of the variance, whose k - 2 plain additions round k - 2 times; 3 in each square, 3 in its
             // factor.
-            const double spread_error = std::abs(static_cast<double>(standard_error[q].x) / truth.standard_error.x - 1);
-            const double spread_limit = rest + 1 + weight * truth.conditioning + 0.5 * (r.k - 2 + 6);
+            const double spread_error = std::abs(static_cast<double>(standard_error[q].x) / exact.standard_error.x - 1);
+            const double spread_limit = rest + 1 + weight * exact.conditioning + 0.5 * (r.k - 2 + 6);
             nearest_spread_limit = std::max(nearest_spread_limit, spread_error * 0x1p24 / spread_limit);
             spread_errors.push_back(spread_error);
         }

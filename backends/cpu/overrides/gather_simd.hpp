@@ -159,8 +159,8 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
     // At the radius itself: all, or of the k nearest as many as are still wanted, the smallest ids first; of these, the
     // one that set the radius may be left out.
     std::size_t counted = at_most - within;
-    if (j.search == search_kind::exact_k && r.by_photon && at_most > j.wanted)
-        counted = j.wanted - within;
+    if (j.search == search_kind::exact_k && r.by_photon && at_most > j.k)
+        counted = j.k - within;
     const bool apart = j.leave_out && r.by_photon && r.radius2 >= j.min_radius2;
     double extra[3] = {}, extra2[4] = {};
     if (counted > (apart ? 1u : 0u)) {
@@ -192,7 +192,7 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
 }
 
 /// Does a point want an estimate?
-inline bool is_wanted(const search_job& j, uint point)
+inline bool needs_estimate(const search_job& j, uint point)
 {
     return j.searching && j.points[point].w > 0.0f && kernels::is_finite(j.points[point]);
 }

@@ -75,13 +75,13 @@ public:
     }
 
 private:
-    bool enough() const { return held_ >= job_.wanted; }
+    bool enough() const { return held_ >= job_.k; }
 
     /// Of those within, which count.
     HWY_INLINE hn::Mask<floats> grow(vector distances2, hn::Mask<floats> within)
     {
         const floats d;
-        if (held_ + hn::CountTrue(d, within) >= job_.wanted)
+        if (held_ + hn::CountTrue(d, within) >= job_.k)
             return end_growth(distances2, within);
         farthest_ = hn::Max(farthest_, hn::IfThenElseZero(within, distances2));
         return within;
@@ -95,7 +95,7 @@ private:
             hn::IfThenElse(within, distances2, hn::Set(d, std::numeric_limits<float>::infinity())), d, distance2);
         limit2_ = hn::GetLane(hn::MaxOfLanes(d, farthest_));
         std::size_t held = held_;
-        for (std::size_t i = 0; held < job_.wanted; ++i) {
+        for (std::size_t i = 0; held < job_.k; ++i) {
             if (distance2[i] > job_.max_radius2)
                 continue;
             limit2_ = std::max(limit2_, distance2[i]);
@@ -184,15 +184,15 @@ HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& 
         const auto row = hn::Mul(hn::Add(hn::Mul(layers, every(g.resolution.y)), cell_y), every(g.resolution.x));
         const auto low = hn::Add(row, every(r.low.x)), high = hn::Add(row, every(r.high.x));
         const auto look = [&](ends& e, hn::VFromD<ints> from, hn::VFromD<ints> to, vector away2,
-                              hn::Mask<floats> wanted) HWY_ATTR {
+                              hn::Mask<floats> rows_within) HWY_ATTR {
             const auto twice_from = hn::Add(from, from), twice_to = hn::Add(to, to);
             const auto first = hn::GatherIndex(di, base, twice_from);
             const auto past = hn::Add(hn::GatherIndex(di, base, twice_to), hn::GatherIndex(di, base + 1, twice_to));
             hn::StoreU(first, di, e.first);
             hn::StoreU(past, di, e.past);
             hn::StoreU(away2, d, e.away2);
-            hn::StoreMaskBits(
-                d, hn::And(wanted, hn::And(hn::Le(away2, limit2), hn::RebindMask(d, hn::Lt(first, past)))), e.some);
+            hn::StoreMaskBits(d,
+                hn::And(rows_within, hn::And(hn::Le(away2, limit2), hn::RebindMask(d, hn::Lt(first, past)))), e.some);
         };
         ends lower, upper;
         const auto whole_int = hn::RebindMask(di, whole);
@@ -259,7 +259,7 @@ HWY_NOINLINE void grow_points(const search_job& j, std::size_t begin, std::size_
     std::vector<uint> at_radius;
     for (std::size_t o = begin; o < end; ++o) {
         const uint point = j.order[o];
-        if (!is_wanted(j, point)) {
+        if (!needs_estimate(j, point)) {
             finish(j, point, {j.max_radius2, false}, {}, 0);
             continue;
         }

@@ -61,11 +61,11 @@ inline void find_cells(map_job j, std::size_t first, std::size_t past, uint* in_
     }
     for (; i < past; ++i) {
         const bool good = kernels::is_finite(j.positions[i]) && kernels::is_finite(j.powers[i]),
-                   wanted = kernels::is_of_parts(j.positions[i], j.parts);
+                   of_parts = kernels::is_of_parts(j.positions[i], j.parts);
         invalid += good ? 0u : 1u;
-        left_out += wanted ? 0u : 1u;
+        left_out += of_parts ? 0u : 1u;
         j.keys[i] = j.cells;
-        if (good && wanted) {
+        if (good && of_parts) {
             const glm::uvec4 c = kernels::cell_coordinates(g, j.positions[i]);
             j.keys[i] = kernels::cell_number(g, c.x, c.y, c.z);
         }

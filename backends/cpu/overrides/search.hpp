@@ -75,7 +75,7 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
     j.order = b.rows(order).data();
     j.search = s.search;
     j.searching = in.searching();
-    j.wanted = s.k;
+    j.k = s.k;
     j.max_radius2 = in.max_radius2();
     j.min_radius2 = in.min_radius2();
     j.filter = s.filter;

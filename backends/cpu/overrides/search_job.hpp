@@ -23,7 +23,7 @@ struct search_job {
 
     search_kind search = search_kind::exact_k;
     bool searching = true; ///< false: nothing can be found
-    uint wanted = 0;       ///< k
+    uint k = 0;            ///< photons sought
     float max_radius2 = 0; ///< m^2
     float min_radius2 = 0; ///< m^2
     bool side = false;     ///< leak policies
@@ -39,7 +39,7 @@ struct search_job {
     glm::uvec2* used = nullptr;
     glm::vec4* standard_error = nullptr; ///< only with errors
 
-    uint* ids = nullptr;         ///< lists are wanted, not estimates: `wanted` entries a point here ...
+    uint* ids = nullptr;         ///< lists instead of estimates: k entries per point here ...
     float* distances2 = nullptr; ///< ... and here
 };
 

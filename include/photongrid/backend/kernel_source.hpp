@@ -64,17 +64,17 @@ namespace detail {
         spliced_source take() { return std::move(out_); }
 
     private:
-        void include(std::string_view wanted, std::string_view from, std::size_t line)
+        void include(std::string_view file, std::string_view from, std::size_t line)
         {
             for (const auto& f : library_) {
-                if (f.name.substr(f.name.rfind('/') + 1) != wanted)
+                if (f.name.substr(f.name.rfind('/') + 1) != file)
                     continue;
                 if (once_.insert(f.name).second)
                     append(f);
                 return;
             }
             throw std::runtime_error(std::string(from) + ":" + std::to_string(line) + ": error: no kernel file named \""
-                + std::string(wanted) + "\"");
+                + std::string(file) + "\"");
         }
         std::span<const text_file> library_;
         std::set<std::string_view> once_;

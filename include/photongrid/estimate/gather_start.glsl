@@ -20,6 +20,6 @@ void kernel(uint i)
     compensation = sum;
     squares = sum;
     cursor = uvec4(0u, 0u, 0u, 0u);
-    bool wanted = args.searching != 0u && p.w > 0.0f && is_finite(p);
-    tally = uvec4(0u, chosen(i).y, 0u, wanted ? 0u : 1u);
+    bool searches = args.searching != 0u && p.w > 0.0f && is_finite(p);
+    tally = uvec4(0u, chosen(i).y, 0u, searches ? 0u : 1u);
 }

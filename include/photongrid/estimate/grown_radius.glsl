@@ -1,6 +1,6 @@
 // What the at-least-k search (knn_visit.glsl) ends with, for gather_photons.glsl: as kth_result.glsl.
 struct Params {
-    uint wanted;       // k
+    uint k;            // photons sought
     float max_radius2; // m^2
 };
 PARAMS(Params)
@@ -12,7 +12,7 @@ OUTPUT(1, uvec4, chosen)
 void kernel(uint i)
 {
     uvec4 n = found(i);
-    bool enough = n.x >= args.wanted && args.wanted > 0u;
+    bool enough = n.x >= args.k && args.k > 0u;
     reach = vec4(enough ? gathered(i).w : args.max_radius2, enough ? 1.0f : 0.0f, 0.0f, 0.0f);
     chosen = uvec4(n.x, n.y, 0xFFFFFFFFu, 0u);
 }

@@ -215,7 +215,7 @@ private:
     float guess(const glm::vec4& p, uint k, float max2) const
     {
         kernels::kth_guess g;
-        g.args = {.grid = grid_, .wanted = k, .max_radius2 = max2, .rows = 1023u, .searching = 1u};
+        g.args = {.grid = grid_, .k = k, .max_radius2 = max2, .rows = 1023u, .searching = 1u};
         g.bind(slot<0>{}, std::span<const glm::vec4>(&p, 1));
         g.bind(slot<1>{}, cells_);
         g.kernel(0);

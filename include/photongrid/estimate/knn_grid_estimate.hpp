@@ -98,7 +98,7 @@ public:
             b.template run<kernels::zero_vectors>(n, {}, reads(), writes(e.standard_error));
         if (gathered_.size() > 0 || n == 0) {
             b.template run<kernels::knn_result>(n,
-                {.wanted = s.k, .max_radius2 = in_.max_radius2(), .min_radius2 = in_.min_radius2()},
+                {.k = s.k, .max_radius2 = in_.max_radius2(), .min_radius2 = in_.min_radius2()},
                 reads(gathered_, found_), writes(e.irradiance, e.used));
             return e;
         }
@@ -169,8 +169,7 @@ private:
             radius_ = in_.template make<glm::vec4>();
             chosen_ = in_.template make<glm::uvec4>();
             in_.b->template run<kernels::grown_radius>(in_.points->size(),
-                {.wanted = in_.s.k, .max_radius2 = in_.max_radius2()}, reads(gathered_, found_),
-                writes(radius_, chosen_));
+                {.k = in_.s.k, .max_radius2 = in_.max_radius2()}, reads(gathered_, found_), writes(radius_, chosen_));
             gathered_ = {};
             found_ = {};
             start_gathering();
@@ -200,7 +199,7 @@ private:
             return b.template run_until_done<kernels::knn_visit>({in_.points->size(), 0u, in_.policies()},
                 {.grid = m.cells_of,
                     .leaks = in_.leaks(),
-                    .wanted = s.k,
+                    .k = s.k,
                     .max_radius2 = in_.max_radius2(),
                     .visits = s.visits_per_pass,
                     .ranges = s.ranges_per_pass},

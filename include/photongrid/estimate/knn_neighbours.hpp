@@ -93,7 +93,7 @@ namespace detail {
                 }
         }
         b.template run<kernels::neighbour>(
-            lists.ids.size(), {.points = n, .wanted = k}, reads(pairs), writes(lists.ids, lists.distances2));
+            lists.ids.size(), {.points = n, .k = k}, reads(pairs), writes(lists.ids, lists.distances2));
         return lists;
     }
 } // namespace detail

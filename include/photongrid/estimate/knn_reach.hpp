@@ -66,7 +66,7 @@ private:
         tally_ = in_.template make<glm::uvec4>();
         in_.b->template run<kernels::kth_guess>({in_.points->size(), 0u, in_.template together<kernels::kth_guess>()},
             {.grid = in_.map->cells_of,
-                .wanted = in_.s.k,
+                .k = in_.s.k,
                 .max_radius2 = in_.max_radius2(),
                 .rows = 1023u,
                 .searching = in_.searching() ? 1u : 0u},
@@ -79,7 +79,7 @@ private:
         chosen = in_.template make<glm::uvec4>();
         auto ids = in_.template make<glm::uvec4>();
         in_.b->template run<kernels::kth_result>(in_.points->size(),
-            {.wanted = in_.s.k, .photons = in_.map->photons.size(), .max_radius2 = in_.max_radius2()},
+            {.k = in_.s.k, .photons = in_.map->photons.size(), .max_radius2 = in_.max_radius2()},
             reads(bracket_, tally_), writes(radius, chosen, ids, counts_, cursor_));
         bracket_ = std::move(ids);
         pivots_ = {};
@@ -104,7 +104,7 @@ private:
                 {in_.points->size(), 0u, in_.policies() | in_.template together<kernels::kth_distance>()},
                 {.grid = m.cells_of,
                     .leaks = in_.leaks(),
-                    .wanted = s.k,
+                    .k = s.k,
                     .max_radius2 = in_.max_radius2(),
                     .visits = s.visits_per_pass,
                     .ranges = s.ranges_per_pass},
@@ -115,7 +115,7 @@ private:
             {in_.points->size(), 0u, in_.policies() | in_.template together<kernels::kth_tie>()},
             {.grid = m.cells_of,
                 .leaks = in_.leaks(),
-                .wanted = s.k,
+                .k = s.k,
                 .photons = m.photons.size(),
                 .visits = s.visits_per_pass,
                 .ranges = s.ranges_per_pass},

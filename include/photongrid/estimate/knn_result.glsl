@@ -2,7 +2,7 @@
 // than k photons the disc is that of the maximum radius, for that is what was searched; it is never smaller than the
 // stated floor, so coincident photons give a finite answer.
 struct Params {
-    uint wanted;
+    uint k;            // photons sought
     float max_radius2; // m^2
     float min_radius2; // m^2
 };
@@ -16,7 +16,7 @@ void kernel(uint i)
 {
     vec4 s = searched(i);
     uvec4 n = counts(i);
-    float radius2 = n.x < args.wanted ? args.max_radius2 : s.w;
+    float radius2 = n.x < args.k ? args.max_radius2 : s.w;
     float disc2 = radius2 > args.min_radius2 ? radius2 : args.min_radius2;
     float per_area = 1.0f / (3.14159265f * disc2);
     irradiance = vec4(0.0f, 0.0f, 0.0f, radius2);

@@ -18,6 +18,6 @@ void kernel(uint i)
     uvec4 c = cell_coordinates(args.grid, p);
     gathered = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     found = uvec4(0u, 0u, 0u, 0u);
-    bool wanted = args.searching != 0u && p.w > 0.0f && is_finite(p);
-    cursor = uvec4(wanted ? 0u : 0xFFFFFFFFu, c.z, c.y, c.x);
+    bool searches = args.searching != 0u && p.w > 0.0f && is_finite(p);
+    cursor = uvec4(searches ? 0u : 0xFFFFFFFFu, c.z, c.y, c.x);
 }

@@ -12,7 +12,7 @@
 struct Params {
     Grid grid;
     vec4 leaks;         // see photon_distance.glsl
-    uint wanted;        // k
+    uint k;             // photons sought
     float max_radius2;  // m^2
     uint visits;        // photons examined in a pass at most ...
     uint ranges;        // ... in this many rows of cells at most
@@ -92,8 +92,8 @@ void kernel(uint i)
             visited += stop - at;
             for (; at < stop; ++at) {
                 float d2 = photon_distance2(at, p, n);
-                if (d2 <= (held < args.wanted ? args.max_radius2 : radius2)) {
-                    if (held < args.wanted && d2 > radius2)
+                if (d2 <= (held < args.k ? args.max_radius2 : radius2)) {
+                    if (held < args.k && d2 > radius2)
                         radius2 = d2;
                     ++held;
                     precise vec4 more = sum + powers(at);
@@ -105,7 +105,7 @@ void kernel(uint i)
             } else if (z <= high_z) {
                 // The next cells of this ring: all of row (z, y) on the ring's faces, else its two ends, of which the grid
                 // may lack either.
-                float limit2 = held < args.wanted ? args.max_radius2 : radius2;
+                float limit2 = held < args.k ? args.max_radius2 : radius2;
                 float gap_y = gap(uy, c.y, y, args.grid.cell.y);
                 float gap_z = gap(uz, c.z, z, args.grid.cell.z);
                 float row2 = gap_y * gap_y + gap_z * gap_z;
@@ -144,7 +144,7 @@ void kernel(uint i)
         if (steps > 0u) {
             // The ring is explored. Can any cell beyond it reach into the radius?
             --steps;
-            float limit2 = held < args.wanted ? args.max_radius2 : radius2;
+            float limit2 = held < args.k ? args.max_radius2 : radius2;
             float reach = 3.4028234e38f;
             reach = nearer(reach, high_x < last_x, ux, c.x, high_x + 1u, args.grid.cell.x);
             reach = nearer(reach, high_y < last_y, uy, c.y, high_y + 1u, args.grid.cell.y);

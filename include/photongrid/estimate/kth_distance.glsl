@@ -11,7 +11,7 @@
 struct Params {
     Grid grid;
     vec4 leaks;        // see photon_distance.glsl
-    uint wanted;       // k
+    uint k;            // photons sought
     float max_radius2; // m^2
     uint visits;       // photons examined in a pass at most ...
     uint ranges;       // ... in this many rows of cells at most
@@ -58,7 +58,7 @@ uint component(uvec4 v, uint n)
 uvec4 narrowed(uvec4 between, float pivot, uint count)
 {
     uint key = key_of(pivot);
-    if (count < args.wanted)
+    if (count < args.k)
         return key > between.x ? uvec4(key, between.y, count, between.w) : between;
     return between.w == 0xFFFFFFFFu || key < between.y ? uvec4(between.x, key, between.z, count) : between;
 }
@@ -164,30 +164,30 @@ void kernel(uint i)
                     phase = far_pivots.w < args.max_radius2 ? COUNTING : FOUND;
                     within = beyond.w;
                     scans = 0u;
-                    precise float growth = 1.1f * (float(args.wanted) / float(max(beyond.w, 1u)));
+                    precise float growth = 1.1f * (float(args.k) / float(max(beyond.w, 1u)));
                     float base = max(far_pivots.w, 0.0f);
                     pivot = vec4(base, max(base * (min(growth, 16.0f) - 1.0f), 1e-30f), 0.0f, 0.0f);
                 } else {
                     phase = CLOSING_IN;
                 }
-            } else if (args.wanted <= within) {
+            } else if (args.k <= within) {
                 // At the pivot or before it, and `before` photons before the last of these.
-                uint before = within - args.wanted;
+                uint before = within - args.k;
                 uint kth = component(below, min(before, 3u));
                 if (before < 4u) {
                     phase = FOUND;
-                    within = args.wanted + (before > 0u && component(below, before - 1u) == kth ? 1u : 0u);
+                    within = args.k + (before > 0u && component(below, before - 1u) == kth ? 1u : 0u);
                     between.y = kth;
                 } else {
                     uint farther = (below.x > kth ? 1u : 0u) + (below.y > kth ? 1u : 0u) + (below.z > kth ? 1u : 0u);
                     between = uvec4(between.x, kth, between.z, within - farther);
                 }
             } else {
-                uint before = args.wanted - within - 1u;
+                uint before = args.k - within - 1u;
                 uint kth = component(beyond, min(before, 3u));
                 if (before < 3u || beyond.x == between.y) {
                     phase = FOUND;
-                    within = beyond.x == between.y ? between.w : args.wanted + (component(beyond, before + 1u) == kth ? 1u : 0u);
+                    within = beyond.x == between.y ? between.w : args.k + (component(beyond, before + 1u) == kth ? 1u : 0u);
                     between.y = kth;
                 } else {
                     // As beyond as all photons are known: more than these four may share the fourth's distance.
@@ -204,7 +204,7 @@ void kernel(uint i)
                 } else {
                     float low = distance_of(between.x);
                     high = distance_of(between.y);
-                    float share = (float(args.wanted - between.z) - 0.5f) / float(between.w - between.z);
+                    float share = (float(args.k - between.z) - 0.5f) / float(between.w - between.z);
                     precise float even = low + (high - low) * share;
                     uint next = scans < 6u ? key_of(even) : between.x + (between.y - between.x) / 2u;
                     pivot.x = distance_of(min(max(next, between.x), between.y - 1u));

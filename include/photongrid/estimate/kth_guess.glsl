@@ -4,7 +4,7 @@
 
 struct Params {
     Grid grid;
-    uint wanted;       // k
+    uint k;            // photons sought
     float max_radius2; // m^2
     uint rows;         // rows of cells in a box at most
     uint searching;    // 0: no search can find anything (no photons, none wanted, no radius)
@@ -71,14 +71,14 @@ float guessed(uvec4 c)
             float z = float(high.z - low.z + 1u) * args.grid.cell.z;
             precise float area = max(x * y, max(y * z, z * x));
             if (held > inside) {
-                precise float share = (1.2732395f * float(args.wanted) - float(inside)) / float(held - inside);
+                precise float share = (1.2732395f * float(args.k) - float(inside)) / float(held - inside);
                 precise float radius2 = 0.25f * (inside_area + (area - inside_area) * share);
                 guess = max(radius2, 1e-30f);
             }
             inside = held;
             inside_area = area;
             bool everything = low == uvec4(0u, 0u, 0u, 0u) && high == largest;
-            looking = float(held) < 1.2732395f * float(args.wanted) && !everything;
+            looking = float(held) < 1.2732395f * float(args.k) && !everything;
             half_width *= 2u;
         }
     }
@@ -93,11 +93,11 @@ void kernel(uint i)
     outer = uvec4(0u, 0u, 0u, 0u);
     bracket = uvec4(0u, 0u, 0u, 0xFFFFFFFFu);
     cursor = uvec4(0u, 0u, 0u, 0u);
-    bool wanted = args.searching != 0u && p.w > 0.0f && is_finite(p);
-    tally = uvec4(0u, 0u, 0u, wanted ? 0u : 3u); // counting; found: nothing
+    bool searches = args.searching != 0u && p.w > 0.0f && is_finite(p);
+    tally = uvec4(0u, 0u, 0u, searches ? 0u : 3u); // counting; found: nothing
 
     uvec4 c = cell_coordinates(args.grid, p);
-    bool looking = wanted;
+    bool looking = searches;
     while (group_any(looking)) {
         // What holds for one holds for those close to it.
         uint middle = group_middle(looking);

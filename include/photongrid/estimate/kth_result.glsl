@@ -2,7 +2,7 @@
 #include <photongrid/estimate/distance_key.glsl>
 
 struct Params {
-    uint wanted;       // k
+    uint k;            // photons sought
     uint photons;      // ids are below this
     float max_radius2; // m^2
 };
@@ -19,12 +19,12 @@ void kernel(uint i)
 {
     uvec4 between = brackets(i);
     uvec4 tally = tallies(i);
-    bool kth = tally.x >= args.wanted && args.wanted > 0u;
+    bool kth = tally.x >= args.k && args.k > 0u;
     reach = vec4(args.max_radius2, 0.0f, 0.0f, 0.0f);
     if (kth)
         reach = vec4(distance_of(between.y), 1.0f, 0.0f, 0.0f);
     chosen = uvec4(tally.x, tally.y, 0xFFFFFFFFu, 0u);
-    bool tie = kth && tally.x > args.wanted;
+    bool tie = kth && tally.x > args.k;
     bracket = uvec4(0u, args.photons, 0u, tie ? 0u : 1u);
     counts = uvec4(0u, 0u, 0u, 0u);
     cursor = uvec4(0u, 0u, 0u, 0u);

@@ -5,7 +5,7 @@
 struct Params {
     Grid grid;
     vec4 leaks;        // see photon_distance.glsl
-    uint wanted;       // k
+    uint k;            // photons sought
     uint photons;      // ids are below this
     uint visits;       // photons examined in a pass at most ...
     uint ranges;       // ... in this many rows of cells at most
@@ -80,21 +80,21 @@ void kernel(uint i)
         if (mine)
             place = uvec4(walk.x, walk.y, walk.z, 0u);
         if (mine && has_walked()) {
-            uint wanted = args.wanted - between.z;
+            uint missing = args.k - between.z;
             uvec2 range = uvec2(between.x, between.y);
-            if (count.w >= wanted)
+            if (count.w >= missing)
                 range.y = min(range.y, pivot.w);
             else
                 range.x = pivot.w;
-            if (count.z >= wanted)
+            if (count.z >= missing)
                 range.y = min(range.y, pivot.z);
             else
                 range.x = max(range.x, pivot.z);
-            if (count.y >= wanted)
+            if (count.y >= missing)
                 range.y = min(range.y, pivot.y);
             else
                 range.x = max(range.x, pivot.y);
-            if (count.x >= wanted)
+            if (count.x >= missing)
                 range.y = min(range.y, pivot.x);
             else
                 range.x = max(range.x, pivot.x);
@@ -104,7 +104,7 @@ void kernel(uint i)
         }
     }
 
-    chosen = uvec4(between.w != 0u ? args.wanted : chosen.x, visited, between.w != 0u ? between.y - 1u : chosen.z, chosen.w);
+    chosen = uvec4(between.w != 0u ? args.k : chosen.x, visited, between.w != 0u ? between.y - 1u : chosen.z, chosen.w);
     bracket = between;
     counts = count;
     cursor = place;

@@ -12,14 +12,14 @@
 namespace photongrid {
 
 namespace detail {
-    /// Positions of up to `wanted` photons spread over all, those left out that are not finite.
+    /// Positions of up to `most` photons spread over all, those left out that are not finite.
     template <backend B>
-    std::vector<glm::vec3> sample_positions(B& b, const photons<B>& p, uint wanted)
+    std::vector<glm::vec3> sample_positions(B& b, const photons<B>& p, uint most)
     {
         const uint n = p.size();
         std::vector<uint> ids;
-        for (uint i = 0; i < std::min(n, wanted); ++i)
-            ids.push_back(static_cast<uint>(std::uint64_t{i} * n / std::min(n, wanted)));
+        for (uint i = 0; i < std::min(n, most); ++i)
+            ids.push_back(static_cast<uint>(std::uint64_t{i} * n / std::min(n, most)));
         auto taken = b.template make<glm::vec4>(ids.size());
         b.template run<kernels::gather_vector>(
             ids.size(), {.photons = n}, reads(b.upload(std::span<const uint>(ids)), p.positions), writes(taken));

@@ -40,12 +40,12 @@ public:
     const built_map<B>& map() const { return *built_; }
     /// What it is of.
     const map_source& of() const { return of_; }
-    /// Whether the map in use is one of `wanted`.
-    bool serves(const map_source& wanted) const { return built_ && of_.same(wanted); }
+    /// Whether the map in use is one of `source`.
+    bool serves(const map_source& source) const { return built_ && of_.same(source); }
     /// Whether it is one of fewer photons.
-    bool serves_preview_of(const map_source& wanted) const { return built_ && of_.is_preview_of(wanted); }
-    /// Whether a map of `wanted` is being made.
-    bool is_making(const map_source& wanted) const { return making_ && making_of_.same(wanted); }
+    bool serves_preview_of(const map_source& source) const { return built_ && of_.is_preview_of(source); }
+    /// Whether a map of `source` is being made.
+    bool is_making(const map_source& source) const { return making_ && making_of_.same(source); }
     /// The photons of the map being made; nothing where none is.
     std::optional<uint> making_photons() const
     {
@@ -58,19 +58,19 @@ public:
     /// What the last map that was made took.
     const render_stats& stats() const { return stats_; }
 
-    /// The steps to a map of `wanted`: none where it is there, the rest of them where it is being made. `use` is called
+    /// The steps to a map of `source`: none where it is there, the rest of them where it is being made. `use` is called
     /// when it takes the place of the map in use, just before.
-    step_list steps_to(const map_source& wanted, std::function<void()> use)
+    step_list steps_to(const map_source& source, std::function<void()> use)
     {
-        if (serves(wanted))
+        if (serves(source))
             return {};
-        if (!is_making(wanted)) {
+        if (!is_making(source)) {
             making_.reset();
-            if (built_ && !of_.is_preview_of(wanted)) { // a preview's stays until the whole one is there
+            if (built_ && !of_.is_preview_of(source)) { // a preview's stays until the whole one is there
                 use();
                 built_.reset();
             }
-            making_of_ = wanted;
+            making_of_ = source;
             stats_ = {};
             making_.emplace(b_, making_of_.scene, making_of_.settings, stats_);
             ++begun_;

@@ -22,7 +22,7 @@ struct preview {
 
 /// Which previews are wanted. The picture itself does not depend on them.
 struct preview_settings {
-    bool wanted = true;    ///< false: nothing is shown before the picture itself
+    bool enabled = true;   ///< false: nothing is shown before the picture itself
     double target_ms = 40; ///< time for the first map, and for the first preview drawn with it
 };
 

@@ -50,7 +50,7 @@ public:
                 + (settings_.output.aov ? " with layers" : ""));
         film_ = std::move(s.film);
         unfinished_ = std::move(s.pass);
-        previews_.wanted = false;
+        previews_.enabled = false;
         steps_ = picture_steps();
     }
     render_state state() override
@@ -150,7 +150,7 @@ private:
     step_list early_preview_steps()
     {
         auto fewer = pass(next_pass());
-        if (!previews_.wanted || maps_.serves(fewer))
+        if (!previews_.enabled || maps_.serves(fewer))
             return {};
         step_list steps;
         if (!maps_.serves_preview_of(fewer)) {
@@ -168,7 +168,7 @@ private:
     step_list preview_steps()
     {
         step_list steps;
-        if (!previews_.wanted)
+        if (!previews_.enabled)
             return steps;
         const uint photons = maps_.of().settings.map.photons;
         for (const auto& p : preview_schedule(settings_, photons, early_shown_, costs_, previews_.target_ms)) {
@@ -202,11 +202,11 @@ private:
     /// What pass `number` needs a map of.
     map_source pass(uint number) const { return {scene_, settings_of_pass(settings_, number), number}; }
 
-    step_list steps_to_map(const map_source& wanted)
+    step_list steps_to_map(const map_source& source)
     {
-        if (maps_.serves(wanted))
+        if (maps_.serves(source))
             return {};
-        auto steps = maps_.steps_to(wanted, [this] { view_.reset(); });
+        auto steps = maps_.steps_to(source, [this] { view_.reset(); });
         steps.expand([this] { return use_map(); });
         return steps;
     }
@@ -234,7 +234,7 @@ private:
         ms_before_ = ms_of_views();
         samples_shown_ = grown_shown_ = 0;
         view_.emplace(
-            b_, maps_.map(), scene_.camera, with, view_options{p, step_size::small, previews_.wanted}, kept_, stats_);
+            b_, maps_.map(), scene_.camera, with, view_options{p, step_size::small, previews_.enabled}, kept_, stats_);
         if (!p && film_.size() == 0)
             film_ = film(settings_.output.width, settings_.output.height,
                 typical_radiance(scene_, maps_.map().scene.layout), settings_.output.aov);

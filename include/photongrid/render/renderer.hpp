@@ -87,7 +87,7 @@ protected:
     renderer& device, const scene& s, const render_settings& settings, const render_observer& observer = {})
 {
     const bool watched = observer.progress || observer.cancelled;
-    device.start(s, settings, {.wanted = false});
+    device.start(s, settings, {.enabled = false});
     while (!device.step(watched ? renderer::milliseconds(0) : renderer::no_limit)) {
         if (observer.cancelled && observer.cancelled())
             throw render_cancelled();

@@ -126,9 +126,9 @@ public:
     {
         if (lit_)
             return true;
-        const bool wanted = settings_.output.only == light_part::all || settings_.output.only == light_part::direct;
+        const bool drawn = settings_.output.only == light_part::all || settings_.output.only == light_part::direct;
         return over_pixels(stats_.trace_rays, [&](launch pixels) {
-            if (wanted) {
+            if (drawn) {
                 detail::direct_light(b_, built_.scene, samples_->hits, light_settings(), ray, pixels, samples_->direct);
             } else {
                 b_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->direct));

@@ -134,7 +134,7 @@ public:
         if (finished())
             return;
         require_hope();
-        const uint wanted = settings_.map.photons - stored_;
+        const uint missing = settings_.map.photons - stored_;
         const uint frames = trace_batch(b_, device_, frames_, paths_, static_cast<uint>(t_.emitted), settings_);
 
         auto storable = b_.template make<uint>(paths_);
@@ -144,15 +144,15 @@ public:
         const auto sums = prefix_sums(b_, storable);
 
         const uint emitted
-            = detail::checked_count<kernels::path_is_emitted>(b_, paths_, {.wanted = wanted}, reads(sums, storable));
+            = detail::checked_count<kernels::path_is_emitted>(b_, paths_, {.photons = missing}, reads(sums, storable));
         if (emitted == 0) // the first always is; believing it would mean tracing for ever
             throw backend_error(b_.caps().backend + ": count<path_is_emitted>: the device returned 0; at least 1 of "
                 + std::to_string(paths_) + " paths is emitted");
         // No path stores more photons than it takes bounces, and the last of these is the first to have stored what is
         // wanted.
         const auto found = detail::checked_count<kernels::is_found>(
-            b_, std::size_t{wanted} + settings_.map.photon_depth, {.emitted = emitted}, reads(sums));
-        const uint taken = std::min(found, wanted);
+            b_, std::size_t{missing} + settings_.map.photon_depth, {.emitted = emitted}, reads(sums));
+        const uint taken = std::min(found, missing);
         b_.template run<kernels::gather_photon>({taken, stored_},
             {.paths = paths_, .frames = frames, .stored_before = stored_},
             reads(sums, frames_.positions, frames_.powers, frames_.directions),

@@ -24,14 +24,14 @@ Passage box_passage(uint at, vec3 o, vec3 d)
     p.leave_axis = 0u;
     for (uint axis = 0u; axis < 3u; ++axis) {
         vec4 a = scene(at + axis);
-        float place = dot3(f, vec3(a));
+        float coordinate = dot3(f, vec3(a));
         float slope = dot3(d, vec3(a));
         // Along the faces: between them all the way, or nowhere.
-        float begins = abs(place) <= a.w ? -3.0e38f : 3.0e38f;
+        float begins = abs(coordinate) <= a.w ? -3.0e38f : 3.0e38f;
         float ends = -begins;
         if (slope != 0.0f) {
-            precise float low = (-a.w - place) / slope;
-            precise float high = (a.w - place) / slope;
+            precise float low = (-a.w - coordinate) / slope;
+            precise float high = (a.w - coordinate) / slope;
             begins = slope > 0.0f ? low : high;
             ends = slope > 0.0f ? high : low;
         }
@@ -83,15 +83,15 @@ Hit box_surface(uint at, vec3 o, vec3 d, Hit hit)
     for (uint axis = 0u; axis < 3u; ++axis) {
         vec4 a = scene(at + axis);
         precise vec3 f = hit.position - vec3(middle);
-        float place = dot3(f, vec3(a));
+        float coordinate = dot3(f, vec3(a));
         precise float inner = a.w > off ? a.w - off : 0.0f;
-        float wanted = place < -inner ? -inner : place > inner ? inner : place;
+        float target = coordinate < -inner ? -inner : coordinate > inner ? inner : coordinate;
         if (axis == face) {
-            bool along = dot3(d, vec3(a)) > 0.0f;
-            hit.normal = along == enters ? -vec3(a) : vec3(a);
-            wanted = along == enters ? -a.w : a.w;
+            bool same_way = dot3(d, vec3(a)) > 0.0f;
+            hit.normal = same_way == enters ? -vec3(a) : vec3(a);
+            target = same_way == enters ? -a.w : a.w;
         }
-        precise float by = wanted - place;
+        precise float by = target - coordinate;
         hit.position = ray_at(hit.position, vec3(a), by);
     }
     hit.material = uint(middle.w);
