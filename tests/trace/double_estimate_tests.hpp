@@ -88,14 +88,14 @@ public:
         e.unweighted *= norm / (M_PI * std::max(radius2, min_radius2_));
         e.conditioning = linear / square;
 
-        const std::vector<glm::dvec4> reach(1, glm::dvec4(radius2, 1, 0, 0)), one_point(1, points_[q]);
+        const std::vector<glm::dvec4> radius(1, glm::dvec4(radius2, 1, 0, 0)), one_point(1, points_[q]);
         const std::vector<glm::uvec4> chosen(1, glm::uvec4(settings_.k, 0u, 0xFFFFFFFFu, 0u));
         double_kernels::gather_start start;
         start.args.searching = 1;
         start.points_data = one_point;
         start.chosen_data = chosen;
         start.kernel(0);
-        gather_.reach = reach[0];
+        gather_.search_radius = radius[0];
         gather_.chosen = chosen[0];
         gather_.sum = start.sum;
         gather_.compensation = start.compensation;
@@ -110,7 +110,7 @@ public:
         result.args.norm = norm;
         result.args.min_radius2 = min_radius2_;
         result.args.left_out = 1;
-        result.reach_data = reach;
+        result.search_radii_data = radius;
         result.sums_data = sums;
         result.squares_data = squares;
         result.tallies_data = tallies;

@@ -200,11 +200,11 @@ inline bool needs_estimate(const search_job& j, uint point)
 /// Makes the estimate of what was gathered.
 inline void finish(const search_job& j, uint point, chosen_radius r, const gathered& g, uint visited)
 {
-    const glm::vec4 reach(r.radius2, r.by_photon ? 1.0f : 0.0f, 0, 0);
+    const glm::vec4 search_radius(r.radius2, r.by_photon ? 1.0f : 0.0f, 0, 0);
     const glm::uvec4 tally(g.held, visited, 0, 0);
     kernels::irradiance_estimate e;
     e.args = {.norm = j.norm, .min_radius2 = j.min_radius2, .left_out = j.leave_out ? 1u : 0u};
-    e.bind(slot<0>{}, std::span(&reach, 1));
+    e.bind(slot<0>{}, std::span(&search_radius, 1));
     e.bind(slot<1>{}, std::span(&g.sum, 1));
     e.bind(slot<2>{}, std::span(&g.squares, 1));
     e.bind(slot<3>{}, std::span(&tally, 1));

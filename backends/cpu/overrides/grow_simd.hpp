@@ -236,16 +236,16 @@ HWY_INLINE void visit_rings(const search_job& j, const glm::vec4& point, Growth&
         } else {
             visit_ring(j, r, found);
         }
-        // Can any cell beyond reach into the radius?
-        float reach = std::numeric_limits<float>::max();
+        // Does any unexplored cell lie within the radius?
+        float unexplored = std::numeric_limits<float>::max();
         for (int axis = 0; axis < 3; ++axis) {
             if (r.high[axis] < last[axis])
-                reach = std::min(reach, kernels::gap(r.u[axis], c[axis], r.high[axis] + 1u, g.cell[axis]));
+                unexplored = std::min(unexplored, kernels::gap(r.u[axis], c[axis], r.high[axis] + 1u, g.cell[axis]));
             if (r.low[axis] > 0u)
-                reach = std::min(reach, kernels::gap(r.u[axis], c[axis], r.low[axis] - 1u, g.cell[axis]));
+                unexplored = std::min(unexplored, kernels::gap(r.u[axis], c[axis], r.low[axis] - 1u, g.cell[axis]));
         }
         const bool everything = r.low == glm::uvec3(0u) && r.high == last;
-        if (everything || reach * reach > found.limit2())
+        if (everything || unexplored * unexplored > found.limit2())
             return;
     }
 }

@@ -170,12 +170,13 @@ HWY_INLINE void find_rows(const search_job& j, const glm::vec3& at, float radius
             const auto r2 = hn::Set(d, radius2);
             const auto left2
                 = hn::Add(hn::Sub(r2, hn::Add(hn::Mul(gap_y, gap_y), hn::Set(d, gap_z * gap_z))), hn::Mul(r2, wide));
-            const auto reach = hn::Add(
+            const auto half_width = hn::Add(
                 hn::Mul(hn::Sqrt(hn::Max(left2, hn::Zero(d))), hn::Set(d, 1.00000095f)), hn::Set(d, 1.1e-19f));
             const auto x = hn::Set(d, at.x);
             const auto row = hn::Mul(hn::Min(cell, hn::Set(di, static_cast<int>(g.resolution.y - 1u))),
                 hn::Set(di, static_cast<int>(g.resolution.x)));
-            const auto low = hn::Add(row, x_cell(hn::Sub(x, reach))), high = hn::Add(row, x_cell(hn::Add(x, reach)));
+            const auto low = hn::Add(row, x_cell(hn::Sub(x, half_width))),
+                       high = hn::Add(row, x_cell(hn::Add(x, half_width)));
             const auto two_low = hn::Add(low, low), two_high = hn::Add(high, high);
             const auto first = hn::GatherIndex(di, slab, two_low);
             const auto past = hn::Add(hn::GatherIndex(di, slab, two_high), hn::GatherIndex(di, slab + 1, two_high));
@@ -220,22 +221,22 @@ public:
             {of(normal_x), of(normal_y), of(normal_z)}};
     }
 
-    /// Copies the photons within `reach` of `center`, and perhaps some that are a little farther. Returns how many it
-    /// looked at.
-    HWY_INLINE std::size_t fill(const search_job& j, const glm::vec3& center, float reach)
+    /// Copies the photons within `radius` of `center`, and perhaps some that are a little farther. Returns how many it
+    /// examined.
+    HWY_INLINE std::size_t fill(const search_job& j, const glm::vec3& center, float radius)
     {
         const floats d;
         const uints du;
         const std::size_t width = hn::Lanes(d);
-        const float reach2 = reach * reach * 1.000004f + 1e-36f;
-        find_rows(j, center, reach2, rows_);
+        const float radius2 = radius * radius * 1.000004f + 1e-36f;
+        find_rows(j, center, radius2, rows_);
         std::size_t n = 0;
         for (std::size_t r = 0; r < rows_.rows; ++r)
             n += rows_.past[r] - rows_.first[r];
         clear();
         reserve(n);
         const auto cx = hn::Set(d, center.x), cy = hn::Set(d, center.y), cz = hn::Set(d, center.z),
-                   within2 = hn::Set(d, reach2);
+                   within2 = hn::Set(d, radius2);
         std::size_t k = 0;
         for (std::size_t r = 0; r < rows_.rows; ++r) {
             const std::size_t past = rows_.past[r];

@@ -208,10 +208,11 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             high = h;
         }
         const glm::vec3 center = 0.5f * low + 0.5f * high;
-        float reach = expected;
+        float packet_radius = expected;
         for (std::size_t i = o; i < past; ++i)
-            reach = std::max(reach, expected + distance_between(glm::vec3(j.points[j.order[i]]), center));
-        uint visited = static_cast<uint>(near.fill(j, center, reach));
+            packet_radius
+                = std::max(packet_radius, expected + distance_between(glm::vec3(j.points[j.order[i]]), center));
+        uint visited = static_cast<uint>(near.fill(j, center, packet_radius));
 
         const float begun_with = expected;
         expected = -1;
@@ -221,7 +222,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             if (POLICIES != 0)
                 q.normal = glm::vec3(j.point_normals[point]);
             // All photons as near as this are in the packet.
-            const float sure = std::max((reach - distance_between(q.at, center) * 1.000001f) * 0.999998f, 0.0f);
+            const float sure = std::max((packet_radius - distance_between(q.at, center) * 1.000001f) * 0.999998f, 0.0f);
             const float sure2 = std::min(begun_with >= max_radius ? j.max_radius2 : sure * sure, j.max_radius2);
             chosen_radius r{j.max_radius2, false};
             float low2 = -1, high2 = sure2;

@@ -95,10 +95,10 @@ void move(scene& s, const scene_part& part, const dvec3& by)
 sight_line sight_line_at(const camera& c, double width, double height, double x, double y)
 {
     const auto [forward, right, up] = photongrid::detail::camera_axes(c);
-    const double reach = std::tan(glm::radians(c.vertical_fov) / 2);
+    const double half_height = std::tan(glm::radians(c.vertical_fov) / 2);
     return {c.position,
-        glm::normalize(
-            forward + (2 * x / width - 1) * reach * width / height * right + (1 - 2 * y / height) * reach * up)};
+        glm::normalize(forward + (2 * x / width - 1) * half_height * width / height * right
+            + (1 - 2 * y / height) * half_height * up)};
 }
 
 std::optional<grip> pick(

@@ -108,7 +108,7 @@ namespace {
         for_each_item(s, part, [&](const auto& item, auto kind) { kind.add_bounds(b, item); });
         const auto& c = s.camera;
         const auto [forward, right, up] = photongrid::detail::camera_axes(c);
-        const double reach = std::tan(glm::radians(c.vertical_fov) / 2);
+        const double half_height = std::tan(glm::radians(c.vertical_fov) / 2);
         frame_box f;
         for (int corner = 0; corner < 8; ++corner) {
             const dvec3 to = dvec3(corner & 1 ? b.high.x : b.low.x, corner & 2 ? b.high.y : b.low.y,
@@ -117,8 +117,8 @@ namespace {
             const double depth = glm::dot(to, forward);
             if (depth <= 0)
                 return std::nullopt;
-            const double x = 0.5 * width + 0.5 * height * glm::dot(to, right) / (depth * reach),
-                         y = 0.5 * height - 0.5 * height * glm::dot(to, up) / (depth * reach);
+            const double x = 0.5 * width + 0.5 * height * glm::dot(to, right) / (depth * half_height),
+                         y = 0.5 * height - 0.5 * height * glm::dot(to, up) / (depth * half_height);
             f.left = std::min(f.left, x), f.right = std::max(f.right, x), f.top = std::min(f.top, y),
             f.bottom = std::max(f.bottom, y);
         }

@@ -22,21 +22,21 @@ SWITCH(5, SILVERMAN)    // (1 - d^2 / r^2)^2; none of the three: 1
 SWITCH(6, LEAVE_OUT)
 SWITCH(7, ERRORS)       // squares are wanted
 IN_GROUPS(8)
-INPUT(0, vec4, points)         // xyz: query point, m
-INPUT(1, vec4, normals)        // xyz: unit normal of the surface there
-INPUT(2, uvec2, cells)         // x: first photon, y: count
-INPUT(3, vec4, positions)      // xyz, m, cell by cell
+INPUT(0, vec4, points)        // xyz: query point, m
+INPUT(1, vec4, normals)       // xyz: unit normal of the surface there
+INPUT(2, uvec2, cells)        // x: first photon, y: count
+INPUT(3, vec4, positions)     // xyz, m, cell by cell
 INPUT(4, vec4, directions)
 INPUT(5, vec4, photon_normals)
-INPUT(6, uint, list)           // photon ids
-INPUT(7, vec4, powers)         // rgb, W
-STATE(0, vec4, reach)          // see kth_result.glsl
+INPUT(6, uint, list)          // photon ids
+INPUT(7, vec4, powers)        // rgb, W
+STATE(0, vec4, search_radius) // see kth_result.glsl
 STATE(1, uvec4, chosen)
-STATE(2, vec4, sum)            // rgb: weighted flux, W
-STATE(3, vec4, compensation)   // rgb: rounding error of the sum so far (Kahan)
-STATE(4, vec4, squares)        // rgb: squares of the weighted fluxes; w: of their sums over channels
-STATE(5, uvec4, cursor)        // y, z of the row to go on with; the first photon not yet visited
-STATE(6, uvec4, tally)         // photons held, photons visited, place + 1 of the one left out, done
+STATE(2, vec4, sum)           // rgb: weighted flux, W
+STATE(3, vec4, compensation)  // rgb: rounding error of the sum so far (Kahan)
+STATE(4, vec4, squares)       // rgb: squares of the weighted fluxes; w: of their sums over channels
+STATE(5, uvec4, cursor)       // y, z of the row to go on with; the first photon not yet visited
+STATE(6, uvec4, tally)        // photons held, photons visited, place + 1 of the one left out, done
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
@@ -61,8 +61,8 @@ void kernel(uint i)
     vec4 p = points(i);
     vec4 n = normals(i);
     uvec4 c = cell_coordinates(args.grid, p);
-    float radius2 = reach.x;
-    bool apart = LEAVE_OUT && reach.y > 0.0f && radius2 >= args.min_radius2;
+    float radius2 = search_radius.x;
+    bool apart = LEAVE_OUT && search_radius.y > 0.0f && radius2 >= args.min_radius2;
     float inverse_disc2 = 1.0f / max(radius2, args.min_radius2);
     uint last_id = chosen.z;
     vec4 total = sum;

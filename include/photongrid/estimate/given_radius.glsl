@@ -3,11 +3,11 @@ struct Params {
     float radius2; // m^2
 };
 PARAMS(Params)
-OUTPUT(0, vec4, reach)
+OUTPUT(0, vec4, search_radius)
 OUTPUT(1, uvec4, chosen)
 
 void kernel(uint i)
 {
-    reach = vec4(args.radius2, 0.0f, 0.0f, 0.0f);
+    search_radius = vec4(args.radius2, 0.0f, 0.0f, 0.0f);
     chosen = uvec4(0u, 0u, 0xFFFFFFFFu, 0u);
 }

@@ -6,13 +6,13 @@ struct Params {
 PARAMS(Params)
 INPUT(0, vec4, gathered)
 INPUT(1, uvec4, found)
-OUTPUT(0, vec4, reach)
+OUTPUT(0, vec4, search_radius)
 OUTPUT(1, uvec4, chosen)
 
 void kernel(uint i)
 {
     uvec4 n = found(i);
     bool enough = n.x >= args.k && args.k > 0u;
-    reach = vec4(enough ? gathered(i).w : args.max_radius2, enough ? 1.0f : 0.0f, 0.0f, 0.0f);
+    search_radius = vec4(enough ? gathered(i).w : args.max_radius2, enough ? 1.0f : 0.0f, 0.0f, 0.0f);
     chosen = uvec4(n.x, n.y, 0xFFFFFFFFu, 0u);
 }

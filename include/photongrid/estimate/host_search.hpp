@@ -223,14 +223,14 @@ private:
     }
 
     irradiance_at_point made_of(
-        const glm::vec4& reach, const glm::vec4& sum, const glm::vec4& squares, uint held, bool left_out) const
+        const glm::vec4& search_radius, const glm::vec4& sum, const glm::vec4& squares, uint held, bool left_out) const
     {
         const glm::uvec4 tally(held, 0, 0, 0);
         kernels::irradiance_estimate e;
         e.args = {.norm = detail::norm_of(settings_.filter),
             .min_radius2 = detail::min_radius2(settings_),
             .left_out = left_out ? 1u : 0u};
-        e.bind(slot<0>{}, std::span(&reach, 1));
+        e.bind(slot<0>{}, std::span(&search_radius, 1));
         e.bind(slot<1>{}, std::span(&sum, 1));
         e.bind(slot<2>{}, std::span(&squares, 1));
         e.bind(slot<3>{}, std::span(&tally, 1));

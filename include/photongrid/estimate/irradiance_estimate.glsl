@@ -8,7 +8,7 @@ struct Params {
     uint left_out;     // 1: the photon that set the radius is not in the sum
 };
 PARAMS(Params)
-INPUT(0, vec4, reach)
+INPUT(0, vec4, search_radii)
 INPUT(1, vec4, sums)
 INPUT(2, vec4, squares)
 INPUT(3, uvec4, tallies)
@@ -18,7 +18,7 @@ OUTPUT(2, vec4, standard_error) // rgb: of irradiance, W/m^2; w: of its sum over
 
 void kernel(uint i)
 {
-    vec4 r = reach(i);
+    vec4 r = search_radii(i);
     vec4 s = sums(i);
     vec4 q = squares(i);
     uvec4 n = tallies(i);

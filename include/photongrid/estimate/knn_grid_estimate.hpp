@@ -13,7 +13,7 @@
 #include <photongrid/estimate/gather_start.kernel.hpp>
 #include <photongrid/estimate/grown_radius.kernel.hpp>
 #include <photongrid/estimate/irradiance_estimate.kernel.hpp>
-#include <photongrid/estimate/knn_reach.hpp>
+#include <photongrid/estimate/knn_radius.hpp>
 #include <photongrid/estimate/knn_result.kernel.hpp>
 #include <photongrid/estimate/knn_start.kernel.hpp>
 #include <photongrid/estimate/knn_visit.kernel.hpp>
@@ -102,9 +102,9 @@ public:
                 reads(gathered_, found_), writes(e.irradiance, e.used));
             return e;
         }
-        if (stage_ == stage::reach) {
+        if (stage_ == stage::radius) {
             b.template run<kernels::no_estimate>(
-                n, {.radius2 = in_.max_radius2()}, reads(reach_->visited()), writes(e.irradiance, e.used));
+                n, {.radius2 = in_.max_radius2()}, reads(radius_search_->visited()), writes(e.irradiance, e.used));
             return e;
         }
         auto errors = s.errors ? std::move(e.standard_error) : b.template make<glm::vec4>(n);
@@ -119,7 +119,7 @@ public:
     }
 
 private:
-    enum class stage { grow, reach, gather, finished };
+    enum class stage { grow, radius, gather, finished };
 
     knn_search_by_kernels(
         B& b, const map_buffers<B>& map, const vectors& points, const vectors* normals, const knn_settings& s)
@@ -129,9 +129,9 @@ private:
             start_growing();
             return;
         }
-        stage_ = stage::reach;
-        reach_.emplace(in_);
-        if (reach_->finished())
+        stage_ = stage::radius;
+        radius_search_.emplace(in_);
+        if (radius_search_->finished())
             next_stage();
     }
 
@@ -174,10 +174,10 @@ private:
             found_ = {};
             start_gathering();
             return;
-        case stage::reach:
-            radius_ = std::move(reach_->radius);
-            chosen_ = std::move(reach_->chosen);
-            reach_.reset();
+        case stage::radius:
+            radius_ = std::move(radius_search_->radius);
+            chosen_ = std::move(radius_search_->chosen);
+            radius_search_.reset();
             start_gathering();
             return;
         case stage::gather:
@@ -206,7 +206,7 @@ private:
                 reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
                     in_.photon_normals(), m.photons.powers),
                 writes(gathered_, found_, cursor_), passes);
-        case stage::reach: return reach_->advance(passes);
+        case stage::radius: return radius_search_->advance(passes);
         case stage::gather: {
             const uint filter
                 = s.filter == filter_kind::constant ? 0u : 4u << static_cast<uint>(s.filter); // SWITCHes 3 to 5
@@ -231,7 +231,7 @@ private:
 
     detail::search_inputs<B> in_;
     stage stage_ = stage::finished;
-    std::optional<knn_reach<B>> reach_;
+    std::optional<knn_radius<B>> radius_search_;
     // States; each stage holds its own and gives up the last one's.
     vectors gathered_, radius_, sum_, compensation_, squares_;
     buffer_of<B, glm::uvec4> found_, chosen_, cursor_, tally_;

@@ -1,10 +1,10 @@
 // Lists of the k nearest photons of each point: ids and squared distances. What an estimate adds up can then be
 // anything that a kernel of the caller's own can add up (docs/guide/own_kernels.md).
 //
-//     knn_reach -> list_neighbours -> neighbour_pair -> sort_neighbours -> neighbour
+//     knn_radius -> list_neighbours -> neighbour_pair -> sort_neighbours -> neighbour
 #pragma once
 
-#include <photongrid/estimate/knn_reach.hpp>
+#include <photongrid/estimate/knn_radius.hpp>
 #include <photongrid/estimate/list_neighbours.kernel.hpp>
 #include <photongrid/estimate/neighbour.kernel.hpp>
 #include <photongrid/estimate/neighbour_pair.kernel.hpp>
@@ -59,22 +59,23 @@ namespace detail {
                 writes(pairs));
         };
         {
-            knn_reach<B> reach(in);
-            reach.advance();
+            knn_radius<B> radius_search(in);
+            radius_search.advance();
             constexpr uint part = 16; // entries found at a time
             buffer_of<B, glm::uvec4> places[] = {in.template make<glm::uvec4>(), in.template make<glm::uvec4>(),
                 in.template make<glm::uvec4>(), in.template make<glm::uvec4>()};
             auto cursor = in.template make<glm::uvec4>(), tally = in.template make<glm::uvec4>();
             for (uint first = 0; first < k; first += part) {
                 b.template run<kernels::neighbours_start>({n, 0u, first > 0 ? 1u : 0u},
-                    {.searching = in.searching() ? 1u : 0u}, reads(*in.points, reach.chosen), writes(cursor, tally));
+                    {.searching = in.searching() ? 1u : 0u}, reads(*in.points, radius_search.chosen),
+                    writes(cursor, tally));
                 b.template run_until_done<kernels::list_neighbours>({n, 0u, in.policies()},
                     {.grid = m.cells_of,
                         .leaks = in.leaks(),
                         .visits = in.s.visits_per_pass,
                         .ranges = in.s.ranges_per_pass},
                     reads(*in.points, in.point_normals(), m.cells, m.photons.positions, in.directions(),
-                        in.photon_normals(), m.list, reach.radius),
+                        in.photon_normals(), m.list, radius_search.radius),
                     writes(places[0], places[1], places[2], places[3], cursor, tally), nowhere);
                 for (uint four = 0; four < part && first + four < padded; four += 4)
                     put(first + four, std::min(4u, padded - (first + four)), true, places[four / 4], tally);

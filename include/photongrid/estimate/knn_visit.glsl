@@ -39,13 +39,13 @@ bool done()
     return cursor.x == 0xFFFFFFFFu;
 }
 
-// The smaller of `reach` and the gap to `cell`, if that cell exists.
-float nearer(float reach, bool exists, float u, uint c, uint cell, float size)
+// The smaller of `so_far` and the gap to `cell`, if that cell exists.
+float nearer(float so_far, bool exists, float u, uint c, uint cell, float size)
 {
     if (!exists)
-        return reach;
+        return so_far;
     float g = gap(u, c, cell, size);
-    return g < reach ? g : reach;
+    return g < so_far ? g : so_far;
 }
 
 void kernel(uint i)
@@ -142,18 +142,18 @@ void kernel(uint i)
         }
 
         if (steps > 0u) {
-            // The ring is explored. Can any cell beyond it reach into the radius?
+            // The ring is explored. Does any cell beyond it lie within the radius?
             --steps;
             float limit2 = held < args.k ? args.max_radius2 : radius2;
-            float reach = 3.4028234e38f;
-            reach = nearer(reach, high_x < last_x, ux, c.x, high_x + 1u, args.grid.cell.x);
-            reach = nearer(reach, high_y < last_y, uy, c.y, high_y + 1u, args.grid.cell.y);
-            reach = nearer(reach, high_z < last_z, uz, c.z, high_z + 1u, args.grid.cell.z);
-            reach = nearer(reach, low_x > 0u, ux, c.x, low_x - 1u, args.grid.cell.x);
-            reach = nearer(reach, low_y > 0u, uy, c.y, low_y - 1u, args.grid.cell.y);
-            reach = nearer(reach, low_z > 0u, uz, c.z, low_z - 1u, args.grid.cell.z);
+            float unexplored = 3.4028234e38f;
+            unexplored = nearer(unexplored, high_x < last_x, ux, c.x, high_x + 1u, args.grid.cell.x);
+            unexplored = nearer(unexplored, high_y < last_y, uy, c.y, high_y + 1u, args.grid.cell.y);
+            unexplored = nearer(unexplored, high_z < last_z, uz, c.z, high_z + 1u, args.grid.cell.z);
+            unexplored = nearer(unexplored, low_x > 0u, ux, c.x, low_x - 1u, args.grid.cell.x);
+            unexplored = nearer(unexplored, low_y > 0u, uy, c.y, low_y - 1u, args.grid.cell.y);
+            unexplored = nearer(unexplored, low_z > 0u, uz, c.z, low_z - 1u, args.grid.cell.z);
             bool everything = low_x == 0u && low_y == 0u && low_z == 0u && high_x == last_x && high_y == last_y && high_z == last_z;
-            if (everything || reach * reach > limit2) {
+            if (everything || unexplored * unexplored > limit2) {
                 ring = 0xFFFFFFFFu;
             } else {
                 ++ring;

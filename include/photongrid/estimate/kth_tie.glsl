@@ -15,18 +15,18 @@ SWITCH(0, SIDE)
 SWITCH(1, NORMALS)
 SWITCH(2, FLATTEN)
 IN_GROUPS(3)
-INPUT(0, vec4, points)         // xyz: query point, m
-INPUT(1, vec4, normals)        // xyz: unit normal of the surface there
-INPUT(2, uvec2, cells)         // x: first photon, y: count
-INPUT(3, vec4, positions)      // xyz, m, cell by cell
+INPUT(0, vec4, points)       // xyz: query point, m
+INPUT(1, vec4, normals)      // xyz: unit normal of the surface there
+INPUT(2, uvec2, cells)       // x: first photon, y: count
+INPUT(3, vec4, positions)    // xyz, m, cell by cell
 INPUT(4, vec4, directions)
 INPUT(5, vec4, photon_normals)
-INPUT(6, uint, list)           // photon ids
-INPUT(7, vec4, reach)          // x: squared distance of the k-th photon, m^2
-STATE(0, uvec4, chosen)        // see kth_result.glsl; z: the last id, once found
-STATE(1, uvec4, bracket)       // the id lies above x - 1 and is y - 1 at most; z: photons of this scan that are nearer; w: done
-STATE(2, uvec4, counts)        // photons of this scan within each pivot
-STATE(3, uvec4, cursor)        // y, z of the row to go on with; the first photon not yet visited
+INPUT(6, uint, list)         // photon ids
+INPUT(7, vec4, search_radii) // x: squared distance of the k-th photon, m^2
+STATE(0, uvec4, chosen)      // see kth_result.glsl; z: the last id, once found
+STATE(1, uvec4, bracket)     // the id lies above x - 1 and is y - 1 at most; z: photons of this scan that are nearer; w: done
+STATE(2, uvec4, counts)      // photons of this scan within each pivot
+STATE(3, uvec4, cursor)      // y, z of the row to go on with; the first photon not yet visited
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
@@ -49,7 +49,7 @@ void kernel(uint i)
     vec4 p = points(i);
     vec4 n = normals(i);
     uvec4 c = cell_coordinates(args.grid, p);
-    float radius2 = reach(i).x;
+    float radius2 = search_radii(i).x;
     uvec4 between = bracket;
     uvec4 count = counts;
     uvec4 place = cursor;

@@ -112,8 +112,8 @@ void kernel(uint i)
         precise float above = dot3(up, p) - plane.w;
         vec3 turn = cross3(n, up);
         float sine2 = dot3(turn, turn);
-        precise float reach = error + radius * sqrt(sine2);
-        if (!(sine2 <= 0.0019f) || !(abs(above) <= reach))
+        precise float tolerance = error + radius * sqrt(sine2);
+        if (!(sine2 <= 0.0019f) || !(abs(above) <= tolerance))
             continue;
         if (is_light_surface(at) || material_of(polygon_material(at)).kind != LAMBERTIAN_SURFACE)
             continue; // holds no photons

@@ -19,10 +19,10 @@ namespace photongrid {
 /// The reach of many points' photons, that can be advanced and advanced again. Those that count lie nearer than the
 /// radius, or at it with an id no larger than the last one.
 template <backend B>
-class knn_reach {
+class knn_radius {
 public:
     /// Of which search is in `in`, not at_least_k.
-    explicit knn_reach(const detail::search_inputs<B>& in) : in_(in)
+    explicit knn_radius(const detail::search_inputs<B>& in) : in_(in)
     {
         if (in_.s.search == search_kind::exact_k) {
             start_distances();
