@@ -41,7 +41,7 @@ faults=(
   "wrong norm of the cone|include/photongrid/estimate/knn_settings.hpp|norms[] = {1, 3, 2, 3}|norms[] = {1, 2, 2, 3}"
   "sums without compensation|include/photongrid/estimate/gather_photons.glsl|term = weighted - correction|term = weighted - (correction - correction)"
   "side reversed|include/photongrid/estimate/photon_distance.glsl|!(arrival < 0.0f)|arrival < 0.0f"
-  "normals reversed|include/photongrid/estimate/photon_distance.glsl|agreement >= args.leaks.x|agreement <= args.leaks.x"
+  "normals reversed|include/photongrid/estimate/photon_distance.glsl|cosine >= args.leaks.x|cosine <= args.leaks.x"
   "flattening ignored|include/photongrid/estimate/photon_distance.glsl|longer = d2 + args.leaks.y * (h * h)|longer = d2 + 0.0f * args.leaks.y * (h * h)"
   "standard error without the spread|include/photongrid/estimate/irradiance_estimate.glsl|terms / float(n.x - 2u)|terms / terms"
   "standard error of one channel|include/photongrid/estimate/gather_photons.glsl|all * all|weighted.x * weighted.x + 0.0f * all"

@@ -183,12 +183,12 @@ namespace {
     }
 
     /// z-scores of two pictures' pixels: mean square, and of the pictures' sums.
-    struct agreement {
+    struct comparison {
         double mean_square = 0, sum = 0;
     };
-    agreement compare_by_error(const reference_picture& a, const reference_picture& b)
+    comparison compare_by_error(const reference_picture& a, const reference_picture& b)
     {
-        agreement z;
+        comparison z;
         double difference = 0, variance = 0, n = 0;
         for (std::size_t i = 0; i < a.mean.pixels.size(); ++i) {
             const double d = static_cast<double>(a.mean.pixels[i].y) - static_cast<double>(b.mean.pixels[i].y);

@@ -49,7 +49,7 @@ public:
     {
         const floats d;
         constexpr std::size_t width = hn::MaxLanes(d);
-        const photon_planes photons{job_.positions, job_.directions, job_.normals};
+        const photon_vectors photons{job_.positions, job_.directions, job_.normals};
         visited_ += static_cast<uint>(past - first);
         if (STORE)
             store_.reserve(past - first + lanes);

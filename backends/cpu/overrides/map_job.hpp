@@ -33,7 +33,7 @@ struct map_job {
     glm::uvec2* pairs = nullptr;      ///< the same: (cell, photon)
     glm::uvec2* index = nullptr;      ///< (first, count) of each cell
     uint* list = nullptr;             ///< photons in the order of cells
-    planes<float> out_positions, out_powers;
+    soa_vectors<float> out_positions, out_powers;
 
     uint buckets() const { return (cells >> shift) + 1; }
 };

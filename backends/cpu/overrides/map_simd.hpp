@@ -135,7 +135,7 @@ inline void order_bucket(map_job j, uint bucket, std::size_t begin, std::size_t 
 
     const auto one = [&](std::size_t to) {
         const uint from = s.order[to - begin];
-        const auto put = [&](const glm::vec4& v, const planes<float>& p) {
+        const auto put = [&](const glm::vec4& v, const soa_vectors<float>& p) {
             p.x[to] = v.x;
             p.y[to] = v.y;
             p.z[to] = v.z;
@@ -152,22 +152,22 @@ inline void order_bucket(map_job j, uint bucket, std::size_t begin, std::size_t 
     const std::size_t width = hn::Lanes(d);
     HWY_ALIGN glm::vec4 positions[lanes];
     HWY_ALIGN glm::vec4 powers[lanes];
-    for (; to + lanes <= end; to += lanes) { // a cache line of each plane
+    for (; to + lanes <= end; to += lanes) { // a cache line of each component
         for (std::size_t lane = 0; lane < lanes; ++lane) {
             const uint from = s.order[to - begin + lane];
             positions[lane] = j.records[from].position;
             powers[lane] = j.records[from].power;
             j.list[to + lane] = j.pairs[from].y;
         }
-        const auto spread = [&](const glm::vec4* rows, const planes<float>& p) HWY_ATTR {
+        const auto spread = [&](const glm::vec4* vectors, const soa_vectors<float>& p) HWY_ATTR {
             for (std::size_t lane = 0; lane < lanes; lane += width) {
                 auto x = hn::Zero(d), y = x, z = x, w = x;
-                hn::LoadInterleaved4(d, &rows[lane].x, x, y, z, w);
-                const auto put = [&](auto v, float* plane) HWY_ATTR {
+                hn::LoadInterleaved4(d, &vectors[lane].x, x, y, z, w);
+                const auto put = [&](auto v, float* component) HWY_ATTR {
                     if (j.large)
-                        hn::Stream(v, d, plane + to + lane);
+                        hn::Stream(v, d, component + to + lane);
                     else
-                        hn::Store(v, d, plane + to + lane);
+                        hn::Store(v, d, component + to + lane);
                 };
                 put(x, p.x);
                 put(y, p.y);

@@ -1,4 +1,4 @@
-// What a search in vectors works on: photons in planes, their distances from a point, and packets of them. Read once
+// What a search in vectors works on: photons in soa, their distances from a point, and packets of them. Read once
 // for every instruction set that the compiler knows (Highway), so no include guard: packet_simd.hpp is read by
 // gather_simd.hpp, that by grow_simd.hpp, that by search_simd.hpp, and other files include simd.hpp.
 #include <hwy/highway.h>
@@ -48,8 +48,8 @@ struct query {
 };
 
 /// Where photons lie: in the map, or in a packet.
-struct photon_planes {
-    planes<const float> positions, directions, normals; ///< the last two only where a policy needs them
+struct photon_vectors {
+    soa_vectors<const float> positions, directions, normals; ///< the last two only where a policy needs them
 };
 
 /// A query in every lane.
@@ -71,7 +71,7 @@ struct query_lanes {
 /// rejects are farther than any radius. POLICIES: 0 none, 1 the side of the surface, 2 any.
 template <int POLICIES>
 HWY_INLINE vector squared_distances(
-    const search_job& j, const query_lanes& q, const photon_planes& photons, std::size_t i)
+    const search_job& j, const query_lanes& q, const photon_vectors& photons, std::size_t i)
 {
     const floats d;
     const auto smallest = hn::Set(d, std::numeric_limits<float>::min()),
@@ -80,7 +80,7 @@ HWY_INLINE vector squared_distances(
     const auto dx = hn::Sub(hn::LoadU(d, at.x + i), q.x), dy = hn::Sub(hn::LoadU(d, at.y + i), q.y),
                dz = hn::Sub(hn::LoadU(d, at.z + i), q.z);
     auto d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-    const auto along_normal = [&](const planes<const float>& v) HWY_ATTR {
+    const auto along_normal = [&](const soa_vectors<const float>& v) HWY_ATTR {
         return hn::Add(hn::Add(hn::Mul(hn::LoadU(d, v.x + i), q.normal_x), hn::Mul(hn::LoadU(d, v.y + i), q.normal_y)),
             hn::Mul(hn::LoadU(d, v.z + i), q.normal_z));
     };
@@ -91,7 +91,7 @@ HWY_INLINE vector squared_distances(
     d2 = hn::IfThenZeroElse(hn::Lt(d2, smallest), d2);
     if (POLICIES == 1 || (POLICIES == 2 && j.side))
         d2 = hn::IfThenElse(hn::Lt(along_normal(photons.directions), hn::Zero(d)), d2, rejected);
-    if (POLICIES == 2 && j.agreement)
+    if (POLICIES == 2 && j.needs_normals)
         d2 = hn::IfThenElse(hn::Ge(along_normal(photons.normals), hn::Set(d, j.min_cosine)), d2, rejected);
     return d2;
 }
@@ -193,16 +193,16 @@ HWY_INLINE void find_rows(const search_job& j, const glm::vec3& at, float radius
 /// The photons near some queries, or those that a query holds, one after the other.
 class packet {
 public:
-    enum plane {
+    enum component {
         x,
         y,
         z,
         red,
         green,
         blue,
-        travel_x,
-        travel_y,
-        travel_z,
+        direction_x,
+        direction_y,
+        direction_z,
         normal_x,
         normal_y,
         normal_z,
@@ -212,12 +212,12 @@ public:
     };
 
     std::size_t size() const { return size_; }
-    float* of(plane p) const { return memory_ + p * stride_; }
+    float* of(component p) const { return memory_ + p * stride_; }
     /// Place of photon i in the map.
     uint place(std::size_t i) const { return places_[i]; }
-    photon_planes photons() const
+    photon_vectors photons() const
     {
-        return {{of(x), of(y), of(z)}, {of(travel_x), of(travel_y), of(travel_z)},
+        return {{of(x), of(y), of(z)}, {of(direction_x), of(direction_y), of(direction_z)},
             {of(normal_x), of(normal_y), of(normal_z)}};
     }
 
@@ -249,17 +249,17 @@ public:
                 const std::size_t some = store_some(d, px, near, of(x) + k);
                 store_some(d, py, near, of(y) + k);
                 store_some(d, pz, near, of(z) + k);
-                const auto take = [&](plane p, const float* from)
+                const auto take = [&](component p, const float* from)
                                       HWY_ATTR { store_some(d, hn::LoadU(d, from + i), near, of(p) + k); };
                 take(red, j.powers.x); // for lists too: asking here costs estimates more than it saves them
                 take(green, j.powers.y);
                 take(blue, j.powers.z);
                 if (j.side) {
-                    take(travel_x, j.directions.x);
-                    take(travel_y, j.directions.y);
-                    take(travel_z, j.directions.z);
+                    take(direction_x, j.directions.x);
+                    take(direction_y, j.directions.y);
+                    take(direction_z, j.directions.z);
                 }
-                if (j.agreement) {
+                if (j.needs_normals) {
                     take(normal_x, j.normals.x);
                     take(normal_y, j.normals.y);
                     take(normal_z, j.normals.z);
@@ -320,7 +320,7 @@ private:
     /// Makes room for n photons; keeps the distances and places of those that are here.
     void grow(std::size_t n)
     {
-        const std::size_t stride = plane_stride(2 * n + slack);
+        const std::size_t stride = component_stride(2 * n + slack);
         storage block((count + 1) * stride * sizeof(float));
         auto* const memory = reinterpret_cast<float*>(block.begin());
         auto* const places = reinterpret_cast<uint*>(memory + count * stride);

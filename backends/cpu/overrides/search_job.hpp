@@ -15,7 +15,7 @@ namespace photongrid::cpu {
 struct search_job {
     grid cells_of{};
     std::span<const glm::uvec2> cells;
-    planes<const float> positions, powers, directions, normals; ///< the last two only where a policy needs them
+    soa_vectors<const float> positions, powers, directions, normals; ///< the last two only where a policy needs them
     const uint* list = nullptr;
     const glm::vec4* points = nullptr;
     const glm::vec4* point_normals = nullptr; ///< only where a policy needs them
@@ -27,7 +27,7 @@ struct search_job {
     float max_radius2 = 0; ///< m^2
     float min_radius2 = 0; ///< m^2
     bool side = false;     ///< leak policies
-    bool agreement = false;
+    bool needs_normals = false;
     float min_cosine = -1;
     float flattening = 0; ///< c^2 - 1, see photon_distance.glsl
     filter_kind filter = filter_kind::constant;

@@ -30,7 +30,7 @@ HWY_INLINE glm::uvec2 scan(const search_job& j, const query& at, float low2, flo
                       n = (near.size() + lanes - 1) / lanes * lanes; // with what is added up later
     float *const distances = near.of(packet::squared_distance), *const kept = near.of(packet::kept);
     const query_lanes q(at);
-    const photon_planes photons = near.photons();
+    const photon_vectors photons = near.photons();
     const auto low = hn::Set(d, low2), high = hn::Set(d, high2);
     std::size_t counted = 0, k = 0;
     for (std::size_t i = 0; i < n; i += width) {
@@ -290,7 +290,7 @@ HWY_INLINE void search_or_grow(const search_job& j, std::size_t begin, std::size
 /// Searches for the points order[begin] to order[end - 1].
 inline void search_block(const search_job& j, std::size_t begin, std::size_t end)
 {
-    if (j.flattening > 0 || j.agreement)
+    if (j.flattening > 0 || j.needs_normals)
         search_or_grow<2>(j, begin, end);
     else if (j.side)
         search_or_grow<1>(j, begin, end);

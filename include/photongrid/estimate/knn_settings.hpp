@@ -67,7 +67,7 @@ namespace detail {
         if (!(s.leaks.flattening >= 1) || !(s.leaks.flattening <= 1e6f) || !(s.leaks.min_cosine >= -1)
             || !(s.leaks.min_cosine <= 1))
             throw std::invalid_argument(
-                "knn_search: leaks: compression must be from 1 to 10^6, min_cosine from -1 to 1");
+                "knn_search: leaks: flattening must be from 1 to 10^6, min_cosine from -1 to 1");
         if (s.leaks.needs_any() && normals < points)
             throw std::invalid_argument("knn_search: leaks: a policy needs the surface normal of every query point");
         if (s.leaks.side && map.photons.size() > 0 && map.photons.directions.size() == 0)

@@ -27,8 +27,8 @@ float distance2_of(vec4 q, vec4 w, vec4 m, vec4 p, vec4 n)
             d2 = 3.4028234e38f;
     }
     if (NORMALS) {
-        precise float agreement = m.x * n.x + m.y * n.y + m.z * n.z;
-        if (!(agreement >= args.leaks.x))
+        precise float cosine = m.x * n.x + m.y * n.y + m.z * n.z;
+        if (!(cosine >= args.leaks.x))
             d2 = 3.4028234e38f;
     }
     return d2;
