@@ -84,7 +84,7 @@ faults=(
   "cpu: the k-th is one further|backends/cpu/overrides/search_simd.hpp|near.of(packet::kept), found.y, j.k - found.x,|near.of(packet::kept), found.y, j.k - found.x + (found.y > j.k - found.x ? 1u : 0u),"
   "cpu: packets are trusted too far|backends/cpu/overrides/search_simd.hpp|(packet_radius - distance_between(q.at, center) * 1.000001f)|(packet_radius - 0.5f * distance_between(q.at, center))"
   "cpu: the band is trusted|backends/cpu/overrides/search_simd.hpp|if (found.x >= j.k \|\| (found.x + found.y < j.k|if ((found.x + found.y < j.k"
-  "cpu: ties go by place|backends/cpu/overrides/gather_simd.hpp|j.list[near.place(a)] < j.list[near.place(b)]|near.place(a) < near.place(b)"
+  "cpu: ties go by place|backends/cpu/overrides/gather_simd.hpp|j.list[near.index(a)] < j.list[near.index(b)]|near.index(a) < near.index(b)"
   "cpu: the radius grows to the k-th, not the farthest|backends/cpu/overrides/grow_simd.hpp|limit2_ = std::max(limit2_, distance2[i]);|limit2_ = distance2[i];"
   "cpu: growth forgets the farthest|backends/cpu/overrides/grow_simd.hpp|farthest_ = hn::Max(farthest_, hn::IfThenElseZero(within, distances2));|farthest_ = hn::IfThenElseZero(within, distances2);"
   "cpu: rows are asked once|backends/cpu/overrides/grow_simd.hpp|e.has(i) && e.away2[i] <= found.limit2()|e.has(i)"

@@ -30,11 +30,11 @@ uint first_from(uvec2 range, uint draw)
 
 void main()
 {
-    uint place = element_();
-    if (place >= launch_.x)
+    uint index = element_();
+    if (index >= launch_.x)
         return;
-    uint d = place / args.parts;
-    uint part = place - d * args.parts;
+    uint d = index / args.parts;
+    uint part = index - d * args.parts;
     uvec2 range = uvec2(0u, 0u);
     if (d < args.destinations) {
         uint first = first_from(ranges_[d], part * args.block);
@@ -44,9 +44,9 @@ void main()
         return;
     vec4 sum = vec4(0.0);
     if (args.begin > 0u)
-        sum = totals_[place];
+        sum = totals_[index];
     uint end = min(range.y, args.begin + args.most);
     for (uint r = args.begin; r < end; ++r)
         sum += amounts_[keys_[range.x + r].y];
-    totals_[place] = sum;
+    totals_[index] = sum;
 }

@@ -162,8 +162,8 @@ void maps(device_type& device)
 void estimates(device_type& device, const photongrid::map_buffers<device_type>& map)
 {
     //! [upload_points]
-    const std::vector<glm::vec3> places{{0, 0, 0}, {0.1f, 0, 0.2f}}; // m
-    const auto points = photongrid::upload_points(device, places);
+    const std::vector<glm::vec3> queries{{0, 0, 0}, {0.1f, 0, 0.2f}}; // m
+    const auto points = photongrid::upload_points(device, queries);
     //! [upload_points]
     expect(device.download(points)[1] == glm::vec4(0.1f, 0, 0.2f, 1), "upload_points");
 
@@ -205,8 +205,8 @@ void estimates(device_type& device, const photongrid::map_buffers<device_type>& 
     const auto ids = device.download(lists.ids);            // those of point 1 are ids[8] to ids[15], nearest first
     const auto squared = device.download(lists.distances2); // m^2
     //! [knn_neighbours]
-    const auto place = photons_on_a_square()[ids[8]].position - places[1];
-    expect(ids.size() == 16 && is_near(squared[8], static_cast<double>(glm::dot(place, place)), 1e-4)
+    const auto offset = photons_on_a_square()[ids[8]].position - queries[1];
+    expect(ids.size() == 16 && is_near(squared[8], static_cast<double>(glm::dot(offset, offset)), 1e-4)
             && std::is_sorted(squared.begin() + 8, squared.end()),
         "knn_neighbours");
 }
@@ -334,12 +334,12 @@ void pictures(device_type& device)
 
 void host_maps(device_type& device)
 {
-    const std::vector<glm::vec3> places{{0, 0, 0}, {0.2f, 0, -0.1f}};
+    const std::vector<glm::vec3> queries{{0, 0, 0}, {0.2f, 0, -0.1f}};
     {
         const auto photons = photons_on_a_square();
         //! [photon_map]
         const photongrid::photon_map map(device, photons, {.k = 400});
-        for (const auto& e : map.irradiance(places, {.standard_error = true}))
+        for (const auto& e : map.irradiance(queries, {.standard_error = true}))
             std::cout << e.value.r << " +- " << e.error.r << " W/m^2 within " << e.radius << " m\n";
         photongrid::query_scratch scratch; // of this thread
         const auto here = map.irradiance(glm::vec3(0.1f, 0, 0.1f), glm::vec3(0, 1, 0), scratch);

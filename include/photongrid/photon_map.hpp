@@ -1,7 +1,7 @@
 // A photon map as a host sees it: photons of the host's in, irradiance out.
 //
 //     const photongrid::photon_map map(device, photons, {.k = 400});
-//     for (const auto& e : map.irradiance(places, {.standard_error = true}))
+//     for (const auto& e : map.irradiance(points, {.standard_error = true}))
 //         use(e.value, e.error, e.radius, e.count);
 //
 // Buffers, kernels and searches that can be interrupted lie underneath: map/, estimate/.
@@ -23,11 +23,11 @@ struct irradiance_options {
 
 /// Photons, found again by where they are. It remembers how it is searched.
 ///
-/// Searches for many places run on the device, which must still be there; one thread at a time may use it. Searches for
-/// one place are const work of the calling thread on a copy of the map in the host's memory (see host_search): any
+/// Searches for many points run on the device, which must still be there; one thread at a time may use it. Searches for
+/// one point are const work of the calling thread on a copy of the map in the host's memory (see host_search): any
 /// number of threads may run them at once.
 ///
-/// Doubles are measured from the middle of the photons, so that places 10^6 m from 0 and 0.1 m apart are told apart.
+/// Doubles are measured from the middle of the photons, so that points 10^6 m from 0 and 0.1 m apart are told apart.
 /// Distances are in single precision.
 /// \snippet snippets.cpp photon_map
 template <backend B>
@@ -60,46 +60,46 @@ public:
     /// What positions on the device are measured from.
     const glm::dvec3& origin() const { return origin_; }
 
-    /// Irradiance at many places, in their order.
+    /// Irradiance at many points, in their order.
     /// \throws backend_error where the device has no room.
     [[nodiscard]] std::vector<irradiance_at_point> irradiance(
-        const vector_view& places, const irradiance_options& options = {}) const
+        const vector_view& points, const irradiance_options& options = {}) const
     {
-        return searched(places, nullptr, options);
+        return searched(points, nullptr, options);
     }
-    /// With the unit normal of the surface at each place, which leak policies need.
+    /// With the unit normal of the surface at each point, which leak policies need.
     [[nodiscard]] std::vector<irradiance_at_point> irradiance(
-        const vector_view& places, const vector_view& normals, const irradiance_options& options = {}) const
+        const vector_view& points, const vector_view& normals, const irradiance_options& options = {}) const
     {
-        return searched(places, &normals, options);
+        return searched(points, &normals, options);
     }
-    /// Irradiance at one place, with its standard error. From any thread, each with a scratch of its own.
+    /// Irradiance at one point, with its standard error. From any thread, each with a scratch of its own.
     /// \throws std::invalid_argument where the search is at_least_k.
     template <detail::vector_like V, detail::vector_like N>
-    [[nodiscard]] irradiance_at_point irradiance(const V& place, const N& normal, query_scratch& scratch) const
+    [[nodiscard]] irradiance_at_point irradiance(const V& point, const N& normal, query_scratch& scratch) const
     {
-        return host_.irradiance(local(place), detail::to_vec3(normal), scratch);
+        return host_.irradiance(local(point), detail::to_vec3(normal), scratch);
     }
 
     /// Calls f(photon_id, float distance2) for every photon within `radius`, m, in no particular order. From any
     /// thread.
     template <detail::vector_like V, class F>
-    void for_each_within(const V& place, float radius, const F& f) const
+    void for_each_within(const V& point, float radius, const F& f) const
     {
-        host_.for_each_within(local(place), radius, f);
+        host_.for_each_within(local(point), radius, f);
     }
     /// The same for the k nearest, nearest first; of equally near ones, the smallest id first. From any thread.
     template <detail::vector_like V, class F>
-    void for_each_nearest(const V& place, uint k, query_scratch& scratch, const F& f) const
+    void for_each_nearest(const V& point, uint k, query_scratch& scratch, const F& f) const
     {
-        host_.for_each_nearest(local(place), k, std::numeric_limits<float>::infinity(), scratch, f);
+        host_.for_each_nearest(local(point), k, std::numeric_limits<float>::infinity(), scratch, f);
     }
     /// With a scratch that each thread keeps.
     template <detail::vector_like V, class F>
-    void for_each_nearest(const V& place, uint k, const F& f) const
+    void for_each_nearest(const V& point, uint k, const F& f) const
     {
         thread_local query_scratch scratch;
-        for_each_nearest(place, k, scratch, f);
+        for_each_nearest(point, k, scratch, f);
     }
 
 private:
@@ -122,23 +122,23 @@ private:
     }
 
     template <class V>
-    glm::vec3 local(const V& place) const
+    glm::vec3 local(const V& point) const
     {
-        return glm::vec3(detail::to_dvec3(place) - origin_);
+        return glm::vec3(detail::to_dvec3(point) - origin_);
     }
 
     std::vector<irradiance_at_point> searched(
-        const vector_view& places, const vector_view* normals, const irradiance_options& options) const
+        const vector_view& points, const vector_view* normals, const irradiance_options& options) const
     {
         B& b = *device_;
         auto s = search();
         s.errors = options.standard_error;
-        const auto points = detail::upload_view(b, places, origin_, 1.0f);
+        const auto device_points = detail::upload_view(b, points, origin_, 1.0f);
         const auto estimates = [&] {
             if (normals == nullptr)
-                return knn_grid_estimate(b, map_, points, s);
-            const auto on = detail::upload_view(b, *normals, glm::dvec3(0), 0.0f);
-            return knn_grid_estimate(b, map_, points, on, s);
+                return knn_grid_estimate(b, map_, device_points, s);
+            const auto surface_normals = detail::upload_view(b, *normals, glm::dvec3(0), 0.0f);
+            return knn_grid_estimate(b, map_, device_points, surface_normals, s);
         }();
         const auto values = b.download(estimates.irradiance), errors = b.download(estimates.standard_error);
         const auto used = b.download(estimates.used);

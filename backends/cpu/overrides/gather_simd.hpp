@@ -164,7 +164,7 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
     const bool apart = j.leave_out && r.by_photon && r.radius2 >= j.min_radius2;
     double extra[3] = {}, extra2[4] = {};
     if (counted > (apart ? 1u : 0u)) {
-        const auto by_id = [&](uint a, uint b) { return j.list[near.place(a)] < j.list[near.place(b)]; };
+        const auto by_id = [&](uint a, uint b) { return j.list[near.index(a)] < j.list[near.index(b)]; };
         at_radius.clear();
         for (std::size_t i = 0; i < near.size(); ++i)
             if (distances[i] == r.radius2)

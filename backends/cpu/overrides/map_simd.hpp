@@ -73,14 +73,14 @@ inline void find_cells(map_job j, std::size_t first, std::size_t past, uint* in_
     }
 }
 
-/// Takes photons first to past - 1 to their buckets; the next one of bucket v goes to place next[v]. Lines are
+/// Moves photons first to past - 1 to their buckets; the next one of bucket v goes to index next[v]. Cache lines are
 /// collected and then written past the caches (software write-combining; Satish et al., Fast Sort on CPUs and GPUs,
 /// 2010).
 inline void scatter_photons(map_job j, std::size_t first, std::size_t past, uint* next, scatter_lines& lines)
 {
-    uint begin[map_job::most_buckets]; // what lies before in a line belongs to others
+    uint begin[map_job::most_buckets]; // the beginning of a line may belong to another thread
     std::copy(next, next + j.buckets(), begin);
-    // The line that ends before place `end`, or as much of it as is ours.
+    // Writes the cache line that ends before index `end`, or the part of it that belongs to this call.
     const auto write = [&]<class T>(const T* line, uint size, T* to, uint bucket, uint end) HWY_ATTR {
         const hn::CappedTag<float, lanes> d;
         const uint start = (end - 1) / size * size;
@@ -122,13 +122,13 @@ inline void order_bucket(map_job j, uint bucket, std::size_t begin, std::size_t 
         hwy::Prefetch(&j.records[i]); // they are taken out of order below
         ++s.next[j.pairs[i].x - first_cell];
     }
-    auto place = static_cast<uint>(begin);
+    auto next_index = static_cast<uint>(begin);
     for (uint c = 0; c < bins; ++c) {
         const uint count = s.next[c];
-        s.next[c] = place;
+        s.next[c] = next_index;
         if (first_cell + c < j.cells)
-            j.index[first_cell + c] = {place, count};
-        place += count;
+            j.index[first_cell + c] = {next_index, count};
+        next_index += count;
     }
     for (std::size_t i = begin; i < end; ++i)
         s.order[s.next[j.pairs[i].x - first_cell]++ - begin] = static_cast<uint>(i);

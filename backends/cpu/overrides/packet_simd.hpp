@@ -214,7 +214,7 @@ public:
     std::size_t size() const { return size_; }
     float* of(component p) const { return memory_ + p * stride_; }
     /// Place of photon i in the map.
-    uint place(std::size_t i) const { return places_[i]; }
+    uint index(std::size_t i) const { return indices_[i]; }
     photon_vectors photons() const
     {
         return {{of(x), of(y), of(z)}, {of(direction_x), of(direction_y), of(direction_z)},
@@ -265,7 +265,7 @@ public:
                     take(normal_z, j.normals.z);
                 }
                 store_some(du, hn::Add(hn::Set(du, static_cast<uint>(i)), hn::Iota(du, 0)), hn::RebindMask(du, near),
-                    places_ + k);
+                    indices_ + k);
                 k += some;
             }
         }
@@ -286,13 +286,13 @@ public:
         if (size_ + n + slack > stride_)
             grow(size_ + n);
     }
-    /// Adds those of a register of photons that `some` has, its first at `place`.
-    HWY_INLINE void add(vector distances2, hn::Mask<floats> some, std::size_t place)
+    /// Adds those of a register of photons that `some` has, its first at `index`.
+    HWY_INLINE void add(vector distances2, hn::Mask<floats> some, std::size_t index)
     {
         const uints du;
         const std::size_t added = store_some(floats(), distances2, some, of(squared_distance) + size_);
-        store_some(du, hn::Add(hn::Set(du, static_cast<uint>(place)), hn::Iota(du, 0)), hn::RebindMask(du, some),
-            places_ + size_);
+        store_some(du, hn::Add(hn::Set(du, static_cast<uint>(index)), hn::Iota(du, 0)), hn::RebindMask(du, some),
+            indices_ + size_);
         size_ += added;
     }
     /// Fetches the powers of all that were added.
@@ -303,11 +303,11 @@ public:
         reserve(0);
         for (std::size_t i = size_; i < size_ + lanes; ++i) { // read with the last, but weighs nothing
             of(squared_distance)[i] = std::numeric_limits<float>::infinity();
-            places_[i] = 0;
+            indices_[i] = 0;
         }
         for (std::size_t i = 0; i < size_; i += lanes)
             for (std::size_t l = i; l < i + lanes; l += hn::Lanes(d)) {
-                const auto at = hn::Load(di, reinterpret_cast<const int*>(places_ + l));
+                const auto at = hn::Load(di, reinterpret_cast<const int*>(indices_ + l));
                 hn::Store(hn::GatherIndex(d, j.powers.x, at), d, of(red) + l);
                 hn::Store(hn::GatherIndex(d, j.powers.y, at), d, of(green) + l);
                 hn::Store(hn::GatherIndex(d, j.powers.z, at), d, of(blue) + l);
@@ -317,24 +317,24 @@ public:
 private:
     static constexpr std::size_t slack = 5 * lanes; ///< for what is written past the end
 
-    /// Makes room for n photons; keeps the distances and places of those that are here.
+    /// Makes room for n photons; keeps the distances and indices of those that are here.
     void grow(std::size_t n)
     {
         const std::size_t stride = component_stride(2 * n + slack);
         storage block((count + 1) * stride * sizeof(float));
         auto* const memory = reinterpret_cast<float*>(block.begin());
-        auto* const places = reinterpret_cast<uint*>(memory + count * stride);
+        auto* const indices = reinterpret_cast<uint*>(memory + count * stride);
         std::copy_n(of(squared_distance), size_, memory + squared_distance * stride);
-        std::copy_n(places_, size_, places);
+        std::copy_n(indices_, size_, indices);
         block_ = std::move(block);
         memory_ = memory;
-        places_ = places;
+        indices_ = indices;
         stride_ = stride;
     }
     rows_found rows_;
     storage block_;
     float* memory_ = nullptr;
-    uint* places_ = nullptr;
+    uint* indices_ = nullptr;
     std::size_t size_ = 0, stride_ = 0;
 };
 

@@ -122,7 +122,7 @@ HWY_NOINLINE inline void list(
     // The bits of squared distances are in their order; the smallest ids come first.
     keys.resize(held);
     for (std::size_t i = 0; i < held; ++i)
-        keys[i] = std::uint64_t{std::bit_cast<uint>(distances[within[i]])} << 32 | j.list[near.place(within[i])];
+        keys[i] = std::uint64_t{std::bit_cast<uint>(distances[within[i]])} << 32 | j.list[near.index(within[i])];
     std::sort(keys.begin(), keys.end());
     held = std::min<std::size_t>(held, j.k); // more lie at the radius itself
     uint* const ids = j.ids + std::size_t{point} * j.k;

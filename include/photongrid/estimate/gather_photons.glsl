@@ -36,7 +36,7 @@ STATE(2, vec4, sum)           // rgb: weighted flux, W
 STATE(3, vec4, compensation)  // rgb: rounding error of the sum so far (Kahan)
 STATE(4, vec4, squares)       // rgb: squares of the weighted fluxes; w: of their sums over channels
 STATE(5, uvec4, cursor)       // y, z of the row to go on with; the first photon not yet visited
-STATE(6, uvec4, tally)        // photons held, photons visited, place + 1 of the one left out, done
+STATE(6, uvec4, tally)        // photons held, photons visited, index + 1 of the one left out, done
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
@@ -47,8 +47,8 @@ vec4 chunk_power;
 void take_powers(uint nth, uint all)
 {
     take_chunk(nth, all);
-    chunk_id = list(chunk_place);
-    chunk_power = powers(chunk_place);
+    chunk_id = list(chunk_index);
+    chunk_power = powers(chunk_index);
 }
 
 bool done()
@@ -68,7 +68,7 @@ void kernel(uint i)
     vec4 total = sum;
     vec4 correction = compensation;
     vec4 square = squares;
-    uvec4 place = cursor;
+    uvec4 resume_at = cursor;
     uint held = tally.x;
     uint visited = tally.y;
     uint left_out = tally.z;
@@ -83,7 +83,7 @@ void kernel(uint i)
     walk_visits = args.visits;
     walk_steps = args.ranges;
     while (walk_steps > 0u && group_any(!finished)) {
-        bool mine = joins_walk(!finished, p, c, radius2, place);
+        bool mine = joins_walk(!finished, p, c, radius2, resume_at);
         vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the others find nothing
         while (walks_on()) {
             uint photons = next_rows();
@@ -93,7 +93,7 @@ void kernel(uint i)
     {                                                                                      \
         float d2 = distance2_of(PHOTON_OF(LANE), from, n);                                 \
         if (GROUP_LANES > 1u || d2 <= radius2) {                                           \
-            uint at = from_lane(chunk_place, LANE);                                        \
+            uint at = from_lane(chunk_index, LANE);                                        \
             uint id = from_lane(chunk_id, LANE);                                           \
             vec4 power = from_lane(chunk_power, LANE);                                     \
             bool at_radius = d2 == radius2 && id <= last_id;                               \
@@ -133,7 +133,7 @@ void kernel(uint i)
 #undef VISIT
         }
         if (mine) {
-            place = uvec4(walk.x, walk.y, walk.z, 0u);
+            resume_at = uvec4(walk.x, walk.y, walk.z, 0u);
             finished = has_walked();
         }
     }
@@ -141,6 +141,6 @@ void kernel(uint i)
     sum = total;
     compensation = correction;
     squares = square;
-    cursor = place;
+    cursor = resume_at;
     tally = uvec4(held, visited, left_out, finished ? 1u : 0u);
 }

@@ -15,7 +15,7 @@
 
 namespace photongrid {
 
-/// Which photon or point: its place in the range that the map was made from.
+/// Which photon or point: its index in the range that the map was made from.
 using photon_id = uint;
 
 /// Light that arrives at a point.
@@ -37,7 +37,7 @@ private:
     friend class host_search;
     struct candidate {
         std::uint64_t key; ///< squared distance above, id below: in this order photons are taken
-        uint place;        ///< in the map
+        uint index;        ///< in the map
         bool operator<(const candidate& other) const { return key < other.key; }
     };
     std::vector<candidate> found_;
@@ -71,7 +71,7 @@ public:
     {
         const auto q = query({}, 0);
         const float radius2 = radius > 0 ? std::min(radius * radius, 1e38f) : -1.0f;
-        visit(q, glm::vec4(p, 1), glm::vec4(0), radius2, [&](uint place, float d2) { f(photon_id{list_[place]}, d2); });
+        visit(q, glm::vec4(p, 1), glm::vec4(0), radius2, [&](uint index, float d2) { f(photon_id{list_[index]}, d2); });
     }
 
     /// Calls f(id, squared distance) for the k nearest photons, nearest first; of equally near ones, the smallest id
@@ -116,7 +116,7 @@ public:
             if (left_out && by_photon && radius2 >= min2 && found[i].key == last->key)
                 continue;
             const float t = std::min(distance2_of(found[i]) * inverse, 1.0f);
-            const glm::vec4 flux = powers_[found[i].place] * weight(s.filter, t);
+            const glm::vec4 flux = powers_[found[i].index] * weight(s.filter, t);
             const float all = flux.x + flux.y + flux.z;
             sum += glm::dvec4(flux);
             squares += glm::dvec4(flux.x * flux.x, flux.y * flux.y, flux.z * flux.z, all * all);
@@ -157,7 +157,7 @@ private:
         return q;
     }
 
-    /// Calls f(place, squared distance) for the photons within radius2. Few of a row of cells are, so that f may take
+    /// Calls f(index, squared distance) for the photons within radius2. Few of a row of cells are, so that f may take
     /// its time.
     template <class F>
     static void visit(kernels::host_query q, const glm::vec4& p, const glm::vec4& n, float radius2, const F& f)
@@ -172,9 +172,9 @@ private:
         for (uint z = rows_z.x; z <= rows_z.y; ++z)
             for (uint y = rows_y.x; y <= rows_y.y; ++y) {
                 const auto row = q.photons_of_row(p, y, z, c, radius2);
-                for (uint place = row.x; place < row.y; ++place)
-                    if (const float d2 = q.photon_distance2(place, p, n); d2 <= radius2)
-                        f(place, d2);
+                for (uint index = row.x; index < row.y; ++index)
+                    if (const float d2 = q.photon_distance2(index, p, n); d2 <= radius2)
+                        f(index, d2);
             }
     }
 
@@ -193,8 +193,8 @@ private:
         const float far2 = 16 * (extent.x * extent.x + extent.y * extent.y + extent.z * extent.z);
         for (;;) {
             found.clear();
-            visit(q, p, n, radius2, [&](uint place, float d2) {
-                found.push_back({std::uint64_t{std::bit_cast<uint>(d2)} << 32 | list_[place], place});
+            visit(q, p, n, radius2, [&](uint index, float d2) {
+                found.push_back({std::uint64_t{std::bit_cast<uint>(d2)} << 32 | list_[index], index});
             });
             if (!exact)
                 return found.size();

@@ -21,7 +21,7 @@ namespace photongrid {
 template <backend B>
 struct neighbour_lists {
     uint k = 0;             ///< entries to a list
-    buffer_of<B, uint> ids; ///< point p's at p * k and the k - 1 after it: places in what the map was made from;
+    buffer_of<B, uint> ids; ///< point p's at p * k and the k - 1 after it: indices in what the map was made from;
                             ///< 0xFFFFFFFF: there are no more
     buffer_of<B, float> distances2; ///< m^2, of the same photons; infinity where there is none
 };
@@ -50,19 +50,19 @@ namespace detail {
         if (n == 0)
             return lists;
         auto pairs = b.template make<glm::uvec2>(std::size_t{n} * padded);
-        const auto put = [&](uint entry, uint entries, bool held, const auto& places, const auto& tally) {
+        const auto put = [&](uint entry, uint entries, bool held, const auto& indices, const auto& tally) {
             b.template run<kernels::neighbour_pair>(
                 {std::size_t{n} * entries, entry * n, in.policies() | (held ? 8u : 0u)},
                 {.leaks = in.leaks(), .points = n},
                 reads(*in.points, in.point_normals(), m.photons.positions, in.directions(), in.photon_normals(), m.list,
-                    places, tally),
+                    indices, tally),
                 writes(pairs));
         };
         {
             knn_radius<B> radius_search(in);
             radius_search.advance();
             constexpr uint part = 16; // entries found at a time
-            buffer_of<B, glm::uvec4> places[] = {in.template make<glm::uvec4>(), in.template make<glm::uvec4>(),
+            buffer_of<B, glm::uvec4> indices[] = {in.template make<glm::uvec4>(), in.template make<glm::uvec4>(),
                 in.template make<glm::uvec4>(), in.template make<glm::uvec4>()};
             auto cursor = in.template make<glm::uvec4>(), tally = in.template make<glm::uvec4>();
             for (uint first = 0; first < k; first += part) {
@@ -76,13 +76,13 @@ namespace detail {
                         .ranges = in.s.ranges_per_pass},
                     reads(*in.points, in.point_normals(), m.cells, m.photons.positions, in.directions(),
                         in.photon_normals(), m.list, radius_search.radius),
-                    writes(places[0], places[1], places[2], places[3], cursor, tally), nowhere);
+                    writes(indices[0], indices[1], indices[2], indices[3], cursor, tally), nowhere);
                 for (uint four = 0; four < part && first + four < padded; four += 4)
-                    put(first + four, std::min(4u, padded - (first + four)), true, places[four / 4], tally);
+                    put(first + four, std::min(4u, padded - (first + four)), true, indices[four / 4], tally);
             }
             const uint filled = std::min((k + part - 1) / part * part, padded);
             if (filled < padded)
-                put(filled, padded - filled, false, places[0], tally);
+                put(filled, padded - filled, false, indices[0], tally);
         }
         if (padded > 1) {
             auto next = b.template make<glm::uvec2>(pairs.size());

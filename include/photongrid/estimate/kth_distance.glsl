@@ -93,7 +93,7 @@ void kernel(uint i)
     uvec4 below = inner;
     uvec4 beyond = outer;
     uvec4 between = bracket;
-    uvec4 place = cursor;
+    uvec4 resume_at = cursor;
     uint within = tally.x;
     uint visited = tally.y;
     uint scans = tally.z;
@@ -110,7 +110,7 @@ void kernel(uint i)
         uint middle = key_of(pivot.x);
         float high = distance_of(between.y);
         float scan2 = phase == COUNTING ? far_pivots.w : high;
-        bool mine = joins_walk(phase != FOUND, p, c, scan2, uvec4(place.x, place.y, place.z, phase));
+        bool mine = joins_walk(phase != FOUND, p, c, scan2, uvec4(resume_at.x, resume_at.y, resume_at.z, phase));
         vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the others count nothing
         while (walk.w == COUNTING && walks_on()) {
             uint photons = next_rows();
@@ -145,7 +145,7 @@ void kernel(uint i)
 #undef VISIT
         }
         if (mine)
-            place = uvec4(walk.x, walk.y, walk.z, 0u);
+            resume_at = uvec4(walk.x, walk.y, walk.z, 0u);
 
         if (mine && has_walked()) {
             // The scan is whole: what does it say about the k-th?
@@ -216,7 +216,7 @@ void kernel(uint i)
                 below = uvec4(0u, 0u, 0u, 0u);
                 beyond = below;
             }
-            place = uvec4(0u, 0u, 0u, 0u);
+            resume_at = uvec4(0u, 0u, 0u, 0u);
         }
     }
 
@@ -224,6 +224,6 @@ void kernel(uint i)
     inner = below;
     outer = beyond;
     bracket = between;
-    cursor = place;
+    cursor = resume_at;
     tally = uvec4(within, visited, scans, phase);
 }

@@ -36,7 +36,7 @@ uint chunk_id;
 void take_ids(uint nth, uint all)
 {
     take_chunk(nth, all);
-    chunk_id = list(chunk_place);
+    chunk_id = list(chunk_index);
 }
 
 bool done()
@@ -52,7 +52,7 @@ void kernel(uint i)
     float radius2 = search_radii(i).x;
     uvec4 between = bracket;
     uvec4 count = counts;
-    uvec4 place = cursor;
+    uvec4 resume_at = cursor;
     uint visited = chosen.y;
 
     walk_visits = args.visits;
@@ -60,7 +60,7 @@ void kernel(uint i)
     while (walk_steps > 0u && group_any(between.w == 0u)) {
         uint fifth = max((between.y - between.x) / 5u, 1u);
         uvec4 pivot = uvec4(between.x + fifth, between.x + 2u * fifth, between.x + 3u * fifth, between.x + 4u * fifth);
-        bool mine = joins_walk(between.w == 0u, p, c, radius2, place);
+        bool mine = joins_walk(between.w == 0u, p, c, radius2, resume_at);
         vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the others count nothing
         while (walks_on()) {
             uint photons = next_rows();
@@ -78,7 +78,7 @@ void kernel(uint i)
 #undef VISIT
         }
         if (mine)
-            place = uvec4(walk.x, walk.y, walk.z, 0u);
+            resume_at = uvec4(walk.x, walk.y, walk.z, 0u);
         if (mine && has_walked()) {
             uint missing = args.k - between.z;
             uvec2 range = uvec2(between.x, between.y);
@@ -100,12 +100,12 @@ void kernel(uint i)
                 range.x = max(range.x, pivot.x);
             between = uvec4(range.x, range.y, 0u, range.y <= range.x + 1u ? 1u : 0u);
             count = uvec4(0u, 0u, 0u, 0u);
-            place = uvec4(0u, 0u, 0u, 0u);
+            resume_at = uvec4(0u, 0u, 0u, 0u);
         }
     }
 
     chosen = uvec4(between.w != 0u ? args.k : chosen.x, visited, between.w != 0u ? between.y - 1u : chosen.z, chosen.w);
     bracket = between;
     counts = count;
-    cursor = place;
+    cursor = resume_at;
 }

@@ -21,7 +21,7 @@ INPUT(4, vec4, directions)
 INPUT(5, vec4, photon_normals)
 INPUT(6, uint, list)         // photon ids
 INPUT(7, vec4, search_radii) // x: squared radius, m^2
-STATE(0, uvec4, first_four)  // places of photons, the last one found first
+STATE(0, uvec4, first_four)  // indices of photons, the last one found first
 STATE(1, uvec4, second_four)
 STATE(2, uvec4, third_four)
 STATE(3, uvec4, fourth_four)

@@ -15,7 +15,7 @@ INPUT(2, vec4, positions)
 INPUT(3, vec4, directions)
 INPUT(4, vec4, photon_normals)
 INPUT(5, uint, list)
-INPUT(6, uvec4, places)  // of entries 0 to 3, 4 to 7, 8 to 11 or 12 to 15 of a part (list_neighbours.glsl)
+INPUT(6, uvec4, indices)  // of entries 0 to 3, 4 to 7, 8 to 11 or 12 to 15 of a part (list_neighbours.glsl)
 INPUT(7, uvec4, tallies)
 OUTPUT(0, uvec2, pair)
 
@@ -28,7 +28,7 @@ void kernel(uint i)
     pair = uvec2(0x7F800000u, 0xFFFFFFFFu); // nobody, infinitely far
     if (HELD) {
         if (entry % 16u < tallies(point).x) {
-            uvec4 four = places(point);
+            uvec4 four = indices(point);
             uint nth = entry % 4u;
             uint at = nth == 0u ? four.x : nth == 1u ? four.y : nth == 2u ? four.z : four.w;
             pair = uvec2(floatBitsToUint(photon_distance2(at, points(point), normals(point))), list(at));

@@ -11,27 +11,27 @@ uvec2 walk_z;
 uvec4 walk;            // y, z of the next row; photons before this one are not visited again; phase of the points' search
 uint walk_visits = 0u; // what is left of this pass: photons, and rows
 uint walk_steps = 0u;
-uint rows_end = 0u;    // photons of the rows at hand up to this point's row, and that row's; and what a place there is ahead by
+uint rows_end = 0u;    // photons of the rows at hand up to this point's row, and that row's; and what a resume_at there is ahead by
 uint rows_shift = 0u;
-uint chunk_place = 0u; // the photon that this point reads for all
+uint chunk_index = 0u; // the photon that this point reads for all
 vec4 chunk_position;
 vec4 chunk_direction;
 vec4 chunk_normal;
 
 // Does this point search along with the one in the middle of those in its group that are not done? If it lies close by and has
-// come as far; `place`: y, z, next photon, phase. Begins the walk of those that do.
-bool joins_walk(bool searching, vec4 p, uvec4 c, float radius2, uvec4 place)
+// come as far; `resume_at`: y, z, next photon, phase. Begins the walk of those that do.
+bool joins_walk(bool searching, vec4 p, uvec4 c, float radius2, uvec4 resume_at)
 {
     uint middle = group_middle(searching);
     float radius = wider(radius2);
     walk_center = lane_value(p, middle);
     walk_cell = lane_value(c, middle);
-    walk = lane_value(place, middle);
+    walk = lane_value(resume_at, middle);
     float most = lane_value(radius, middle);
     float dx = abs(p.x - walk_center.x);
     float dy = abs(p.y - walk_center.y);
     float dz = abs(p.z - walk_center.z);
-    bool mine = searching && !(max(dx, max(dy, dz)) > 0.4f * most) && !(radius > 1.5f * most) && place == walk;
+    bool mine = searching && !(max(dx, max(dy, dz)) > 0.4f * most) && !(radius > 1.5f * most) && resume_at == walk;
     walk_radius2 = radius2;
     if (GROUP_LANES > 1u) {
         float extent = mine ? (sqrt(dx * dx + dy * dy + dz * dz) + radius) * 1.000001f : 0.0f;
@@ -55,8 +55,8 @@ bool joins_walk(bool searching, vec4 p, uvec4 c, float radius2, uvec4 place)
 bool has_walked() { return walk.y > walk_z.y; }
 bool walks_on() { return walk_steps > 0u && !has_walked(); }
 
-// The place of photon `nth` of the rows at hand.
-uint place_of(uint nth)
+// The resume_at of photon `nth` of the rows at hand.
+uint index_of(uint nth)
 {
     uint row = 0u;
     for (uint step = GROUP_LANES / 2u; step > 0u; step /= 2u)
@@ -84,7 +84,7 @@ uint next_rows()
     uint all = lane_value(rows_end, GROUP_LANES - 1u);
     if (all > walk_visits) {
         all = walk_visits;
-        walk.z = place_of(all);
+        walk.z = index_of(all);
         walk_steps = 0u;
     } else {
         walk.x = lane_value(y, GROUP_LANES - 1u) + 1u;
@@ -98,20 +98,20 @@ uint next_rows()
     return all;
 }
 
-// Reads photons nth, nth + 1 ... of the `all` in the rows at hand. What a place beyond the last shows is not near anything.
+// Reads photons nth, nth + 1 ... of the `all` in the rows at hand. What a resume_at beyond the last shows is not near anything.
 void take_chunk(uint nth, uint all)
 {
     uint mine = nth + group_lane();
-    chunk_place = place_of(min(mine, all - 1u));
-    chunk_position = positions(chunk_place);
+    chunk_index = index_of(min(mine, all - 1u));
+    chunk_position = positions(chunk_index);
     if (GROUP_LANES > 1u && mine >= all)
         chunk_position.x = 3.0e38f;
     chunk_direction = chunk_position;
     chunk_normal = chunk_position;
     if (SIDE)
-        chunk_direction = directions(chunk_place);
+        chunk_direction = directions(chunk_index);
     if (NORMALS)
-        chunk_normal = photon_normals(chunk_place);
+        chunk_normal = photon_normals(chunk_index);
 }
 #define PHOTON_OF(LANE) from_lane(chunk_position, LANE), from_lane(chunk_direction, LANE), from_lane(chunk_normal, LANE)
 // VISIT(LANE) for each of the PHOTONS, one at least, in the rows at hand; TAKE is take_chunk or what reads more than that.

@@ -93,7 +93,7 @@ void kernel(uint i)
     uint at = lights.first;
     for (uint number = 0u; number < lights.count; ++number) {
         Light light = light_at(at);
-        vec3 corner = light.place;
+        vec3 corner = light.position;
         bool area = AREA_LIGHTS && (!POINT_LIGHTS || light.is_area);
         precise vec3 edge_u = light.edge_u * share_u; // of a stratum
         precise vec3 edge_v = light.edge_v * share_v;

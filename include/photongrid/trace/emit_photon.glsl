@@ -34,7 +34,7 @@ void kernel(uint i)
         at += lights.stride;
     }
     Light light = light_at(at);
-    vec3 origin = light.place;
+    vec3 origin = light.position;
     vec3 d = vec3(0.0f, 0.0f, 1.0f);
     if (POINT_LIGHTS && (!AREA_LIGHTS || !light.is_area))
         d = uniform_direction(r.x, r.y);
