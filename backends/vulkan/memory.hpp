@@ -25,14 +25,14 @@ public:
     explicit context(const vulkan_options& o)
         : instance_(o.validation, o.gpu_assisted), physical_(choose_device(instance_, o)), device_(physical_)
     {
-        look(o.staging);
+        query_device(o.staging);
     }
     explicit context(const vulkan_handles& h) : instance_(h.instance), physical_(h.physical_device), device_(h)
     {
         if (!h.instance || !h.physical_device || !h.device || !h.queue)
             throw std::invalid_argument("vulkan_backend: handles: an instance, a physical device, a device and a queue "
                                         "are needed; one is null");
-        look(false);
+        query_device(false);
     }
     context(const context&) = delete;
     context& operator=(const context&) = delete;
@@ -96,7 +96,7 @@ private:
     static constexpr VkDeviceSize keep_bytes = VkDeviceSize{64} << 20;
     static constexpr std::size_t keep_blocks = 64;
 
-    void look(bool staging)
+    void query_device(bool staging)
     {
         staging_ = staging;
         VkPhysicalDeviceMaintenance3Properties m3{};

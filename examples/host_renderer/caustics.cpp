@@ -26,7 +26,7 @@ static std::vector<photon> shoot(const scene& s, int count, std::uint64_t seed)
         vec3 power = (pi * s.lamp.area() / count) * s.lamp.of.colour;
         for (int bounces = 0; const auto h = s.nearest(r); ++bounces) {
             if (h->of.kind == surface::diffuse && bounces > 0)
-                landed.push_back({h->where, power, r.along, h->normal});
+                landed.push_back({h->position, power, r.direction, h->normal});
             if (!h->of.is_specular() || bounces == 50)
                 break;
             power = power * h->of.colour;
@@ -44,9 +44,9 @@ irradiance_source caustics_of(const scene& s, int photons, std::uint64_t seed)
             .max_radius = 0.1f,
             .filter = photongrid::filter_kind::silverman,
             .leaks = {.side = true, .min_cosine = 0.9f}});
-    return [map](vec3 where, vec3 normal) -> vec3 {
+    return [map](vec3 position, vec3 normal) -> vec3 {
         thread_local photongrid::query_scratch scratch;
-        const auto e = map->irradiance(where, normal, scratch).value;
+        const auto e = map->irradiance(position, normal, scratch).value;
         return {e.r, e.g, e.b};
     };
 }

@@ -24,7 +24,7 @@ int main()
     const auto surveys = survey_forest(device, trees, queries, 200);
     for (std::size_t p = 0; p < queries.size(); ++p) {
         const auto& s = surveys[p];
-        std::printf("%4.0f m east, %4.0f m north: %3.0f +- %2.0f trees a hectare, %4.1f m high; the nearest is tree "
+        std::printf("%4.0f m east, %4.0f m north: %3.0f +- %2.0f trees per hectare, %4.1f m high; the nearest is tree "
                     "%6u, %.1f m away\n",
             static_cast<double>(queries[p].x), static_cast<double>(queries[p].y),
             static_cast<double>(s.trees_per_hectare), static_cast<double>(s.standard_error),

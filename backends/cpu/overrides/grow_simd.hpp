@@ -183,8 +183,8 @@ HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& 
         const auto whole = hn::Or(at_distance(cell_y, r.c.y), at_distance(cell_z, r.c.z));
         const auto row = hn::Mul(hn::Add(hn::Mul(layers, every(g.resolution.y)), cell_y), every(g.resolution.x));
         const auto low = hn::Add(row, every(r.low.x)), high = hn::Add(row, every(r.high.x));
-        const auto look = [&](ends& e, hn::VFromD<ints> from, hn::VFromD<ints> to, vector away2,
-                              hn::Mask<floats> rows_within) HWY_ATTR {
+        const auto find_ends = [&](ends& e, hn::VFromD<ints> from, hn::VFromD<ints> to, vector away2,
+                                   hn::Mask<floats> rows_within) HWY_ATTR {
             const auto twice_from = hn::Add(from, from), twice_to = hn::Add(to, to);
             const auto first = hn::GatherIndex(di, base, twice_from);
             const auto past = hn::Add(hn::GatherIndex(di, base, twice_to), hn::GatherIndex(di, base + 1, twice_to));
@@ -196,10 +196,10 @@ HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& 
         };
         ends lower, upper;
         const auto whole_int = hn::RebindMask(di, whole);
-        look(lower, low, hn::IfThenElse(whole_int, high, low), hn::IfThenElse(whole, row2, hn::Add(row2, low_gap_x2)),
-            has_low ? within : hn::And(within, whole));
+        find_ends(lower, low, hn::IfThenElse(whole_int, high, low),
+            hn::IfThenElse(whole, row2, hn::Add(row2, low_gap_x2)), has_low ? within : hn::And(within, whole));
         if (has_high)
-            look(upper, high, high, hn::Add(row2, high_gap_x2), hn::AndNot(whole, within));
+            find_ends(upper, high, high, hn::Add(row2, high_gap_x2), hn::AndNot(whole, within));
         const auto visit = [&](const ends& e, uint i) HWY_ATTR {
             if (e.has(i) && e.away2[i] <= found.limit2())
                 found.visit(static_cast<uint>(e.first[i]), static_cast<uint>(e.past[i]));
