@@ -161,8 +161,8 @@ public:
         constexpr std::size_t batch = 65536; // draws in memory at a time
         std::vector<draw> draws(std::min<std::size_t>(batch, l.elements));
         const uint capacity = route_capacity(m);
-        const uint parts = route_parts(totals.size(), destinations);
-        const uint part = route_block(l.elements, parts);
+        const uint sums = route_sums(totals.size(), destinations);
+        const uint draws_per_sum = route_block(l.elements, sums);
         std::vector<uint> arrived(destinations);
         const auto slot_elements = elements_to_write(slots);
         const auto total_elements = elements_to_write(totals);
@@ -183,7 +183,7 @@ public:
                     continue;
                 if (arrived[d] < capacity)
                     slot_elements[std::size_t{d} * capacity + arrived[d]++] = payload;
-                total_elements[std::size_t{d} * parts + (begin + i) / part] += amount;
+                total_elements[std::size_t{d} * sums + (begin + i) / draws_per_sum] += amount;
             }
         }
         count_passes(kernel_name<K>(), 1, watch);

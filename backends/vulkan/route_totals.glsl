@@ -2,8 +2,8 @@
 // them a pass: software devices end loops silently, others kill long passes. The order makes the sums the same everywhere.
 struct Params {
     uint destinations;
-    uint parts; // partial sums of a destination
-    uint block; // draws that share one
+    uint sums;  // partial sums per destination
+    uint block; // draws per partial sum
     uint begin; // draws of each partial sum that earlier passes have added
     uint most;  // draws that this pass adds at most
 };
@@ -33,12 +33,12 @@ void main()
     uint index = element_();
     if (index >= launch_.x)
         return;
-    uint d = index / args.parts;
-    uint part = index - d * args.parts;
+    uint d = index / args.sums;
+    uint nth_sum = index - d * args.sums;
     uvec2 range = uvec2(0u, 0u);
     if (d < args.destinations) {
-        uint first = first_from(ranges_[d], part * args.block);
-        range = uvec2(first, first_from(ranges_[d], (part + 1u) * args.block) - first);
+        uint first = first_from(ranges_[d], nth_sum * args.block);
+        range = uvec2(first, first_from(ranges_[d], (nth_sum + 1u) * args.block) - first);
     }
     if (args.begin > 0u && range.y <= args.begin)
         return;

@@ -267,15 +267,15 @@ requires std::ranges::sized_range<Range> && element<std::ranges::range_value_t<R
 constexpr uint route_capacity(uint m) { return m * m < 255u ? m * m : 255u; }
 
 /// Partial sums that a destination has in route: P where `totals` elements are room for P of each.
-constexpr uint route_parts(std::size_t totals, uint destinations)
+constexpr uint route_sums(std::size_t totals, uint destinations)
 {
     return destinations == 0 ? 1u : static_cast<uint>(totals / destinations);
 }
-/// Draws that share a partial sum in route: `draws` cut into `parts` equal blocks, the last of which may be shorter. 1
+/// Draws that share a partial sum in route: `draws` cut into `sums` equal blocks, the last of which may be shorter. 1
 /// at least.
-constexpr uint route_block(uint draws, uint parts)
+constexpr uint route_block(uint draws, uint sums)
 {
-    const uint block = draws / parts + (draws % parts != 0 ? 1u : 0u);
+    const uint block = draws / sums + (draws % sums != 0 ? 1u : 0u);
     return block > 0 ? block : 1u;
 }
 

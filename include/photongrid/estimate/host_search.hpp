@@ -116,10 +116,10 @@ public:
             if (left_out && by_photon && radius2 >= min2 && found[i].key == last->key)
                 continue;
             const float t = std::min(distance2_of(found[i]) * inverse, 1.0f);
-            const glm::vec4 flux = powers_[found[i].index] * weight(s.filter, t);
-            const float all = flux.x + flux.y + flux.z;
-            sum += glm::dvec4(flux);
-            squares += glm::dvec4(flux.x * flux.x, flux.y * flux.y, flux.z * flux.z, all * all);
+            const glm::vec4 weighted = powers_[found[i].index] * weight(s.filter, t);
+            const float all = weighted.x + weighted.y + weighted.z;
+            sum += glm::dvec4(weighted);
+            squares += glm::dvec4(weighted.x * weighted.x, weighted.y * weighted.y, weighted.z * weighted.z, all * all);
         }
         return made_of({radius2, by_photon ? 1.0f : 0.0f, 0, 0}, glm::vec4(sum), glm::vec4(squares),
             static_cast<uint>(n), left_out);

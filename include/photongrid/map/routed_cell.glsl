@@ -2,7 +2,7 @@
 // of all photons destined for it is conserved per channel (2.2.2, "redistribute the power of the surplus photons").
 struct Params {
     uint capacity; // slots of a cell
-    uint parts;    // partial sums of a cell
+    uint sums;    // partial sums of a cell
 };
 PARAMS(Params)
 INPUT(0, vec4, partial_sums) // rgb: flux destined for the cell, W; w: how many photons
@@ -15,9 +15,9 @@ OUTPUT(3, vec4, total)  // all the flux destined for the cell, W; w: how many ph
 
 void kernel(uint i)
 {
-    precise vec4 all = partial_sums(i * args.parts);
-    for (uint p = 1u; p < args.parts; ++p)
-        all += partial_sums(i * args.parts + p);
+    precise vec4 all = partial_sums(i * args.sums);
+    for (uint p = 1u; p < args.sums; ++p)
+        all += partial_sums(i * args.sums + p);
     total = all;
     uint destined = uint(total.w);
     uint kept = min(destined, args.capacity);

@@ -57,7 +57,7 @@ routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, 
     r.surpluses = b.template make<glm::vec4>(cells);
     r.totals = b.template make<glm::vec4>(cells);
     auto scales = b.template make<glm::vec4>(cells);
-    b.template run<kernels::routed_cell>(cells, {.capacity = capacity, .parts = sums},
+    b.template run<kernels::routed_cell>(cells, {.capacity = capacity, .sums = sums},
         reads(partial_sums, r.list, p.powers), writes(r.cells, scales, r.surpluses, r.totals));
     r.powers = b.template make<glm::vec4>(n);
     b.template run<kernels::redistribute_power>(

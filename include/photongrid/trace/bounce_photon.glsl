@@ -53,20 +53,20 @@ void kernel(uint i)
         met = DIFFUSE_BEFORE;
 
     // What left the last surface: its power there, in the colour of the material, since roulette took the rest.
-    vec4 flux = powers(before);
+    vec4 arrived = powers(before);
     if (frame > 1u) {
         vec3 colour = material_of(uint(directions(before).w)).reflectance;
         float survival = largest3(colour);
-        precise vec4 tinted = vec4(flux.x * (colour.x / survival), flux.y * (colour.y / survival),
-            flux.z * (colour.z / survival), 0.0f);
-        flux = tinted;
+        precise vec4 tinted = vec4(arrived.x * (colour.x / survival), arrived.y * (colour.y / survival),
+            arrived.z * (colour.z / survival), 0.0f);
+        arrived = tinted;
     }
     vec3 o = vec3(next_origins(before));
     vec3 d = vec3(next_directions(before));
     direction = vec4(d.x, d.y, d.z, 0.0f);
-    power = flux;
+    power = arrived;
 
-    if (!is_finite3(o) || !is_finite3(d) || !is_finite3(vec3(flux))) {
+    if (!is_finite3(o) || !is_finite3(d) || !is_finite3(vec3(arrived))) {
         position.w = event_code(NO_SURFACE, NOT_A_NUMBER, NOTHING_BEFORE);
         return;
     }
