@@ -1,5 +1,5 @@
-// What a search in vectors works on: photons in soa, their distances from a point, and packets of them. Read once
-// for every instruction set that the compiler knows (Highway), so no include guard: packet_simd.hpp is read by
+// What a search in vectors works on: photons in soa, their distances from a point, and packets of them. Read once for
+// every instruction set that the compiler knows (Highway), so no include guard: packet_simd.hpp is read by
 // gather_simd.hpp, that by grow_simd.hpp, that by search_simd.hpp, and other files include simd.hpp.
 #include <hwy/highway.h>
 

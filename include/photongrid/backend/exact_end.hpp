@@ -1,4 +1,4 @@
-// Ends what backend/exact_begin.hpp began.
+// Ends the region that backend/exact_begin.hpp begins.
 #if defined(__clang__)
 #pragma float_control(pop)
 #elif defined(__GNUC__)

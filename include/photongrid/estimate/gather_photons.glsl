@@ -1,16 +1,18 @@
-// Adds up the photons that a search chose, weighted by a kernel of their distance that falls from 1 to 0 (2.3; filters:
-// Jensen 2001, section 7.3; Silverman 1986). Sums are compensated (Kahan), so that ten thousand photons lose no more than ten.
+// Sums the power of the photons that a search found, weighted by a filter of their distance that falls from 1 to 0
+// (2.3; filters: Jensen 2001, section 7.3; Silverman 1986). Sums are compensated (Kahan), so that the rounding error
+// does not grow with the number of photons.
 //
-// LEAVE_OUT takes the photon that sets the radius out of the sum: N photons within their largest distance are N - 1 within
-// a disc of that size, and any weights have the right mean (Garcia Hernandez et al. 2012; docs/design/decisions.md).
+// LEAVE_OUT excludes the photon that sets the radius: of N photons, N - 1 lie inside the disc whose radius is the
+// largest distance, and with those the mean of the estimate is right for every filter (Garcia Hernandez et al. 2012;
+// docs/design/decisions.md).
 #include <photongrid/map/grid.glsl>
 
 struct Params {
     Grid grid;
     vec4 leaks;        // see photon_distance.glsl
     float min_radius2; // m^2; the disc is never smaller
-    uint visits;       // photons examined in a pass at most ...
-    uint ranges;       // ... in this many rows of cells at most
+    uint visits;       // the most photons to examine in a pass ...
+    uint ranges;       // ... and the most rows of cells
 };
 PARAMS(Params)
 SWITCH(0, SIDE)
@@ -20,7 +22,7 @@ SWITCH(3, CONE)         // weight 1 - d / r
 SWITCH(4, EPANECHNIKOV) // 1 - d^2 / r^2
 SWITCH(5, SILVERMAN)    // (1 - d^2 / r^2)^2; none of the three: 1
 SWITCH(6, LEAVE_OUT)
-SWITCH(7, ERRORS)       // squares are wanted
+SWITCH(7, ERRORS)       // compute the squares too
 IN_GROUPS(8)
 INPUT(0, vec4, points)        // xyz: query point, m
 INPUT(1, vec4, normals)       // xyz: unit normal of the surface there
@@ -35,8 +37,8 @@ STATE(1, uvec4, chosen)
 STATE(2, vec4, sum)           // rgb: weighted flux, W
 STATE(3, vec4, compensation)  // rgb: rounding error of the sum so far (Kahan)
 STATE(4, vec4, squares)       // rgb: squares of the weighted fluxes; w: of their sums over channels
-STATE(5, uvec4, cursor)       // y, z of the row to go on with; the first photon not yet visited
-STATE(6, uvec4, tally)        // photons held, photons visited, index + 1 of the one left out, done
+STATE(5, uvec4, cursor)       // y, z of the next row; the first photon not yet visited
+STATE(6, uvec4, tally)        // photons summed; photons visited; index + 1 of the photon left out; 1: done
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
@@ -84,11 +86,11 @@ void kernel(uint i)
     walk_steps = args.ranges;
     while (walk_steps > 0u && group_any(!finished)) {
         bool mine = joins_walk(!finished, p, c, radius2, resume_at);
-        vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the others find nothing
+        vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the other lanes find nothing
         while (walks_on()) {
             uint photons = next_rows();
             visited += mine ? photons : 0u;
-            // Of several photons at the radius itself, the one with the largest id is left out.
+            // If several photons lie at the radius, the one with the largest id is left out.
 #define VISIT(LANE)                                                                        \
     {                                                                                      \
         float d2 = distance2_of(PHOTON_OF(LANE), from, n);                                 \

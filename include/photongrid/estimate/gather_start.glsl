@@ -1,11 +1,11 @@
-// The beginning of a gathering (gather_photons.glsl). A point that is not wanted (w <= 0) or not finite is done at once.
+// Initialises gather_photons.glsl. Points with w <= 0 and points that are not finite are done at once.
 #include <photongrid/map/grid.glsl>
 
 struct Params {
-    uint searching; // 0: no search can find anything (no photons, none wanted, no radius)
+    uint searching; // 0: nothing can be found (no photons, k = 0, or no radius)
 };
 PARAMS(Params)
-INPUT(0, vec4, points) // xyz: query point, m; w > 0: wanted
+INPUT(0, vec4, points) // xyz: query point, m; w > 0: estimate here
 INPUT(1, uvec4, chosen)
 OUTPUT(0, vec4, sum)
 OUTPUT(1, vec4, compensation)

@@ -1,4 +1,4 @@
-// What a search within a given radius begins with, for gather_photons.glsl: as kth_result.glsl, but nothing is sought.
+// The inputs of gather_photons.glsl for a given radius. kth_result.glsl writes the same outputs after a search.
 struct Params {
     float radius2; // m^2
 };

@@ -1,4 +1,5 @@
-// What the at-least-k search (knn_visit.glsl) ends with, for gather_photons.glsl: as kth_result.glsl.
+// The inputs of gather_photons.glsl after the at-least-k search (knn_visit.glsl). kth_result.glsl writes the same
+// outputs.
 struct Params {
     uint k;            // photons sought
     float max_radius2; // m^2

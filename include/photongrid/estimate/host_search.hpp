@@ -1,5 +1,6 @@
-// Searches for one point at a time, on the host: const, from any thread, over a copy of a map. They find the photons
-// that the kernels find, to the bit: distances and rows of cells are those of the kernels' own text (host_query.glsl).
+// Searches for one point at a time on the host, in a copy of a map. They are const and may run in any thread. They find
+// exactly the photons that the kernels find, because they compute distances and rows of cells by the same text
+// (host_query.glsl).
 #pragma once
 
 #include <photongrid/estimate/host_query.kernel.hpp>
@@ -15,20 +16,20 @@
 
 namespace photongrid {
 
-/// Which photon or point: its index in the range that the map was made from.
+/// A photon or point, by its index in the range that the map was made from.
 using photon_id = uint;
 
-/// Light that arrives at a point.
+/// The irradiance at a point.
 struct irradiance_at_point {
     glm::vec3 value{0};     ///< W/m^2
-    glm::vec3 error{0};     ///< standard error of value, W/m^2; 0 where none was asked for
-    float error_of_sum = 0; ///< standard error of the channels' sum, W/m^2; 0 where none was asked for
-    float radius = 0;       ///< of the disc that the photons lay in, m
-    uint count = 0;         ///< photons in it
+    glm::vec3 error{0};     ///< standard error of value, W/m^2; 0 unless requested
+    float error_of_sum = 0; ///< standard error of the channels' sum, W/m^2; 0 unless requested
+    float radius = 0;       ///< radius of the photons' disc, m
+    uint count = 0;         ///< photons in the disc
 };
 
-/// Room that a search for one point needs. Each thread has its own; once it has held the largest search, none
-/// allocates.
+/// Scratch memory for searches for one point. Each thread needs its own. Once it has grown to the largest search,
+/// searches no longer allocate.
 class query_scratch {
 public:
     query_scratch() = default;
@@ -36,15 +37,16 @@ public:
 private:
     friend class host_search;
     struct candidate {
-        std::uint64_t key; ///< squared distance above, id below: in this order photons are taken
-        uint index;        ///< in the map
+        std::uint64_t
+            key;    ///< squared distance in the upper bits, id in the lower: the order in which photons are chosen
+        uint index; ///< in the map
         bool operator<(const candidate& other) const { return key < other.key; }
     };
     std::vector<candidate> found_;
 };
 
-/// A map's photons in the host's memory. It takes 36 bytes a photon, and 16 more for each of directions and normals
-/// that the policies of the search need.
+/// A map's photons in the host's memory: 36 bytes per photon, and 16 more each for directions and normals if the leak
+/// policies need them.
 class host_search {
 public:
     host_search() = default;
@@ -65,7 +67,8 @@ public:
 
     const knn_settings& settings() const { return settings_; }
 
-    /// Calls f(id, squared distance) for every photon within `radius` of p, in no particular order. Asks no policy.
+    /// Calls f(id, squared distance) for every photon within `radius` of p, in no particular order, without leak
+    /// policies.
     template <class F>
     void for_each_within(const glm::vec3& p, float radius, const F& f) const
     {
@@ -74,8 +77,7 @@ public:
         visit(q, glm::vec4(p, 1), glm::vec4(0), radius2, [&](uint index, float d2) { f(photon_id{list_[index]}, d2); });
     }
 
-    /// Calls f(id, squared distance) for the k nearest photons, nearest first; of equally near ones, the smallest id
-    /// first.
+    /// Calls f(id, squared distance) for the k nearest photons, nearest first; equal distances are ordered by id.
     template <class F>
     void for_each_nearest(const glm::vec3& p, uint k, float max_radius, query_scratch& scratch, const F& f) const
     {
@@ -92,15 +94,15 @@ public:
             f(photon_id{static_cast<uint>(found[i].key)}, distance2_of(found[i]));
     }
 
-    /// The estimate at p, by the settings. Same photons and radius as a search for many points finds; sums differ by
-    /// 10^-6 at most. `normal`: of the surface, where a policy needs it.
+    /// The estimate at p. It uses the same photons and radius as a search for many points; sums differ by at most
+    /// 10^-6. `normal`: of the surface, if a leak policy needs it.
     irradiance_at_point irradiance(const glm::vec3& p, const glm::vec3& normal, query_scratch& scratch) const
     {
         const auto& s = settings_;
         if (s.search == search_kind::at_least_k)
-            throw std::invalid_argument(
-                "photon_map::irradiance: search: at_least_k depends on the order of all cells and "
-                "is for many points at once; take exact_k or fixed_radius");
+            throw std::invalid_argument("photon_map::irradiance: search: at_least_k is not available for a single "
+                                        "point; use exact_k or fixed_radius, "
+                                        "or search for many points at once");
         const auto q = query(s.leaks, policies(s.leaks));
         const std::size_t n = collect(q, glm::vec4(p, 1), glm::vec4(normal, 0), s, scratch);
         const bool by_photon = s.search == search_kind::exact_k && n >= s.k;
@@ -157,8 +159,7 @@ private:
         return q;
     }
 
-    /// Calls f(index, squared distance) for the photons within radius2. Few of a row of cells are, so that f may take
-    /// its time.
+    /// Calls f(index, squared distance) for the photons within radius2.
     template <class F>
     static void visit(kernels::host_query q, const glm::vec4& p, const glm::vec4& n, float radius2, const F& f)
     {
@@ -178,7 +179,7 @@ private:
             }
     }
 
-    /// The first `n` that are returned of scratch are the photons that count, in no order.
+    /// Collects the photons that count in `scratch`, in no order. Returns how many there are.
     std::size_t collect(const kernels::host_query& q, const glm::vec4& p, const glm::vec4& n, const knn_settings& s,
         query_scratch& scratch) const
     {

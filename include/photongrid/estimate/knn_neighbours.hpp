@@ -1,5 +1,5 @@
-// Lists of the k nearest photons of each point: ids and squared distances. What an estimate adds up can then be
-// anything that a kernel of the caller's own can add up (docs/guide/own_kernels.md).
+// Lists of the k nearest photons of each point: ids and squared distances. A kernel of your own can then compute any
+// sum over the neighbours (docs/guide/own_kernels.md).
 //
 //     knn_radius -> list_neighbours -> neighbour_pair -> sort_neighbours -> neighbour
 #pragma once
@@ -17,17 +17,17 @@
 
 namespace photongrid {
 
-/// The nearest photons of each point, nearest first; of several at one distance, those with the smallest ids first.
+/// The nearest photons of each point, nearest first; equal distances are ordered by id.
 template <backend B>
 struct neighbour_lists {
-    uint k = 0;             ///< entries to a list
-    buffer_of<B, uint> ids; ///< point p's at p * k and the k - 1 after it: indices in what the map was made from;
-                            ///< 0xFFFFFFFF: there are no more
-    buffer_of<B, float> distances2; ///< m^2, of the same photons; infinity where there is none
+    uint k = 0;             ///< entries per list
+    buffer_of<B, uint> ids; ///< point p's are entries p * k to p * k + k - 1: indices into the photons that the map
+                            ///< was made from; 0xFFFFFFFF: no more neighbours
+    buffer_of<B, float> distances2; ///< m^2, of the same photons; infinity where there is no neighbour
 };
 
 namespace detail {
-    /// What is wrong with lists of this length, as an exception; else nothing.
+    /// Throws if lists of this length are not possible.
     inline void check_lists(const knn_settings& s, std::size_t points, std::uint64_t most)
     {
         if (s.search != search_kind::exact_k)
@@ -99,10 +99,9 @@ namespace detail {
     }
 } // namespace detail
 
-/// The k nearest photons of each point within settings.max_radius, by exact search on the device. Points: xyz in m; a
-/// point that is not finite, or whose w is not above 0, has none. Kernel, bias and errors of the settings have no
-/// meaning here. It takes 16 bytes an entry, and half of that again, while it runs; k is rounded up to a power of two
-/// for that.
+/// The k nearest photons of each point within settings.max_radius, by exact search on the device. `points`: xyz, m; a
+/// point that is not finite, or whose w is not above 0, has an empty list. The settings' filter, bias and errors are
+/// ignored. It needs 24 bytes per entry while it runs, with k rounded up to a power of two.
 /// \throws std::invalid_argument for k = 0, a radius that is NaN, another search than exact_k, leak policies
 /// without normals, or more entries than the device holds in one buffer.
 /// \snippet snippets.cpp knn_neighbours

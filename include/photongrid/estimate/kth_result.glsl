@@ -1,4 +1,4 @@
-// What the search for the k-th nearest photon ends with, for kth_tie.glsl and gather_photons.glsl.
+// The result of the search for the k-th nearest photon, for kth_tie.glsl and gather_photons.glsl.
 #include <photongrid/estimate/distance_key.glsl>
 
 struct Params {
@@ -9,7 +9,7 @@ struct Params {
 PARAMS(Params)
 INPUT(0, uvec4, brackets)
 INPUT(1, uvec4, tallies)
-OUTPUT(0, vec4, search_radius) // x: squared radius, m^2; y: 1 where a photon set it, 0 where it was given
+OUTPUT(0, vec4, search_radius) // x: squared radius, m^2; y: 1 if a photon set it, 0 if it was given
 OUTPUT(1, uvec4, chosen)       // photons within; photons visited; the last id that counts at the radius itself
 OUTPUT(2, uvec4, bracket)      // of ids, see kth_tie.glsl
 OUTPUT(3, uvec4, counts)

@@ -1,5 +1,5 @@
-// Where several photons share the k-th distance, the first of them by id belong to the k nearest: which is the last id
-// that does? Scans count the ids within four pivots, as kth_distance.glsl does with distances.
+// If several photons have the k-th distance, those with the smallest ids belong to the k nearest. This kernel finds the
+// last such id: scans count the ids up to four pivots, as kth_distance.glsl counts distances.
 #include <photongrid/map/grid.glsl>
 
 struct Params {
@@ -7,8 +7,8 @@ struct Params {
     vec4 leaks;        // see photon_distance.glsl
     uint k;            // photons sought
     uint photons;      // ids are below this
-    uint visits;       // photons examined in a pass at most ...
-    uint ranges;       // ... in this many rows of cells at most
+    uint visits;       // the most photons to examine in a pass ...
+    uint ranges;       // ... and the most rows of cells
 };
 PARAMS(Params)
 SWITCH(0, SIDE)
@@ -24,9 +24,9 @@ INPUT(5, vec4, photon_normals)
 INPUT(6, uint, list)         // photon ids
 INPUT(7, vec4, search_radii) // x: squared distance of the k-th photon, m^2
 STATE(0, uvec4, chosen)      // see kth_result.glsl; z: the last id, once found
-STATE(1, uvec4, bracket)     // the id lies above x - 1 and is y - 1 at most; z: photons of this scan that are nearer; w: done
+STATE(1, uvec4, bracket)     // x - 1 < id <= y - 1; z: photons of this scan that are nearer than the radius; w: done
 STATE(2, uvec4, counts)      // photons of this scan within each pivot
-STATE(3, uvec4, cursor)      // y, z of the row to go on with; the first photon not yet visited
+STATE(3, uvec4, cursor)      // y, z of the next row; the first photon not yet visited
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
@@ -61,7 +61,7 @@ void kernel(uint i)
         uint fifth = max((between.y - between.x) / 5u, 1u);
         uvec4 pivot = uvec4(between.x + fifth, between.x + 2u * fifth, between.x + 3u * fifth, between.x + 4u * fifth);
         bool mine = joins_walk(between.w == 0u, p, c, radius2, resume_at);
-        vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the others count nothing
+        vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the other lanes count nothing
         while (walks_on()) {
             uint photons = next_rows();
             visited += mine ? photons : 0u;

@@ -1,4 +1,4 @@
-// Entry by entry, point by point: the lists of neighbours as their reader wants them (neighbour_pair.glsl).
+// Transposes the lists of neighbour_pair.glsl, so that the entries of one point are contiguous.
 struct Params {
     uint points;
     uint k;

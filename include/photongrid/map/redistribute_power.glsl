@@ -1,5 +1,5 @@
-// The power of photon i after its cell's surplus was shared out (2.2.2). Photons that were not kept get theirs too; no
-// search will meet them.
+// The power of photon i after its cell's surplus has been redistributed (2.2.2). This includes photons that were not
+// kept, which no search finds.
 #include <photongrid/map/grid.glsl>
 
 struct Params {

@@ -1,5 +1,5 @@
-// Where draw i goes in stencil routing (2.2.2, figure 5): photons are drawn in a seeded random order, because cells keep
-// the first arrivals and plain id order would drop the later lights and bounces.
+// The destination of draw i in stencil routing (2.2.2, figure 5). Photons are drawn in a seeded random order: a cell
+// keeps those that arrive first, so the order of ids would discard later lights and bounces.
 #include <photongrid/map/grid.glsl>
 #include <photongrid/backend/random.glsl>
 

@@ -1,5 +1,5 @@
-// The ray from the camera through pixel i (2.4): through the pixel's centre if it is the only one, else through a random
-// point of the ray's own stratum of the pixel.
+// The ray from the camera through pixel i (2.4): through the pixel's centre if it is the only one, else through a
+// random point of the ray's own stratum of the pixel.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 
