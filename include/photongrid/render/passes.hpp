@@ -1,4 +1,4 @@
-// What makes a pass one of several: its own random numbers, its place in the sums, and its statistics.
+// One pass of several: its random numbers, its pixels and its statistics.
 #pragma once
 
 #include <photongrid/render/film.hpp>
@@ -13,8 +13,7 @@
 
 namespace photongrid {
 
-/// The settings of pass number `pass`: random numbers of its own. Pass 0 has the seed of `s` itself, so that a picture
-/// of one pass is the same as without passes.
+/// The settings of pass number `pass`, with a seed of its own. Pass 0 has the seed of `s`.
 inline render_settings settings_of_pass(render_settings s, std::uint32_t pass)
 {
     if (pass > 0) {
@@ -30,8 +29,8 @@ inline render_settings settings_of_pass(render_settings s, std::uint32_t pass)
     return s;
 }
 
-/// A power of two near the mean radiance of a scene, the unit of a film: the power of all lights over the square of the
-/// extent of the surfaces that photons can be stored on.
+/// A power of two near the mean radiance of a scene, as the unit of a film: the power of all lights divided by the
+/// square of the extent of the diffuse surfaces.
 inline double typical_radiance(const scene& s, const scene_layout& layout)
 {
     double power = 0;
@@ -66,7 +65,7 @@ namespace detail {
         sum.device_bytes = std::max(sum.device_bytes, s.device_bytes);
     }
 
-    /// Adds a pass's searches, each a vector of pass_pixels::searches, to the statistics.
+    /// Adds a sum of pass_pixels::searches to the statistics.
     inline void add(estimate_stats& sum, const glm::dvec4& searches)
     {
         const double before = static_cast<double>(sum.points), all = std::max(before + searches.w, 1.0);
@@ -77,8 +76,8 @@ namespace detail {
     }
 } // namespace detail
 
-/// The pixels of a finished pass, read back, and its numbers added to `stats`.
-/// \throws backend_error when the device fails, or reports more searches than there were.
+/// Reads the pixels of a finished pass back and adds its counts to `stats`.
+/// \throws backend_error if the device fails, or reports more searches than there were.
 template <backend B>
 pass_pixels finish_pass(B& b, const built_map<B>& built, const view_pass<B>& view, render_stats& stats)
 {
@@ -89,8 +88,8 @@ pass_pixels finish_pass(B& b, const built_map<B>& built, const view_pass<B>& vie
     for (const auto& s : p.searches)
         sum += glm::dvec4(s);
     if (!(sum.w >= 0) || !(sum.w <= searched))
-        throw backend_error(b.caps().backend + ": shade: the device says that " + std::to_string(sum.w)
-            + " points were searched for; there are " + std::to_string(searched));
+        throw backend_error(b.caps().backend + ": shade: the device returned " + std::to_string(sum.w)
+            + " as the number of searches; there are at most " + std::to_string(searched));
     detail::add(stats.estimate, sum);
     detail::add(stats.photons, count_photons(b, built.trace, built.map.photons.size()));
     stats.map = built.stats;
@@ -100,7 +99,7 @@ pass_pixels finish_pass(B& b, const built_map<B>& built, const view_pass<B>& vie
     return p;
 }
 
-/// Runs steps to their end; after each calls `ran` with the stage that it was of.
+/// Runs all steps, and calls `ran` with the stage's name after each.
 /// \throws render_cancelled.
 template <class Ran>
 void run(step_list steps, const render_observer& observer, const Ran& ran)

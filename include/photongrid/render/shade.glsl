@@ -1,9 +1,9 @@
-// The light that an eye ray brings home (2.4): emission where it met a light, else direct light and the photon map's
-// irradiance, reflected by a Lambertian surface: radiance = reflectance / pi x irradiance.
+// Adds the radiance along an eye ray to its pixel (2.4): emission if it hit a light; otherwise direct light and the
+// photon map's irradiance, reflected by a Lambertian surface: radiance = reflectance / pi x irradiance.
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
-    float share; // 1 / eye rays a pixel
+    float share; // 1 / eye rays per pixel
 };
 PARAMS(Params)
 INPUT(0, vec4, scene)
