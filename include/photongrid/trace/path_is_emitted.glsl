@@ -1,6 +1,6 @@
-// True for a path that begins before the photons asked for are stored: paths are emitted in id order until then.
+// True for a path that is needed: paths are emitted in id order until the requested number of photons is stored.
 struct Params {
-    uint photons;
+    uint photons; // requested
 };
 PARAMS(Params)
 INPUT(0, uint, sums)     // storable photons of paths 0 to i
