@@ -28,13 +28,13 @@ using glm::vec3;
 using glm::vec4;
 
 constexpr uint all_ands = 99;
-constexpr uint cells_an_axis = 32;
+constexpr uint cells_per_axis = 32;
 constexpr uint k = 50;
 constexpr uint most_points = 16384;
 
 const grid& key_grid()
 {
-    static const grid g = make_grid(vec3(0), vec3(1), glm::uvec3(cells_an_axis));
+    static const grid g = make_grid(vec3(0), vec3(1), glm::uvec3(cells_per_axis));
     return g;
 }
 
@@ -63,7 +63,7 @@ const std::vector<vec4>& photon_positions(uint n, uint ands)
                 cell &= static_cast<uint>(engine());
         }
         const auto coordinate
-            = [&](uint bits) { return (static_cast<float>(bits % cells_an_axis) + random()) / cells_an_axis; };
+            = [&](uint bits) { return (static_cast<float>(bits % cells_per_axis) + random()) / cells_per_axis; };
         p = vec4(coordinate(cell), coordinate(cell >> 5), coordinate(cell >> 10), 0);
     }
     kept_ands = ands;
@@ -146,7 +146,7 @@ void build_sorted_map(benchmark::State& state, B& b, uint n, uint ands)
             const auto map = sorted_map(b, std::move(p), key_grid());
             bytes = b.bytes();
         });
-    state.counters["map_bytes_a_photon"] = static_cast<double>(bytes) / n;
+    state.counters["map_bytes_per_photon"] = static_cast<double>(bytes) / n;
 }
 
 template <backend B>
@@ -162,7 +162,7 @@ template <backend B>
 void search(benchmark::State& state, B& b, uint n, uint ands, search_kind kind)
 {
     auto p = upload_photons(b, n, ands);
-    const auto g = fitting_grid(b, p, k, b.caps().cells_a_radius);
+    const auto g = fitting_grid(b, p, k, b.caps().cells_per_radius);
     const auto map = sorted_map(b, std::move(p), g);
     std::vector<vec4> at = b.download(map.photons.positions), few;
     const std::size_t step = std::max<std::size_t>(1, n / most_points);

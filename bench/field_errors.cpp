@@ -29,7 +29,7 @@ struct field {
     std::function<double(double, double)> irradiance;
 };
 constexpr double margin = 0.25;
-constexpr int points_a_side = 64;
+constexpr int points_per_side = 64;
 
 std::vector<field> fields()
 {
@@ -43,7 +43,7 @@ std::vector<field> fields()
 
 struct sample {
     std::vector<vec4> positions, powers, points;
-    std::vector<double> truth;
+    std::vector<double> exact;
 };
 
 sample sampled(const field& f, uint photons)
@@ -64,11 +64,11 @@ sample sampled(const field& f, uint photons)
             s.positions.emplace_back(static_cast<float>(x), 0.0f, static_cast<float>(z), 0.0f);
     }
     s.powers.assign(photons, vec4(power, power, power, 0));
-    for (int i = 0; i < points_a_side; ++i)
-        for (int k = 0; k < points_a_side; ++k) {
-            const double x = (k + 0.5) / points_a_side, z = (i + 0.5) / points_a_side;
+    for (int i = 0; i < points_per_side; ++i)
+        for (int k = 0; k < points_per_side; ++k) {
+            const double x = (k + 0.5) / points_per_side, z = (i + 0.5) / points_per_side;
             s.points.emplace_back(static_cast<float>(x), 0.0f, static_cast<float>(z), 1.0f);
-            s.truth.push_back(f.irradiance(x, z));
+            s.exact.push_back(f.irradiance(x, z));
         }
     return s;
 }
@@ -121,9 +121,9 @@ void measure(B& b, const std::string& name, const field& f, const sample& s, con
                 estimate(); // kernels compile here
                 const double search_seconds = seconds(estimate);
                 double error = 0;
-                for (std::size_t i = 0; i < s.truth.size(); ++i) {
-                    const double e = (static_cast<double>(irradiance[i].x) - s.truth[i]) / (s.truth[i] + 0.01);
-                    error += e * e / static_cast<double>(s.truth.size());
+                for (std::size_t i = 0; i < s.exact.size(); ++i) {
+                    const double e = (static_cast<double>(irradiance[i].x) - s.exact[i]) / (s.exact[i] + 0.01);
+                    error += e * e / static_cast<double>(s.exact.size());
                 }
                 std::printf("%s,%s,sort,%s,%s,%u,%u,%.6f,%.6f,%.6g\n", f.name, name.c_str(), search.name, filter.name,
                     k, n, build, search_seconds, error);

@@ -33,7 +33,7 @@ program() {
 #include <photongrid/map/build_map.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/map/own_photons.hpp>
-struct photon { glm::vec3 position, flux; };
+struct photon { glm::vec3 position, power; };
 int main()
 {
     photongrid::$4 device;

@@ -247,7 +247,7 @@ int measure(B& b, int number, const arguments& a)
         std::mt19937 engine(2);
         std::shuffle(s.points.begin(), s.points.end(), engine);
     }
-    const auto g = fitting_grid(b, upload_photons(b, s), s.k, b.caps().cells_a_radius);
+    const auto g = fitting_grid(b, upload_photons(b, s), s.k, b.caps().cells_per_radius);
     const auto points = b.upload(std::span<const vec4>(s.points));
     const knn_settings settings{.k = s.k, .max_radius = 1e18f};
     std::vector<double> builds, searches, searches_by_two, peer_rates[8];

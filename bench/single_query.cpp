@@ -17,7 +17,7 @@ namespace {
 
 struct host_photon {
     glm::vec3 position;
-    float flux;
+    float power;
 };
 
 struct cloud {
@@ -38,7 +38,7 @@ double cpu_seconds()
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Points of a room's six walls, and places on the walls: as photons lie, and path vertices.
+/// Random points on the six walls of a room, where photons and path vertices lie.
 std::vector<host_photon> on_walls(std::size_t n, unsigned seed)
 {
     std::mt19937 random(seed);
@@ -60,7 +60,7 @@ int main(int argc, char** argv)
         return argc > i ? static_cast<std::size_t>(std::strtoull(argv[i], nullptr, 10)) : otherwise;
     };
     const std::size_t n = number(1, 1000000), queries = number(2, 100000), rounds = number(3, 5);
-    const auto points = on_walls(n, 1), places = on_walls(queries, 2);
+    const auto points = on_walls(n, 1), query_points = on_walls(queries, 2);
     const cloud data{points};
     using tree_type
         = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, cloud>, cloud, 3, unsigned>;
@@ -79,7 +79,7 @@ int main(int argc, char** argv)
         for (std::size_t round = 0; round < rounds; ++round) {
             double begin = cpu_seconds();
             check[0] = 0;
-            for (const auto& p : places) {
+            for (const auto& p : query_points) {
                 nanoflann::KNNResultSet<float, unsigned> result(k);
                 result.init(ids.data(), distances2.data());
                 tree.findNeighbors(result, &p.position.x, nanoflann::SearchParams());
@@ -88,7 +88,7 @@ int main(int argc, char** argv)
             best[0] = std::min(best[0], cpu_seconds() - begin);
             begin = cpu_seconds();
             check[1] = 0;
-            for (const auto& p : places) {
+            for (const auto& p : query_points) {
                 float last = 0;
                 map.for_each_nearest(
                     p.position, k, scratch, [&](photongrid::photon_id, float distance2) { last = distance2; });
@@ -96,7 +96,7 @@ int main(int argc, char** argv)
             }
             best[1] = std::min(best[1], cpu_seconds() - begin);
             begin = cpu_seconds();
-            for (const auto& p : places)
+            for (const auto& p : query_points)
                 check[2] += static_cast<double>(map.irradiance(p.position, glm::vec3(0), scratch).value.x);
             best[2] = std::min(best[2], cpu_seconds() - begin);
         }

@@ -92,10 +92,10 @@ struct application {
         VkMemoryAllocateInfo memory{};
         memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
         memory.allocationSize = needs.size;
-        constexpr VkMemoryPropertyFlags wanted
+        constexpr VkMemoryPropertyFlags properties
             = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
         while (((needs.memoryTypeBits >> memory.memoryTypeIndex) & 1u) == 0
-            || (types.memoryTypes[memory.memoryTypeIndex].propertyFlags & wanted) != wanted)
+            || (types.memoryTypes[memory.memoryTypeIndex].propertyFlags & properties) != properties)
             ++memory.memoryTypeIndex;
         check(vkAllocateMemory(handles.device, &memory, nullptr, &b.memory), "vkAllocateMemory");
         check(vkBindBufferMemory(handles.device, b.buffer, b.memory, 0), "vkBindBufferMemory");

@@ -5,13 +5,13 @@
 #include <cstdio>
 #include <random>
 
-// A photon as your renderer has it: your vectors, your names. photongrid looks for `position` and `flux`.
+// A photon as your renderer has it: your vectors, your names. photongrid looks for `position` and `power`.
 struct my_vector {
     double x, y, z;
 };
 struct my_photon {
     my_vector position; // m
-    my_vector flux;     // W, red, green, blue
+    my_vector power;    // W, red, green, blue
 };
 
 int main()
@@ -26,12 +26,12 @@ int main()
     photongrid::serial_backend device; // cpu_backend, gl_backend, vulkan_backend: nothing else changes
     const photongrid::photon_map map(device, photons, {.k = 400});
 
-    const std::vector<my_vector> places{{1, 1, 0}, {0.5, 1.4, 0}};
-    for (const auto& e : map.irradiance(places, {.standard_error = true}))
+    const std::vector<my_vector> points{{1, 1, 0}, {0.5, 1.4, 0}};
+    for (const auto& e : map.irradiance(points, {.standard_error = true}))
         std::printf("%.2f +- %.2f W/m^2 within %.0f mm\n", static_cast<double>(e.value.r),
             static_cast<double>(e.error.r), 1000 * static_cast<double>(e.radius));
 
     std::printf("nearest to the middle: photons");
-    map.for_each_nearest(places[0], 3, [](photongrid::photon_id id, float) { std::printf(" %u", id); });
+    map.for_each_nearest(points[0], 3, [](photongrid::photon_id id, float) { std::printf(" %u", id); });
     std::printf("\n");
 }

@@ -11,11 +11,14 @@ namespace any {
             const char* name;
             const char* lacks;
         };
-        constexpr known_backend known[] = {{"serial", ""}, {"cpu", "libtbb-dev and libhwy-dev, then configure with -DPHOTONGRID_CPU=ON"},
-            {"gl", "libegl-dev, libopengl-dev and libgl-dev, then configure with -DPHOTONGRID_GL=ON"},
-            {"gl-osmesa", "libegl-dev, libopengl-dev, libgl-dev and libosmesa6-dev, then configure with -DPHOTONGRID_GL=ON"},
-            {"vulkan",
-                "libvulkan-dev, glslang-dev, glslang-tools and spirv-tools, then configure with -DPHOTONGRID_VULKAN=ON"}};
+        constexpr known_backend known[]
+            = {{"serial", ""}, {"cpu", "libtbb-dev and libhwy-dev, then configure with -DPHOTONGRID_CPU=ON"},
+                {"gl", "libegl-dev, libopengl-dev and libgl-dev, then configure with -DPHOTONGRID_GL=ON"},
+                {"gl-osmesa",
+                    "libegl-dev, libopengl-dev, libgl-dev and libosmesa6-dev, then configure with -DPHOTONGRID_GL=ON"},
+                {"vulkan",
+                    "libvulkan-dev, glslang-dev, glslang-tools and spirv-tools, then configure with "
+                    "-DPHOTONGRID_VULKAN=ON"}};
 
         const backend_entry* find(const std::string& name)
         {
@@ -35,9 +38,8 @@ namespace any {
         const auto yes_no = [](bool b) { return b ? "yes" : "no"; };
         return std::string(c.software ? "software" : "hardware") + ", buffers of up to "
             + std::to_string(c.max_elements) + " elements, routing with up to " + std::to_string(c.max_route_slots)
-            + " x " + std::to_string(c.max_route_slots)
-            + " slots, division rounds correctly: " + yes_no(c.exact_division)
-            + ", square root: " + yes_no(c.exact_sqrt)
+            + " x " + std::to_string(c.max_route_slots) + " slots, division rounds correctly: "
+            + yes_no(c.exact_division) + ", square root: " + yes_no(c.exact_sqrt)
             + (c.loop_limit > 0 ? ", loops end after " + std::to_string(c.loop_limit) + " iterations" : "");
     }
 } // namespace any
@@ -68,7 +70,8 @@ std::unique_ptr<renderer> make_renderer(const renderer_options& asked)
             throw backend_error(any::not_built(b));
         names += std::string(", ") + b.name;
     }
-    throw std::invalid_argument("make_renderer: backend: no backend is called \"" + o.backend + "\"; there are " + names);
+    throw std::invalid_argument(
+        "make_renderer: backend: no backend is called \"" + o.backend + "\"; there are " + names);
 }
 
 std::vector<device_report> find_devices()
@@ -77,7 +80,7 @@ std::vector<device_report> find_devices()
     for (const auto& b : any::known) {
         const auto* e = any::find(b.name);
         if (!e)
-            all.push_back({.backend = b.name, .about = any::not_built(b)});
+            all.push_back({.backend = b.name, .description = any::not_built(b)});
         else if (e->names.front() == b.name) // one that has several names reports on all
             for (auto& d : e->devices())
                 all.push_back(std::move(d));

@@ -36,7 +36,7 @@ struct device_report {
     std::string backend{}; ///< as renderer_options takes it
     std::string device{};  ///< empty where there is none
     bool works = false;
-    std::string about{}; ///< its limits, or why it cannot be had
+    std::string description{}; ///< its limits, or why it cannot be had
 };
 
 /// The devices of all backends. Opens each in turn.

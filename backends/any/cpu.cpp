@@ -13,7 +13,7 @@ namespace {
     std::vector<device_report> devices()
     {
         const cpu_backend b;
-        return {{.backend = "cpu", .device = b.caps().device, .works = true, .about = limits(b.caps())}};
+        return {{.backend = "cpu", .device = b.caps().device, .works = true, .description = limits(b.caps())}};
     }
 } // namespace
 

@@ -20,9 +20,9 @@ namespace {
                 const gl_backend b(gl_options{.context = osmesa ? gl_context_kind::osmesa : gl_context_kind::egl});
                 r.device = b.caps().device;
                 r.works = true;
-                r.about = limits(b.caps());
+                r.description = limits(b.caps());
             } catch (const backend_error& e) {
-                r.about = e.what();
+                r.description = e.what();
             }
             all.push_back(r);
         }

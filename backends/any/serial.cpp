@@ -12,7 +12,7 @@ namespace {
     std::vector<device_report> devices()
     {
         const serial_backend b;
-        return {{.backend = "serial", .device = b.caps().device, .works = true, .about = limits(b.caps())}};
+        return {{.backend = "serial", .device = b.caps().device, .works = true, .description = limits(b.caps())}};
     }
 } // namespace
 

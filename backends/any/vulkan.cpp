@@ -37,22 +37,22 @@ namespace {
                     .device = std::to_string(d.index) + ": " + d.name + " (" + d.type + ", " + d.driver + ", Vulkan "
                         + d.api_version + ")"};
                 r.works = d.unusable.empty();
-                r.about = d.unusable;
+                r.description = d.unusable;
                 if (r.works)
                     try {
                         const vulkan_backend b(vulkan_options{.device = std::to_string(d.index)});
-                        r.about = limits(b.caps());
+                        r.description = limits(b.caps());
                     } catch (const backend_error& e) {
                         r.works = false;
-                        r.about = e.what();
+                        r.description = e.what();
                     }
                 all.push_back(r);
             }
             if (all.empty())
                 all.push_back({.backend = "vulkan",
-                    .about = "vulkan: the drivers list no device (Debian: apt install mesa-vulkan-drivers)"});
+                    .description = "vulkan: the drivers list no device (Debian: apt install mesa-vulkan-drivers)"});
         } catch (const backend_error& e) {
-            all.push_back({.backend = "vulkan", .about = e.what()});
+            all.push_back({.backend = "vulkan", .description = e.what()});
         }
         return all;
     }

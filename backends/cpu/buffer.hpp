@@ -1,6 +1,6 @@
-// A buffer of the cpu backend. Vectors of four can lie as rows (x y z w, x y z w, …), as kernels read them, or as
-// planes (all x, all y, …), as SIMD reads them: a pass or an override asks for the one it needs, and the buffer is
-// turned over when it lies the other way.
+// A buffer of the cpu backend. A buffer of vec4 is stored either as an array of structures (x y z w, x y z w, …), which
+// kernels read, or as a structure of arrays (all x, all y, …), which SIMD code reads. A pass or an override asks for
+// the layout that it needs; the buffer is transposed if it has the other one.
 #pragma once
 
 #include <photongrid/backend/backend.hpp>
@@ -26,11 +26,11 @@ class cpu_by_kernels;
 
 namespace photongrid::cpu {
 
-/// Elements that a vector register holds at most, and that may be read past a plane's end.
+/// The most floats that a vector register holds; so many may be read past the end of a component's array.
 inline constexpr std::size_t lanes = 16;
 
-/// Memory that begins on a cache line, contents undefined; large blocks in large pages where the system has them, since
-/// touching a megabyte for the first time in small ones takes longer than sorting it.
+/// Memory that begins on a cache line; its contents are undefined. Large blocks are in huge pages if the system has
+/// them: touching a megabyte of small pages for the first time takes longer than sorting it.
 class storage {
 public:
     storage() = default;
@@ -44,7 +44,7 @@ public:
             throw std::bad_alloc();
 #if defined(MADV_HUGEPAGE)
         if (unit == large_page)
-            (void)::madvise(block_.get(), size_, MADV_HUGEPAGE); // a wish; nothing depends on it
+            (void)::madvise(block_.get(), size_, MADV_HUGEPAGE); // only a hint
 #endif
     }
     std::byte* begin() const { return static_cast<std::byte*>(block_.get()); }
@@ -58,8 +58,8 @@ private:
     std::size_t size_ = 0;
 };
 
-/// What a backend's buffers hold, and free memory that is kept for the next ones: the system clears what it gives out,
-/// and that takes longer than building a map in it.
+/// Counts the bytes in a backend's buffers, and keeps freed memory for new buffers: the system clears the memory that
+/// it hands out, which takes longer than building a map in it.
 class account {
 public:
     std::uint64_t now = 0, peak = 0; ///< bytes in buffers now, and at most
@@ -95,21 +95,22 @@ private:
     std::size_t bytes_kept_ = 0;
 };
 
-/// The four planes of a buffer of vectors. Each begins on a cache line and may be read `lanes` elements past its end.
+/// A buffer of vec4 as a structure of arrays. Each array begins on a cache line and may be read `lanes` floats past its
+/// end.
 template <class Float>
-struct planes {
+struct soa_vectors {
     Float* x = nullptr;
     Float* y = nullptr;
     Float* z = nullptr;
     Float* w = nullptr;
 };
 
-/// Floats from one plane to the next, of n vectors.
-constexpr std::size_t plane_stride(std::size_t n) { return (n + 2 * lanes - 1) / lanes * lanes; }
+/// The number of floats between the beginnings of two components' arrays, for n vectors.
+constexpr std::size_t component_stride(std::size_t n) { return (n + 2 * lanes - 1) / lanes * lanes; }
 
 template <element T>
 class buffer {
-    static constexpr bool has_planes = std::same_as<T, glm::vec4>;
+    static constexpr bool is_vectors = std::same_as<T, glm::vec4>;
 
 public:
     using value_type = T;
@@ -144,21 +145,24 @@ private:
         std::swap(account_, other.account_);
         std::swap(data_, other.data_);
         std::swap(size_, other.size_);
-        std::swap(as_planes_, other.as_planes_);
+        std::swap(is_soa_, other.is_soa_);
     }
-    static std::size_t bytes(std::size_t n) { return has_planes ? 4 * plane_stride(n) * sizeof(float) : n * sizeof(T); }
-    T* rows() const { return reinterpret_cast<T*>(data_.begin()); }
-    planes<float> in_planes() const
+    static std::size_t bytes(std::size_t n)
+    {
+        return is_vectors ? 4 * component_stride(n) * sizeof(float) : n * sizeof(T);
+    }
+    T* elements() const { return reinterpret_cast<T*>(data_.begin()); }
+    soa_vectors<float> components() const
     {
         auto* x = reinterpret_cast<float*>(data_.begin());
-        const auto stride = plane_stride(size_);
+        const auto stride = component_stride(size_);
         return {x, x + stride, x + 2 * stride, x + 3 * stride};
     }
 
     std::shared_ptr<account> account_;
-    mutable storage data_; // turned over by passes that read, too
+    mutable storage data_; // passes that only read the buffer may transpose it
     std::size_t size_ = 0;
-    mutable bool as_planes_ = false;
+    mutable bool is_soa_ = false;
 };
 
 } // namespace photongrid::cpu

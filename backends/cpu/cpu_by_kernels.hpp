@@ -1,5 +1,5 @@
-// Kernels on as many threads as the caller wants: the cpu backend (cpu.hpp) without its overrides. It gives the same
-// results several times more slowly, and compiles in a third of the time. Tests compare the two.
+// The cpu backend (cpu.hpp) without its overrides: it runs every kernel, on any number of threads. The results are the
+// same; it is several times slower and compiles in a third of the time. Tests compare the two.
 #pragma once
 
 #include <photongrid/backend/backend.hpp>
@@ -14,7 +14,7 @@
 
 namespace photongrid {
 
-/// Kernels, and nothing but kernels, on several threads: what cpu_backend does where it has no better way.
+/// Runs every algorithm by its kernels, on several threads. cpu_backend does so too where it has no override.
 /// \headerfile backends/cpu/cpu_by_kernels.hpp <photongrid/backends/cpu/cpu_by_kernels.hpp>
 class cpu_by_kernels {
 public:
@@ -22,13 +22,13 @@ public:
     template <element T>
     using buffer = cpu::buffer<T>;
 
-    /// `threads`: 0 for as many as the machine has; with 1 no pool is made.
+    /// `threads`: 0 for as many as the machine has. With 1 there is no thread pool.
     explicit cpu_by_kernels(uint threads = 0) : pool_(threads)
     {
         caps_.backend = "cpu";
         caps_.device = "this CPU, " + std::to_string(pool_.threads()) + (pool_.threads() == 1 ? " thread" : " threads");
         caps_.max_elements = std::uint64_t{1} << 31;
-        caps_.cells_a_radius = 1;
+        caps_.cells_per_radius = 1;
         caps_.max_route_slots = 16;
         caps_.exact_division = true; // IEEE 754, as C++ on every platform with std::numeric_limits<float>::is_iec559
         caps_.exact_sqrt = true;
@@ -59,13 +59,13 @@ public:
     {
         auto b = make<T>(data.size());
         if (!data.empty())
-            std::memcpy(b.rows(), data.data(), data.size_bytes());
+            std::memcpy(b.elements(), data.data(), data.size_bytes());
         return b;
     }
     template <element T>
     std::vector<T> download(const buffer<T>& b)
     {
-        const auto r = rows(b);
+        const auto r = elements(b);
         return {r.begin(), r.end()};
     }
 
@@ -75,7 +75,7 @@ public:
         detail::check_call<K>("run", l, reads, writes);
         const stopwatch watch;
         const K prepared = prepare<K>(l, args, reads);
-        const auto out = rows_of<K>(writes);
+        const auto out = elements_of<K>(writes);
         pool_.for_blocks(l.elements, block, [&](std::size_t first, std::size_t past) {
             K k = prepared;
             for (uint i = l.first + static_cast<uint>(first); i != l.first + static_cast<uint>(past); ++i) {
@@ -93,7 +93,7 @@ public:
         detail::check_call<K>("run_until_done", l, reads, writes);
         const stopwatch watch;
         const K prepared = prepare<K>(l, args, reads);
-        const auto out = rows_of<K>(writes);
+        const auto out = elements_of<K>(writes);
         std::mutex adding;
         std::atomic<bool> finished = true;
         std::vector<std::uint64_t> ended; // ended[q]: elements that took q passes
@@ -107,7 +107,7 @@ public:
                     k.kernel(i);
                 if (!k.done())
                     finished = false;
-                if (q > 0) // else its outputs are still the last element's
+                if (q > 0) // else the outputs still belong to the previous element
                     store(k, i, out);
                 if (q >= mine.size())
                     mine.resize(q + std::size_t{1});
@@ -158,16 +158,16 @@ public:
             uint destination, payload;
             glm::vec4 amount;
         };
-        constexpr std::size_t batch = 65536; // draws held at a time
+        constexpr std::size_t batch = 65536; // draws in memory at a time
         std::vector<draw> draws(std::min<std::size_t>(batch, l.elements));
         const uint capacity = route_capacity(m);
-        const uint parts = route_parts(totals.size(), destinations);
-        const uint part = route_block(l.elements, parts);
+        const uint sums = route_sums(totals.size(), destinations);
+        const uint draws_per_sum = route_block(l.elements, sums);
         std::vector<uint> arrived(destinations);
-        const auto slot_rows = rows_to_write(slots);
-        const auto total_rows = rows_to_write(totals);
-        std::fill(slot_rows.begin(), slot_rows.end(), nowhere);
-        std::fill(total_rows.begin(), total_rows.end(), glm::vec4(0));
+        const auto slot_elements = elements_to_write(slots);
+        const auto total_elements = elements_to_write(totals);
+        std::fill(slot_elements.begin(), slot_elements.end(), nowhere);
+        std::fill(total_elements.begin(), total_elements.end(), glm::vec4(0));
         for (std::size_t begin = 0; begin < l.elements; begin += batch) {
             const std::size_t n = std::min(batch, l.elements - begin);
             pool_.for_blocks(n, block, [&](std::size_t first, std::size_t past) {
@@ -182,8 +182,8 @@ public:
                 if (d >= destinations)
                     continue;
                 if (arrived[d] < capacity)
-                    slot_rows[std::size_t{d} * capacity + arrived[d]++] = payload;
-                total_rows[std::size_t{d} * parts + (begin + i) / part] += amount;
+                    slot_elements[std::size_t{d} * capacity + arrived[d]++] = payload;
+                total_elements[std::size_t{d} * sums + (begin + i) / draws_per_sum] += amount;
             }
         }
         count_passes(kernel_name<K>(), 1, watch);
@@ -201,35 +201,35 @@ public:
     /// The threads that passes run on, the caller's among them.
     cpu::pool& threads() { return pool_; }
 
-    /// A buffer's elements in a row each.
+    /// A buffer's elements, as an array of structures.
     template <element T>
-    std::span<const T> rows(const buffer<T>& b)
+    std::span<const T> elements(const buffer<T>& b)
     {
         if constexpr (std::same_as<T, glm::vec4>)
-            turn_over(b, false);
-        return {b.rows(), b.size()};
+            transpose(b, false);
+        return {b.elements(), b.size()};
     }
-    /// The same, to be written; what they hold is kept.
+    /// The same, for writing; the contents are kept.
     template <element T>
-    std::span<T> rows_to_write(buffer<T>& b)
+    std::span<T> elements_to_write(buffer<T>& b)
     {
-        rows(b);
-        return {b.rows(), b.size()};
+        elements(b);
+        return {b.elements(), b.size()};
     }
-    /// A buffer's elements in planes.
-    cpu::planes<const float> planes(const buffer<glm::vec4>& b)
+    /// A buffer's elements, as a structure of arrays.
+    cpu::soa_vectors<const float> components(const buffer<glm::vec4>& b)
     {
-        turn_over(b, true);
-        const auto p = b.in_planes();
+        transpose(b, true);
+        const auto p = b.components();
         return {p.x, p.y, p.z, p.w};
     }
-    /// A buffer's planes, whose contents are lost.
-    cpu::planes<float> planes_to_write(buffer<glm::vec4>& b)
+    /// The same, for writing; the old contents are discarded.
+    cpu::soa_vectors<float> components_to_write(buffer<glm::vec4>& b)
     {
-        b.as_planes_ = true;
-        return b.in_planes();
+        b.is_soa_ = true;
+        return b.components();
     }
-    /// Runs from when it is made.
+    /// Measures the time since its construction.
     /// \headerfile backends/cpu/cpu_by_kernels.hpp <photongrid/backends/cpu/cpu_by_kernels.hpp>
     class stopwatch {
     public:
@@ -242,7 +242,7 @@ public:
     private:
         std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     };
-    /// Adds to costs(): a kernel's passes, or an override's under a name of its own, and their time.
+    /// Adds passes and their time to costs(), under a kernel's name or an override's own.
     void count_passes(std::string_view name, uint passes, const stopwatch& watch)
     {
         auto& cost = costs_[std::string(name)];
@@ -253,16 +253,16 @@ public:
 private:
     static constexpr std::size_t block = 2048, iterative_block = 256; // elements that a thread takes at a time
 
-    void turn_over(const buffer<glm::vec4>& b, bool to_planes)
+    void transpose(const buffer<glm::vec4>& b, bool to_soa)
     {
-        if (b.as_planes_ == to_planes)
+        if (b.is_soa_ == to_soa)
             return;
         buffer<glm::vec4> other = make<glm::vec4>(b.size());
-        const auto p = to_planes ? other.in_planes() : b.in_planes();
-        glm::vec4* const r = to_planes ? b.rows() : other.rows();
+        const auto p = to_soa ? other.components() : b.components();
+        glm::vec4* const r = to_soa ? b.elements() : other.elements();
         pool_.for_blocks(b.size(), 16 * block, [&](std::size_t first, std::size_t past) {
             for (std::size_t i = first; i != past; ++i) {
-                if (to_planes) {
+                if (to_soa) {
                     p.x[i] = r[i].x;
                     p.y[i] = r[i].y;
                     p.z[i] = r[i].z;
@@ -273,7 +273,7 @@ private:
             }
         });
         std::swap(b.data_, other.data_);
-        b.as_planes_ = to_planes;
+        b.is_soa_ = to_soa;
     }
 
     template <class K, class Reads>
@@ -283,16 +283,16 @@ private:
         k.args = args;
         turn_switches(k, l.switches);
         if constexpr (input_count<K> != 0)
-            detail::for_each_slot<input_count<K>>([&](auto s) { k.bind(s, rows(std::get<s.index>(reads))); });
+            detail::for_each_slot<input_count<K>>([&](auto s) { k.bind(s, elements(std::get<s.index>(reads))); });
         return k;
     }
     template <class K, class Writes>
-    auto rows_of(Writes& writes)
+    auto elements_of(Writes& writes)
     {
-        return std::apply([&](auto&... b) { return std::tuple{rows_to_write(b).data()...}; }, writes);
+        return std::apply([&](auto&... b) { return std::tuple{elements_to_write(b).data()...}; }, writes);
     }
-    template <class K, class Rows>
-    static void load(K& k, uint i, const Rows& out)
+    template <class K, class Elements>
+    static void load(K& k, uint i, const Elements& out)
     {
         if constexpr (output_count<K> != 0)
             detail::for_each_slot<output_count<K>>([&](auto s) {
@@ -300,8 +300,8 @@ private:
                     k.output(s) = std::get<s.index>(out)[i];
             });
     }
-    template <class K, class Rows>
-    static void store(K& k, uint i, const Rows& out)
+    template <class K, class Elements>
+    static void store(K& k, uint i, const Elements& out)
     {
         if constexpr (output_count<K> != 0)
             detail::for_each_slot<output_count<K>>([&](auto s) { std::get<s.index>(out)[i] = k.output(s); });

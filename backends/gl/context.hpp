@@ -114,15 +114,15 @@ public:
         if (!eglInitialize(display, nullptr, nullptr))
             fail("eglInitialize");
         const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
-        for (const char* wanted : {"EGL_KHR_no_config_context", "EGL_KHR_surfaceless_context"})
-            if (extensions == nullptr || std::string_view(extensions).find(wanted) == std::string_view::npos)
-                throw backend_error(std::string("the EGL display has no ") + wanted);
+        for (const char* extension : {"EGL_KHR_no_config_context", "EGL_KHR_surfaceless_context"})
+            if (extensions == nullptr || std::string_view(extensions).find(extension) == std::string_view::npos)
+                throw backend_error(std::string("the EGL display has no ") + extension);
         if (!eglBindAPI(EGL_OPENGL_API))
             fail("eglBindAPI(EGL_OPENGL_API)");
-        const std::array<EGLint, 9> wanted{EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+        const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
             EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_CONTEXT_OPENGL_DEBUG,
             debug ? EGL_TRUE : EGL_FALSE, EGL_NONE};
-        context_ = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted.data());
+        context_ = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
         if (context_ == EGL_NO_CONTEXT)
             fail("eglCreateContext (OpenGL 4.5 core)");
     }
@@ -158,9 +158,9 @@ public:
     osmesa_context()
     {
         name = "gl-osmesa";
-        const std::array<int, 13> wanted{OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_STENCIL_BITS, 8,
+        const std::array<int, 13> attributes{OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_STENCIL_BITS, 8,
             OSMESA_PROFILE, OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 4, OSMESA_CONTEXT_MINOR_VERSION, 5, 0};
-        context_ = OSMesaCreateContextAttribs(wanted.data(), nullptr);
+        context_ = OSMesaCreateContextAttribs(attributes.data(), nullptr);
         if (context_ == nullptr)
             throw backend_error("OSMesaCreateContextAttribs (OpenGL 4.5 core) returned no context");
     }

@@ -154,10 +154,10 @@ public:
     void draw_into(std::span<const GLuint> textures)
     {
         for (std::size_t t = 0; t < max_outputs; ++t) {
-            const GLuint wanted = t < textures.size() ? textures[t] : 0;
-            if (attached_[t] != wanted)
-                call.NamedFramebufferTexture(targets_, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(t), wanted, 0);
-            attached_[t] = wanted;
+            const GLuint id = t < textures.size() ? textures[t] : 0;
+            if (attached_[t] != id)
+                call.NamedFramebufferTexture(targets_, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(t), id, 0);
+            attached_[t] = id;
         }
         if (textures.size() != target_count_) {
             constexpr std::array<GLenum, max_outputs> all{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,

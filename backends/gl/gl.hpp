@@ -368,7 +368,7 @@ public:
         start_clock();
         bind<K>(args, reads, std::tuple<>{});
         if (totals.size() > 0)
-            pass.sum(totals.texture_, route_parts(totals.size(), destinations));
+            pass.sum(totals.texture_, route_sums(totals.size(), destinations));
         if (slots.size() > 0)
             pass.fill(slots.texture_, slots.size());
         finish_verb<K>("route");

@@ -59,9 +59,9 @@ struct routing {
         gl.DeleteFramebuffers(1, &framebuffer);
     }
 
-    /// totals[d * parts + p] = sum of the amounts of the draws to d in the p-th block of draws, in draw order, by
+    /// totals[d * sums + p] = sum of the amounts of the draws to d in the p-th block of draws, in draw order, by
     /// blending.
-    void sum(const texture& totals, uint parts)
+    void sum(const texture& totals, uint sums)
     {
         functions& gl = on.call;
         constexpr std::array<GLfloat, 4> zero{};
@@ -72,7 +72,7 @@ struct routing {
             return;
         gl.UseProgram(amount);
         gl.ProgramUniform4ui(amount, 1, totals.width, destinations, 1, totals.height);
-        gl.ProgramUniform4ui(amount, 2, parts, route_block(draws.elements, parts), draws.first, 0);
+        gl.ProgramUniform4ui(amount, 2, sums, route_block(draws.elements, sums), draws.first, 0);
         on.keep_blending();
         gl.Enablei(GL_BLEND, 0);
         gl.BlendEquationi(0, GL_FUNC_ADD);

@@ -161,8 +161,8 @@ public:
         detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
         K k = prepare<K>(l, args, reads);
         const uint capacity = route_capacity(m);
-        const uint parts = route_parts(totals.size(), destinations);
-        const uint block = route_block(l.elements, parts);
+        const uint sums = route_sums(totals.size(), destinations);
+        const uint block = route_block(l.elements, sums);
         std::vector<uint> arrived(destinations);
         std::fill(slots.data_.begin(), slots.data_.end(), nowhere);
         std::fill(totals.data_.begin(), totals.data_.end(), glm::vec4(0));
@@ -173,7 +173,7 @@ public:
                 continue;
             if (arrived[d] < capacity)
                 slots.data_[std::size_t{d} * capacity + arrived[d]++] = k.output(slot<1>{});
-            totals.data_[std::size_t{d} * parts + (i - l.first) / block] += k.output(slot<2>{});
+            totals.data_[std::size_t{d} * sums + (i - l.first) / block] += k.output(slot<2>{});
         }
         ++costs_[std::string(kernel_name<K>())].passes;
     }

@@ -25,14 +25,14 @@ public:
     explicit context(const vulkan_options& o)
         : instance_(o.validation, o.gpu_assisted), physical_(choose_device(instance_, o)), device_(physical_)
     {
-        look(o.staging);
+        query_device(o.staging);
     }
     explicit context(const vulkan_handles& h) : instance_(h.instance), physical_(h.physical_device), device_(h)
     {
         if (!h.instance || !h.physical_device || !h.device || !h.queue)
             throw std::invalid_argument("vulkan_backend: handles: an instance, a physical device, a device and a queue "
                                         "are needed; one is null");
-        look(false);
+        query_device(false);
     }
     context(const context&) = delete;
     context& operator=(const context&) = delete;
@@ -53,10 +53,10 @@ public:
     std::uint64_t peak_bytes() const { return peak_; }
     void forget(const block& b) { named_ -= b.bytes; }
 
-    block acquire(VkDeviceSize wanted, memory_kind kind)
+    block acquire(VkDeviceSize size, memory_kind kind)
     {
         // Sizes in steps of 256 bytes, 16 at least: a buffer of no elements can be bound too.
-        const VkDeviceSize bytes = (std::max<VkDeviceSize>(wanted, 16) + 255) / 256 * 256;
+        const VkDeviceSize bytes = (std::max<VkDeviceSize>(size, 16) + 255) / 256 * 256;
         auto& free = free_[kind];
         block b;
         if (const auto found = free.find(bytes); found != free.end()) {
@@ -96,7 +96,7 @@ private:
     static constexpr VkDeviceSize keep_bytes = VkDeviceSize{64} << 20;
     static constexpr std::size_t keep_blocks = 64;
 
-    void look(bool staging)
+    void query_device(bool staging)
     {
         staging_ = staging;
         VkPhysicalDeviceMaintenance3Properties m3{};
@@ -120,10 +120,10 @@ private:
     static constexpr VkMemoryPropertyFlags shared_memory
         = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | host_memory | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
 
-    std::uint32_t find_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const
+    std::uint32_t find_type(std::uint32_t allowed, VkMemoryPropertyFlags properties) const
     {
         for (std::uint32_t t = 0; t < memory_.memoryTypeCount; ++t)
-            if (((allowed >> t) & 1u) != 0 && (memory_.memoryTypes[t].propertyFlags & wanted) == wanted)
+            if (((allowed >> t) & 1u) != 0 && (memory_.memoryTypes[t].propertyFlags & properties) == properties)
                 return t;
         return none;
     }

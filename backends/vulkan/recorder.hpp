@@ -268,9 +268,9 @@ public:
     }
 
 private:
-    static constexpr std::uint32_t passes_a_batch = 64;
-    static constexpr std::uint32_t buffers_a_pass = 20; // 8 inputs, 8 outputs, 4 of the verb's
-    static constexpr std::uint32_t inputs_a_pass = 8;
+    static constexpr std::uint32_t passes_per_batch = 64;
+    static constexpr std::uint32_t buffers_per_pass = 20; // 8 inputs, 8 outputs, 4 of the verb's
+    static constexpr std::uint32_t inputs_per_pass = 8;
     static constexpr std::size_t most_flying = 4;
 
     struct batch {
@@ -334,9 +334,9 @@ private:
         info.pSetLayouts = &set_layout;
         VkDescriptorSet set = VK_NULL_HANDLE;
         check(vkAllocateDescriptorSets(context_->device(), &info, &set), "vkAllocateDescriptorSets");
-        std::array<VkDescriptorBufferInfo, buffers_a_pass> what{};
-        std::array<VkBufferView, buffers_a_pass> views{};
-        std::array<VkWriteDescriptorSet, buffers_a_pass> writes{};
+        std::array<VkDescriptorBufferInfo, buffers_per_pass> what{};
+        std::array<VkBufferView, buffers_per_pass> views{};
+        std::array<VkWriteDescriptorSet, buffers_per_pass> writes{};
         for (std::size_t i = 0; i < buffers.size(); ++i) {
             what[i] = {buffers[i]->buffer(), 0, buffers[i]->range()};
             writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
@@ -385,7 +385,7 @@ private:
 
     void counted()
     {
-        if (++now_.passes >= passes_a_batch)
+        if (++now_.passes >= passes_per_batch)
             submit();
     }
 
@@ -413,7 +413,7 @@ private:
         if (taking_turns_)
             full_barrier();
         if (timed_)
-            vkCmdResetQueryPool(now_.commands, now_.clock, 0, 2 * passes_a_batch);
+            vkCmdResetQueryPool(now_.commands, now_.clock, 0, 2 * passes_per_batch);
     }
 
     void create(batch& b) const
@@ -427,11 +427,12 @@ private:
         VkFenceCreateInfo fence{};
         fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
         check(vkCreateFence(context_->device(), &fence, nullptr, &b.fence), "vkCreateFence");
-        constexpr VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, passes_a_batch * buffers_a_pass},
-            {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, passes_a_batch * inputs_a_pass}};
+        constexpr VkDescriptorPoolSize sizes[]
+            = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, passes_per_batch * buffers_per_pass},
+                {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, passes_per_batch * inputs_per_pass}};
         VkDescriptorPoolCreateInfo pool{};
         pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-        pool.maxSets = passes_a_batch;
+        pool.maxSets = passes_per_batch;
         pool.poolSizeCount = 2;
         pool.pPoolSizes = sizes;
         check(vkCreateDescriptorPool(context_->device(), &pool, nullptr, &b.sets), "vkCreateDescriptorPool");
@@ -439,7 +440,7 @@ private:
             VkQueryPoolCreateInfo clock{};
             clock.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
             clock.queryType = VK_QUERY_TYPE_TIMESTAMP;
-            clock.queryCount = 2 * passes_a_batch;
+            clock.queryCount = 2 * passes_per_batch;
             check(vkCreateQueryPool(context_->device(), &clock, nullptr, &b.clock), "vkCreateQueryPool");
         }
     }

@@ -2,8 +2,8 @@
 // them a pass: software devices end loops silently, others kill long passes. The order makes the sums the same everywhere.
 struct Params {
     uint destinations;
-    uint parts; // partial sums of a destination
-    uint block; // draws that share one
+    uint sums;  // partial sums per destination
+    uint block; // draws per partial sum
     uint begin; // draws of each partial sum that earlier passes have added
     uint most;  // draws that this pass adds at most
 };
@@ -30,23 +30,23 @@ uint first_from(uvec2 range, uint draw)
 
 void main()
 {
-    uint place = element_();
-    if (place >= launch_.x)
+    uint index = element_();
+    if (index >= launch_.x)
         return;
-    uint d = place / args.parts;
-    uint part = place - d * args.parts;
+    uint d = index / args.sums;
+    uint nth_sum = index - d * args.sums;
     uvec2 range = uvec2(0u, 0u);
     if (d < args.destinations) {
-        uint first = first_from(ranges_[d], part * args.block);
-        range = uvec2(first, first_from(ranges_[d], (part + 1u) * args.block) - first);
+        uint first = first_from(ranges_[d], nth_sum * args.block);
+        range = uvec2(first, first_from(ranges_[d], (nth_sum + 1u) * args.block) - first);
     }
     if (args.begin > 0u && range.y <= args.begin)
         return;
     vec4 sum = vec4(0.0);
     if (args.begin > 0u)
-        sum = totals_[place];
+        sum = totals_[index];
     uint end = min(range.y, args.begin + args.most);
     for (uint r = args.begin; r < end; ++r)
         sum += amounts_[keys_[range.x + r].y];
-    totals_[place] = sum;
+    totals_[index] = sum;
 }

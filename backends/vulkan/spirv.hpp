@@ -49,10 +49,10 @@ inline spirv_words forbid_contraction(const spirv_words& in)
 {
     constexpr std::uint32_t decorate = 71, member_decorate = 72, no_contraction = 42;
     std::unordered_set<std::uint32_t> decorated;
-    std::size_t place = 0; // where decorations end
+    std::size_t decorations_end = 0;
     for_each_instruction(in, [&](std::uint32_t op, std::size_t at, std::size_t length) {
         if (op == decorate || op == member_decorate)
-            place = at + length;
+            decorations_end = at + length;
         if (op == decorate && length > 2 && in[at + 2] == no_contraction)
             decorated.insert(in[at + 1]);
     });
@@ -64,11 +64,11 @@ inline spirv_words forbid_contraction(const spirv_words& in)
         if (arithmetic && decorated.insert(in[at + 2]).second)
             extra.insert(extra.end(), {(3u << 16u) | decorate, in[at + 2], no_contraction});
     });
-    if (extra.empty() || place == 0)
+    if (extra.empty() || decorations_end == 0)
         return in;
-    spirv_words out(in.begin(), in.begin() + static_cast<std::ptrdiff_t>(place));
+    spirv_words out(in.begin(), in.begin() + static_cast<std::ptrdiff_t>(decorations_end));
     out.insert(out.end(), extra.begin(), extra.end());
-    out.insert(out.end(), in.begin() + static_cast<std::ptrdiff_t>(place), in.end());
+    out.insert(out.end(), in.begin() + static_cast<std::ptrdiff_t>(decorations_end), in.end());
     return out;
 }
 

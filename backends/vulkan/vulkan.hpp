@@ -262,10 +262,10 @@ public:
         uint longest = 0;
         recorder_.read(most, &longest, sizeof longest);
         constexpr uint at_once = 4096;
-        const uint parts = route_parts(totals.size(), destinations), block = route_block(l.elements, parts);
+        const uint sums = route_sums(totals.size(), destinations), block = route_block(l.elements, sums);
         std::uint64_t begin = 0;
         do { // once at least: it also sets the totals of what nothing is destined for to 0
-            own_pass("route_totals", totals.size(), {destinations, parts, block, static_cast<uint>(begin), at_once},
+            own_pass("route_totals", totals.size(), {destinations, sums, block, static_cast<uint>(begin), at_once},
                 {keys.memory_, ranges.memory_, amount.memory_, totals.memory_});
             begin += at_once;
         } while (begin < std::min(longest, block));

@@ -13,7 +13,7 @@ using device_type = photongrid::serial_backend;
 
 namespace host {
 struct photon {
-    vec3 position, flux, direction, normal;
+    vec3 position, power, direction, normal;
 }; // m, W, unit vectors; photongrid reads members of these names
 
 /// The photons that meet only mirrors and glass on their way from the lamp to a diffuse surface.
@@ -23,13 +23,13 @@ static std::vector<photon> shoot(const scene& s, int count, std::uint64_t seed)
     for (int i = 0; i < count; ++i) {
         random_stream random(seed, static_cast<std::uint64_t>(i));
         ray r{s.lamp.point(random), cosine_direction(s.lamp.normal(), random)};
-        vec3 flux = (pi * s.lamp.area() / count) * s.lamp.of.colour;
+        vec3 power = (pi * s.lamp.area() / count) * s.lamp.of.colour;
         for (int bounces = 0; const auto h = s.nearest(r); ++bounces) {
             if (h->of.kind == surface::diffuse && bounces > 0)
-                landed.push_back({h->where, flux, r.along, h->normal});
+                landed.push_back({h->position, power, r.direction, h->normal});
             if (!h->of.is_specular() || bounces == 50)
                 break;
-            flux = flux * h->of.colour;
+            power = power * h->of.colour;
             r = specular_bounce(r, *h, random);
         }
     }
@@ -44,9 +44,9 @@ irradiance_source caustics_of(const scene& s, int photons, std::uint64_t seed)
             .max_radius = 0.1f,
             .filter = photongrid::filter_kind::silverman,
             .leaks = {.side = true, .min_cosine = 0.9f}});
-    return [map](vec3 where, vec3 normal) -> vec3 {
+    return [map](vec3 position, vec3 normal) -> vec3 {
         thread_local photongrid::query_scratch scratch;
-        const auto e = map->irradiance(where, normal, scratch).value;
+        const auto e = map->irradiance(position, normal, scratch).value;
         return {e.r, e.g, e.b};
     };
 }

@@ -26,12 +26,12 @@ void write_png(const std::string& path, const std::vector<host::vec3>& picture, 
     for (const auto& p : picture)
         for (const double channel : {p.x, p.y, p.z})
             bytes.push_back(tone_mapped(channel));
-    png_image about{};
-    about.version = PNG_IMAGE_VERSION;
-    about.width = about.height = static_cast<png_uint_32>(size);
-    about.format = PNG_FORMAT_RGB;
-    if (!png_image_write_to_file(&about, path.c_str(), 0, bytes.data(), 0, nullptr))
-        throw std::runtime_error(path + ": " + about.message);
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    png.width = png.height = static_cast<png_uint_32>(size);
+    png.format = PNG_FORMAT_RGB;
+    if (!png_image_write_to_file(&png, path.c_str(), 0, bytes.data(), 0, nullptr))
+        throw std::runtime_error(path + ": " + png.message);
 }
 
 /// A whole number from 1 to 100,000, or 0 for anything else.

@@ -9,11 +9,11 @@ namespace {
     /// Light that comes straight from the lamp and leaves the diffuse point `h`, as radiance.
     vec3 direct_light(const scene& s, const hit& h, random_stream& random)
     {
-        const vec3 to = s.lamp.point(random) - h.where;
+        const vec3 to = s.lamp.point(random) - h.position;
         const double distance2 = dot(to, to);
         const vec3 direction = (1 / std::sqrt(distance2)) * to;
         const double cos_here = dot(direction, h.normal), cos_lamp = -dot(direction, s.lamp.normal());
-        if (cos_here <= 0 || cos_lamp <= 0 || !s.sees(h.where, h.where + to))
+        if (cos_here <= 0 || cos_lamp <= 0 || !s.sees(h.position, h.position + to))
             return {};
         return (cos_here * cos_lamp * s.lamp.area() / (pi * distance2)) * h.of.colour * s.lamp.of.colour;
     }
@@ -40,8 +40,8 @@ namespace {
             case surface::diffuse:
                 radiance = radiance + throughput * direct_light(s, *h, random);
                 if (caustics)
-                    radiance = radiance + (1 / pi) * throughput * h->of.colour * caustics(h->where, h->normal);
-                r = {h->where, cosine_direction(h->normal, random)};
+                    radiance = radiance + (1 / pi) * throughput * h->of.colour * caustics(h->position, h->normal);
+                r = {h->position, cosine_direction(h->normal, random)};
                 met_diffuse = true;
                 from_specular = false;
                 break;

@@ -9,7 +9,7 @@ namespace host {
 
 /// Irradiance, W/m^2, of light that reaches a point by mirrors and glass alone. `normal`: unit vector, towards the side
 /// that is looked at. Called from many threads at once.
-using irradiance_source = std::function<vec3(vec3 where, vec3 normal)>;
+using irradiance_source = std::function<vec3(vec3 position, vec3 normal)>;
 
 struct render_settings {
     int size = 400;   ///< pixels a side

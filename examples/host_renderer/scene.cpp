@@ -5,44 +5,45 @@
 namespace host {
 
 namespace {
-    constexpr double nearest_hit = 1e-6; // m; nearer ones are the surface that the ray starts on
+    constexpr double least_distance = 1e-6; // m; nearer ones are the surface that the ray starts on
     constexpr double index_of_refraction = 1.5;
 
-    /// Where a ray first meets each shape, beyond nearest_hit; nothing if it does not.
+    /// Where a ray first meets each shape, beyond least_distance; nothing if it does not.
     std::optional<double> distance_to(const sphere& s, const ray& r)
     {
-        const vec3 to_middle = s.middle - r.from;
-        const double closest = dot(to_middle, r.along);
-        const vec3 off = to_middle - closest * r.along;
+        const vec3 to_middle = s.middle - r.origin;
+        const double closest = dot(to_middle, r.direction);
+        const vec3 off = to_middle - closest * r.direction;
         const double inside = s.radius * s.radius - dot(off, off);
         if (!(inside > 0))
             return {};
         const double half = std::sqrt(inside);
         for (const double t : {closest - half, closest + half})
-            if (t > nearest_hit)
+            if (t > least_distance)
                 return t;
         return {};
     }
     std::optional<double> distance_to(const rectangle& q, const ray& r)
     {
         const vec3 normal = cross(q.a, q.b);
-        const double t = dot(q.corner - r.from, normal) / dot(r.along, normal);
-        const vec3 p = r.from + t * r.along - q.corner;
+        const double t = dot(q.corner - r.origin, normal) / dot(r.direction, normal);
+        const vec3 p = r.origin + t * r.direction - q.corner;
         const double u = dot(p, q.a) / dot(q.a, q.a), v = dot(p, q.b) / dot(q.b, q.b);
-        if (t > nearest_hit && u >= 0 && u <= 1 && v >= 0 && v <= 1)
+        if (t > least_distance && u >= 0 && u <= 1 && v >= 0 && v <= 1)
             return t;
         return {};
     }
     std::optional<double> distance_to(const tube& c, const ray& r)
     {
-        const vec3 from = r.from - c.foot;
-        const double a = r.along.x * r.along.x + r.along.z * r.along.z, b = from.x * r.along.x + from.z * r.along.z;
+        const vec3 from = r.origin - c.foot;
+        const double a = r.direction.x * r.direction.x + r.direction.z * r.direction.z,
+                     b = from.x * r.direction.x + from.z * r.direction.z;
         const double inside = b * b - a * (from.x * from.x + from.z * from.z - c.radius * c.radius);
         if (!(inside > 0) || !(a > 0))
             return {};
         const double half = std::sqrt(inside);
         for (const double t : {(-b - half) / a, (-b + half) / a})
-            if (const double y = from.y + t * r.along.y; t > nearest_hit && y >= 0 && y <= c.height)
+            if (const double y = from.y + t * r.direction.y; t > least_distance && y >= 0 && y <= c.height)
                 return t;
         return {};
     }
@@ -67,9 +68,9 @@ std::optional<hit> scene::nearest(const ray& r) const
         const auto t = distance_to(shape, r);
         if (!t || (best && best->distance <= *t))
             return;
-        const vec3 where = r.from + *t * r.along, normal = normal_at(shape, where);
-        const bool outside = dot(normal, r.along) < 0;
-        best = {*t, where, outside ? normal : -normal, outside, shape.of};
+        const vec3 position = r.origin + *t * r.direction, normal = normal_at(shape, position);
+        const bool outside = dot(normal, r.direction) < 0;
+        best = {*t, position, outside ? normal : -normal, outside, shape.of};
     };
     for (const auto& s : spheres)
         try_shape(s);
@@ -87,7 +88,7 @@ bool scene::sees(vec3 from, vec3 to) const
     const ray r{from, (1 / distance) * (to - from)};
     const auto blocks = [&](const auto& shape) {
         const auto t = distance_to(shape, r);
-        return t && *t < distance - nearest_hit;
+        return t && *t < distance - least_distance;
     };
     for (const auto& s : spheres)
         if (blocks(s))
@@ -103,8 +104,8 @@ bool scene::sees(vec3 from, vec3 to) const
 
 ray specular_bounce(const ray& r, const hit& h, random_stream& random)
 {
-    const double cos_in = -dot(r.along, h.normal);
-    const ray reflected{h.where, normalized(r.along + 2 * cos_in * h.normal)};
+    const double cos_in = -dot(r.direction, h.normal);
+    const ray reflected{h.position, normalized(r.direction + 2 * cos_in * h.normal)};
     if (h.of.kind == surface::mirror)
         return reflected;
     const double index_in = h.outside ? 1 : index_of_refraction, index_out = h.outside ? index_of_refraction : 1;
@@ -114,7 +115,7 @@ ray specular_bounce(const ray& r, const hit& h, random_stream& random)
     const double cos_out = std::sqrt(cos_out2);
     if (random.next() < fresnel(cos_in, cos_out, index_in, index_out))
         return reflected;
-    return {h.where, normalized(ratio * r.along + (ratio * cos_in - cos_out) * h.normal)};
+    return {h.position, normalized(ratio * r.direction + (ratio * cos_in - cos_out) * h.normal)};
 }
 
 scene box_scene()

@@ -9,7 +9,8 @@
 namespace host {
 
 struct ray {
-    vec3 from, along; ///< along: unit vector
+    vec3 origin;    ///< m
+    vec3 direction; ///< unit vector
 };
 
 enum class surface { diffuse, mirror, glass, lamp };
@@ -47,9 +48,9 @@ struct tube {
 };
 
 struct hit {
-    double distance;    ///< m
-    vec3 where, normal; ///< normal: unit vector, towards the side that the ray came from
-    bool outside;       ///< the ray came from the outside of a solid, or from the front
+    double distance;       ///< m
+    vec3 position, normal; ///< normal: unit vector, towards the side that the ray came from
+    bool outside;          ///< the ray came from the outside of a solid, or from the front
     material of;
 };
 

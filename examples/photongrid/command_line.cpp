@@ -62,7 +62,7 @@ Exit codes:
                           row.of(s) = value;
                   });
               },
-              std::string(row.about) + without(row.use))
+              std::string(row.description) + without(row.use))
             ->type_name(type_of(row.values));
     }
 

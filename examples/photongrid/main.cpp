@@ -92,7 +92,7 @@ namespace {
                                  : d.device.empty() ? "not available"
                                                     : d.device + "  not usable")
                       << '\n';
-            std::cout << "    " << d.about << '\n';
+            std::cout << "    " << d.description << '\n';
         }
         return success;
     }

@@ -62,8 +62,9 @@ namespace {
             if (policy == "side")
                 leaks.side = true;
             else if (name == "min_cosine")
-                leaks.min_cosine = with_value ? parsed_from(option, value, -1, 1, "min_cosine=COS, a cosine from -1 to 1")
-                                              : usual_cosine;
+                leaks.min_cosine = with_value
+                    ? parsed_from(option, value, -1, 1, "min_cosine=COS, a cosine from -1 to 1")
+                    : usual_cosine;
             else if (name == "flattening")
                 leaks.flattening = with_value
                     ? parsed_from(option, value, 1, 1e6, "flattening=F, a ratio from 1 to 1e6")
@@ -73,7 +74,8 @@ namespace {
             else
                 throw CLI::ValidationError(option,
                     "\"" + policy
-                        + "\" given; expected none, or some of side, min_cosine, min_cosine=COS, flattening, flattening=F with commas "
+                        + "\" given; expected none, or some of side, min_cosine, min_cosine=COS, flattening, "
+                          "flattening=F with commas "
                           "between them");
             at = end + 1;
         }
@@ -100,22 +102,22 @@ crop parsed_crop(const std::string& option, const std::string& text)
 }
 
 void add_whole(
-    CLI::App& to, const std::string& option, std::optional<std::uint32_t>& target, const std::string& about)
+    CLI::App& to, const std::string& option, std::optional<std::uint32_t>& target, const std::string& description)
 {
     to.add_option_function<std::string>(
           option,
           [&target, option](
               const std::string& text) { target = parsed<std::uint32_t>(option, text, "a whole number"); },
-          about)
+          description)
         ->type_name("N");
 }
 
-void add_number(CLI::App& to, const std::string& option, std::optional<double>& target, const std::string& about,
+void add_number(CLI::App& to, const std::string& option, std::optional<double>& target, const std::string& description,
     const char* type)
 {
     to.add_option_function<std::string>(
           option, [&target, option](const std::string& text) { target = parsed_number(option, text, "a number"); },
-          about)
+          description)
         ->type_name(type);
 }
 

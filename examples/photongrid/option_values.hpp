@@ -33,8 +33,9 @@ glm::uvec2 parsed_size(const std::string& option, const std::string& text);
 /// Part of a picture, as X11 writes it: WxH+X+Y.
 crop parsed_crop(const std::string& option, const std::string& text);
 
-void add_whole(CLI::App& to, const std::string& option, std::optional<std::uint32_t>& target, const std::string& about);
-void add_number(CLI::App& to, const std::string& option, std::optional<double>& target, const std::string& about,
+void add_whole(
+    CLI::App& to, const std::string& option, std::optional<std::uint32_t>& target, const std::string& description);
+void add_number(CLI::App& to, const std::string& option, std::optional<double>& target, const std::string& description,
     const char* type);
 
 // A setting's value, and the type that --help shows for it.

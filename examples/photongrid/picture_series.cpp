@@ -72,7 +72,7 @@ picture_series::picture_series(series_options o) : options_(std::move(o))
 
 bool picture_series::due() const
 {
-    if (!wanted())
+    if (!enabled())
         return false;
     const double now = elapsed_ms();
     return steps_.empty() || now - steps_.back().ms >= (options_.every_ms > 0 ? options_.every_ms : 0.1 * now);
@@ -80,7 +80,7 @@ bool picture_series::due() const
 
 void picture_series::add(const image& picture)
 {
-    if (!wanted())
+    if (!enabled())
         return;
     const auto begin = clock::now();
     steps_.push_back({picture, elapsed_ms()});
@@ -91,7 +91,7 @@ void picture_series::add(const image& picture)
 
 void picture_series::finish(const image& picture)
 {
-    if (!wanted())
+    if (!enabled())
         return;
     add(picture);
     if (!options_.folder.empty())
@@ -131,10 +131,10 @@ void picture_series::write_strip()
     const double first = log_ms(steps_.front()), last = log_ms(steps_.back());
     std::set<std::size_t> chosen;
     for (std::size_t stage = 0; stage < strip_stages; ++stage) {
-        const double wanted = first + (last - first) * static_cast<double>(stage) / (strip_stages - 1);
+        const double target = first + (last - first) * static_cast<double>(stage) / (strip_stages - 1);
         std::size_t nearest = steps_.size() - 1;
         for (std::size_t i = 0; i < steps_.size(); ++i)
-            if (std::abs(log_ms(steps_[i]) - wanted) < std::abs(log_ms(steps_[nearest]) - wanted))
+            if (std::abs(log_ms(steps_[i]) - target) < std::abs(log_ms(steps_[nearest]) - target))
                 nearest = i;
         chosen.insert(nearest);
     }

@@ -17,7 +17,7 @@ struct crop {
     std::uint32_t x = 0, y = 0, width = 0, height = 0;
 };
 
-/// What becomes of a picture's course. What is empty is not wanted.
+/// What becomes of a picture's course. Empty members are off.
 struct series_options {
     std::string folder;             ///< for numbered pictures and the table
     std::string stem;               ///< of their names
@@ -39,7 +39,7 @@ public:
     ///         is of another size or the crop does not lie in the picture.
     explicit picture_series(series_options o);
 
-    bool wanted() const { return !options_.folder.empty() || !options_.strip.empty(); }
+    bool enabled() const { return !options_.folder.empty() || !options_.strip.empty(); }
     /// Whether it is time for another picture.
     bool due() const;
     void add(const image& picture);

@@ -134,9 +134,9 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
     const auto start = std::chrono::steady_clock::now();
     progress_bar bar(o.quiet);
     const auto drawing = make_renderer(backend);
-    drawing->start(s, settings, {.wanted = series->wanted()});
+    drawing->start(s, settings, {.enabled = series->enabled()});
     resumable file(*drawing, o.resume, s, settings);
-    for (std::uint64_t seen = 0; !stop_asked() && !drawing->step(renderer::milliseconds(series->wanted() ? 0 : 50));) {
+    for (std::uint64_t seen = 0; !stop_asked() && !drawing->step(renderer::milliseconds(series->enabled() ? 0 : 50));) {
         const auto now = drawing->progress();
         bar.show(now.stage, now.fraction);
         if (drawing->pictures() > seen && series->due()) {

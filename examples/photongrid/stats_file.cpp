@@ -38,7 +38,7 @@ std::string stats_json(const scene& s, const render_settings& settings, const re
         {"map",
             {{"builder", setting_table::map.values.word_for(r.map.builder)}, {"cells", r.map.cells},
                 {"resolution", {r.map.resolution.x, r.map.resolution.y, r.map.resolution.z}},
-                {"overfull_cells", r.map.overfull_cells}, {"redistributed_flux", r.map.redistributed_flux},
+                {"overflowing_cells", r.map.overflowing_cells}, {"redistributed_power", r.map.redistributed_power},
                 {"left_out", r.map.left_out}}},
         {"stages",
             {{"trace_photons", stage_json(r.trace_photons)}, {"build_map", stage_json(r.build_map)},

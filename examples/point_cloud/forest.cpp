@@ -20,14 +20,14 @@ int main()
                 {t.east, t.north, static_cast<float>(west ? 12 + 4 * unit(random) : 22 + 8 * unit(random))});
     }
     photongrid::serial_backend device; // change this line to survey it on another backend
-    const std::vector<glm::vec3> places{{400, 1200, 0}, {1100, 300, 0}, {2000, 700, 0}};
-    const auto surveys = survey_forest(device, trees, places, 200);
-    for (std::size_t p = 0; p < places.size(); ++p) {
+    const std::vector<glm::vec3> queries{{400, 1200, 0}, {1100, 300, 0}, {2000, 700, 0}};
+    const auto surveys = survey_forest(device, trees, queries, 200);
+    for (std::size_t p = 0; p < queries.size(); ++p) {
         const auto& s = surveys[p];
-        std::printf("%4.0f m east, %4.0f m north: %3.0f +- %2.0f trees a hectare, %4.1f m high; the nearest is tree "
+        std::printf("%4.0f m east, %4.0f m north: %3.0f +- %2.0f trees per hectare, %4.1f m high; the nearest is tree "
                     "%6u, %.1f m away\n",
-            static_cast<double>(places[p].x), static_cast<double>(places[p].y), static_cast<double>(s.trees_a_hectare),
-            static_cast<double>(s.standard_error), static_cast<double>(s.mean_height), s.nearest[0],
-            static_cast<double>(s.distances[0]));
+            static_cast<double>(queries[p].x), static_cast<double>(queries[p].y),
+            static_cast<double>(s.trees_per_hectare), static_cast<double>(s.standard_error),
+            static_cast<double>(s.mean_height), s.nearest[0], static_cast<double>(s.distances[0]));
     }
 }

@@ -16,30 +16,30 @@ struct tree {
     float height;       // m
 };
 
-/// How photongrid reads it: as a photon of flux 1, so that an estimate counts trees.
+/// How photongrid reads it: as a photon of power 1, so that an estimate counts trees.
 template <>
 struct photongrid::photon_reader<tree> {
     static glm::dvec3 position(const tree& t) { return {t.east, t.north, 0}; }
-    static float flux(const tree&) { return 1; }
+    static float power(const tree&) { return 1; }
 };
 
-/// What is found about one place.
+/// The survey of one query point.
 struct survey {
-    float trees_a_hectare = 0;
+    float trees_per_hectare = 0;
     float standard_error = 0;           ///< of it
     float mean_height = 0;              ///< m
-    std::vector<std::uint32_t> nearest; ///< places in the vector of trees
+    std::vector<std::uint32_t> nearest; ///< indices into the vector of trees
     std::vector<float> distances;       ///< m
 };
 
-/// Surveys places (m: east, north, 0) from the `k` trees nearest to each, on any backend.
+/// Surveys query points (m: east, north, 0) from the `k` trees nearest to each, on any backend.
 template <photongrid::backend Device>
 std::vector<survey> survey_forest(
-    Device& device, const std::vector<tree>& trees, const std::vector<glm::vec3>& places, std::uint32_t k)
+    Device& device, const std::vector<tree>& trees, const std::vector<glm::vec3>& queries, std::uint32_t k)
 {
-    // Trees to the device, into a map of cells that suit them; places too.
+    // Upload the trees, build a map whose grid fits them, and upload the query points.
     const auto map = photongrid::fitted_map(device, photongrid::upload_photons(device, trees), k);
-    const auto points = photongrid::upload_points(device, places);
+    const auto points = photongrid::upload_points(device, queries);
     const photongrid::knn_settings settings{.k = k, .errors = true};
 
     // Density, with its error: trees a square metre.
@@ -53,16 +53,16 @@ std::vector<survey> survey_forest(
     for (const auto& t : trees)
         heights.push_back(t.height);
     const auto all_heights = photongrid::upload(device, heights);
-    auto mean = device.template make<float>(places.size());
-    device.template run<forest::mean_height>(places.size(), {.k = k},
+    auto mean = device.template make<float>(queries.size());
+    device.template run<forest::mean_height>(queries.size(), {.k = k},
         photongrid::reads(neighbours.ids, neighbours.distances2, all_heights), photongrid::writes(mean));
 
     const auto per_square_metre = device.download(density.irradiance), errors = device.download(density.standard_error);
     const auto means = device.download(mean), distances2 = device.download(neighbours.distances2);
     const auto ids = device.download(neighbours.ids);
-    std::vector<survey> found(places.size());
+    std::vector<survey> found(queries.size());
     for (std::size_t p = 0; p < found.size(); ++p) {
-        found[p].trees_a_hectare = 1e4f * per_square_metre[p].x;
+        found[p].trees_per_hectare = 1e4f * per_square_metre[p].x;
         found[p].standard_error = 1e4f * errors[p].x;
         found[p].mean_height = means[p];
         for (std::size_t n = p * k; n < (p + 1) * k && ids[n] != photongrid::nowhere; ++n) {

@@ -25,7 +25,7 @@ using vectors = std::vector<glm::vec4>;
 /// A photon as a program may have it.
 struct photon {
     glm::vec3 position; // m
-    glm::vec3 flux;     // W
+    glm::vec3 power;    // W
 };
 
 //! [photon_reader]
@@ -36,15 +36,15 @@ struct particle {
 template <>
 struct photongrid::photon_reader<particle> {
     static auto position(const particle& p) { return std::span(p.where); }
-    static float flux(const particle& p) { return p.mass; }
+    static float power(const particle& p) { return p.mass; }
 };
 //! [photon_reader]
 
 namespace {
 
-bool is_near(float value, double truth, double tolerance)
+bool is_near(float value, double expected, double tolerance)
 {
-    return std::abs(static_cast<double>(value) - truth) <= tolerance * truth;
+    return std::abs(static_cast<double>(value) - expected) <= tolerance * expected;
 }
 
 /// 1 W on a square of 1 m about the origin: 1 W/m^2 everywhere. Spread by multiples of irrational numbers.
@@ -107,7 +107,7 @@ void maps(device_type& device)
 
     //! [upload_photons]
     photongrid::photons<device_type> p
-        = photongrid::upload_photons(device, mine); // a vector of { vec3 position; vec3 flux; }
+        = photongrid::upload_photons(device, mine); // a vector of { vec3 position; vec3 power; }
     //! [upload_photons]
     expect(
         p.size() == mine.size() && device.download(p.powers)[0] == glm::vec4(1e-4f, 1e-4f, 1e-4f, 0), "upload_photons");
@@ -119,7 +119,7 @@ void maps(device_type& device)
 
     //! [fitting_grid]
     const photongrid::grid fitted
-        = photongrid::fitting_grid(device, p, 50, device.caps().cells_a_radius); // for the 50 nearest
+        = photongrid::fitting_grid(device, p, 50, device.caps().cells_per_radius); // for the 50 nearest
     //! [fitting_grid]
     expect(photongrid::cell_count(fitted) > 100 && photongrid::cell_count(fitted) <= 12500, "fitting_grid");
 
@@ -129,7 +129,8 @@ void maps(device_type& device)
         = device.download(routed.list);                             // 16 ids a cell, 0xFFFFFFFF where there are no more
     const glm::uvec2 first_cell = device.download(routed.cells)[0]; // (0, 16): it is full
     //! [stencil_route]
-    expect(slots.size() == 6400 && first_cell == glm::uvec2(0, 16) && slots[0] < p.size() && routed.overfull_cells > 0,
+    expect(
+        slots.size() == 6400 && first_cell == glm::uvec2(0, 16) && slots[0] < p.size() && routed.overflowing_cells > 0,
         "stencil_route");
 
     //! [sorted_map]
@@ -144,12 +145,12 @@ void maps(device_type& device)
     const auto approximate
         = photongrid::routed_map(device, photongrid::upload_photons(device, mine), cells, 4); // 4 x 4 slots a cell
     //! [routed_map]
-    expect(approximate.overfull_cells > 0 && device.download(approximate.cells)[0].y == 16, "routed_map");
+    expect(approximate.overflowing_cells > 0 && device.download(approximate.cells)[0].y == 16, "routed_map");
 
-    //! [redistributed_flux]
-    const double moved = photongrid::redistributed_flux(device, approximate); // W, of 3 W in three channels
-    //! [redistributed_flux]
-    expect(moved > 0.5 && moved < 3 && photongrid::redistributed_flux(device, map) == 0, "redistributed_flux");
+    //! [redistributed_power]
+    const double moved = photongrid::redistributed_power(device, approximate); // W, of 3 W in three channels
+    //! [redistributed_power]
+    expect(moved > 0.5 && moved < 3 && photongrid::redistributed_power(device, map) == 0, "redistributed_power");
 
     //! [fitted_map]
     const auto ready
@@ -161,8 +162,8 @@ void maps(device_type& device)
 void estimates(device_type& device, const photongrid::map_buffers<device_type>& map)
 {
     //! [upload_points]
-    const std::vector<glm::vec3> places{{0, 0, 0}, {0.1f, 0, 0.2f}}; // m
-    const auto points = photongrid::upload_points(device, places);
+    const std::vector<glm::vec3> queries{{0, 0, 0}, {0.1f, 0, 0.2f}}; // m
+    const auto points = photongrid::upload_points(device, queries);
     //! [upload_points]
     expect(device.download(points)[1] == glm::vec4(0.1f, 0, 0.2f, 1), "upload_points");
 
@@ -204,8 +205,8 @@ void estimates(device_type& device, const photongrid::map_buffers<device_type>& 
     const auto ids = device.download(lists.ids);            // those of point 1 are ids[8] to ids[15], nearest first
     const auto squared = device.download(lists.distances2); // m^2
     //! [knn_neighbours]
-    const auto place = photons_on_a_square()[ids[8]].position - places[1];
-    expect(ids.size() == 16 && is_near(squared[8], static_cast<double>(glm::dot(place, place)), 1e-4)
+    const auto offset = photons_on_a_square()[ids[8]].position - queries[1];
+    expect(ids.size() == 16 && is_near(squared[8], static_cast<double>(glm::dot(offset, offset)), 1e-4)
             && std::is_sorted(squared.begin() + 8, squared.end()),
         "knn_neighbours");
 }
@@ -255,8 +256,8 @@ void edges(device_type& device)
     auto found = photongrid::knn_grid_estimate(device, map, points, settings);
     const float before = device.download(found.irradiance)[0].x;
     //! [correct_edges]
-    // A point on the floor's edge, where half of the disc hangs over: the estimate is half of the truth until this is
-    // called.
+    // A point on the floor's edge, where half of the disc hangs over: the estimate is half of the irradiance until
+    // this is called.
     photongrid::correct_edges(
         device, scene, points, normals, found, settings.filter, photongrid::least_radius(map.cells_of));
     //! [correct_edges]
@@ -321,21 +322,21 @@ void pictures(device_type& device)
     }
 
     //! [render_reference]
-    const auto truth = photongrid::render_reference(room, room.camera, {.width = 16, .height = 12, .spp = 64});
-    const glm::vec3 value = truth.mean.pixels[7 * 16 + 8],
-                    error = truth.standard_error.pixels[7 * 16 + 8]; // W/(m^2 sr)
+    const auto drawn = photongrid::render_reference(room, room.camera, {.width = 16, .height = 12, .spp = 64});
+    const glm::vec3 value = drawn.mean.pixels[7 * 16 + 8],
+                    error = drawn.standard_error.pixels[7 * 16 + 8]; // W/(m^2 sr)
     //! [render_reference]
     expect(error.x > 0 && std::abs(value.x - picture.pixels[7 * 16 + 8].x) < 0.2f * value.x, "render_reference");
 }
 
 void host_maps(device_type& device)
 {
-    const std::vector<glm::vec3> places{{0, 0, 0}, {0.2f, 0, -0.1f}};
+    const std::vector<glm::vec3> queries{{0, 0, 0}, {0.2f, 0, -0.1f}};
     {
         const auto photons = photons_on_a_square();
         //! [photon_map]
         const photongrid::photon_map map(device, photons, {.k = 400});
-        for (const auto& e : map.irradiance(places, {.standard_error = true}))
+        for (const auto& e : map.irradiance(queries, {.standard_error = true}))
             std::cout << e.value.r << " +- " << e.error.r << " W/m^2 within " << e.radius << " m\n";
         photongrid::query_scratch scratch; // of this thread
         const auto here = map.irradiance(glm::vec3(0.1f, 0, 0.1f), glm::vec3(0, 1, 0), scratch);

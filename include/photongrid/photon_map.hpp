@@ -1,10 +1,10 @@
-// A photon map as a host sees it: photons of the host's in, irradiance out.
+// A photon map for a host program: its photons go in, irradiance comes out.
 //
 //     const photongrid::photon_map map(device, photons, {.k = 400});
-//     for (const auto& e : map.irradiance(places, {.standard_error = true}))
+//     for (const auto& e : map.irradiance(points, {.standard_error = true}))
 //         use(e.value, e.error, e.radius, e.count);
 //
-// Buffers, kernels and searches that can be interrupted lie underneath: map/, estimate/.
+// The folders map/ and estimate/ have the interface below it: buffers, kernels and interruptible searches.
 #pragma once
 
 #include <photongrid/estimate/host_search.hpp>
@@ -16,33 +16,33 @@
 
 namespace photongrid {
 
-/// What is wanted of irradiance.
+/// What to compute besides the irradiance.
 struct irradiance_options {
-    bool standard_error = false; ///< also how far off the values are likely to be
+    bool standard_error = false; ///< standard errors too
 };
 
-/// Photons, found again by where they are. It remembers how it is searched.
+/// A photon map with its search settings.
 ///
-/// Searches for many places run on the device, which must still be there; one thread at a time may use it. Searches for
-/// one place are const work of the calling thread on a copy of the map in the host's memory (see host_search): any
-/// number of threads may run them at once.
+/// Searches for many points run on the device, which must outlive the map; one thread at a time may use it. Searches
+/// for one point run in the calling thread, on a copy of the map in the host's memory (see host_search); any number of
+/// threads may run them at the same time.
 ///
-/// Doubles are measured from the middle of the photons, so that places 10^6 m from 0 and 0.1 m apart are told apart.
-/// Distances are in single precision.
+/// Positions in double precision are stored relative to the centre of the photons, so that points 0.1 m apart are
+/// distinct even 10^6 m from the origin. Distances are in single precision.
 /// \snippet snippets.cpp photon_map
 template <backend B>
 class photon_map {
 public:
-    /// Photons of the host's, any contiguous range that photon_reader reads; `search` says how they are searched. The
-    /// grid is fitted to them.
-    /// \throws std::invalid_argument for settings that make no sense, backend_error where the device has no room.
+    /// Builds a map of any contiguous range that photon_reader accepts, in a grid that is fitted to the photons and to
+    /// `search`.
+    /// \throws std::invalid_argument for invalid settings, backend_error if the device has no room.
     template <std::ranges::contiguous_range Range>
     requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_t<Range>> photon_map(
         B& device, const Range& photons, const knn_settings& search = {})
         : photon_map(device, detail::attributes_of(photons), search)
     {
     }
-    /// Photons whose attributes are apart: {.positions = p, .powers = w}.
+    /// The same for photons with attributes in separate arrays: {.positions = p, .powers = w}.
     photon_map(B& device, const photon_attributes& photons, const knn_settings& search = {})
         : device_(&device), origin_(detail::origin_of(photons.positions)),
           map_(fitted_map(device, uploaded(device, photons, origin_), std::max(search.k, 1u))),
@@ -50,56 +50,56 @@ public:
     {
     }
 
-    /// Photons that it was made from.
+    /// The number of photons.
     uint size() const { return map_.photons.size(); }
-    /// How it is searched.
+    /// The search settings.
     const knn_settings& search() const { return host_.settings(); }
     /// The map on the device.
     const map_buffers<B>& buffers() const& { return map_; }
     const map_buffers<B>& buffers() const&& = delete;
-    /// What positions on the device are measured from.
+    /// The origin of positions on the device.
     const glm::dvec3& origin() const { return origin_; }
 
-    /// Irradiance at many places, in their order.
-    /// \throws backend_error where the device has no room.
+    /// The irradiance at many points, in their order.
+    /// \throws backend_error if the device has no room.
     [[nodiscard]] std::vector<irradiance_at_point> irradiance(
-        const vector_view& places, const irradiance_options& options = {}) const
+        const vector_view& points, const irradiance_options& options = {}) const
     {
-        return searched(places, nullptr, options);
+        return searched(points, nullptr, options);
     }
-    /// With the unit normal of the surface at each place, which leak policies need.
+    /// The same with the unit normal of the surface at each point, for leak policies.
     [[nodiscard]] std::vector<irradiance_at_point> irradiance(
-        const vector_view& places, const vector_view& normals, const irradiance_options& options = {}) const
+        const vector_view& points, const vector_view& normals, const irradiance_options& options = {}) const
     {
-        return searched(places, &normals, options);
+        return searched(points, &normals, options);
     }
-    /// Irradiance at one place, with its standard error. From any thread, each with a scratch of its own.
-    /// \throws std::invalid_argument where the search is at_least_k.
+    /// The irradiance at one point, with its standard error. Any thread may call it; each needs its own scratch.
+    /// \throws std::invalid_argument if the search is at_least_k.
     template <detail::vector_like V, detail::vector_like N>
-    [[nodiscard]] irradiance_at_point irradiance(const V& place, const N& normal, query_scratch& scratch) const
+    [[nodiscard]] irradiance_at_point irradiance(const V& point, const N& normal, query_scratch& scratch) const
     {
-        return host_.irradiance(local(place), detail::to_vec3(normal), scratch);
+        return host_.irradiance(local(point), detail::to_vec3(normal), scratch);
     }
 
-    /// Calls f(photon_id, float distance2) for every photon within `radius`, m, in no particular order. From any
-    /// thread.
+    /// Calls f(photon_id, float distance2) for every photon within `radius`, m, in no particular order. Any thread may
+    /// call it.
     template <detail::vector_like V, class F>
-    void for_each_within(const V& place, float radius, const F& f) const
+    void for_each_within(const V& point, float radius, const F& f) const
     {
-        host_.for_each_within(local(place), radius, f);
+        host_.for_each_within(local(point), radius, f);
     }
-    /// The same for the k nearest, nearest first; of equally near ones, the smallest id first. From any thread.
+    /// The same for the k nearest photons, nearest first; equal distances are ordered by id. Any thread may call it.
     template <detail::vector_like V, class F>
-    void for_each_nearest(const V& place, uint k, query_scratch& scratch, const F& f) const
+    void for_each_nearest(const V& point, uint k, query_scratch& scratch, const F& f) const
     {
-        host_.for_each_nearest(local(place), k, std::numeric_limits<float>::infinity(), scratch, f);
+        host_.for_each_nearest(local(point), k, std::numeric_limits<float>::infinity(), scratch, f);
     }
-    /// With a scratch that each thread keeps.
+    /// The same with a scratch that each thread keeps.
     template <detail::vector_like V, class F>
-    void for_each_nearest(const V& place, uint k, const F& f) const
+    void for_each_nearest(const V& point, uint k, const F& f) const
     {
         thread_local query_scratch scratch;
-        for_each_nearest(place, k, scratch, f);
+        for_each_nearest(point, k, scratch, f);
     }
 
 private:
@@ -114,31 +114,31 @@ private:
         check("directions", a.directions.size(), true);
         check("normals", a.normals.size(), true);
         if (a.positions.size() > std::numeric_limits<uint>::max())
-            throw std::invalid_argument(
-                "photon_map: photons: " + std::to_string(a.positions.size()) + " are more than 2^32 - 1");
+            throw std::invalid_argument("photon_map: photons: " + std::to_string(a.positions.size())
+                + " are more than the 2^32 - 1 that a map can hold");
         const glm::dvec3 zero(0);
         return {detail::upload_view(b, a.positions, origin, 0.0f), detail::upload_view(b, a.powers, zero, 0.0f),
             detail::upload_view(b, a.directions, zero, 0.0f), detail::upload_view(b, a.normals, zero, 0.0f)};
     }
 
     template <class V>
-    glm::vec3 local(const V& place) const
+    glm::vec3 local(const V& point) const
     {
-        return glm::vec3(detail::to_dvec3(place) - origin_);
+        return glm::vec3(detail::to_dvec3(point) - origin_);
     }
 
     std::vector<irradiance_at_point> searched(
-        const vector_view& places, const vector_view* normals, const irradiance_options& options) const
+        const vector_view& points, const vector_view* normals, const irradiance_options& options) const
     {
         B& b = *device_;
         auto s = search();
         s.errors = options.standard_error;
-        const auto points = detail::upload_view(b, places, origin_, 1.0f);
+        const auto device_points = detail::upload_view(b, points, origin_, 1.0f);
         const auto estimates = [&] {
             if (normals == nullptr)
-                return knn_grid_estimate(b, map_, points, s);
-            const auto on = detail::upload_view(b, *normals, glm::dvec3(0), 0.0f);
-            return knn_grid_estimate(b, map_, points, on, s);
+                return knn_grid_estimate(b, map_, device_points, s);
+            const auto surface_normals = detail::upload_view(b, *normals, glm::dvec3(0), 0.0f);
+            return knn_grid_estimate(b, map_, device_points, surface_normals, s);
         }();
         const auto values = b.download(estimates.irradiance), errors = b.download(estimates.standard_error);
         const auto used = b.download(estimates.used);

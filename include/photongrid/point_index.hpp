@@ -1,7 +1,7 @@
-// Points that are not light: which are near a place, how many, how far.
+// Nearest-neighbour searches among points that are not photons: which points are near, how many, and how far away.
 //
 //     const photongrid::point_index index(device, points);
-//     const auto nearest = index.nearest(places, 16);
+//     const auto nearest = index.nearest(queries, 16);
 //     for (const auto& n : nearest[0])
 //         use(points[n.id], n.distance2);
 #pragma once
@@ -16,25 +16,25 @@
 
 namespace photongrid {
 
-/// A point near a place.
+/// A point near a query point.
 struct point_neighbour {
-    photon_id id = nowhere; ///< its place in the range that the index was made from
+    photon_id id = nowhere; ///< its index in the range that the index was made from
     float distance2 = 0;    ///< m^2
 
     bool operator==(const point_neighbour&) const = default;
 };
 
-/// The neighbours of many places, those of place i in [i].
+/// The neighbours of many query points; [i] has those of query point i.
 class point_neighbours {
 public:
-    /// Places.
+    /// How many query points.
     std::size_t size() const { return begin_.size() - 1; }
-    /// Neighbours of place i.
+    /// The neighbours of query point i.
     std::span<const point_neighbour> operator[](std::size_t i) const&
     {
         return std::span(all_).subspan(begin_[i], begin_[i + 1] - begin_[i]);
     }
-    std::span<const point_neighbour> operator[](std::size_t i) const&& = delete; // they would be gone
+    std::span<const point_neighbour> operator[](std::size_t i) const&& = delete; // the span would dangle
 
 private:
     template <backend B>
@@ -43,14 +43,15 @@ private:
     std::vector<std::size_t> begin_{0};
 };
 
-/// Points of the host's in a grid that is fitted to them. Searches for many places run on
-/// the device, those for one place in the calling thread, on a copy in the host's memory: see photon_map, also for
-/// doubles.
+/// A host's points in a grid that is fitted to them. Searches for many query points run on the device. Searches for one
+/// query point run in the calling thread, on a copy in the host's memory. Positions in double precision are treated as
+/// in photon_map.
 /// \snippet snippets.cpp point_index
 template <backend B>
 class point_index {
 public:
-    /// `k`: how many neighbours searches are likely to want; the grid is fitted to it, results do not depend on it.
+    /// `k`: the number of neighbours that searches typically ask for. The grid is fitted to it; results do not depend
+    /// on it.
     /// \throws backend_error where the device has no room.
     point_index(B& device, const vector_view& points, uint k = 16)
         : device_(&device), origin_(detail::origin_of(points)), map_(fitted_map(device, uploaded(device, points), k)),
@@ -58,35 +59,35 @@ public:
     {
     }
 
-    /// Points that it was made from.
+    /// How many points the index was made from.
     uint size() const { return map_.photons.size(); }
 
-    /// The k nearest points of each place, nearest first; of equally near ones, the smallest id first. Fewer where
-    /// there are fewer, or none farther than max_radius is wanted.
+    /// The k nearest points of each query point, nearest first; equal distances are ordered by id. Fewer if the index
+    /// has fewer points within max_radius, m.
     /// \throws std::invalid_argument for k = 0.
     [[nodiscard]] point_neighbours nearest(
-        const vector_view& places, uint k, float max_radius = std::numeric_limits<float>::infinity()) const
+        const vector_view& queries, uint k, float max_radius = std::numeric_limits<float>::infinity()) const
     {
         B& b = *device_;
         const auto lists = knn_neighbours(
-            b, map_, detail::upload_view(b, places, origin_, 1.0f), {.k = k, .max_radius = max_radius});
+            b, map_, detail::upload_view(b, queries, origin_, 1.0f), {.k = k, .max_radius = max_radius});
         const auto ids = b.download(lists.ids);
         const auto distances2 = b.download(lists.distances2);
         point_neighbours n;
-        for (std::size_t i = 0; i < places.size(); ++i) {
+        for (std::size_t i = 0; i < queries.size(); ++i) {
             for (std::size_t entry = i * k; entry < (i + 1) * k && ids[entry] != nowhere; ++entry)
                 n.all_.push_back({ids[entry], distances2[entry]});
             n.begin_.push_back(n.all_.size());
         }
         return n;
     }
-    /// All points within `radius` of each place, nearest first.
-    [[nodiscard]] point_neighbours within(const vector_view& places, float radius) const
+    /// All points within `radius`, m, of each query point, nearest first.
+    [[nodiscard]] point_neighbours within(const vector_view& queries, float radius) const
     {
         point_neighbours n;
-        for (std::size_t i = 0; i < places.size(); ++i) {
+        for (std::size_t i = 0; i < queries.size(); ++i) {
             const auto first = static_cast<std::ptrdiff_t>(n.all_.size());
-            host_.for_each_within(glm::vec3(places[i] - origin_), radius, [&](photon_id id, float distance2) {
+            host_.for_each_within(glm::vec3(queries[i] - origin_), radius, [&](photon_id id, float distance2) {
                 n.all_.push_back({id, distance2});
             });
             std::sort(n.all_.begin() + first, n.all_.end(), [](const point_neighbour& a, const point_neighbour& c) {
@@ -96,11 +97,11 @@ public:
         }
         return n;
     }
-    /// How many points lie within `radius` of each place.
-    [[nodiscard]] std::vector<uint> count_within(const vector_view& places, float radius) const
+    /// How many points lie within `radius`, m, of each query point.
+    [[nodiscard]] std::vector<uint> count_within(const vector_view& queries, float radius) const
     {
         B& b = *device_;
-        const auto points = detail::upload_view(b, places, origin_, 1.0f);
+        const auto points = detail::upload_view(b, queries, origin_, 1.0f);
         const auto e = knn_grid_estimate(
             b, map_, points, {.max_radius = radius, .search = search_kind::fixed_radius, .bias = bias_kind::paper});
         std::vector<uint> counts;
@@ -109,25 +110,25 @@ public:
         return counts;
     }
 
-    /// Calls f(photon_id, float distance2) for every point within `radius` of one place, in no particular order. From
-    /// any thread.
+    /// Calls f(photon_id, float distance2) for every point within `radius`, m, of one query point, in no particular
+    /// order. Any thread may call it.
     template <detail::vector_like V, class F>
-    void for_each_within(const V& place, float radius, const F& f) const
+    void for_each_within(const V& query, float radius, const F& f) const
     {
-        host_.for_each_within(glm::vec3(detail::to_dvec3(place) - origin_), radius, f);
+        host_.for_each_within(glm::vec3(detail::to_dvec3(query) - origin_), radius, f);
     }
-    /// The same for the k nearest, nearest first. From any thread, each with a scratch of its own.
+    /// The same for the k nearest points, nearest first. Any thread may call it; each needs its own scratch.
     template <detail::vector_like V, class F>
-    void for_each_nearest(const V& place, uint k, query_scratch& scratch, const F& f) const
+    void for_each_nearest(const V& query, uint k, query_scratch& scratch, const F& f) const
     {
         host_.for_each_nearest(
-            glm::vec3(detail::to_dvec3(place) - origin_), k, std::numeric_limits<float>::infinity(), scratch, f);
+            glm::vec3(detail::to_dvec3(query) - origin_), k, std::numeric_limits<float>::infinity(), scratch, f);
     }
 
 private:
     photons<B> uploaded(B& b, const vector_view& points) const
     {
-        // The searches of a map read no power; the map itself has room for one.
+        // A map needs powers, though these searches read none.
         const std::vector<glm::vec4> none(points.size());
         return {detail::upload_view(b, points, origin_, 0.0f), b.upload(std::span(none))};
     }

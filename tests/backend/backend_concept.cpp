@@ -3,7 +3,7 @@
 #include <photongrid/estimate/knn_visit.kernel.hpp>
 #include <photongrid/map/bitonic_step.kernel.hpp>
 #include <photongrid/map/build_map.hpp>
-#include <photongrid/map/overfull_cell.kernel.hpp>
+#include <photongrid/map/overflowing_cell.kernel.hpp>
 #include <photongrid/map/route_photon.kernel.hpp>
 
 #include <gtest/gtest.h>
@@ -75,7 +75,7 @@ static_assert(
     gather_kernel<
         kernels::bitonic_step> && !iterative_kernel<kernels::bitonic_step> && !predicate_kernel<kernels::bitonic_step>);
 static_assert(iterative_kernel<kernels::knn_visit>);
-static_assert(predicate_kernel<kernels::overfull_cell>);
+static_assert(predicate_kernel<kernels::overflowing_cell>);
 static_assert(route_kernel<kernels::route_photon> && !route_kernel<kernels::bitonic_step>);
 static_assert(kernel_name<kernels::knn_visit>() == "knn_visit");
 static_assert(input_count<kernels::knn_visit> == 7 && output_count<kernels::knn_visit> == 3);

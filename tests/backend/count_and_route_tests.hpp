@@ -145,7 +145,7 @@ TYPED_TEST_P(verbs, capabilities_can_be_worked_with)
     EXPECT_LE(c.max_elements, 0xFFFFFFFFu); // elements are numbered by 32 bits
     EXPECT_GE(c.max_route_slots, 1u);
     EXPECT_LE(c.max_route_slots, 16u);
-    EXPECT_GT(c.cells_a_radius, 0.0f);
+    EXPECT_GT(c.cells_per_radius, 0.0f);
     EXPECT_EQ(&c, &this->b().caps());
 }
 

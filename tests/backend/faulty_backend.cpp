@@ -60,7 +60,7 @@ namespace {
         std::string bits;
         append(bits, b.download(e.irradiance));
         append(bits, b.download(e.used));
-        append(bits, std::vector<double>{redistributed_flux(b, map)});
+        append(bits, std::vector<double>{redistributed_power(b, map)});
         return bits;
     }
 
@@ -72,7 +72,7 @@ namespace {
         std::string bits;
         append(bits, b.download(r.list));
         append(bits, b.download(r.powers));
-        append(bits, std::vector<std::uint64_t>{r.overfull_cells});
+        append(bits, std::vector<std::uint64_t>{r.overflowing_cells});
         return bits;
     }
 
@@ -96,7 +96,7 @@ namespace {
         append(bits, p.pixels);
         append(bits,
             std::vector<std::uint64_t>{stats.photons.emitted, stats.photons.stored, stats.photons.absorbed,
-                stats.photons.dropped, stats.map.overfull_cells});
+                stats.photons.dropped, stats.map.overflowing_cells});
         return bits;
     }
 

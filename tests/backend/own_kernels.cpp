@@ -52,12 +52,12 @@ std::vector<std::pair<double, std::size_t>> by_distance(const std::vector<tree>&
 TYPED_TEST(own_kernels, survey_a_forest)
 {
     const auto trees = random_trees(3000);
-    const std::vector<glm::vec3> places{{50, 50, 0}, {1, 99, 0}, {80, 20, 0}, {-5, 50, 0}};
+    const std::vector<glm::vec3> queries{{50, 50, 0}, {1, 99, 0}, {80, 20, 0}, {-5, 50, 0}};
     constexpr uint k = 37;
-    const auto surveys = survey_forest(this->b(), trees, places, k);
-    ASSERT_EQ(surveys.size(), places.size());
-    for (std::size_t p = 0; p < places.size(); ++p) {
-        const auto expected = by_distance(trees, places[p]);
+    const auto surveys = survey_forest(this->b(), trees, queries, k);
+    ASSERT_EQ(surveys.size(), queries.size());
+    for (std::size_t p = 0; p < queries.size(); ++p) {
+        const auto expected = by_distance(trees, queries[p]);
         double height = 0, weights = 0;
         for (uint n = 0; n < k; ++n) {
             const auto& [d2, id] = expected[n];
@@ -68,7 +68,7 @@ TYPED_TEST(own_kernels, survey_a_forest)
         }
         EXPECT_NEAR(static_cast<double>(surveys[p].mean_height), height / weights, 1e-5 * height / weights);
         const double per_hectare = 1e4 * (k - 1) / (M_PI * expected[k - 1].first);
-        EXPECT_NEAR(static_cast<double>(surveys[p].trees_a_hectare), per_hectare, 1e-5 * per_hectare);
+        EXPECT_NEAR(static_cast<double>(surveys[p].trees_per_hectare), per_hectare, 1e-5 * per_hectare);
     }
 }
 

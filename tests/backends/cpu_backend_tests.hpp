@@ -135,7 +135,7 @@ TEST(cpu_backend, buffers_can_be_turned_over)
             v = {u(), -u(), u() * 1e30f, u() * 1e-30f};
         const auto device = b.upload(std::span<const vec4>(host));
         const auto before = b.bytes();
-        const auto p = b.planes(device);
+        const auto p = b.components(device);
         for (std::size_t i = 0; i < n; ++i)
             ASSERT_TRUE(p.x[i] == host[i].x && p.y[i] == host[i].y && p.z[i] == host[i].z && p.w[i] == host[i].w);
         EXPECT_EQ(count_different_bits(b.download(device), host), 0u);

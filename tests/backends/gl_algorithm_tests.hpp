@@ -75,7 +75,7 @@ namespace {
         const auto queries = b.upload(view(points));
         const auto e = knn_grid_estimate(b, map, queries, s);
         return std::tuple(b.download(map.list), b.download(map.cells), b.download(map.photons.powers),
-            b.download(e.irradiance), b.download(e.used), map.invalid, map.overfull_cells);
+            b.download(e.irradiance), b.download(e.used), map.invalid, map.overflowing_cells);
     }
     template <class Tuple>
     void expect_same(const Tuple& a, const Tuple& c, const std::string& what)
@@ -86,7 +86,7 @@ namespace {
         EXPECT_TRUE(same_bits(std::get<3>(a), std::get<3>(c))) << what << ": irradiance";
         EXPECT_TRUE(same_bits(std::get<4>(a), std::get<4>(c))) << what << ": used";
         EXPECT_EQ(std::get<5>(a), std::get<5>(c)) << what << ": invalid";
-        EXPECT_EQ(std::get<6>(a), std::get<6>(c)) << what << ": overfull";
+        EXPECT_EQ(std::get<6>(a), std::get<6>(c)) << what << ": overflowing";
     }
     std::vector<glm::vec4> query_points(std::size_t n)
     {
@@ -157,7 +157,7 @@ namespace {
         const auto polls = b.query_polls();
         const auto sorted = sorted_map(b, std::move(photons_to_sort), g);
         const auto routed = routed_map(b, std::move(photons_to_route), g, 4);
-        EXPECT_EQ(b.query_polls() - polls, 3u) << "three counts: invalid photons twice, overfull cells once";
+        EXPECT_EQ(b.query_polls() - polls, 3u) << "three counts: invalid photons twice, overflowing cells once";
         knn_search search(b, sorted, queries,
             as_paper(knn_settings{.k = 40, .max_radius = 0.4f, .visits_per_pass = 20, .ranges_per_pass = 20}));
         const auto before = b.query_polls();

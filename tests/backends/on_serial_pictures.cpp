@@ -19,8 +19,8 @@ INSTANTIATE_TYPED_TEST_SUITE_P(serial, progressive, ::testing::Types<serial_tag>
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, hard_cases, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, boxes, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, edges, ::testing::Types<serial_tag>, tag_names);
-// A picture's error against the truth is bias and noise: E(N) = bias^2 + noise^2 / N for N passes. Between N and 4 N
-// passes 3/4 of the noise goes, whatever the bias and the reference's own error: E(1) - E(4) = 4 (E(4) - E(16)).
+// A picture's error against the reference is bias and noise: E(N) = bias^2 + noise^2 / N for N passes. Between N and 4
+// N passes 3/4 of the noise goes, whatever the bias and the reference's own error: E(1) - E(4) = 4 (E(4) - E(16)).
 TEST(passes, noise_falls_with_their_number)
 {
     auto s = small_cornell();
@@ -30,10 +30,10 @@ TEST(passes, noise_falls_with_their_number)
     s.render.map.photons = 1000;
     s.render.estimate.k = 40;
     s.render.output.passes = 16;
-    auto truth_settings = reference_settings_for(s.render);
-    truth_settings.spp = 256;
-    truth_settings.paths = 1 << 16;
-    const auto truth = render_reference(s, s.camera, truth_settings).mean;
+    auto fine = reference_settings_for(s.render);
+    fine.spp = 256;
+    fine.paths = 1 << 16;
+    const auto exact = render_reference(s, s.camera, fine).mean;
     std::vector<double> gained, odd; // by three quarters of the noise of one pass; what should be 0
     for (uint block = 0; block < 16; ++block) {
         s.render.seed = block;
@@ -47,7 +47,7 @@ TEST(passes, noise_falls_with_their_number)
             const auto pixels = draw_pass(b, built, s.camera, settings, {}, stats);
             film one(16, 16, 1, false);
             one.add(0, pixels);
-            error[0] += relative_mse(one.picture().picture, truth) / 16;
+            error[0] += relative_mse(one.picture().picture, exact) / 16;
             if (pass == 0)
                 sixteen = film(16, 16, 1, false);
             if (pass % 4 == 0)
@@ -55,9 +55,9 @@ TEST(passes, noise_falls_with_their_number)
             sixteen.add(pass, pixels);
             four.add(pass, pixels);
             if (pass % 4 == 3)
-                error[1] += relative_mse(four.picture().picture, truth) / 4;
+                error[1] += relative_mse(four.picture().picture, exact) / 4;
         }
-        error[2] = relative_mse(sixteen.picture().picture, truth);
+        error[2] = relative_mse(sixteen.picture().picture, exact);
         gained.push_back(error[0] - error[1]);
         odd.push_back(error[0] - error[1] - 4 * (error[1] - error[2]));
     }

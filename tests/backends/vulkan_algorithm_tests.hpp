@@ -10,7 +10,7 @@ struct everything {
     std::vector<uint> list;
     std::vector<vec4> powers, irradiance;
     std::vector<uvec2> used;
-    uint invalid = 0, overfull = 0;
+    uint invalid = 0, overflowing = 0;
 };
 
 template <backend B>
@@ -21,7 +21,7 @@ everything map_and_estimate(
     const auto q = up(b, points);
     auto e = knn_grid_estimate(b, map, q, settings);
     return {b.download(map.cells), b.download(map.list), b.download(map.photons.powers), b.download(e.irradiance),
-        b.download(e.used), map.invalid, map.overfull_cells};
+        b.download(e.used), map.invalid, map.overflowing_cells};
 }
 
 void expect_equal(const everything& a, const everything& b)
@@ -32,7 +32,7 @@ void expect_equal(const everything& a, const everything& b)
     EXPECT_EQ(count_different_bits(a.irradiance, b.irradiance), 0u);
     EXPECT_EQ(count_different_bits(a.used, b.used), 0u);
     EXPECT_EQ(a.invalid, b.invalid);
-    EXPECT_EQ(a.overfull, b.overfull);
+    EXPECT_EQ(a.overflowing, b.overflowing);
 }
 
 TEST_F(vulkan, sort_equals_serial)

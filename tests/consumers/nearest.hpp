@@ -13,7 +13,7 @@ namespace consumer {
 
 struct photon {
     glm::vec3 position; // m
-    float flux;         // W
+    float power;        // W
 };
 
 /// Photons spread over the unit cube by multiples of irrational numbers.

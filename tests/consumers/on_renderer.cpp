@@ -27,7 +27,7 @@ int main()
     int failures = 0;
     const auto scene = ball_on_a_floor();
     for (const auto& d : photongrid::find_devices())
-        std::cout << d.backend << ": " << (d.works ? d.device : d.about) << '\n';
+        std::cout << d.backend << ": " << (d.works ? d.device : d.description) << '\n';
     photongrid::image first;
     for (const auto* backend : {"serial", "auto"}) {
         const auto device = photongrid::make_renderer({.backend = backend});

@@ -21,7 +21,7 @@ TYPED_TEST_P(estimators, every_combination_equals_brute_force)
                         k.leaks = leaks;
                         ASSERT_EQ(this->difference(s, map, k), "")
                             << "search " << int(search) << " filter " << int(filter) << " bias " << int(bias)
-                            << " side " << leaks.side << " cosine " << leaks.min_cosine << " compression "
+                            << " side " << leaks.side << " cosine " << leaks.min_cosine << " flattening "
                             << leaks.flattening;
                     }
     }

@@ -129,7 +129,7 @@ TYPED_TEST_P(neighbours, keep_every_leak_policy)
         for (const auto& leaks : {leak_policy{}, leak_policy{.side = true}, leak_policy{.min_cosine = 0.3f},
                  leak_policy{.flattening = 3}, leak_policy{.side = true, .min_cosine = -0.5f, .flattening = 1.5f}})
             ASSERT_EQ(this->difference(s, {.k = 30, .max_radius = 0.4f, .leaks = leaks}, routed), "")
-                << "side " << leaks.side << " cosine " << leaks.min_cosine << " compression " << leaks.flattening;
+                << "side " << leaks.side << " cosine " << leaks.min_cosine << " flattening " << leaks.flattening;
 }
 
 TYPED_TEST_P(neighbours, of_many_at_one_distance_have_the_smallest_ids)

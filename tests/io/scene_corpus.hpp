@@ -47,7 +47,9 @@ namespace detail {
         if (polygons.count != s.polygons.size() + s.rectangle_lights.size() || materials.count != s.materials.size()
             || lights.count != count_lights(s))
             return "a table has lost something";
-        std::size_t shapes = polygons.count, next = kernels::SCENE_TABLES;
+        if (materials.first != kernels::FIRST_MATERIAL || materials.stride != kernels::MATERIAL_RECORDS)
+            return "the materials do not stand where kernels look for them";
+        std::size_t shapes = polygons.count, next = materials.first + std::size_t{materials.count} * materials.stride;
         for (uint number = 0; number < kernels::SCENE_TABLES; ++number)
             if (number != shape_kind<polygon>::number && number != kernels::MATERIAL_TABLE
                 && number != kernels::SCENE_SIZES && number != kernels::LIGHT_TABLE) {
@@ -64,9 +66,8 @@ namespace detail {
                 return "the normal of a polygon is not a unit vector";
             next += 2 + 2 * static_cast<std::size_t>(r.records[next + 1].x); // each edge is a record, and each vertex
         }
-        if (materials.first != next || lights.first != next + materials.count * materials.stride
-            || r.records.size() != lights.first + lights.count * lights.stride)
-            return "materials, lights and the end do not follow the polygons";
+        if (lights.first != next || r.records.size() != lights.first + lights.count * lights.stride)
+            return "lights and the end do not follow the polygons";
         for (uint n = 0, i = quadrics.first; n < quadrics.count; ++n, i += quadrics.stride)
             if (!unit(r.records[i + 1]) || !unit(r.records[i + 2]) || !unit(r.records[i + 3]))
                 return "the axes of a cylinder, cone or paraboloid are not unit vectors";

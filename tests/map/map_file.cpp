@@ -82,7 +82,7 @@ namespace {
         auto other = whole;
         std::swap(other[12], other[15]);
         std::swap(other[13], other[14]);
-        EXPECT_NE(complaint(other).find("order of bytes"), std::string::npos);
+        EXPECT_NE(complaint(other).find("byte order"), std::string::npos);
     }
 
     TEST_F(damaged_map_files, made_with_care_are_refused_too)
@@ -91,7 +91,7 @@ namespace {
         // Every word of the header, and the first cells: a wrong one is seen, or it is one of those that only tell a
         // number.
         const std::size_t harmless[] = {offsetof(detail::map_file_header, invalid),
-            offsetof(detail::map_file_header, left_out), offsetof(detail::map_file_header, overfull_cells),
+            offsetof(detail::map_file_header, left_out), offsetof(detail::map_file_header, overflowing_cells),
             offsetof(detail::map_file_header, checksum), offsetof(detail::map_file_header, checksum) + 4};
         for (std::size_t at = 8; at < sizeof(detail::map_file_header) + 64; at += 4) {
             const bool is_header = at < sizeof(detail::map_file_header);

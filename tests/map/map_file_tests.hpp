@@ -77,7 +77,7 @@ TYPED_TEST_P(map_files, come_back_to_the_bit_on_every_backend)
                 same(map.surpluses, mine.surpluses, theirs.surpluses);
                 EXPECT_EQ(mine.invalid, map.invalid);
                 EXPECT_EQ(mine.left_out, map.left_out);
-                EXPECT_EQ(mine.overfull_cells, map.overfull_cells);
+                EXPECT_EQ(mine.overflowing_cells, map.overflowing_cells);
                 EXPECT_EQ(std::memcmp(&mine.cells_of, &map.cells_of, sizeof mine.cells_of), 0);
 
                 const auto points = make_points(set, 50, 2);

@@ -18,7 +18,7 @@ struct vector {
 struct hit {
     int id;
     vector position;
-    std::array<float, 3> flux;
+    std::array<float, 3> power;
     glm::vec3 direction;
     float normal[3];
     bool caustic;
@@ -31,7 +31,7 @@ struct particle {
 /// One number in place of three.
 struct grey {
     float position[3];
-    float flux;
+    float power;
 };
 struct stranger {
     int i;
@@ -42,7 +42,7 @@ struct stranger {
 template <>
 struct photongrid::photon_reader<foreign::particle> {
     static auto position(const foreign::particle& p) { return std::span(p.where); }
-    static float flux(const foreign::particle& p) { return p.mass; }
+    static float power(const foreign::particle& p) { return p.mass; }
 };
 
 namespace photongrid::testing {

@@ -19,7 +19,7 @@ namespace photongrid::testing {
 namespace {
     struct host_photon {
         glm::vec3 position;
-        glm::vec3 flux;
+        glm::vec3 power;
         glm::vec3 direction;
         glm::vec3 normal;
     };
@@ -33,7 +33,7 @@ namespace {
         std::vector<host_photon> photons(n);
         for (auto& p : photons) {
             p.position = {2 * number(), number(), 0.25f * number()};
-            p.flux = {unit(random), unit(random), unit(random)};
+            p.power = {unit(random), unit(random), unit(random)};
             p.direction = glm::normalize(glm::vec3(unit(random) - 0.5f, unit(random) - 0.5f, unit(random) - 0.7f));
             p.normal = glm::normalize(glm::vec3(unit(random) - 0.5f, unit(random) - 0.5f, unit(random) + 0.2f));
         }
@@ -166,7 +166,7 @@ TYPED_TEST(host_maps, attributes_that_lie_apart_give_the_same_map)
     std::vector<glm::vec3> powers, normals;
     for (const auto& p : photons) {
         positions.push_back({p.position.x, p.position.y, p.position.z});
-        powers.push_back(p.flux);
+        powers.push_back(p.power);
         normals.push_back(p.normal);
     }
     const auto places = some_places(4, 50, false);

@@ -45,10 +45,10 @@ TYPED_TEST_P(algorithms, route_keeps_the_first_in_draw_order_and_all_the_flux)
                 destined[static_cast<std::size_t>((cell.z * 5 + cell.y) * 6 + cell.x)].push_back(id);
             }
             const uint capacity = std::min(m * m, 255u);
-            std::uint64_t overfull = 0;
+            std::uint64_t overflowing = 0;
             for (std::size_t c = 0; c < cells.size(); ++c) {
                 const uint kept = std::min<uint>(capacity, static_cast<uint>(destined[c].size()));
-                overfull += destined[c].size() > capacity ? 1u : 0u;
+                overflowing += destined[c].size() > capacity ? 1u : 0u;
                 ASSERT_EQ(cells[c], uvec2(c * capacity, kept)) << "cell " << c << " m " << m << " " << name_of(d);
                 ASSERT_EQ(totals[c].w, static_cast<float>(destined[c].size()));
                 glm::dvec3 before(0), after(0);
@@ -67,7 +67,7 @@ TYPED_TEST_P(algorithms, route_keeps_the_first_in_draw_order_and_all_the_flux)
                         largest = std::max(largest, std::abs(after[channel] / before[channel] - 1));
                 }
             }
-            EXPECT_EQ(routed.overfull_cells, overfull);
+            EXPECT_EQ(routed.overflowing_cells, overflowing);
         }
     this->report("A1", "relative error of a cell's flux:", largest);
 }

@@ -212,8 +212,8 @@ namespace {
             EXPECT_TRUE(p.contains("dropped"));
             EXPECT_EQ(s.at("map").at("builder"), map);
             EXPECT_EQ(s.at("map").at("cells"), 32 * 32);
-            EXPECT_TRUE(s.at("map").contains("overfull_cells"));
-            EXPECT_TRUE(s.at("map").contains("redistributed_flux"));
+            EXPECT_TRUE(s.at("map").contains("overflowing_cells"));
+            EXPECT_TRUE(s.at("map").contains("redistributed_power"));
             for (const auto* stage : {"trace_photons", "build_map", "trace_rays", "radiance_estimate"}) {
                 EXPECT_GT(s.at("stages").at(stage).at("ms"), 0) << stage;
                 EXPECT_GT(s.at("stages").at(stage).at("passes"), 0) << stage;

@@ -73,8 +73,9 @@ namespace {
         const auto& c = s.camera;
         // Where points of the scene are in a picture of 200 x 200: the camera looks along z.
         const auto place = [&](const dvec3& p) {
-            const double reach = std::tan(glm::radians(c.vertical_fov) / 2) * (p.z - c.position.z);
-            return glm::dvec2(100 - 100 * (p.x - c.position.x) / reach, 100 - 100 * (p.y - c.position.y) / reach);
+            const double half_height = std::tan(glm::radians(c.vertical_fov) / 2) * (p.z - c.position.z);
+            return glm::dvec2(
+                100 - 100 * (p.x - c.position.x) / half_height, 100 - 100 * (p.y - c.position.y) / half_height);
         };
         for (const auto& [point, name] :
             {std::pair{dvec3(0.7, 0.2, 0.45), "sphere, mirror"}, {dvec3(0.3, 0.18, 0.17), "sphere, glass"},

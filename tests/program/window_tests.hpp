@@ -11,7 +11,7 @@ TEST_F(window, follows_camera_lamp_and_keys)
     ASSERT_NO_FATAL_FAILURE(open_window());
     key(XK_o);                  // no numbers over the picture, which go on while it rests
     mouse_to(px(0.1), py(0.2)); // off the panel, whose tips reach into the picture
-    const auto first = look();
+    const auto first = take_screenshot();
     const auto maps_at_first = maps();
     // The lamp is left, the shadow right of the ball: on the floor beside it.
     EXPECT_GT(first.brightness(0.2, 0.35, 0.66, 0.74), first.brightness(0.6, 0.72, 0.66, 0.74) + 10);
@@ -20,7 +20,7 @@ TEST_F(window, follows_camera_lamp_and_keys)
     auto before = requests();
     drag(px(0.1), py(0.2), px(0.2), py(0.2));
     ASSERT_TRUE(rests(before));
-    EXPECT_GT(difference(look(), first), 0.05) << "the camera did not turn";
+    EXPECT_GT(difference(take_screenshot(), first), 0.05) << "the camera did not turn";
     EXPECT_EQ(maps(), maps_at_first) << "photons were traced for a camera that moved";
     before = requests();
     drag(px(0.1), py(0.2), px(0.1), py(0.3), 3);
@@ -29,7 +29,7 @@ TEST_F(window, follows_camera_lamp_and_keys)
     key(XK_z, true);
     key(XK_z, true);
     ASSERT_TRUE(rests(before + 1));
-    EXPECT_LT(difference(look(), first), 0.001) << "undone, it is the first picture again";
+    EXPECT_LT(difference(take_screenshot(), first), 0.001) << "undone, it is the first picture again";
 
     // The lamp is taken and moved to the right: photons are traced anew, and the shadow falls to the left.
     before = requests();
@@ -37,7 +37,7 @@ TEST_F(window, follows_camera_lamp_and_keys)
     EXPECT_EQ(requests(), before) << "to select is not to draw";
     drag(px(0.27), py(0.285), px(0.73), py(0.285));
     ASSERT_TRUE(rests(before));
-    const auto moved = look();
+    const auto moved = take_screenshot();
     EXPECT_GT(maps(), maps_at_first);
     EXPECT_GT(moved.brightness(0.6, 0.75, 0.66, 0.74), moved.brightness(0.28, 0.4, 0.66, 0.74) + 10)
         << "the shadow did not go with the lamp";
@@ -50,12 +50,12 @@ TEST_F(window, follows_camera_lamp_and_keys)
     key(XK_z, true);
     key(XK_z, true);
     ASSERT_TRUE(rests(before + 1));
-    EXPECT_LT(difference(look(), first), 0.001);
+    EXPECT_LT(difference(take_screenshot(), first), 0.001);
 
     // The exposure changes the screen and draws nothing.
     before = requests();
     key(XK_e);
-    EXPECT_LT(look().brightness(0, 1, 0, 1), first.brightness(0, 1, 0, 1) - 5);
+    EXPECT_LT(take_screenshot().brightness(0, 1, 0, 1), first.brightness(0, 1, 0, 1) - 5);
     EXPECT_EQ(requests(), before);
 
     // Pictures and scene are saved.

@@ -255,7 +255,7 @@ protected:
             return sum / (3.0 * n);
         }
     };
-    screenshot look() const
+    screenshot take_screenshot() const
     {
         screenshot s;
         s.width = picture_width, s.height = picture_height, s.left = picture_left, s.top = picture_top;

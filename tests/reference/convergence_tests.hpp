@@ -105,22 +105,21 @@ namespace {
     TEST(validation, long_cornell_blocks_converge_to_the_reference)
     {
         auto s = read_scene(PHOTONGRID_SCENES "/cornell_blocks.json");
-        auto wanted = reference_settings_for(s.render);
-        wanted.width = wanted.height = 32;
-        wanted.spp = 4096;
-        wanted.seed = 99;
-        const auto truth = render_reference(s, s.camera, wanted);
+        auto fine = reference_settings_for(s.render);
+        fine.width = fine.height = 32;
+        fine.spp = 4096;
+        fine.seed = 99;
+        const auto exact = render_reference(s, s.camera, fine);
 
         // Pixels over an edge of a shape or the lamp are left out: their noise is that of 32 eye rays, whatever the
         // photons do.
         const reference::geometry shapes(s);
         const dvec3 forward = glm::normalize(s.camera.look_at - s.camera.position),
                     right = glm::normalize(glm::cross(forward, s.camera.up)), up = glm::cross(right, forward);
-        const double pixel = 2 * std::tan(glm::radians(0.5 * s.camera.vertical_fov)) / wanted.height;
+        const double pixel = 2 * std::tan(glm::radians(0.5 * s.camera.vertical_fov)) / fine.height;
         const auto shape_at = [&](double x, double y) {
             return shapes.nearest({s.camera.position,
-                glm::normalize(
-                    forward + (x - 0.5 * wanted.width) * pixel * right + (0.5 * wanted.height - y) * pixel * up),
+                glm::normalize(forward + (x - 0.5 * fine.width) * pixel * right + (0.5 * fine.height - y) * pixel * up),
                 reference::nothing});
         };
         // Of these, pixels with nothing else and no edge near: there irradiance is smooth over the discs of the
@@ -139,15 +138,15 @@ namespace {
         };
         std::vector<std::size_t> whole;
         std::vector<bool> smooth; // of those
-        for (std::uint32_t y = 0; y < wanted.height; ++y)
-            for (std::uint32_t x = 0; x < wanted.width; ++x) {
+        for (std::uint32_t y = 0; y < fine.height; ++y)
+            for (std::uint32_t x = 0; x < fine.width; ++x) {
                 const auto middle = shape_at(x + 0.5, y + 0.5);
                 bool one = middle.shape != reference::nothing && middle.light == reference::nothing;
                 for (const auto& [dx, dy] : {std::pair{-0.1, -0.1}, {1.1, -0.1}, {-0.1, 1.1}, {1.1, 1.1}})
                     one = one && shape_at(x + dx, y + dy).shape == middle.shape;
                 if (!one)
                     continue;
-                whole.push_back(std::size_t{y} * wanted.width + x);
+                whole.push_back(std::size_t{y} * fine.width + x);
                 smooth.push_back(is_clear(middle));
             }
         const auto spread_out = [&](const image& im) {
@@ -164,7 +163,7 @@ namespace {
                     out.push_back(all[i]);
             return out;
         };
-        const auto known = spread_out(truth.mean), known_error = spread_out(truth.standard_error);
+        const auto known = spread_out(exact.mean), known_error = spread_out(exact.standard_error);
 
         auto settings = s.render;
         settings.output.width = settings.output.height = 32;
@@ -201,7 +200,7 @@ namespace {
             smooth_rows.push_back(row(values, true));
         }
         std::printf("%zu of %zu pixels lie within one shape, %td of them %.1f m from any edge\n", whole.size(),
-            truth.mean.pixels.size(), std::count(smooth.begin(), smooth.end(), true), clear);
+            exact.mean.pixels.size(), std::count(smooth.begin(), smooth.end(), true), clear);
         print("cornell_blocks", rows);
         print("cornell_blocks, edges corrected", corrected_rows);
         print("cornell_blocks, far from edges", smooth_rows);

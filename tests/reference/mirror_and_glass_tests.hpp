@@ -150,11 +150,11 @@ namespace {
                 const dvec3 p((x + 0.5) * 2 / cells - 1, 0.5, (z + 0.5) * 2 / cells - 1);
                 const reference::hit floor = shapes.nearest({{p.x, 1e-9, p.z}, {0, -1, 0}, reference::nothing});
                 const double traced = bins.irradiance(floor, {0, -1, 0}).first.x * (4.0 / (cells * cells)),
-                             wanted = expected[static_cast<std::size_t>(z * cells + x)];
+                             exact = expected[static_cast<std::size_t>(z * cells + x)];
                 EXPECT_EQ(bins.irradiance(floor, {0, 1, 0}).first, dvec3(0)) << "the floor's other side";
-                EXPECT_NEAR(traced, wanted, 5 * std::sqrt((wanted + 10 * power / 4e6) * power / 4e6) + 2e-3 * wanted)
+                EXPECT_NEAR(traced, exact, 5 * std::sqrt((exact + 10 * power / 4e6) * power / 4e6) + 2e-3 * exact)
                     << x << ", " << z;
-                total += wanted;
+                total += exact;
             }
         EXPECT_GT(total, 0.2);
     }
@@ -183,12 +183,12 @@ namespace {
     }
 
     /// z-scores of two pictures' pixels: mean square, and of the pictures' sums.
-    struct agreement {
+    struct comparison {
         double mean_square = 0, sum = 0;
     };
-    agreement compare_by_error(const reference_picture& a, const reference_picture& b)
+    comparison compare_by_error(const reference_picture& a, const reference_picture& b)
     {
-        agreement z;
+        comparison z;
         double difference = 0, variance = 0, n = 0;
         for (std::size_t i = 0; i < a.mean.pixels.size(); ++i) {
             const double d = static_cast<double>(a.mean.pixels[i].y) - static_cast<double>(b.mean.pixels[i].y);

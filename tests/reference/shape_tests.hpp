@@ -14,7 +14,7 @@ namespace {
     struct equation {
         std::function<real(const rvec&)> value;
         std::function<bool(const rvec&)> inside;
-        real reach; ///< all of it lies within this distance of the origin
+        real extent; ///< all of it lies within this distance of the origin
     };
 
     void expect_first_root(const scene& s, const equation& e, std::mt19937& random)
@@ -29,8 +29,8 @@ namespace {
             const dvec3 d = glm::normalize(0.7 * target - o);
             const auto h = shapes.nearest({o, d, reference::nothing});
             const auto at = [&](real t) { return rvec(o) + rvec(d) * t; };
-            const real middle = -glm::dot(rvec(o), rvec(d)), first = std::max<real>(0, middle - e.reach),
-                       last = middle + e.reach;
+            const real middle = -glm::dot(rvec(o), rvec(d)), first = std::max<real>(0, middle - e.extent),
+                       last = middle + e.extent;
             real root = std::numeric_limits<real>::infinity();
             const int steps = 1500;
             for (int i = 0; i < steps && !(root < last) && first < last; ++i) {

@@ -90,7 +90,7 @@ TYPED_TEST_P(progressive, ends_with_the_bytes_of_render)
             }
         }
         typename TestFixture::loop at_once(this->b());
-        at_once.start(s, settings, {.wanted = false});
+        at_once.start(s, settings, {.enabled = false});
         EXPECT_TRUE(at_once.step());
         EXPECT_TRUE(same_bytes(at_once.picture(), expected));
     }
@@ -134,7 +134,7 @@ TYPED_TEST_P(progressive, a_map_serves_until_the_light_changes)
 {
     const auto s = this->small_scene();
     typename TestFixture::loop drawing(this->b());
-    drawing.start(s, s.render, {.wanted = false});
+    drawing.start(s, s.render, {.enabled = false});
     drawing.step();
     const auto rays = this->passes("eye_ray");
     EXPECT_EQ(drawing.maps(), 1u);
@@ -178,10 +178,10 @@ TYPED_TEST_P(progressive, a_map_serves_until_the_light_changes)
     facing.estimate.leaks.min_cosine = 0.5f;
     for (const auto& [scene, with] : {std::pair{lit, s.render}, {grown, s.render}, {painted, s.render}, {s, more},
              {s, seeded}, {s, routed}, {s, finer}, {s, only}, {s, shallow}, {s, facing}}) {
-        drawing.start(s, s.render, {.wanted = false}); // each differs from this in one thing
+        drawing.start(s, s.render, {.enabled = false}); // each differs from this in one thing
         drawing.step();
         const auto maps = drawing.maps();
-        drawing.start(scene, with, {.wanted = false});
+        drawing.start(scene, with, {.enabled = false});
         drawing.step();
         EXPECT_EQ(drawing.maps(), maps + 1) << "the photon map is another scene's";
         EXPECT_TRUE(same_bytes(drawing.picture(), this->whole(scene, with)));
@@ -194,12 +194,12 @@ TYPED_TEST_P(progressive, a_camera_that_moves_while_photons_are_traced_does_not_
     auto s = this->small_scene();
     s.render.map.photons = 60000; // two batches and more
     typename TestFixture::loop drawing(this->b());
-    drawing.start(s, s.render, {.wanted = false});
+    drawing.start(s, s.render, {.enabled = false});
     drawing.step(ms(0));
     drawing.step(ms(0));
     for (int i = 0; i < 40 && !drawing.finished(); ++i) {
         s.camera.position.y += 0.001;
-        drawing.start(s, s.render, {.wanted = false});
+        drawing.start(s, s.render, {.enabled = false});
         drawing.step(ms(0));
     }
     EXPECT_EQ(drawing.maps(), 1u);
@@ -217,7 +217,7 @@ TYPED_TEST_P(progressive, previews_that_are_no_longer_wanted_are_not_drawn)
         drawing.start(s, s.render, {.target_ms = 1e-6});
         for (int i = 0; i < steps; ++i)
             drawing.step(ms(0));
-        drawing.start(s, s.render, {.wanted = false});
+        drawing.start(s, s.render, {.enabled = false});
         EXPECT_TRUE(drawing.step());
         EXPECT_EQ(drawing.pictures(), 1u) << "after " << steps << " steps";
         EXPECT_LE(drawing.maps(), 2u);
@@ -325,7 +325,7 @@ TYPED_TEST_P(progressive, passes_add_up_in_any_order)
     moved.camera.position.x += 0.1;
     const auto maps = drawing.maps();
     const auto bounces = this->passes("bounce_photon");
-    drawing.start(moved, s.render, {.wanted = false});
+    drawing.start(moved, s.render, {.enabled = false});
     while (drawing.state().film.passes() == 0)
         drawing.step(ms(0));
     EXPECT_TRUE(drawing.state().film.holds(3));

@@ -38,11 +38,11 @@ inline dvec3 power_of_lights(const scene& s)
     return total;
 }
 
-inline void expect_an_exact_account(const photon_stats& p, std::uint64_t wanted)
+inline void expect_an_exact_account(const photon_stats& p, std::uint64_t photons)
 {
     EXPECT_EQ(p.emitted, p.absorbed + p.escaped + p.cut_off + p.invalid);
     EXPECT_EQ(p.diffuse_hits, p.stored + p.direct + p.dropped);
-    EXPECT_EQ(p.stored, wanted);
+    EXPECT_EQ(p.stored, photons);
     EXPECT_EQ(p.invalid, 0u);
 }
 
@@ -92,7 +92,7 @@ protected:
             EXPECT_EQ(a.photons.absorbed, b.photons.absorbed);
             EXPECT_EQ(a.photons.escaped, b.photons.escaped);
             EXPECT_EQ(a.photons.direct, b.photons.direct);
-            EXPECT_EQ(a.map.overfull_cells, b.map.overfull_cells);
+            EXPECT_EQ(a.map.overflowing_cells, b.map.overflowing_cells);
             EXPECT_EQ(a.estimate.points, b.estimate.points);
             EXPECT_EQ(a.invalid_pixels, 0u);
         }
@@ -413,13 +413,13 @@ TYPED_TEST_P(pictures, sorting_and_routing_agree)
     settings.map.slots = 16; // no cell overflows: the same photons in another order
     render_stats stats;
     const auto all_kept = this->picture(s, settings, &stats);
-    EXPECT_EQ(stats.map.overfull_cells, 0u);
+    EXPECT_EQ(stats.map.overflowing_cells, 0u);
     EXPECT_LE(
         relative_mse(all_kept, sorted), 1e-3); // at least k: which photon is the k-th depends on the order of visits
     settings.map.slots = 3;
     const auto some_kept = this->picture(s, settings, &stats);
-    EXPECT_GT(stats.map.overfull_cells, 0u);
-    EXPECT_GT(stats.map.redistributed_flux, 0.0);
+    EXPECT_GT(stats.map.overflowing_cells, 0u);
+    EXPECT_GT(stats.map.redistributed_power, 0.0);
     EXPECT_LE(relative_mse(some_kept, sorted), 0.03);
 }
 

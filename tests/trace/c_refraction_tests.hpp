@@ -23,7 +23,7 @@ inline real fresnel(real cos_i, real eta)
 
 /// Directions, normals and indices for glass_probe.glsl, and what it says.
 struct glass_cases {
-    std::vector<glm::vec4> directions, normals, refracted, mirrored;
+    std::vector<glm::vec4> directions, normals, refracted, reflected;
     void add(const glm::vec3& d, const glm::vec3& n, float index)
     {
         directions.emplace_back(d, 0.0f);
@@ -37,7 +37,7 @@ struct glass_cases {
         auto r = b.template make<glm::vec4>(directions.size()), m = b.template make<glm::vec4>(directions.size());
         b.template run<probes::glass_probe>(static_cast<uint>(directions.size()), {}, reads(d, n), writes(r, m));
         refracted = b.download(r);
-        mirrored = b.download(m);
+        reflected = b.download(m);
     }
 };
 
@@ -105,7 +105,7 @@ TYPED_TEST_P(hard_cases, c2_energy_is_kept_down_to_grazing)
         const real cos_i = std::abs(static_cast<real>(d.z));
         const real cos2_t = 1 - eta * eta * (1 - cos_i * cos_i);
         mirror = std::max(mirror,
-            static_cast<double>(length(vec3l(g.mirrored[i])
+            static_cast<double>(length(vec3l(g.reflected[i])
                 - vec3l(static_cast<real>(d.x), static_cast<real>(d.y), -static_cast<real>(d.z)))));
         if (cos2_t < 1e-5L) // at the critical angle the share's derivative has no bound (C1)
             continue;
@@ -124,7 +124,7 @@ TYPED_TEST_P(hard_cases, c2_energy_is_kept_down_to_grazing)
     }
     this->report("C2", "largest error of reflected + transmitted, times the refracted cosine:", fresnel_error);
     this->report("C2", "largest error of the refracted sine:", snell);
-    this->report("C2", "largest error of a mirrored direction:", mirror);
+    this->report("C2", "largest error of a reflected direction:", mirror);
     EXPECT_LE(fresnel_error, 1e-6);
     EXPECT_LE(snell, 1e-6);
     EXPECT_LE(mirror, 1e-6);

@@ -88,17 +88,17 @@ public:
         e.unweighted *= norm / (M_PI * std::max(radius2, min_radius2_));
         e.conditioning = linear / square;
 
-        const std::vector<glm::dvec4> reach(1, glm::dvec4(radius2, 1, 0, 0)), one_point(1, points_[q]);
+        const std::vector<glm::dvec4> radius(1, glm::dvec4(radius2, 1, 0, 0)), one_point(1, points_[q]);
         const std::vector<glm::uvec4> chosen(1, glm::uvec4(settings_.k, 0u, 0xFFFFFFFFu, 0u));
         double_kernels::gather_start start;
         start.args.searching = 1;
         start.points_data = one_point;
         start.chosen_data = chosen;
         start.kernel(0);
-        gather_.reach = reach[0];
+        gather_.search_radius = radius[0];
         gather_.chosen = chosen[0];
         gather_.sum = start.sum;
-        gather_.lost = start.lost;
+        gather_.compensation = start.compensation;
         gather_.squares = start.squares;
         gather_.cursor = start.cursor;
         gather_.tally = start.tally;
@@ -110,7 +110,7 @@ public:
         result.args.norm = norm;
         result.args.min_radius2 = min_radius2_;
         result.args.left_out = 1;
-        result.reach_data = reach;
+        result.search_radii_data = radius;
         result.sums_data = sums;
         result.squares_data = squares;
         result.tallies_data = tallies;
@@ -183,7 +183,7 @@ TEST(double_oracle, estimates)
         std::vector<double> errors, spread_errors;
         double nearest_limit = 0, nearest_spread_limit = 0;
         for (uint q = 0; q < s.points.size(); ++q) {
-            const auto truth = wide(q);
+            const auto exact = wide(q);
             std::vector<uint> ids;
             uint at_the_radius = 0;
             for (uint id = 0; id < s.photons.positions.size(); ++id)
@@ -193,22 +193,22 @@ TEST(double_oracle, estimates)
                 }
             // The k-th and its neighbour may have changed places or become one distance in float, so that another is
             // left out; or a photon that grazes the surface has changed its side.
-            auto expected = truth.ids;
+            auto expected = exact.ids;
             std::sort(expected.begin(), expected.end());
             ++compared;
             if (expected != ids || at_the_radius != 1
-                || *policy_distance2(s, q, truth.ids.back(), r.leaks) != irradiance[q].w) {
+                || *policy_distance2(s, q, exact.ids.back(), r.leaks) != irradiance[q].w) {
                 ++other;
                 continue;
             }
-            const double error = std::abs(static_cast<double>(irradiance[q].x) - truth.irradiance.x);
+            const double error = std::abs(static_cast<double>(irradiance[q].x) - exact.irradiance.x);
             nearest_limit
-                = std::max(nearest_limit, error * 0x1p24 / (rest * truth.irradiance.x + weight * truth.unweighted));
-            errors.push_back(error / truth.irradiance.x);
+                = std::max(nearest_limit, error * 0x1p24 / (rest * exact.irradiance.x + weight * exact.unweighted));
+            errors.push_back(error / exact.irradiance.x);
             // Half the error of the variance, whose k - 2 plain additions round k - 2 times; 3 in each square, 3 in its
             // factor.
-            const double spread_error = std::abs(static_cast<double>(standard_error[q].x) / truth.standard_error.x - 1);
-            const double spread_limit = rest + 1 + weight * truth.conditioning + 0.5 * (r.k - 2 + 6);
+            const double spread_error = std::abs(static_cast<double>(standard_error[q].x) / exact.standard_error.x - 1);
+            const double spread_limit = rest + 1 + weight * exact.conditioning + 0.5 * (r.k - 2 + 6);
             nearest_spread_limit = std::max(nearest_spread_limit, spread_error * 0x1p24 / spread_limit);
             spread_errors.push_back(spread_error);
         }

@@ -24,7 +24,8 @@ inline
     report.steps = levels * (levels + 1) / 2;
     const cpu_backend::stopwatch watch;
     auto scratch = b.make<glm::uvec2>(n);
-    const auto sorted = cpu::radix_sort(b.threads(), b.rows_to_write(pairs).data(), b.rows_to_write(scratch).data(), n);
+    const auto sorted
+        = cpu::radix_sort(b.threads(), b.elements_to_write(pairs).data(), b.elements_to_write(scratch).data(), n);
     if (sorted.in_scratch)
         std::swap(pairs, scratch);
     report.passes = sorted.passes;

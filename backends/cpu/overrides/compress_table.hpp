@@ -12,9 +12,9 @@ inline constexpr auto compress_table = [] {
     std::array<std::array<std::int32_t, LANES>, std::size_t{1} << LANES> table{};
     for (std::size_t mask = 0; mask < table.size(); ++mask) {
         std::size_t to = 0;
-        for (const bool wanted : {true, false})
+        for (const bool set : {true, false})
             for (std::size_t lane = 0; lane < LANES; ++lane)
-                if ((mask >> lane & 1) == (wanted ? 1u : 0u))
+                if ((mask >> lane & 1) == (set ? 1u : 0u))
                     table[mask][to++] = static_cast<std::int32_t>(lane);
     }
     return table;

@@ -19,7 +19,7 @@ struct digit {
     uint of(const glm::uvec2& pair) const { return (of_value ? pair.y : pair.x) >> shift & mask; }
 };
 
-inline constexpr std::size_t pairs_a_line = 8; ///< of 8 bytes, in a cache line of 64
+inline constexpr std::size_t pairs_per_line = 8; ///< of 8 bytes, in a cache line of 64
 
 } // namespace photongrid::cpu
 

@@ -159,12 +159,12 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
     // At the radius itself: all, or of the k nearest as many as are still wanted, the smallest ids first; of these, the
     // one that set the radius may be left out.
     std::size_t counted = at_most - within;
-    if (j.search == search_kind::exact_k && r.by_photon && at_most > j.wanted)
-        counted = j.wanted - within;
+    if (j.search == search_kind::exact_k && r.by_photon && at_most > j.k)
+        counted = j.k - within;
     const bool apart = j.leave_out && r.by_photon && r.radius2 >= j.min_radius2;
     double extra[3] = {}, extra2[4] = {};
     if (counted > (apart ? 1u : 0u)) {
-        const auto by_id = [&](uint a, uint b) { return j.list[near.place(a)] < j.list[near.place(b)]; };
+        const auto by_id = [&](uint a, uint b) { return j.list[near.index(a)] < j.list[near.index(b)]; };
         at_radius.clear();
         for (std::size_t i = 0; i < near.size(); ++i)
             if (distances[i] == r.radius2)
@@ -192,7 +192,7 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
 }
 
 /// Does a point want an estimate?
-inline bool is_wanted(const search_job& j, uint point)
+inline bool needs_estimate(const search_job& j, uint point)
 {
     return j.searching && j.points[point].w > 0.0f && kernels::is_finite(j.points[point]);
 }
@@ -200,11 +200,11 @@ inline bool is_wanted(const search_job& j, uint point)
 /// Makes the estimate of what was gathered.
 inline void finish(const search_job& j, uint point, chosen_radius r, const gathered& g, uint visited)
 {
-    const glm::vec4 reach(r.radius2, r.by_photon ? 1.0f : 0.0f, 0, 0);
+    const glm::vec4 search_radius(r.radius2, r.by_photon ? 1.0f : 0.0f, 0, 0);
     const glm::uvec4 tally(g.held, visited, 0, 0);
     kernels::irradiance_estimate e;
     e.args = {.norm = j.norm, .min_radius2 = j.min_radius2, .left_out = j.leave_out ? 1u : 0u};
-    e.bind(slot<0>{}, std::span(&reach, 1));
+    e.bind(slot<0>{}, std::span(&search_radius, 1));
     e.bind(slot<1>{}, std::span(&g.sum, 1));
     e.bind(slot<2>{}, std::span(&g.squares, 1));
     e.bind(slot<3>{}, std::span(&tally, 1));

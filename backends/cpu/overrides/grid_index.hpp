@@ -17,8 +17,8 @@ inline
 {
     const cpu_backend::stopwatch watch;
     auto index = b.make<glm::uvec2>(cells);
-    const auto from = b.rows(pairs);
-    const auto to = b.rows_to_write(index);
+    const auto from = b.elements(pairs);
+    const auto to = b.elements_to_write(index);
     const std::size_t n = from.size();
     // Where the key changes, the cells from the last key's next up to this one begin.
     const auto cell_after = [&](std::size_t i) {

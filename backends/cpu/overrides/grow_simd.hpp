@@ -49,7 +49,7 @@ public:
     {
         const floats d;
         constexpr std::size_t width = hn::MaxLanes(d);
-        const photon_planes photons{job_.positions, job_.directions, job_.normals};
+        const photon_vectors photons{job_.positions, job_.directions, job_.normals};
         visited_ += static_cast<uint>(past - first);
         if (STORE)
             store_.reserve(past - first + lanes);
@@ -75,13 +75,13 @@ public:
     }
 
 private:
-    bool enough() const { return held_ >= job_.wanted; }
+    bool enough() const { return held_ >= job_.k; }
 
     /// Of those within, which count.
     HWY_INLINE hn::Mask<floats> grow(vector distances2, hn::Mask<floats> within)
     {
         const floats d;
-        if (held_ + hn::CountTrue(d, within) >= job_.wanted)
+        if (held_ + hn::CountTrue(d, within) >= job_.k)
             return end_growth(distances2, within);
         farthest_ = hn::Max(farthest_, hn::IfThenElseZero(within, distances2));
         return within;
@@ -95,7 +95,7 @@ private:
             hn::IfThenElse(within, distances2, hn::Set(d, std::numeric_limits<float>::infinity())), d, distance2);
         limit2_ = hn::GetLane(hn::MaxOfLanes(d, farthest_));
         std::size_t held = held_;
-        for (std::size_t i = 0; held < job_.wanted; ++i) {
+        for (std::size_t i = 0; held < job_.k; ++i) {
             if (distance2[i] > job_.max_radius2)
                 continue;
             limit2_ = std::max(limit2_, distance2[i]);
@@ -183,23 +183,23 @@ HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& 
         const auto whole = hn::Or(at_distance(cell_y, r.c.y), at_distance(cell_z, r.c.z));
         const auto row = hn::Mul(hn::Add(hn::Mul(layers, every(g.resolution.y)), cell_y), every(g.resolution.x));
         const auto low = hn::Add(row, every(r.low.x)), high = hn::Add(row, every(r.high.x));
-        const auto look = [&](ends& e, hn::VFromD<ints> from, hn::VFromD<ints> to, vector away2,
-                              hn::Mask<floats> wanted) HWY_ATTR {
+        const auto find_ends = [&](ends& e, hn::VFromD<ints> from, hn::VFromD<ints> to, vector away2,
+                                   hn::Mask<floats> rows_within) HWY_ATTR {
             const auto twice_from = hn::Add(from, from), twice_to = hn::Add(to, to);
             const auto first = hn::GatherIndex(di, base, twice_from);
             const auto past = hn::Add(hn::GatherIndex(di, base, twice_to), hn::GatherIndex(di, base + 1, twice_to));
             hn::StoreU(first, di, e.first);
             hn::StoreU(past, di, e.past);
             hn::StoreU(away2, d, e.away2);
-            hn::StoreMaskBits(
-                d, hn::And(wanted, hn::And(hn::Le(away2, limit2), hn::RebindMask(d, hn::Lt(first, past)))), e.some);
+            hn::StoreMaskBits(d,
+                hn::And(rows_within, hn::And(hn::Le(away2, limit2), hn::RebindMask(d, hn::Lt(first, past)))), e.some);
         };
         ends lower, upper;
         const auto whole_int = hn::RebindMask(di, whole);
-        look(lower, low, hn::IfThenElse(whole_int, high, low), hn::IfThenElse(whole, row2, hn::Add(row2, low_gap_x2)),
-            has_low ? within : hn::And(within, whole));
+        find_ends(lower, low, hn::IfThenElse(whole_int, high, low),
+            hn::IfThenElse(whole, row2, hn::Add(row2, low_gap_x2)), has_low ? within : hn::And(within, whole));
         if (has_high)
-            look(upper, high, high, hn::Add(row2, high_gap_x2), hn::AndNot(whole, within));
+            find_ends(upper, high, high, hn::Add(row2, high_gap_x2), hn::AndNot(whole, within));
         const auto visit = [&](const ends& e, uint i) HWY_ATTR {
             if (e.has(i) && e.away2[i] <= found.limit2())
                 found.visit(static_cast<uint>(e.first[i]), static_cast<uint>(e.past[i]));
@@ -236,16 +236,16 @@ HWY_INLINE void visit_rings(const search_job& j, const glm::vec4& point, Growth&
         } else {
             visit_ring(j, r, found);
         }
-        // Can any cell beyond reach into the radius?
-        float reach = std::numeric_limits<float>::max();
+        // Does any unexplored cell lie within the radius?
+        float unexplored = std::numeric_limits<float>::max();
         for (int axis = 0; axis < 3; ++axis) {
             if (r.high[axis] < last[axis])
-                reach = std::min(reach, kernels::gap(r.u[axis], c[axis], r.high[axis] + 1u, g.cell[axis]));
+                unexplored = std::min(unexplored, kernels::gap(r.u[axis], c[axis], r.high[axis] + 1u, g.cell[axis]));
             if (r.low[axis] > 0u)
-                reach = std::min(reach, kernels::gap(r.u[axis], c[axis], r.low[axis] - 1u, g.cell[axis]));
+                unexplored = std::min(unexplored, kernels::gap(r.u[axis], c[axis], r.low[axis] - 1u, g.cell[axis]));
         }
         const bool everything = r.low == glm::uvec3(0u) && r.high == last;
-        if (everything || reach * reach > found.limit2())
+        if (everything || unexplored * unexplored > found.limit2())
             return;
     }
 }
@@ -259,7 +259,7 @@ HWY_NOINLINE void grow_points(const search_job& j, std::size_t begin, std::size_
     std::vector<uint> at_radius;
     for (std::size_t o = begin; o < end; ++o) {
         const uint point = j.order[o];
-        if (!is_wanted(j, point)) {
+        if (!needs_estimate(j, point)) {
             finish(j, point, {j.max_radius2, false}, {}, 0);
             continue;
         }

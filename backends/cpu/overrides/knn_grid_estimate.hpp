@@ -12,7 +12,7 @@ namespace cpu {
     template <element T>
     buffer<T> copy(cpu_backend& b, const buffer<T>& from)
     {
-        return b.upload(b.rows(from));
+        return b.upload(b.elements(from));
     }
 } // namespace cpu
 
@@ -26,8 +26,8 @@ inline
     const std::size_t n = points.size();
     e_ = {b.make<glm::vec4>(n), b.make<glm::uvec2>(n), b.make<glm::vec4>(s.errors ? n : 0)};
     const auto unfinished = [&](auto& buffer, const auto& value) {
-        const auto rows = b.rows_to_write(buffer);
-        std::fill(rows.begin(), rows.end(), value);
+        const auto elements = b.elements_to_write(buffer);
+        std::fill(elements.begin(), elements.end(), value);
     };
     unfinished(e_.irradiance, glm::vec4(0, 0, 0, in_.max_radius2()));
     unfinished(e_.used, glm::uvec2(0));
@@ -46,16 +46,16 @@ inline
     auto& b = *in_.b;
     const cpu_backend::stopwatch watch;
     const std::size_t n = in_.points->size(), begin = done_;
-    const std::size_t a_pass = cpu::search_block_size * std::max(1u, in_.s.visits_per_pass / 128u);
-    const std::size_t left = (n - begin + a_pass - 1) / a_pass;
+    const std::size_t per_pass = cpu::search_block_size * std::max(1u, in_.s.visits_per_pass / 128u);
+    const std::size_t left = (n - begin + per_pass - 1) / per_pass;
     const auto now = static_cast<uint>(std::min<std::size_t>(passes, left));
-    done_ = std::min(n, begin + now * a_pass);
+    done_ = std::min(n, begin + now * per_pass);
     if (done_ > begin) {
         auto job = cpu::make_search_job(in_, order_);
-        job.irradiance = b.rows_to_write(e_.irradiance).data();
-        job.used = b.rows_to_write(e_.used).data();
+        job.irradiance = b.elements_to_write(e_.irradiance).data();
+        job.used = b.elements_to_write(e_.used).data();
         if (job.errors)
-            job.standard_error = b.rows_to_write(e_.standard_error).data();
+            job.standard_error = b.elements_to_write(e_.standard_error).data();
         b.threads().for_blocks(done_ - begin, cpu::search_block_size,
             [&](std::size_t first, std::size_t past) { cpu::search_block(job, begin + first, begin + past); });
     }
@@ -63,7 +63,7 @@ inline
     progress p;
     p.passes = now;
     for (uint i = 0; i < now; ++i)
-        p.active.push_back(n - begin - i * a_pass);
+        p.active.push_back(n - begin - i * per_pass);
     p.finished = done_ == n;
     return p;
 }

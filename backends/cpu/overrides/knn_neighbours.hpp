@@ -17,8 +17,8 @@ namespace cpu {
         neighbour_lists<cpu_backend> lists{in.s.k, b.make<uint>(n * in.s.k), b.make<float>(n * in.s.k)};
         const auto order = order_along_curve(b, in.map->cells_of, *in.points);
         auto job = make_search_job(in, order);
-        job.ids = b.rows_to_write(lists.ids).data();
-        job.distances2 = b.rows_to_write(lists.distances2).data();
+        job.ids = b.elements_to_write(lists.ids).data();
+        job.distances2 = b.elements_to_write(lists.distances2).data();
         b.threads().for_blocks(
             n, search_block_size, [&](std::size_t first, std::size_t past) { search_block(job, first, past); });
         b.count_passes("knn_neighbours", 1, watch);

@@ -33,16 +33,16 @@ struct map_job {
     glm::uvec2* pairs = nullptr;      ///< the same: (cell, photon)
     glm::uvec2* index = nullptr;      ///< (first, count) of each cell
     uint* list = nullptr;             ///< photons in the order of cells
-    planes<float> out_positions, out_powers;
+    soa_vectors<float> out_positions, out_powers;
 
     uint buckets() const { return (cells >> shift) + 1; }
 };
 
 /// Collects what goes to each bucket until it fills a cache line.
 struct scatter_lines {
-    static constexpr std::size_t records_a_line = 2, pairs_a_line = 8;
-    alignas(64) photon_record records[map_job::most_buckets][records_a_line];
-    alignas(64) glm::uvec2 pairs[map_job::most_buckets][pairs_a_line];
+    static constexpr std::size_t records_per_line = 2, pairs_per_line = 8;
+    alignas(64) photon_record records[map_job::most_buckets][records_per_line];
+    alignas(64) glm::uvec2 pairs[map_job::most_buckets][pairs_per_line];
 };
 
 /// Room for ordering one bucket.

@@ -61,11 +61,11 @@ inline void find_cells(map_job j, std::size_t first, std::size_t past, uint* in_
     }
     for (; i < past; ++i) {
         const bool good = kernels::is_finite(j.positions[i]) && kernels::is_finite(j.powers[i]),
-                   wanted = kernels::is_of_parts(j.positions[i], j.parts);
+                   of_parts = kernels::is_of_parts(j.positions[i], j.parts);
         invalid += good ? 0u : 1u;
-        left_out += wanted ? 0u : 1u;
+        left_out += of_parts ? 0u : 1u;
         j.keys[i] = j.cells;
-        if (good && wanted) {
+        if (good && of_parts) {
             const glm::uvec4 c = kernels::cell_coordinates(g, j.positions[i]);
             j.keys[i] = kernels::cell_number(g, c.x, c.y, c.z);
         }
@@ -73,14 +73,14 @@ inline void find_cells(map_job j, std::size_t first, std::size_t past, uint* in_
     }
 }
 
-/// Takes photons first to past - 1 to their buckets; the next one of bucket v goes to place next[v]. Lines are
+/// Moves photons first to past - 1 to their buckets; the next one of bucket v goes to index next[v]. Cache lines are
 /// collected and then written past the caches (software write-combining; Satish et al., Fast Sort on CPUs and GPUs,
 /// 2010).
 inline void scatter_photons(map_job j, std::size_t first, std::size_t past, uint* next, scatter_lines& lines)
 {
-    uint begin[map_job::most_buckets]; // what lies before in a line belongs to others
+    uint begin[map_job::most_buckets]; // the beginning of a line may belong to another thread
     std::copy(next, next + j.buckets(), begin);
-    // The line that ends before place `end`, or as much of it as is ours.
+    // Writes the cache line that ends before index `end`, or the part of it that belongs to this call.
     const auto write = [&]<class T>(const T* line, uint size, T* to, uint bucket, uint end) HWY_ATTR {
         const hn::CappedTag<float, lanes> d;
         const uint start = (end - 1) / size * size;
@@ -93,7 +93,7 @@ inline void scatter_photons(map_job j, std::size_t first, std::size_t past, uint
                 to[p] = line[p % size];
         }
     };
-    constexpr uint records = scatter_lines::records_a_line, pairs = scatter_lines::pairs_a_line;
+    constexpr uint records = scatter_lines::records_per_line, pairs = scatter_lines::pairs_per_line;
     for (std::size_t i = first; i < past; ++i) {
         const uint key = j.keys[i], v = key >> j.shift, at = next[v]++;
         lines.records[v][at % records] = {j.positions[i], j.powers[i]};
@@ -122,20 +122,20 @@ inline void order_bucket(map_job j, uint bucket, std::size_t begin, std::size_t 
         hwy::Prefetch(&j.records[i]); // they are taken out of order below
         ++s.next[j.pairs[i].x - first_cell];
     }
-    auto place = static_cast<uint>(begin);
+    auto next_index = static_cast<uint>(begin);
     for (uint c = 0; c < bins; ++c) {
         const uint count = s.next[c];
-        s.next[c] = place;
+        s.next[c] = next_index;
         if (first_cell + c < j.cells)
-            j.index[first_cell + c] = {place, count};
-        place += count;
+            j.index[first_cell + c] = {next_index, count};
+        next_index += count;
     }
     for (std::size_t i = begin; i < end; ++i)
         s.order[s.next[j.pairs[i].x - first_cell]++ - begin] = static_cast<uint>(i);
 
     const auto one = [&](std::size_t to) {
         const uint from = s.order[to - begin];
-        const auto put = [&](const glm::vec4& v, const planes<float>& p) {
+        const auto put = [&](const glm::vec4& v, const soa_vectors<float>& p) {
             p.x[to] = v.x;
             p.y[to] = v.y;
             p.z[to] = v.z;
@@ -152,22 +152,22 @@ inline void order_bucket(map_job j, uint bucket, std::size_t begin, std::size_t 
     const std::size_t width = hn::Lanes(d);
     HWY_ALIGN glm::vec4 positions[lanes];
     HWY_ALIGN glm::vec4 powers[lanes];
-    for (; to + lanes <= end; to += lanes) { // a cache line of each plane
+    for (; to + lanes <= end; to += lanes) { // a cache line of each component
         for (std::size_t lane = 0; lane < lanes; ++lane) {
             const uint from = s.order[to - begin + lane];
             positions[lane] = j.records[from].position;
             powers[lane] = j.records[from].power;
             j.list[to + lane] = j.pairs[from].y;
         }
-        const auto spread = [&](const glm::vec4* rows, const planes<float>& p) HWY_ATTR {
+        const auto spread = [&](const glm::vec4* vectors, const soa_vectors<float>& p) HWY_ATTR {
             for (std::size_t lane = 0; lane < lanes; lane += width) {
                 auto x = hn::Zero(d), y = x, z = x, w = x;
-                hn::LoadInterleaved4(d, &rows[lane].x, x, y, z, w);
-                const auto put = [&](auto v, float* plane) HWY_ATTR {
+                hn::LoadInterleaved4(d, &vectors[lane].x, x, y, z, w);
+                const auto put = [&](auto v, float* component) HWY_ATTR {
                     if (j.large)
-                        hn::Stream(v, d, plane + to + lane);
+                        hn::Stream(v, d, component + to + lane);
                     else
-                        hn::Store(v, d, plane + to + lane);
+                        hn::Store(v, d, component + to + lane);
                 };
                 put(x, p.x);
                 put(y, p.y);

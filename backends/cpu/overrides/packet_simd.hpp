@@ -1,5 +1,5 @@
-// What a search in vectors works on: photons in planes, their distances from a point, and packets of them. Read once
-// for every instruction set that the compiler knows (Highway), so no include guard: packet_simd.hpp is read by
+// What a search in vectors works on: photons in soa, their distances from a point, and packets of them. Read once for
+// every instruction set that the compiler knows (Highway), so no include guard: packet_simd.hpp is read by
 // gather_simd.hpp, that by grow_simd.hpp, that by search_simd.hpp, and other files include simd.hpp.
 #include <hwy/highway.h>
 
@@ -48,8 +48,8 @@ struct query {
 };
 
 /// Where photons lie: in the map, or in a packet.
-struct photon_planes {
-    planes<const float> positions, directions, normals; ///< the last two only where a policy needs them
+struct photon_vectors {
+    soa_vectors<const float> positions, directions, normals; ///< the last two only where a policy needs them
 };
 
 /// A query in every lane.
@@ -71,7 +71,7 @@ struct query_lanes {
 /// rejects are farther than any radius. POLICIES: 0 none, 1 the side of the surface, 2 any.
 template <int POLICIES>
 HWY_INLINE vector squared_distances(
-    const search_job& j, const query_lanes& q, const photon_planes& photons, std::size_t i)
+    const search_job& j, const query_lanes& q, const photon_vectors& photons, std::size_t i)
 {
     const floats d;
     const auto smallest = hn::Set(d, std::numeric_limits<float>::min()),
@@ -80,7 +80,7 @@ HWY_INLINE vector squared_distances(
     const auto dx = hn::Sub(hn::LoadU(d, at.x + i), q.x), dy = hn::Sub(hn::LoadU(d, at.y + i), q.y),
                dz = hn::Sub(hn::LoadU(d, at.z + i), q.z);
     auto d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-    const auto along_normal = [&](const planes<const float>& v) HWY_ATTR {
+    const auto along_normal = [&](const soa_vectors<const float>& v) HWY_ATTR {
         return hn::Add(hn::Add(hn::Mul(hn::LoadU(d, v.x + i), q.normal_x), hn::Mul(hn::LoadU(d, v.y + i), q.normal_y)),
             hn::Mul(hn::LoadU(d, v.z + i), q.normal_z));
     };
@@ -91,7 +91,7 @@ HWY_INLINE vector squared_distances(
     d2 = hn::IfThenZeroElse(hn::Lt(d2, smallest), d2);
     if (POLICIES == 1 || (POLICIES == 2 && j.side))
         d2 = hn::IfThenElse(hn::Lt(along_normal(photons.directions), hn::Zero(d)), d2, rejected);
-    if (POLICIES == 2 && j.agreement)
+    if (POLICIES == 2 && j.needs_normals)
         d2 = hn::IfThenElse(hn::Ge(along_normal(photons.normals), hn::Set(d, j.min_cosine)), d2, rejected);
     return d2;
 }
@@ -170,12 +170,13 @@ HWY_INLINE void find_rows(const search_job& j, const glm::vec3& at, float radius
             const auto r2 = hn::Set(d, radius2);
             const auto left2
                 = hn::Add(hn::Sub(r2, hn::Add(hn::Mul(gap_y, gap_y), hn::Set(d, gap_z * gap_z))), hn::Mul(r2, wide));
-            const auto reach = hn::Add(
+            const auto half_width = hn::Add(
                 hn::Mul(hn::Sqrt(hn::Max(left2, hn::Zero(d))), hn::Set(d, 1.00000095f)), hn::Set(d, 1.1e-19f));
             const auto x = hn::Set(d, at.x);
             const auto row = hn::Mul(hn::Min(cell, hn::Set(di, static_cast<int>(g.resolution.y - 1u))),
                 hn::Set(di, static_cast<int>(g.resolution.x)));
-            const auto low = hn::Add(row, x_cell(hn::Sub(x, reach))), high = hn::Add(row, x_cell(hn::Add(x, reach)));
+            const auto low = hn::Add(row, x_cell(hn::Sub(x, half_width))),
+                       high = hn::Add(row, x_cell(hn::Add(x, half_width)));
             const auto two_low = hn::Add(low, low), two_high = hn::Add(high, high);
             const auto first = hn::GatherIndex(di, slab, two_low);
             const auto past = hn::Add(hn::GatherIndex(di, slab, two_high), hn::GatherIndex(di, slab + 1, two_high));
@@ -192,16 +193,16 @@ HWY_INLINE void find_rows(const search_job& j, const glm::vec3& at, float radius
 /// The photons near some queries, or those that a query holds, one after the other.
 class packet {
 public:
-    enum plane {
+    enum component {
         x,
         y,
         z,
         red,
         green,
         blue,
-        travel_x,
-        travel_y,
-        travel_z,
+        direction_x,
+        direction_y,
+        direction_z,
         normal_x,
         normal_y,
         normal_z,
@@ -211,31 +212,31 @@ public:
     };
 
     std::size_t size() const { return size_; }
-    float* of(plane p) const { return memory_ + p * stride_; }
+    float* of(component p) const { return memory_ + p * stride_; }
     /// Place of photon i in the map.
-    uint place(std::size_t i) const { return places_[i]; }
-    photon_planes photons() const
+    uint index(std::size_t i) const { return indices_[i]; }
+    photon_vectors photons() const
     {
-        return {{of(x), of(y), of(z)}, {of(travel_x), of(travel_y), of(travel_z)},
+        return {{of(x), of(y), of(z)}, {of(direction_x), of(direction_y), of(direction_z)},
             {of(normal_x), of(normal_y), of(normal_z)}};
     }
 
-    /// Copies the photons within `reach` of `center`, and perhaps some that are a little farther. Returns how many it
-    /// looked at.
-    HWY_INLINE std::size_t fill(const search_job& j, const glm::vec3& center, float reach)
+    /// Copies the photons within `radius` of `center`, and perhaps some that are a little farther. Returns how many it
+    /// examined.
+    HWY_INLINE std::size_t fill(const search_job& j, const glm::vec3& center, float radius)
     {
         const floats d;
         const uints du;
         const std::size_t width = hn::Lanes(d);
-        const float reach2 = reach * reach * 1.000004f + 1e-36f;
-        find_rows(j, center, reach2, rows_);
+        const float radius2 = radius * radius * 1.000004f + 1e-36f;
+        find_rows(j, center, radius2, rows_);
         std::size_t n = 0;
         for (std::size_t r = 0; r < rows_.rows; ++r)
             n += rows_.past[r] - rows_.first[r];
         clear();
         reserve(n);
         const auto cx = hn::Set(d, center.x), cy = hn::Set(d, center.y), cz = hn::Set(d, center.z),
-                   within2 = hn::Set(d, reach2);
+                   within2 = hn::Set(d, radius2);
         std::size_t k = 0;
         for (std::size_t r = 0; r < rows_.rows; ++r) {
             const std::size_t past = rows_.past[r];
@@ -248,23 +249,23 @@ public:
                 const std::size_t some = store_some(d, px, near, of(x) + k);
                 store_some(d, py, near, of(y) + k);
                 store_some(d, pz, near, of(z) + k);
-                const auto take = [&](plane p, const float* from)
+                const auto take = [&](component p, const float* from)
                                       HWY_ATTR { store_some(d, hn::LoadU(d, from + i), near, of(p) + k); };
                 take(red, j.powers.x); // for lists too: asking here costs estimates more than it saves them
                 take(green, j.powers.y);
                 take(blue, j.powers.z);
                 if (j.side) {
-                    take(travel_x, j.directions.x);
-                    take(travel_y, j.directions.y);
-                    take(travel_z, j.directions.z);
+                    take(direction_x, j.directions.x);
+                    take(direction_y, j.directions.y);
+                    take(direction_z, j.directions.z);
                 }
-                if (j.agreement) {
+                if (j.needs_normals) {
                     take(normal_x, j.normals.x);
                     take(normal_y, j.normals.y);
                     take(normal_z, j.normals.z);
                 }
                 store_some(du, hn::Add(hn::Set(du, static_cast<uint>(i)), hn::Iota(du, 0)), hn::RebindMask(du, near),
-                    places_ + k);
+                    indices_ + k);
                 k += some;
             }
         }
@@ -285,13 +286,13 @@ public:
         if (size_ + n + slack > stride_)
             grow(size_ + n);
     }
-    /// Adds those of a register of photons that `some` has, its first at `place`.
-    HWY_INLINE void add(vector distances2, hn::Mask<floats> some, std::size_t place)
+    /// Adds those of a register of photons that `some` has, its first at `index`.
+    HWY_INLINE void add(vector distances2, hn::Mask<floats> some, std::size_t index)
     {
         const uints du;
         const std::size_t added = store_some(floats(), distances2, some, of(squared_distance) + size_);
-        store_some(du, hn::Add(hn::Set(du, static_cast<uint>(place)), hn::Iota(du, 0)), hn::RebindMask(du, some),
-            places_ + size_);
+        store_some(du, hn::Add(hn::Set(du, static_cast<uint>(index)), hn::Iota(du, 0)), hn::RebindMask(du, some),
+            indices_ + size_);
         size_ += added;
     }
     /// Fetches the powers of all that were added.
@@ -302,11 +303,11 @@ public:
         reserve(0);
         for (std::size_t i = size_; i < size_ + lanes; ++i) { // read with the last, but weighs nothing
             of(squared_distance)[i] = std::numeric_limits<float>::infinity();
-            places_[i] = 0;
+            indices_[i] = 0;
         }
         for (std::size_t i = 0; i < size_; i += lanes)
             for (std::size_t l = i; l < i + lanes; l += hn::Lanes(d)) {
-                const auto at = hn::Load(di, reinterpret_cast<const int*>(places_ + l));
+                const auto at = hn::Load(di, reinterpret_cast<const int*>(indices_ + l));
                 hn::Store(hn::GatherIndex(d, j.powers.x, at), d, of(red) + l);
                 hn::Store(hn::GatherIndex(d, j.powers.y, at), d, of(green) + l);
                 hn::Store(hn::GatherIndex(d, j.powers.z, at), d, of(blue) + l);
@@ -316,24 +317,24 @@ public:
 private:
     static constexpr std::size_t slack = 5 * lanes; ///< for what is written past the end
 
-    /// Makes room for n photons; keeps the distances and places of those that are here.
+    /// Makes room for n photons; keeps the distances and indices of those that are here.
     void grow(std::size_t n)
     {
-        const std::size_t stride = plane_stride(2 * n + slack);
+        const std::size_t stride = component_stride(2 * n + slack);
         storage block((count + 1) * stride * sizeof(float));
         auto* const memory = reinterpret_cast<float*>(block.begin());
-        auto* const places = reinterpret_cast<uint*>(memory + count * stride);
+        auto* const indices = reinterpret_cast<uint*>(memory + count * stride);
         std::copy_n(of(squared_distance), size_, memory + squared_distance * stride);
-        std::copy_n(places_, size_, places);
+        std::copy_n(indices_, size_, indices);
         block_ = std::move(block);
         memory_ = memory;
-        places_ = places;
+        indices_ = indices;
         stride_ = stride;
     }
     rows_found rows_;
     storage block_;
     float* memory_ = nullptr;
-    uint* places_ = nullptr;
+    uint* indices_ = nullptr;
     std::size_t size_ = 0, stride_ = 0;
 };
 

@@ -42,7 +42,7 @@ inline void count_digits(digit by, const glm::uvec2* from, std::size_t first, st
 /// Moves n pairs to where a digit puts them, one after the other.
 inline void scatter_in_cache(digit by, const glm::uvec2* from, glm::uvec2* to, std::size_t n)
 {
-    for (std::size_t i = 0; i < n; i += pairs_a_line)
+    for (std::size_t i = 0; i < n; i += pairs_per_line)
         __builtin_prefetch(to + i, 1);
     std::array<uint, digit::most> next; // the first mask + 1 of them
     std::fill_n(next.begin(), by.mask + 1, 0u);
@@ -77,7 +77,7 @@ inline std::vector<uint> scatter_counted(pool& threads, const digit& by, const g
         });
         return begin;
     }
-    constexpr std::size_t line_pairs = digit::most * pairs_a_line;
+    constexpr std::size_t line_pairs = digit::most * pairs_per_line;
     storage line_memory(next.size() * line_pairs * sizeof(glm::uvec2));
     auto* const lines = reinterpret_cast<glm::uvec2*>(line_memory.begin());
     threads.for_blocks(n, part, [&](std::size_t first, std::size_t past) {
@@ -88,12 +88,12 @@ inline std::vector<uint> scatter_counted(pool& threads, const digit& by, const g
 }
 
 /// Which bits differ in some pairs, and whether their values ascend, as ids do: then a stable sort by key is enough.
-struct look {
+struct key_summary {
     glm::uvec2 any{0u}, all{~0u};
     uint descents = 0;
 
     glm::uvec2 varying() const { return any ^ all; }
-    look& operator|=(const look& other)
+    key_summary& operator|=(const key_summary& other)
     {
         any |= other.any;
         all &= other.all;
@@ -101,7 +101,7 @@ struct look {
         return *this;
     }
 };
-inline look look_at(const glm::uvec2* pairs, std::size_t first, std::size_t past)
+inline key_summary summarise(const glm::uvec2* pairs, std::size_t first, std::size_t past)
 {
     uint any_x = 0, all_x = ~0u, any_y = 0, all_y = ~0u; // plain numbers, of which compilers make vectors
     for (std::size_t i = first; i < past; ++i) {
@@ -116,11 +116,11 @@ inline look look_at(const glm::uvec2* pairs, std::size_t first, std::size_t past
     return {{any_x, any_y}, {all_x, all_y}, descents};
 }
 /// The same for a few pairs from all over.
-inline look sample(const glm::uvec2* pairs, std::size_t n)
+inline key_summary sample(const glm::uvec2* pairs, std::size_t n)
 {
-    look l;
+    key_summary l;
     for (std::size_t i = 0; i < n; i += n / 256 + 1)
-        l |= look_at(pairs, i, i + 1);
+        l |= summarise(pairs, i, i + 1);
     return l;
 }
 
@@ -151,7 +151,7 @@ inline radix_report radix_sort(pool& threads, glm::uvec2* pairs, glm::uvec2* scr
     // A part a thread, so that counts need no sharing; the result does not depend on their number.
     const std::size_t parts = n < 16384 ? 1 : threads.threads(), part = (n + parts - 1) / parts;
     counters counts((n + part - 1) / part);
-    std::vector<look> seen(counts.size());
+    std::vector<key_summary> seen(counts.size());
 
     // While all pairs are looked at, digits are counted that a few of them make probable.
     const digit probable = first_digit(bit_range(sample(pairs, n).varying().x));
@@ -161,12 +161,12 @@ inline radix_report radix_sort(pool& threads, glm::uvec2* pairs, glm::uvec2* scr
         mine.fill(0);
         for (std::size_t b = first; b < past; b += block) {
             const std::size_t end = std::min(past, b + block);
-            seen[first / part] |= look_at(pairs, b, end);
+            seen[first / part] |= summarise(pairs, b, end);
             if (n > in_cache)
                 count_digits(probable, pairs, b, end, mine.data());
         }
     });
-    look whole;
+    key_summary whole;
     for (const auto& l : seen)
         whole |= l;
 

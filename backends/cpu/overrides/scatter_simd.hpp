@@ -12,14 +12,14 @@ namespace photongrid::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Writes pairs first to past - 1 of `from` to their places in `to`, which begins on a cache line: the next pair with
-/// digit v goes to to[next[v]]. `lines` holds pairs_a_line pairs a digit. Lines are collected there and then written
+/// digit v goes to to[next[v]]. `lines` holds pairs_per_line pairs a digit. Lines are collected there and then written
 /// past the caches (software write-combining; Satish et al., Fast Sort on CPUs and GPUs, 2010): scattered writes would
 /// fetch each line first.
 template <bool BY_VALUE>
 HWY_INLINE void scatter(digit by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* next,
     glm::uvec2* to, glm::uvec2* lines)
 {
-    const hn::CappedTag<uint, 2 * pairs_a_line> d;
+    const hn::CappedTag<uint, 2 * pairs_per_line> d;
     const std::size_t width = hn::Lanes(d);
     uint begin[digit::most]; // where this part's pairs with a digit begin: what lies before in a line belongs to others
     std::copy(next, next + by.mask + 1, begin);
@@ -27,23 +27,24 @@ HWY_INLINE void scatter(digit by, const glm::uvec2* from, std::size_t first, std
         const glm::uvec2 pair = from[i];
         const uint v = (BY_VALUE ? pair.y : pair.x) >> by.shift & by.mask;
         const uint at = next[v]++;
-        glm::uvec2* const line = lines + v * pairs_a_line;
-        line[at % pairs_a_line] = pair;
-        if (at % pairs_a_line == pairs_a_line - 1) {
-            const uint line_begin = at + 1 - static_cast<uint>(pairs_a_line);
+        glm::uvec2* const line = lines + v * pairs_per_line;
+        line[at % pairs_per_line] = pair;
+        if (at % pairs_per_line == pairs_per_line - 1) {
+            const uint line_begin = at + 1 - static_cast<uint>(pairs_per_line);
             if (line_begin >= begin[v]) {
-                for (std::size_t lane = 0; lane < 2 * pairs_a_line; lane += width)
+                for (std::size_t lane = 0; lane < 2 * pairs_per_line; lane += width)
                     hn::Stream(hn::Load(d, &line->x + lane), d, &to[line_begin].x + lane);
             } else {
                 for (uint p = begin[v]; p <= at; ++p)
-                    to[p] = line[p % pairs_a_line];
+                    to[p] = line[p % pairs_per_line];
             }
         }
     }
     for (uint v = 0; v <= by.mask; ++v)
-        for (uint p = std::max(begin[v], next[v] / static_cast<uint>(pairs_a_line) * static_cast<uint>(pairs_a_line));
+        for (uint p
+             = std::max(begin[v], next[v] / static_cast<uint>(pairs_per_line) * static_cast<uint>(pairs_per_line));
              p < next[v]; ++p)
-            to[p] = lines[v * pairs_a_line + p % pairs_a_line];
+            to[p] = lines[v * pairs_per_line + p % pairs_per_line];
     hwy::FlushStream();
 }
 

@@ -21,8 +21,8 @@ inline buffer<uint> order_along_curve(cpu_backend& b, const grid& g, const buffe
     const std::size_t n = points_of.size();
     auto pairs = b.make<glm::uvec2>(n);
     auto scratch = b.make<glm::uvec2>(n);
-    const auto points = b.rows(points_of);
-    const auto to = b.rows_to_write(pairs);
+    const auto points = b.elements(points_of);
+    const auto to = b.elements_to_write(pairs);
     const glm::vec3 steps = 1024.0f / (glm::vec3(g.cell) * glm::vec3(g.resolution));
     const auto spread = [](float u) {
         u = u > 0.0f ? u : 0.0f;
@@ -38,10 +38,10 @@ inline buffer<uint> order_along_curve(cpu_backend& b, const grid& g, const buffe
             to[i] = {spread(u.x) | spread(u.y) << 1 | spread(u.z) << 2, static_cast<uint>(i)};
         }
     });
-    const auto sorted = radix_sort(b.threads(), to.data(), b.rows_to_write(scratch).data(), n);
-    const auto from = b.rows(sorted.in_scratch ? scratch : pairs);
+    const auto sorted = radix_sort(b.threads(), to.data(), b.elements_to_write(scratch).data(), n);
+    const auto from = b.elements(sorted.in_scratch ? scratch : pairs);
     auto ordered = b.make<uint>(n);
-    const auto order = b.rows_to_write(ordered);
+    const auto order = b.elements_to_write(ordered);
     b.threads().for_blocks(n, 16384, [&](std::size_t first, std::size_t past) {
         for (std::size_t i = first; i < past; ++i)
             order[i] = from[i].y;
@@ -57,25 +57,25 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
     const auto& photons = in.map->photons;
     search_job j;
     j.cells_of = in.map->cells_of;
-    j.cells = b.rows(in.map->cells);
-    j.positions = b.planes(photons.positions);
-    j.powers = b.planes(photons.powers);
+    j.cells = b.elements(in.map->cells);
+    j.positions = b.components(photons.positions);
+    j.powers = b.components(photons.powers);
     j.side = s.leaks.side;
-    j.agreement = s.leaks.needs_normals();
+    j.needs_normals = s.leaks.needs_normals();
     j.min_cosine = s.leaks.min_cosine;
     j.flattening = s.leaks.flattening > 1 ? s.leaks.flattening * s.leaks.flattening - 1.0f : 0.0f;
     if (j.side)
-        j.directions = b.planes(photons.directions);
-    if (j.agreement)
-        j.normals = b.planes(photons.normals);
-    j.list = b.rows(in.map->list).data();
-    j.points = b.rows(*in.points).data();
+        j.directions = b.components(photons.directions);
+    if (j.needs_normals)
+        j.normals = b.components(photons.normals);
+    j.list = b.elements(in.map->list).data();
+    j.points = b.elements(*in.points).data();
     if (s.leaks.needs_any())
-        j.point_normals = b.rows(*in.normals).data();
-    j.order = b.rows(order).data();
+        j.point_normals = b.elements(*in.normals).data();
+    j.order = b.elements(order).data();
     j.search = s.search;
     j.searching = in.searching();
-    j.wanted = s.k;
+    j.k = s.k;
     j.max_radius2 = in.max_radius2();
     j.min_radius2 = in.min_radius2();
     j.filter = s.filter;

@@ -15,7 +15,7 @@ namespace photongrid::cpu {
 struct search_job {
     grid cells_of{};
     std::span<const glm::uvec2> cells;
-    planes<const float> positions, powers, directions, normals; ///< the last two only where a policy needs them
+    soa_vectors<const float> positions, powers, directions, normals; ///< the last two only where a policy needs them
     const uint* list = nullptr;
     const glm::vec4* points = nullptr;
     const glm::vec4* point_normals = nullptr; ///< only where a policy needs them
@@ -23,11 +23,11 @@ struct search_job {
 
     search_kind search = search_kind::exact_k;
     bool searching = true; ///< false: nothing can be found
-    uint wanted = 0;       ///< k
+    uint k = 0;            ///< photons sought
     float max_radius2 = 0; ///< m^2
     float min_radius2 = 0; ///< m^2
     bool side = false;     ///< leak policies
-    bool agreement = false;
+    bool needs_normals = false;
     float min_cosine = -1;
     float flattening = 0; ///< c^2 - 1, see photon_distance.glsl
     filter_kind filter = filter_kind::constant;
@@ -39,7 +39,7 @@ struct search_job {
     glm::uvec2* used = nullptr;
     glm::vec4* standard_error = nullptr; ///< only with errors
 
-    uint* ids = nullptr;         ///< lists are wanted, not estimates: `wanted` entries a point here ...
+    uint* ids = nullptr;         ///< lists instead of estimates: k entries per point here ...
     float* distances2 = nullptr; ///< ... and here
 };
 

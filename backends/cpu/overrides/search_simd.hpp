@@ -30,7 +30,7 @@ HWY_INLINE glm::uvec2 scan(const search_job& j, const query& at, float low2, flo
                       n = (near.size() + lanes - 1) / lanes * lanes; // with what is added up later
     float *const distances = near.of(packet::squared_distance), *const kept = near.of(packet::kept);
     const query_lanes q(at);
-    const photon_planes photons = near.photons();
+    const photon_vectors photons = near.photons();
     const auto low = hn::Set(d, low2), high = hn::Set(d, high2);
     std::size_t counted = 0, k = 0;
     for (std::size_t i = 0; i < n; i += width) {
@@ -96,9 +96,9 @@ HWY_INLINE float nth_smallest(float* values, std::size_t count, std::size_t n, f
 /// Says that the list of a point has no more than its first `held` entries.
 inline void end_list(const search_job& j, uint point, std::size_t held)
 {
-    const std::size_t first = std::size_t{point} * j.wanted;
-    std::fill(j.ids + first + held, j.ids + first + j.wanted, nowhere);
-    std::fill(j.distances2 + first + held, j.distances2 + first + j.wanted, std::numeric_limits<float>::infinity());
+    const std::size_t first = std::size_t{point} * j.k;
+    std::fill(j.ids + first + held, j.ids + first + j.k, nowhere);
+    std::fill(j.distances2 + first + held, j.distances2 + first + j.k, std::numeric_limits<float>::infinity());
 }
 
 /// Lists the photons within the radius, nearest first, by the distances that scan() wrote. `keys` is scratch. Not
@@ -122,11 +122,11 @@ HWY_NOINLINE inline void list(
     // The bits of squared distances are in their order; the smallest ids come first.
     keys.resize(held);
     for (std::size_t i = 0; i < held; ++i)
-        keys[i] = std::uint64_t{std::bit_cast<uint>(distances[within[i]])} << 32 | j.list[near.place(within[i])];
+        keys[i] = std::uint64_t{std::bit_cast<uint>(distances[within[i]])} << 32 | j.list[near.index(within[i])];
     std::sort(keys.begin(), keys.end());
-    held = std::min<std::size_t>(held, j.wanted); // more lie at the radius itself
-    uint* const ids = j.ids + std::size_t{point} * j.wanted;
-    float* const distances2 = j.distances2 + std::size_t{point} * j.wanted;
+    held = std::min<std::size_t>(held, j.k); // more lie at the radius itself
+    uint* const ids = j.ids + std::size_t{point} * j.k;
+    float* const distances2 = j.distances2 + std::size_t{point} * j.k;
     for (std::size_t i = 0; i < held; ++i) {
         ids[i] = static_cast<uint>(keys[i]);
         distances2[i] = std::bit_cast<float>(static_cast<uint>(keys[i] >> 32));
@@ -138,7 +138,7 @@ HWY_NOINLINE inline void list(
 inline float guess(const search_job& j, uint point)
 {
     kernels::kth_guess k;
-    k.args = {.grid = j.cells_of, .wanted = j.wanted, .max_radius2 = j.max_radius2, .rows = 1023u, .searching = 1u};
+    k.args = {.grid = j.cells_of, .k = j.k, .max_radius2 = j.max_radius2, .rows = 1023u, .searching = 1u};
     k.bind(slot<0>{}, std::span<const glm::vec4>(j.points + point, 1));
     k.bind(slot<1>{}, j.cells);
     k.kernel(0);
@@ -169,7 +169,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
     step /= static_cast<float>(std::max<std::size_t>(end - begin, 2) - 1);
     for (std::size_t o = begin; o < end;) {
         const uint first = j.order[o];
-        if (!is_wanted(j, first)) {
+        if (!needs_estimate(j, first)) {
             if (j.ids != nullptr)
                 end_list(j, first, 0);
             else
@@ -198,7 +198,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
         std::size_t past = o + 1;
         for (; past < end; ++past) {
             const uint point = j.order[past];
-            if (!is_wanted(j, point))
+            if (!needs_estimate(j, point))
                 break;
             const glm::vec3 l = glm::min(low, glm::vec3(j.points[point])),
                             h = glm::max(high, glm::vec3(j.points[point]));
@@ -208,10 +208,11 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             high = h;
         }
         const glm::vec3 center = 0.5f * low + 0.5f * high;
-        float reach = expected;
+        float packet_radius = expected;
         for (std::size_t i = o; i < past; ++i)
-            reach = std::max(reach, expected + distance_between(glm::vec3(j.points[j.order[i]]), center));
-        uint visited = static_cast<uint>(near.fill(j, center, reach));
+            packet_radius
+                = std::max(packet_radius, expected + distance_between(glm::vec3(j.points[j.order[i]]), center));
+        uint visited = static_cast<uint>(near.fill(j, center, packet_radius));
 
         const float begun_with = expected;
         expected = -1;
@@ -221,7 +222,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             if (POLICIES != 0)
                 q.normal = glm::vec3(j.point_normals[point]);
             // All photons as near as this are in the packet.
-            const float sure = std::max((reach - distance_between(q.at, center) * 1.000001f) * 0.999998f, 0.0f);
+            const float sure = std::max((packet_radius - distance_between(q.at, center) * 1.000001f) * 0.999998f, 0.0f);
             const float sure2 = std::min(begun_with >= max_radius ? j.max_radius2 : sure * sure, j.max_radius2);
             chosen_radius r{j.max_radius2, false};
             float low2 = -1, high2 = sure2;
@@ -242,19 +243,19 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             glm::uvec2 found = scan<POLICIES>(j, q, low2, high2, near);
             visited += static_cast<uint>(near.size());
             if (exact) {
-                if (found.x >= j.wanted || (found.x + found.y < j.wanted && (low2 >= 0 || high2 < sure2))) {
+                if (found.x >= j.k || (found.x + found.y < j.k && (low2 >= 0 || high2 < sure2))) {
                     low2 = -1;
                     high2 = sure2;
                     found = scan<POLICIES>(j, q, low2, high2, near);
                     visited += static_cast<uint>(near.size());
                 }
-                if (found.x + found.y >= j.wanted)
-                    r = {nth_smallest(near.of(packet::kept), found.y, j.wanted - found.x, std::max(low2, 0.0f), high2),
-                        true};
+                if (found.x + found.y >= j.k)
+                    r = {
+                        nth_smallest(near.of(packet::kept), found.y, j.k - found.x, std::max(low2, 0.0f), high2), true};
                 else if (sure2 < j.max_radius2) {
                     // The packet does not reach far enough: another from here on.
                     const float growth
-                        = 1.2f * static_cast<float>(j.wanted) / static_cast<float>(std::max(found.x + found.y, 1u));
+                        = 1.2f * static_cast<float>(j.k) / static_cast<float>(std::max(found.x + found.y, 1u));
                     expected = std::max(begun_with * std::sqrt(std::clamp(growth, 1.3f, 8.0f)), 1e-15f);
                     if (growth > 4 && !guessed)
                         expected = std::max(expected, std::sqrt(1.3f * guess(j, point)));
@@ -289,7 +290,7 @@ HWY_INLINE void search_or_grow(const search_job& j, std::size_t begin, std::size
 /// Searches for the points order[begin] to order[end - 1].
 inline void search_block(const search_job& j, std::size_t begin, std::size_t end)
 {
-    if (j.flattening > 0 || j.agreement)
+    if (j.flattening > 0 || j.needs_normals)
         search_or_grow<2>(j, begin, end);
     else if (j.side)
         search_or_grow<1>(j, begin, end);

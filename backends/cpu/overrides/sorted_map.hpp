@@ -1,5 +1,5 @@
 // The cpu backend's way to build a map by sorting: photons go to runs of cells, and within these to their cells, into
-// planes, as the search reads them (map_simd.hpp).
+// soa, as the search reads them (map_simd.hpp).
 #pragma once
 
 #include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>
@@ -17,9 +17,9 @@ namespace cpu {
         cpu_backend& b, std::span<const uint> list, const cpu_backend::buffer<glm::vec4>& attribute)
     {
         const std::size_t n = list.size();
-        const auto from = b.rows(attribute);
+        const auto from = b.elements(attribute);
         auto taken = b.make<glm::vec4>(n);
-        const auto to = b.planes_to_write(taken);
+        const auto to = b.components_to_write(taken);
         b.threads().for_blocks(n, 4096, [&](std::size_t first, std::size_t past) {
             constexpr std::size_t ahead = 16; // reads are all over memory
             for (std::size_t i = first; i < past; ++i) {
@@ -70,15 +70,15 @@ inline
         auto keys = b.make<uint>(n);
         auto records = b.make<glm::vec4>(std::size_t{2} * n);
         auto pairs = b.make<glm::uvec2>(n);
-        j.positions = b.rows(p.positions).data();
-        j.powers = b.rows(p.powers).data();
-        j.keys = b.rows_to_write(keys).data();
-        j.records = reinterpret_cast<cpu::photon_record*>(b.rows_to_write(records).data());
-        j.pairs = b.rows_to_write(pairs).data();
-        j.index = b.rows_to_write(map.cells).data();
-        j.list = b.rows_to_write(map.list).data();
-        j.out_positions = b.planes_to_write(positions);
-        j.out_powers = b.planes_to_write(powers);
+        j.positions = b.elements(p.positions).data();
+        j.powers = b.elements(p.powers).data();
+        j.keys = b.elements_to_write(keys).data();
+        j.records = reinterpret_cast<cpu::photon_record*>(b.elements_to_write(records).data());
+        j.pairs = b.elements_to_write(pairs).data();
+        j.index = b.elements_to_write(map.cells).data();
+        j.list = b.elements_to_write(map.list).data();
+        j.out_positions = b.components_to_write(positions);
+        j.out_powers = b.components_to_write(powers);
 
         std::atomic<uint> invalid = 0, left_out = 0;
         b.threads().for_blocks(n, part, [&](std::size_t first, std::size_t past) {
@@ -114,7 +114,7 @@ inline
     p.powers = std::move(powers);
     for (auto* attribute : {&p.directions, &p.normals})
         if (attribute->size() != 0)
-            *attribute = cpu::in_order_of(b, b.rows(map.list), *attribute);
+            *attribute = cpu::in_order_of(b, b.elements(map.list), *attribute);
     map.photons = std::move(p);
     b.count_passes("sorted_map", 1, watch);
     return map;

@@ -8,12 +8,12 @@
 namespace photongrid {
 
 /// Same pairs in the same order as the generic bitonic_sort; 57 passes for 1,048,576 pairs where that takes 210.
-/// Scratch: none where n is a power of two, else two more buffers of n pairs for a while. `steps_a_pass`: 1 to 4 at
+/// Scratch: none where n is a power of two, else two more buffers of n pairs for a while. `steps_per_pass`: 1 to 4 at
 /// most.
-inline sort_report bitonic_sort(vulkan_backend& b, vulkan_backend::buffer<glm::uvec2>& pairs, uint steps_a_pass = 4)
+inline sort_report bitonic_sort(vulkan_backend& b, vulkan_backend::buffer<glm::uvec2>& pairs, uint steps_per_pass = 4)
 {
-    if (steps_a_pass < 1 || steps_a_pass > 4)
-        throw std::invalid_argument("bitonic_sort: steps_a_pass: " + std::to_string(steps_a_pass) + "; 1 to 4");
+    if (steps_per_pass < 1 || steps_per_pass > 4)
+        throw std::invalid_argument("bitonic_sort: steps_per_pass: " + std::to_string(steps_per_pass) + "; 1 to 4");
     const std::size_t n = pairs.size();
     sort_report report;
     if (n < 2)
@@ -33,14 +33,14 @@ inline sort_report bitonic_sort(vulkan_backend& b, vulkan_backend::buffer<glm::u
         ++report.passes;
     };
     uint run_bits = 1; // of the length of the runs being merged
-    if (levels >= steps_a_pass) {
-        pass(steps_a_pass, steps_a_pass - 1, steps_a_pass, true);
-        run_bits = steps_a_pass + 1;
+    if (levels >= steps_per_pass) {
+        pass(steps_per_pass, steps_per_pass - 1, steps_per_pass, true);
+        run_bits = steps_per_pass + 1;
     }
     for (; run_bits <= levels; ++run_bits)
         for (uint left = run_bits; left > 0;) {
             // As even a share as that many at most to a pass allows.
-            const uint passes = (left + steps_a_pass - 1) / steps_a_pass, steps = (left + passes - 1) / passes;
+            const uint passes = (left + steps_per_pass - 1) / steps_per_pass, steps = (left + passes - 1) / passes;
             pass(run_bits, left - 1, steps, false);
             left -= steps;
         }

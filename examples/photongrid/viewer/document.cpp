@@ -53,9 +53,9 @@ void document::orbit(double across, double upward)
     dvec3 back = c.position - c.look_at;
     back = dvec3(glm::rotate(glm::dmat4(1), glm::radians(-across), up) * glm::dvec4(back, 0));
     const double from_pole = glm::degrees(std::acos(std::clamp(glm::dot(glm::normalize(back), up), -1.0, 1.0)));
-    const double wanted = std::clamp(from_pole - upward, nearest_to_pole, 180 - nearest_to_pole);
+    const double angle = std::clamp(from_pole - upward, nearest_to_pole, 180 - nearest_to_pole);
     const dvec3 axis = glm::normalize(glm::cross(up, back));
-    back = dvec3(glm::rotate(glm::dmat4(1), glm::radians(wanted - from_pole), axis) * glm::dvec4(back, 0));
+    back = dvec3(glm::rotate(glm::dmat4(1), glm::radians(angle - from_pole), axis) * glm::dvec4(back, 0));
     c.position = c.look_at + back;
 }
 

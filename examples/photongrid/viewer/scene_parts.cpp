@@ -95,10 +95,10 @@ void move(scene& s, const scene_part& part, const dvec3& by)
 sight_line sight_line_at(const camera& c, double width, double height, double x, double y)
 {
     const auto [forward, right, up] = photongrid::detail::camera_axes(c);
-    const double reach = std::tan(glm::radians(c.vertical_fov) / 2);
+    const double half_height = std::tan(glm::radians(c.vertical_fov) / 2);
     return {c.position,
-        glm::normalize(
-            forward + (2 * x / width - 1) * reach * width / height * right + (1 - 2 * y / height) * reach * up)};
+        glm::normalize(forward + (2 * x / width - 1) * half_height * width / height * right
+            + (1 - 2 * y / height) * half_height * up)};
 }
 
 std::optional<grip> pick(
@@ -154,7 +154,7 @@ std::optional<picture_box> box_of(const scene& s, const scene_part& part, double
     for_each_item(s, part, [&](const auto& item, auto kind) { kind.add_bounds(b, item); });
     const auto& c = s.camera;
     const auto [forward, right, up] = photongrid::detail::camera_axes(c);
-    const double reach = std::tan(glm::radians(c.vertical_fov) / 2);
+    const double half_height = std::tan(glm::radians(c.vertical_fov) / 2);
     picture_box f;
     for (int corner = 0; corner < 8; ++corner) {
         const dvec3 to
@@ -163,8 +163,8 @@ std::optional<picture_box> box_of(const scene& s, const scene_part& part, double
         const double depth = glm::dot(to, forward);
         if (depth <= 0)
             return std::nullopt;
-        const double x = 0.5 * width + 0.5 * height * glm::dot(to, right) / (depth * reach),
-                     y = 0.5 * height - 0.5 * height * glm::dot(to, up) / (depth * reach);
+        const double x = 0.5 * width + 0.5 * height * glm::dot(to, right) / (depth * half_height),
+                     y = 0.5 * height - 0.5 * height * glm::dot(to, up) / (depth * half_height);
         f.left = std::min(f.left, x), f.right = std::max(f.right, x), f.top = std::min(f.top, y),
         f.bottom = std::max(f.bottom, y);
     }

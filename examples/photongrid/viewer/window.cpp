@@ -324,12 +324,12 @@ namespace {
 
         void draw_curve()
         {
-            const auto plot = [](const char* label, const std::vector<float>& values, const char* about) {
+            const auto plot = [](const char* label, const std::vector<float>& values, const char* text) {
                 char last[48] = "";
                 if (!values.empty())
                     std::snprintf(last, sizeof last, "%.2g", std::pow(10.0, static_cast<double>(values.back())));
                 ImGui::PlotLines(label, values.data(), static_cast<int>(values.size()), 0, last, -8, 2, {170, 60});
-                tip(about);
+                tip(text);
             };
             plot("change", changes_,
                 "relMSE from picture to picture since the last change of yours, logarithmic: from 100 down to 1e-8.");

@@ -1,4 +1,4 @@
-// Quotients and square roots of pseudo-random numbers, for the self-test that asks whether a device rounds them correctly.
+// Quotients and square roots of pseudo-random numbers, for the self-test of whether a device rounds them correctly.
 #include <photongrid/backend/random.glsl>
 
 struct Params {

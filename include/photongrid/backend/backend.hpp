@@ -1,4 +1,4 @@
-// What a backend is: buffers and a few verbs, each from the paper (docs/design/design.md has the table).
+// The interface of a backend: buffers and a few verbs. docs/design/design.md says where the paper has each verb.
 #pragma once
 
 #include <photongrid/backend/kernel.hpp>
@@ -15,11 +15,11 @@
 
 #include <photongrid/backend/exact_begin.hpp>
 
-/// The library. Lengths are in m, flux in W, irradiance in W/m^2, radiance in W/(m^2 sr), linear rgb.
+/// The library. Lengths are in m, power in W, irradiance in W/m^2, radiance in W/(m^2 sr), linear rgb.
 namespace photongrid {
 
-/// A driver that is missing, a context that cannot be had, a device limit exceeded, a device lost. The text says what
-/// was tried, what failed, and what to install or change.
+/// A missing driver, a context that cannot be created, an exceeded device limit, or a lost device. The message says
+/// what was tried, what failed, and what to install or change.
 struct backend_error : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -54,36 +54,36 @@ std::tuple<Buffers&...> writes(Buffers&... buffers)
     return {buffers...};
 }
 
-/// What run_until_done did.
+/// The result of run_until_done.
 struct progress {
     uint passes = 0;                   ///< passes run
     bool finished = false;             ///< true when every element is done
-    std::vector<std::uint64_t> active; ///< per pass: elements that were not yet done when it began
+    std::vector<std::uint64_t> active; ///< per pass: the elements that were not done when it began
 };
 
-/// What was spent on one kernel.
+/// The cost of one kernel so far.
 struct kernel_cost {
-    std::uint64_t instructions = 0; ///< SPIR-V instructions, 0 where the backend compiles none
+    std::uint64_t instructions = 0; ///< SPIR-V instructions; 0 if the backend compiles no SPIR-V
     double compile_ms = 0;          ///< all specialisations together
-    double ms = 0;            ///< its passes, where the backend times them: cpu always, vulkan and gl with time_passes
+    double ms = 0; ///< time of its passes, if the backend measures it: cpu always, vulkan and gl with time_passes
     std::uint64_t passes = 0; ///< passes run so far
 };
 
-/// What a device is and can do. Algorithms may ask; nothing here changes after construction.
+/// The properties of a device. They do not change after the backend's construction.
 struct capabilities {
-    std::string backend;            ///< "serial", "gl", "gl-osmesa", "vulkan"
-    std::string device;             ///< the driver's own words
-    bool software = true;           ///< true where the device is a CPU
-    std::uint64_t max_elements = 0; ///< in one buffer
-    uint max_route_slots = 0;       ///< largest m of route's m x m slots a destination
+    std::string backend;            ///< "serial", "cpu", "gl", "gl-osmesa", "vulkan", or a name of your own
+    std::string device;             ///< the driver's name for it
+    bool software = true;           ///< true if the device is a CPU
+    std::uint64_t max_elements = 0; ///< of one buffer
+    uint max_route_slots = 0;       ///< the largest m of route's m x m slots per destination
     bool exact_division = false;    ///< a / b rounds correctly (self-test at start)
     bool exact_sqrt = false;        ///< sqrt rounds correctly (self-test at start)
-    float cells_a_radius = 2;       ///< how fine a grid searches like best: its cells to the radius of a search
+    float cells_per_radius = 2;     ///< the grid resolution at which searches are fastest: cells per search radius
     uint loop_limit = 0;            ///< iterations after which the driver silently ends loops; 0: none known
 };
 
 namespace detail {
-    /// Whose buffers are whose does not matter, or cannot be mistaken.
+    /// For backends that accept any buffer: no check of ownership.
     inline constexpr auto any_owner = [](const auto&) { return true; };
 
     inline void check_owner(bool owned, const char* verb, std::string_view kernel, std::string_view name)
@@ -93,7 +93,7 @@ namespace detail {
                 + std::string(name) + "' belongs to another backend; download it there and upload it here");
     }
 
-    /// Checks what a call is to read against kernel K: types at compile time, by `owns` at run time whose it is.
+    /// Checks a call's inputs against kernel K: types at compile time, ownership at run time by `owns`.
     template <kernel_struct K, class Reads, class Owns>
     void check_reads(
         [[maybe_unused]] const char* verb, [[maybe_unused]] const Reads& reads, [[maybe_unused]] const Owns& owns)
@@ -109,7 +109,7 @@ namespace detail {
             });
     }
 
-    /// Checks the arguments of one call against kernel K: types at compile time, sizes and owners at run time.
+    /// Checks a call's arguments against kernel K: types at compile time, sizes and ownership at run time.
     template <kernel_struct K, class Reads, class Writes, class Owns = decltype(any_owner)>
     void check_call(const char* verb, const launch& l, const Reads& reads, [[maybe_unused]] const Writes& writes,
         const Owns& owns = any_owner)
@@ -186,33 +186,34 @@ namespace detail {
 /// A backend runs kernels over buffers. Work may be deferred; `download` and `finish` wait for it. Every verb throws
 /// backend_error when the device refuses and std::invalid_argument when a buffer is too small.
 ///
-/// After a backend_error every buffer is still freed by its destructor, what the failed verb was to write is undefined,
-/// and the backend may be used again, unless the device was lost: then every verb throws. Algorithms pass exceptions
-/// on; what they took over or were sorting is then undefined. Kernels trust the ids that other passes wrote; host code
-/// refuses, by backend_error, a count from the device that cannot be.
+/// After a backend_error, destructors still free every buffer, the outputs of the failed verb are undefined, and the
+/// backend may be used again, unless the device was lost: then every verb throws. Algorithms pass exceptions on;
+/// buffers that they were given to consume or to sort are then undefined. Kernels trust ids that earlier passes wrote;
+/// host code throws backend_error for a count from the device that is impossible.
 ///
-/// A verb sees what all before it wrote. A pass may read a buffer that it also writes, if it reads none of the elements
-/// that it writes (a STATE is its own element's old value); outputs of one pass are different buffers. Elements outside
-/// the launch keep their values.
+/// A verb sees the results of all verbs before it. A pass may read a buffer that it also writes, if it reads none of
+/// the elements that it writes (a STATE is its own element's old value). The outputs of one pass are different buffers.
+/// Elements outside the launch keep their values.
 ///
 /// - `make<T>(n)`: a buffer of n elements, n from 0 up, contents undefined
 /// - `upload(span<const T>)`: a buffer with a copy of these contents, every bit
 /// - `download(buffer)`: its contents as std::vector<T>, every bit
 /// - `run<K>(launch, params, reads(…), writes(…))`: one pass (the paper's screen-sized quad)
 /// - `run_until_done<K>(launch, params, reads, writes, passes)`: passes over the elements not yet done (3.3, 4.3), at
-///   most `passes` of them; call it again to go on. Elements that are done are not written
-/// - `count<K>(launch, params, reads(…))`: how many elements `holds` is true for (occlusion query)
+///   most `passes` of them; call it again to continue. Elements that are done are not written
+/// - `count<K>(launch, params, reads(…))`: the number of elements for which `holds` is true (occlusion query)
 /// - `route<K>(launch, params, reads, destinations, m, slots, totals)`: many-to-one scatter (2.2.2). With
 ///   cap = min(m*m, 255), slots[d*cap + r] is the payload of the r-th draw (in index order) with destination d, for
-///   r < cap; the rest is 0xFFFFFFFF. totals[d] is the sum of all amounts with destination d, added in that order.
-///   Draws with a destination past the last are dropped. With room for P totals per destination there are P partial
-///   sums: totals[d*P + p] adds up, in order, the draws of the p-th of P equal blocks. Shorter sums round less
+///   r < cap; other slots are 0xFFFFFFFF. totals[d] is the sum of all amounts with destination d, added in that order.
+///   Draws with a destination past the last one are dropped. If `totals` has P elements per destination, there are P
+///   partial sums: totals[d*P + p] is the sum, in order, of the draws of the p-th of P equal blocks. Shorter sums have
+///   smaller rounding errors
 /// - `finish()`: waits until all passes are done
-/// - `caps()`, `bytes()`, `peak_bytes()`, `costs()`: what the device is, what buffers hold now, what they held at most,
-///   and what each kernel has spent: a pass for each run, count and route, and those of run_until_done
+/// - `caps()`, `bytes()`, `peak_bytes()`, `costs()`: the device's properties, the bytes in buffers now and at most, and
+///   the cost of each kernel: one pass for each run, count and route, and the passes of run_until_done
 ///
-/// A buffer moves and is not copied; one that was moved from has no elements. It may go as soon as the call that names
-/// it has returned, and may outlive the backend.
+/// A buffer can be moved but not copied; a moved-from buffer is empty. It may be destroyed as soon as the call that
+/// uses it has returned, and may outlive the backend.
 // Not formatted: clang-format 14 breaks each of these lines in three.
 // clang-format off
 template <class B>
@@ -235,7 +236,8 @@ concept backend = requires(B& b, const B& cb, typename B::template buffer<uint>&
 // clang-format on
 
 namespace detail {
-    /// How many elements predicate K is true for, as the device says; a backend_error when it says more than there are.
+    /// The number of elements for which predicate K holds. Throws backend_error if the device returns an impossible
+    /// count.
     template <predicate_kernel K, backend B, class Reads>
     uint checked_count(B& b, launch l, const typename K::Params& args, Reads reads)
     {
@@ -248,12 +250,12 @@ namespace detail {
     }
 } // namespace detail
 
-/// The buffers of backend B.
+/// The buffer type of backend B with elements T.
 template <class B, element T>
 using buffer_of = typename B::template buffer<T>;
 
-/// A buffer with the elements of a contiguous range: b.upload() for what is not a std::span.
-/// \throws backend_error where the device has no room.
+/// A buffer with the elements of a contiguous range.
+/// \throws backend_error if the device has no room.
 /// \snippet snippets.cpp upload
 template <backend B, std::ranges::contiguous_range Range>
 requires std::ranges::sized_range<Range> && element<std::ranges::range_value_t<Range>>
@@ -262,20 +264,20 @@ requires std::ranges::sized_range<Range> && element<std::ranges::range_value_t<R
     return b.upload(std::span<const std::ranges::range_value_t<Range>>(elements));
 }
 
-/// Slots that a routed destination really has: m*m, but 255 at most, since an 8-bit stencil cannot count further
+/// The number of slots of a routed destination: m*m, but at most 255, since an 8-bit stencil cannot count further
 /// (docs/design/decisions.md).
 constexpr uint route_capacity(uint m) { return m * m < 255u ? m * m : 255u; }
 
-/// Partial sums that a destination has in route: P where `totals` elements are room for P of each.
-constexpr uint route_parts(std::size_t totals, uint destinations)
+/// The number of partial sums per destination in route, if the buffer of totals has `totals` elements.
+constexpr uint route_sums(std::size_t totals, uint destinations)
 {
     return destinations == 0 ? 1u : static_cast<uint>(totals / destinations);
 }
-/// Draws that share a partial sum in route: `draws` cut into `parts` equal blocks, the last of which may be shorter. 1
-/// at least.
-constexpr uint route_block(uint draws, uint parts)
+/// The number of draws per partial sum in route: `draws` cut into `sums` equal blocks, of which the last may be
+/// shorter. At least 1.
+constexpr uint route_block(uint draws, uint sums)
 {
-    const uint block = draws / parts + (draws % parts != 0 ? 1u : 0u);
+    const uint block = draws / sums + (draws % sums != 0 ? 1u : 0u);
     return block > 0 ? block : 1u;
 }
 

@@ -1,24 +1,28 @@
 // The kernel dialect read as C++. Include this, then kernel files inside structs, then backend/end.hpp.
 //
-// A kernel file is GLSL 4.50 and C++20 at once (docs/design/design.md). It declares, with the words below, what it
-// reads and writes, and defines `void kernel(uint i)`, which computes element i. GL and Vulkan define the same words
-// their way.
+// A kernel file is both GLSL 4.50 and C++20 (docs/design/design.md). It declares its inputs and outputs with the macros
+// below and defines `void kernel(uint i)`, which computes element i. The GL and Vulkan preludes define the same macros.
 //
 //   PARAMS(P)             the struct P of uniform values, visible as `args`
 //   INPUT(B, T, NAME)     a read-only buffer at input slot B; NAME(i) is its element i
 //   OUTPUT(B, T, NAME)    the variable NAME is written to element i of the buffer at output slot B
 //   STATE(B, T, NAME)     like OUTPUT, but NAME holds the element's old value before `kernel` runs: in place
-//   SWITCH(B, NAME)       a bool, constant while a pass runs; compiled in on GPUs, so that `if (NAME)` costs nothing
-//   IN_GROUPS(B)          elements may be computed GROUP_LANES at a time, in step, and tell each other what they hold,
-//   where
-//                         the device can and switch B is on; else, and always here and on GL, one by one. group_lane()
-//                         is this element's place among them; group_any(b), group_min(v), group_max(v) are over all,
-//                         group_sum_up_to(v) over the places up to this one; lane_value(v, place) is v there;
-//                         EACH_LANE(F) says F(0u) to F(GROUP_LANES - 1u), and from_lane(v, LANE) is for its LANE. Some
-//                         of a group may be the same element. Ask others only where all of a group do: not in a branch,
-//                         nor in an arm of ?:, that some of them do not take.
+//   SWITCH(B, NAME)       a bool that is constant during a pass; on GPUs a compile-time constant, so `if (NAME)` is
+//   free IN_GROUPS(B)          the kernel may use subgroup operations. If the device has them and switch B is on,
+//   GROUP_LANES
+//                         elements run together in a subgroup; otherwise, and always in C++ and on GL, GROUP_LANES
+//                         is 1. Two lanes may compute the same element.
+//     group_lane()        index of this lane
+//     group_any(b)        true if b is true in any lane
+//     group_min(v)        smallest v of all lanes; group_max(v): largest
+//     group_sum_up_to(v)  inclusive prefix sum of v over the lanes
+//     lane_value(v, n)    v of lane n
+//     EACH_LANE(F)        F(0u) to F(GROUP_LANES - 1u)
+//     from_lane(v, LANE)  lane_value for the LANE of an EACH_LANE
+//                         Subgroup operations must be in uniform control flow: not in a branch, nor in an operand of
+//                         ?:, that only some of the lanes execute.
 //
-// No include guard: this file is meant to be read again by every header that holds kernels.
+// No include guard: every header with kernels includes this file again.
 #include <cassert>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -28,7 +32,7 @@
 #include <span>
 #include <string_view>
 
-// A kernel that needs no index names its parameter all the same: Mesa takes no unnamed one.
+// Kernels name the parameter i even where they do not use it: Mesa rejects unnamed parameters.
 #include <photongrid/backend/exact_begin.hpp>
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
@@ -36,7 +40,7 @@
 #endif
 
 // NOLINTBEGIN
-// A macro of the same name that your file has is put aside here and comes back with end.hpp.
+// Saves macros of the same names that the including file may have; end.hpp restores them.
 #pragma push_macro("PARAMS")
 #undef PARAMS
 #pragma push_macro("INPUT")
@@ -60,8 +64,8 @@
 #pragma push_macro("precise")
 #undef precise
 
-// Files that kernels share are spliced into GLSL once (kernel_source.hpp). C++ reads them at namespace scope, by their
-// own headers (cmake/kernel_headers.cmake); within a kernel's struct they are then empty.
+// Files that kernels share are spliced into GLSL once (kernel_source.hpp). C++ includes them at namespace scope, by
+// headers of their own (cmake/kernel_headers.cmake); inside a kernel's struct they are then empty.
 #define PHOTONGRID_SHARED_IS_READ
 
 #define PARAMS(P)                                                                                                      \

@@ -1,13 +1,13 @@
-// Arithmetic as it is written: from here to backend/exact_end.hpp the compiler does not contract a * b + c to one
-// rounding. g++ and clang do so by default where the machine has such an instruction (-march=native, -mfma, and AArch64
-// always), and results would then differ in the last bit from those of other backends. The host's own code keeps what
-// the host has chosen: no flag of photongrid's reaches it.
+// From here to backend/exact_end.hpp the compiler does not contract a * b + c to a fused multiply-add. By default g++
+// and clang do, if the machine has the instruction (-march=native, -mfma, and always on AArch64); results would then
+// differ in the last bit from those of other backends. The host's own code is not affected.
 //
-// Who compiles a file with -ffp-contract=off may define PHOTONGRID_CONTRACTION_IS_OFF for it: the pragmas are then not
-// needed, and g++ optimizes a little better without them. photongrid's compiled components do.
+// A file that is compiled with -ffp-contract=off may define PHOTONGRID_CONTRACTION_IS_OFF: it does not need the
+// pragmas, and g++ optimizes slightly better without them. photongrid's compiled components do this.
 //
-// No include guard: every header that computes includes it after its other headers. g++ inlines a function that it
-// compiled this way only into others of this kind, so what calls kernels lies between the two as well.
+// No include guard: every header with arithmetic includes this file after its other headers. g++ inlines a function
+// with this option only into functions with the same option, so code that calls kernels belongs between the two files
+// too.
 #if defined(__FAST_MATH__)
 #error "photongrid: -ffast-math changes results; compile this file without it, or link photongrid::cpu_compiled"
 #endif

@@ -1,4 +1,4 @@
-// Ends what backend/exact_begin.hpp began.
+// Ends the region that backend/exact_begin.hpp begins.
 #if defined(PHOTONGRID_CONTRACTION_IS_OFF)
 #elif defined(__clang__)
 #pragma float_control(pop)

@@ -1,4 +1,5 @@
-// Place in its group (IN_GROUPS, backend/begin.hpp) of the one nearest to the middle for which `which` holds; for one it must.
+// Lane index (IN_GROUPS, backend/begin.hpp) of the lane closest to the subgroup's centre for which `which` is true. It
+// must be true in at least one lane.
 uint group_middle(bool which)
 {
     uint half_way = GROUP_LANES / 2u;

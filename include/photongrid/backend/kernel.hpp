@@ -1,6 +1,5 @@
-// What a kernel is, seen from C++: a struct made by including a kernel file between backend/begin.hpp and
-// backend/end.hpp. Its parameters, inputs and outputs are found here at compile time, so that a call with the wrong
-// buffers does not compile.
+// A kernel in C++: a struct that includes a kernel file between backend/begin.hpp and backend/end.hpp. The templates
+// here find its parameters, inputs and outputs at compile time, so that a call with the wrong buffers does not compile.
 #pragma once
 
 #include <concepts>
@@ -24,7 +23,7 @@ struct slot {
     static constexpr std::size_t index = I; ///< I
 };
 
-/// What a buffer can hold: the element types that GLSL, C++ and textures lay out alike (4, 8 or 16 bytes).
+/// An element type of buffers: one that GLSL, C++ and textures lay out alike (4, 8 or 16 bytes).
 template <class T>
 concept element = std::same_as<T, float> || std::same_as<T, uint> || std::same_as<T, glm::vec2> || std::same_as<T,
     glm::uvec2> || std::same_as<T, glm::vec4> || std::same_as<T, glm::uvec4>;
@@ -63,10 +62,10 @@ namespace detail {
     }
 } // namespace detail
 
-/// How many INPUTs kernel K declares; slots are numbered from 0 without gaps.
+/// The number of INPUTs that kernel K declares. Slots are numbered from 0 without gaps.
 template <class K>
 inline constexpr std::size_t input_count = detail::count_inputs<K>();
-/// How many OUTPUTs and STATEs kernel K declares, numbered together.
+/// The number of OUTPUTs and STATEs that kernel K declares. They are numbered together.
 template <class K>
 inline constexpr std::size_t output_count = detail::count_outputs<K>();
 
@@ -79,7 +78,7 @@ using output_t = std::remove_reference_t<decltype(std::declval<K&>().output(slot
 
 // Not formatted: clang-format 14 breaks each of these lines in three.
 // clang-format off
-/// A kernel: one source text, its parameters, its slots.
+/// A kernel: a source text with parameters and slots.
 template <class K>
 concept kernel_struct = std::default_initializable<K> && std::default_initializable<typename K::Params>
     && requires(K k) {
@@ -91,7 +90,7 @@ concept kernel_struct = std::default_initializable<K> && std::default_initializa
 template <class K>
 concept gather_kernel = kernel_struct<K> && requires(K k, uint i) { k.kernel(i); };
 
-/// A gather kernel over states that also says, from the states alone, when an element needs no more passes.
+/// A gather kernel with a function done(), which says whether an element needs no more passes.
 template <class K>
 concept iterative_kernel = gather_kernel<K> && requires(K k) { { k.done() } -> std::same_as<bool>; };
 
@@ -101,8 +100,8 @@ concept predicate_kernel = kernel_struct<K> && requires(K k, uint i) { { k.holds
 
 // clang-format on
 
-/// A routing kernel: for draw i it gives a destination (none: 0xFFFFFFFF), a payload, and an amount to be added up
-/// there.
+/// A routing kernel: draw i has a destination (none: 0xFFFFFFFF), a payload, and an amount that is added to the
+/// destination's total.
 template <class K>
 concept route_kernel = gather_kernel<K> && output_count<K>
 == 3
@@ -130,7 +129,7 @@ constexpr uint known_switches()
     return known;
 }
 
-/// Turns SWITCHes of `k` on or off by the bits of `switches` (bit B is slot B); slots that K lacks are ignored.
+/// Sets the SWITCHes of `k` to the bits of `switches` (bit B is slot B). Bits without a SWITCH are ignored.
 template <kernel_struct K>
 void turn_switches(K& k, uint switches)
 {
@@ -141,7 +140,7 @@ void turn_switches(K& k, uint switches)
 }
 
 namespace kernels {
-    using namespace glm; // kernels are GLSL: its names are GLM's
+    using namespace glm; // GLSL's types and functions
 } // namespace kernels
 
 } // namespace photongrid

@@ -1,5 +1,5 @@
-// Kernel texts as GPUs need them: a prelude and a kernel file spliced into one source, and a compiler's messages
-// translated back to the kernel's own file and line.
+// Splices a prelude and a kernel file into one GLSL source for a GPU's compiler, and translates the compiler's messages
+// back to the kernel's own file and line.
 #pragma once
 
 #include <photongrid/backend/text_file.hpp>
@@ -19,7 +19,7 @@ namespace photongrid {
 /// A source text made of several files. Line L of file F is numbered (F + 1) * 100000 + L by `#line`, in one integer,
 /// because drivers lose the file number of `#line` with two (docs/design/design.md, "Errors that point home").
 struct spliced_source {
-    std::string text;               ///< what the compiler is given
+    std::string text;               ///< the source for the compiler
     std::vector<std::string> files; ///< F -> name
     std::vector<std::string> texts; ///< F -> the file's own text, for quoting
 };
@@ -64,17 +64,17 @@ namespace detail {
         spliced_source take() { return std::move(out_); }
 
     private:
-        void include(std::string_view wanted, std::string_view from, std::size_t line)
+        void include(std::string_view file, std::string_view from, std::size_t line)
         {
             for (const auto& f : library_) {
-                if (f.name.substr(f.name.rfind('/') + 1) != wanted)
+                if (f.name.substr(f.name.rfind('/') + 1) != file)
                     continue;
                 if (once_.insert(f.name).second)
                     append(f);
                 return;
             }
             throw std::runtime_error(std::string(from) + ":" + std::to_string(line) + ": error: no kernel file named \""
-                + std::string(wanted) + "\"");
+                + std::string(file) + "\"");
         }
         std::span<const text_file> library_;
         std::set<std::string_view> once_;
@@ -82,9 +82,9 @@ namespace detail {
     };
 } // namespace detail
 
-/// Puts `prelude` before `kernel`, then `epilogue` (a wrapper's main), with every `#include` of an x.glsl replaced by
-/// that file of `library`, each once. Defines go after the prelude's `#version` line as they are.
-/// \throws std::runtime_error that names file and line, where an included file is not in `library`.
+/// Joins `prelude`, `kernel` and `epilogue` (which has main), and replaces each `#include` of an x.glsl by that file of
+/// `library`, once per file. `defines` are inserted unchanged after the prelude's `#version` line.
+/// \throws std::runtime_error, with file and line, if an included file is not in `library`.
 inline spliced_source splice(const text_file& prelude, std::string_view defines, const text_file& kernel,
     const text_file& epilogue, std::span<const text_file> library)
 {
@@ -95,8 +95,8 @@ inline spliced_source splice(const text_file& prelude, std::string_view defines,
     return s.take();
 }
 
-/// The embedded text of a kernel by the path that its C++ struct carries.
-/// \throws std::runtime_error when no such text was embedded.
+/// Finds the embedded text of a kernel by the `path` of its C++ struct.
+/// \throws std::runtime_error if no such text was embedded.
 inline const text_file& find_kernel_text(std::string_view path, std::span<const text_file> library)
 {
     const auto base = path.substr(path.find_last_of("/\\") + 1);
@@ -107,7 +107,7 @@ inline const text_file& find_kernel_text(std::string_view path, std::span<const 
         "kernel text '" + std::string(path) + "' was not embedded; give it to photongrid_add_kernels() in CMake");
 }
 
-/// The texts that kernel K can be made of: those that it carries, before those of `library`, a backend's own.
+/// The texts that kernel K may include: its own texts first, then `library`, which is the backend's.
 template <class K>
 std::vector<text_file> texts_of(std::span<const text_file> library)
 {
@@ -119,13 +119,13 @@ std::vector<text_file> texts_of(std::span<const text_file> library)
 }
 
 namespace detail {
-    /// What one row of a compiler's log says.
+    /// One parsed row of a compiler's log.
     struct log_row {
-        unsigned long number = 0; ///< of the line, as #line made it
+        unsigned long number = 0; ///< the line number, as numbered by #line
         std::string_view kind, message;
     };
 
-    /// The number that ends just before place `end`, which moves to where it begins; nothing if no digit stands there.
+    /// Parses the number that ends just before `end`, and moves `end` to its first digit. Empty if there is no digit.
     inline std::optional<unsigned long> number_before(std::string_view text, std::size_t& end)
     {
         std::size_t begin = end;
@@ -139,8 +139,8 @@ namespace detail {
         return number;
     }
 
-    /// Reads Mesa's rows, `0:300010(5): error: ...`, NVIDIA's, `0(300010) : error ...`, and glslang's, `ERROR:
-    /// name:300010: ...`. Without <regex>, which takes a compiler three seconds in every file.
+    /// Parses rows of Mesa (`0:300010(5): error: ...`), NVIDIA (`0(300010) : error ...`) and glslang (`ERROR:
+    /// name:300010: ...`). It does not use <regex>, which adds three seconds to the compilation of every file.
     inline std::optional<log_row> parse_log_row(std::string_view row)
     {
         for (const std::string_view kind : {"error", "warning"}) {
@@ -173,7 +173,7 @@ namespace detail {
         return {};
     }
 
-    /// Takes the first line off `text`; nothing at its end.
+    /// Removes the first line from `text` and returns it; empty at the end of the text.
     inline std::optional<std::string_view> next_line(std::string_view& text)
     {
         if (text.empty())
@@ -184,8 +184,8 @@ namespace detail {
     }
 } // namespace detail
 
-/// Rewrites a compiler's log so that each message reads `kernel.glsl:line: error: …` with the source line quoted below
-/// it. Understands Mesa's, glslang's and NVIDIA's forms; what matches none is kept as it is.
+/// Rewrites a compiler's log: each message becomes `kernel.glsl:line: error: …`, followed by the source line. It knows
+/// the formats of Mesa, glslang and NVIDIA; other lines stay unchanged.
 inline std::string translate_log(std::string_view log, const spliced_source& source)
 {
     std::string out;

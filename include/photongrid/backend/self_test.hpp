@@ -1,5 +1,5 @@
-// What a device's arithmetic is worth: Vulkan and GL allow a division 2.5 units in the last place off. Where division
-// and square root round correctly, traced photons equal the serial backend's bit for bit (docs/design/design.md).
+// Tests whether a device rounds division and square root correctly: Vulkan and GL allow an error of 2.5 units in the
+// last place. If it does, traced photons equal the serial backend's bit for bit (docs/design/design.md).
 #pragma once
 
 #include <photongrid/backend/arithmetic_probe.kernel.hpp>

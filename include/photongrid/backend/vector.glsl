@@ -1,5 +1,5 @@
-// Vector arithmetic written out. GLSL's dot, length and normalize sum and round differently from device to device; these
-// do not.
+// Vector arithmetic, written out. GLSL's dot, length and normalize round differently on different devices; these
+// functions do not.
 #ifndef PHOTONGRID_SHARED_IS_READ // backend/begin.hpp
 
 inline float dot3(vec3 a, vec3 b)
@@ -33,8 +33,8 @@ inline float largest3(vec3 v)
     return m > v.z ? m : v.z;
 }
 
-// The vector with these coordinates in the orthonormal basis whose third axis is n.
-// Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017.
+// The vector that has the coordinates `local` in an orthonormal basis whose third axis is n. Duff et al., Building an
+// Orthonormal Basis, Revisited, JCGT 6(1), 2017.
 inline vec3 from_basis(vec3 local, vec3 n)
 {
     float s = n.z >= 0.0f ? 1.0f : -1.0f;
@@ -68,8 +68,8 @@ inline vec2 unit_circle(float u)
     return vec2(odd ? odd_x : even_x, odd ? odd_y : even_y);
 }
 
-// The angle whose sine is to its cosine as y to x, for y >= 0: a polynomial for atan(t) / t in t^2 on [0, 1], interpolated at
-// Chebyshev's points, error below 3e-7 with float's rounding.
+// atan2(y, x) for y >= 0: a polynomial for atan(t) / t in t^2 on [0, 1], interpolated at Chebyshev's points. Its error
+// is below 3e-7, rounding included.
 inline float angle_of(float y, float x)
 {
     float ax = abs(x);
@@ -83,7 +83,7 @@ inline float angle_of(float y, float x)
     return x < 0.0f ? 3.14159265f - acute : acute;
 }
 
-// A direction about n with density cos / pi.
+// A direction in the hemisphere about n with density cos / pi.
 inline vec3 cosine_direction(vec3 n, float u, float v)
 {
     precise float r = sqrt(u);
@@ -102,7 +102,7 @@ inline vec3 uniform_direction(float u, float v)
     return vec3(r * circle.x, r * circle.y, z);
 }
 
-// False for NaN and infinity; by the exponent's bits, as is_finite in grid.glsl and for the same reason.
+// False for NaN and infinity. It tests the exponent's bits for the reason given at is_finite in grid.glsl.
 inline bool is_finite3(vec3 p)
 {
     return (floatBitsToUint(p.x) & 0x7F800000u) != 0x7F800000u && (floatBitsToUint(p.y) & 0x7F800000u) != 0x7F800000u

@@ -1,4 +1,4 @@
-// Squared distances as whole numbers in the same order, 0 below all of them; no denormals lie between 0 and the rest.
+// Maps squared distances to integers that have the same order. 0 is below all of them. Denormals count as distance 0.
 #ifndef PHOTONGRID_SHARED_IS_READ // backend/begin.hpp
 
 inline uint key_of(float d2)

@@ -1,4 +1,4 @@
-// What kind of estimate is wanted: which photons are sought, how they are weighted, which are refused.
+// The kind of estimate: which photons are sought, how they are weighted, and which are rejected.
 #pragma once
 
 #include <cstdint>
@@ -7,15 +7,14 @@
 
 namespace photongrid {
 
-/// Which photons an estimate uses. At a distance d from the query point, within the maximum radius, those that no leak
-/// policy rejects.
+/// Which photons an estimate uses: of those that no leak policy rejects, within the maximum radius.
 enum class search_kind : std::uint8_t {
-    at_least_k,   ///< section 2.3: k, and more where the radius grew too far; depends on the order of cells
-    exact_k,      ///< the k nearest; of several at the k-th distance, those with the smallest ids
-    fixed_radius, ///< all within the maximum radius
+    at_least_k,   ///< section 2.3: k, or more if the radius grew too far; depends on the order of cells
+    exact_k,      ///< the k nearest; of several photons at the k-th distance, those with the smallest ids
+    fixed_radius, ///< all photons within the maximum radius
 };
 
-/// The weight of a photon at distance d of the radius r; each is normalised to expectation 1 over the disc.
+/// The weight of a photon at distance d, for the radius r. Each filter is normalised to a mean of 1 over the disc.
 enum class filter_kind : std::uint8_t {
     constant,     ///< 1
     cone,         ///< 1 - d/r (Jensen's with slope 1)
@@ -23,32 +22,32 @@ enum class filter_kind : std::uint8_t {
     silverman,    ///< (1 - d^2/r^2)^2 (Silverman 1986)
 };
 
-/// What to do about the photon that sets the radius.
+/// Whether the photon that sets the radius counts.
 enum class bias_kind : std::uint8_t {
-    paper,    ///< counts like any other: k / (pi r_k^2), high by k / (k - 1) for a constant kernel
-    unbiased, ///< is left out of the sum; the mean is right for every kernel. No photon is left out where the radius
-              ///< was given or the maximum was reached. With at_least_k a remainder is left, up to +1.7 % at k = 32
+    paper,    ///< it counts: k / (pi r_k^2), which is too high by k / (k - 1) for a constant filter
+    unbiased, ///< it does not count; the mean is right for every filter. No photon is left out if the radius was given
+              ///< or the maximum radius was reached. With at_least_k some bias remains, up to +1.7 % at k = 32
 };
 
-/// What to do about the part of an estimate's disc that hangs over the edge of its surface, where no photon can be.
+/// The correction of estimates near the edge of a surface, beyond which there are no photons.
 enum class edge_correction : std::uint8_t {
-    none,     ///< nothing: an estimate at a straight edge reads half of the truth, in a right corner a quarter
-    polygons, ///< on polygons, divide by the share of the disc that is surface, weighted by the filter
+    none,     ///< no correction: an estimate at a straight edge is half of the irradiance, in a right corner a quarter
+    polygons, ///< on polygons, divide by the share of the disc that lies on the surface, weighted by the filter
               ///< (edge_correction.hpp)
 };
 
-/// Policies against light that leaks through walls and round corners. A photon that one of them rejects neither counts
-/// towards k nor shrinks the radius.
+/// Policies against light that leaks through walls and around corners. A rejected photon neither counts towards k nor
+/// affects the radius.
 struct leak_policy {
-    bool side = false; ///< reject photons that arrived from behind the surface; needs directions of photons and normals
-                       ///< of points
-    float min_cosine
-        = -1; ///< reject photons stored on a surface turned away by more than this: needs normals of both; -1: off
-    float flattening = 1; ///< distances along the normal count this many times: the ball becomes a disc; needs normals
-                          ///< of points; 1: off
+    bool side = false; ///< reject photons that arrive from behind the surface; needs photons' directions and points'
+                       ///< normals
+    float min_cosine = -1; ///< reject photons on surfaces whose normal has a smaller cosine with the point's; needs
+                           ///< both normals; -1: off
+    float flattening = 1;  ///< factor for distances along the normal, so that the search ball becomes a flat ellipsoid;
+                           ///< needs points' normals; 1: off
 
-    bool needs_normals() const { return min_cosine > -1; }                       ///< of photons
-    bool needs_any() const { return side || needs_normals() || flattening > 1; } ///< of points
+    bool needs_normals() const { return min_cosine > -1; }                       ///< needs photons' normals
+    bool needs_any() const { return side || needs_normals() || flattening > 1; } ///< needs points' normals
 
     bool operator==(const leak_policy&) const = default; ///< of every member
 };

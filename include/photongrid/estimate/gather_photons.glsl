@@ -1,16 +1,18 @@
-// Adds up the photons that a search chose, weighted by a kernel of their distance that falls from 1 to 0 (2.3; filters:
-// Jensen 2001, section 7.3; Silverman 1986). Sums are compensated (Kahan), so that ten thousand photons lose no more than ten.
+// Sums the power of the photons that a search found, weighted by a filter of their distance that falls from 1 to 0
+// (2.3; filters: Jensen 2001, section 7.3; Silverman 1986). Sums are compensated (Kahan), so that the rounding error
+// does not grow with the number of photons.
 //
-// LEAVE_OUT takes the photon that sets the radius out of the sum: N photons within their largest distance are N - 1 within
-// a disc of that size, and any weights have the right mean (Garcia Hernandez et al. 2012; docs/design/decisions.md).
+// LEAVE_OUT excludes the photon that sets the radius: of N photons, N - 1 lie inside the disc whose radius is the
+// largest distance, and with those the mean of the estimate is right for every filter (Garcia Hernandez et al. 2012;
+// docs/design/decisions.md).
 #include <photongrid/map/grid.glsl>
 
 struct Params {
     Grid grid;
     vec4 leaks;        // see photon_distance.glsl
     float min_radius2; // m^2; the disc is never smaller
-    uint visits;       // photons examined in a pass at most ...
-    uint ranges;       // ... in this many rows of cells at most
+    uint visits;       // the most photons to examine in a pass ...
+    uint ranges;       // ... and the most rows of cells
 };
 PARAMS(Params)
 SWITCH(0, SIDE)
@@ -20,23 +22,23 @@ SWITCH(3, CONE)         // weight 1 - d / r
 SWITCH(4, EPANECHNIKOV) // 1 - d^2 / r^2
 SWITCH(5, SILVERMAN)    // (1 - d^2 / r^2)^2; none of the three: 1
 SWITCH(6, LEAVE_OUT)
-SWITCH(7, ERRORS)       // squares are wanted
+SWITCH(7, ERRORS)       // compute the squares too
 IN_GROUPS(8)
-INPUT(0, vec4, points)         // xyz: query point, m
-INPUT(1, vec4, normals)        // xyz: unit normal of the surface there
-INPUT(2, uvec2, cells)         // x: first photon, y: count
-INPUT(3, vec4, positions)      // xyz, m, cell by cell
+INPUT(0, vec4, points)        // xyz: query point, m
+INPUT(1, vec4, normals)       // xyz: unit normal of the surface there
+INPUT(2, uvec2, cells)        // x: first photon, y: count
+INPUT(3, vec4, positions)     // xyz, m, cell by cell
 INPUT(4, vec4, directions)
 INPUT(5, vec4, photon_normals)
-INPUT(6, uint, list)           // photon ids
-INPUT(7, vec4, powers)         // rgb, W
-STATE(0, vec4, reach)          // see kth_result.glsl
+INPUT(6, uint, list)          // photon ids
+INPUT(7, vec4, powers)        // rgb, W
+STATE(0, vec4, search_radius) // see kth_result.glsl
 STATE(1, uvec4, chosen)
-STATE(2, vec4, sum)            // rgb: weighted flux, W
-STATE(3, vec4, lost)           // rgb: what rounding took from it
-STATE(4, vec4, squares)        // rgb: squares of the weighted fluxes; w: of their sums over channels
-STATE(5, uvec4, cursor)        // y, z of the row to go on with; the first photon not yet visited
-STATE(6, uvec4, tally)         // photons held, photons visited, place + 1 of the one left out, done
+STATE(2, vec4, sum)           // rgb: weighted flux, W
+STATE(3, vec4, compensation)  // rgb: rounding error of the sum so far (Kahan)
+STATE(4, vec4, squares)       // rgb: squares of the weighted fluxes; w: of their sums over channels
+STATE(5, uvec4, cursor)       // y, z of the next row; the first photon not yet visited
+STATE(6, uvec4, tally)        // photons summed; photons visited; index + 1 of the photon left out; 1: done
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
@@ -44,11 +46,11 @@ STATE(6, uvec4, tally)         // photons held, photons visited, place + 1 of th
 
 uint chunk_id;
 vec4 chunk_power;
-void take_flux(uint nth, uint all)
+void take_powers(uint nth, uint all)
 {
     take_chunk(nth, all);
-    chunk_id = list(chunk_place);
-    chunk_power = powers(chunk_place);
+    chunk_id = list(chunk_index);
+    chunk_power = powers(chunk_index);
 }
 
 bool done()
@@ -61,14 +63,14 @@ void kernel(uint i)
     vec4 p = points(i);
     vec4 n = normals(i);
     uvec4 c = cell_coordinates(args.grid, p);
-    float radius2 = reach.x;
-    bool apart = LEAVE_OUT && reach.y > 0.0f && radius2 >= args.min_radius2;
+    float radius2 = search_radius.x;
+    bool apart = LEAVE_OUT && search_radius.y > 0.0f && radius2 >= args.min_radius2;
     float inverse_disc2 = 1.0f / max(radius2, args.min_radius2);
     uint last_id = chosen.z;
     vec4 total = sum;
-    vec4 rest = lost;
+    vec4 correction = compensation;
     vec4 square = squares;
-    uvec4 place = cursor;
+    uvec4 resume_at = cursor;
     uint held = tally.x;
     uint visited = tally.y;
     uint left_out = tally.z;
@@ -83,63 +85,64 @@ void kernel(uint i)
     walk_visits = args.visits;
     walk_steps = args.ranges;
     while (walk_steps > 0u && group_any(!finished)) {
-        bool mine = joins_walk(!finished, p, c, radius2, place);
-        vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the others find nothing
+        bool mine = joins_walk(!finished, p, c, radius2, resume_at);
+        vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the other lanes find nothing
         while (walks_on()) {
             uint photons = next_rows();
             visited += mine ? photons : 0u;
-            // Of several photons at the radius itself, the one with the largest id is left out.
-#define VISIT(LANE)                                                                                 \
-    {                                                                                               \
-        float d2 = distance2_of(PHOTON_OF(LANE), from, n);                                          \
-        if (GROUP_LANES > 1u || d2 <= radius2) {                                                    \
-            uint at = from_lane(chunk_place, LANE);                                                 \
-            uint id = from_lane(chunk_id, LANE);                                                    \
-            vec4 power = from_lane(chunk_power, LANE);                                              \
-            bool at_radius = d2 == radius2 && id <= last_id;                                        \
-            bool counts = d2 < radius2 || at_radius;                                                \
-            held += counts ? 1u : 0u;                                                               \
-            bool swaps = apart && at_radius && (left_out == 0u || id > left_id);                    \
-            counts = counts && !(swaps && left_out == 0u);                                          \
-            vec4 added = swaps ? left_power : power;                                                \
-            left_out = swaps ? at + 1u : left_out;                                                  \
-            left_id = swaps ? id : left_id;                                                         \
-            left_power = swaps ? power : left_power;                                                \
-            float t = d2 * inverse_disc2;                                                           \
-            t = t < 1.0f ? t : 1.0f;                                                                \
-            float weight = 1.0f;                                                                    \
-            if (CONE)                                                                               \
-                weight = 1.0f - sqrt(t);                                                            \
-            if (EPANECHNIKOV)                                                                       \
-                weight = 1.0f - t;                                                                  \
-            if (SILVERMAN)                                                                          \
-                weight = (1.0f - t) * (1.0f - t);                                                   \
-            precise vec4 flux = added * weight;                                                     \
-            precise vec4 term = flux - rest;                                                        \
-            precise vec4 more = total + term;                                                       \
-            precise vec4 error = (more - total) - term;                                             \
-            total = counts ? more : total;                                                          \
-            rest = counts ? error : rest;                                                           \
-            if (ERRORS) {                                                                           \
-                float all = flux.x + flux.y + flux.z;                                               \
-                vec4 flux2 = vec4(flux.x * flux.x, flux.y * flux.y, flux.z * flux.z, all * all);    \
-                square = counts ? square + flux2 : square;                                          \
-            }                                                                                       \
-        }                                                                                           \
+            // If several photons lie at the radius, the one with the largest id is left out.
+#define VISIT(LANE)                                                                        \
+    {                                                                                      \
+        float d2 = distance2_of(PHOTON_OF(LANE), from, n);                                 \
+        if (GROUP_LANES > 1u || d2 <= radius2) {                                           \
+            uint at = from_lane(chunk_index, LANE);                                        \
+            uint id = from_lane(chunk_id, LANE);                                           \
+            vec4 power = from_lane(chunk_power, LANE);                                     \
+            bool at_radius = d2 == radius2 && id <= last_id;                               \
+            bool counts = d2 < radius2 || at_radius;                                       \
+            held += counts ? 1u : 0u;                                                      \
+            bool swaps = apart && at_radius && (left_out == 0u || id > left_id);           \
+            counts = counts && !(swaps && left_out == 0u);                                 \
+            vec4 added = swaps ? left_power : power;                                       \
+            left_out = swaps ? at + 1u : left_out;                                         \
+            left_id = swaps ? id : left_id;                                                \
+            left_power = swaps ? power : left_power;                                       \
+            float t = d2 * inverse_disc2;                                                  \
+            t = t < 1.0f ? t : 1.0f;                                                       \
+            float weight = 1.0f;                                                           \
+            if (CONE)                                                                      \
+                weight = 1.0f - sqrt(t);                                                   \
+            if (EPANECHNIKOV)                                                              \
+                weight = 1.0f - t;                                                         \
+            if (SILVERMAN)                                                                 \
+                weight = (1.0f - t) * (1.0f - t);                                          \
+            precise vec4 weighted = added * weight;                                        \
+            precise vec4 term = weighted - correction;                                     \
+            precise vec4 more = total + term;                                              \
+            precise vec4 error = (more - total) - term;                                    \
+            total = counts ? more : total;                                                 \
+            correction = counts ? error : correction;                                      \
+            if (ERRORS) {                                                                  \
+                float all = weighted.x + weighted.y + weighted.z;                          \
+                vec4 weighted2 = vec4(weighted.x * weighted.x, weighted.y * weighted.y,    \
+                    weighted.z * weighted.z, all * all);                                   \
+                square = counts ? square + weighted2 : square;                             \
+            }                                                                              \
+        }                                                                                  \
     }
             if (photons > 0u)
-                EACH_PHOTON(photons, take_flux, VISIT)
+                EACH_PHOTON(photons, take_powers, VISIT)
 #undef VISIT
         }
         if (mine) {
-            place = uvec4(walk.x, walk.y, walk.z, 0u);
+            resume_at = uvec4(walk.x, walk.y, walk.z, 0u);
             finished = has_walked();
         }
     }
 
     sum = total;
-    lost = rest;
+    compensation = correction;
     squares = square;
-    cursor = place;
+    cursor = resume_at;
     tally = uvec4(held, visited, left_out, finished ? 1u : 0u);
 }

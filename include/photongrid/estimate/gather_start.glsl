@@ -1,14 +1,14 @@
-// The beginning of a gathering (gather_photons.glsl). A point that is not wanted (w <= 0) or not finite is done at once.
+// Initialises gather_photons.glsl. Points with w <= 0 and points that are not finite are done at once.
 #include <photongrid/map/grid.glsl>
 
 struct Params {
-    uint searching; // 0: no search can find anything (no photons, none wanted, no radius)
+    uint searching; // 0: nothing can be found (no photons, k = 0, or no radius)
 };
 PARAMS(Params)
-INPUT(0, vec4, points) // xyz: query point, m; w > 0: wanted
+INPUT(0, vec4, points) // xyz: query point, m; w > 0: estimate here
 INPUT(1, uvec4, chosen)
 OUTPUT(0, vec4, sum)
-OUTPUT(1, vec4, lost)
+OUTPUT(1, vec4, compensation)
 OUTPUT(2, vec4, squares)
 OUTPUT(3, uvec4, cursor)
 OUTPUT(4, uvec4, tally)
@@ -17,9 +17,9 @@ void kernel(uint i)
 {
     vec4 p = points(i);
     sum = vec4(0.0f, 0.0f, 0.0f, 0.0f);
-    lost = sum;
+    compensation = sum;
     squares = sum;
     cursor = uvec4(0u, 0u, 0u, 0u);
-    bool wanted = args.searching != 0u && p.w > 0.0f && is_finite(p);
-    tally = uvec4(0u, chosen(i).y, 0u, wanted ? 0u : 1u);
+    bool searches = args.searching != 0u && p.w > 0.0f && is_finite(p);
+    tally = uvec4(0u, chosen(i).y, 0u, searches ? 0u : 1u);
 }

@@ -1,13 +1,13 @@
-// What a search within a given radius begins with, for gather_photons.glsl: as kth_result.glsl, but nothing is sought.
+// The inputs of gather_photons.glsl for a given radius. kth_result.glsl writes the same outputs after a search.
 struct Params {
     float radius2; // m^2
 };
 PARAMS(Params)
-OUTPUT(0, vec4, reach)
+OUTPUT(0, vec4, search_radius)
 OUTPUT(1, uvec4, chosen)
 
 void kernel(uint i)
 {
-    reach = vec4(args.radius2, 0.0f, 0.0f, 0.0f);
+    search_radius = vec4(args.radius2, 0.0f, 0.0f, 0.0f);
     chosen = uvec4(0u, 0u, 0xFFFFFFFFu, 0u);
 }

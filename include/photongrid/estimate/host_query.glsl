@@ -1,5 +1,5 @@
-// What the host's own searches (host_search.hpp) share with the kernels: how far a photon is, and which photons of a row
-// of cells can lie within a radius. Never run by a device; a kernel so that the two cannot differ.
+// The functions that host_search.hpp shares with the search kernels: a photon's distance, and the photons of a row of
+// cells that can lie within a radius. No device runs this kernel; it exists so that host and devices use the same text.
 #include <photongrid/map/grid.glsl>
 
 struct Params {

@@ -1,5 +1,6 @@
-// Searches for one point at a time, on the host: const, from any thread, over a copy of a map. They find the photons
-// that the kernels find, to the bit: distances and rows of cells are those of the kernels' own text (host_query.glsl).
+// Searches for one point at a time on the host, in a copy of a map. They are const and may run in any thread. They find
+// exactly the photons that the kernels find, because they compute distances and rows of cells by the same text
+// (host_query.glsl).
 #pragma once
 
 #include <photongrid/estimate/host_query.kernel.hpp>
@@ -15,20 +16,20 @@
 
 namespace photongrid {
 
-/// Which photon or point: its place in the range that the map was made from.
+/// A photon or point, by its index in the range that the map was made from.
 using photon_id = uint;
 
-/// Light that arrives at a point.
+/// The irradiance at a point.
 struct irradiance_at_point {
     glm::vec3 value{0};     ///< W/m^2
-    glm::vec3 error{0};     ///< standard error of value, W/m^2; 0 where none was asked for
-    float error_of_sum = 0; ///< standard error of the channels' sum, W/m^2; 0 where none was asked for
-    float radius = 0;       ///< of the disc that the photons lay in, m
-    uint count = 0;         ///< photons in it
+    glm::vec3 error{0};     ///< standard error of value, W/m^2; 0 unless requested
+    float error_of_sum = 0; ///< standard error of the channels' sum, W/m^2; 0 unless requested
+    float radius = 0;       ///< radius of the photons' disc, m
+    uint count = 0;         ///< photons in the disc
 };
 
-/// Room that a search for one point needs. Each thread has its own; once it has held the largest search, none
-/// allocates.
+/// Scratch memory for searches for one point. Each thread needs its own. Once it has grown to the largest search,
+/// searches no longer allocate.
 class query_scratch {
 public:
     query_scratch() = default;
@@ -36,15 +37,16 @@ public:
 private:
     friend class host_search;
     struct candidate {
-        std::uint64_t key; ///< squared distance above, id below: in this order photons are taken
-        uint place;        ///< in the map
+        std::uint64_t
+            key;    ///< squared distance in the upper bits, id in the lower: the order in which photons are chosen
+        uint index; ///< in the map
         bool operator<(const candidate& other) const { return key < other.key; }
     };
     std::vector<candidate> found_;
 };
 
-/// A map's photons in the host's memory. It takes 36 bytes a photon, and 16 more for each of directions and normals
-/// that the policies of the search need.
+/// A map's photons in the host's memory: 36 bytes per photon, and 16 more each for directions and normals if the leak
+/// policies need them.
 class host_search {
 public:
     host_search() = default;
@@ -65,17 +67,17 @@ public:
 
     const knn_settings& settings() const { return settings_; }
 
-    /// Calls f(id, squared distance) for every photon within `radius` of p, in no particular order. Asks no policy.
+    /// Calls f(id, squared distance) for every photon within `radius` of p, in no particular order, without leak
+    /// policies.
     template <class F>
     void for_each_within(const glm::vec3& p, float radius, const F& f) const
     {
         const auto q = query({}, 0);
         const float radius2 = radius > 0 ? std::min(radius * radius, 1e38f) : -1.0f;
-        visit(q, glm::vec4(p, 1), glm::vec4(0), radius2, [&](uint place, float d2) { f(photon_id{list_[place]}, d2); });
+        visit(q, glm::vec4(p, 1), glm::vec4(0), radius2, [&](uint index, float d2) { f(photon_id{list_[index]}, d2); });
     }
 
-    /// Calls f(id, squared distance) for the k nearest photons, nearest first; of equally near ones, the smallest id
-    /// first.
+    /// Calls f(id, squared distance) for the k nearest photons, nearest first; equal distances are ordered by id.
     template <class F>
     void for_each_nearest(const glm::vec3& p, uint k, float max_radius, query_scratch& scratch, const F& f) const
     {
@@ -92,15 +94,15 @@ public:
             f(photon_id{static_cast<uint>(found[i].key)}, distance2_of(found[i]));
     }
 
-    /// The estimate at p, by the settings. Same photons and radius as a search for many points finds; sums differ by
-    /// 10^-6 at most. `normal`: of the surface, where a policy needs it.
+    /// The estimate at p. It uses the same photons and radius as a search for many points; sums differ by at most
+    /// 10^-6. `normal`: of the surface, if a leak policy needs it.
     irradiance_at_point irradiance(const glm::vec3& p, const glm::vec3& normal, query_scratch& scratch) const
     {
         const auto& s = settings_;
         if (s.search == search_kind::at_least_k)
-            throw std::invalid_argument(
-                "photon_map::irradiance: search: at_least_k depends on the order of all cells and "
-                "is for many points at once; take exact_k or fixed_radius");
+            throw std::invalid_argument("photon_map::irradiance: search: at_least_k is not available for a single "
+                                        "point; use exact_k or fixed_radius, "
+                                        "or search for many points at once");
         const auto q = query(s.leaks, policies(s.leaks));
         const std::size_t n = collect(q, glm::vec4(p, 1), glm::vec4(normal, 0), s, scratch);
         const bool by_photon = s.search == search_kind::exact_k && n >= s.k;
@@ -116,10 +118,10 @@ public:
             if (left_out && by_photon && radius2 >= min2 && found[i].key == last->key)
                 continue;
             const float t = std::min(distance2_of(found[i]) * inverse, 1.0f);
-            const glm::vec4 flux = powers_[found[i].place] * weight(s.filter, t);
-            const float all = flux.x + flux.y + flux.z;
-            sum += glm::dvec4(flux);
-            squares += glm::dvec4(flux.x * flux.x, flux.y * flux.y, flux.z * flux.z, all * all);
+            const glm::vec4 weighted = powers_[found[i].index] * weight(s.filter, t);
+            const float all = weighted.x + weighted.y + weighted.z;
+            sum += glm::dvec4(weighted);
+            squares += glm::dvec4(weighted.x * weighted.x, weighted.y * weighted.y, weighted.z * weighted.z, all * all);
         }
         return made_of({radius2, by_photon ? 1.0f : 0.0f, 0, 0}, glm::vec4(sum), glm::vec4(squares),
             static_cast<uint>(n), left_out);
@@ -157,8 +159,7 @@ private:
         return q;
     }
 
-    /// Calls f(place, squared distance) for the photons within radius2. Few of a row of cells are, so that f may take
-    /// its time.
+    /// Calls f(index, squared distance) for the photons within radius2.
     template <class F>
     static void visit(kernels::host_query q, const glm::vec4& p, const glm::vec4& n, float radius2, const F& f)
     {
@@ -172,13 +173,13 @@ private:
         for (uint z = rows_z.x; z <= rows_z.y; ++z)
             for (uint y = rows_y.x; y <= rows_y.y; ++y) {
                 const auto row = q.photons_of_row(p, y, z, c, radius2);
-                for (uint place = row.x; place < row.y; ++place)
-                    if (const float d2 = q.photon_distance2(place, p, n); d2 <= radius2)
-                        f(place, d2);
+                for (uint index = row.x; index < row.y; ++index)
+                    if (const float d2 = q.photon_distance2(index, p, n); d2 <= radius2)
+                        f(index, d2);
             }
     }
 
-    /// The first `n` that are returned of scratch are the photons that count, in no order.
+    /// Collects the photons that count in `scratch`, in no order. Returns how many there are.
     std::size_t collect(const kernels::host_query& q, const glm::vec4& p, const glm::vec4& n, const knn_settings& s,
         query_scratch& scratch) const
     {
@@ -193,8 +194,8 @@ private:
         const float far2 = 16 * (extent.x * extent.x + extent.y * extent.y + extent.z * extent.z);
         for (;;) {
             found.clear();
-            visit(q, p, n, radius2, [&](uint place, float d2) {
-                found.push_back({std::uint64_t{std::bit_cast<uint>(d2)} << 32 | list_[place], place});
+            visit(q, p, n, radius2, [&](uint index, float d2) {
+                found.push_back({std::uint64_t{std::bit_cast<uint>(d2)} << 32 | list_[index], index});
             });
             if (!exact)
                 return found.size();
@@ -215,7 +216,7 @@ private:
     float guess(const glm::vec4& p, uint k, float max2) const
     {
         kernels::kth_guess g;
-        g.args = {.grid = grid_, .wanted = k, .max_radius2 = max2, .rows = 1023u, .searching = 1u};
+        g.args = {.grid = grid_, .k = k, .max_radius2 = max2, .rows = 1023u, .searching = 1u};
         g.bind(slot<0>{}, std::span<const glm::vec4>(&p, 1));
         g.bind(slot<1>{}, cells_);
         g.kernel(0);
@@ -223,14 +224,14 @@ private:
     }
 
     irradiance_at_point made_of(
-        const glm::vec4& reach, const glm::vec4& sum, const glm::vec4& squares, uint held, bool left_out) const
+        const glm::vec4& search_radius, const glm::vec4& sum, const glm::vec4& squares, uint held, bool left_out) const
     {
         const glm::uvec4 tally(held, 0, 0, 0);
         kernels::irradiance_estimate e;
         e.args = {.norm = detail::norm_of(settings_.filter),
             .min_radius2 = detail::min_radius2(settings_),
             .left_out = left_out ? 1u : 0u};
-        e.bind(slot<0>{}, std::span(&reach, 1));
+        e.bind(slot<0>{}, std::span(&search_radius, 1));
         e.bind(slot<1>{}, std::span(&sum, 1));
         e.bind(slot<2>{}, std::span(&squares, 1));
         e.bind(slot<3>{}, std::span(&tally, 1));

@@ -1,24 +1,23 @@
-// Density estimate from the photons gathered: irradiance = weighted flux / (pi r^2) x the kernel's norm (Jensen 1996; the
-// paper's section 2.3), and its standard error. The disc is that of the photon that set the radius, or of the given or
-// maximum radius, for that is what was searched; it is never smaller than the stated floor, so coincident photons give a
-// finite answer.
+// Density estimate from the gathered photons: irradiance = weighted flux / (pi r^2) x the filter's norm (Jensen 1996;
+// the paper's section 2.3), and its standard error. r is the distance of the photon that set the radius, or the given
+// or maximum radius if none did. It is at least min_radius, so that coincident photons give a finite result.
 struct Params {
-    float norm;        // 1 / mean of the kernel over its disc
+    float norm;        // 1 / mean of the filter over its disc
     float min_radius2; // m^2
     uint left_out;     // 1: the photon that set the radius is not in the sum
 };
 PARAMS(Params)
-INPUT(0, vec4, reach)
+INPUT(0, vec4, search_radii)
 INPUT(1, vec4, sums)
 INPUT(2, vec4, squares)
 INPUT(3, uvec4, tallies)
 OUTPUT(0, vec4, irradiance)     // rgb: W/m^2; w: squared radius searched, m^2
-OUTPUT(1, uvec2, used)          // photons within it, photons visited
+OUTPUT(1, uvec2, used)          // photons within the radius, photons visited
 OUTPUT(2, vec4, standard_error) // rgb: of irradiance, W/m^2; w: of its sum over channels
 
 void kernel(uint i)
 {
-    vec4 r = reach(i);
+    vec4 r = search_radii(i);
     vec4 s = sums(i);
     vec4 q = squares(i);
     uvec4 n = tallies(i);
@@ -27,8 +26,9 @@ void kernel(uint i)
     irradiance = vec4(s.x * per_area, s.y * per_area, s.z * per_area, r.x);
     used = uvec2(n.x, n.y);
 
-    // The sum of squares is the variance of a sum over randomly many photons (a Poisson process, radius given). Where the
-    // k-th photon set the radius, the disc varies too: a relative variance of 1 / (k - 2) where the squares show 1 / terms.
+    // For a given radius the number of photons is random (a Poisson process), and the sum of squares estimates the
+    // variance of the sum. If the k-th photon set the radius, the disc's area varies instead: the relative variance is
+    // 1 / (k - 2), where the squares give 1 / terms.
     float spread = 1.0f;
     if (r.y > 0.0f && n.x > 0u) {
         float terms = float(n.x) - float(args.left_out);

@@ -1,8 +1,7 @@
-// The kNN-grid radiance estimate (section 2.3, figure 6) and what goes beyond it: a search that finds at least k
-// photons, the k nearest, or all within a radius, then a density estimate from them, with its standard error. A bounded
-// amount of work a pass.
+// The kNN-grid radiance estimate (section 2.3, figure 6) and its extensions: a search for at least k photons, for the k
+// nearest, or for all within a radius, followed by a density estimate with a standard error. Work per pass is bounded.
 //
-//     at_least_k:   knn_visit ----------------> knn_result          (the paper's: constant filter, no error asked for)
+//     at_least_k:   knn_visit ----------------> knn_result          (the paper's: constant filter, no standard error)
 //                             \-> grown_radius -> gather_photons -> irradiance_estimate
 //     exact_k:      kth_guess -> kth_distance -> kth_result -> kth_tie -> gather_photons -> irradiance_estimate
 //     fixed_radius: given_radius -------------------------------------> gather_photons -> irradiance_estimate
@@ -13,7 +12,7 @@
 #include <photongrid/estimate/gather_start.kernel.hpp>
 #include <photongrid/estimate/grown_radius.kernel.hpp>
 #include <photongrid/estimate/irradiance_estimate.kernel.hpp>
-#include <photongrid/estimate/knn_reach.hpp>
+#include <photongrid/estimate/knn_radius.hpp>
 #include <photongrid/estimate/knn_result.kernel.hpp>
 #include <photongrid/estimate/knn_start.kernel.hpp>
 #include <photongrid/estimate/knn_visit.kernel.hpp>
@@ -30,53 +29,52 @@ template <backend B>
 struct knn_estimates {
     buffer_of<B, glm::vec4> irradiance; ///< rgb, W/m^2: flux / (pi r^2), weighted; w: r^2, m^2
     buffer_of<B, glm::uvec2> used;      ///< x: photons within r, y: photons visited
-    /// rgb: standard error of irradiance, W/m^2; w: of the sum of its channels. Empty where none was asked for. It
-    /// takes the photons as independent; it does not see bias. 0 where no photon was found; meaningless for k < 3,
-    /// whose variance is infinite.
+    /// rgb: standard error of irradiance, W/m^2; w: of the sum of its channels. Empty unless requested. It assumes that
+    /// photons are independent and does not include bias. 0 if no photon was found; meaningless for k < 3, for which
+    /// the variance is infinite.
     buffer_of<B, glm::vec4> standard_error;
 };
 
-/// A search for many points at once, that can be advanced, looked at and advanced again.
+/// A search for many points at once, which advances step by step; estimates so far can be read in between.
 ///
-/// Which photons count is stated at search_kind; "distance" is compared as squares, in single precision, summed x, y, z
-/// as photon_distance.glsl writes it, so that every backend finds the same set. With fewer than k, r is max_radius.
-/// Radiance of a Lambertian surface is irradiance x reflectance / pi.
+/// search_kind says which photons count. Squared distances are compared in single precision, computed as in
+/// photon_distance.glsl, so that every backend finds the same photons. With fewer than k photons, r is max_radius. The
+/// radiance of a Lambertian surface is irradiance x reflectance / pi.
 template <backend B>
 class knn_search_by_kernels {
 public:
-    /// Points, normals and sums.
+    /// A buffer of points, normals or sums.
     using vectors = buffer_of<B, glm::vec4>;
 
-    /// Points: xyz in m; w > 0 marks a point that wants an estimate. `map` and `points` must outlive the search.
-    /// \throws std::invalid_argument for a radius that is NaN, and for leak policies, which need normals of the points.
+    /// `points`: xyz, m; points with w > 0 get an estimate. `map` and `points` must outlive the search.
+    /// \throws std::invalid_argument for a radius of NaN, and for leak policies, since they need the points' normals.
     knn_search_by_kernels(B& b, const map_buffers<B>& map, const vectors& points, const knn_settings& s)
         : knn_search_by_kernels(b, map, points, nullptr, s)
     {
     }
-    /// With the unit normals of the surfaces that the points lie on, towards the side that is looked at. They must
-    /// outlive the search too.
+    /// With the unit normals of the surfaces that the points lie on, on the side that is seen. They must outlive the
+    /// search too.
     knn_search_by_kernels(
         B& b, const map_buffers<B>& map, const vectors& points, const vectors& normals, const knn_settings& s)
         : knn_search_by_kernels(b, map, points, &normals, s)
     {
     }
 
-    // A search refers to both until it is gone.
+    // Temporaries would dangle.
     knn_search_by_kernels(B&, const map_buffers<B>&&, const vectors&, const knn_settings&) = delete;
     knn_search_by_kernels(B&, const map_buffers<B>&, const vectors&&, const knn_settings&) = delete;
     knn_search_by_kernels(B&, const map_buffers<B>&&, const vectors&, const vectors&, const knn_settings&) = delete;
     knn_search_by_kernels(B&, const map_buffers<B>&, const vectors&&, const vectors&, const knn_settings&) = delete;
     knn_search_by_kernels(B&, const map_buffers<B>&, const vectors&, const vectors&&, const knn_settings&) = delete;
 
-    /// Is light added up while a search for `s` still runs, so that estimates() is worth a look before it has finished
-    /// (3.4)?
+    /// Whether estimates() has usable values while a search with settings `s` is still running (3.4).
     static bool shows_running_estimate(const knn_settings& s)
     {
         return s.search == search_kind::at_least_k && s.filter == filter_kind::constant && s.bias == bias_kind::paper
             && !s.errors;
     }
 
-    /// Runs at most `passes` more passes over the points not yet done, each a bounded amount of work for a point.
+    /// Runs at most `passes` more passes over the points that are not done. Work per pass and point is bounded.
     progress advance(uint passes = nowhere)
     {
         return detail::run_stages(
@@ -84,8 +82,8 @@ public:
             [this] { next_stage(); });
     }
 
-    /// The estimates from what is held now. Final ones when the search has finished; before, running ones where
-    /// shows_running_estimate(), else what was added up so far, which is too little.
+    /// The estimates: final once the search has finished. Before that they are running estimates if
+    /// shows_running_estimate(), else incomplete sums, which are too small.
     knn_estimates<B> estimates()
     {
         B& b = *in_.b;
@@ -93,18 +91,18 @@ public:
         const auto& s = in_.s;
         knn_estimates<B> e{b.template make<glm::vec4>(n), b.template make<glm::uvec2>(n),
             b.template make<glm::vec4>(s.errors ? n : 0)};
-        // Errors are 0 until photons are gathered; a new buffer holds anything.
+        // Errors are 0 until photons are gathered; the contents of a new buffer are undefined.
         if (s.errors && stage_ != stage::gather && stage_ != stage::finished)
             b.template run<kernels::zero_vectors>(n, {}, reads(), writes(e.standard_error));
         if (gathered_.size() > 0 || n == 0) {
             b.template run<kernels::knn_result>(n,
-                {.wanted = s.k, .max_radius2 = in_.max_radius2(), .min_radius2 = in_.min_radius2()},
+                {.k = s.k, .max_radius2 = in_.max_radius2(), .min_radius2 = in_.min_radius2()},
                 reads(gathered_, found_), writes(e.irradiance, e.used));
             return e;
         }
-        if (stage_ == stage::reach) {
+        if (stage_ == stage::radius) {
             b.template run<kernels::no_estimate>(
-                n, {.radius2 = in_.max_radius2()}, reads(reach_->visited()), writes(e.irradiance, e.used));
+                n, {.radius2 = in_.max_radius2()}, reads(radius_search_->visited()), writes(e.irradiance, e.used));
             return e;
         }
         auto errors = s.errors ? std::move(e.standard_error) : b.template make<glm::vec4>(n);
@@ -119,7 +117,7 @@ public:
     }
 
 private:
-    enum class stage { grow, reach, gather, finished };
+    enum class stage { grow, radius, gather, finished };
 
     knn_search_by_kernels(
         B& b, const map_buffers<B>& map, const vectors& points, const vectors* normals, const knn_settings& s)
@@ -129,9 +127,9 @@ private:
             start_growing();
             return;
         }
-        stage_ = stage::reach;
-        reach_.emplace(in_);
-        if (reach_->finished())
+        stage_ = stage::radius;
+        radius_search_.emplace(in_);
+        if (radius_search_->finished())
             next_stage();
     }
 
@@ -150,12 +148,12 @@ private:
     {
         stage_ = stage::gather;
         sum_ = in_.template make<glm::vec4>();
-        lost_ = in_.template make<glm::vec4>();
+        compensation_ = in_.template make<glm::vec4>();
         squares_ = in_.template make<glm::vec4>();
         cursor_ = in_.template make<glm::uvec4>();
         tally_ = in_.template make<glm::uvec4>();
         in_.b->template run<kernels::gather_start>(in_.points->size(), {.searching = in_.searching() ? 1u : 0u},
-            reads(*in_.points, chosen_), writes(sum_, lost_, squares_, cursor_, tally_));
+            reads(*in_.points, chosen_), writes(sum_, compensation_, squares_, cursor_, tally_));
     }
 
     void next_stage()
@@ -163,27 +161,26 @@ private:
         switch (stage_) {
         case stage::grow:
             if (shows_running_estimate(in_.s)) {
-                stage_ = stage::finished; // the growing search has added up the photons
+                stage_ = stage::finished; // the growing search has already summed the photons
                 return;
             }
             radius_ = in_.template make<glm::vec4>();
             chosen_ = in_.template make<glm::uvec4>();
             in_.b->template run<kernels::grown_radius>(in_.points->size(),
-                {.wanted = in_.s.k, .max_radius2 = in_.max_radius2()}, reads(gathered_, found_),
-                writes(radius_, chosen_));
+                {.k = in_.s.k, .max_radius2 = in_.max_radius2()}, reads(gathered_, found_), writes(radius_, chosen_));
             gathered_ = {};
             found_ = {};
             start_gathering();
             return;
-        case stage::reach:
-            radius_ = std::move(reach_->radius);
-            chosen_ = std::move(reach_->chosen);
-            reach_.reset();
+        case stage::radius:
+            radius_ = std::move(radius_search_->radius);
+            chosen_ = std::move(radius_search_->chosen);
+            radius_search_.reset();
             start_gathering();
             return;
         case stage::gather:
             stage_ = stage::finished;
-            lost_ = {};
+            compensation_ = {};
             cursor_ = {};
             return;
         case stage::finished: return;
@@ -200,14 +197,14 @@ private:
             return b.template run_until_done<kernels::knn_visit>({in_.points->size(), 0u, in_.policies()},
                 {.grid = m.cells_of,
                     .leaks = in_.leaks(),
-                    .wanted = s.k,
+                    .k = s.k,
                     .max_radius2 = in_.max_radius2(),
                     .visits = s.visits_per_pass,
                     .ranges = s.ranges_per_pass},
                 reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
                     in_.photon_normals(), m.photons.powers),
                 writes(gathered_, found_, cursor_), passes);
-        case stage::reach: return reach_->advance(passes);
+        case stage::radius: return radius_search_->advance(passes);
         case stage::gather: {
             const uint filter
                 = s.filter == filter_kind::constant ? 0u : 4u << static_cast<uint>(s.filter); // SWITCHes 3 to 5
@@ -221,7 +218,7 @@ private:
                     .ranges = s.ranges_per_pass},
                 reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
                     in_.photon_normals(), m.list, m.photons.powers),
-                writes(radius_, chosen_, sum_, lost_, squares_, cursor_, tally_), passes);
+                writes(radius_, chosen_, sum_, compensation_, squares_, cursor_, tally_), passes);
         }
         case stage::finished: break;
         }
@@ -232,24 +229,24 @@ private:
 
     detail::search_inputs<B> in_;
     stage stage_ = stage::finished;
-    std::optional<knn_reach<B>> reach_;
-    // States; each stage holds its own and gives up the last one's.
-    vectors gathered_, radius_, sum_, lost_, squares_;
+    std::optional<knn_radius<B>> radius_search_;
+    // States. Each stage has its own and releases those of the stage before.
+    vectors gathered_, radius_, sum_, compensation_, squares_;
     buffer_of<B, glm::uvec4> found_, chosen_, cursor_, tally_;
 };
 
-/// The search of backend B: by kernels, unless the backend has another (its folder overrides/).
+/// The search on backend B: by kernels, unless the backend has an override (its folder overrides/).
 /// \snippet snippets.cpp knn_search
 template <backend B>
 class knn_search : public knn_search_by_kernels<B> {
 public:
     using knn_search_by_kernels<B>::knn_search_by_kernels;
 };
-/// The backend is found from the first argument.
+/// Deduces the backend from the first argument.
 template <backend B, class... Rest>
 knn_search(B&, const map_buffers<B>&, const Rest&...) -> knn_search<B>;
 
-/// The whole search at once (2.3). Points: xyz in m; w > 0 marks a point that wants an estimate.
+/// Runs a whole search (2.3). `points`: xyz, m; points with w > 0 get an estimate.
 /// \throws std::invalid_argument as knn_search does, backend_error when the device cannot hold the search.
 /// \snippet snippets.cpp knn_grid_estimate
 template <backend B>

@@ -1,10 +1,10 @@
-// Lists of the k nearest photons of each point: ids and squared distances. What an estimate adds up can then be
-// anything that a kernel of the caller's own can add up (docs/guide/own_kernels.md).
+// Lists of the k nearest photons of each point: ids and squared distances. A kernel of your own can then compute any
+// sum over the neighbours (docs/guide/own_kernels.md).
 //
-//     knn_reach -> list_neighbours -> neighbour_pair -> sort_neighbours -> neighbour
+//     knn_radius -> list_neighbours -> neighbour_pair -> sort_neighbours -> neighbour
 #pragma once
 
-#include <photongrid/estimate/knn_reach.hpp>
+#include <photongrid/estimate/knn_radius.hpp>
 #include <photongrid/estimate/list_neighbours.kernel.hpp>
 #include <photongrid/estimate/neighbour.kernel.hpp>
 #include <photongrid/estimate/neighbour_pair.kernel.hpp>
@@ -17,17 +17,17 @@
 
 namespace photongrid {
 
-/// The nearest photons of each point, nearest first; of several at one distance, those with the smallest ids first.
+/// The nearest photons of each point, nearest first; equal distances are ordered by id.
 template <backend B>
 struct neighbour_lists {
-    uint k = 0;             ///< entries to a list
-    buffer_of<B, uint> ids; ///< point p's at p * k and the k - 1 after it: places in what the map was made from;
-                            ///< 0xFFFFFFFF: there are no more
-    buffer_of<B, float> distances2; ///< m^2, of the same photons; infinity where there is none
+    uint k = 0;             ///< entries per list
+    buffer_of<B, uint> ids; ///< point p's are entries p * k to p * k + k - 1: indices into the photons that the map
+                            ///< was made from; 0xFFFFFFFF: no more neighbours
+    buffer_of<B, float> distances2; ///< m^2, of the same photons; infinity where there is no neighbour
 };
 
 namespace detail {
-    /// What is wrong with lists of this length, as an exception; else nothing.
+    /// Throws if lists of this length are not possible.
     inline void check_lists(const knn_settings& s, std::size_t points, std::uint64_t most)
     {
         if (s.search != search_kind::exact_k)
@@ -50,38 +50,39 @@ namespace detail {
         if (n == 0)
             return lists;
         auto pairs = b.template make<glm::uvec2>(std::size_t{n} * padded);
-        const auto put = [&](uint entry, uint entries, bool held, const auto& places, const auto& tally) {
+        const auto put = [&](uint entry, uint entries, bool held, const auto& indices, const auto& tally) {
             b.template run<kernels::neighbour_pair>(
                 {std::size_t{n} * entries, entry * n, in.policies() | (held ? 8u : 0u)},
                 {.leaks = in.leaks(), .points = n},
                 reads(*in.points, in.point_normals(), m.photons.positions, in.directions(), in.photon_normals(), m.list,
-                    places, tally),
+                    indices, tally),
                 writes(pairs));
         };
         {
-            knn_reach<B> reach(in);
-            reach.advance();
+            knn_radius<B> radius_search(in);
+            radius_search.advance();
             constexpr uint part = 16; // entries found at a time
-            buffer_of<B, glm::uvec4> places[] = {in.template make<glm::uvec4>(), in.template make<glm::uvec4>(),
+            buffer_of<B, glm::uvec4> indices[] = {in.template make<glm::uvec4>(), in.template make<glm::uvec4>(),
                 in.template make<glm::uvec4>(), in.template make<glm::uvec4>()};
             auto cursor = in.template make<glm::uvec4>(), tally = in.template make<glm::uvec4>();
             for (uint first = 0; first < k; first += part) {
                 b.template run<kernels::neighbours_start>({n, 0u, first > 0 ? 1u : 0u},
-                    {.searching = in.searching() ? 1u : 0u}, reads(*in.points, reach.chosen), writes(cursor, tally));
+                    {.searching = in.searching() ? 1u : 0u}, reads(*in.points, radius_search.chosen),
+                    writes(cursor, tally));
                 b.template run_until_done<kernels::list_neighbours>({n, 0u, in.policies()},
                     {.grid = m.cells_of,
                         .leaks = in.leaks(),
                         .visits = in.s.visits_per_pass,
                         .ranges = in.s.ranges_per_pass},
                     reads(*in.points, in.point_normals(), m.cells, m.photons.positions, in.directions(),
-                        in.photon_normals(), m.list, reach.radius),
-                    writes(places[0], places[1], places[2], places[3], cursor, tally), nowhere);
+                        in.photon_normals(), m.list, radius_search.radius),
+                    writes(indices[0], indices[1], indices[2], indices[3], cursor, tally), nowhere);
                 for (uint four = 0; four < part && first + four < padded; four += 4)
-                    put(first + four, std::min(4u, padded - (first + four)), true, places[four / 4], tally);
+                    put(first + four, std::min(4u, padded - (first + four)), true, indices[four / 4], tally);
             }
             const uint filled = std::min((k + part - 1) / part * part, padded);
             if (filled < padded)
-                put(filled, padded - filled, false, places[0], tally);
+                put(filled, padded - filled, false, indices[0], tally);
         }
         if (padded > 1) {
             auto next = b.template make<glm::uvec2>(pairs.size());
@@ -93,15 +94,14 @@ namespace detail {
                 }
         }
         b.template run<kernels::neighbour>(
-            lists.ids.size(), {.points = n, .wanted = k}, reads(pairs), writes(lists.ids, lists.distances2));
+            lists.ids.size(), {.points = n, .k = k}, reads(pairs), writes(lists.ids, lists.distances2));
         return lists;
     }
 } // namespace detail
 
-/// The k nearest photons of each point within settings.max_radius, by exact search on the device. Points: xyz in m; a
-/// point that is not finite, or whose w is not above 0, has none. Kernel, bias and errors of the settings have no
-/// meaning here. It takes 16 bytes an entry, and half of that again, while it runs; k is rounded up to a power of two
-/// for that.
+/// The k nearest photons of each point within settings.max_radius, by exact search on the device. `points`: xyz, m; a
+/// point that is not finite, or whose w is not above 0, has an empty list. The settings' filter, bias and errors are
+/// ignored. It needs 24 bytes per entry while it runs, with k rounded up to a power of two.
 /// \throws std::invalid_argument for k = 0, a radius that is NaN, another search than exact_k, leak policies
 /// without normals, or more entries than the device holds in one buffer.
 /// \snippet snippets.cpp knn_neighbours

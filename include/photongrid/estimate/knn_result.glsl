@@ -1,22 +1,22 @@
-// Density estimate from what a search holds: irradiance = flux / (pi r^2) (Jensen 1996; the paper's section 2.3). With fewer
-// than k photons the disc is that of the maximum radius, for that is what was searched; it is never smaller than the
-// stated floor, so coincident photons give a finite answer.
+// Density estimate from the photons that a search has found so far: irradiance = flux / (pi r^2) (Jensen 1996; the
+// paper's section 2.3). With fewer than k photons, r is the maximum radius. It is at least min_radius, so that
+// coincident photons give a finite result.
 struct Params {
-    uint wanted;
+    uint k;            // photons sought
     float max_radius2; // m^2
     float min_radius2; // m^2
 };
 PARAMS(Params)
 INPUT(0, vec4, searched) // rgb: flux, W; w: squared radius, m^2
-INPUT(1, uvec4, counts)  // photons held, photons visited
-OUTPUT(0, vec4, irradiance) // rgb: W/m^2; w: squared radius that holds exactly the photons used, m^2
+INPUT(1, uvec4, counts)  // photons found, photons visited
+OUTPUT(0, vec4, irradiance) // rgb: W/m^2; w: squared radius of the photons used, m^2
 OUTPUT(1, uvec2, used)      // photons used, photons visited
 
 void kernel(uint i)
 {
     vec4 s = searched(i);
     uvec4 n = counts(i);
-    float radius2 = n.x < args.wanted ? args.max_radius2 : s.w;
+    float radius2 = n.x < args.k ? args.max_radius2 : s.w;
     float disc2 = radius2 > args.min_radius2 ? radius2 : args.min_radius2;
     float per_area = 1.0f / (3.14159265f * disc2);
     irradiance = vec4(0.0f, 0.0f, 0.0f, radius2);

@@ -1,4 +1,4 @@
-// What a search looks for, and how a caller's words become the kernels' numbers.
+// The settings of a search, and their conversion to the parameters of kernels.
 #pragma once
 
 #include <photongrid/estimate/estimate_settings.hpp>
@@ -10,33 +10,32 @@
 
 namespace photongrid {
 
-/// What to search for.
+/// The settings of a search.
 struct knn_settings {
-    uint k = 50; ///< photons wanted; all within max_radius are taken when there are fewer. Not for fixed_radius
-    float max_radius = std::numeric_limits<float>::infinity(); ///< m; photons farther away are always rejected. 0 or
-                                                               ///< less: nothing is found. fixed_radius needs one
-    float min_radius = 0; ///< m; the disc of the estimate is never smaller. 0: 2^-20 of the grid's largest extent
+    uint k = 50; ///< photons sought; fewer if max_radius holds fewer. Not used by fixed_radius
+    float max_radius = std::numeric_limits<float>::infinity(); ///< m; photons farther away are rejected; 0 or less:
+                                                               ///< none is found. fixed_radius needs a finite one
+    float min_radius = 0; ///< m; least radius of the estimate's disc. 0: 2^-20 of the grid's largest extent
     search_kind search = search_kind::exact_k;  ///< which photons count
-    filter_kind filter = filter_kind::constant; ///< their weight by distance
-    bias_kind bias = bias_kind::unbiased;       ///< does the photon that sets the radius count?
-    leak_policy leaks{};                        ///< photons that are refused; none, as it stands
-    bool errors = false;                        ///< standard errors are wanted
-    /// Photons that one query examines in a pass at most, 1 at least. Any value gives the same result, as any of
-    /// ranges_per_pass does. 16 lanes x (visits + ranges) must stay well below 65,535, after which llvmpipe and
-    /// lavapipe end loops in silence: some loops more go round once a scan.
+    filter_kind filter = filter_kind::constant; ///< weight by distance
+    bias_kind bias = bias_kind::unbiased;       ///< whether the photon that sets the radius counts
+    leak_policy leaks{};                        ///< leak rejection; none by default
+    bool errors = false;                        ///< compute standard errors
+    /// The most photons that one query examines in a pass, at least 1. Results depend neither on this nor on
+    /// ranges_per_pass. 16 lanes x (visits + ranges) must stay well below 65,535, after which llvmpipe and lavapipe end
+    /// loops silently.
     uint visits_per_pass = 3072;
-    uint ranges_per_pass = 896; ///< rows of cells that one query opens in a pass at most, 2 at least
+    uint ranges_per_pass = 896; ///< the most rows of cells that one query reads in a pass, at least 2
 };
 
-/// The radius, m, below which the disc of an estimate never shrinks where the caller names none: 2^-20 of the largest
-/// extent.
+/// The default of knn_settings::min_radius, m: 2^-20 of the grid's largest extent.
 inline float least_radius(const grid& g)
 {
     const auto extent = glm::vec3(g.cell) * glm::vec3(g.resolution);
     return std::max({extent.x, extent.y, extent.z}) * 0x1p-20f;
 }
 
-/// The paper's own choice (2.3): at least k, constant filter, no policy. k, radii and errors stay.
+/// The paper's choice (2.3): at least k, constant filter, no leak policy. k, radii and errors are unchanged.
 /// \snippet snippets.cpp as_paper
 inline knn_settings as_paper(knn_settings s)
 {
@@ -48,8 +47,7 @@ inline knn_settings as_paper(knn_settings s)
 }
 
 namespace detail {
-    /// `s` with the least radius filled in, or an exception that says what is wrong with it for this map and these
-    /// points.
+    /// `s` with its default min_radius filled in. Throws if the settings do not suit this map and these points.
     template <backend B>
     knn_settings checked(knn_settings s, const map_buffers<B>& map, std::size_t points, std::size_t normals)
     {
@@ -57,17 +55,18 @@ namespace detail {
             throw std::invalid_argument("knn_search: max_radius, min_radius: NaN");
         if (s.search == search_kind::fixed_radius && std::isinf(s.max_radius) && s.max_radius > 0)
             throw std::invalid_argument(
-                "knn_search: max_radius: infinite; search_kind::fixed_radius takes all photons within it, so name one");
+                "knn_search: max_radius: infinite; search_kind::fixed_radius takes all photons within it, so set one");
         if (s.k < 1 && s.search != search_kind::fixed_radius)
-            throw std::invalid_argument("knn_search: k: 0 photons wanted; ask for 1 at least, or for all within a "
-                                        "radius (search_kind::fixed_radius)");
-        if (s.visits_per_pass < 1 || s.ranges_per_pass < 2)
             throw std::invalid_argument(
-                "knn_search: visits_per_pass, ranges_per_pass: need at least 1 and 2, or a pass gets nowhere");
+                "knn_search: k: 0; set at least 1, or use search_kind::fixed_radius for all photons "
+                "within a radius");
+        if (s.visits_per_pass < 1 || s.ranges_per_pass < 2)
+            throw std::invalid_argument("knn_search: visits_per_pass, ranges_per_pass: must be at least 1 and 2, so "
+                                        "that a pass makes progress");
         if (!(s.leaks.flattening >= 1) || !(s.leaks.flattening <= 1e6f) || !(s.leaks.min_cosine >= -1)
             || !(s.leaks.min_cosine <= 1))
             throw std::invalid_argument(
-                "knn_search: leaks: compression must be from 1 to 10^6, min_cosine from -1 to 1");
+                "knn_search: leaks: flattening must be from 1 to 10^6, min_cosine from -1 to 1");
         if (s.leaks.needs_any() && normals < points)
             throw std::invalid_argument("knn_search: leaks: a policy needs the surface normal of every query point");
         if (s.leaks.side && map.photons.size() > 0 && map.photons.directions.size() == 0)
@@ -80,21 +79,21 @@ namespace detail {
             s.min_radius = least_radius(map.cells_of);
         return s;
     }
-    /// True when something can be found at all.
+    /// Whether a search can find anything.
     inline bool is_searching(const knn_settings& s, uint photons)
     {
         return photons > 0 && s.max_radius > 0 && (s.k > 0 || s.search == search_kind::fixed_radius);
     }
-    /// The squares that kernels take, m^2.
+    /// Squared radii, m^2, as kernels need them.
     inline float max_radius2(const knn_settings& s)
     {
         const float r = s.max_radius;
         return r > 0 ? std::min(r * r, 1e38f) : 0.0f;
     }
     inline float min_radius2(const knn_settings& s) { return std::max(s.min_radius * s.min_radius, 1e-36f); }
-    /// Do points lie so close to each other that neighbours should search together? Where the radius that is to be
-    /// expected is eight times their distance; both are of as many as lie on the largest side of the grid's box,
-    /// evenly.
+    /// Whether the points are close enough for neighbours to search in a subgroup: if the expected radius is at least
+    /// eight times the distance between points. Both are estimated as if points and photons were evenly distributed
+    /// over the largest side of the grid's box.
     template <backend B>
     bool are_close(const knn_settings& s, const map_buffers<B>& map, std::size_t points)
     {
@@ -106,14 +105,14 @@ namespace detail {
             disc = std::min(disc, area * static_cast<double>(s.k) / photons);
         return disc / 3.14159265 * static_cast<double>(points) >= 64 * area;
     }
-    /// A search and what its kernels read. Everything that it points to must outlive it.
+    /// A search and the buffers that its kernels read. The pointers must stay valid while it is used.
     template <backend B>
     struct search_inputs {
         using vectors = buffer_of<B, glm::vec4>;
         B* b;
         const map_buffers<B>* map;
         const vectors* points;
-        const vectors* normals; ///< of the points; none: null
+        const vectors* normals; ///< of the points; null if there are none
         knn_settings s;
 
         search_inputs(
@@ -130,32 +129,32 @@ namespace detail {
         bool searching() const { return is_searching(s, map->photons.size()); }
         float max_radius2() const { return detail::max_radius2(s); }
         float min_radius2() const { return detail::min_radius2(s); }
-        // What no policy asks for is never read; any buffer stands in for it.
+        // Attributes that no policy needs are not read; another buffer is bound in their place.
         const vectors& point_normals() const { return normals != nullptr ? *normals : *points; }
         const vectors& directions() const { return s.leaks.side ? map->photons.directions : map->photons.positions; }
         const vectors& photon_normals() const
         {
             return s.leaks.needs_normals() ? map->photons.normals : map->photons.positions;
         }
-        /// For photon_distance.glsl.
+        /// Params::leaks of photon_distance.glsl.
         glm::vec4 leaks() const
         {
             return {s.leaks.min_cosine, s.leaks.flattening * s.leaks.flattening - 1.0f, 0.0f, 0.0f};
         }
-        /// Its SWITCHes.
+        /// The SWITCHes of photon_distance.glsl.
         uint policies() const
         {
             return (s.leaks.side ? 1u : 0u) | (s.leaks.needs_normals() ? 2u : 0u) | (s.leaks.flattening > 1 ? 4u : 0u);
         }
-        /// The SWITCH of kernel K that lets neighbours search together.
+        /// The SWITCH of kernel K that turns subgroup search on.
         template <class K>
         uint together() const
         {
             return are_close(s, *map, points->size()) ? 1u << K::group_switch : 0u;
         }
     };
-    /// Runs stage after stage, at most `passes` passes in all: `run(left)` some of a stage's, `next()` goes on from one
-    /// that has finished, `finished()` says whether that was the last.
+    /// Runs stages in order, at most `passes` passes in total: `run(left)` runs up to `left` passes of the current
+    /// stage, `next()` starts the stage after one that has finished, and `finished()` says whether all have finished.
     template <class Finished, class Run, class Next>
     progress run_stages(uint passes, Finished finished, Run run, Next next)
     {

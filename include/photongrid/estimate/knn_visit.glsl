@@ -1,21 +1,21 @@
-// The kNN-grid search (2.3, figure 6): cells in concentric sets about the query point. While fewer than k photons are
-// held the radius grows to take each new one in; then it stays, and photons inside it are still added. Photons outside
-// the maximum radius are always rejected. The search ends only when no unexplored cell can reach into the radius.
+// The kNN-grid search (2.3, figure 6): visits cells in rings around the query point's cell. Until k photons are found
+// the radius grows to include each new one; after that it is fixed, and further photons inside it are added. Photons
+// beyond the maximum radius are rejected. The search ends when no unexplored cell lies within the radius.
 //
-// The order of visits is part of the result: ring by ring, in a ring z, y, x ascending, photons in map order. Skipping
-// rows of cells that cannot reach the radius, and reading a row of cells as one range, keep that order.
+// The result depends on the order of visits: ring by ring, within a ring z, y, x ascending, photons in map order.
+// Skipping rows of cells outside the radius, and reading a row of cells as one range, keep that order.
 //
-// Bounded work a pass: drivers cut long loops silently (docs/design/decisions.md). The state between passes is the answer
-// so far, so it can be shown at any time (3.4).
+// Work per pass is bounded, because drivers end long loops silently (docs/design/decisions.md). The states hold the
+// result so far, which can be displayed at any time (3.4).
 #include <photongrid/map/grid.glsl>
 
 struct Params {
     Grid grid;
     vec4 leaks;         // see photon_distance.glsl
-    uint wanted;        // k
+    uint k;             // photons sought
     float max_radius2;  // m^2
-    uint visits;        // photons examined in a pass at most ...
-    uint ranges;        // ... in this many rows of cells at most
+    uint visits;        // the most photons to examine in a pass ...
+    uint ranges;        // ... and the most rows of cells
 };
 PARAMS(Params)
 SWITCH(0, SIDE)
@@ -28,8 +28,8 @@ INPUT(3, vec4, positions)      // xyz, m, cell by cell
 INPUT(4, vec4, directions)
 INPUT(5, vec4, photon_normals)
 INPUT(6, vec4, powers)         // rgb, W
-STATE(0, vec4, gathered)    // rgb: flux of the photons held, W; w: squared radius that holds them, m^2
-STATE(1, uvec4, found)      // photons held, photons visited, next and end of the row being read
+STATE(0, vec4, gathered)    // rgb: flux of the photons found, W; w: squared radius of the farthest, m^2
+STATE(1, uvec4, found)      // photons found; photons visited; next photon and end of the row being read
 STATE(2, uvec4, cursor)     // ring, z, y, x of the next cell to open; ring 0xFFFFFFFF: done
 
 #include <photongrid/estimate/photon_distance.glsl>
@@ -39,13 +39,13 @@ bool done()
     return cursor.x == 0xFFFFFFFFu;
 }
 
-// The smaller of `reach` and the gap to `cell`, if that cell exists.
-float nearer(float reach, bool exists, float u, uint c, uint cell, float size)
+// The smaller of `so_far` and the gap to `cell`, if that cell exists.
+float nearer(float so_far, bool exists, float u, uint c, uint cell, float size)
 {
     if (!exists)
-        return reach;
+        return so_far;
     float g = gap(u, c, cell, size);
-    return g < reach ? g : reach;
+    return g < so_far ? g : so_far;
 }
 
 void kernel(uint i)
@@ -73,10 +73,11 @@ void kernel(uint i)
 
     uint left = args.visits;
     uint steps = args.ranges;
-    // A loop over rings around one over rows: drivers that run lanes in lockstep pay for a whole turn of a loop, and this
-    // keeps the rows of neighbouring points in step and the end of a ring out of them.
+    // A loop over rings around a loop over rows: where lanes run in lockstep, each iteration costs as much as its most
+    // expensive branch. This way the rows of neighbouring points stay in step, and the end of a ring is outside that
+    // loop.
     while (steps > 0u && ring != 0xFFFFFFFFu) {
-        // The box of cells that rings 0 … ring cover.
+        // The box of cells that rings 0 to `ring` cover.
         uint low_x = c.x > ring ? c.x - ring : 0u;
         uint low_y = c.y > ring ? c.y - ring : 0u;
         uint low_z = c.z > ring ? c.z - ring : 0u;
@@ -86,14 +87,14 @@ void kernel(uint i)
 
         while (steps > 0u && (at < end || z <= high_z)) {
             --steps;
-            // Examine the rest of the open range, as far as the budget goes.
+            // Examine the rest of the current range, within the budget.
             uint stop = end - at > left ? at + left : end;
             left -= stop - at;
             visited += stop - at;
             for (; at < stop; ++at) {
                 float d2 = photon_distance2(at, p, n);
-                if (d2 <= (held < args.wanted ? args.max_radius2 : radius2)) {
-                    if (held < args.wanted && d2 > radius2)
+                if (d2 <= (held < args.k ? args.max_radius2 : radius2)) {
+                    if (held < args.k && d2 > radius2)
                         radius2 = d2;
                     ++held;
                     precise vec4 more = sum + powers(at);
@@ -103,9 +104,9 @@ void kernel(uint i)
             if (at < end) {
                 steps = 0u; // budget spent
             } else if (z <= high_z) {
-                // The next cells of this ring: all of row (z, y) on the ring's faces, else its two ends, of which the grid
-                // may lack either.
-                float limit2 = held < args.wanted ? args.max_radius2 : radius2;
+                // The next cells of this ring: the whole row (z, y) if it lies on a face of the ring's box, else its
+                // two end cells, either of which may lie outside the grid.
+                float limit2 = held < args.k ? args.max_radius2 : radius2;
                 float gap_y = gap(uy, c.y, y, args.grid.cell.y);
                 float gap_z = gap(uz, c.z, z, args.grid.cell.z);
                 float row2 = gap_y * gap_y + gap_z * gap_z;
@@ -127,9 +128,9 @@ void kernel(uint i)
                     end = final.x + final.y;
                 }
                 if (row2 > limit2)
-                    x = high_x + 1u; // no cell of the row reaches
+                    x = high_x + 1u; // no cell of the row lies within the radius
                 if (gap_z * gap_z > limit2)
-                    y = high_y; // no row of the layer does
+                    y = high_y; // nor any row of the layer
                 if (x > high_x) {
                     x = low_x;
                     ++y;
@@ -142,18 +143,18 @@ void kernel(uint i)
         }
 
         if (steps > 0u) {
-            // The ring is explored. Can any cell beyond it reach into the radius?
+            // The ring is explored. Does any cell beyond it lie within the radius?
             --steps;
-            float limit2 = held < args.wanted ? args.max_radius2 : radius2;
-            float reach = 3.4028234e38f;
-            reach = nearer(reach, high_x < last_x, ux, c.x, high_x + 1u, args.grid.cell.x);
-            reach = nearer(reach, high_y < last_y, uy, c.y, high_y + 1u, args.grid.cell.y);
-            reach = nearer(reach, high_z < last_z, uz, c.z, high_z + 1u, args.grid.cell.z);
-            reach = nearer(reach, low_x > 0u, ux, c.x, low_x - 1u, args.grid.cell.x);
-            reach = nearer(reach, low_y > 0u, uy, c.y, low_y - 1u, args.grid.cell.y);
-            reach = nearer(reach, low_z > 0u, uz, c.z, low_z - 1u, args.grid.cell.z);
+            float limit2 = held < args.k ? args.max_radius2 : radius2;
+            float unexplored = 3.4028234e38f;
+            unexplored = nearer(unexplored, high_x < last_x, ux, c.x, high_x + 1u, args.grid.cell.x);
+            unexplored = nearer(unexplored, high_y < last_y, uy, c.y, high_y + 1u, args.grid.cell.y);
+            unexplored = nearer(unexplored, high_z < last_z, uz, c.z, high_z + 1u, args.grid.cell.z);
+            unexplored = nearer(unexplored, low_x > 0u, ux, c.x, low_x - 1u, args.grid.cell.x);
+            unexplored = nearer(unexplored, low_y > 0u, uy, c.y, low_y - 1u, args.grid.cell.y);
+            unexplored = nearer(unexplored, low_z > 0u, uz, c.z, low_z - 1u, args.grid.cell.z);
             bool everything = low_x == 0u && low_y == 0u && low_z == 0u && high_x == last_x && high_y == last_y && high_z == last_z;
-            if (everything || reach * reach > limit2) {
+            if (everything || unexplored * unexplored > limit2) {
                 ring = 0xFFFFFFFFu;
             } else {
                 ++ring;

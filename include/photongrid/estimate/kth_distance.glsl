@@ -1,20 +1,21 @@
-// The squared distance of the k-th nearest photon, without an array of k. A first scan of the photons within a radius counts
-// how many lie within each of eight pivots, which brackets the k-th. A second lays one pivot where the k-th should be if
-// the bracket's photons are spread evenly, and keeps the four photons next to it on either side, in order: the k-th is mostly
-// one of these. If not, they narrow the bracket, and the next scan lays another; after a few, pivots halve the bracket's
-// bits, and at most some thirty end it.
+// The squared distance of the k-th nearest photon, without an array of k photons. The first scan of the photons within
+// a radius counts how many lie within each of eight pivot distances, which brackets the k-th. The second scan has one
+// pivot, at the distance that the k-th has if the photons of the bracket are evenly distributed, and keeps the four
+// photons nearest to the pivot on either side, in order. Usually the k-th is one of them. If not, they narrow the
+// bracket for another scan. After six scans the pivot bisects the bracket's integer keys, so that about thirty more
+// scans suffice.
 //
-// The result is a photon's own squared distance, so it does not depend on pivots: it is the same on every device.
+// The result is the squared distance of a photon, independent of the pivots and therefore the same on every device.
 #include <photongrid/map/grid.glsl>
 #include <photongrid/estimate/distance_key.glsl>
 
 struct Params {
     Grid grid;
     vec4 leaks;        // see photon_distance.glsl
-    uint wanted;       // k
+    uint k;            // photons sought
     float max_radius2; // m^2
-    uint visits;       // photons examined in a pass at most ...
-    uint ranges;       // ... in this many rows of cells at most
+    uint visits;       // the most photons to examine in a pass ...
+    uint ranges;       // ... and the most rows of cells
 };
 PARAMS(Params)
 SWITCH(0, SIDE)
@@ -27,12 +28,12 @@ INPUT(2, uvec2, cells)         // x: first photon, y: count
 INPUT(3, vec4, positions)      // xyz, m, cell by cell
 INPUT(4, vec4, directions)
 INPUT(5, vec4, photon_normals)
-STATE(0, vec4, pivots)   // m^2; counting: x + y times each of the eight below; closing in: x
-STATE(1, uvec4, inner)   // counting: photons within the first four pivots; closing in: keys of the four next to the pivot, descending
-STATE(2, uvec4, outer)   // counting: within the last four; closing in: keys of the four beyond the pivot, ascending
-STATE(3, uvec4, bracket) // the k-th key lies above x and is y at most; z and w photons lie within x and y, w: 0xFFFFFFFF: unknown
-STATE(4, uvec4, cursor)  // y, z of the row to go on with; the first photon not yet visited
-STATE(5, uvec4, tally)   // photons within the pivot or, found, within y: more than k where several share that distance; photons visited; scans; phase
+STATE(0, vec4, pivots)   // m^2; COUNTING: the eight pivots are x + y times the factors in the kernel; CLOSING_IN: x
+STATE(1, uvec4, inner)   // COUNTING: photons within pivots 1 to 4; CLOSING_IN: the four largest keys up to the pivot
+STATE(2, uvec4, outer)   // COUNTING: photons within pivots 5 to 8; CLOSING_IN: the four smallest keys beyond the pivot
+STATE(3, uvec4, bracket) // x < key of the k-th <= y; z, w: photons up to x, y; w 0xFFFFFFFF: unknown
+STATE(4, uvec4, cursor)  // y, z of the next row; the first photon not yet visited
+STATE(5, uvec4, tally)   // photons within the pivot, if FOUND within the k-th distance; photons visited; scans; phase
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
@@ -54,11 +55,11 @@ uint component(uvec4 v, uint n)
     return n == 0u ? v.x : n == 1u ? v.y : n == 2u ? v.z : v.w;
 }
 
-// The bracket, narrowed by what one pivot counted.
+// The bracket, narrowed by the count of photons within one pivot.
 uvec4 narrowed(uvec4 between, float pivot, uint count)
 {
     uint key = key_of(pivot);
-    if (count < args.wanted)
+    if (count < args.k)
         return key > between.x ? uvec4(key, between.y, count, between.w) : between;
     return between.w == 0xFFFFFFFFu || key < between.y ? uvec4(between.x, key, between.z, count) : between;
 }
@@ -68,13 +69,13 @@ float within_limit(float radius2)
     return min(radius2, args.max_radius2);
 }
 
-// Counts of photons within four pivots.
+// 1 for each of four pivots that the photon lies within.
 uvec4 counted(float d2, vec4 limits)
 {
     return uvec4(d2 <= limits.x ? 1u : 0u, d2 <= limits.y ? 1u : 0u, d2 <= limits.z ? 1u : 0u, d2 <= limits.w ? 1u : 0u);
 }
 
-// The four largest of a key and the four largest so far, descending, and the four smallest, ascending.
+// Inserts a key into the four largest so far, descending, or the four smallest so far, ascending.
 uvec4 largest(uvec4 so_far, uint key)
 {
     return uvec4(max(so_far.x, key), max(so_far.y, min(so_far.x, key)), max(so_far.z, min(so_far.y, key)), max(so_far.w, min(so_far.z, key)));
@@ -93,7 +94,7 @@ void kernel(uint i)
     uvec4 below = inner;
     uvec4 beyond = outer;
     uvec4 between = bracket;
-    uvec4 place = cursor;
+    uvec4 resume_at = cursor;
     uint within = tally.x;
     uint visited = tally.y;
     uint scans = tally.z;
@@ -102,7 +103,7 @@ void kernel(uint i)
     walk_visits = args.visits;
     walk_steps = args.ranges;
     while (walk_steps > 0u && group_any(phase != FOUND)) {
-        // The guess is a little low more often than high (kth_guess.glsl).
+        // The guess (kth_guess.glsl) is more often a little too low than too high.
         precise vec4 near_pivots = vec4(pivot.x + 0.6f * pivot.y, pivot.x + 0.8f * pivot.y, pivot.x + 0.92f * pivot.y, pivot.x + 1.04f * pivot.y);
         precise vec4 far_pivots = vec4(pivot.x + 1.16f * pivot.y, pivot.x + 1.3f * pivot.y, pivot.x + 1.48f * pivot.y, pivot.x + 1.7f * pivot.y);
         near_pivots = vec4(within_limit(near_pivots.x), within_limit(near_pivots.y), within_limit(near_pivots.z), within_limit(near_pivots.w));
@@ -110,8 +111,8 @@ void kernel(uint i)
         uint middle = key_of(pivot.x);
         float high = distance_of(between.y);
         float scan2 = phase == COUNTING ? far_pivots.w : high;
-        bool mine = joins_walk(phase != FOUND, p, c, scan2, uvec4(place.x, place.y, place.z, phase));
-        vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the others count nothing
+        bool mine = joins_walk(phase != FOUND, p, c, scan2, uvec4(resume_at.x, resume_at.y, resume_at.z, phase));
+        vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the other lanes count nothing
         while (walk.w == COUNTING && walks_on()) {
             uint photons = next_rows();
             visited += mine ? photons : 0u;
@@ -145,10 +146,10 @@ void kernel(uint i)
 #undef VISIT
         }
         if (mine)
-            place = uvec4(walk.x, walk.y, walk.z, 0u);
+            resume_at = uvec4(walk.x, walk.y, walk.z, 0u);
 
         if (mine && has_walked()) {
-            // The scan is whole: what does it say about the k-th?
+            // The scan is complete: narrow the bracket, or find the k-th.
             ++scans;
             if (phase == COUNTING) {
                 between = narrowed(between, near_pivots.x, below.x);
@@ -164,33 +165,33 @@ void kernel(uint i)
                     phase = far_pivots.w < args.max_radius2 ? COUNTING : FOUND;
                     within = beyond.w;
                     scans = 0u;
-                    precise float growth = 1.1f * (float(args.wanted) / float(max(beyond.w, 1u)));
+                    precise float growth = 1.1f * (float(args.k) / float(max(beyond.w, 1u)));
                     float base = max(far_pivots.w, 0.0f);
                     pivot = vec4(base, max(base * (min(growth, 16.0f) - 1.0f), 1e-30f), 0.0f, 0.0f);
                 } else {
                     phase = CLOSING_IN;
                 }
-            } else if (args.wanted <= within) {
+            } else if (args.k <= within) {
                 // At the pivot or before it, and `before` photons before the last of these.
-                uint before = within - args.wanted;
+                uint before = within - args.k;
                 uint kth = component(below, min(before, 3u));
                 if (before < 4u) {
                     phase = FOUND;
-                    within = args.wanted + (before > 0u && component(below, before - 1u) == kth ? 1u : 0u);
+                    within = args.k + (before > 0u && component(below, before - 1u) == kth ? 1u : 0u);
                     between.y = kth;
                 } else {
                     uint farther = (below.x > kth ? 1u : 0u) + (below.y > kth ? 1u : 0u) + (below.z > kth ? 1u : 0u);
                     between = uvec4(between.x, kth, between.z, within - farther);
                 }
             } else {
-                uint before = args.wanted - within - 1u;
+                uint before = args.k - within - 1u;
                 uint kth = component(beyond, min(before, 3u));
                 if (before < 3u || beyond.x == between.y) {
                     phase = FOUND;
-                    within = beyond.x == between.y ? between.w : args.wanted + (component(beyond, before + 1u) == kth ? 1u : 0u);
+                    within = beyond.x == between.y ? between.w : args.k + (component(beyond, before + 1u) == kth ? 1u : 0u);
                     between.y = kth;
                 } else {
-                    // As beyond as all photons are known: more than these four may share the fourth's distance.
+                    // Other photons may have the same distance as the fourth of these.
                     uint nearer = (beyond.x < kth ? 1u : 0u) + (beyond.y < kth ? 1u : 0u) + (beyond.z < kth ? 1u : 0u);
                     uint last = nearer == 0u ? middle : component(beyond, nearer - 1u);
                     between = uvec4(max(between.x, last), between.y, within + nearer, between.w);
@@ -198,13 +199,13 @@ void kernel(uint i)
             }
             if (phase == CLOSING_IN) {
                 if (between.y <= between.x || between.y - between.x == 1u) {
-                    // Photons at one distance only: perhaps several, of which kth_tie.glsl takes the first.
+                    // One distance is left. If several photons have it, kth_tie.glsl chooses among them by id.
                     phase = FOUND;
                     within = between.w;
                 } else {
                     float low = distance_of(between.x);
                     high = distance_of(between.y);
-                    float share = (float(args.wanted - between.z) - 0.5f) / float(between.w - between.z);
+                    float share = (float(args.k - between.z) - 0.5f) / float(between.w - between.z);
                     precise float even = low + (high - low) * share;
                     uint next = scans < 6u ? key_of(even) : between.x + (between.y - between.x) / 2u;
                     pivot.x = distance_of(min(max(next, between.x), between.y - 1u));
@@ -216,7 +217,7 @@ void kernel(uint i)
                 below = uvec4(0u, 0u, 0u, 0u);
                 beyond = below;
             }
-            place = uvec4(0u, 0u, 0u, 0u);
+            resume_at = uvec4(0u, 0u, 0u, 0u);
         }
     }
 
@@ -224,6 +225,6 @@ void kernel(uint i)
     inner = below;
     outer = beyond;
     bracket = between;
-    cursor = place;
+    cursor = resume_at;
     tally = uvec4(within, visited, scans, phase);
 }

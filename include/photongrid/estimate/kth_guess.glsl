@@ -1,19 +1,20 @@
-// A first guess at the squared distance of the k-th nearest photon, from cell counts alone: boxes of cells about the query
-// point, each about twice as wide as the last, until one holds k photons. A guess costs time when it is wrong, never truth.
+// A first guess at the squared distance of the k-th nearest photon, from the cells' counts alone: boxes of cells around
+// the query point, each about twice as wide as the one before, until one holds k photons. A wrong guess costs time
+// only.
 #include <photongrid/map/grid.glsl>
 
 struct Params {
     Grid grid;
-    uint wanted;       // k
+    uint k;            // photons sought
     float max_radius2; // m^2
-    uint rows;         // rows of cells in a box at most
-    uint searching;    // 0: no search can find anything (no photons, none wanted, no radius)
+    uint rows;         // the most rows of cells in a box
+    uint searching;    // 0: nothing can be found (no photons, k = 0, or no radius)
 };
 PARAMS(Params)
 IN_GROUPS(0)
-INPUT(0, vec4, points) // xyz: query point, m; w > 0: wanted
+INPUT(0, vec4, points) // xyz: query point, m; w > 0: search here
 INPUT(1, uvec2, cells)
-OUTPUT(0, vec4, pivots)   // see kth_distance.glsl, whose states these are
+OUTPUT(0, vec4, pivots)   // these are the states of kth_distance.glsl
 OUTPUT(1, uvec4, inner)
 OUTPUT(2, uvec4, outer)
 OUTPUT(3, uvec4, bracket)
@@ -22,7 +23,7 @@ OUTPUT(5, uvec4, tally)
 
 #include <photongrid/backend/group_middle.glsl>
 
-// Photons in the cells of a box. Points of a group take its rows in turn.
+// The number of photons in a box of cells. The lanes of a group share its rows.
 uint photons_inside(uvec4 low, uvec4 high)
 {
     uint held = 0u;
@@ -53,7 +54,7 @@ float guessed(uvec4 c)
     uvec4 largest = uvec4(args.grid.resolution.x - 1u, args.grid.resolution.y - 1u, args.grid.resolution.z - 1u, 0u);
     float guess = args.max_radius2;
     uint half_width = 1u;
-    uint inside = 0u; // photons of the last box, and its area
+    uint inside = 0u; // photons of the box before, and its area
     float inside_area = 0.0f;
     bool looking = true;
     while (looking) {
@@ -64,21 +65,22 @@ float guessed(uvec4 c)
         looking = rows <= args.rows;
         if (looking) {
             uint held = photons_inside(low, high);
-            // Photons lie on surfaces: as many as the largest section of the box shows area, and between two boxes evenly. A
-            // square with 4/pi k photons has a disc with k inside it, whose squared radius is a quarter of the square.
+            // Photons lie on surfaces: assume that their number is proportional to the largest face of the box, and
+            // interpolate between two boxes. A square with 4/pi k photons has an inscribed disc with k photons, whose
+            // squared radius is a quarter of the square's area.
             float x = float(high.x - low.x + 1u) * args.grid.cell.x;
             float y = float(high.y - low.y + 1u) * args.grid.cell.y;
             float z = float(high.z - low.z + 1u) * args.grid.cell.z;
             precise float area = max(x * y, max(y * z, z * x));
             if (held > inside) {
-                precise float share = (1.2732395f * float(args.wanted) - float(inside)) / float(held - inside);
+                precise float share = (1.2732395f * float(args.k) - float(inside)) / float(held - inside);
                 precise float radius2 = 0.25f * (inside_area + (area - inside_area) * share);
                 guess = max(radius2, 1e-30f);
             }
             inside = held;
             inside_area = area;
             bool everything = low == uvec4(0u, 0u, 0u, 0u) && high == largest;
-            looking = float(held) < 1.2732395f * float(args.wanted) && !everything;
+            looking = float(held) < 1.2732395f * float(args.k) && !everything;
             half_width *= 2u;
         }
     }
@@ -93,13 +95,13 @@ void kernel(uint i)
     outer = uvec4(0u, 0u, 0u, 0u);
     bracket = uvec4(0u, 0u, 0u, 0xFFFFFFFFu);
     cursor = uvec4(0u, 0u, 0u, 0u);
-    bool wanted = args.searching != 0u && p.w > 0.0f && is_finite(p);
-    tally = uvec4(0u, 0u, 0u, wanted ? 0u : 3u); // counting; found: nothing
+    bool searches = args.searching != 0u && p.w > 0.0f && is_finite(p);
+    tally = uvec4(0u, 0u, 0u, searches ? 0u : 3u); // phase COUNTING, or FOUND with nothing
 
     uvec4 c = cell_coordinates(args.grid, p);
-    bool looking = wanted;
+    bool looking = searches;
     while (group_any(looking)) {
-        // What holds for one holds for those close to it.
+        // Points close to this one can use its guess.
         uint middle = group_middle(looking);
         vec4 there = lane_value(p, middle);
         float guess = guessed(lane_value(c, middle));

@@ -1,32 +1,32 @@
-// Where several photons share the k-th distance, the first of them by id belong to the k nearest: which is the last id
-// that does? Scans count the ids within four pivots, as kth_distance.glsl does with distances.
+// If several photons have the k-th distance, those with the smallest ids belong to the k nearest. This kernel finds the
+// last such id: scans count the ids up to four pivots, as kth_distance.glsl counts distances.
 #include <photongrid/map/grid.glsl>
 
 struct Params {
     Grid grid;
     vec4 leaks;        // see photon_distance.glsl
-    uint wanted;       // k
+    uint k;            // photons sought
     uint photons;      // ids are below this
-    uint visits;       // photons examined in a pass at most ...
-    uint ranges;       // ... in this many rows of cells at most
+    uint visits;       // the most photons to examine in a pass ...
+    uint ranges;       // ... and the most rows of cells
 };
 PARAMS(Params)
 SWITCH(0, SIDE)
 SWITCH(1, NORMALS)
 SWITCH(2, FLATTEN)
 IN_GROUPS(3)
-INPUT(0, vec4, points)         // xyz: query point, m
-INPUT(1, vec4, normals)        // xyz: unit normal of the surface there
-INPUT(2, uvec2, cells)         // x: first photon, y: count
-INPUT(3, vec4, positions)      // xyz, m, cell by cell
+INPUT(0, vec4, points)       // xyz: query point, m
+INPUT(1, vec4, normals)      // xyz: unit normal of the surface there
+INPUT(2, uvec2, cells)       // x: first photon, y: count
+INPUT(3, vec4, positions)    // xyz, m, cell by cell
 INPUT(4, vec4, directions)
 INPUT(5, vec4, photon_normals)
-INPUT(6, uint, list)           // photon ids
-INPUT(7, vec4, reach)          // x: squared distance of the k-th photon, m^2
-STATE(0, uvec4, chosen)        // see kth_result.glsl; z: the last id, once found
-STATE(1, uvec4, bracket)       // the id lies above x - 1 and is y - 1 at most; z: photons of this scan that are nearer; w: done
-STATE(2, uvec4, counts)        // photons of this scan within each pivot
-STATE(3, uvec4, cursor)        // y, z of the row to go on with; the first photon not yet visited
+INPUT(6, uint, list)         // photon ids
+INPUT(7, vec4, search_radii) // x: squared distance of the k-th photon, m^2
+STATE(0, uvec4, chosen)      // see kth_result.glsl; z: the last id, once found
+STATE(1, uvec4, bracket)     // x - 1 < id <= y - 1; z: photons of this scan that are nearer than the radius; w: done
+STATE(2, uvec4, counts)      // photons of this scan within each pivot
+STATE(3, uvec4, cursor)      // y, z of the next row; the first photon not yet visited
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
@@ -36,7 +36,7 @@ uint chunk_id;
 void take_ids(uint nth, uint all)
 {
     take_chunk(nth, all);
-    chunk_id = list(chunk_place);
+    chunk_id = list(chunk_index);
 }
 
 bool done()
@@ -49,10 +49,10 @@ void kernel(uint i)
     vec4 p = points(i);
     vec4 n = normals(i);
     uvec4 c = cell_coordinates(args.grid, p);
-    float radius2 = reach(i).x;
+    float radius2 = search_radii(i).x;
     uvec4 between = bracket;
     uvec4 count = counts;
-    uvec4 place = cursor;
+    uvec4 resume_at = cursor;
     uint visited = chosen.y;
 
     walk_visits = args.visits;
@@ -60,8 +60,8 @@ void kernel(uint i)
     while (walk_steps > 0u && group_any(between.w == 0u)) {
         uint fifth = max((between.y - between.x) / 5u, 1u);
         uvec4 pivot = uvec4(between.x + fifth, between.x + 2u * fifth, between.x + 3u * fifth, between.x + 4u * fifth);
-        bool mine = joins_walk(between.w == 0u, p, c, radius2, place);
-        vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the others count nothing
+        bool mine = joins_walk(between.w == 0u, p, c, radius2, resume_at);
+        vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the other lanes count nothing
         while (walks_on()) {
             uint photons = next_rows();
             visited += mine ? photons : 0u;
@@ -78,34 +78,34 @@ void kernel(uint i)
 #undef VISIT
         }
         if (mine)
-            place = uvec4(walk.x, walk.y, walk.z, 0u);
+            resume_at = uvec4(walk.x, walk.y, walk.z, 0u);
         if (mine && has_walked()) {
-            uint wanted = args.wanted - between.z;
+            uint missing = args.k - between.z;
             uvec2 range = uvec2(between.x, between.y);
-            if (count.w >= wanted)
+            if (count.w >= missing)
                 range.y = min(range.y, pivot.w);
             else
                 range.x = pivot.w;
-            if (count.z >= wanted)
+            if (count.z >= missing)
                 range.y = min(range.y, pivot.z);
             else
                 range.x = max(range.x, pivot.z);
-            if (count.y >= wanted)
+            if (count.y >= missing)
                 range.y = min(range.y, pivot.y);
             else
                 range.x = max(range.x, pivot.y);
-            if (count.x >= wanted)
+            if (count.x >= missing)
                 range.y = min(range.y, pivot.x);
             else
                 range.x = max(range.x, pivot.x);
             between = uvec4(range.x, range.y, 0u, range.y <= range.x + 1u ? 1u : 0u);
             count = uvec4(0u, 0u, 0u, 0u);
-            place = uvec4(0u, 0u, 0u, 0u);
+            resume_at = uvec4(0u, 0u, 0u, 0u);
         }
     }
 
-    chosen = uvec4(between.w != 0u ? args.wanted : chosen.x, visited, between.w != 0u ? between.y - 1u : chosen.z, chosen.w);
+    chosen = uvec4(between.w != 0u ? args.k : chosen.x, visited, between.w != 0u ? between.y - 1u : chosen.z, chosen.w);
     bracket = between;
     counts = count;
-    cursor = place;
+    cursor = resume_at;
 }

@@ -1,32 +1,32 @@
-// Where the photons within a point's reach stand in the map, in the order of the map, sixteen at a time: a kernel has no
-// arrays, and writes no element but its own. What comes next goes on where this left off, so that all parts together walk
-// through the photons once.
+// Lists the indices of the photons within a point's radius, in map order, sixteen at a time: kernels have no arrays and
+// write only their own element. The next part of the list continues where this one ended, so that all parts together
+// scan the photons once.
 #include <photongrid/map/grid.glsl>
 
 struct Params {
     Grid grid;
     vec4 leaks;        // see photon_distance.glsl
-    uint visits;       // photons examined in a pass at most ...
-    uint ranges;       // ... in this many rows of cells at most
+    uint visits;       // the most photons to examine in a pass ...
+    uint ranges;       // ... and the most rows of cells
 };
 PARAMS(Params)
 SWITCH(0, SIDE)
 SWITCH(1, NORMALS)
 SWITCH(2, FLATTEN)
-INPUT(0, vec4, points)         // xyz: query point, m
-INPUT(1, vec4, normals)        // xyz: unit normal of the surface there
-INPUT(2, uvec2, cells)         // x: first photon, y: count
-INPUT(3, vec4, positions)      // xyz, m, cell by cell
+INPUT(0, vec4, points)       // xyz: query point, m
+INPUT(1, vec4, normals)      // xyz: unit normal of the surface there
+INPUT(2, uvec2, cells)       // x: first photon, y: count
+INPUT(3, vec4, positions)    // xyz, m, cell by cell
 INPUT(4, vec4, directions)
 INPUT(5, vec4, photon_normals)
-INPUT(6, uint, list)           // photon ids
-INPUT(7, vec4, reach)          // x: squared radius, m^2
-STATE(0, uvec4, first_four)    // places of photons, the last one found first
+INPUT(6, uint, list)         // photon ids
+INPUT(7, vec4, search_radii) // x: squared radius, m^2
+STATE(0, uvec4, first_four)  // indices of photons, the last one found first
 STATE(1, uvec4, second_four)
 STATE(2, uvec4, third_four)
 STATE(3, uvec4, fourth_four)
-STATE(4, uvec4, cursor)        // y, z of the row to go on with, counted from the reach's first; the first photon not yet visited
-STATE(5, uvec4, tally)         // photons held in this part; 1: there are no more; z: the last id that counts at the radius itself
+STATE(4, uvec4, cursor)      // y, z of the next row, relative to the first row; the first photon not yet visited
+STATE(5, uvec4, tally)       // x: photons in this part; y: 1: no more photons; z: the last id that counts at the radius
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
@@ -41,7 +41,7 @@ void kernel(uint i)
     vec4 p = points(i);
     vec4 n = normals(i);
     uvec4 c = cell_coordinates(args.grid, p);
-    float radius2 = reach(i).x;
+    float radius2 = search_radii(i).x;
     float radius = wider(radius2);
     uvec2 rows_y = cells_within(p.y, radius, args.grid.origin.y, args.grid.inverse_cell.y, args.grid.resolution.y);
     uvec2 rows_z = cells_within(p.z, radius, args.grid.origin.z, args.grid.inverse_cell.z, args.grid.resolution.z);
@@ -77,7 +77,7 @@ void kernel(uint i)
         left -= at - begun;
         next = max(next, at);
         if (at < end) {
-            steps = 0u; // the budget is spent, or this part is full
+            steps = 0u; // out of budget, or this part is full
         } else {
             ++y;
             if (y > rows_y.y) {

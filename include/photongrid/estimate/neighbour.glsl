@@ -1,7 +1,7 @@
-// Entry by entry, point by point: the lists of neighbours as their reader wants them (neighbour_pair.glsl).
+// Transposes the lists of neighbour_pair.glsl, so that the entries of one point are contiguous.
 struct Params {
     uint points;
-    uint wanted; // k
+    uint k;
 };
 PARAMS(Params)
 INPUT(0, uvec2, pairs)
@@ -10,8 +10,8 @@ OUTPUT(1, float, distance2)
 
 void kernel(uint i)
 {
-    uint point = i / args.wanted;
-    uint entry = i - point * args.wanted;
+    uint point = i / args.k;
+    uint entry = i - point * args.k;
     uvec2 pair = pairs(entry * args.points + point);
     id = pair.y;
     distance2 = uintBitsToFloat(pair.x);

@@ -1,13 +1,13 @@
-// The beginning of a list of neighbours (list_neighbours.glsl), or, with GOES_ON, of its next part. A point that is not wanted
-// (w <= 0) or not finite has none.
+// Initialises a list of neighbours (list_neighbours.glsl) or, with GOES_ON, its next part. Points with w <= 0 and
+// points that are not finite have empty lists.
 #include <photongrid/map/grid.glsl>
 
 struct Params {
-    uint searching; // 0: no search can find anything (no photons, no radius)
+    uint searching; // 0: nothing can be found (no photons, or no radius)
 };
 PARAMS(Params)
 SWITCH(0, GOES_ON)
-INPUT(0, vec4, points)  // xyz: query point, m; w > 0: wanted
+INPUT(0, vec4, points)  // xyz: query point, m; w > 0: search here
 INPUT(1, uvec4, chosen) // see kth_result.glsl
 STATE(0, uvec4, cursor)
 STATE(1, uvec4, tally)

@@ -1,4 +1,4 @@
-// An estimate before any photon has been added up.
+// The estimate while no photon has been summed yet.
 struct Params {
     float radius2; // m^2
 };

@@ -1,13 +1,15 @@
-// How far a photon is, as a search measures it. Included by kernels after their SWITCHes and inputs.
+// The squared distance of a photon from a query point, with leak policies. Included by kernels after their SWITCHes and
+// inputs.
 //
-// A photon that a policy rejects is farther than any radius, so that it neither counts nor shrinks one. FLATTEN turns the
-// ball of the search into an ellipsoid that is flat along the surface's normal (Jensen, Realistic Image Synthesis Using
-// Photon Mapping, 2001, section 7.3): distances only grow, so what holds for cells out of reach still holds.
+// A photon that a policy rejects gets a distance larger than any radius, so that it neither counts nor affects the
+// radius. FLATTEN turns the search ball into an ellipsoid that is flat along the surface normal (Jensen, Realistic
+// Image Synthesis Using Photon Mapping, 2001, section 7.3). Distances only grow by it, so cells outside the radius may
+// still be skipped.
 //
-// args.leaks: x: NORMALS: smallest cosine between the photon's surface normal and the query's; y: FLATTEN: c^2 - 1, where
-// distances along the normal count c times.
+// args.leaks: x: NORMALS: least cosine of the angle between the photon's and the query's surface normals; y: FLATTEN:
+// c^2 - 1, where distances along the normal are multiplied by c.
 //
-// q: the photon's position, w: its direction of travel, m: its surface normal; p, n: the query's position and normal.
+// q, w, m: the photon's position, direction and surface normal; p, n: the query's position and surface normal.
 float distance2_of(vec4 q, vec4 w, vec4 m, vec4 p, vec4 n)
 {
     precise float dx = q.x - p.x;
@@ -19,16 +21,16 @@ float distance2_of(vec4 q, vec4 w, vec4 m, vec4 p, vec4 n)
         precise float longer = d2 + args.leaks.y * (h * h);
         d2 = longer;
     }
-    d2 = d2 < 1.17549435e-38f ? 0.0f : d2; // denormals are 0 on every backend
+    d2 = d2 < 1.17549435e-38f ? 0.0f : d2; // denormals count as 0 on every backend
     if (SIDE) {
-        // Light that arrives from behind the surface.
+        // Reject photons that arrive from behind the surface.
         precise float arrival = w.x * n.x + w.y * n.y + w.z * n.z;
         if (!(arrival < 0.0f))
             d2 = 3.4028234e38f;
     }
     if (NORMALS) {
-        precise float agreement = m.x * n.x + m.y * n.y + m.z * n.z;
-        if (!(agreement >= args.leaks.x))
+        precise float cosine = m.x * n.x + m.y * n.y + m.z * n.z;
+        if (!(cosine >= args.leaks.x))
             d2 = 3.4028234e38f;
     }
     return d2;

@@ -1,37 +1,39 @@
-// How some points that search together (IN_GROUPS, backend/begin.hpp), or one alone, visit the photons near them: in the order
-// in which they are stored, as many rows of cells at once as there are points in a group, and of the photons in these as many
-// at once, each read by one point and handed to all. Included by kernels after search_rows.glsl and photon_distance.glsl.
+// Visits the photons near the query points of a subgroup (IN_GROUPS, backend/begin.hpp), or near a single point, in map
+// order. At each step every lane looks up one row of cells; then, chunk by chunk, every lane loads one photon of these
+// rows and broadcasts it to the others. Included by kernels after search_rows.glsl and photon_distance.glsl.
 #include <photongrid/backend/group_middle.glsl>
 
-vec4 walk_center; // of a ball that holds these points' own; its cell, squared radius, and rows of cells, first and last
+// The union of the points' search balls is inside this ball: its centre, the centre's cell, and the squared radius.
+vec4 walk_center;
 uvec4 walk_cell;
 float walk_radius2;
-uvec2 walk_y;
-uvec2 walk_z;
-uvec4 walk;            // y, z of the next row; photons before this one are not visited again; phase of the points' search
-uint walk_visits = 0u; // what is left of this pass: photons, and rows
-uint walk_steps = 0u;
-uint rows_end = 0u;    // photons of the rows at hand up to this point's row, and that row's; and what a place there is ahead by
-uint rows_shift = 0u;
-uint chunk_place = 0u; // the photon that this point reads for all
+uvec2 walk_y; // first and last row of cells in the ball, along y
+uvec2 walk_z; // and along z
+uvec4 walk;            // y and z of the next row; the first photon not yet visited; the searches' phase
+uint walk_visits = 0u; // photons left in this pass's budget
+uint walk_steps = 0u;  // steps left in this pass's budget
+uint rows_end = 0u;    // inclusive prefix sum over the lanes of the photons in their current rows
+uint rows_shift = 0u;  // this lane's row: difference between a photon's index in the map and its number in the rows
+uint chunk_index = 0u; // index of the photon that this lane loads
 vec4 chunk_position;
 vec4 chunk_direction;
 vec4 chunk_normal;
 
-// Does this point search along with the one in the middle of those in its group that are not done? If it lies close by and has
-// come as far; `place`: y, z, next photon, phase. Begins the walk of those that do.
-bool joins_walk(bool searching, vec4 p, uvec4 c, float radius2, uvec4 place)
+// Begins a walk for the unfinished point in the centre of the subgroup and the points that can share its walk: those
+// that are close to it and at the same stage (`resume_at`: y, z, next photon, phase). Returns whether this point is one
+// of them.
+bool joins_walk(bool searching, vec4 p, uvec4 c, float radius2, uvec4 resume_at)
 {
     uint middle = group_middle(searching);
     float radius = wider(radius2);
     walk_center = lane_value(p, middle);
     walk_cell = lane_value(c, middle);
-    walk = lane_value(place, middle);
+    walk = lane_value(resume_at, middle);
     float most = lane_value(radius, middle);
     float dx = abs(p.x - walk_center.x);
     float dy = abs(p.y - walk_center.y);
     float dz = abs(p.z - walk_center.z);
-    bool mine = searching && !(max(dx, max(dy, dz)) > 0.4f * most) && !(radius > 1.5f * most) && place == walk;
+    bool mine = searching && !(max(dx, max(dy, dz)) > 0.4f * most) && !(radius > 1.5f * most) && resume_at == walk;
     walk_radius2 = radius2;
     if (GROUP_LANES > 1u) {
         float extent = mine ? (sqrt(dx * dx + dy * dy + dz * dz) + radius) * 1.000001f : 0.0f;
@@ -55,8 +57,8 @@ bool joins_walk(bool searching, vec4 p, uvec4 c, float radius2, uvec4 place)
 bool has_walked() { return walk.y > walk_z.y; }
 bool walks_on() { return walk_steps > 0u && !has_walked(); }
 
-// The place of photon `nth` of the rows at hand.
-uint place_of(uint nth)
+// The index in the map of photon `nth` of the current rows.
+uint index_of(uint nth)
 {
     uint row = 0u;
     for (uint step = GROUP_LANES / 2u; step > 0u; step /= 2u)
@@ -64,13 +66,13 @@ uint place_of(uint nth)
     return nth + lane_value(rows_shift, row);
 }
 
-// Takes the next rows. How many photons to visit they hold: all, or what the pass has left, which then ends.
+// Advances by one row per lane. Returns the number of photons to visit in these rows, limited by the pass's budget.
 uint next_rows()
 {
     --walk_steps;
     uint y = walk.x;
     uint z = walk.y;
-    if (GROUP_LANES > 1u) { // no loop: drivers that end loops count all of them
+    if (GROUP_LANES > 1u) { // not by a loop: drivers that end loops early count the iterations of all of them
         uint rows = walk_y.y - walk_y.x + 1u;
         uint on = y - walk_y.x + group_lane();
         z += on / rows;
@@ -84,7 +86,7 @@ uint next_rows()
     uint all = lane_value(rows_end, GROUP_LANES - 1u);
     if (all > walk_visits) {
         all = walk_visits;
-        walk.z = place_of(all);
+        walk.z = index_of(all);
         walk_steps = 0u;
     } else {
         walk.x = lane_value(y, GROUP_LANES - 1u) + 1u;
@@ -98,23 +100,25 @@ uint next_rows()
     return all;
 }
 
-// Reads photons nth, nth + 1 ... of the `all` in the rows at hand. What a place beyond the last shows is not near anything.
+// Loads photons nth, nth + 1, ... of the `all` photons in the current rows, one per lane. Lanes past the last photon
+// get one that is far from everything.
 void take_chunk(uint nth, uint all)
 {
     uint mine = nth + group_lane();
-    chunk_place = place_of(min(mine, all - 1u));
-    chunk_position = positions(chunk_place);
+    chunk_index = index_of(min(mine, all - 1u));
+    chunk_position = positions(chunk_index);
     if (GROUP_LANES > 1u && mine >= all)
         chunk_position.x = 3.0e38f;
     chunk_direction = chunk_position;
     chunk_normal = chunk_position;
     if (SIDE)
-        chunk_direction = directions(chunk_place);
+        chunk_direction = directions(chunk_index);
     if (NORMALS)
-        chunk_normal = photon_normals(chunk_place);
+        chunk_normal = photon_normals(chunk_index);
 }
 #define PHOTON_OF(LANE) from_lane(chunk_position, LANE), from_lane(chunk_direction, LANE), from_lane(chunk_normal, LANE)
-// VISIT(LANE) for each of the PHOTONS, one at least, in the rows at hand; TAKE is take_chunk or what reads more than that.
+// VISIT(LANE) for each of the PHOTONS, at least one, in the current rows. TAKE is take_chunk or a function that loads
+// more.
 #define EACH_PHOTON(PHOTONS, TAKE, VISIT)    \
     {                                        \
         uint nth = 0u;                       \

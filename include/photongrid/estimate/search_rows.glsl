@@ -1,7 +1,7 @@
-// The photons of a row of cells that can lie within a radius. Included by kernels after their `cells` input.
+// Finds the photons of a row of cells that can lie within a radius. Included by kernels after their `cells` input.
 
-// Lowest and highest cell along one axis that photons within `radius` of x can lie in. Cells are found by the function
-// that put the photons there, which is monotone; the caller has widened the radius by the rounding of distances.
+// The lowest and the highest cell along one axis that can hold photons within `radius` of x. The function is the one by
+// which the photons were put into cells, and it is monotone. The caller has enlarged the radius by the rounding error.
 uvec2 cells_within(float x, float radius, float origin, float inverse_cell, uint resolution)
 {
     precise float low = x - radius;
@@ -9,16 +9,17 @@ uvec2 cells_within(float x, float radius, float origin, float inverse_cell, uint
     return uvec2(clamped_cell(in_cells(low, origin, inverse_cell), resolution), clamped_cell(in_cells(high, origin, inverse_cell), resolution));
 }
 
-// A radius that no photon at squared distance radius2 or less lies beyond, after rounding: 2^-20 covers a few roundings
-// of 2^-24 each, in the squared distance, here, and in the square root of devices that do not round it correctly; the rest
-// covers squared distances so small that they count as 0.
+// The square root of radius2, rounded up far enough that no photon at a squared distance of radius2 or less lies beyond
+// it. 2^-20 covers a few roundings of 2^-24 each: of the squared distance, of this product, and of square roots on
+// devices that do not round them correctly. The constant covers squared distances that are so small that they count as
+// 0.
 float wider(float radius2)
 {
     precise float r = sqrt(radius2) * 1.00000095f + 1.1e-19f;
     return r;
 }
 
-// First and one past the last photon of row (y, z) that can lie within radius2 of p; an empty range where none can.
+// The first and one past the last photon of row (y, z) that can lie within radius2 of p; an empty range if none can.
 uvec2 photons_of_row(vec4 p, uint y, uint z, uvec4 c, float radius2)
 {
     float gap_y = gap(in_cells(p.y, args.grid.origin.y, args.grid.inverse_cell.y), c.y, y, args.grid.cell.y);

@@ -1,8 +1,8 @@
-// One step of the network of bitonic_step.glsl, on all points' lists at once (neighbour_pair.glsl).
+// One step of the sorting network of bitonic_step.glsl, on the lists of all points at once (neighbour_pair.glsl).
 struct Params {
     uint points;
     uint run;    // length of the runs being merged: 2, 4, … entries of a list
-    uint stride; // entries between partners: run / 2, … 1
+    uint stride; // distance between partners: run / 2, … 1
 };
 PARAMS(Params)
 INPUT(0, uvec2, pairs)

@@ -1,5 +1,5 @@
-// Bitonic merge sort (section 2.2.1, figures 2 and 3; Batcher 1968): a sorting network, so that where each element goes
-// next is known in advance and every step is one gather pass.
+// Bitonic merge sort (section 2.2.1, figures 2 and 3; Batcher 1968). It is a sorting network: the comparisons do not
+// depend on the data, so every step is one gather pass.
 #pragma once
 
 #include <photongrid/backend/backend.hpp>
@@ -12,15 +12,15 @@
 
 namespace photongrid {
 
-/// What a sort did.
+/// Counts of a sort.
 struct sort_report {
     uint steps = 0;  ///< steps of the network, L(L+1)/2 with L = ceil(log2 n): 136 for 65,536, 210 for 1,048,576
-    uint passes = 0; ///< passes run for them; equal to `steps` in this plain version
+    uint passes = 0; ///< passes for these steps; equal to `steps` unless a backend overrides the sort
 };
 
-/// Sorts (key, value) pairs ascending, compared whole, in place; any n from 0 up. Equal keys keep every value, ordered.
-/// Scratch: one more buffer of n pairs, both rounded up to a power of two while it runs.
-/// \throws backend_error when the device cannot hold them.
+/// Sorts any number of (key, value) pairs in place, ascending by key and then by value. It needs one more buffer of n
+/// pairs; while it runs, both buffers are rounded up to a power of two.
+/// \throws backend_error if the device has no room.
 /// \snippet snippets.cpp bitonic_sort
 template <backend B>
 sort_report bitonic_sort(B& b, buffer_of<B, glm::uvec2>& pairs)

@@ -1,5 +1,6 @@
 // One step of a bitonic merge sort of (key, value) pairs (2.2.1, figures 2 and 3): element i keeps the smaller or the
-// larger of itself and its partner. Pairs are compared whole, so ties lose no value and the order is reproducible.
+// larger of itself and its partner. Both members of a pair are compared, so that equal keys keep all values and the
+// order is reproducible.
 struct Params {
     uint run;    // length of the runs being merged: 2, 4, … n
     uint stride; // distance between partners: run / 2, … 1

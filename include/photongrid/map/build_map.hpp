@@ -1,8 +1,9 @@
-// The two ways to a photon map, composed of the algorithms (section 2.2).
+// The two ways to build a photon map: sorting and stencil routing (section 2.2).
 #pragma once
 
 #include <photongrid/map/bitonic_sort.hpp>
 #include <photongrid/map/fitting_grid.hpp>
+#include <photongrid/map/gather_vector.kernel.hpp>
 #include <photongrid/map/grid_index.hpp>
 #include <photongrid/map/invalid_photon.kernel.hpp>
 #include <photongrid/map/map_buffers.hpp>
@@ -13,7 +14,6 @@
 #include <photongrid/map/photon_cell.kernel.hpp>
 #include <photongrid/map/prefix_sums.hpp>
 #include <photongrid/map/stencil_route.hpp>
-#include <photongrid/map/take_vector.kernel.hpp>
 
 #include <bit>
 
@@ -22,7 +22,7 @@
 namespace photongrid {
 
 namespace detail {
-    /// Puts photons in the order of `list`, one attribute after the other, so that only one is held twice.
+    /// Reorders photons by `list`, one attribute at a time, so that only one attribute is in memory twice.
     template <backend B>
     void reorder(B& b, photons<B>& p, const buffer_of<B, uint>& list)
     {
@@ -31,15 +31,15 @@ namespace detail {
             if (attribute->size() == 0)
                 continue;
             auto taken = b.template make<glm::vec4>(n);
-            b.template run<kernels::take_vector>(n, {.photons = n}, reads(list, *attribute), writes(taken));
+            b.template run<kernels::gather_vector>(n, {.photons = n}, reads(list, *attribute), writes(taken));
             *attribute = std::move(taken);
         }
     }
 } // namespace detail
 
-/// A photon map by sorting (2.2.1): exact, L(L+1)/2 + 5 passes and one per attribute. Takes the photons over. Those
-/// that are not of `parts` are in no cell.
-/// \throws backend_error when the device cannot hold them.
+/// Builds a photon map by sorting (2.2.1): exact, in L(L+1)/2 + 5 passes and one per attribute, with L = ceil(log2 n).
+/// It consumes the photons. Photons of other parts of the light than `parts` are in no cell.
+/// \throws backend_error if the device has no room.
 /// \snippet snippets.cpp sorted_map
 template <backend B>
 map_buffers<B> sorted_map(B& b, photons<B> p, const grid& g, uint parts = every_part)
@@ -49,7 +49,7 @@ map_buffers<B> sorted_map(B& b, photons<B> p, const grid& g, uint parts = every_
     map.cells_of = g;
     map.invalid = detail::checked_count<kernels::invalid_photon>(b, n, {}, reads(p.positions, p.powers));
     {
-        // The pairs are made with their padding, so that the sort need not copy them.
+        // The pairs include the sort's padding, so that it need not copy them.
         auto pairs = b.template make<glm::uvec2>(n == 0 ? 0 : std::bit_ceil(n));
         b.template run<kernels::photon_cell>(
             pairs.size(), {.grid = g, .photons = n, .parts = parts}, reads(p.positions, p.powers), writes(pairs));
@@ -65,9 +65,10 @@ map_buffers<B> sorted_map(B& b, photons<B> p, const grid& g, uint parts = every_
     return map;
 }
 
-/// A photon map by stencil routing with m x m slots a cell (2.2.2): approximate where cells overflow, few passes. The
-/// gaps that routing leaves between cells are closed afterwards. Takes the photons over. `seed` orders the drawing.
-/// \throws std::invalid_argument for m outside 1 to 16, backend_error when cells x slots exceed the device.
+/// Builds a photon map by stencil routing with m x m slots per cell (2.2.2): few passes, but approximate where cells
+/// overflow. The gaps that routing leaves between cells are removed. It consumes the photons. `seed` determines the
+/// order in which photons are drawn.
+/// \throws std::invalid_argument for m outside 1 to 16, backend_error if cells x slots exceed the device's limit.
 /// \snippet snippets.cpp routed_map
 template <backend B>
 map_buffers<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 0, uint parts = every_part)
@@ -80,7 +81,7 @@ map_buffers<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed =
     {
         auto routed = stencil_route(b, p, g, m, seed, parts);
         map.surpluses = std::move(routed.surpluses);
-        map.overfull_cells = static_cast<uint>(routed.overfull_cells);
+        map.overflowing_cells = static_cast<uint>(routed.overflowing_cells);
         p.powers = std::move(routed.powers);
         auto kept = b.template make<uint>(cells);
         b.template run<kernels::pair_value>(cells, {}, reads(routed.cells), writes(kept));
@@ -98,13 +99,14 @@ map_buffers<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed =
     return map;
 }
 
-/// A photon map by sorting, in a grid that fits the photons themselves for estimates from the k nearest (fitting_grid).
-/// \throws backend_error when the device cannot hold it.
+/// Builds a photon map by sorting, in a grid that is fitted to the photons and to estimates from the k nearest
+/// (fitting_grid).
+/// \throws backend_error if the device has no room.
 /// \snippet snippets.cpp fitted_map
 template <backend B>
 map_buffers<B> fitted_map(B& b, photons<B> p, uint k)
 {
-    const grid g = fitting_grid(b, p, k, b.caps().cells_a_radius);
+    const grid g = fitting_grid(b, p, k, b.caps().cells_per_radius);
     return sorted_map(b, std::move(p), g);
 }
 

@@ -1,13 +1,13 @@
-// Where cell i begins in the sorted pairs, and how many lie in it: two binary searches, unrolled into one pass (2.2.1).
-// An empty cell begins where the next one does.
+// The index of cell i's first pair among the sorted pairs, and the number of its pairs: two binary searches in one pass
+// (2.2.1). An empty cell begins where the next cell does.
 struct Params {
-    uint pairs; // how many sorted pairs there are
+    uint pairs; // number of sorted pairs
 };
 PARAMS(Params)
 INPUT(0, uvec2, pairs)
 OUTPUT(0, uvec2, cell) // x: first, y: count
 
-// How many keys are less than `key`.
+// The number of keys that are less than `key`.
 uint keys_below(uint key)
 {
     uint low = 0u;

@@ -1,8 +1,8 @@
-// A grid that fits the photons themselves, so that nobody need choose one.
+// Fits a grid to photons, so that the caller need not choose one.
 #pragma once
 
+#include <photongrid/map/gather_vector.kernel.hpp>
 #include <photongrid/map/map_buffers.hpp>
-#include <photongrid/map/take_vector.kernel.hpp>
 
 #include <algorithm>
 #include <vector>
@@ -12,16 +12,16 @@
 namespace photongrid {
 
 namespace detail {
-    /// Positions of up to `wanted` photons spread over all, those left out that are not finite.
+    /// The finite positions among up to `most` photons at equal intervals of ids.
     template <backend B>
-    std::vector<glm::vec3> sample_positions(B& b, const photons<B>& p, uint wanted)
+    std::vector<glm::vec3> sample_positions(B& b, const photons<B>& p, uint most)
     {
         const uint n = p.size();
         std::vector<uint> ids;
-        for (uint i = 0; i < std::min(n, wanted); ++i)
-            ids.push_back(static_cast<uint>(std::uint64_t{i} * n / std::min(n, wanted)));
+        for (uint i = 0; i < std::min(n, most); ++i)
+            ids.push_back(static_cast<uint>(std::uint64_t{i} * n / std::min(n, most)));
         auto taken = b.template make<glm::vec4>(ids.size());
-        b.template run<kernels::take_vector>(
+        b.template run<kernels::gather_vector>(
             ids.size(), {.photons = n}, reads(b.upload(std::span<const uint>(ids)), p.positions), writes(taken));
         std::vector<glm::vec3> positions;
         for (const auto& v : b.download(taken))
@@ -30,7 +30,7 @@ namespace detail {
         return positions;
     }
 
-    /// How many cubes of edge `edge` hold any of the points.
+    /// The number of cubes with this edge, m, that contain at least one of the points.
     inline std::size_t occupied_cubes(const std::vector<glm::vec3>& points, glm::vec3 low, double edge)
     {
         std::vector<std::uint64_t> cubes;
@@ -48,18 +48,18 @@ namespace detail {
     }
 } // namespace detail
 
-/// A grid for estimates from k of these photons: `cells_a_radius` cells to the distance of the k-th nearest (see
-/// capabilities), twice as many along x, where rows are cut off at the radius; at most 5/4 cells a photon. The box
-/// is that of the photons but for one in 500 at either end of each axis, so that a stray one does not make all cells
-/// useless; what lies outside belongs to border cells.
+/// A grid for estimates from k of these photons. A typical distance of the k-th nearest is `cells_per_radius` cells
+/// (see capabilities), and twice as many along x, where searches end rows at the radius; there are at most 5/4 cells
+/// per photon. The grid's box leaves out one photon in 500 at either end of each axis, so that a few stray photons do
+/// not enlarge all cells; photons outside belong to the border cells.
 ///
-/// How photons fill space is measured on a sample of 16,384: the cubes of some edge h that hold any number h^-D, with D
-/// = 2 for photons on surfaces (box counting; Mandelbrot 1982). Same photons, same grid, on every backend. Reads the
-/// sample back.
-/// \throws backend_error when the device fails.
+/// The photons' dimension D is measured on a sample of 16,384 by box counting: the number of occupied cubes with edge h
+/// is proportional to h^-D, with D = 2 for photons on surfaces (Mandelbrot 1982). The grid depends on the photons
+/// alone, not on the backend. Reads the sample back.
+/// \throws backend_error if the device fails.
 /// \snippet snippets.cpp fitting_grid
 template <backend B>
-grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_a_radius = 1)
+grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_per_radius = 1)
 {
     auto sample = detail::sample_positions(b, p, 16384);
     if (sample.empty())
@@ -80,7 +80,7 @@ grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_a_radius = 1)
     if (!(extent > 0))
         return make_grid(low, high, glm::uvec3(1));
 
-    // The finest cubes that still hold four of the sample on average, and the dimension that they show.
+    // The smallest cubes that still hold four sample photons on average, and the dimension at that scale.
     const auto size = static_cast<double>(sample.size());
     double edge = extent, cubes = 1, dimension = 2;
     for (int level = 1; level < 20; ++level) {
@@ -91,11 +91,11 @@ grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_a_radius = 1)
         cubes = finer;
         edge /= 2;
     }
-    // Photons in a cube of edge h: N / cubes (h / edge)^D; in a ball of radius r about a third less than in a square or
-    // a cube of edge 2 r. So many are k at
+    // A cube of edge h holds N / cubes (h / edge)^D photons; a ball of radius r holds 0.785 of what a cube of edge 2 r
+    // holds (exact for D = 2). Solve for the radius that holds k photons.
     const double in_ball = 0.785 * static_cast<double>(p.size()) / cubes;
     double radius = 0.5 * edge * std::pow(static_cast<double>(std::max(k, 1u)) / in_ball, 1 / dimension);
-    radius /= static_cast<double>(cells_a_radius);
+    radius /= static_cast<double>(cells_per_radius);
     const double most = std::max(1.25 * static_cast<double>(p.size()), 64.0);
     for (;; radius *= 1.05) {
         glm::dvec3 cells;

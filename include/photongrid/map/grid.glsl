@@ -1,4 +1,4 @@
-// The uniform grid (2.2): which cell a point lies in. Build and search call the same function, so they agree bit for bit.
+// The uniform grid (2.2). Building and searching find a point's cell by the same functions, so they agree bit for bit.
 #ifndef PHOTONGRID_SHARED_IS_READ // backend/begin.hpp
 
 struct Grid {
@@ -8,21 +8,21 @@ struct Grid {
     uvec4 resolution;  // cells along each axis; w: all cells
 };
 
-// Distance from the grid's lowest corner in cells: monotone in x, since subtracting and multiplying round monotonically.
+// Distance from the grid's lowest corner, in cells. It is monotone in x, since the roundings are.
 inline float in_cells(float x, float origin, float inverse_cell)
 {
     precise float u = (x - origin) * inverse_cell;
     return u;
 }
 
-// The cell that holds u; whatever lies outside belongs to the border cells, NaN to the first.
+// The cell that holds u. Points outside the grid belong to the border cells, NaN to the first.
 inline uint clamped_cell(float u, uint resolution)
 {
     float last = float(resolution - 1u);
     float f = floor(u);
     f = f > 0.0f ? f : 0.0f;
     f = f < last ? f : last;
-    return min(uint(f), resolution - 1u); // above 2^24 cells `last` may have been rounded up
+    return min(uint(f), resolution - 1u); // above 2^24 cells `last` may be rounded up
 }
 
 inline uvec4 cell_coordinates(Grid grid, vec4 p)
@@ -38,8 +38,8 @@ inline uint cell_number(Grid grid, uint x, uint y, uint z)
     return (z * grid.resolution.y + y) * grid.resolution.x + x;
 }
 
-// A distance, m, that no photon of the cells from `cell` on can be nearer than along one axis, seen from the query point
-// at u in cell c. The margin covers the rounding of u and of the photons' own (docs/design/decisions.md).
+// A lower bound, m, on the distance along one axis between a query point at u in cell c and the photons of `cell` and
+// the cells behind it. The margin covers the rounding of u and of the photons' coordinates (docs/design/decisions.md).
 inline float gap(float u, uint c, uint cell, float size)
 {
     float margin = (float(cell) + abs(u) + 2.0f) * 9.5367431640625e-7f;
@@ -51,15 +51,16 @@ inline float gap(float u, uint c, uint cell, float size)
     return g > 0.0f ? g * size : 0.0f;
 }
 
-// False for NaN and infinity. By the exponent's bits: compilers may turn !(x <= largest) into x > largest, which is false
-// for NaN (Mesa does).
+// False for NaN and infinity. It tests the exponent's bits, because compilers may turn !(x <= largest) into x >
+// largest, which is false for NaN (Mesa does).
 inline bool is_finite(vec4 p)
 {
     return (floatBitsToUint(p.x) & 0x7F800000u) != 0x7F800000u && (floatBitsToUint(p.y) & 0x7F800000u) != 0x7F800000u
         && (floatBitsToUint(p.z) & 0x7F800000u) != 0x7F800000u;
 }
 
-// Is a photon of a part of the light that is wanted? Caustic photons have 1 in the w of their position (light_part).
+// Whether a photon belongs to one of the given parts of the light. Caustic photons have a position with w = 1
+// (light_part).
 inline bool is_of_parts(vec4 position, uint parts)
 {
     return (parts & (position.w == 1.0f ? 2u : 1u)) != 0u;

@@ -1,4 +1,5 @@
-// Where each cell's photons begin (section 2.2.1, figure 4): binary search in the sorted keys, all cells in one pass.
+// The index of each cell's first photon (section 2.2.1, figure 4): binary search in the sorted keys, all cells in one
+// pass.
 #pragma once
 
 #include <photongrid/backend/backend.hpp>
@@ -8,11 +9,10 @@
 
 namespace photongrid {
 
-/// For every key from 0 to cells - 1: x the position of its first pair, y how many pairs have it. A key that no pair
-/// has begins where the next key does. `pairs` is sorted by key; larger keys (invalid photons) are in no cell. One
-/// pass, O(log n) reads a cell (section 2.2.1, figure 4).
-/// \throws backend_error when the device cannot hold `cells`
-/// elements.
+/// For every key from 0 to cells - 1: x, the index of its first pair, and y, the number of its pairs. A key without
+/// pairs begins where the next key does. `pairs` must be sorted by key; larger keys (invalid photons) are in no cell.
+/// One pass with O(log n) reads per cell (section 2.2.1, figure 4).
+/// \throws backend_error if the device has no room.
 /// \snippet snippets.cpp grid_index
 template <backend B>
 buffer_of<B, glm::uvec2> grid_index(B& b, const buffer_of<B, glm::uvec2>& pairs, uint cells)

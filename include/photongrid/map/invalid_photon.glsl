@@ -1,4 +1,4 @@
-// True for a photon with a NaN or infinite position or power: it is in no cell, and counted.
+// True for a photon with a NaN or infinite position or power. Such photons are in no cell; they are counted.
 #include <photongrid/map/grid.glsl>
 
 struct Params {

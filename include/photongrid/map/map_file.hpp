@@ -1,9 +1,8 @@
-// A photon map in a file, so that an animation or another process searches it without tracing and sorting again.
+// A photon map in a file, so that an animation or another process can search it without tracing and sorting again.
 //
-// The file is a header (detail::map_file_header) and the map's buffers as they lie in the memory of a little-endian
-// machine, each from a multiple of 64 bytes on: cells, list, positions, powers, directions, normals, surpluses, the
-// caller's note; those that there are not are left out. Loading maps the file into memory, where the system can, and
-// uploads from there.
+// The file has a header (detail::map_file_header) and the map's buffers in little-endian order, each aligned to 64
+// bytes: cells, list, positions, powers, directions, normals, surpluses, and the caller's note. Empty buffers are left
+// out. Loading maps the file into memory, if the system supports that, and uploads from there.
 #pragma once
 
 #include <photongrid/map/map_buffers.hpp>
@@ -28,8 +27,8 @@
 
 namespace photongrid {
 
-/// What load_map() throws for a file that is not a whole photon map of a version it knows, and save_map() for one that
-/// it cannot write. Says which file, what is wrong, and what to do.
+/// load_map() throws it for a file that is not a complete photon map of a known version, save_map() for a file that it
+/// cannot write. The message has the file, what is wrong, and what to do.
 class map_file_error : public std::runtime_error {
 public:
     /// The message is "file: what".
@@ -52,7 +51,7 @@ namespace detail {
         std::uint32_t cells = 0;
         std::uint32_t surpluses = 0;  ///< elements; 0 or as many as cells
         std::uint32_t attributes = 0; ///< bit 0: directions, bit 1: normals
-        std::uint32_t invalid = 0, left_out = 0, overfull_cells = 0;
+        std::uint32_t invalid = 0, left_out = 0, overflowing_cells = 0;
         std::uint32_t note = 0;     ///< bytes
         std::uint64_t bytes = 0;    ///< of the whole file
         std::uint64_t checksum = 0; ///< of the whole file, taken with 0 here
@@ -61,7 +60,7 @@ namespace detail {
 
     constexpr std::uint64_t map_file_padded(std::uint64_t bytes) { return (bytes + 63) / 64 * 64; }
 
-    /// Fowler, Noll and Vo's hash (FNV-1a), a word of eight bytes at a time. Any change within one word changes it.
+    /// Fowler, Noll and Vo's hash (FNV-1a), in words of eight bytes. Any change within one word changes it.
     class map_file_checksum {
     public:
         /// `bytes`: a multiple of eight.
@@ -79,7 +78,7 @@ namespace detail {
         std::uint64_t value_ = 0xCBF29CE484222325u;
     };
 
-    /// A file's bytes, in memory for as long as this lives.
+    /// The bytes of a file, in memory.
     class file_bytes {
     public:
         explicit file_bytes(const std::filesystem::path& file)
@@ -88,23 +87,23 @@ namespace detail {
             const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
             if (descriptor < 0)
                 throw map_file_error(file, "cannot be opened: " + std::generic_category().message(errno));
-            struct ::stat about {};
-            const bool known = ::fstat(descriptor, &about) == 0 && S_ISREG(about.st_mode);
-            if (known && about.st_size > 0)
+            struct ::stat status {};
+            const bool known = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
+            if (known && status.st_size > 0)
                 mapped_
-                    = ::mmap(nullptr, static_cast<std::size_t>(about.st_size), PROT_READ, MAP_PRIVATE, descriptor, 0);
+                    = ::mmap(nullptr, static_cast<std::size_t>(status.st_size), PROT_READ, MAP_PRIVATE, descriptor, 0);
             ::close(descriptor);
             if (!known || mapped_ == MAP_FAILED) {
                 mapped_ = nullptr;
                 throw map_file_error(file, known ? "cannot be mapped into memory" : "is not a regular file");
             }
-            size_ = static_cast<std::size_t>(about.st_size);
+            size_ = static_cast<std::size_t>(status.st_size);
 #else
             std::ifstream in(file, std::ios::binary | std::ios::ate);
             if (!in)
                 throw map_file_error(file, "cannot be opened");
             size_ = static_cast<std::size_t>(in.tellg());
-            // Words, so that what lies in the file at multiples of 64 is aligned for its type.
+            // In aligned lines of 64 bytes, so that buffers are aligned for their types.
             read_.resize((size_ + 63) / 64);
             in.seekg(0);
             if (!in.read(reinterpret_cast<char*>(read_.data()), static_cast<std::streamsize>(size_)))
@@ -144,10 +143,9 @@ namespace detail {
 } // namespace detail
 #undef PHOTONGRID_CAN_MAP_FILES
 
-/// Writes the map to `file`, which afterwards is whole or as it was. The same map gives the same bytes on every
-/// backend. `note`: whatever the caller wants to find again with the map, such as which scene and settings it is of;
-/// any bytes.
-/// \throws map_file_error where the file cannot be written.
+/// Writes the map to `file`; on an error the old file remains. The same map gives the same bytes on every backend.
+/// `note`: any bytes that the caller wants to store with the map, such as its scene and settings.
+/// \throws map_file_error if the file cannot be written.
 /// \snippet snippets.cpp save_map
 template <backend B>
 void save_map(B& b, const map_buffers<B>& map, const std::filesystem::path& file, const std::string& note = {})
@@ -170,7 +168,7 @@ void save_map(B& b, const map_buffers<B>& map, const std::filesystem::path& file
     header.attributes = (directions.empty() ? 0u : 1u) | (normals.empty() ? 0u : 2u);
     header.invalid = map.invalid;
     header.left_out = map.left_out;
-    header.overfull_cells = map.overfull_cells;
+    header.overflowing_cells = map.overflowing_cells;
     header.note = static_cast<std::uint32_t>(note.size());
     const auto each_buffer = [&](auto&& f) {
         f(cells);
@@ -182,12 +180,12 @@ void save_map(B& b, const map_buffers<B>& map, const std::filesystem::path& file
     header.bytes = detail::map_file_padded(sizeof header);
     each_buffer([&](const auto& v) { header.bytes += detail::map_file_padded(v.size() * sizeof v[0]); });
 
-    // Twice through all bytes: once for their sum, once for the file.
+    // Visits all bytes twice: for the checksum, and for the file.
     const auto each_block = [&](auto&& f) {
         const auto block = [&](const void* data, std::uint64_t bytes) {
             const std::uint64_t words = bytes / 8 * 8;
             f(static_cast<const std::byte*>(data), words);
-            std::array<std::byte, 64> rest{}; // what is left of a word, and the padding
+            std::array<std::byte, 64> rest{}; // the last, incomplete word, and padding
             std::memcpy(rest.data(), static_cast<const std::byte*>(data) + words, bytes - words);
             f(rest.data(), detail::map_file_padded(bytes) - words);
         };
@@ -212,7 +210,7 @@ void save_map(B& b, const map_buffers<B>& map, const std::filesystem::path& file
         out.close();
         if (!out) {
             std::filesystem::remove(part, failed);
-            throw map_file_error(file, "cannot be written; is there such a folder, and room on it?");
+            throw map_file_error(file, "cannot be written; check that its folder exists and has room");
         }
     }
     std::filesystem::rename(part, file, failed);
@@ -223,10 +221,9 @@ void save_map(B& b, const map_buffers<B>& map, const std::filesystem::path& file
     }
 }
 
-/// Reads a map that save_map() wrote, on whichever backend. Every byte is checked first. `note`: where the caller's
-/// note goes.
-/// \throws map_file_error for a file that is damaged, cut short, no photon map, or of another version.
-/// \throws backend_error where the backend has no room for the map.
+/// Reads a map that save_map() wrote on any backend. It checks every byte first. `note` receives the caller's note.
+/// \throws map_file_error for a file that is damaged, cut short, not a photon map, or of another version.
+/// \throws backend_error if the backend has no room for the map.
 /// \snippet snippets.cpp load_map
 template <backend B>
 map_buffers<B> load_map(B& b, const std::filesystem::path& file, std::string* note = nullptr)
@@ -236,12 +233,12 @@ map_buffers<B> load_map(B& b, const std::filesystem::path& file, std::string* no
     detail::map_file_header header;
     if (bytes.size() < sizeof header.magic
         || std::memcmp(bytes.data(), detail::map_file_magic.data(), sizeof header.magic) != 0)
-        refuse("is not a photon map; save_map() writes them");
+        refuse("is not a photon map; give a file that save_map() wrote");
     if (bytes.size() < sizeof header)
         refuse("is cut short; save the map again");
     std::memcpy(&header, bytes.data(), sizeof header);
     if (header.byte_order != detail::map_file_byte_order)
-        refuse("is damaged, or from a machine with another order of bytes; save the map again here");
+        refuse("is damaged, or from a machine with another byte order; save the map again here");
     if (header.version != detail::map_file_version)
         refuse("is a photon map of version " + std::to_string(header.version) + ", and this photongrid reads version "
             + std::to_string(detail::map_file_version) + "; save the map again");
@@ -256,8 +253,8 @@ map_buffers<B> load_map(B& b, const std::filesystem::path& file, std::string* no
     if (sum.value() != header.checksum || bytes.size() % 64 != 0)
         refuse("is damaged: its checksum is wrong; save the map again");
 
-    // From here on only a file that somebody made with care can be wrong, but a search must end for that one too.
-    const auto wrong = [&] { refuse("contradicts itself; it is not from save_map()"); };
+    // The checksum is right. A forged file could still be inconsistent, and searches must terminate for it too.
+    const auto wrong = [&] { refuse("is inconsistent; it was not written by save_map()"); };
     const std::uint64_t n = header.photons, cells = header.cells;
     const auto size_of
         = [&](std::uint64_t count, std::size_t element) { return detail::map_file_padded(count * element); };
@@ -306,7 +303,7 @@ map_buffers<B> load_map(B& b, const std::filesystem::path& file, std::string* no
         note->assign(reinterpret_cast<const char*>(at), header.note);
     map.invalid = header.invalid;
     map.left_out = header.left_out;
-    map.overfull_cells = header.overfull_cells;
+    map.overflowing_cells = header.overflowing_cells;
     return map;
 }
 

@@ -1,4 +1,4 @@
-// True for a photon that is left out of a map made of some parts of the light only.
+// True for a photon that belongs to none of the parts of the light that the map is made of.
 #include <photongrid/map/grid.glsl>
 
 struct Params {

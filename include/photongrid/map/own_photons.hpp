@@ -1,14 +1,14 @@
-// Photons as a caller has them: any contiguous range of the caller's structs, with the caller's vectors.
+// Reads photons from the caller's own data: any contiguous range of structs, with any vector type.
 //
 //     struct particle { double where[3]; float mass; };
 //     template <>
 //     struct photongrid::photon_reader<particle> {
 //         static auto position(const particle& p) { return std::span(p.where); }
-//         static float flux(const particle& p) { return p.mass; }
+//         static float power(const particle& p) { return p.mass; }
 //     };
 //     auto map = photongrid::sorted_map(device, photongrid::upload_photons(device, particles), grid);
 //
-// The map's `list` then holds places in `particles`.
+// The map's `list` then holds indices into `particles`.
 #pragma once
 
 #include <photongrid/map/map_buffers.hpp>
@@ -24,33 +24,33 @@
 
 namespace photongrid {
 
-/// How photons of type P are read. As it stands it takes the members `position` (m) and `flux` (W), and, where P has
-/// them, `direction` (of travel, a unit vector), `normal` (of the surface, a unit vector) and `caustic` (whether the
+/// Reads photons of type P. By default it uses the members `position` (m) and `power` (W) and, if P has them,
+/// `direction` (of the photon, a unit vector), `normal` (of the surface, a unit vector) and `caustic` (whether the
 /// photon counts as caustic light). Specialise it for structs with other names.
 ///
-/// Positions, directions and normals are anything with members x, y, z or elements [0] to [2]; a flux is the same, its
-/// channels red, green and blue, or one number for all three.
+/// Positions, directions and normals may be of any type with members x, y, z or elements [0] to [2]. A power may be of
+/// such a type, with the channels red, green and blue, or one number for all three.
 /// \snippet snippets.cpp photon_reader
 template <class P>
 struct photon_reader {
-    /// \name What a specialisation may have; position and flux are needed
+    /// \name Members of a specialisation; position and power are required
     /// @{
     static const auto& position(const P& p) requires requires { p.position; }
     {
         return p.position;
     } ///< m
-    static const auto& flux(const P& p) requires requires { p.flux; }
+    static const auto& power(const P& p) requires requires { p.power; }
     {
-        return p.flux;
+        return p.power;
     } ///< W
     static const auto& direction(const P& p) requires requires { p.direction; }
     {
         return p.direction;
-    } ///< of travel, unit length; leak_policy::side reads it
+    } ///< unit vector; leak_policy::side needs it
     static const auto& normal(const P& p) requires requires { p.normal; }
     {
         return p.normal;
-    } ///< of the surface, unit length; leak_policy::min_cosine reads it
+    } ///< of the surface, unit vector; leak_policy::min_cosine needs it
     static bool caustic(const P& p) requires requires { p.caustic; }
     {
         return p.caustic;
@@ -74,7 +74,7 @@ namespace detail {
     template <class V>
     concept vector_like = has_xyz<V> || has_elements<V>;
     template <class V>
-    concept flux_like = vector_like<V> || std::is_arithmetic_v<std::remove_cvref_t<V>>;
+    concept power_like = vector_like<V> || std::is_arithmetic_v<std::remove_cvref_t<V>>;
 
     template <class V>
     glm::vec3 to_vec3(const V& v)
@@ -96,14 +96,13 @@ concept own_photon = requires(const P& p)
         photon_reader<P>::position(p)
         } -> detail::vector_like;
     {
-        photon_reader<P>::flux(p)
-        } -> detail::flux_like;
+        photon_reader<P>::power(p)
+        } -> detail::power_like;
 };
 
-/// The caller's photons in buffers of `b`, in their order. Directions and normals only where the type has them. Beside
-/// the buffers it takes 16 bytes a photon, for as long as it runs.
-/// \throws std::invalid_argument for more than 2^32 - 1
-/// photons, backend_error where the device has no room.
+/// Uploads the caller's photons in their order. Directions and normals are uploaded if the type has them. Besides the
+/// buffers it needs 16 bytes per photon while it runs.
+/// \throws std::invalid_argument for more than 2^32 - 1 photons, backend_error if the device has no room.
 /// \snippet snippets.cpp upload_photons
 template <backend B, std::ranges::contiguous_range Range>
 requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_t<Range>> photons<B> upload_photons(
@@ -113,7 +112,8 @@ requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_
     using reader = photon_reader<P>;
     const auto n = static_cast<std::size_t>(std::ranges::size(own));
     if (n > std::numeric_limits<uint>::max())
-        throw std::invalid_argument("upload_photons: photons: " + std::to_string(n) + " are more than 2^32 - 1");
+        throw std::invalid_argument(
+            "upload_photons: photons: " + std::to_string(n) + " are more than the 2^32 - 1 that a map can hold");
     const P* const from = std::ranges::data(own);
     std::vector<glm::vec4> staged(n);
     const auto upload = [&](auto&& element) {
@@ -128,7 +128,7 @@ requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_
             caustic = reader::caustic(o);
         return glm::vec4(detail::to_vec3(reader::position(o)), caustic ? 1.0f : 0.0f);
     });
-    p.powers = upload([](const P& o) { return glm::vec4(detail::to_vec3(reader::flux(o)), 0.0f); });
+    p.powers = upload([](const P& o) { return glm::vec4(detail::to_vec3(reader::power(o)), 0.0f); });
     if constexpr (requires(const P& o) { reader::direction(o); })
         p.directions = upload([](const P& o) { return glm::vec4(detail::to_vec3(reader::direction(o)), 0.0f); });
     if constexpr (requires(const P& o) { reader::normal(o); })
@@ -148,20 +148,20 @@ namespace detail {
     }
 } // namespace detail
 
-/// Query points, m, for a search that wants an estimate at each: a range of the caller's vectors, as in photon_reader.
-/// w is 1.
-/// \throws backend_error where the device has no room.
+/// Uploads query points, m: a range of vectors of any type that photon_reader accepts. w is 1, so that each gets an
+/// estimate.
+/// \throws backend_error if the device has no room.
 /// \snippet snippets.cpp upload_points
 template <backend B, std::ranges::contiguous_range Range>
 requires std::ranges::sized_range<Range> && detail::vector_like<std::ranges::range_value_t<Range>>
     buffer_of<B, glm::vec4> upload_points(B& b, const Range& points)
 {
-    return detail::upload_vectors(b, points, 1.0f); // w > 0: wanted
+    return detail::upload_vectors(b, points, 1.0f);
 }
 
-/// Unit normals of the surfaces that query points lie on, towards the side that is looked at: one a point, in their
-/// order. w is 0.
-/// \throws backend_error where the device has no room.
+/// Uploads the unit normals of the surfaces that query points lie on, on the side that is seen: one per point, in the
+/// points' order. w is 0.
+/// \throws backend_error if the device has no room.
 /// \snippet snippets.cpp upload_normals
 template <backend B, std::ranges::contiguous_range Range>
 requires std::ranges::sized_range<Range> && detail::vector_like<std::ranges::range_value_t<Range>>

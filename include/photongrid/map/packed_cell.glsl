@@ -1,4 +1,4 @@
-// Where cell i begins once the gaps between cells are gone.
+// The index of cell i's first photon after the gaps between cells have been removed.
 struct Params {
     uint unused;
 };

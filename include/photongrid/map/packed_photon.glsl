@@ -1,4 +1,4 @@
-// Place i of a routed list without its gaps: binary search for the cell in the running sums, then its slot.
+// Entry i of a routed list without gaps: a binary search in the prefix sums finds the cell, and thereby the slot.
 struct Params {
     uint cells;
 };

@@ -1,7 +1,7 @@
-// Copies pairs and fills up with the largest pair there is, for sorting any n with a network for powers of two. A pair of
-// the user's that equals the filling is the same bits, so none can be lost.
+// Copies pairs and pads them with the largest possible pair, so that a network for powers of two can sort any number. A
+// user's pair that equals the padding has the same bits, so no pair can be lost.
 struct Params {
-    uint pairs; // how many there are
+    uint pairs; // number of pairs
 };
 PARAMS(Params)
 INPUT(0, uvec2, pairs)

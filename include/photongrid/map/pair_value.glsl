@@ -1,4 +1,4 @@
-// The value of a (key, value) pair: the sorted list of photon ids (figure 4, "photon list").
+// The values of sorted (key, value) pairs: the list of photon ids (figure 4, "photon list").
 struct Params {
     uint unused;
 };

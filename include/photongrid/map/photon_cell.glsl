@@ -1,5 +1,5 @@
-// The sort key of photon i: (its cell, its id). Invalid photons, those of other parts of
-// the light, and padding carry the largest key (2.1, 2.2.1).
+// The pair of photon i for sorting: (cell, id). Invalid photons, photons of other parts of the light, and padding get
+// the largest key (2.1, 2.2.1).
 #include <photongrid/map/grid.glsl>
 
 struct Params {

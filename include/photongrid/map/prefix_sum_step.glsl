@@ -1,5 +1,5 @@
-// One step of an inclusive prefix sum (Hillis and Steele 1986, by fours in place of twos): after steps 1, 4, 16, … element i
-// holds the sum of elements 0 to i.
+// One step of an inclusive prefix sum (Hillis and Steele 1986, with four terms per step instead of two): after strides
+// 1, 4, 16, … element i is the sum of elements 0 to i.
 struct Params {
     uint stride; // below 2^30
 };

@@ -1,4 +1,4 @@
-// Running sums (Hillis and Steele 1986, by fours in place of twos): gather passes only.
+// Prefix sums (Hillis and Steele 1986, with four terms per step instead of two) by gather passes.
 #pragma once
 
 #include <photongrid/backend/backend.hpp>
@@ -10,9 +10,9 @@
 
 namespace photongrid {
 
-/// Inclusive sums: element i of the result is terms 0 to i added up, modulo 2^32. ceil(log4 n) passes, one at least.
-/// (Hillis and Steele 1986, by fours in place of twos.)
-/// \throws backend_error when the device cannot hold two more buffers of n.
+/// Inclusive prefix sums: element i of the result is the sum of terms 0 to i, modulo 2^32. ceil(log4 n) passes, at
+/// least one.
+/// \throws backend_error if the device has no room for two more buffers of n elements.
 /// \snippet snippets.cpp prefix_sums
 template <backend B>
 buffer_of<B, uint> prefix_sums(B& b, const buffer_of<B, uint>& terms)

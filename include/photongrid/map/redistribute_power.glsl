@@ -1,5 +1,5 @@
-// The power of photon i after its cell's surplus was shared out (2.2.2). Photons that were not kept get theirs too; no
-// search will meet them.
+// The power of photon i after its cell's surplus has been redistributed (2.2.2). This includes photons that were not
+// kept, which no search finds.
 #include <photongrid/map/grid.glsl>
 
 struct Params {
@@ -16,8 +16,9 @@ void kernel(uint i)
 {
     uvec4 c = cell_coordinates(args.grid, positions(i));
     uint cell = cell_number(args.grid, c.x, c.y, c.z);
-    vec4 flux = powers(i);
+    vec4 arrived = powers(i);
     vec4 scale = scales(cell);
     vec4 surplus = surpluses(cell);
-    power = vec4(flux.x * scale.x + surplus.x, flux.y * scale.y + surplus.y, flux.z * scale.z + surplus.z, flux.w);
+    power = vec4(arrived.x * scale.x + surplus.x, arrived.y * scale.y + surplus.y, arrived.z * scale.z + surplus.z,
+        arrived.w);
 }

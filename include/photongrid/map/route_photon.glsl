@@ -1,5 +1,5 @@
-// Where draw i goes in stencil routing (2.2.2, figure 5): photons are drawn in a seeded random order, because cells keep
-// the first arrivals and plain id order would drop the later lights and bounces.
+// The destination of draw i in stencil routing (2.2.2, figure 5). Photons are drawn in a seeded random order: a cell
+// keeps those that arrive first, so the order of ids would discard later lights and bounces.
 #include <photongrid/map/grid.glsl>
 #include <photongrid/backend/random.glsl>
 
@@ -14,17 +14,17 @@ INPUT(0, vec4, positions)
 INPUT(1, vec4, powers)
 OUTPUT(0, uint, destination)
 OUTPUT(1, uint, payload)
-OUTPUT(2, vec4, amount) // rgb: flux, W; w: 1, a count
+OUTPUT(2, vec4, power) // rgb, W; w: 1, which counts the photons
 
 void kernel(uint i)
 {
     uint photon = permuted(i, args.photons, args.seed);
     vec4 p = positions(photon);
-    vec4 flux = powers(photon);
+    vec4 carried = powers(photon);
     destination = 0xFFFFFFFFu;
     payload = photon;
-    amount = vec4(flux.x, flux.y, flux.z, 1.0f);
-    if (!is_finite(p) || !is_finite(flux) || !is_of_parts(p, args.parts))
+    power = vec4(carried.x, carried.y, carried.z, 1.0f);
+    if (!is_finite(p) || !is_finite(carried) || !is_of_parts(p, args.parts))
         return;
     uvec4 c = cell_coordinates(args.grid, p);
     destination = cell_number(args.grid, c.x, c.y, c.z);

@@ -1,23 +1,23 @@
-// What stencil routing left in cell i: its range of slots, and the power that its kept photons must gain so that the flux
-// of all photons destined for it is conserved per channel (2.2.2, "redistribute the power of the surplus photons").
+// Cell i after stencil routing: its range of slots, and the scale and the surplus by which the kept photons receive the
+// power of the others, per channel (2.2.2, "redistribute the power of the surplus photons").
 struct Params {
-    uint capacity; // slots of a cell
-    uint parts;    // partial sums of a cell
+    uint capacity; // slots per cell
+    uint sums;     // partial sums per cell
 };
 PARAMS(Params)
-INPUT(0, vec4, partial_sums) // rgb: flux destined for the cell, W; w: how many photons
+INPUT(0, vec4, partial_sums) // rgb: power destined for the cell, W; w: number of photons
 INPUT(1, uint, slots)
 INPUT(2, vec4, powers)
 OUTPUT(0, uvec2, cell)  // x: first slot, y: photons kept
-OUTPUT(1, vec4, scale)  // kept photons' flux is multiplied by this ...
-OUTPUT(2, vec4, surplus) // ... and this is added, W: a channel that no kept photon carries, spread evenly; w: flux moved, all channels, W
-OUTPUT(3, vec4, total)  // all the flux destined for the cell, W; w: how many photons
+OUTPUT(1, vec4, scale)  // the power of each kept photon is multiplied by this ...
+OUTPUT(2, vec4, surplus) // ... and this is added, W, in channels that no kept photon has; w: all power moved, W
+OUTPUT(3, vec4, total)  // rgb: power destined for the cell, W; w: number of photons
 
 void kernel(uint i)
 {
-    precise vec4 all = partial_sums(i * args.parts);
-    for (uint p = 1u; p < args.parts; ++p)
-        all += partial_sums(i * args.parts + p);
+    precise vec4 all = partial_sums(i * args.sums);
+    for (uint p = 1u; p < args.sums; ++p)
+        all += partial_sums(i * args.sums + p);
     total = all;
     uint destined = uint(total.w);
     uint kept = min(destined, args.capacity);

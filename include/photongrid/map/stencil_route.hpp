@@ -1,9 +1,9 @@
-// Stencil routing (section 2.2.2, figure 5): every photon goes straight to a slot of its cell, in one pass; what a cell
-// cannot hold gives its power to those it holds.
+// Stencil routing (section 2.2.2, figure 5): one pass scatters every photon to a slot of its cell. Photons for which a
+// cell has no slot give their power to the photons that it keeps.
 #pragma once
 
 #include <photongrid/map/map_buffers.hpp>
-#include <photongrid/map/overfull_cell.kernel.hpp>
+#include <photongrid/map/overflowing_cell.kernel.hpp>
 #include <photongrid/map/redistribute_power.kernel.hpp>
 #include <photongrid/map/route_photon.kernel.hpp>
 #include <photongrid/map/routed_cell.kernel.hpp>
@@ -12,35 +12,33 @@
 
 namespace photongrid {
 
-/// The result of stencil_route: parts of a map. With cap = min(m*m, 255), cell c owns slots c*cap to c*cap + cap
-/// - 1.
+/// The result of stencil_route. With cap = min(m*m, 255), cell c has the slots c*cap to c*cap + cap - 1.
 template <backend B>
 struct routed_cells {
-    buffer_of<B, uint> list;           ///< per slot a photon id; 0xFFFFFFFF: empty
-    buffer_of<B, glm::uvec2> cells;    ///< x: first slot, y: photons kept
-    buffer_of<B, glm::vec4> powers;    ///< per photon, W: with the surplus of its cell shared out
-    buffer_of<B, glm::vec4> totals;    ///< per cell: flux destined for it, W, and how many photons
-    buffer_of<B, glm::vec4> surpluses; ///< per cell: rgb W added to each kept photon, w flux moved, W
-    std::uint64_t overfull_cells = 0;  ///< cells that more photons were destined for than they have slots
+    buffer_of<B, uint> list;             ///< per slot: photon id; 0xFFFFFFFF: empty
+    buffer_of<B, glm::uvec2> cells;      ///< x: first slot, y: photons kept
+    buffer_of<B, glm::vec4> powers;      ///< per photon, W, after redistribution
+    buffer_of<B, glm::vec4> totals;      ///< per cell: rgb: power destined for it, W; w: number of photons
+    buffer_of<B, glm::vec4> surpluses;   ///< per cell: rgb: power added to each kept photon, W; w: power moved, W
+    std::uint64_t overflowing_cells = 0; ///< cells that received more photons than they have slots
 };
 
-/// Routes photons to m x m slots a cell. Kept are the first min(m*m, 255) of each cell in *draw order*, a permutation
-/// of the ids by `seed` (on every backend the same); each cell's flux is conserved per channel. Photons that are not of
-/// `parts` go nowhere. m is 1 to 16. The paper's "m = 16, about 40^3 cells" in 1024 x 1024 fits 16 slots, m = 4
-/// (docs/design/decisions.md).
-/// \throws std::invalid_argument for m outside 1 to 16, backend_error when cells x slots exceed the
-/// device.
+/// Routes photons to m x m slots per cell, with m from 1 to 16. Each cell keeps its first min(m*m, 255) photons in draw
+/// order, which is a permutation of the ids by `seed` and the same on every backend. The power of each cell is
+/// conserved per channel. Photons of other parts of the light than `parts` are discarded. The paper's "m = 16, about
+/// 40^3 cells" in 1024 x 1024 leaves room for 16 slots, m = 4 (docs/design/decisions.md).
+/// \throws std::invalid_argument for m outside 1 to 16, backend_error if cells x slots exceed the device's limit.
 /// \snippet snippets.cpp stencil_route
 template <backend B>
 routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, uint seed = 0, uint parts = every_part)
 {
     if (m < 1 || m > 16)
         throw std::invalid_argument(
-            "stencil_route: m: " + std::to_string(m) + "; slots a cell are m x m with m from 1 to 16");
+            "stencil_route: m: " + std::to_string(m) + "; it must be from 1 to 16, for m x m slots per cell");
     const uint capacity = route_capacity(m);
     const uint cells = cell_count(g);
     const uint n = p.size();
-    // Eight partial sums a cell keep the flux of 70,000 equal photons within 1e-4 in single precision.
+    // With eight partial sums per cell, the power of 70,000 equal photons has an error below 1e-4 in single precision.
     constexpr uint sums = 8;
     const std::uint64_t slots = std::uint64_t{cells} * capacity;
     if (std::max(slots, std::uint64_t{cells} * sums) > b.caps().max_elements || slots > 0xFFFFFFFEu)
@@ -57,12 +55,13 @@ routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, 
     r.surpluses = b.template make<glm::vec4>(cells);
     r.totals = b.template make<glm::vec4>(cells);
     auto scales = b.template make<glm::vec4>(cells);
-    b.template run<kernels::routed_cell>(cells, {.capacity = capacity, .parts = sums},
+    b.template run<kernels::routed_cell>(cells, {.capacity = capacity, .sums = sums},
         reads(partial_sums, r.list, p.powers), writes(r.cells, scales, r.surpluses, r.totals));
     r.powers = b.template make<glm::vec4>(n);
     b.template run<kernels::redistribute_power>(
         n, {.grid = g}, reads(p.positions, p.powers, scales, r.surpluses), writes(r.powers));
-    r.overfull_cells = detail::checked_count<kernels::overfull_cell>(b, cells, {.capacity = capacity}, reads(r.totals));
+    r.overflowing_cells
+        = detail::checked_count<kernels::overflowing_cell>(b, cells, {.capacity = capacity}, reads(r.totals));
     return r;
 }
 

@@ -1,4 +1,4 @@
-// Vectors as a host has them, read one at a time: a range of the host's vectors, or a member of the host's structs.
+// Views of a host's vectors: a range of vectors, or a member of a range of structs.
 #pragma once
 
 #include <photongrid/map/own_photons.hpp>
@@ -19,7 +19,7 @@ namespace detail {
             return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
     }
 
-    /// Has V components that a float cannot hold?
+    /// Whether V has components with more precision than a float.
     template <class V>
     constexpr bool has_doubles()
     {
@@ -32,20 +32,20 @@ namespace detail {
     }
 } // namespace detail
 
-/// Vectors or numbers of the host's, which must outlive it: made from any contiguous range of vectors (as in
-/// photon_reader) or numbers. A number stands for three equal components.
+/// A view of a host's vectors or numbers, which must outlive it. It can be made from any contiguous range of numbers or
+/// of vectors that photon_reader accepts. A number stands for three equal components.
 class vector_view {
 public:
     vector_view() = default;
     template <std::ranges::contiguous_range Range>
-    requires std::ranges::sized_range<Range> && detail::flux_like<std::ranges::range_value_t<Range>> &&(
+    requires std::ranges::sized_range<Range> && detail::power_like<std::ranges::range_value_t<Range>> &&(
         !std::same_as<std::remove_cvref_t<Range>, vector_view>)vector_view(const Range& range)
         : vector_view(
             std::ranges::data(range), static_cast<std::size_t>(std::ranges::size(range)),
             [](const std::ranges::range_value_t<Range>& v) -> const auto& { return v; })
     {
     }
-    /// A member of structs: `read` is a function without state that returns it.
+    /// A view of a member of structs: `read`, a function object without state, returns the member.
     template <class T, class Read>
     vector_view(const T* first, std::size_t size, Read)
         : data_(first), size_(size),
@@ -58,7 +58,7 @@ public:
     std::size_t size() const { return size_; }
     bool empty() const { return size_ == 0; }
     glm::dvec3 operator[](std::size_t i) const { return read_(data_, i); }
-    /// Are there components that a float cannot hold?
+    /// Whether the components have more precision than a float.
     bool has_doubles() const { return has_doubles_; }
 
 private:
@@ -68,13 +68,13 @@ private:
     glm::dvec3 (*read_)(const void*, std::size_t) = nullptr;
 };
 
-/// Photons whose attributes a host keeps apart. Directions and normals may be left out; what is there has one element a
-/// photon.
+/// Photons whose attributes are in separate arrays, with one element per photon. Directions and normals may be left
+/// out.
 struct photon_attributes {
     vector_view positions{};  ///< m
     vector_view powers{};     ///< W
-    vector_view directions{}; ///< of travel, unit length
-    vector_view normals{};    ///< of the surface, unit length
+    vector_view directions{}; ///< unit vectors
+    vector_view normals{};    ///< of the surface, unit vectors
 };
 
 namespace detail {
@@ -87,7 +87,7 @@ namespace detail {
         const P* const first = std::ranges::data(photons);
         const auto n = static_cast<std::size_t>(std::ranges::size(photons));
         photon_attributes a{.positions = {first, n, [](const P& p) -> decltype(auto) { return reader::position(p); }},
-            .powers = {first, n, [](const P& p) -> decltype(auto) { return reader::flux(p); }}};
+            .powers = {first, n, [](const P& p) -> decltype(auto) { return reader::power(p); }}};
         if constexpr (requires(const P& p) { reader::direction(p); })
             a.directions = {first, n, [](const P& p) -> decltype(auto) { return reader::direction(p); }};
         if constexpr (requires(const P& p) { reader::normal(p); })
@@ -95,8 +95,8 @@ namespace detail {
         return a;
     }
 
-    /// From where positions are measured on the device: the middle of doubles, so that a float tells neighbours apart
-    /// however far from 0 they lie; 0 for floats, which are taken as they are.
+    /// The origin of positions on the device. For doubles it is the centre of the positions, so that single precision
+    /// suffices however far from 0 they lie; for floats it is 0.
     inline glm::dvec3 origin_of(const vector_view& positions)
     {
         constexpr double most = std::numeric_limits<double>::infinity();

@@ -38,13 +38,13 @@ public:
                 lights_.push_back(l);
         if (lights_.empty())
             return;
-        paths_a_group_ = (settings.paths + light_groups - 1) / light_groups;
+        paths_per_group_ = (settings.paths + light_groups - 1) / light_groups;
         cut(s, settings);
         if (size_ == 0)
             return;
         stats.bins = size_;
         stats.bin_size = bin_;
-        stats.light_paths = paths_a_group_ * light_groups;
+        stats.light_paths = paths_per_group_ * light_groups;
         double total = 0;
         for (const auto& l : lights_)
             total += brightness(l);
@@ -131,9 +131,9 @@ private:
         std::vector<dvec3> flux(size_, dvec3(0));
         random_stream random(settings.seed, 1, group);
         std::uint64_t hits = 0;
-        constexpr std::uint64_t a_look = 1024;
-        for (std::uint64_t done = 0; done < paths_a_group_;) {
-            const std::uint64_t past = std::min(paths_a_group_, done + a_look);
+        constexpr std::uint64_t paths_per_report = 1024;
+        for (std::uint64_t done = 0; done < paths_per_group_;) {
+            const std::uint64_t past = std::min(paths_per_group_, done + paths_per_report);
             if (!w.goes_on(past - done))
                 return hits;
             for (; done < past; ++done)
@@ -147,8 +147,8 @@ private:
                     [&](const auto& b) {
                         for (std::uint32_t i = 0; i < 2 * b.size(); ++i)
                             if (const double area = b.area(i / 2); area > 0)
-                                out[surface.first + i]
-                                    = glm::vec3(flux[surface.first + i] / (area * static_cast<double>(paths_a_group_)));
+                                out[surface.first + i] = glm::vec3(
+                                    flux[surface.first + i] / (area * static_cast<double>(paths_per_group_)));
                     },
                     *surface.bins);
         return hits;
@@ -205,7 +205,7 @@ private:
     std::vector<binned_surface> surfaces_; ///< by shape
     std::uint32_t size_ = 0;
     double bin_ = 0;
-    std::uint64_t paths_a_group_ = 0;
+    std::uint64_t paths_per_group_ = 0;
     std::vector<std::vector<glm::vec3>> irradiance_; ///< by group and bin
 };
 

@@ -168,9 +168,9 @@ struct box_shape {
     dvec3 settle(dvec3& p) const
     {
         const int i = axis_at(p);
-        const double place = local(p - middle)[i];
-        const dvec3 outward = place < 0 ? -axes[static_cast<std::size_t>(i)] : axes[static_cast<std::size_t>(i)];
-        p += (half[i] - std::abs(place)) * outward;
+        const double coordinate = local(p - middle)[i];
+        const dvec3 outward = coordinate < 0 ? -axes[static_cast<std::size_t>(i)] : axes[static_cast<std::size_t>(i)];
+        p += (half[i] - std::abs(coordinate)) * outward;
         return outward;
     }
 };

@@ -67,11 +67,11 @@ public:
             low_ = glm::min(low_, outline.back());
             high = glm::max(high, outline.back());
         }
-        const glm::dvec2 wanted = glm::max(glm::dvec2(1), glm::ceil((high - low_) / size));
-        require_few_bins(wanted.x * wanted.y, size);
-        columns_ = static_cast<std::uint32_t>(wanted.x);
-        rows_ = static_cast<std::uint32_t>(wanted.y);
-        step_ = (high - low_) / wanted;
+        const glm::dvec2 cells = glm::max(glm::dvec2(1), glm::ceil((high - low_) / size));
+        require_few_bins(cells.x * cells.y, size);
+        columns_ = static_cast<std::uint32_t>(cells.x);
+        rows_ = static_cast<std::uint32_t>(cells.y);
+        step_ = (high - low_) / cells;
         std::vector<double> cut(std::size_t{columns_} * rows_, 0.0);
         for (std::uint32_t y = 0; y < rows_; ++y) {
             const auto strip

@@ -31,11 +31,11 @@ public:
     {
         done_ += done;
         if (std::this_thread::get_id() == caller_)
-            look();
+            report();
         return !stop_;
     }
     /// Tells the observer how far the work is, and asks whether it is cancelled. The calling thread only.
-    void look()
+    void report()
     {
         if (observer_.progress)
             observer_.progress(stage_, static_cast<double>(done_) / units_);
@@ -99,7 +99,7 @@ void share_out(std::uint32_t n, std::uint32_t threads, std::string_view stage, d
         work();
         while (at_work > 0) {
             try {
-                w.look();
+                w.report();
             } catch (...) {
                 const std::lock_guard lock(failing);
                 failure = std::current_exception();

@@ -1,4 +1,4 @@
-// A copy, for showing a picture while it goes on.
+// Copies pixels, so that the picture can be displayed while rendering continues.
 struct Params {
     uint unused;
 };

@@ -1,14 +1,15 @@
-// The share of an estimate's disc that lies on polygons, each of its parts weighed as the estimate's kernel weighs photons
-// there: 1 far from all edges, 1/2 on a straight edge, 1/4 in a right corner. A bounded number of polygons a pass.
+// The share of an estimate's disc that lies on polygons, weighted by the estimate's filter: 1 far from all edges, 1/2
+// on a straight edge, 1/4 in a right corner. The number of polygons per pass is bounded.
 //
-// The integral of a radial weight over polygon and disc is a sum over the polygon's edges (polar coordinates about the
-// centre): of an edge at signed distance d, F(rho) dphi between its ends, where F is the integral of the weight times radius
-// up to rho, the distance of the edge or of the disc's rim, whichever is nearer. On the edge's part within the disc dphi is
-// d ds / rho^2 and the integral is a polynomial in s, but for the cone's, which has a logarithm; on the rim it is an angle.
+// The integral of a radial weight over the intersection of polygon and disc is a sum over the polygon's edges, in polar
+// coordinates about the disc's centre: for an edge at signed distance d, the integral of F(rho) dphi between its ends,
+// where F is the integral of weight times radius up to rho, the distance of the edge or of the disc's rim, whichever is
+// smaller. On the part of the edge inside the disc, dphi is d ds / rho^2 and the integral is a polynomial in s (with a
+// logarithm for the cone); on the rim it is an angle.
 //
-// Polygons count that lie in the plane of the point, whichever side they were drawn to show, for they have two; and those
-// in planes tilted against it by up to 2.5 degrees that come near it within the disc, so that gently bent walls do not
-// fall apart. Others do not: their photons must be refused (leak policy `normals`).
+// A polygon counts if the point lies in its plane, on either side, or if its plane is tilted by up to 2.5 degrees and
+// passes near the point within the disc, so that slightly bent walls stay connected. The photons of other polygons must
+// be rejected (leak_policy::min_cosine).
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/natural_log.glsl>
 #include <photongrid/trace/scene_layout.glsl>
@@ -23,7 +24,7 @@ SWITCH(0, CONE)         // weight 1 - d / r
 SWITCH(1, EPANECHNIKOV) // 1 - d^2 / r^2
 SWITCH(2, SILVERMAN)    // (1 - d^2 / r^2)^2; none of the three: 1
 INPUT(0, vec4, scene)
-INPUT(1, vec4, points)    // xyz, m; w > 0: an estimate was wanted
+INPUT(1, vec4, points)    // xyz, m; w > 0: the point has an estimate
 INPUT(2, vec4, surfaces)  // xyz: unit normal
 INPUT(3, vec4, estimates) // w: squared radius, m^2
 STATE(0, vec4, cover)     // x: sum of shares; y: 1 where the point lies on one of the polygons
@@ -31,8 +32,8 @@ STATE(0, vec4, cover)     // x: sum of shares; y: 1 where the point lies on one 
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/polygon_record.glsl>
 
-// 2 pi / d times the indefinite integral along an edge's part within the unit disc, at s from the foot of its centre; the
-// whole disc counts as 1.
+// 2 pi / d times the indefinite integral along the part of an edge inside the unit disc, at s from the foot of the
+// disc's centre. The integral over the whole disc is 1.
 float edge_integral(float d, float s)
 {
     precise float d2 = d * d;
@@ -40,7 +41,7 @@ float edge_integral(float d, float s)
     precise float value = s;
     if (CONE) {
         precise float rho = sqrt(d2 + s2);
-        float logarithm = 0.0f; // its share vanishes with d
+        float logarithm = 0.0f; // its term vanishes with d
         if (d2 > 1e-8f) {
             precise float ratio = (abs(s) + rho) / abs(d);
             logarithm = natural_log(ratio);
@@ -68,7 +69,8 @@ float subtended(float d, float a, float b)
     return sine > 0.0f ? angle_of(sine, cosine) : 0.0f;
 }
 
-// An edge's part of the share: signed distance d of the disc's centre, positive inside, ends at a <= b, all over the radius.
+// The contribution of an edge: signed distance d from the disc's centre, positive inside, and ends a <= b, all divided
+// by the radius.
 float edge_share(float d, float a, float b)
 {
     precise float chord2 = 1.0f - d * d;
@@ -112,8 +114,8 @@ void kernel(uint i)
         precise float above = dot3(up, p) - plane.w;
         vec3 turn = cross3(n, up);
         float sine2 = dot3(turn, turn);
-        precise float reach = error + radius * sqrt(sine2);
-        if (!(sine2 <= 0.0019f) || !(abs(above) <= reach))
+        precise float tolerance = error + radius * sqrt(sine2);
+        if (!(sine2 <= 0.0019f) || !(abs(above) <= tolerance))
             continue;
         if (is_light_surface(at) || material_of(polygon_material(at)).kind != LAMBERTIAN_SURFACE)
             continue; // holds no photons

@@ -1,9 +1,9 @@
-// Divides an estimate by the share of its disc that lies on the surface (covered_share.glsl): what is missing there counts
-// as like the rest. Polygons that overlap would count twice, so a share is at most 1; and at least `least`, since in the
-// tip of a needle few photons say nothing. A point on no polygon keeps its estimate.
+// Divides an estimate by the share of its disc that lies on the surface (covered_share.glsl). The share is clamped to
+// 1, because polygons that overlap count twice, and to `least`, because in a sharp corner there are too few photons for
+// a correction. Points that are on no polygon keep their estimates.
 struct Params {
     float least;
-    uint keeps_w; // 1: w is no part of the estimate
+    uint keeps_w; // 1: w is not part of the estimate and stays
 };
 PARAMS(Params)
 INPUT(0, vec4, covers)

@@ -1,6 +1,6 @@
 // Edge correction of density estimates: each is divided by the share of its filter's mass that lies on the surface
 // ("cut and normalise", Gasser and Müller 1979; Diggle, Applied Statistics 34(2), 1985). Without it an estimate at a
-// straight edge reads half of the truth, in a right corner a quarter.
+// straight edge is half of the irradiance, in a right corner a quarter.
 #pragma once
 
 #include <photongrid/backend/zero_vectors.kernel.hpp>
@@ -14,32 +14,31 @@
 namespace photongrid {
 
 namespace detail {
-    /// Some polygons that follow each other in the records.
+    /// A range of consecutive polygon records.
     struct polygon_range {
         uint first = 0; ///< record
         uint polygons = 0;
     };
 
-    /// A scene's polygons, lamps among them, in parts that one pass may look at: drivers end loops after 65,535
-    /// iterations, those of up to 16 lanes added up.
-    /// \throws std::invalid_argument for a polygon that is too much for
-    /// one pass.
+    /// A scene's polygons, including lamps, in ranges that one pass can process: some drivers end loops silently after
+    /// 65,535 iterations, counted over up to 16 lanes.
+    /// \throws std::invalid_argument for a polygon with too many vertices for one pass.
     inline std::vector<polygon_range> ranges_of_polygons(const scene_layout& s)
     {
-        constexpr uint a_pass = 4000;
+        constexpr uint per_pass = 4000;
         std::vector<polygon_range> ranges;
         const auto polygons = s.table(shape_kind<polygon>::number);
         uint at = polygons.first, left = 0;
         for (uint i = 0; i < polygons.count; ++i) {
             const uint edges = static_cast<uint>(s.records[at + 1].x);
             const uint work = 1 + 2 * edges;
-            if (work > a_pass)
+            if (work > per_pass)
                 throw std::invalid_argument("edge_correction: polygons[" + std::to_string(i) + "] has "
-                    + std::to_string(edges) + " vertices; at most " + std::to_string((a_pass - 1) / 2)
+                    + std::to_string(edges) + " vertices; at most " + std::to_string((per_pass - 1) / 2)
                     + " can be corrected, so split it");
             if (work > left) {
                 ranges.push_back({at, 0});
-                left = a_pass;
+                left = per_pass;
             }
             left -= work;
             ++ranges.back().polygons;
@@ -49,13 +48,13 @@ namespace detail {
     }
 } // namespace detail
 
-/// The share, 0 to about 1, of each estimate's disc that lies on polygons of the scene, weighted by the filter: x; y: 1
-/// for points on one of them, 0 for others, whose share means nothing. Polygons in one plane are one surface, whichever
+/// x: the share, 0 to about 1, of each estimate's disc that lies on polygons of the scene, weighted by the filter. y: 1
+/// for points on a polygon, 0 for others, whose share has no meaning. Polygons in one plane are one surface, whichever
 /// way they are wound; where they overlap they count twice. Mirrors, glass and lamps hold no photons and do not count.
 ///
-/// `points` (recentred, m; w > 0: wanted), `normals` (unit) and `irradiances` (w: squared radius, m^2) are those of the
-/// estimate, `min_radius` (m) is that of its settings. The error is about 1e-6 and what 2^-22 of the scene's size is of
-/// the radius.
+/// `points` (recentred, m; w > 0: has an estimate), `normals` (unit) and `irradiances` (w: squared radius, m^2) are
+/// those of the estimate; `min_radius` (m) is that of its settings. The error is about 1e-6, plus 2^-22 of the scene's
+/// size relative to the radius.
 /// \throws std::invalid_argument for a polygon of more than 1,999 vertices.
 template <backend B>
 buffer_of<B, glm::vec4> covered_shares(B& b, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
@@ -75,9 +74,9 @@ buffer_of<B, glm::vec4> covered_shares(B& b, const device_scene<B>& s, const buf
     return cover;
 }
 
-/// Corrects estimates, and their standard errors where there are any, at points on polygons. No share is taken for less
-/// than 2^-8, the tip of a needle of 1.4 degrees. Right where the light that the estimate counts lies on the surface
-/// itself: the search must refuse photons of adjoining surfaces (leak_policy::min_cosine). Radius and counts stay.
+/// Corrects estimates, and their standard errors if there are any, at points on polygons. Shares below 2^-8 (a corner
+/// of 1.4 degrees) count as 2^-8. The search must reject photons of adjoining surfaces (leak_policy::min_cosine), so
+/// that all photons lie on the corrected surface. Radius and counts do not change.
 /// \throws std::invalid_argument as covered_shares does.
 /// \snippet snippets.cpp correct_edges
 template <backend B>

@@ -1,4 +1,4 @@
-// Sums that do not depend on the order of their terms, so that passes may come from any thread or machine.
+// Sums that do not depend on the order of their terms, so that passes can be computed by any thread or machine.
 #pragma once
 
 #include <bit>
@@ -19,13 +19,13 @@ public:
     /// Whether `x` may be added: it is finite and |x| < 2^46.
     static bool holds(double x) { return std::abs(x) < 0x1p46; } // false for NaN
 
-    /// Adds a term that holds() is true for. The sum of all terms must stay below 2^47.
+    /// Adds a term for which holds() is true. The sum of all terms must stay below 2^47.
     void add(double x)
     {
         const auto bits = std::bit_cast<std::uint64_t>(x);
         const int biased = static_cast<int>(bits >> 52 & 0x7FF);
         if (biased == 0)
-            return; // 0, or far below a step
+            return; // 0, or much smaller than a step
         const std::uint64_t mantissa = (bits & 0xFFFFFFFFFFFFFu) | 0x10000000000000u;
         const int shift = biased - 1075 + fraction_bits; // x = mantissa * 2^shift steps
         std::uint64_t low = 0, high = 0;
@@ -57,7 +57,7 @@ public:
         return negative ? -size : size;
     }
 
-    bool operator==(const exact_sum&) const = default; ///< of the sums, to the bit
+    bool operator==(const exact_sum&) const = default; ///< exact
 
 private:
     void add(std::uint64_t low, std::uint64_t high)

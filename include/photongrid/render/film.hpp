@@ -1,4 +1,4 @@
-// The picture as a sum of passes: each is added once, in any order, and the spread between passes is the noise.
+// The picture as a sum of passes. Passes are added in any order; the spread between them measures the noise.
 #pragma once
 
 #include <photongrid/render/exact_sum.hpp>
@@ -20,26 +20,27 @@
 
 namespace photongrid {
 
-/// What one pass adds to the picture, row by row from the top left.
+/// The result of one pass, row by row from the top left.
 struct pass_pixels {
     std::vector<glm::vec4> pixels;   ///< rgb: radiance, W/(m^2 sr)
     std::vector<glm::vec4> searches; ///< sums over a pixel's searches: photons used, radius, photons visited, searches
-    std::vector<glm::vec4> errors;   ///< x: sum of relative standard errors; empty unless render_settings::aov
+    std::vector<glm::vec4> errors;   ///< x: sum of relative standard errors; empty unless output_settings::aov
 };
 
-/// A picture, and how many of its pixels were NaN or infinite in some pass; they count as black there.
+/// A picture, and the number of pixels that were NaN or infinite in some pass. Those count as black in that pass.
 struct developed_picture {
     image picture;
     std::uint64_t invalid_pixels = 0;
 };
 
-/// Adds passes up. Of one pass the picture has exactly the floats; the mean of several is exact up to its last
-/// rounding and does not depend on the order in which they were added.
+/// Sums passes. The picture of a single pass has exactly its floats. The mean of several passes is exact up to the
+/// final rounding and does not depend on the order of the passes.
 class film {
 public:
     film() = default;
-    /// For pictures of width x height pixels. `unit` is a typical radiance, a power of two: sums resolve 2^-80 of it,
-    /// pixels above 2^40 of it count as infinite. `layers`: the passes' errors are wanted (render_settings::aov).
+    /// For pictures of width x height pixels. `unit` is a typical radiance, a power of two: sums have a resolution of
+    /// 2^-80 units, and pixels above 2^40 units count as infinite. `layers`: also sum the layers
+    /// (output_settings::aov).
     film(std::uint32_t width, std::uint32_t height, double unit, bool layers)
         : width_(width), height_(height), unit_(unit), layers_(layers)
     {
@@ -75,12 +76,12 @@ public:
     {
         return width == width_ && height == height_ && layers == layers_;
     }
-    /// How many passes were added.
+    /// The number of passes added.
     std::uint32_t passes() const { return static_cast<std::uint32_t>(passes_.size()); }
-    /// Pixels of the picture.
+    /// The number of pixels.
     std::size_t size() const { return std::size_t{width_} * height_; }
 
-    /// All of it, for the memory of a file. The same passes give the same bytes, in whichever order they were added.
+    /// The film as bytes, for a file. The same passes give the same bytes in any order.
     std::string bytes() const
     {
         std::string out;
@@ -100,13 +101,13 @@ public:
         put(layer_sums_.data(), layer_sums_.size() * sizeof(layer_sums));
         return out;
     }
-    /// The film with these bytes.
-    /// \throws std::invalid_argument for bytes that are no film's.
+    /// The film from its bytes.
+    /// \throws std::invalid_argument for bytes that are not a film's.
     static film from_bytes(std::string_view in)
     {
         const auto take = [&](void* data, std::size_t size) {
             if (in.size() < size)
-                throw std::invalid_argument("film: the bytes end too early");
+                throw std::invalid_argument("film: the data end too early");
             if (size > 0)
                 std::memcpy(data, in.data(), size);
             in.remove_prefix(size);
@@ -118,7 +119,7 @@ public:
         film f(head[0], head[1], unit, head[2] != 0);
         const std::size_t n = f.size();
         if (head[0] > 16384 || head[1] > 16384 || head[2] > 1 || head[3] > 65536 || !(unit > 0))
-            throw std::invalid_argument("film: these bytes are no film's");
+            throw std::invalid_argument("film: the data are not a film's");
         for (std::uint32_t i = 0; i < head[3]; ++i) {
             std::uint32_t pass = 0;
             take(&pass, sizeof pass);
@@ -127,26 +128,26 @@ public:
         if (head[3] == 1) {
             const std::size_t layer = f.layers_ ? n : 0;
             if (in.size() != (2 * n + layer) * sizeof(glm::vec4))
-                throw std::invalid_argument("film: the bytes have another length");
+                throw std::invalid_argument("film: the data have the wrong length");
             f.only_ = pass_pixels{std::vector<glm::vec4>(n), std::vector<glm::vec4>(n), std::vector<glm::vec4>(layer)};
             for (auto* part : {&f.only_->pixels, &f.only_->searches, &f.only_->errors})
                 take(part->data(), part->size() * sizeof(glm::vec4));
         } else if (head[3] > 1) {
             if (in.size() != n * (sizeof(pixel_sums) + (f.layers_ ? sizeof(layer_sums) : 0)))
-                throw std::invalid_argument("film: the bytes have another length");
+                throw std::invalid_argument("film: the data have the wrong length");
             f.sums_.resize(n);
             f.layer_sums_.resize(f.layers_ ? n : 0);
             take(f.sums_.data(), n * sizeof(pixel_sums));
             take(f.layer_sums_.data(), f.layer_sums_.size() * sizeof(layer_sums));
         }
         if (f.passes() != head[3] || !in.empty())
-            throw std::invalid_argument("film: these bytes are no film's");
+            throw std::invalid_argument("film: the data are not a film's");
         return f;
     }
 
-    /// The mean of the passes added so far. Its layers are filled where they were wanted: `relative_error` is that of
-    /// the mean of the passes' estimates, `noise` needs two passes.
-    /// \throws std::logic_error when no pass was added yet.
+    /// The mean of the passes added so far. If the film has layers, `relative_error` is that of the mean of the passes'
+    /// estimates, and `noise` needs two passes.
+    /// \throws std::logic_error if no pass was added yet.
     developed_picture picture() const
     {
         if (passes_.empty())
@@ -166,8 +167,8 @@ private:
     struct pixel_sums {
         exact_sum rgb[3];
         exact_sum squares;                   ///< of r + g + b, for the spread
-        std::uint32_t invalid = 0;           ///< 1: some pass was NaN, infinite or too bright
-        std::uint32_t spread_is_unknown = 0; ///< 1: some pass was too bright for the sum of squares
+        std::uint32_t invalid = 0;           ///< 1: in some pass it was NaN, infinite or too bright
+        std::uint32_t spread_is_unknown = 0; ///< 1: in some pass it was too bright for the sum of squares
     };
     struct layer_sums {
         exact_sum searches, count, radius, error;
@@ -242,16 +243,17 @@ private:
         }
     }
 
-    // exact_sum takes sums below 2^47: room for 2^7 passes as bright as can be, and for 2^16 of any real picture.
+    // exact_sum holds sums below 2^47: enough for 2^7 passes of the brightest pixels, and for 2^16 passes of real
+    // pictures.
     static constexpr double largest = 0x1p40;        ///< of a pixel's r + g + b, in units
-    static constexpr double largest_square = 0x1p30; ///< whose spread is known, in units
-    static constexpr double square_scale = 0x1p-20;  ///< squares go up to 2^40 with it
+    static constexpr double largest_square = 0x1p30; ///< the same for the sum of squares
+    static constexpr double square_scale = 0x1p-20;  ///< so that squares stay below 2^40
 
     std::uint32_t width_ = 0, height_ = 0;
     double unit_ = 1;
     bool layers_ = false;
     std::set<std::uint32_t> passes_;
-    std::optional<pass_pixels> only_; ///< while there is one pass: its own floats
+    std::optional<pass_pixels> only_; ///< the floats of the only pass, while there is one
     std::vector<pixel_sums> sums_;
     std::vector<layer_sums> layer_sums_;
 };

@@ -8,11 +8,11 @@
 
 namespace photongrid {
 
-/// What the estimates behind a picture say of themselves, means over each pixel's eye rays, row by row from the top
-/// left; 0 where no ray asked for an estimate.
+/// Properties of the estimates of a picture: means over each pixel's eye rays, row by row from the top left. 0 in
+/// pixels without estimates.
 struct estimate_layers {
     std::vector<float> radius;         ///< m
-    std::vector<float> count;          ///< photons within it
+    std::vector<float> count;          ///< photons within the radius
     std::vector<float> relative_error; ///< standard error of the irradiance, over the irradiance (sums over channels)
     std::vector<float> noise; ///< standard error of the mean of the passes, mean of the channels; empty for one pass
 };
@@ -21,8 +21,8 @@ struct estimate_layers {
 struct image {
     std::uint32_t width = 0;       ///< pixels
     std::uint32_t height = 0;      ///< pixels
-    std::vector<glm::vec3> pixels; ///< width x height of them
-    estimate_layers layers{};      ///< empty unless render_settings::aov
+    std::vector<glm::vec3> pixels; ///< width x height
+    estimate_layers layers{};      ///< empty unless output_settings::aov
 };
 
 } // namespace photongrid

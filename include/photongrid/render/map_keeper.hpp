@@ -1,5 +1,5 @@
-// The photon map that is in use, and the one that is being made: a map is built again only when geometry, materials or
-// lights change, or a setting that same_map() names (figure 1).
+// Keeps the photon map in use and builds the next one. A map is rebuilt only if geometry, materials, lights or a
+// setting that same_map() compares changes (figure 1).
 #pragma once
 
 #include <photongrid/render/render.hpp>
@@ -11,10 +11,10 @@
 
 namespace photongrid {
 
-/// What a photon map is of.
+/// The inputs of a photon map.
 struct map_source {
     photongrid::scene scene;
-    render_settings settings; ///< of the pass that it is for; with fewer photons, for a preview
+    render_settings settings; ///< those of its pass; with fewer photons for a preview
     uint pass = 0;
 
     /// Whether a map of `other` would be the same.
@@ -29,7 +29,7 @@ struct map_source {
     }
 };
 
-/// Keeps a map while it serves, and makes another in steps.
+/// Keeps a map as long as it can be used, and builds another in steps.
 template <backend B>
 class map_keeper {
 public:
@@ -38,37 +38,37 @@ public:
 
     /// The map in use; there must be one.
     const built_map<B>& map() const { return *built_; }
-    /// What it is of.
+    /// The inputs of the map in use.
     const map_source& of() const { return of_; }
-    /// Whether the map in use is one of `wanted`.
-    bool serves(const map_source& wanted) const { return built_ && of_.same(wanted); }
-    /// Whether it is one of fewer photons.
-    bool serves_preview_of(const map_source& wanted) const { return built_ && of_.is_preview_of(wanted); }
-    /// Whether a map of `wanted` is being made.
-    bool is_making(const map_source& wanted) const { return making_ && making_of_.same(wanted); }
-    /// The photons of the map being made; nothing where none is.
+    /// Whether the map in use is that of `source`.
+    bool serves(const map_source& source) const { return built_ && of_.same(source); }
+    /// Whether the map in use is that of `source` with fewer photons.
+    bool serves_preview_of(const map_source& source) const { return built_ && of_.is_preview_of(source); }
+    /// Whether the map of `source` is being built.
+    bool is_making(const map_source& source) const { return making_ && making_of_.same(source); }
+    /// The number of photons of the map being built, if one is.
     std::optional<uint> making_photons() const
     {
         return making_ ? std::optional(making_of_.settings.map.photons) : std::nullopt;
     }
-    /// Of that map's photons, those that are traced.
+    /// The fraction of that map's photons that have been traced.
     double fraction() const { return making_ ? making_->fraction() : 0.0; }
-    /// Maps that were begun.
+    /// How many maps were started.
     std::uint64_t begun() const { return begun_; }
 
-    /// The steps to a map of `wanted`: none where it is there, the rest of them where it is being made. `use` is called
-    /// when it takes the place of the map in use, just before.
-    step_list steps_to(const map_source& wanted, std::function<void()> use)
+    /// The steps to the map of `source`: none if it is in use, the remaining ones if it is being built. `use` is called
+    /// just before the new map replaces the one in use.
+    step_list steps_to(const map_source& source, std::function<void()> use)
     {
-        if (serves(wanted))
+        if (serves(source))
             return {};
-        if (!is_making(wanted)) {
+        if (!is_making(source)) {
             making_.reset();
-            if (built_ && !of_.is_preview_of(wanted)) { // a preview's stays until the whole one is there
+            if (built_ && !of_.is_preview_of(source)) { // a preview's map stays until the new one is complete
                 use();
                 built_.reset();
             }
-            making_of_ = wanted;
+            making_of_ = source;
             making_.emplace(b_, making_of_.scene, making_of_.settings);
             ++begun_;
         }
@@ -82,7 +82,7 @@ public:
         });
         return steps;
     }
-    /// Forgets both maps.
+    /// Discards both maps.
     void clear()
     {
         making_.reset();
@@ -92,7 +92,7 @@ public:
 private:
     B& b_;
     std::optional<built_map<B>> built_;
-    map_source of_; ///< built_
+    map_source of_; ///< inputs of built_
     std::optional<map_building<B>> making_;
     map_source making_of_;
     std::uint64_t begun_ = 0;

@@ -1,4 +1,4 @@
-// What makes a pass one of several: its own random numbers, its place in the sums, and its statistics.
+// One pass of several: its random numbers, its pixels and its statistics.
 #pragma once
 
 #include <photongrid/render/film.hpp>
@@ -13,8 +13,7 @@
 
 namespace photongrid {
 
-/// The settings of pass number `pass`: random numbers of its own. Pass 0 has the seed of `s` itself, so that a picture
-/// of one pass is the same as without passes.
+/// The settings of pass number `pass`, with a seed of its own. Pass 0 has the seed of `s`.
 inline render_settings settings_of_pass(render_settings s, std::uint32_t pass)
 {
     if (pass > 0) {
@@ -30,8 +29,8 @@ inline render_settings settings_of_pass(render_settings s, std::uint32_t pass)
     return s;
 }
 
-/// A power of two near the mean radiance of a scene, the unit of a film: the power of all lights over the square of the
-/// extent of the surfaces that photons can be stored on.
+/// A power of two near the mean radiance of a scene, as the unit of a film: the power of all lights divided by the
+/// square of the extent of the diffuse surfaces.
 inline double typical_radiance(const scene& s, const scene_layout& layout)
 {
     double power = 0;
@@ -66,7 +65,7 @@ namespace detail {
         sum.device_bytes = std::max(sum.device_bytes, s.device_bytes);
     }
 
-    /// Adds what the map of a pass took.
+    /// Adds the statistics of a pass's map.
     inline void add_map(render_stats& sum, const render_stats& map)
     {
         add(sum.trace_photons, map.trace_photons);
@@ -74,7 +73,7 @@ namespace detail {
         sum.map = map.map;
     }
 
-    /// Adds a pass's searches, each a vector of pass_pixels::searches, to the statistics.
+    /// Adds a sum of pass_pixels::searches to the statistics.
     inline void add(estimate_stats& sum, const glm::dvec4& searches)
     {
         const double before = static_cast<double>(sum.points), all = std::max(before + searches.w, 1.0);
@@ -85,8 +84,8 @@ namespace detail {
     }
 } // namespace detail
 
-/// The pixels of a finished pass, read back, and its numbers added to `stats`.
-/// \throws backend_error when the device fails, or reports more searches than there were.
+/// Reads the pixels of a finished pass back and adds its counts to `stats`.
+/// \throws backend_error if the device fails, or reports more searches than there were.
 template <backend B>
 pass_pixels finish_pass(B& b, const built_map<B>& built, const view_pass<B>& view, render_stats& stats)
 {
@@ -97,18 +96,18 @@ pass_pixels finish_pass(B& b, const built_map<B>& built, const view_pass<B>& vie
     for (const auto& s : p.searches)
         sum += glm::dvec4(s);
     if (!(sum.w >= 0) || !(sum.w <= searched))
-        throw backend_error(b.caps().backend + ": shade: the device says that " + std::to_string(sum.w)
-            + " points were searched for; there are " + std::to_string(searched));
+        throw backend_error(b.caps().backend + ": shade: the device returned " + std::to_string(sum.w)
+            + " as the number of searches; there are at most " + std::to_string(searched));
     detail::add(stats.estimate, sum);
     detail::add(stats.photons, count_photons(b, built.trace, built.map.photons.size()));
     stats.map = built.stats.map;
     if (built.stats.map.builder == map_builder::route)
-        stats.map.redistributed_flux = redistributed_flux(b, built.map);
+        stats.map.redistributed_power = redistributed_power(b, built.map);
     stats.peak_device_bytes = b.peak_bytes();
     return p;
 }
 
-/// Puts the picture of a film into `out`.
+/// Moves the picture of a film, and its number of invalid pixels, to `out`.
 inline void finish_picture(const film& sum, rendered& out)
 {
     auto developed = sum.picture();
@@ -116,7 +115,7 @@ inline void finish_picture(const film& sum, rendered& out)
     out.stats.invalid_pixels = developed.invalid_pixels;
 }
 
-/// Runs steps to their end; after each calls `ran` with the stage that it was of.
+/// Runs all steps, and calls `ran` with the stage's name after each.
 /// \throws render_cancelled.
 template <class Ran>
 void run(step_list steps, const render_observer& observer, const Ran& ran)

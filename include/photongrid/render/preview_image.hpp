@@ -1,4 +1,4 @@
-// Pixels of a preview, which are larger than the picture's, as an image of the picture's size.
+// Enlarges a preview, which has larger pixels, to the picture's size.
 #pragma once
 
 #include <photongrid/render/image.hpp>
@@ -13,7 +13,7 @@
 
 namespace photongrid::detail {
 
-/// NaN and infinite pixels become black and are counted.
+/// Replaces NaN and infinite pixels by black, and counts them.
 inline std::vector<glm::vec3> finite_pixels(const std::vector<glm::vec4>& pixels, float scale, std::uint64_t& invalid)
 {
     std::vector<glm::vec3> good;
@@ -26,10 +26,10 @@ inline std::vector<glm::vec3> finite_pixels(const std::vector<glm::vec4>& pixels
     return good;
 }
 
-/// Where a pixel of the picture lies between two of the preview's, along one axis.
+/// The two pixels of the preview, along one axis, between which a pixel of the picture lies.
 struct between_pixels {
     uint low, high;
-    float share; ///< of the higher one
+    float share; ///< weight of the higher one
 };
 
 inline between_pixels between(uint pixel, uint divisor, uint count)
@@ -39,8 +39,8 @@ inline between_pixels between(uint pixel, uint divisor, uint count)
     return {low, std::min(low + 1, count - 1), at - static_cast<float>(low)};
 }
 
-/// Pixels as an image of the whole size, multiplied by `scale`. Larger ones are spread out; between their middles
-/// values are interpolated as v / (1 + v) of what the exposure leaves, so that a lamp does not shine on its neighbours.
+/// Pixels as an image of the picture's size, multiplied by `scale`. Values are interpolated between the centres of
+/// larger pixels, as v / (1 + v) after exposure, so that a lamp does not brighten its neighbours.
 inline image to_image(const std::vector<glm::vec4>& pixels, const raster& r, const render_settings& s, float scale,
     std::uint64_t& invalid)
 {

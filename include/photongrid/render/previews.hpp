@@ -1,5 +1,5 @@
-// Which previews come before a picture: plain data, made by pure functions from the settings and from what work has
-// taken so far. Larger pixels, smaller k and fewer photons make a preview noisier, not darker.
+// The previews before a picture, as plain data computed from the settings and from the times measured so far. Larger
+// pixels, a smaller k and fewer photons make a preview noisier, but not darker.
 #pragma once
 
 #include <photongrid/scene/scene.hpp>
@@ -12,28 +12,28 @@
 
 namespace photongrid {
 
-/// A picture drawn before the picture.
+/// An intermediate picture with larger pixels or a smaller k.
 struct preview {
     std::uint32_t divisor = 1;   ///< side of its pixels, in the picture's pixels
-    std::uint32_t k_divisor = 1; ///< k is divided by it; 8 photons are sought at least, where k is not less
+    std::uint32_t k_divisor = 1; ///< divisor of k; at least 8 photons are sought, or k if that is less
 
     bool operator==(const preview&) const = default; ///< of every member
 };
 
-/// Which previews are wanted. The picture itself does not depend on them.
+/// Settings of previews. The picture does not depend on them.
 struct preview_settings {
-    bool wanted = true;    ///< false: nothing is shown before the picture itself
+    bool enabled = true;   ///< false: no previews
     double target_ms = 40; ///< time for the first map, and for the first preview drawn with it
 };
 
-/// How long work has taken; at first a guess between a GPU and one thread of a CPU.
+/// Measured costs; initially a guess between those of a GPU and of one CPU thread.
 struct work_costs {
-    double ms_per_photon = 2e-3;                                   ///< traced and put into the map
+    double ms_per_photon = 2e-3;                                   ///< to trace it and build the map
     double ms_per_preview_pixel = 1e-2;                            ///< of the first preview
     double ms_per_pixel = std::numeric_limits<double>::infinity(); ///< of the picture
 };
 
-/// Photons of a map for the first preview: fewer than the picture's where tracing all of them takes too long.
+/// The number of photons for the first preview: fewer than the picture's if tracing all of them takes too long.
 inline std::uint32_t preview_photons(const render_settings& s, const work_costs& costs, double target_ms)
 {
     std::uint32_t divisor = 1;
@@ -43,9 +43,9 @@ inline std::uint32_t preview_photons(const render_settings& s, const work_costs&
     return s.map.photons / divisor;
 }
 
-/// The previews that are drawn with a map of `map_photons` photons: as large pixels as the time needs, then smaller
-/// ones, then estimates from more photons. With a map of fewer photons than the picture's there is one preview.
-/// `after_early_one`: such a preview was shown already.
+/// The previews drawn with a map of `map_photons` photons: first with pixels large enough for the target time, then
+/// with smaller pixels, then with larger k. With a map of fewer photons than the picture's there is one preview.
+/// `after_early_one`: such a preview has been shown.
 inline std::vector<preview> preview_schedule(const render_settings& s, std::uint32_t map_photons, bool after_early_one,
     const work_costs& costs, double target_ms)
 {
@@ -57,7 +57,7 @@ inline std::vector<preview> preview_schedule(const render_settings& s, std::uint
     if (!early && pixels(1) * costs.ms_per_pixel <= target_ms)
         return {}; // the picture is as fast as a preview should be
     std::uint32_t divisor = 1;
-    while (std::min(s.output.width, s.output.height) / divisor >= 64 // of which something can be recognised
+    while (std::min(s.output.width, s.output.height) / divisor >= 64 // smaller previews show too little
         && pixels(divisor) * costs.ms_per_preview_pixel > target_ms)
         divisor *= 2;
     if (early)
@@ -65,12 +65,12 @@ inline std::vector<preview> preview_schedule(const render_settings& s, std::uint
     std::vector<preview> all;
     for (divisor = after_early_one ? std::max(1u, divisor / 2) : divisor; divisor > 1; divisor /= 2)
         all.push_back({divisor, 16});
-    // Where there is little light the growing search goes out to the maximum radius whatever k is, so that a preview
-    // in the picture's own pixels would take as long as the picture (3.1).
+    // In dark regions the growing search visits everything within the maximum radius, whatever k is, so a preview with
+    // the picture's pixel size would take as long as the picture (3.1).
     const bool grows = s.estimate.search == search_kind::at_least_k;
     if (all.empty() || !grows)
         all.push_back({1, 16});
-    if (s.estimate.k > 32 && !grows) // else k / 4 is not more than the 8 photons of the last one
+    if (s.estimate.k > 32 && !grows) // else k / 4 is no more than the 8 photons of the preview before
         all.push_back({1, 4});
     return all;
 }

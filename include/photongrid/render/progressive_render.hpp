@@ -1,6 +1,6 @@
-// The interactive loop (section 3.4): a picture that is started, run step by step, looked at at any time, changed and
-// cancelled. It runs the stages of render.hpp; the photon map is built again only when geometry, materials or lights
-// change (figure 1).
+// The interactive loop (section 3.4): a picture is started, advanced in steps, displayed at any time, changed and
+// cancelled. It runs the stages of render.hpp; the photon map is rebuilt only if geometry, materials or lights change
+// (figure 1).
 //
 //     progressive_render<B> drawing(device);
 //     for (drawing.start(scene, settings); !drawing.finished(); show(drawing.picture()))
@@ -45,12 +45,12 @@ public:
             || (s.pass.rays > 0
                 && (light.pixels.size() != n || light.searches.size() != n
                     || light.errors.size() != (settings_.output.aov ? n : 0))))
-            throw std::invalid_argument("progressive_render::resume: state: is of another picture than "
+            throw std::invalid_argument("progressive_render::resume: state: does not match a picture of "
                 + std::to_string(settings_.output.width) + " x " + std::to_string(settings_.output.height) + " pixels"
                 + (settings_.output.aov ? " with layers" : ""));
         film_ = std::move(s.film);
         unfinished_ = std::move(s.pass);
-        previews_.wanted = false;
+        previews_.enabled = false;
         steps_ = picture_steps();
     }
     render_state state() override
@@ -67,7 +67,7 @@ public:
     bool step(milliseconds budget = no_limit) override
     {
         if (!started_)
-            throw std::logic_error("progressive_render::step: nothing was started; call start()");
+            throw std::logic_error("progressive_render::step: no picture was started; call start()");
         const auto begin = std::chrono::steady_clock::now();
         try {
             while (!finished()) {
@@ -88,7 +88,8 @@ public:
     image picture() override
     {
         if (pictures_ == 0)
-            throw std::logic_error("progressive_render::picture: there is none yet; see pictures()");
+            throw std::logic_error(
+                "progressive_render::picture: no picture yet; call step() until pictures() is above 0");
         if (film_.passes() > 0) {
             auto developed = film_.picture();
             stats_.invalid_pixels = developed.invalid_pixels;
@@ -134,7 +135,7 @@ private:
         steps_ = picture_steps();
     }
 
-    // The order of work; each list is made when it is reached.
+    // The order of work. Each list is created when it is reached.
 
     /// A preview with few photons, the map, previews with all photons, then the passes.
     step_list picture_steps()
@@ -146,11 +147,11 @@ private:
         steps.repeat(film_.passes(), settings_.output.passes, [this](uint) { return pass_steps(next_pass()); });
         return steps;
     }
-    /// Where there is no map yet, and tracing all photons would take long: a preview from fewer.
+    /// If there is no map yet and tracing all photons would take long: a preview with fewer photons.
     step_list early_preview_steps()
     {
         auto fewer = pass(next_pass());
-        if (!previews_.wanted || maps_.serves(fewer))
+        if (!previews_.enabled || maps_.serves(fewer))
             return {};
         step_list steps;
         if (!maps_.serves_preview_of(fewer)) {
@@ -168,7 +169,7 @@ private:
     step_list preview_steps()
     {
         step_list steps;
-        if (!previews_.wanted)
+        if (!previews_.enabled)
             return steps;
         const uint photons = maps_.of().settings.map.photons;
         for (const auto& p : preview_schedule(settings_, photons, early_shown_, costs_, previews_.target_ms)) {
@@ -186,7 +187,7 @@ private:
         return steps;
     }
 
-    /// The pass to draw next: one that was begun, or that the map serves, before those that need another map.
+    /// The pass to draw next: first one that was begun, then one for the map in use, then one that needs another map.
     uint next_pass() const
     {
         if (unfinished_.rays > 0)
@@ -199,14 +200,14 @@ private:
             ++first;
         return first;
     }
-    /// What pass `number` needs a map of.
+    /// The inputs of the map for pass `number`.
     map_source pass(uint number) const { return {scene_, settings_of_pass(settings_, number), number}; }
 
-    step_list steps_to_map(const map_source& wanted)
+    step_list steps_to_map(const map_source& source)
     {
-        if (maps_.serves(wanted))
+        if (maps_.serves(source))
             return {};
-        auto steps = maps_.steps_to(wanted, [this] { view_.reset(); });
+        auto steps = maps_.steps_to(source, [this] { view_.reset(); });
         steps.expand([this] { return use_map(); });
         return steps;
     }
@@ -232,7 +233,7 @@ private:
         ms_before_ = ms_of_views();
         samples_shown_ = grown_shown_ = 0;
         view_.emplace(
-            b_, maps_.map(), scene_.camera, with, view_options{p, step_size::small, previews_.wanted}, kept_, stats_);
+            b_, maps_.map(), scene_.camera, with, view_options{p, step_size::small, previews_.enabled}, kept_, stats_);
         if (!p && film_.size() == 0)
             film_ = film(settings_.output.width, settings_.output.height,
                 typical_radiance(scene_, maps_.map().scene.layout), settings_.output.aov);
@@ -273,7 +274,7 @@ private:
         shown_scale_ = scale;
         ++pictures_;
     }
-    /// Within the first pass there is a better picture after each sample, and while a growing search runs (3.4).
+    /// During the first pass the picture improves after each sample, and while a growing search runs (3.4).
     void note_new_picture()
     {
         if (!view_ || view_->is_preview() || film_.passes() > 0)
@@ -292,20 +293,20 @@ private:
     scene scene_;
     preview_settings previews_;
     work_costs costs_;
-    step_list steps_; ///< to the picture
+    step_list steps_; ///< those of the whole picture
 
     map_keeper<B> maps_;
 
     // Pictures.
-    unfinished_pass unfinished_; ///< to go on from
+    unfinished_pass unfinished_; ///< to resume from
     std::optional<view_pass<B>> view_;
     uint pass_ = 0; ///< of view_
     kept_samples<B> kept_;
-    std::optional<canvas<B>> shown_; ///< before the first pass is finished
+    std::optional<canvas<B>> shown_; ///< until the first pass is finished
     float shown_scale_ = 1;
-    bool early_shown_ = false;                 ///< a preview from fewer photons was shown
+    bool early_shown_ = false;                 ///< a preview with fewer photons was shown
     uint samples_shown_ = 0, grown_shown_ = 0; ///< of view_
-    double ms_before_ = 0;                     ///< spent on views before view_
+    double ms_before_ = 0;                     ///< time spent on views before view_
 };
 
 } // namespace photongrid

@@ -1,10 +1,10 @@
-// Figure 1 of the paper, executed: a picture is a sum of passes, and a pass is
+// Figure 1 of the paper: a picture is a sum of passes, and a pass is
 //
 //     scene -> trace_photons -> build_map ----------------------------+
 //     camera -> trace_eye -> direct_light -> irradiance (2.3) -> shade -> film
 //
-// Each stage is a step that can be interrupted (step_list.hpp); progressive_render runs the same ones for those who
-// watch (3.4).
+// Stages are steps that can be interrupted (step_list.hpp). progressive_render runs the same steps for interactive use
+// (3.4).
 #pragma once
 
 #include <photongrid/render/film.hpp>
@@ -17,8 +17,8 @@
 
 namespace photongrid {
 
-/// The left of figure 1, needed again only when geometry, materials or lights change: photons from the lights, sorted
-/// or routed into a grid. `m` must outlive the steps.
+/// The left side of figure 1, which runs again only if geometry, materials or lights change: photons are traced from
+/// the lights and sorted or routed into a grid. `m` must outlive the steps.
 template <backend B>
 step_list map_steps(map_building<B>& m)
 {
@@ -28,8 +28,8 @@ step_list map_steps(map_building<B>& m)
     return steps;
 }
 
-/// The right of figure 1, for every view: where each eye ray ends, the light there, and its pixel. `v` must outlive
-/// the steps.
+/// The right side of figure 1, which runs for every view: eye rays, direct light and irradiance where they end, and
+/// pixels. `v` must outlive the steps.
 template <backend B>
 step_list view_steps(view_pass<B>& v)
 {
@@ -45,8 +45,8 @@ step_list view_steps(view_pass<B>& v)
     return steps;
 }
 
-/// Traces photons and builds the map for a pass, to the end.
-/// \throws std::invalid_argument for a scene or settings that check() refuses, std::runtime_error when the lights store
+/// Traces photons and builds the map for a pass.
+/// \throws std::invalid_argument for a scene or settings that check() rejects, std::runtime_error if the lights store
 ///         too few photons, backend_error, render_cancelled.
 /// \snippet snippets.cpp build_map
 template <backend B>
@@ -89,9 +89,9 @@ pass_pixels draw_pass(B& b, const built_map<B>& built, const camera& view, const
     return finish_pass(b, built, pass, stats);
 }
 
-/// Draws a view of a map that is there already, one pass: no photon is traced. Pixels that are NaN or infinite are set
-/// to 0 and counted in stats.invalid_pixels. The statistics have the map's share too.
-/// \throws std::invalid_argument for a camera or settings that check() refuses, backend_error, render_cancelled.
+/// Draws one pass over a view, from an existing map: no photons are traced. Pixels that are NaN or infinite are set to
+/// 0 and counted in stats.invalid_pixels. The statistics include those of the map.
+/// \throws std::invalid_argument for a camera or settings that check() rejects, backend_error, render_cancelled.
 /// \snippet snippets.cpp draw
 template <backend B>
 [[nodiscard]] rendered draw(B& b, const built_map<B>& built, const camera& view, const render_settings& settings,
@@ -104,8 +104,8 @@ template <backend B>
     return out;
 }
 
-/// A picture seen by the scene's own camera: settings.output.passes passes, each with photons, eye rays and shadow rays
-/// of its own.
+/// Draws a picture with the scene's own camera: output.passes passes, each with its own photons, eye rays and shadow
+/// rays.
 /// \throws what build_map and draw throw.
 /// \snippet snippets.cpp render
 template <backend B>

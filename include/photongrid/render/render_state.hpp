@@ -1,4 +1,4 @@
-// Where a picture that comes about step by step is, and what is needed to go on with it. Plain data.
+// Progress and resume state of progressive rendering, as plain data.
 #pragma once
 
 #include <photongrid/render/film.hpp>
@@ -10,29 +10,29 @@
 
 namespace photongrid {
 
-/// What a progressive_render does now.
+/// The progress of a progressive_render.
 struct render_progress {
     std::string_view stage;       ///< "trace_photons", "build_map", "preview", "radiance_estimate", "finished"
     double fraction = 0;          ///< of the stage, 0 to 1
-    std::uint64_t unfinished = 0; ///< pixels whose estimates are not done
-    std::uint32_t divisor = 1;    ///< side of the pixels being drawn, in the picture's
-    std::uint32_t photons = 0;    ///< of the map in use or being made
-    std::uint32_t passes = 0;     ///< that are in the picture
+    std::uint64_t unfinished = 0; ///< pixels whose estimates are not finished
+    std::uint32_t divisor = 1;    ///< side of the pixels being drawn, in pixels of the picture
+    std::uint32_t photons = 0;    ///< of the map in use or being built
+    std::uint32_t passes = 0;     ///< passes in the picture
 };
 
-/// A pass that is not finished: the light of its first rays.
+/// An unfinished pass: the light of its first rays.
 struct unfinished_pass {
     std::uint32_t number = 0; ///< which pass
-    std::uint32_t rays = 0;   ///< eye rays per pixel, each way through glass apart, that `light` has; 0: nothing
+    std::uint32_t rays = 0;   ///< eye rays per pixel in `light`, counting each combination of Fresnel branches; 0: none
     pass_pixels light;        ///< so far
 };
 
-/// What a picture that is not finished has so far; progressive_render::resume goes on from there.
+/// The state of an unfinished picture, from which progressive_render::resume continues.
 struct render_state {
     photongrid::film film;
     unfinished_pass pass;
 
-    /// Nothing is lost by forgetting it.
+    /// Whether there is nothing to resume.
     bool empty() const { return film.passes() == 0 && pass.rays == 0; }
 };
 

@@ -1,4 +1,4 @@
-// What a render did: every photon and every millisecond accounted for. The program writes it as JSON (--stats).
+// Statistics of a render: counts of photons, and times. The program writes them as JSON (--stats).
 #pragma once
 
 #include <photongrid/render/image.hpp>
@@ -17,42 +17,42 @@ struct map_stats {
     map_builder builder = map_builder::sort; ///< sorted or routed (2.2)
     std::uint64_t cells = 0;                 ///< of the whole grid
     glm::uvec3 resolution{0};                ///< cells along each axis
-    std::uint64_t overfull_cells = 0;        ///< routed cells with more photons than slots
-    double redistributed_flux = 0;           ///< W, rgb together: flux of photons not kept, given to those kept
-    std::uint64_t sort_steps = 0;            ///< not counted: 0; stage_stats::passes has the passes of the sort
-    std::uint64_t left_out = 0; ///< photons stored, but of a part of the light that was not asked for (light_part)
+    std::uint64_t overflowing_cells = 0;     ///< routed cells that received more photons than they have slots
+    double redistributed_power = 0;          ///< W, rgb together: power of photons not kept, given to those kept
+    std::uint64_t sort_steps = 0;            ///< always 0; stage_stats::passes includes the passes of the sort
+    std::uint64_t left_out = 0;              ///< photons stored that belong to another part of the light (light_part)
 };
 
 /// One of the four stages of the paper's Table 1.
 struct stage_stats {
-    double ms = 0;                  ///< without compiling kernels
-    double compile_ms = 0;          ///< compiling those that the stage needed first
-    std::uint64_t passes = 0;       ///< run on the device
-    std::uint64_t device_bytes = 0; ///< largest amount held in buffers during the stage
+    double ms = 0;                  ///< without the compilation of kernels
+    double compile_ms = 0;          ///< compilation of kernels that the stage used first
+    std::uint64_t passes = 0;       ///< passes on the device
+    std::uint64_t device_bytes = 0; ///< most bytes in buffers during the stage
 };
 
-/// The searches behind a picture, all eye rays together.
+/// The searches of a picture, over all eye rays.
 struct estimate_stats {
     double mean_count = 0;    ///< photons used by an estimate
     double mean_radius = 0;   ///< m
-    double mean_visited = 0;  ///< photons looked at
-    std::uint64_t points = 0; ///< that photons were sought for
+    double mean_visited = 0;  ///< photons visited
+    std::uint64_t points = 0; ///< number of searches
 };
 
-/// What build_map and draw did: the numbers of `--stats`.
+/// Statistics of build_map and draw, which `--stats` writes.
 struct render_stats {
-    photon_stats photons;                ///< of the map, whichever view is drawn
-    map_stats map;                       ///< what build_map made
+    photon_stats photons;                ///< of the map, independent of the view
+    map_stats map;                       ///< the map
     stage_stats trace_photons;           ///< 2.1
     stage_stats build_map;               ///< 2.2
     stage_stats trace_rays;              ///< eye rays and direct light (2.4)
     stage_stats radiance_estimate;       ///< 2.3
-    estimate_stats estimate;             ///< how many photons it took, and how far away
-    std::uint64_t invalid_pixels = 0;    ///< NaN or infinite before they were set to 0
-    std::uint64_t peak_device_bytes = 0; ///< most that buffers held at once since the backend was made
+    estimate_stats estimate;             ///< the searches
+    std::uint64_t invalid_pixels = 0;    ///< pixels that were NaN or infinite before they were set to 0
+    std::uint64_t peak_device_bytes = 0; ///< most bytes in buffers since the backend was created
 };
 
-/// A picture, and what it took.
+/// A picture and its statistics.
 struct rendered {
     image picture;
     render_stats stats;

@@ -1,6 +1,6 @@
-// A picture that is started, run step by step, looked at at any time, changed and cancelled (section 3.4), whatever the
-// backend. progressive_render<B> is one; make_renderer (backends/any/any.hpp) makes one on a backend that is chosen at
-// run time.
+// The interface of progressive rendering, independent of the backend: a picture is started, advanced in steps,
+// displayed at any time, changed and cancelled (section 3.4). progressive_render<B> implements it; make_renderer
+// (backends/any/any.hpp) creates one on a backend chosen at run time.
 #pragma once
 
 #include <photongrid/backend/backend.hpp>
@@ -18,11 +18,11 @@
 
 namespace photongrid {
 
-/// One thread starts, steps and looks; any may cancel.
+/// One thread at a time may use it; any thread may call cancel().
 class renderer {
 public:
-    using milliseconds = std::chrono::duration<double, std::milli>; ///< of a step
-    /// Of a step that ends with the picture.
+    using milliseconds = std::chrono::duration<double, std::milli>; ///< the budget of a step
+    /// The budget of a step that ends with the picture.
     static constexpr milliseconds no_limit{std::numeric_limits<double>::infinity()};
 
     renderer() = default;
@@ -30,42 +30,41 @@ public:
     renderer& operator=(const renderer&) = delete;
     virtual ~renderer() = default;
 
-    /// From now on draws `s`, seen by its camera. Work in flight is given up, but for a map that serves the new picture
-    /// too (same_map). Cheap: all work is step's.
-    /// \throws std::invalid_argument for a scene or settings that check() refuses; what was drawn before is then still
-    ///         there.
+    /// Starts a picture of `s` with its camera. Work on the picture before is discarded, except for a map that the new
+    /// picture can use (same_map). It returns at once; step() does the work.
+    /// \throws std::invalid_argument for a scene or settings that check() rejects; the picture before is then kept.
     /// \snippet snippets.cpp progressive_render
     virtual void start(const scene& s, const render_settings& settings, const preview_settings& previews = {}) = 0;
-    /// Goes on from a state() of the same scene, settings and device, without previews: the picture ends with the same
-    /// bytes. To be called after start() and before step().
-    /// \throws std::invalid_argument for a state of another size; step() for one with more rays than there are.
+    /// Continues from a state() of the same scene, settings and device, without previews. The finished picture has the
+    /// same bytes. Call it after start() and before step().
+    /// \throws std::invalid_argument for a state of another size. step() throws it for a state with too many rays.
     virtual void resume(render_state s) = 0;
-    /// What the picture has so far, for resume().
+    /// The state so far, for resume().
     virtual render_state state() = 0;
 
-    /// Works for about `budget`: whole steps, at least one, until time is up, the picture is finished, or another
-    /// thread cancels. Returns whether the picture is finished.
-    /// \throws std::logic_error before start(), std::runtime_error when the lights store too few photons,
-    ///         backend_error. The next step begins the picture anew.
+    /// Works for about `budget`: at least one step, until the time is up, the picture is finished, or another thread
+    /// cancels. Returns whether the picture is finished.
+    /// \throws std::logic_error before start(), std::runtime_error if the lights store too few photons, backend_error.
+    ///         After an exception the next step starts the picture again.
     virtual bool step(milliseconds budget = no_limit) = 0;
-    /// Makes the step that runs in another thread end after the pass of the device in flight, whatever its budget. The
-    /// next step goes on; start() begins anew.
+    /// Makes a step that runs in another thread return after the current device pass. The next step continues; start()
+    /// starts a new picture.
     void cancel() { stop_asked_ = true; }
 
-    /// True when picture() is the picture.
+    /// Whether picture() is the finished picture.
     bool finished() const { return started_ && film_.passes() == settings_.output.passes; }
-    /// How many pictures there have been since start(), each better than the last; 0: picture() has nothing to show.
+    /// The number of pictures since start(), each better than the one before; 0: there is none yet.
     std::uint64_t pictures() const { return pictures_; }
-    /// The best picture so far, in the whole size: the mean of the finished passes; before there is one, the mean of
-    /// the first pass's samples, a running estimate (3.4), or the last preview. NaN and infinite pixels are 0.
-    /// \throws std::logic_error when there is none yet, backend_error.
+    /// The best picture so far, in full size: the mean of the finished passes or, before the first is finished, the
+    /// mean of its samples, a running estimate (3.4), or the last preview. NaN and infinite pixels are 0.
+    /// \throws std::logic_error if there is none yet, backend_error.
     virtual image picture() = 0;
 
-    /// Where it is.
+    /// The progress.
     virtual render_progress progress() const = 0;
-    /// Of the maps and passes so far; whole when finished.
+    /// Statistics of the maps and passes so far; complete when finished.
     const render_stats& stats() const { return stats_; }
-    /// Maps that were begun since this object was made.
+    /// How many maps were started since this object was created.
     virtual std::uint64_t maps() const = 0;
 
     // Of the backend.
@@ -81,13 +80,13 @@ protected:
     std::atomic<bool> stop_asked_ = false;
 };
 
-/// The whole picture, and what it took. The observer's `intermediate` is not called.
+/// Renders a whole picture. It does not call the observer's `intermediate`.
 /// \throws what start() and step() throw, render_cancelled.
 [[nodiscard]] inline rendered render(
     renderer& device, const scene& s, const render_settings& settings, const render_observer& observer = {})
 {
     const bool watched = observer.progress || observer.cancelled;
-    device.start(s, settings, {.wanted = false});
+    device.start(s, settings, {.enabled = false});
     while (!device.step(watched ? renderer::milliseconds(0) : renderer::no_limit)) {
         if (observer.cancelled && observer.cancelled())
             throw render_cancelled();

@@ -1,5 +1,5 @@
-// A scene's photon map (figure 1, left): photons are traced and put into a grid. Needed again only when geometry,
-// materials or lights change, or a setting that same_map() names.
+// Builds a scene's photon map (figure 1, left): traces photons and puts them into a grid. It runs again only if
+// geometry, materials, lights or a setting that same_map() compares changes.
 #pragma once
 
 #include <photongrid/map/build_map.hpp>
@@ -13,38 +13,38 @@
 
 namespace photongrid {
 
-/// What build_map leaves for draw: the scene on the device and its photon map.
+/// The result of build_map and the input of draw: the scene on the device and its photon map.
 template <backend B>
 struct built_map {
     device_scene<B> scene;   ///< recentred
     map_buffers<B> map;      ///< in the coordinates of `scene`
-    traced_photons<B> trace; ///< its photons have moved to `map`
-    render_stats stats;      ///< of making it: trace_photons, build_map and map
+    traced_photons<B> trace; ///< without the photons, which are in `map`
+    render_stats stats;      ///< trace_photons, build_map and map
 };
 
-/// The parts of the light (map_buffers.hpp) that a picture of `only` takes from its map.
+/// The parts of the light (map_buffers.hpp) that a picture of `only` needs in its map.
 constexpr uint parts_of(light_part only)
 {
     return only == light_part::caustic ? caustic_part : only == light_part::indirect ? other_part : every_part;
 }
 
-/// True where a photon map of the scene `a` with settings `as` serves the scene `b` with `bs`: same shapes, materials
-/// and lights, and the same photons in the same grid. Cameras, names and the other stages' settings do not matter.
+/// Whether the photon map of scene `a` with settings `as` can be used for scene `b` with `bs`: same shapes, materials
+/// and lights, and the same photons in the same grid. Cameras, names and the settings of other stages do not matter.
 inline bool same_map(const scene& a, const render_settings& as, const scene& b, const render_settings& bs)
 {
     const bool fitted = as.map.grid == glm::uvec3(0);
     return same_light_paths(a, b) && as.seed == bs.seed && as.map.in_use() == bs.map.in_use()
-        && (!fitted || as.estimate.k == bs.estimate.k) // fitting_grid looks at it
+        && (!fitted || as.estimate.k == bs.estimate.k) // fitting_grid depends on k
         && (as.estimate.leaks.needs_normals() || !bs.estimate.leaks.needs_normals())
         && parts_of(as.output.only) == parts_of(bs.output.only);
 }
 
-/// A photon map that comes about batch by batch, so that it can be given up in between.
+/// Builds a photon map batch by batch, so that it can be interrupted.
 template <backend B>
 class map_building {
 public:
-    /// Uploads the scene; traces nothing yet.
-    /// \throws std::invalid_argument for a scene or settings that check() refuses, backend_error.
+    /// Uploads the scene. It traces nothing yet.
+    /// \throws std::invalid_argument for a scene or settings that check() rejects, backend_error.
     map_building(B& b, const scene& s, const render_settings& settings) : b_(b), settings_(settings)
     {
         check(settings);
@@ -57,7 +57,7 @@ public:
     map_building& operator=(const map_building&) = delete;
 
     /// Traces one more batch of photon paths; returns whether all photons are stored (2.1).
-    /// \throws std::runtime_error when the lights store too few photons, backend_error when the device refuses.
+    /// \throws std::runtime_error if the lights store too few photons, backend_error.
     bool trace_photons()
     {
         if (!tracing_)
@@ -65,8 +65,8 @@ public:
         detail::time_stage(b_, built_.stats.trace_photons, [&] { tracing_->advance(); });
         return tracing_->finished();
     }
-    /// Sorts or routes them (2.2), in one step; returns true.
-    /// \throws backend_error when the device refuses.
+    /// Sorts or routes the photons (2.2) in one step. Returns true.
+    /// \throws backend_error.
     bool build_map()
     {
         if (tracing_) {
@@ -77,12 +77,12 @@ public:
         return true;
     }
 
-    /// True when take() may be called.
+    /// Whether take() may be called.
     bool finished() const { return !tracing_; }
-    /// Of the photons asked for, those that are traced.
+    /// The fraction of the photons that have been traced.
     double fraction() const { return tracing_ ? tracing_->fraction() : 1.0; }
 
-    /// The map, once finished.
+    /// The finished map.
     built_map<B> take() { return std::move(built_); }
 
 private:
@@ -91,7 +91,7 @@ private:
         photons<B> p = std::move(built_.trace.photons);
         const auto& layout = built_.scene.layout;
         const grid g = settings_.map.grid == glm::uvec3(0)
-            ? fitting_grid(b_, p, settings_.estimate.k, b_.caps().cells_a_radius)
+            ? fitting_grid(b_, p, settings_.estimate.k, b_.caps().cells_per_radius)
             : make_grid(layout.low, layout.high, settings_.map.grid);
         const uint parts = parts_of(settings_.output.only);
         built_.map = settings_.map.builder == map_builder::sort
@@ -101,7 +101,7 @@ private:
         made.builder = settings_.map.builder;
         made.cells = cell_count(g);
         made.resolution = glm::uvec3(g.resolution);
-        made.overfull_cells = built_.map.overfull_cells;
+        made.overflowing_cells = built_.map.overflowing_cells;
         made.left_out = built_.map.left_out;
     }
 

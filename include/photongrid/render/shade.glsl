@@ -1,14 +1,14 @@
-// The light that an eye ray brings home (2.4): emission where it met a light, else direct light and the photon map's
-// irradiance, reflected by a Lambertian surface: radiance = reflectance / pi x irradiance.
+// Adds the radiance along an eye ray to its pixel (2.4): emission if it hit a light; otherwise direct light and the
+// photon map's irradiance, reflected by a Lambertian surface: radiance = reflectance / pi x irradiance.
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
-    float share; // 1 / eye rays a pixel
+    float share; // 1 / eye rays per pixel
 };
 PARAMS(Params)
 INPUT(0, vec4, scene)
 INPUT(1, vec4, points)
-INPUT(2, vec4, weights)
+INPUT(2, vec4, throughputs)
 INPUT(3, vec4, surfaces)
 INPUT(4, vec4, emissions)
 INPUT(5, vec4, direct)    // irradiance, W/m^2
@@ -23,7 +23,7 @@ void kernel(uint i)
 {
     vec4 light = emissions(i);
     if (points(i).w > 0.0f) {
-        vec4 w = weights(i);
+        vec4 w = throughputs(i);
         vec3 colour = material_of(uint(surfaces(i).w)).reflectance;
         vec4 d = direct(i);
         vec4 e = indirect(i);

@@ -1,4 +1,4 @@
-// How long a stage of the paper's Table 1 takes, on the device.
+// Measures the stages of the paper's Table 1 on the device.
 #pragma once
 
 #include <photongrid/backend/backend.hpp>
@@ -11,7 +11,7 @@
 
 namespace photongrid::detail {
 
-/// Measures a stage of the paper's Table 1; waits for the device at both ends. Stages add up.
+/// Adds a stage's time and passes to its statistics. It waits for the device at the beginning and the end.
 template <backend B>
 class stage_clock {
 public:
@@ -23,7 +23,7 @@ public:
     }
     stage_clock(const stage_clock&) = delete;
     stage_clock& operator=(const stage_clock&) = delete;
-    /// Ends the stage, with its buffers still held.
+    /// Ends the stage. Call it while the stage's buffers still exist.
     void stop()
     {
         b_.finish();
@@ -36,7 +36,7 @@ public:
     }
 
 private:
-    /// On all kernels so far.
+    /// The cost of all kernels so far.
     kernel_cost spent() const
     {
         kernel_cost all;

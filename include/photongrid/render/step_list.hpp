@@ -1,5 +1,5 @@
-// Work that can stop between any two of its steps and go on later: a list of steps, some of which make further lists
-// when they are reached.
+// Work that can be interrupted between steps: a list of steps, some of which create further lists when they are
+// reached.
 #pragma once
 
 #include <cstdint>
@@ -13,20 +13,20 @@
 
 namespace photongrid {
 
-/// Steps in the order in which they were added. A step does a bounded amount of work each time it is run, and is run
-/// until it returns true.
+/// Steps in the order in which they were added. A step does a bounded amount of work per call, and is called until it
+/// returns true.
 class step_list {
 public:
     using step = std::function<bool()>;
 
-    /// Adds a step; `stage` names it for those who watch.
+    /// Adds a step. `stage` is its name for observers.
     void then(std::string_view stage, step run) { entries_.push_back({stage, std::move(run), {}, 0, 0}); }
-    /// Adds the lists that `body` makes of first, first + 1, ..., past - 1. Each is made when it is reached.
+    /// Adds the lists that `body` returns for first, first + 1, ..., past - 1. Each is created when it is reached.
     void repeat(std::uint32_t first, std::uint32_t past, std::function<step_list(std::uint32_t)> body)
     {
         entries_.push_back({{}, {}, std::move(body), first, past});
     }
-    /// Adds the list that `body` makes when it is reached.
+    /// Adds the list that `body` returns. It is created when it is reached.
     void expand(std::function<step_list()> body)
     {
         repeat(0, 1, [body = std::move(body)](std::uint32_t) { return body(); });
@@ -34,7 +34,7 @@ public:
 
     /// Whether every step is done.
     bool finished() const { return at_ == entries_.size(); }
-    /// Of the step that comes next; empty when all are done, or nothing was run yet.
+    /// The stage of the next step; empty if all are done or none was run yet.
     std::string_view stage() const
     {
         if (finished())
@@ -60,10 +60,10 @@ private:
         std::string_view stage;
         step run;
         std::function<step_list(std::uint32_t)> body;
-        std::uint32_t next, past; ///< of body's lists
+        std::uint32_t next, past; ///< arguments of body
     };
 
-    /// Goes on to the next step that does something, so that finished() is true as soon as the last one is done.
+    /// Moves on to the next step with work to do, so that finished() is true as soon as the last step is done.
     void settle()
     {
         while (!finished()) {
@@ -85,7 +85,7 @@ private:
 
     std::vector<entry> entries_;
     std::size_t at_ = 0;
-    std::unique_ptr<step_list> inner_; ///< the list that is being run of entries_[at_]
+    std::unique_ptr<step_list> inner_; ///< the current list of entries_[at_]
 };
 
 } // namespace photongrid

@@ -1,5 +1,5 @@
-// The stages by which one pass turns a photon map into pixels (sections 2.4 and 2.3; figure 1, right), and what they
-// hand to each other. render.hpp runs them in order.
+// The stages of a pass over the pixels of a view, from a photon map (sections 2.4 and 2.3; figure 1, right). render.hpp
+// runs them in order.
 #pragma once
 
 #include <photongrid/backend/zero_vectors.kernel.hpp>
@@ -18,21 +18,21 @@
 
 namespace photongrid {
 
-/// How much work a stage does before it can be interrupted.
+/// How much work a stage does per step, between possible interruptions.
 enum class step_size {
-    largest, ///< as much as the device takes at once: nobody looks before the end
-    small,   ///< some ms on a CPU: somebody watches, or may give up
+    largest, ///< as much as the device can do at once: no interruptions needed
+    small,   ///< some ms on a CPU: the picture is displayed or may be cancelled
 };
 
-/// How a view is drawn. The picture's bytes do not depend on it.
+/// How a view is drawn. The bytes of the picture do not depend on it.
 struct view_options {
-    std::optional<photongrid::preview> preview{}; ///< draw this; nothing: the picture itself
-    step_size size = step_size::largest;          ///< of the steps
-    bool watched = false;                         ///< running estimates are wanted, where the search has them (3.4)
+    std::optional<photongrid::preview> preview{}; ///< the preview to draw; empty: draw the picture
+    step_size size = step_size::largest;          ///< size of the steps
+    bool watched = false;                         ///< provide running estimates, if the search can (3.4)
 };
 
 namespace detail {
-    /// What to ask the photon map for a picture of `s`.
+    /// The search in the photon map for a picture with settings `s`.
     inline knn_settings search_for(const render_settings& s, float min_radius)
     {
         knn_settings k;
@@ -48,38 +48,39 @@ namespace detail {
     }
 } // namespace detail
 
-/// Pixels that a pass is adding light to. All are of `raster`, row by row.
+/// The pixels to which a pass adds light, row by row as in `raster`.
 template <backend B>
 struct canvas {
     detail::raster raster;
-    uint rays = 0;                    ///< eye rays per pixel that were added, each way through glass apart
-    buffer_of<B, glm::vec4> pixels;   ///< rgb: radiance, W/(m^2 sr)
+    uint rays = 0;                  ///< eye rays per pixel added so far, counting each combination of Fresnel branches
+    buffer_of<B, glm::vec4> pixels; ///< rgb: radiance, W/(m^2 sr)
     buffer_of<B, glm::vec4> searches; ///< sums: photons used, radius, photons visited, searches
-    buffer_of<B, glm::vec4> errors;   ///< x: sum of relative errors; empty unless wanted
+    buffer_of<B, glm::vec4> errors;   ///< x: sum of relative errors; empty without layers
 };
 
-/// One eye ray per pixel: where they ended, and the direct light there.
+/// One eye ray per pixel: its hit, and the direct light there.
 template <backend B>
 struct eye_samples {
     detail::eye_hits<B> hits;
     buffer_of<B, glm::vec4> direct; ///< irradiance, W/m^2
 };
 
-/// The first sample's rays, for the next pass that looks through the same pixels: one for each way through glass.
+/// The eye rays of the first sample, one set for each combination of Fresnel branches, which the next pass over the
+/// same pixels can use again.
 template <backend B>
 using kept_samples = std::vector<std::optional<eye_samples<B>>>;
 
-/// One pass over the pixels of a view: the picture's, or a preview's. Each stage does a part of its work for eye ray
-/// `ray` (sample x ways through glass + way) and returns whether it is done with it.
+/// One pass over the pixels of the picture or of a preview. Each stage does part of its work for eye ray `ray` (sample
+/// x branches + branch) and returns whether it has finished that ray.
 template <backend B>
 class view_pass {
 public:
-    /// Draws nothing yet. `built`, `kept` and `stats`, where times go, must outlive it.
-    /// \throws std::invalid_argument for a camera or settings that check() refuses, backend_error.
+    /// It draws nothing yet. It adds times to `stats`. `built`, `kept` and `stats` must outlive it.
+    /// \throws std::invalid_argument for a camera or settings that check() rejects, backend_error.
     view_pass(B& b, const built_map<B>& built, const camera& view, const render_settings& settings,
         const view_options& options, kept_samples<B>& kept, render_stats& stats)
         : b_(b), built_(built), view_(view), settings_(settings), options_(options), kept_(kept), stats_(stats),
-          ways_(1u << detail::branchings_of(built.scene.layout))
+          branches_(1u << detail::splits_of(built.scene.layout))
     {
         check(settings);
         check(view);
@@ -90,7 +91,7 @@ public:
             const std::size_t layers = !is_preview() && settings_.output.aov ? r.size() : 0;
             canvas_ = {r, 0, dark(r.size()), dark(r.size()), dark(layers)};
         });
-        kept_.resize(ways_);
+        kept_.resize(branches_);
         for (auto& k : kept_)
             if (k && k->direct.size() != r.size())
                 k.reset();
@@ -98,13 +99,13 @@ public:
     view_pass(const view_pass&) = delete;
     view_pass& operator=(const view_pass&) = delete;
 
-    /// Eye rays per pixel, each way through glass apart: what `ray` goes up to. A preview takes one sample.
-    uint rays() const { return (is_preview() ? 1u : settings_.view.spp) * ways_; }
+    /// The number of eye rays per pixel, counting each combination of Fresnel branches. A preview has one sample.
+    uint rays() const { return (is_preview() ? 1u : settings_.view.spp) * branches_; }
 
-    /// Camera rays through mirrors and glass to the surfaces where they end (2.4).
+    /// Traces eye rays through mirrors and glass to their ends (2.4).
     bool trace_eye(uint ray)
     {
-        if (ray < ways_ && kept_[ray]) {
+        if (ray < branches_ && kept_[ray]) {
             samples_ = std::move(kept_[ray]);
             kept_[ray].reset();
             lit_ = true;
@@ -121,14 +122,14 @@ public:
         });
     }
 
-    /// Shadow rays from there to the lights (2.4).
+    /// Traces shadow rays from there to the lights (2.4).
     bool direct_light(uint ray)
     {
         if (lit_)
             return true;
-        const bool wanted = settings_.output.only == light_part::all || settings_.output.only == light_part::direct;
+        const bool drawn = settings_.output.only == light_part::all || settings_.output.only == light_part::direct;
         return over_pixels(stats_.trace_rays, [&](launch pixels) {
-            if (wanted) {
+            if (drawn) {
                 detail::direct_light(b_, built_.scene, samples_->hits, light_settings(), ray, pixels, samples_->direct);
             } else {
                 b_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->direct));
@@ -137,7 +138,7 @@ public:
         });
     }
 
-    /// The photon map's irradiance there (2.3).
+    /// Estimates the irradiance there from the photon map (2.3).
     bool irradiance(uint)
     {
         progress did;
@@ -149,7 +150,7 @@ public:
             }
             const uint passes = options_.size == step_size::largest ? nowhere : grows() ? std::max(1u, grown_) : 8u;
             did = search_->advance(passes);
-            if (grows()) // worth a look after 1, 2, 4, 8, ... passes
+            if (grows()) // display it after 1, 2, 4, 8, ... passes
                 grown_ += passes;
         });
         if (did.finished)
@@ -159,7 +160,7 @@ public:
         return did.finished;
     }
 
-    /// Radiance from both kinds of light, added to the pixels (2.4).
+    /// Adds the radiance of direct and indirect light to the pixels (2.4).
     bool shade(uint ray)
     {
         detail::time_stage(b_, stats_.radiance_estimate, [&] {
@@ -171,32 +172,32 @@ public:
         });
         search_.reset();
         if (is_preview())
-            kept_[ray] = std::move(samples_); // the next pass may look through the same pixels
+            kept_[ray] = std::move(samples_); // the next pass may have the same pixels
         samples_.reset();
         ++canvas_.rays;
         return true;
     }
 
-    /// The side of its pixels, in the picture's.
+    /// The side of the pixels, in pixels of the picture.
     uint divisor() const { return options_.preview ? options_.preview->divisor : 1u; }
     bool is_preview() const { return options_.preview.has_value(); }
-    /// Approximate share of its work that is done, 0 to 1.
+    /// Approximate fraction of the work that is done, 0 to 1.
     double fraction() const
     {
         const double pixels = static_cast<double>(canvas_.raster.size());
         const double of_this_ray = search_ ? 1.0 - static_cast<double>(unfinished_) / pixels : 0.0;
         return (canvas_.rays + of_this_ray) / rays();
     }
-    /// Pixels of the eye ray in flight whose estimates are not done.
+    /// The number of pixels whose estimates for the current eye ray are not finished.
     std::uint64_t unfinished() const { return unfinished_; }
-    /// Samples per pixel that are whole: all their ways through glass were added.
-    uint samples() const { return canvas_.rays / ways_; }
-    /// Whether no sample is begun and not whole.
-    bool has_whole_samples() const { return canvas_.rays % ways_ == 0; }
+    /// The number of complete samples per pixel: all their Fresnel branches were added.
+    uint samples() const { return canvas_.rays / branches_; }
+    /// Whether all samples that were begun are complete.
+    bool has_whole_samples() const { return canvas_.rays % branches_ == 0; }
 
-    /// Times that running_estimate() has become better; 0: there is none.
-    uint grown() const { return search_ && grows() && canvas_.rays + 1 == ways_ ? grown_ : 0; }
-    /// What the first sample has so far while its last search runs (3.4), as an image of the picture's size.
+    /// How often running_estimate() has improved; 0: there is none yet.
+    uint grown() const { return search_ && grows() && canvas_.rays + 1 == branches_ ? grown_ : 0; }
+    /// The first sample so far, while its last search runs (3.4), as an image of the picture's size.
     /// \throws backend_error.
     image running_estimate(std::uint64_t& invalid)
     {
@@ -206,7 +207,8 @@ public:
         return detail::to_image(
             b_.download(running), canvas_.raster, settings_, static_cast<float>(settings_.view.spp), invalid);
     }
-    /// The mean of its whole samples, as an image of the picture's size; there must be one, and no ray beyond it.
+    /// The mean of the complete samples, as an image of the picture's size. There must be at least one, and no
+    /// incomplete one.
     /// \throws backend_error.
     image mean_of_samples(std::uint64_t& invalid)
     {
@@ -214,33 +216,33 @@ public:
             = is_preview() ? 1.0f : static_cast<float>(settings_.view.spp) / static_cast<float>(samples());
         return detail::to_image(b_.download(canvas_.pixels), canvas_.raster, settings_, scale, invalid);
     }
-    /// A copy of the light so far, for looking at it later.
+    /// A copy of the light so far, for display.
     canvas<B> snapshot() { return {canvas_.raster, canvas_.rays, copy(canvas_.pixels), {}, {}}; }
 
     /// The light of all rays so far.
     const canvas<B>& light() const { return canvas_; }
     canvas<B> take() { return std::move(canvas_); }
-    /// Goes on from such light, of the same map, view and settings.
+    /// Continues from light() of the same map, view and settings.
     /// \throws std::invalid_argument for light of another size.
     void resume(canvas<B> c)
     {
         const auto n = canvas_.raster.size();
         if (c.rays > rays() || c.pixels.size() != n || c.searches.size() != n
             || c.errors.size() != canvas_.errors.size())
-            throw std::invalid_argument("view_pass::resume: is of another picture: " + std::to_string(c.pixels.size())
-                + " pixels and " + std::to_string(c.rays) + " rays per pixel; this one has " + std::to_string(n)
-                + " and " + std::to_string(rays()));
+            throw std::invalid_argument("view_pass::resume: the state is of another picture: "
+                + std::to_string(c.pixels.size()) + " pixels and " + std::to_string(c.rays)
+                + " rays per pixel; this one has " + std::to_string(n) + " and " + std::to_string(rays()));
         c.raster = canvas_.raster;
         canvas_ = std::move(c);
     }
 
 private:
-    /// Whether light is added up while the search runs, so that there is something to look at (3.4).
+    /// Whether the search's partial sums can be displayed while it runs (3.4).
     bool grows() const
     {
         return !is_preview() && options_.watched && knn_search<B>::shows_running_estimate(picture_search());
     }
-    /// The search of the picture, previews apart.
+    /// The search of the picture itself, not of a preview.
     knn_settings picture_search() const { return detail::search_for(settings_, least_radius(built_.map.cells_of)); }
     knn_settings search_settings() const
     {
@@ -249,14 +251,14 @@ private:
             k.k = std::min(k.k, std::max(8u, k.k / options_.preview->k_divisor));
             k.errors = false;
             if (k.search == search_kind::exact_k)
-                k.bias = bias_kind::unbiased; // the paper's reads k / (k - 1) too high, which few photons would show
+                k.bias = bias_kind::unbiased; // the paper's is too high by k / (k - 1), which is visible for small k
         } else if (grows()) {
             k.visits_per_pass = 256;
             k.ranges_per_pass = 64;
         }
         return k;
     }
-    /// Fewer shadow rays where pixels are large.
+    /// Settings with fewer shadow rays if pixels are large.
     render_settings light_settings() const
     {
         render_settings s = settings_;
@@ -265,7 +267,7 @@ private:
         return s;
     }
 
-    /// Runs `stage` over the next part of the pixels; true when it was the last.
+    /// Runs `stage` over the next part of the pixels. Returns whether it was the last part.
     template <class Stage>
     bool over_pixels(stage_stats& stats, const Stage& stage)
     {
@@ -285,7 +287,7 @@ private:
             correct_edges(b_, built_.scene, hits.points, hits.surfaces, found, settings_.estimate.filter,
                 least_radius(built_.map.cells_of));
         b_.template run<kernels::shade>(pixels.size(), {.share = share},
-            reads(built_.scene.records, hits.points, hits.weights, hits.surfaces, hits.emissions, samples_->direct,
+            reads(built_.scene.records, hits.points, hits.throughputs, hits.surfaces, hits.emissions, samples_->direct,
                 found.irradiance, found.used),
             writes(pixels, searches));
         return found;
@@ -311,14 +313,14 @@ private:
     view_options options_;
     kept_samples<B>& kept_;
     render_stats& stats_;
-    uint ways_; ///< through glass
+    uint branches_; ///< combinations of Fresnel branches, a pass over the pixels each
 
-    // What stages hand on.
+    // Data passed from stage to stage.
     std::optional<eye_samples<B>> samples_;
-    bool lit_ = false;     ///< the samples have their direct light already
-    std::size_t done_ = 0; ///< pixels that the stage has done
+    bool lit_ = false;     ///< the samples already have their direct light
+    std::size_t done_ = 0; ///< pixels that the stage has finished
     std::optional<knn_search<B>> search_;
-    uint grown_ = 0; ///< passes of a growing search
+    uint grown_ = 0; ///< passes of the growing search
     std::uint64_t unfinished_ = 0;
     canvas<B> canvas_;
 };

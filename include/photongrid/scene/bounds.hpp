@@ -26,7 +26,7 @@ struct bounds {
 
 namespace detail {
     /// How far a disc of radius r about an axis reaches along x, y and z.
-    inline dvec3 disc_reach(const dvec3& axis, double r)
+    inline dvec3 disc_extent(const dvec3& axis, double r)
     {
         const dvec3 a = glm::normalize(axis);
         return r * glm::sqrt(glm::max(dvec3(0), dvec3(1) - a * a));

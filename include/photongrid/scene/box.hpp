@@ -58,7 +58,7 @@ namespace detail {
     inline dvec3 middle_of(const box& b) { return b.corner + 0.5 * (b.edge_u + b.edge_v + b.edge_w); }
 
     /// How far a box reaches from its middle along a unit vector, m.
-    inline double reach_along(const box& b, const dvec3& n)
+    inline double extent_along(const box& b, const dvec3& n)
     {
         return 0.5
             * (std::abs(glm::dot(b.edge_u, n)) + std::abs(glm::dot(b.edge_v, n)) + std::abs(glm::dot(b.edge_w, n)));
@@ -75,7 +75,7 @@ inline bool overlaps(const box& a, const box& b)
         if (!(length > 1e-9)) // edges along each other: their faces say it
             return false;
         const dvec3 n = direction / length;
-        return std::abs(glm::dot(between, n)) >= (detail::reach_along(a, n) + detail::reach_along(b, n)) * (1 - 1e-9);
+        return std::abs(glm::dot(between, n)) >= (detail::extent_along(a, n) + detail::extent_along(b, n)) * (1 - 1e-9);
     };
     const std::array of_a{a.edge_u, a.edge_v, a.edge_w}, of_b{b.edge_u, b.edge_v, b.edge_w};
     for (const auto& e : of_a)

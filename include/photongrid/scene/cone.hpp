@@ -37,7 +37,7 @@ struct shape_kind<cone> {
     /// @{
     static void add_bounds(bounds& b, const cone& x)
     {
-        b.add(x.base, detail::disc_reach(x.apex - x.base, x.radius));
+        b.add(x.base, detail::disc_extent(x.apex - x.base, x.radius));
         b.add(x.apex);
     }
     static double size(const cone& x) { return x.radius; }

@@ -37,8 +37,8 @@ struct shape_kind<cylinder> {
     /// @{
     static void add_bounds(bounds& b, const cylinder& x)
     {
-        b.add(x.base, detail::disc_reach(x.top - x.base, x.radius));
-        b.add(x.top, detail::disc_reach(x.top - x.base, x.radius));
+        b.add(x.base, detail::disc_extent(x.top - x.base, x.radius));
+        b.add(x.top, detail::disc_extent(x.top - x.base, x.radius));
     }
     static double size(const cylinder& x) { return x.radius; }
     static double round_size(const cylinder& x) { return detail::quadric_size(x.top - x.base, x.radius); }

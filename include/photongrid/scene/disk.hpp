@@ -39,7 +39,7 @@ struct shape_kind<disk> {
 
     /// \name See the general template
     /// @{
-    static void add_bounds(bounds& b, const disk& d) { b.add(d.center, detail::disc_reach(d.normal, d.radius)); }
+    static void add_bounds(bounds& b, const disk& d) { b.add(d.center, detail::disc_extent(d.normal, d.radius)); }
     static double size(const disk& d) { return d.radius; }
     static double round_size(const disk&) { return 0; }
     static void write(record_writer& w, const disk& d)

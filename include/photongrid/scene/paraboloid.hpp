@@ -39,7 +39,7 @@ struct shape_kind<paraboloid> {
     static void add_bounds(bounds& b, const paraboloid& x)
     {
         b.add(x.vertex);
-        b.add(x.rim, detail::disc_reach(x.rim - x.vertex, x.radius));
+        b.add(x.rim, detail::disc_extent(x.rim - x.vertex, x.radius));
     }
     static double size(const paraboloid& x) { return x.radius; }
     static double round_size(const paraboloid& x) { return detail::quadric_size(x.rim - x.vertex, x.radius); }

@@ -128,7 +128,7 @@ struct setting {
     Member of;
     Values values;
     in_scenes use;
-    const char* about; ///< for --help
+    const char* description; ///< for --help
 };
 template <class Member, class Values>
 setting(const char*, Member, Values, in_scenes, const char*) -> setting<Member, Values>;

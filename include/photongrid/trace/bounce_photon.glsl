@@ -1,5 +1,6 @@
-// One bounce of all photons (2.1): frame f of the photon texture from frame f - 1. The photon that arrives is recorded;
-// Russian roulette by reflectance decides whether another leaves, so that powers change in colour only.
+// One bounce of all photons (2.1): computes frame f of the photon texture from frame f - 1. It records the photon that
+// hits a surface. Russian roulette by reflectance decides whether the path continues, so that photons change in colour
+// only.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
@@ -8,7 +9,7 @@
 struct Params {
     uint paths;      // elements of a frame
     uint first_path; // id of the path of a frame's element 0
-    uint last_frame; // the deepest bounce allowed
+    uint last_frame; // the last bounce allowed
     uint seed;
 };
 PARAMS(Params)
@@ -23,8 +24,8 @@ INPUT(4, vec4, next_origins)
 INPUT(5, vec4, next_directions)
 OUTPUT(0, vec4, position)       // xyz, m; w: event
 // w of power, next_origin and next_direction: x, y and z of the normal.
-OUTPUT(1, vec4, power)          // rgb arriving, W, not yet divided by the number of paths
-OUTPUT(2, vec4, direction)      // xyz of arrival; w: material
+OUTPUT(1, vec4, power)          // rgb of the incoming photon, W, not yet divided by the number of paths
+OUTPUT(2, vec4, direction)      // xyz: direction of the incoming photon; w: material
 OUTPUT(3, vec4, next_origin)
 OUTPUT(4, vec4, next_direction)
 
@@ -52,21 +53,22 @@ void kernel(uint i)
     if (event_kind(last) == DIFFUSE_SURFACE)
         met = DIFFUSE_BEFORE;
 
-    // What left the last surface: its power there, in the colour of the material, since roulette took the rest.
-    vec4 flux = powers(before);
+    // The photon that left the last surface: its power there times the colour of the material. Roulette accounts for
+    // the absorbed part.
+    vec4 arrived = powers(before);
     if (frame > 1u) {
         vec3 colour = material_of(uint(directions(before).w)).reflectance;
         float survival = largest3(colour);
-        precise vec4 tinted = vec4(flux.x * (colour.x / survival), flux.y * (colour.y / survival),
-            flux.z * (colour.z / survival), 0.0f);
-        flux = tinted;
+        precise vec4 tinted = vec4(arrived.x * (colour.x / survival), arrived.y * (colour.y / survival),
+            arrived.z * (colour.z / survival), 0.0f);
+        arrived = tinted;
     }
     vec3 o = vec3(next_origins(before));
     vec3 d = vec3(next_directions(before));
     direction = vec4(d.x, d.y, d.z, 0.0f);
-    power = flux;
+    power = arrived;
 
-    if (!is_finite3(o) || !is_finite3(d) || !is_finite3(vec3(flux))) {
+    if (!is_finite3(o) || !is_finite3(d) || !is_finite3(vec3(arrived))) {
         position.w = event_code(NO_SURFACE, NOT_A_NUMBER, NOTHING_BEFORE);
         return;
     }
@@ -81,7 +83,7 @@ void kernel(uint i)
         return;
     }
     if (hit.material == NO_MATERIAL)
-        return; // lights' surfaces are black
+        return; // the surfaces of lights are black
 
     Material material = material_of(hit.material);
     direction.w = float(hit.material);
@@ -112,7 +114,7 @@ void kernel(uint i)
     next_direction = vec4(next.x, next.y, next.z, facing.z);
 }
 
-// Nothing is left to do for this path in frames beyond this one.
+// Whether this path needs no further frames.
 bool done()
 {
     return event_end(position) != GOES_ON;

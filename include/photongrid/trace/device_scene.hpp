@@ -1,5 +1,5 @@
-// A scene as kernels read it: one buffer of vec4 records, recentred so that float keeps its precision far from the
-// origin. trace/scene_layout.glsl says where things stand in it.
+// A scene for kernels: one buffer of vec4 records, recentred so that single precision suffices far from the origin.
+// trace/scene_layout.glsl describes its layout.
 #pragma once
 
 #include <photongrid/backend/backend.hpp>
@@ -12,8 +12,8 @@
 
 namespace photongrid {
 
-/// What a scene has, as the SWITCHes of the tracing kernels: code for what it lacks is not compiled. Bits of
-/// shape_kind::number, and these.
+/// The features of a scene, as SWITCHes of the tracing kernels, which compile only the code that the scene needs. The
+/// bits of shapes are those of shape_kind::number.
 enum scene_feature : uint {
     has_spheres = 1u << shape_kind<sphere>::number,
     has_quadrics = 1u << detail::quadric_number, ///< cylinders, cones and others
@@ -25,16 +25,17 @@ enum scene_feature : uint {
     has_area_lights = 1u << 7,
 };
 
-/// The records of a scene and what a host must know of them.
+/// The records of a scene, and their layout.
 struct scene_layout {
     std::vector<glm::vec4> records; ///< as trace/scene_layout.glsl describes them; positions are recentred
-    uint features = 0;              ///< scene_feature bits: what shapes use, whatever else is listed
-    uint steps_per_ray = 0;         ///< about how often a ray's loops run: once a shape, and once an edge
+    uint features = 0;              ///< scene_feature bits of the shapes, materials and lights in use
+    uint steps_per_ray = 0;         ///< approximate number of loop iterations per ray: one per shape and per edge
     dvec3 center{0};                ///< subtracted from every position, m
     glm::vec3 low{0};               ///< m; box of the Lambertian surfaces, recentred: where photons can be stored
     glm::vec3 high{0};              ///< m; its other corner
 
-    /// Where a table's items stand; `number` as in shape_kind, or kernels::MATERIAL_TABLE or kernels::LIGHT_TABLE.
+    /// The records of a table's items; `number` is a shape_kind::number, kernels::MATERIAL_TABLE or
+    /// kernels::LIGHT_TABLE.
     kernels::Table table(uint number) const { return kernels::table_of(records[number]); }
 };
 
@@ -53,14 +54,14 @@ namespace detail {
         return s;
     }
 
-    /// A point that moves with the scene exactly: any that its lights name.
+    /// A point that moves exactly with the scene: a point of one of its lights.
     inline dvec3 anchor(const scene& s)
     {
         return s.rectangle_lights.empty() ? s.point_lights.at(0).position : s.rectangle_lights[0].corner;
     }
 
-    /// \throws std::invalid_argument when a shape is so small beside the scene that float coordinates cannot resolve
-    /// it.
+    /// \throws std::invalid_argument if a shape is so small, relative to the scene, that single precision cannot
+    ///         resolve it.
     inline void require_resolvable(const scene& s, double scale)
     {
         const auto all = [&](const auto& list, auto kind) {
@@ -68,17 +69,17 @@ namespace detail {
                 for (std::size_t i = 0; i < list.size(); ++i)
                     require(kind.size(list[i]) >= scale * 0x1p-18,
                         kind.list + ("[" + std::to_string(i))
-                            + "]: is 2^18 times smaller than the scene or more, which single precision cannot resolve; "
-                              "leave it out, or model the large things smaller");
+                            + "]: is smaller than 2^-18 of the scene, which single precision cannot resolve; leave it "
+                              "out, or make the large shapes smaller");
         };
         for_each_shape(s, all);
         for_each_light(s, all);
     }
 
-    /// Lays a scene out; each member writes one part of it.
+    /// Lays a scene out. Each member function writes one part.
     class layout_writer {
     public:
-        /// `s` stands at its anchor.
+        /// `s` must be relative to its anchor.
         explicit layout_writer(const scene& s) : s_(s) {}
 
         scene_layout write()
@@ -93,15 +94,15 @@ namespace detail {
             write_lights(w);
             for (const auto& r : out_.records)
                 require(std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z) && std::isfinite(r.w),
-                    "scene: a size or a power is too large for single precision");
+                    "scene: a size or a power is too large for single precision; use smaller values");
             require(out_.records.size() <= 1u << 24,
                 "scene: takes " + std::to_string(out_.records.size())
-                    + " records, kernels can number 2^24; a vertex takes 2, so use fewer");
+                    + " records; at most 2^24 are possible. A vertex takes 2, so use fewer vertices");
             return std::move(out_);
         }
 
     private:
-        /// Its bounds, its middle, and what shapes use.
+        /// Computes the bounds, the centre and the features.
         void measure()
         {
             bounds all, lambertian;
@@ -125,18 +126,18 @@ namespace detail {
                     kind.add_bounds(all, l);
                 out_.features |= list.empty() ? 0u : kind.is_area ? has_area_lights | has_polygons : has_point_lights;
             });
-            // Polygons' edges, four as a rule; lights' surfaces are polygons.
+            // The edges of polygons, usually four; the surfaces of lights are polygons.
             out_.steps_per_ray += static_cast<uint>(4 * s_.polygons.size() + 5 * s_.rectangle_lights.size());
             scale_ = 0.5 * glm::length(all.high - all.low);
             require_resolvable(s_, scale_);
-            // The middle, rounded to few bits, so that the anchor plus it is exact wherever the anchor is.
+            // The centre, rounded to few bits, so that adding it to the anchor is exact.
             const double step = std::exp2(std::floor(std::log2(scale_)) - 8);
             out_.center = glm::round(0.5 * (all.low + all.high) / step) * step;
             out_.low = glm::vec3(lambertian.low - out_.center);
             out_.high = glm::vec3(lambertian.high - out_.center);
         }
 
-        /// Enters `count` items from record `first` on; `stride` 0 where they differ in length.
+        /// Writes a table of `count` items from record `first` on; `stride` is 0 if their lengths differ.
         void enter(uint number, uint first, std::size_t count, uint stride)
         {
             out_.records[number]
@@ -160,7 +161,7 @@ namespace detail {
                 if (!list.empty())
                     enter(number, first, count, (w.next() - begin) / static_cast<uint>(list.size()));
             });
-            // Polygons came last: the lights' surfaces are of their table, which differ in length.
+            // Polygons come last, because the surfaces of lights belong to the same table.
             for (std::size_t i = 0; i < s_.rectangle_lights.size(); ++i)
                 put_polygon(w, surface_of(s_.rectangle_lights[i]), i + 1);
             enter(number, first, s_.polygons.size() + s_.rectangle_lights.size(), 0);
@@ -178,7 +179,7 @@ namespace detail {
             }
         }
 
-        /// A light is chosen in proportion to its power.
+        /// Lights are chosen with probabilities proportional to their power.
         void write_lights(record_writer& w)
         {
             const auto weight = [](const dvec3& power) { return power.x + power.y + power.z; };
@@ -205,13 +206,14 @@ namespace detail {
 } // namespace detail
 
 /// Lays a scene out for kernels.
-/// \throws std::invalid_argument as check(scene) does, when no surface is Lambertian, or
-/// when a size or a power does not fit single precision.
+/// \throws std::invalid_argument as check(scene) does, if no surface is Lambertian, or if a size or a power does not
+///         fit
+///         single precision.
 inline scene_layout lay_out(const scene& original)
 {
     check(original);
-    // All sums are of coordinates relative to a point of the scene: a scene that is moved by an exact amount then gives
-    // the same records, bit for bit.
+    // All coordinates are relative to a point of the scene, so that a scene that is moved by an exactly representable
+    // vector has the same records, bit for bit.
     const dvec3 anchor = detail::anchor(original);
     const scene s = detail::moved_back(original, anchor);
     auto layout = detail::layout_writer(s).write();
@@ -222,12 +224,12 @@ inline scene_layout lay_out(const scene& original)
 /// A scene on a device.
 template <backend B>
 struct device_scene {
-    scene_layout layout;             ///< its records stay on the host too
+    scene_layout layout;             ///< with the records on the host
     buffer_of<B, glm::vec4> records; ///< as trace/scene_layout.glsl describes them
 };
 
 /// Lays a scene out and uploads it.
-/// \throws std::invalid_argument as lay_out does, backend_error where the device has no room.
+/// \throws std::invalid_argument as lay_out does, backend_error if the device has no room.
 /// \snippet snippets.cpp upload_scene
 template <backend B>
 device_scene<B> upload_scene(B& b, const scene& s)

@@ -1,13 +1,13 @@
-// Direct light at the points that eye rays ended on (2.4): shadow rays to every light, area lights sampled in strata, a
-// bounded number in a pass. Irradiance, W/m^2.
+// Direct light at the ends of eye rays (2.4): shadow rays to every light, with stratified samples of area lights. The
+// number of samples per pass is bounded. Irradiance, W/m^2.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
     uvec2 strata;     // strata along the two edges of an area light; their product is the number of samples
-    uint first;       // samples first ...
-    uint past;        // ... to past - 1 are taken in this pass
+    uint first;       // this pass takes samples first ...
+    uint past;        // ... to past - 1
     uint ray_id;      // which eye ray of the pixel
     uint seed;
 };
@@ -15,14 +15,14 @@ PARAMS(Params)
 SWITCH(6, POINT_LIGHTS)
 SWITCH(7, AREA_LIGHTS)
 INPUT(0, vec4, scene)
-INPUT(1, vec4, points)   // w > 0: wanted
+INPUT(1, vec4, points)   // w > 0: compute direct light
 INPUT(2, vec4, surfaces) // xyz: normal
 STATE(0, vec4, irradiance)
 
 #include <photongrid/trace/intersect.glsl>
 #include <photongrid/trace/lights.glsl>
 
-// One edge of Lambert's formula: the angle that it subtends, projected.
+// One edge's term of Lambert's formula: the projected angle that it subtends.
 float edge_term(vec3 a, vec3 b, vec3 n)
 {
     vec3 c = cross3(a, b);
@@ -33,8 +33,8 @@ float edge_term(vec3 a, vec3 b, vec3 n)
     return term;
 }
 
-// The share of a diffuse hemisphere about n that a parallelogram fills, what is below the horizon cut away (Lambert,
-// Photometria, 1760). `corner` is relative to the point.
+// The form factor of a parallelogram: the share of the hemisphere about n that it covers, weighted by the cosine,
+// clipped at the horizon (Lambert, Photometria, 1760). `corner` is relative to the point.
 float form_factor(vec3 corner, vec3 edge_u, vec3 edge_v, vec3 n)
 {
     float sum = 0.0f;
@@ -93,11 +93,12 @@ void kernel(uint i)
     uint at = lights.first;
     for (uint number = 0u; number < lights.count; ++number) {
         Light light = light_at(at);
-        vec3 corner = light.place;
+        vec3 corner = light.position;
         bool area = AREA_LIGHTS && (!POINT_LIGHTS || light.is_area);
         precise vec3 edge_u = light.edge_u * share_u; // of a stratum
         precise vec3 edge_v = light.edge_v * share_v;
-        // Strata closer than four times their size need care: what one of their points sends says little of the rest.
+        // Strata closer than four times their size need the form factor: one of their points does not represent the
+        // rest.
         precise float size2 = dot3(edge_u, edge_u) + dot3(edge_v, edge_v);
         bool some_close = false;
         precise vec3 off_light = vec3(0.0f, 0.0f, 0.0f);
@@ -106,11 +107,11 @@ void kernel(uint i)
             precise vec3 middle = ray_at(ray_at(corner, light.edge_u, 0.5f), light.edge_v, 0.5f) - p;
             some_close = dot3(middle, middle)
                 < 32.0f * size2 + dot3(light.edge_u, light.edge_u) + dot3(light.edge_v, light.edge_v);
-            // Rays end off the light, as they start off the surface, so that neither is in its own way.
+            // Shadow rays end off the light and start off the surface, so that neither occludes itself.
             off_light = light.normal * ray_offset(abs(corner) + abs(light.edge_u) + abs(light.edge_v), round_share);
             between = shaft(origin, ray_at(corner, off_light, 1.0f), light.edge_u, light.edge_v);
         }
-        uint past = area ? args.past : 1u; // a point light's samples would all be the same
+        uint past = area ? args.past : 1u; // all samples of a point light are the same
         for (uint s = args.first; s < past; ++s) {
             vec3 target = corner;
             vec3 stratum = corner;
@@ -137,7 +138,7 @@ void kernel(uint i)
             float leaving = area ? -dot3(d, light.normal) : 1.0f;
             if (!(leaving > 0.0f) || (!close && !(cosine > 0.0f)))
                 continue;
-            // 1 / (4 pi): intensity of a point light. Nearer than rounding can tell, it stays as bright as there.
+            // 1 / (4 pi): intensity of a point light. The distance is at least the ray offset.
             precise float factor = cosine / (distance2 > off * off ? distance2 : off * off) * 7.95774715e-2f;
             precise vec3 end = target;
             if (area) {
@@ -145,7 +146,7 @@ void kernel(uint i)
                 precise float diffuse = cosine * leaving / distance2 * 3.18309886e-1f * share;
                 if (close) {
                     precise vec3 f = stratum - p;
-                    // Its share of the exitance.
+                    // The stratum's part of the irradiance.
                     precise float filled = form_factor(f, edge_u, edge_v, n) * 3.14159265f * light.radiance_per_power;
                     diffuse = filled;
                 }
@@ -158,7 +159,8 @@ void kernel(uint i)
                 continue;
             precise float far = sqrt(length2);
             precise vec3 ray_d = ray / far;
-            // Of a stratum partly below the horizon, the rest counts as seen; a point light may touch a surface.
+            // For a stratum partly below the horizon, samples below it count as visible; a point light may touch a
+            // surface.
             if (cosine > 0.0f && occluded(origin, ray_d, area ? far : far * 0.9999f, between))
                 continue;
             precise vec3 more = sum + light.power * factor;

@@ -1,4 +1,4 @@
-// Divides the photons' power by the number of paths emitted, once that is known (Jensen 1996).
+// Divides the photons' power by the number of emitted paths when tracing has finished (Jensen 1996).
 struct Params {
     float share; // 1 / paths
 };

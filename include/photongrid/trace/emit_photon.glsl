@@ -1,4 +1,4 @@
-// Frame 0 of the photon texture (2.1): photons on the light sources with their initial random directions.
+// Frame 0 of the photon texture (2.1): photons on the lights, with random initial directions.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
@@ -13,9 +13,9 @@ SWITCH(7, AREA_LIGHTS)
 INPUT(0, vec4, scene)
 OUTPUT(0, vec4, position)       // xyz, m; w: event, see photon_event.glsl
 OUTPUT(1, vec4, power)          // rgb, W, not yet divided by the number of paths
-OUTPUT(2, vec4, direction)      // of arrival
-OUTPUT(3, vec4, next_origin)    // where the path goes on from ...
-OUTPUT(4, vec4, next_direction) // ... and where to
+OUTPUT(2, vec4, direction)      // of the photon
+OUTPUT(3, vec4, next_origin)    // origin of the path's next ray ...
+OUTPUT(4, vec4, next_direction) // ... and its direction
 
 #include <photongrid/trace/lights.glsl>
 
@@ -25,7 +25,7 @@ void kernel(uint i)
     vec4 r = random4(uvec4(id, 0u, 0u, args.seed));
     vec4 s = random4(uvec4(id, 0u, 1u, args.seed));
 
-    // The light, chosen in proportion to its power.
+    // Choose a light with a probability proportional to its power.
     Table lights = table_of(scene(LIGHT_TABLE));
     uint at = lights.first;
     for (uint n = 1u; n < lights.count; ++n) {
@@ -34,12 +34,12 @@ void kernel(uint i)
         at += lights.stride;
     }
     Light light = light_at(at);
-    vec3 origin = light.place;
+    vec3 origin = light.position;
     vec3 d = vec3(0.0f, 0.0f, 1.0f);
     if (POINT_LIGHTS && (!AREA_LIGHTS || !light.is_area))
         d = uniform_direction(r.x, r.y);
     if (AREA_LIGHTS && (!POINT_LIGHTS || light.is_area)) {
-        // Rounding goes by the terms, which may be large where their sum is small.
+        // The rounding error depends on the terms, which may be larger than their sum.
         float off = ray_offset(abs(origin) + abs(light.edge_u) + abs(light.edge_v), scene(SCENE_SIZES).x);
         origin = ray_at(ray_at(origin, light.edge_u, r.z), light.edge_v, r.w);
         d = cosine_direction(light.normal, r.x, r.y);

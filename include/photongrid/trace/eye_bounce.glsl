@@ -1,13 +1,14 @@
-// One surface further along an eye ray (2.4): on through mirrors and glass until it ends on a diffuse surface, a light,
-// or nothing. At the first glass surfaces a ray splits in two: the bits of `branch` say which way this pass over the
-// picture goes at each; past them Fresnel's share decides by chance.
+// Traces an eye ray to the next surface (2.4), through mirrors and glass until it ends on a diffuse surface, on a
+// light, or in empty space. At the first `splits` glass surfaces a ray splits into its two Fresnel branches: the bits
+// of `branch` select the one that this pass follows at each. At later ones a random number selects it, with Fresnel's
+// probability.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
     uint branch;     // bit n: reflected (1) or refracted (0) at the n-th glass surface
-    uint branchings; // how many glass surfaces split
+    uint splits;     // how many glass surfaces split a ray
     uint depth;      // surfaces a ray passes at most
     uint sample_id;  // which eye ray of the pixel
     uint seed;
@@ -17,11 +18,11 @@ SWITCH(4, MIRRORS)
 SWITCH(5, GLASS)
 SWITCH(7, AREA_LIGHTS)
 INPUT(0, vec4, scene)
-STATE(0, vec4, point)   // xyz: origin, at the end the point hit, m; w: 0 in flight, 1 on a diffuse surface, else -1
-STATE(1, vec4, travel)  // xyz: direction; w: surfaces met
-STATE(2, vec4, weight)  // rgb: share of the radiance that reaches the eye; w: branchings met
-STATE(3, vec4, surface) // xyz: normal towards the eye; w: material
-STATE(4, vec4, emitted) // rgb: radiance of a light that the ray ended on, times weight
+STATE(0, vec4, point)      // xyz: origin, at the end the point hit, m; w: 0 in flight, 1 on a diffuse surface, else -1
+STATE(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
+STATE(2, vec4, throughput) // rgb: factor between radiance here and at the eye; w: splits so far
+STATE(3, vec4, surface)    // xyz: normal towards the eye; w: material
+STATE(4, vec4, emitted)    // rgb: radiance of the light that the ray ended on, times throughput
 
 #include <photongrid/trace/intersect.glsl>
 #include <photongrid/trace/lights.glsl>
@@ -35,12 +36,13 @@ bool done()
 
 void kernel(uint i)
 {
-    vec3 d = vec3(travel);
+    vec3 d = vec3(direction);
     Hit hit = intersect_closest(vec3(point), d);
-    uint met = uint(travel.w);
-    uint branchings = uint(weight.w);
-    // Branches that this ray did not come to are another pass's: only the one without them counts.
-    bool mine = args.branch >> branchings == 0u;
+    uint met = uint(direction.w);
+    uint splits = uint(throughput.w);
+    // A ray that met fewer glass surfaces than there are splits is the same in several passes: count it in one of them,
+    // the one whose unused branch bits are 0.
+    bool mine = args.branch >> splits == 0u;
     if (hit.t < 0.0f) {
         point.w = -1.0f;
         return;
@@ -50,8 +52,8 @@ void kernel(uint i)
         Light light = light_of(hit.light);
         float scale = light.radiance_per_power; // on the front only
         if (mine && dot3(d, hit.normal) < 0.0f)
-            emitted = vec4(weight.x * light.power.x * scale, weight.y * light.power.y * scale,
-                weight.z * light.power.z * scale, 0.0f);
+            emitted = vec4(throughput.x * light.power.x * scale, throughput.y * light.power.y * scale,
+                throughput.z * light.power.z * scale, 0.0f);
         return;
     }
     Material material = material_of(hit.material);
@@ -62,17 +64,17 @@ void kernel(uint i)
         return;
     }
     vec3 next = d;
-    precise vec3 tinted = vec3(weight) * material.reflectance;
+    precise vec3 tinted = vec3(throughput) * material.reflectance;
     float share = 1.0f;
     if (MIRRORS && material.kind == MIRROR_SURFACE)
         next = reflect_direction(d, hit.normal);
     if (GLASS && material.kind == GLASS_SURFACE) {
         Fresnel f = fresnel(d, hit.normal, material.index_of_refraction);
         bool reflect_it = f.reflected >= 1.0f;
-        if (branchings < args.branchings) {
-            reflect_it = ((args.branch >> branchings) & 1u) != 0u;
+        if (splits < args.splits) {
+            reflect_it = ((args.branch >> splits) & 1u) != 0u;
             share = reflect_it ? f.reflected : 1.0f - f.reflected;
-            ++branchings;
+            ++splits;
         } else if (!reflect_it) {
             vec4 r = random4(uvec4(i, args.sample_id * 4096u + args.branch, 2000u + met, args.seed));
             reflect_it = r.x < f.reflected;
@@ -88,6 +90,6 @@ void kernel(uint i)
     }
     vec3 start = ray_start(hit.position, hit.normal, next);
     point = vec4(start.x, start.y, start.z, 0.0f);
-    travel = vec4(next.x, next.y, next.z, float(met));
-    weight = vec4(tinted.x * share, tinted.y * share, tinted.z * share, float(branchings));
+    direction = vec4(next.x, next.y, next.z, float(met));
+    throughput = vec4(tinted.x * share, tinted.y * share, tinted.z * share, float(splits));
 }

@@ -1,5 +1,5 @@
-// The ray from the camera through pixel i (2.4), in the pixel's middle when there is one ray,
-// else somewhere in the ray's own stratum of the pixel.
+// The ray from the camera through pixel i (2.4): through the pixel's centre if it is the only one, else through a
+// random point of the ray's own stratum of the pixel.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 
@@ -14,11 +14,11 @@ struct Params {
     uint seed;
 };
 PARAMS(Params)
-OUTPUT(0, vec4, point)   // xyz: origin, m; w: 0 in flight
-OUTPUT(1, vec4, travel)  // xyz: direction; w: surfaces met
-OUTPUT(2, vec4, weight)  // rgb: share of the radiance that reaches the eye; w: branchings met
-OUTPUT(3, vec4, surface) // xyz: normal towards the eye; w: material
-OUTPUT(4, vec4, emitted) // rgb: radiance of a light that the ray ended on, times weight
+OUTPUT(0, vec4, point)      // xyz: origin, m; w: 0 in flight
+OUTPUT(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
+OUTPUT(2, vec4, throughput) // rgb: factor between radiance here and at the eye; w: splits so far
+OUTPUT(3, vec4, surface)    // xyz: normal towards the eye; w: material
+OUTPUT(4, vec4, emitted)    // rgb: radiance of the light that the ray ended on, times throughput
 
 void kernel(uint i)
 {
@@ -38,8 +38,8 @@ void kernel(uint i)
     precise vec3 d = vec3(args.corner) + vec3(args.right) * (float(x) + dx) + vec3(args.down) * (float(y) + dy);
     vec3 n = normalized3(d);
     point = vec4(args.position.x, args.position.y, args.position.z, 0.0f);
-    travel = vec4(n.x, n.y, n.z, 0.0f);
-    weight = vec4(1.0f, 1.0f, 1.0f, 0.0f);
+    direction = vec4(n.x, n.y, n.z, 0.0f);
+    throughput = vec4(1.0f, 1.0f, 1.0f, 0.0f);
     surface = vec4(0.0f, 0.0f, 1.0f, 0.0f);
     emitted = vec4(0.0f, 0.0f, 0.0f, 0.0f);
 }

@@ -1,5 +1,4 @@
-// The stochastic ray tracer's part of a picture (section 2.4): eye rays through mirrors and glass, and direct light
-// where they end.
+// The stochastic ray tracer (section 2.4): eye rays through mirrors and glass, and direct light where they end.
 #pragma once
 
 #include <photongrid/backend/zero_vectors.kernel.hpp>
@@ -12,34 +11,34 @@
 
 namespace photongrid::detail {
 
-/// Eye rays and where they ended, one element a pixel.
+/// Eye rays and their hits, one element per pixel.
 template <backend B>
 struct eye_hits {
-    buffer_of<B, glm::vec4> points, travels, weights, surfaces, emissions;
+    buffer_of<B, glm::vec4> points, directions, throughputs, surfaces, emissions;
 
     eye_hits(B& b, std::size_t n)
-        : points(b.template make<glm::vec4>(n)), travels(b.template make<glm::vec4>(n)),
-          weights(b.template make<glm::vec4>(n)), surfaces(b.template make<glm::vec4>(n)),
+        : points(b.template make<glm::vec4>(n)), directions(b.template make<glm::vec4>(n)),
+          throughputs(b.template make<glm::vec4>(n)), surfaces(b.template make<glm::vec4>(n)),
           emissions(b.template make<glm::vec4>(n))
     {
     }
 };
 
-/// Pixels of a picture: its own, or squares of them where it is only looked at.
+/// The pixels of a picture, or of a preview, whose pixels are squares of several.
 struct raster {
     uint width = 0, height = 0;
-    uint divisor = 1; ///< pixels of the picture along the side of one here
+    uint divisor = 1; ///< side of a pixel, in pixels of the picture
 
     std::size_t size() const { return std::size_t{width} * height; }
 };
 
-/// The picture of `s` in squares of divisor x divisor pixels; those at its right and lower edge may hang over.
+/// The picture of `s` in squares of divisor x divisor pixels. Those at the right and lower edges may extend beyond it.
 inline raster raster_of(const render_settings& s, uint divisor)
 {
     return {(s.output.width + divisor - 1) / divisor, (s.output.height + divisor - 1) / divisor, divisor};
 }
 
-/// As square a grid of strata as the number of samples allows: columns and rows, of which there are not more.
+/// The most nearly square grid of strata for a number of samples: columns and rows, with columns >= rows.
 inline glm::uvec2 strata_of(uint samples)
 {
     uint rows = 1;
@@ -68,43 +67,45 @@ inline kernels::eye_ray::Params eye_params(
         .seed = s.seed};
 }
 
-/// Ways of an eye ray through a scene: rays split at the first two glass surfaces, and each way is a pass over the
-/// picture.
-inline uint branchings_of(const scene_layout& layout) { return (layout.features & has_glass) != 0 ? 2u : 0u; }
+/// How many glass surfaces split an eye ray into its two Fresnel branches. Each combination of branches is a pass over
+/// the picture.
+inline uint splits_of(const scene_layout& layout) { return (layout.features & has_glass) != 0 ? 2u : 0u; }
 
-/// Follows eye rays to their ends, for the pixels of `pixels`: `ray` is sample x branches + branch.
+/// Traces eye rays to their ends, for the pixels of `pixels`: `ray` is sample x branches + branch.
 template <backend B>
 void trace_eye_rays(B& b, const device_scene<B>& s, const camera& view, const render_settings& settings,
     const raster& r, uint ray, launch pixels, eye_hits<B>& hits)
 {
     const auto& layout = s.layout;
-    const uint branchings = branchings_of(layout), sample = ray >> branchings;
+    const uint splits = splits_of(layout), sample = ray >> splits;
     b.template run<kernels::eye_ray>(pixels, eye_params(view, layout.center, settings, r, sample), reads(),
-        writes(hits.points, hits.travels, hits.weights, hits.surfaces, hits.emissions));
+        writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions));
     b.template run_until_done<kernels::eye_bounce>({pixels.elements, pixels.first, layout.features},
-        {.branch = ray & ((1u << branchings) - 1u),
-            .branchings = branchings,
+        {.branch = ray & ((1u << splits) - 1u),
+            .splits = splits,
             .depth = settings.view.depth,
             .sample_id = sample,
             .seed = settings.seed},
-        reads(s.records), writes(hits.points, hits.travels, hits.weights, hits.surfaces, hits.emissions), nowhere);
+        reads(s.records), writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions),
+        nowhere);
 }
 
-/// Shadow rays to every light from the hits of `pixels`, a bounded number a pass: irradiance into `light`.
+/// Computes the irradiance of direct light at the hits of `pixels` into `light`, with a bounded number of shadow rays
+/// per pass.
 template <backend B>
 void direct_light(B& b, const device_scene<B>& s, const eye_hits<B>& hits, const render_settings& settings, uint ray,
     launch pixels, buffer_of<B, glm::vec4>& light)
 {
     b.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
     const uint samples = (s.layout.features & has_area_lights) != 0 ? settings.view.light_samples : 1u;
-    // Drivers cut loops after 65,535 iterations, all lanes of a group together: shapes and their edges count.
+    // Some drivers end loops after 65,535 iterations, counted over all lanes of a subgroup and over shapes and edges.
     const uint work = (s.layout.steps_per_ray + 1) * s.layout.table(kernels::LIGHT_TABLE).count;
-    const uint a_pass = std::max(1u, 8192u / std::max(1u, work));
-    for (uint first = 0; first < samples; first += a_pass)
+    const uint per_pass = std::max(1u, 8192u / std::max(1u, work));
+    for (uint first = 0; first < samples; first += per_pass)
         b.template run<kernels::direct_light>({pixels.elements, pixels.first, s.layout.features},
             {.strata = strata_of(samples),
                 .first = first,
-                .past = std::min(samples, first + a_pass),
+                .past = std::min(samples, first + per_pass),
                 .ray_id = ray,
                 .seed = settings.seed},
             reads(s.records, hits.points, hits.surfaces), writes(light));

@@ -1,4 +1,4 @@
-// The surface normal under stored photon i, on the side that it came to; bounce_photon.glsl left it in three spare places.
+// The surface normal at stored photon i, on the side that it hit. bounce_photon.glsl stores it in three w components.
 #include <photongrid/trace/photon_event.glsl>
 
 struct Params {

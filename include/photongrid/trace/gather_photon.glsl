@@ -1,4 +1,4 @@
-// Stored photon i, looked up in the frames: a gather in place of the scatter that fragment programs lack.
+// Copies stored photon i from the frames: a gather, because fragment programs cannot scatter.
 #include <photongrid/trace/photon_event.glsl>
 
 struct Params {

@@ -1,13 +1,14 @@
-// Ray against scene (3.1): every shape in turn, no acceleration structure. Included by kernels after their SWITCHes of
-// lights and their scene buffer; only the kinds of shapes that the scene has are compiled in. A kind of shape is a file
-// of intersect/ and a line in each of the functions below.
+// Ray-scene intersection (3.1): tests every shape, without an acceleration structure. Included by kernels after the
+// SWITCHes of lights and the scene buffer. Only the kinds of shapes that the scene has are compiled. A kind of shape is
+// a file of intersect/ and a line in each of the functions below.
 //
-// hit_x returns the distance along the ray, or `far` where shape x is not hit nearer than that; closest_x asks all x,
-// x_surface says what a hit of one found, x_block whether any stands in the way.
+// hit_x returns the distance along the ray, or `far` if shape x is not hit before that. closest_x tests all shapes x,
+// x_surface computes the hit point's position, normal and material, and x_block says whether any shape x occludes a
+// ray.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
-// A bit for the n-th polygon or sphere of the scene; those from the 32nd on share one.
+// The bit of the n-th polygon or sphere of the scene. All from the 32nd on share one bit.
 uint bit_of(uint n)
 {
     return 1u << (n < 31u ? n : 31u);
@@ -22,7 +23,7 @@ uint bit_of(uint n)
 #include <photongrid/trace/intersect/box.glsl>
 #include <photongrid/trace/intersect/polygon.glsl>
 
-// What the ray from o in direction d meets first.
+// The closest hit of the ray from o in direction d.
 Hit intersect_closest(vec3 o, vec3 d)
 {
     Closest c;
@@ -59,14 +60,14 @@ Hit intersect_closest(vec3 o, vec3 d)
     return hit;
 }
 
-// Some of the polygons and spheres, a bit each (bit_of).
+// A set of polygons and spheres, as bits (bit_of).
 struct Candidates {
     uint polygons;
     uint spheres;
 };
 
-// Shaft culling (Haines and Wallace, Shaft Culling for Efficient Ray-Traced Radiosity, 1991): what can come between a
-// point and a parallelogram.
+// Shaft culling (Haines and Wallace, Shaft Culling for Efficient Ray-Traced Radiosity, 1991): the polygons and
+// spheres that can occlude a parallelogram, seen from a point.
 Candidates shaft(vec3 from, vec3 corner, vec3 edge_u, vec3 edge_v)
 {
     Candidates c;
@@ -87,7 +88,7 @@ Candidates everything()
     return c;
 }
 
-// Does anything stand on the ray before `far`? Of polygons and spheres, the candidates are asked.
+// Any-hit query up to distance `far`. Of polygons and spheres only the candidates are tested.
 bool occluded(vec3 o, vec3 d, float far, Candidates c)
 {
     if (POLYGONS && c.polygons != 0u && polygons_block(o, d, far, c.polygons))
@@ -103,7 +104,7 @@ bool occluded(vec3 o, vec3 d, float far, Candidates c)
     return false;
 }
 
-// Where a ray that leaves the surface at p in direction d starts: off the surface, on the side it goes to.
+// The origin of a ray that leaves the surface at p in direction d: offset from the surface to the side of d.
 vec3 ray_start(vec3 p, vec3 normal, vec3 d)
 {
     float off = ray_offset(p, scene(SCENE_SIZES).x);

@@ -1,4 +1,5 @@
-// True for as many elements as the first `emitted` paths store photons.
+// True for element i if i is less than the number of photons that the first `emitted` paths store. A count of this
+// predicate returns that number without reading a buffer back.
 struct Params {
     uint emitted;
 };

@@ -1,7 +1,7 @@
 // Lights, read from the scene buffer. Included by kernels after their scene buffer.
 struct Light {
-    bool is_area;             // a rectangle; else a point, of which there are place and power only
-    vec3 place;               // of a rectangle one corner, m
+    bool is_area;             // a rectangle; else a point light, which has a position and power only
+    vec3 position;            // of a rectangle light: one corner, m
     vec3 edge_u;              // m
     vec3 edge_v;              // m
     vec3 normal;              // unit; light leaves on this side
@@ -11,15 +11,15 @@ struct Light {
 
 Light light_at(uint at)
 {
-    vec4 place = scene(at + 1u);
+    vec4 position_record = scene(at + 1u);
     Light l;
     l.is_area = scene(at).x != 0.0f;
-    l.place = vec3(place);
+    l.position = vec3(position_record);
     l.edge_u = vec3(scene(at + 2u));
     l.edge_v = vec3(scene(at + 3u));
     l.normal = vec3(scene(at + 4u));
     l.power = vec3(scene(at + 5u));
-    l.radiance_per_power = place.w;
+    l.radiance_per_power = position_record.w;
     return l;
 }
 
@@ -29,7 +29,7 @@ Light light_of(uint number)
     return light_at(table.first + table.stride * number);
 }
 
-// Of being chosen, in proportion to power; and of this light or one before it being chosen.
+// Probabilities, in proportion to power: that this light is chosen; that this light or one before it is.
 float light_probability(uint at)
 {
     return scene(at).y;

@@ -1,6 +1,6 @@
 // Materials, read from the scene buffer. Included by kernels after their scene buffer.
 struct Material {
-    vec3 reflectance;          // of glass: transmittance of each crossing
+    vec3 reflectance;          // of glass: transmittance per crossing
     uint kind;                 // LAMBERTIAN_SURFACE, MIRROR_SURFACE, GLASS_SURFACE
     float index_of_refraction; // glass only
 };

@@ -1,7 +1,7 @@
-// How light goes on at mirrors and glass. Included by kernels after backend/vector.glsl.
+// Reflection and refraction. Included by kernels after backend/vector.glsl.
 struct Fresnel {
-    float reflected; // share of the light that is reflected, 1 for total internal reflection
-    vec3 refracted;  // direction of the rest
+    float reflected; // reflectance; 1 for total internal reflection
+    vec3 refracted;  // direction of the refracted light
 };
 
 vec3 reflect_direction(vec3 d, vec3 normal)
@@ -9,7 +9,8 @@ vec3 reflect_direction(vec3 d, vec3 normal)
     return ray_at(d, normal, -2.0f * dot3(d, normal));
 }
 
-// Light of direction d meets a dielectric with this outward normal and index of refraction.
+// The Fresnel reflectance and the refracted direction for direction d at a dielectric with this outward normal and
+// index of refraction.
 Fresnel fresnel(vec3 d, vec3 normal, float index)
 {
     Fresnel f;
@@ -17,7 +18,7 @@ Fresnel fresnel(vec3 d, vec3 normal, float index)
     f.refracted = d;
     float incoming = -dot3(d, normal);
     bool entering = incoming > 0.0f;
-    float eta = entering ? 1.0f / index : index; // ratio of indices, this side over the other
+    float eta = entering ? 1.0f / index : index; // index on the side of the light, divided by that of the other side
     float cos_i = entering ? incoming : -incoming;
     cos_i = cos_i < 1.0f ? cos_i : 1.0f;
     precise float sin2_t = eta * eta * (1.0f - cos_i * cos_i);

@@ -1,4 +1,4 @@
-// True for a photon that leaves the surface it met.
+// True for a path that continues after this surface.
 #include <photongrid/trace/photon_event.glsl>
 
 struct Params {

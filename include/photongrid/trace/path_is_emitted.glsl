@@ -1,6 +1,6 @@
-// True for a path that begins before the photons asked for are stored: paths are emitted in id order until then.
+// True for a path that is needed: paths are emitted in id order until the requested number of photons is stored.
 struct Params {
-    uint wanted;
+    uint photons; // requested
 };
 PARAMS(Params)
 INPUT(0, uint, sums)     // storable photons of paths 0 to i
@@ -8,5 +8,5 @@ INPUT(1, uint, storable) // of path i
 
 bool holds(uint i)
 {
-    return sums(i) - storable(i) < args.wanted;
+    return sums(i) - storable(i) < args.photons;
 }

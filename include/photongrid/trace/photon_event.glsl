@@ -1,5 +1,5 @@
-// What happened to a photon path at one surface, as the w of its position in a frame: kind + 4 * end
-// + 32 * what it had met before.
+// A path's event at one surface, stored in the w of its position in a frame: kind of surface + 4 * end + 32 * surfaces
+// before.
 #ifndef PHOTONGRID_SHARED_IS_READ // backend/begin.hpp
 
 // Kinds of surface
@@ -7,15 +7,15 @@ const uint NO_SURFACE = 0u;
 const uint SPECULAR_SURFACE = 1u;
 const uint DIFFUSE_SURFACE = 2u;
 
-// How the path goes on
+// How the path continues or ends
 const uint GOES_ON = 0u;
 const uint ABSORBED = 1u;
-const uint ESCAPED = 2u;      // met nothing more: the paper's "invalid" mark (2.1)
-const uint CUT_OFF = 3u;      // alive at the deepest bounce allowed
+const uint ESCAPED = 2u;      // a miss: the paper's "invalid" mark (2.1)
+const uint CUT_OFF = 3u;      // reached the depth limit
 const uint NOT_A_NUMBER = 4u; // became NaN or infinite
 const uint ENDED_BEFORE = 5u;
 
-// What the path met on its way here: straight from a light; mirrors and glass only (a caustic photon); a diffuse surface
+// The surfaces that the path hit before: none; mirrors and glass only (a caustic photon); a diffuse surface
 const uint NOTHING_BEFORE = 0u;
 const uint SPECULAR_BEFORE = 1u;
 const uint DIFFUSE_BEFORE = 2u;

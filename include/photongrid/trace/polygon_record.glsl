@@ -1,5 +1,5 @@
-// A polygon's records, read by name: plane; edges, material, light + 1 (0: none), bound on rounding; for each edge its
-// half-space; for each vertex its place. Included by kernels after their scene buffer.
+// Accessors of a polygon's records: plane; edges, material, light + 1 (0: none), rounding error; a half-space per edge;
+// a position per vertex. Included by kernels after the scene buffer.
 vec4 polygon_plane(uint at)
 {
     return scene(at);
@@ -20,7 +20,7 @@ uint polygon_light(uint at)
 {
     return uint(scene(at + 1u).z) - 1u;
 }
-// Bounds the error of distances from the plane and the edges, m.
+// Error bound of distances from the plane and the edges, m.
 float polygon_error(uint at)
 {
     return scene(at + 1u).w;
@@ -30,12 +30,12 @@ vec4 polygon_edge(uint at, uint e)
 {
     return scene(at + 2u + e);
 }
-// Record of the first vertex; the others follow.
+// The record of the first vertex. The others follow it.
 uint polygon_vertices(uint at, uint edges)
 {
     return at + 2u + edges;
 }
-// Records of a polygon.
+// The number of records of a polygon.
 uint polygon_stride(uint edges)
 {
     return 2u + 2u * edges;

@@ -1,4 +1,4 @@
-// Who watches a render, and may cancel it.
+// Callbacks for the progress and the cancellation of a render.
 #pragma once
 
 #include <functional>
@@ -11,22 +11,22 @@ namespace photongrid {
 
 struct image;
 
-/// Thrown out of a render when observer::cancelled said so.
+/// Thrown by a render when render_observer::cancelled returns true.
 struct render_cancelled : std::runtime_error {
     /// "cancelled"
     render_cancelled() : std::runtime_error("cancelled") {}
 };
 
-/// Who watches a render. Any of these may be empty.
+/// Callbacks of a render. Each may be empty.
 struct render_observer {
     std::function<void(std::string_view stage, double fraction)>
         progress;                                   ///< "trace_photons", …; fraction of the stage, 0 to 1
     std::function<void(const image&)> intermediate; ///< the running estimate (3.4), after some passes
-    std::function<bool()> cancelled;                ///< asked between passes
+    std::function<bool()> cancelled;                ///< called between passes; true: stop
 };
 
 namespace detail {
-    /// Advances `work` until it is finished; after each pass calls `passed`.
+    /// Advances `work` until it is finished, and calls `passed` after each pass.
     /// \throws render_cancelled.
     template <class Work, class Passed>
     void run_to_end(Work& work, const render_observer& observer, Passed passed)

@@ -1,19 +1,19 @@
-// Where things stand in the scene buffer, which trace/device_scene.hpp writes. It begins with SCENE_TABLES records.
-// A kind of shape has a number below that: its SWITCH in kernels, the record of its table, and its name in Closest.
+// The layout of the scene buffer, which trace/device_scene.hpp writes. It begins with SCENE_TABLES records. Each kind
+// of shape has a number below that: its SWITCH in kernels, the record of its table, and Closest::kind.
 #ifndef PHOTONGRID_SHARED_IS_READ // backend/begin.hpp
 
 const uint SCENE_TABLES = 16u;
 const uint MATERIAL_TABLE = 4u; // no kind of shape has the numbers 4 to 7, the SWITCHes of materials and lights
-const uint SCENE_SIZES = 5u;    // x: what ray_offset adds for round shapes, m
+const uint SCENE_SIZES = 5u;    // x: what ray_offset adds for curved shapes, m
 const uint LIGHT_TABLE = 6u;
 const uint FIRST_MATERIAL = SCENE_TABLES; // materials come first, so that kernels need not look their table up
 const uint MATERIAL_RECORDS = 2u;
 
-// Shapes of one kind, or materials, or lights: they follow each other.
+// Consecutive shapes of one kind, materials, or lights.
 struct Table {
     uint first;  // record
     uint count;
-    uint stride; // records of each; 0: they differ in length
+    uint stride; // records per item; 0: lengths differ
 };
 
 inline Table table_of(vec4 record)
@@ -33,7 +33,7 @@ const uint GLASS_SURFACE = 2u;
 const uint NO_MATERIAL = 0xFFFFFFFFu; // of a light's surface
 const uint NO_SHAPE = 0xFFFFFFFFu;
 
-// The nearest shape so far.
+// The closest shape so far.
 struct Closest {
     float t;   // along the ray
     uint kind; // number of its kind, or NO_SHAPE
@@ -42,15 +42,15 @@ struct Closest {
 
 struct Hit {
     float t;        // along the ray; negative: nothing hit
-    uint material;  // NO_MATERIAL: a light's surface
-    uint light;     // which light, if so
+    uint material;  // NO_MATERIAL: surface of a light
+    uint light;     // number of that light
     vec3 position;
-    vec3 normal;    // geometric, unit, outward or as the shape was given
+    vec3 normal;    // geometric, unit; outward, or as the shape defines it
 };
 
-// How far off a surface a ray starts, so that the surface is behind it: a bound on what rounding makes of the distance
-// between them. 32 units in the last place of the coordinates' sum, and `round_share`, 32 of the size of the scene's
-// largest round shape (SCENE_SIZES).
+// The distance by which a ray's origin is offset from its surface: a bound on the rounding error of their distance. It
+// is 32 units in the last place of the sum of the coordinates, plus `round_share`, 32 units of the size of the scene's
+// largest curved shape (SCENE_SIZES).
 inline float ray_offset(vec3 p, float round_share)
 {
     precise float bound = (abs(p.x) + abs(p.y) + abs(p.z)) * 1.9073486328125e-6f + round_share;

@@ -1,6 +1,6 @@
-// Where stored photon i stands in the frames: photons are stored in the order of (path, bounce). Binary search for the path in
-// the running sums, then its r-th diffuse hit. Included by kernels after their inputs `sums` and `positions`; args: paths,
-// frames, and the photons of earlier batches.
+// The index in the frames of stored photon i. Photons are stored in the order of (path, bounce): a binary search in the
+// prefix sums finds the path, a loop its r-th diffuse hit. Included by kernels after their inputs `sums` and
+// `positions`; args: paths, frames, stored_before.
 uint stored_photon(uint i)
 {
     uint rank = i - args.stored_before;
@@ -13,7 +13,7 @@ uint stored_photon(uint i)
         else
             low = middle + 1u;
     }
-    // Count down from the path's last photon: sums(low) is one past it.
+    // Count down from the path's last photon, whose rank is sums(low) - 1.
     uint skip = sums(low) - 1u - rank;
     uint found = low;
     for (uint frame = args.frames - 1u; frame >= 2u; --frame) {

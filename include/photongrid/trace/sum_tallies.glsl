@@ -1,6 +1,6 @@
-// Adds up 16 neighbours: a tree of these sums any number of tallies.
+// Sums 16 consecutive tallies. Repeated passes sum any number of tallies.
 struct Params {
-    uint terms; // how many there are
+    uint terms; // number of tallies
 };
 PARAMS(Params)
 INPUT(0, uvec4, ends)

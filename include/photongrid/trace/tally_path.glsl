@@ -1,5 +1,5 @@
-// What became of path i, over all its frames: how it ended, and its diffuse hits. Photons that come straight from a light
-// (frame 1) are not stored, since direct light is computed with shadow rays.
+// Counts for path i, over all its frames: how it ended, and its diffuse hits. Photons straight from a light (frame 1)
+// are not stored, because direct light is computed by shadow rays.
 #include <photongrid/trace/photon_event.glsl>
 
 struct Params {
@@ -9,8 +9,8 @@ struct Params {
 PARAMS(Params)
 INPUT(0, vec4, positions)
 OUTPUT(0, uint, storable) // diffuse hits after the first surface
-OUTPUT(1, uvec4, ends)    // 1 for how it ended: absorbed, escaped, cut off, not a number
-OUTPUT(2, uvec4, hits)    // diffuse hits; of them straight from a light
+OUTPUT(1, uvec4, ends)    // a 1 for its end: absorbed, escaped, cut off, not a number
+OUTPUT(2, uvec4, hits)    // diffuse hits; those straight from a light
 
 void kernel(uint i)
 {

@@ -1,6 +1,6 @@
-// Photon tracing (section 2.1), breadth-first: all paths of a batch take one bounce a pass, each bounce into its own
-// frame of the photon texture. No pixel is read back: two counts a batch, by occlusion query, tell the host how far it
-// is.
+// Photon tracing (section 2.1), breadth-first: each pass traces one bounce of all paths of a batch into a new frame of
+// the photon texture. No pixels are read back: the host learns the progress from two counts per batch, by occlusion
+// query.
 #pragma once
 
 #include <photongrid/map/map_buffers.hpp>
@@ -25,20 +25,20 @@
 
 namespace photongrid {
 
-/// Sums over paths, one element each, still on the device.
+/// Sums over paths, on the device, in buffers of one element.
 template <backend B>
 struct path_tally {
     buffer_of<B, glm::uvec4> ends; ///< absorbed, escaped, cut off, invalid
-    buffer_of<B, glm::uvec4> hits; ///< diffuse hits, of them straight from a light
+    buffer_of<B, glm::uvec4> hits; ///< diffuse hits; those straight from a light
 };
 
-/// Photons stored, and what became of every path.
+/// The stored photons and the counts of all paths.
 template <backend B>
 struct traced_photons {
     photongrid::photons<B> photons;     ///< in the order of (path, bounce)
     std::uint64_t emitted = 0;          ///< paths, from the lights
-    std::uint64_t dropped = 0;          ///< diffuse hits of the last path beyond the photons asked for
-    std::vector<path_tally<B>> tallies; ///< one a batch of paths, of one element each
+    std::uint64_t dropped = 0;          ///< diffuse hits of the last path beyond the requested number of photons
+    std::vector<path_tally<B>> tallies; ///< one per batch of paths
 };
 
 namespace detail {
@@ -55,7 +55,7 @@ namespace detail {
         }
     };
 
-    /// The sums of the first `n` tallies.
+    /// Sums the first `n` tallies.
     template <backend B>
     path_tally<B> sum_tally(B& b, path_tally<B> t, uint n)
     {
@@ -83,7 +83,8 @@ namespace detail {
     }
 } // namespace detail
 
-/// Traces `paths` paths from id `first` on; returns the frames used. Asks now and then whether any path goes on.
+/// Traces `paths` paths from id `first` on, and returns the number of frames. Every 8 bounces it counts the paths that
+/// are still active, and stops if there are none.
 template <backend B>
 uint trace_batch(B& b, const device_scene<B>& s, detail::photon_frames<B>& f, uint paths, uint first,
     const render_settings& settings)
@@ -104,13 +105,13 @@ uint trace_batch(B& b, const device_scene<B>& s, detail::photon_frames<B>& f, ui
     return frame;
 }
 
-/// Photon tracing that can be stopped between batches: emits paths in id order until settings.photons photons are
-/// stored; photon order is (path, bounce). Each photon's power is the lights' power divided by the paths emitted.
-/// Positions' w is 1 for caustic photons (light_part). Normals are kept only where the leak policy asks for them.
+/// Photon tracing in batches, which can be interrupted between batches. It emits paths in id order until map.photons
+/// photons are stored, in the order of (path, bounce). The powers are divided by the number of emitted paths. Positions
+/// have w = 1 for caustic photons (light_part). Normals are stored only if the leak policy needs them.
 template <backend B>
 class photon_tracing {
 public:
-    /// Emits nothing yet. `device` must outlive it.
+    /// It traces nothing yet. `b` and `device` must outlive it.
     photon_tracing(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings)
         : b_(b), device_(device), settings_(settings), lights_(detail::light_names(s)),
           paths_(std::clamp(std::bit_ceil(settings.map.photons / 2 + 1), 1024u, 32768u)),
@@ -122,19 +123,20 @@ public:
             t_.photons.normals = make();
     }
 
-    /// True when all photons are stored.
+    /// Whether all photons are stored.
     bool finished() const { return stored_ == settings_.map.photons; }
-    /// Of the photons asked for, those that are stored.
+    /// The fraction of the requested photons that are stored.
     double fraction() const { return static_cast<double>(stored_) / settings_.map.photons; }
 
     /// Traces one more batch of paths.
-    /// \throws std::runtime_error when so few photons are stored that it would not end, naming the lights.
+    /// \throws std::runtime_error, with the names of the lights, if paths store so few photons that tracing would not
+    ///         end.
     void advance()
     {
         if (finished())
             return;
-        require_hope();
-        const uint wanted = settings_.map.photons - stored_;
+        require_progress();
+        const uint missing = settings_.map.photons - stored_;
         const uint frames = trace_batch(b_, device_, frames_, paths_, static_cast<uint>(t_.emitted), settings_);
 
         auto storable = b_.template make<uint>(paths_);
@@ -144,15 +146,14 @@ public:
         const auto sums = prefix_sums(b_, storable);
 
         const uint emitted
-            = detail::checked_count<kernels::path_is_emitted>(b_, paths_, {.wanted = wanted}, reads(sums, storable));
-        if (emitted == 0) // the first always is; believing it would mean tracing for ever
+            = detail::checked_count<kernels::path_is_emitted>(b_, paths_, {.photons = missing}, reads(sums, storable));
+        if (emitted == 0) // the first path always is; otherwise tracing would never end
             throw backend_error(b_.caps().backend + ": count<path_is_emitted>: the device returned 0; at least 1 of "
                 + std::to_string(paths_) + " paths is emitted");
-        // No path stores more photons than it takes bounces, and the last of these is the first to have stored what is
-        // wanted.
+        // A path stores at most one photon per bounce, and only the last of these paths exceeds the requested number.
         const auto found = detail::checked_count<kernels::is_found>(
-            b_, std::size_t{wanted} + settings_.map.photon_depth, {.emitted = emitted}, reads(sums));
-        const uint taken = std::min(found, wanted);
+            b_, std::size_t{missing} + settings_.map.photon_depth, {.emitted = emitted}, reads(sums));
+        const uint taken = std::min(found, missing);
         b_.template run<kernels::gather_photon>({taken, stored_},
             {.paths = paths_, .frames = frames, .stored_before = stored_},
             reads(sums, frames_.positions, frames_.powers, frames_.directions),
@@ -171,32 +172,33 @@ public:
                 {.share = 1.0f / static_cast<float>(t_.emitted)}, reads(), writes(t_.photons.powers));
     }
 
-    /// The photons, once finished.
+    /// The photons, after tracing has finished.
     traced_photons<B> take() { return std::move(t_); }
 
 private:
-    void require_hope() const
+    void require_progress() const
     {
         const std::uint64_t most_paths
             = std::min<std::uint64_t>(std::uint64_t{settings_.map.photons} * 4096 + (1u << 20), 0xFFFF0000u);
         if (t_.emitted >= most_paths || (stored_ == 0 && t_.emitted >= (1u << 22)))
             throw std::runtime_error("trace_photons: " + std::to_string(t_.emitted) + " paths from " + lights_
                 + " stored " + std::to_string(stored_) + " of the " + std::to_string(settings_.map.photons)
-                + " photons asked for. Stored are diffuse hits that come not straight from a light: does the light "
-                  "reach a mirror, glass, or a second diffuse surface?");
+                + " photons requested. Only indirect light is stored: check that the lights reach a mirror, glass, or "
+                  "a "
+                  "second diffuse surface");
     }
 
     B& b_;
     const device_scene<B>& device_;
     render_settings settings_;
     std::string lights_;
-    uint paths_; // a batch
+    uint paths_; // per batch
     detail::photon_frames<B> frames_;
     traced_photons<B> t_;
     uint stored_ = 0;
 };
 
-/// Traces photons to the end (photon_tracing).
+/// Traces all photons (photon_tracing).
 /// \throws std::runtime_error as photon_tracing::advance does, render_cancelled.
 template <backend B>
 traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings,
@@ -210,7 +212,7 @@ traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& dev
     return tracing.take();
 }
 
-/// The account of all paths and hits, `stored` of which are in the map; reads the tallies back.
+/// The counts of all paths and hits, `stored` of which are in the map. Reads the tallies back.
 template <backend B>
 photon_stats count_photons(B& b, const traced_photons<B>& t, std::uint64_t stored)
 {

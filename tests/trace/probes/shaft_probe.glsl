@@ -23,8 +23,8 @@ void kernel(uint i)
     vec3 u = vec3(edges_u(i));
     vec3 v = vec3(edges_v(i));
     precise vec3 ray = ray_at(ray_at(corner, u, points(i).w), v, corners(i).w) - from;
-    precise float reach = sqrt(dot3(ray, ray));
-    precise vec3 d = ray / reach;
+    precise float far = sqrt(dot3(ray, ray));
+    precise vec3 d = ray / far;
     Candidates c = shaft(from, corner, u, v);
-    answer = uvec4(occluded(from, d, reach, c) ? 1u : 0u, occluded(from, d, reach, everything()) ? 1u : 0u, c.polygons, c.spheres);
+    answer = uvec4(occluded(from, d, far, c) ? 1u : 0u, occluded(from, d, far, everything()) ? 1u : 0u, c.polygons, c.spheres);
 }

@@ -1,19 +1,19 @@
-// Closed boxes in any position. Records: u, v, w, unit axes at right angles, each with half the box's length along it;
+// Closed boxes in any orientation. Records: u, v, w: orthogonal unit axes, each with half the box's length along it;
 // center, material.
 SWITCH(8, BOXES)
 const uint BOX = 8u;
 
-// Where a ray is between the planes of all three pairs of faces, if it ever is: from enter to leave, enter <= leave.
+// The interval in which a ray is between the planes of all three pairs of faces: enter to leave; empty if enter >
+// leave.
 struct Passage {
-    float enter; // along the ray; through a face of the axis with this number ...
+    float enter; // distance along the ray; through a face of this axis ...
     float leave;
     uint enter_axis;
     uint leave_axis; // ... and this one
 };
 
-// Slabs (Kay and Kajiya, Ray Tracing Complex Scenes, 1986). A ray from inside always leaves: each interval holds 0, and
-// so does what they have in common. A ray past an edge is judged by the same numbers for both faces: nothing slips
-// between.
+// Slabs (Kay and Kajiya, Ray Tracing Complex Scenes, 1986). From inside, every interval contains 0, so the intersection
+// does too and the ray always leaves. Near an edge both faces use the same numbers, so no ray slips through.
 Passage box_passage(uint at, vec3 o, vec3 d)
 {
     precise vec3 f = o - vec3(scene(at + 3u));
@@ -24,14 +24,14 @@ Passage box_passage(uint at, vec3 o, vec3 d)
     p.leave_axis = 0u;
     for (uint axis = 0u; axis < 3u; ++axis) {
         vec4 a = scene(at + axis);
-        float place = dot3(f, vec3(a));
+        float coordinate = dot3(f, vec3(a));
         float slope = dot3(d, vec3(a));
-        // Along the faces: between them all the way, or nowhere.
-        float begins = abs(place) <= a.w ? -3.0e38f : 3.0e38f;
+        // A ray parallel to the faces is between them everywhere or nowhere.
+        float begins = abs(coordinate) <= a.w ? -3.0e38f : 3.0e38f;
         float ends = -begins;
         if (slope != 0.0f) {
-            precise float low = (-a.w - place) / slope;
-            precise float high = (a.w - place) / slope;
+            precise float low = (-a.w - coordinate) / slope;
+            precise float high = (a.w - coordinate) / slope;
             begins = slope > 0.0f ? low : high;
             ends = slope > 0.0f ? high : low;
         }
@@ -70,9 +70,9 @@ Closest closest_box(vec3 o, vec3 d, Closest c)
     return c;
 }
 
-// The face is that which the ray passes, even where rounding puts the point nearer to another: only there it is sure
-// that the normal faces the ray from outside, and away from it inside. The point is moved onto that face and away from
-// the others, so that what leaves from it starts on the right side of all.
+// Chooses the face that the ray passes through, even if by rounding the point is closer to another: only for that face
+// the normal is sure to point against a ray from outside, and along a ray from inside. The point is moved onto that
+// face and away from the others, so that rays from it start on the right side of all faces.
 Hit box_surface(uint at, vec3 o, vec3 d, Hit hit)
 {
     Passage p = box_passage(at, o, d);
@@ -83,15 +83,15 @@ Hit box_surface(uint at, vec3 o, vec3 d, Hit hit)
     for (uint axis = 0u; axis < 3u; ++axis) {
         vec4 a = scene(at + axis);
         precise vec3 f = hit.position - vec3(middle);
-        float place = dot3(f, vec3(a));
+        float coordinate = dot3(f, vec3(a));
         precise float inner = a.w > off ? a.w - off : 0.0f;
-        float wanted = place < -inner ? -inner : place > inner ? inner : place;
+        float target = coordinate < -inner ? -inner : coordinate > inner ? inner : coordinate;
         if (axis == face) {
-            bool along = dot3(d, vec3(a)) > 0.0f;
-            hit.normal = along == enters ? -vec3(a) : vec3(a);
-            wanted = along == enters ? -a.w : a.w;
+            bool same_way = dot3(d, vec3(a)) > 0.0f;
+            hit.normal = same_way == enters ? -vec3(a) : vec3(a);
+            target = same_way == enters ? -a.w : a.w;
         }
-        precise float by = wanted - place;
+        precise float by = target - coordinate;
         hit.position = ray_at(hit.position, vec3(a), by);
     }
     hit.material = uint(middle.w);

@@ -1,4 +1,4 @@
-// Planes, for the flat shapes.
+// Planes, for disks and polygons.
 
 // Distance to a plane, or `far`.
 float hit_plane(vec4 plane, vec3 o, vec3 d, float far)
@@ -10,7 +10,7 @@ float hit_plane(vec4 plane, vec3 o, vec3 d, float far)
     return t > 0.0f && t < far ? t : far;
 }
 
-// The foot of p on a plane: along a long ray, p lies off it by the rounding of t.
+// Projects p onto a plane: after a long ray, p lies off the plane by the rounding of t.
 vec3 onto_plane(vec4 plane, vec3 p)
 {
     precise float above = dot3(vec3(plane), p) - plane.w;

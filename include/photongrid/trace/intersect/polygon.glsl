@@ -2,10 +2,10 @@
 SWITCH(3, POLYGONS)
 const uint POLYGON = 3u;
 
-// Does the ray pass a convex polygon on the side of its vertices' images that the polygon is on? The images, along the
-// ray, are one rounding of each vertex, and the comparisons of products are exact, so that of two polygons with a
-// common edge or vertex at least one is hit. Returns the distance along the ray, kept between the nearest and the
-// farthest vertex. After Woop, Benthin and Wald, Watertight Ray/Triangle Intersection, JCGT 2(1), 2013.
+// Watertight test: projects the vertices along the ray and tests whether the ray is inside the projected polygon. Each
+// vertex is rounded once, and the comparisons of products are exact, so that of two polygons with a common edge or
+// vertex at least one is hit. Returns the distance along the ray, clamped to those of the nearest and the farthest
+// vertex. After Woop, Benthin and Wald, Watertight Ray/Triangle Intersection, JCGT 2(1), 2013.
 float hit_at_edge(uint vertices, uint edges, vec3 o, vec3 d, float plane_t, float far)
 {
     vec3 u = from_basis(vec3(1.0f, 0.0f, 0.0f), d);
@@ -30,16 +30,16 @@ float hit_at_edge(uint vertices, uint edges, vec3 o, vec3 d, float plane_t, floa
         x0 = x;
         y0 = y;
     }
-    if (left == right) // outside, or seen edge on
+    if (left == right) // outside, or seen edge-on
         return far;
     float t = plane_t < nearest ? nearest : plane_t;
     t = t > farthest ? farthest : t;
     return t > 0.0f && t < far ? t : far;
 }
 
-// A convex polygon: its plane, then one half-space an edge. Edges lie outside the polygon by a hair (the margin is in
-// their offsets), so that no ray slips between a polygon and what it stands on. Where rounding, larger at grazing
-// incidence, leaves open whether an edge is passed inside, its end points decide.
+// Intersects the plane, then tests one half-space per edge. The half-spaces are larger than the polygon by a small
+// margin, so that no ray slips between a polygon and an adjoining shape. If rounding, which is larger at grazing
+// incidence, leaves it open on which side of an edge the ray passes, hit_at_edge decides.
 float hit_polygon(uint at, uint edges, vec3 o, vec3 d, float far)
 {
     vec4 plane = polygon_plane(at);
@@ -48,7 +48,7 @@ float hit_polygon(uint at, uint edges, vec3 o, vec3 d, float far)
         return far;
     precise float t = (plane.w - dot3(vec3(plane), o)) / slope;
     bool in_reach = t > 0.0f && t < far;
-    if (!in_reach && abs(slope) > 0.001f) // t may be far off at grazing incidence
+    if (!in_reach && abs(slope) > 0.001f) // at grazing incidence t may have a large error
         return far;
     vec3 p = ray_at(o, d, t);
     bool open = false;
@@ -96,7 +96,7 @@ Hit polygon_surface(uint at, Hit hit)
     return hit;
 }
 
-// Of the polygons, those of `candidates` are asked (shaft in trace/intersect.glsl).
+// Tests the polygons of `candidates` (shaft in trace/intersect.glsl).
 bool polygons_block(vec3 o, vec3 d, float far, uint candidates)
 {
     Table polygons = table_of(scene(POLYGON));
@@ -110,7 +110,7 @@ bool polygons_block(vec3 o, vec3 d, float far, uint candidates)
     return false;
 }
 
-// Not a polygon that has the point and the parallelogram on one side, farther away than rounding.
+// All polygons except those whose plane has the point and the parallelogram clearly on one side.
 uint polygons_in_shaft(vec3 from, vec3 corner, vec3 edge_u, vec3 edge_v)
 {
     uint candidates = 0u;

@@ -1,5 +1,5 @@
-// Quadrics about an axis: x^2 + y^2 + A z^2 + B z + C = 0 for 0 <= z <= height in a frame of their own. Cylinders,
-// cones and the rest of scene/quadric.hpp. Records: base, height; u, A; v, B; w, C, the frame's axes; material.
+// Quadrics about an axis: x^2 + y^2 + A z^2 + B z + C = 0 for 0 <= z <= height in their own frame: cylinders, cones and
+// paraboloids (scene/quadric.hpp). Records: base, height; u, A; v, B; w, C, with the frame's axes u, v, w; material.
 SWITCH(1, QUADRICS)
 const uint QUADRIC = 1u;
 
@@ -13,7 +13,7 @@ float hit_quadric(uint at, vec3 o, vec3 d, float far)
     vec3 f = o - vec3(base);
     vec3 p = vec3(dot3(f, vec3(u)), dot3(f, vec3(v)), dot3(f, vec3(w)));
     vec3 q = vec3(dot3(d, vec3(u)), dot3(d, vec3(v)), dot3(d, vec3(w)));
-    // Start from the closest approach to the shape's middle.
+    // Start from the point of the ray that is closest to the shape's centre.
     float shift = -dot3(vec3(p.x, p.y, p.z - 0.5f * height), q);
     p = ray_at(p, q, shift);
     precise float a = q.x * q.x + q.y * q.y + u.w * q.z * q.z;
@@ -24,7 +24,7 @@ float hit_quadric(uint at, vec3 o, vec3 d, float far)
         return far;
     precise float root = sqrt(disc);
     precise float k = b > 0.0f ? -(b + root) : root - b;
-    // The two solutions; a ray along the surface's asymptote has only the second.
+    // The two solutions. A ray parallel to the asymptote has only the second.
     float t0 = far;
     float t1 = far;
     if (abs(a) > 1e-12f)
@@ -72,7 +72,7 @@ Hit quadric_surface(uint at, Hit hit)
     precise float value = p.x * p.x + p.y * p.y + (u.w * p.z + v.w) * p.z + w.w;
     precise vec3 n = vec3(u) * gradient.x + vec3(v) * gradient.y + vec3(w) * gradient.z;
     hit.normal = steepness > 0.0f ? normalized3(n) : vec3(w); // a cone's apex has no gradient
-    // One step of Newton's back onto the surface, where the surface is flat on the step's scale.
+    // One Newton step onto the surface, if the surface is nearly flat at the scale of the step.
     precise float newton = -0.5f * value / steepness;
     if (abs(value) < steepness)
         hit.position = ray_at(hit.position, n, newton);

@@ -2,9 +2,10 @@
 SWITCH(0, SPHERES)
 const uint SPHERE = 0u;
 
-// Closest approach first: the rest is small near it, so nothing cancels (Haines et al., Ray Tracing Gems, 2019, ch. 7),
-// unless the chord reaches near the origin or past it. There one root, `far_root`, has terms of one sign, and the other
-// follows from the product of both, |f|^2 - r^2 in factors; the sign of the product says whether the ray starts inside.
+// Computes from the point of closest approach, which avoids cancellation (Haines et al., Ray Tracing Gems, 2019, ch.
+// 7), unless the ray starts near the sphere or inside it. Then one root, `far_root`, is a sum of terms of equal sign,
+// and the other follows from the product of the roots, |f|^2 - r^2 in factors, whose sign says whether the ray starts
+// inside.
 float hit_sphere(uint at, vec3 o, vec3 d, float far)
 {
     vec4 s = scene(at);
@@ -48,12 +49,12 @@ Hit sphere_surface(uint at, Hit hit)
 {
     vec4 s = scene(at);
     hit.normal = normalized3(hit.position - vec3(s));
-    hit.position = ray_at(vec3(s), hit.normal, s.w); // back onto the surface
+    hit.position = ray_at(vec3(s), hit.normal, s.w); // onto the surface
     hit.material = uint(scene(at + 1u).x);
     return hit;
 }
 
-// Of the spheres, those of `candidates` are asked (shaft in trace/intersect.glsl).
+// Tests the spheres of `candidates` (shaft in trace/intersect.glsl).
 bool spheres_block(vec3 o, vec3 d, float far, uint candidates)
 {
     Table spheres = table_of(scene(SPHERE));
@@ -66,7 +67,7 @@ bool spheres_block(vec3 o, vec3 d, float far, uint candidates)
     return false;
 }
 
-// Not a sphere that is farther from the line to the parallelogram's middle than both radii together.
+// All spheres except those that are farther from the line to the parallelogram's centre than both radii together.
 uint spheres_in_shaft(vec3 from, vec3 corner, vec3 edge_u, vec3 edge_v)
 {
     uint candidates = 0u;

@@ -1,4 +1,4 @@
-// True where more photons were destined for a cell than it has slots.
+// True for a cell that received more photons than it has slots.
 struct Params {
     uint capacity;
 };

@@ -1,4 +1,4 @@
-// Element i of a photon map: the photon whose id stands at place i of its list; zero where none does.
+// Attribute i of a photon map: that of the photon whose id is entry i of the list; zero if the entry is empty.
 struct Params {
     uint photons; // ids are below this
 };

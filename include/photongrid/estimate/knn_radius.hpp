@@ -1,5 +1,5 @@
-// How far the photons of an estimate or a list reach: to each point's k-th nearest (exact_k), or to a given radius
-// (fixed_radius). A bounded amount of work a pass.
+// The radius of an estimate or a list of neighbours: the distance of each point's k-th nearest photon (exact_k), or a
+// given radius (fixed_radius). Work per pass is bounded.
 //
 //     exact_k:      kth_guess -> kth_distance -> kth_result -> kth_tie
 //     fixed_radius: given_radius
@@ -16,13 +16,13 @@
 
 namespace photongrid {
 
-/// The reach of many points' photons, that can be advanced and advanced again. Those that count lie nearer than the
-/// radius, or at it with an id no larger than the last one.
+/// The search for the radius of many points, which advances step by step. The photons that count are nearer than the
+/// radius, or at the radius with an id up to the last one.
 template <backend B>
-class knn_reach {
+class knn_radius {
 public:
-    /// Of which search is in `in`, not at_least_k.
-    explicit knn_reach(const detail::search_inputs<B>& in) : in_(in)
+    /// `in.s.search` must be exact_k or fixed_radius.
+    explicit knn_radius(const detail::search_inputs<B>& in) : in_(in)
     {
         if (in_.s.search == search_kind::exact_k) {
             start_distances();
@@ -34,7 +34,7 @@ public:
             in_.points->size(), {.radius2 = in_.max_radius2()}, reads(), writes(radius, chosen));
     }
 
-    /// Runs at most `passes` more passes over the points not yet done.
+    /// Runs at most `passes` more passes over the points that are not done.
     progress advance(uint passes = nowhere)
     {
         return detail::run_stages(
@@ -44,13 +44,13 @@ public:
     /// True when the radius of every point is known.
     bool finished() const { return stage_ == stage::finished; }
 
-    /// Per point, y: photons looked at so far.
+    /// Per point, y: photons visited so far.
     const buffer_of<B, glm::uvec4>& visited() const { return stage_ == stage::distance ? tally_ : chosen; }
 
     buffer_of<B, glm::vec4>
-        radius{}; ///< once finished: x: squared radius, m^2; y: 1 where a photon set it, 0 where it was given
+        radius{}; ///< once finished: x: squared radius, m^2; y: 1 if a photon set it, 0 if it was given
     buffer_of<B, glm::uvec4>
-        chosen{}; ///< photons within; photons visited; the last id that counts at the radius itself
+        chosen{}; ///< photons within the radius; photons visited; the last id that counts at the radius
 
 private:
     enum class stage { distance, tie, finished };
@@ -66,7 +66,7 @@ private:
         tally_ = in_.template make<glm::uvec4>();
         in_.b->template run<kernels::kth_guess>({in_.points->size(), 0u, in_.template together<kernels::kth_guess>()},
             {.grid = in_.map->cells_of,
-                .wanted = in_.s.k,
+                .k = in_.s.k,
                 .max_radius2 = in_.max_radius2(),
                 .rows = 1023u,
                 .searching = in_.searching() ? 1u : 0u},
@@ -79,7 +79,7 @@ private:
         chosen = in_.template make<glm::uvec4>();
         auto ids = in_.template make<glm::uvec4>();
         in_.b->template run<kernels::kth_result>(in_.points->size(),
-            {.wanted = in_.s.k, .photons = in_.map->photons.size(), .max_radius2 = in_.max_radius2()},
+            {.k = in_.s.k, .photons = in_.map->photons.size(), .max_radius2 = in_.max_radius2()},
             reads(bracket_, tally_), writes(radius, chosen, ids, counts_, cursor_));
         bracket_ = std::move(ids);
         pivots_ = {};
@@ -104,7 +104,7 @@ private:
                 {in_.points->size(), 0u, in_.policies() | in_.template together<kernels::kth_distance>()},
                 {.grid = m.cells_of,
                     .leaks = in_.leaks(),
-                    .wanted = s.k,
+                    .k = s.k,
                     .max_radius2 = in_.max_radius2(),
                     .visits = s.visits_per_pass,
                     .ranges = s.ranges_per_pass},
@@ -115,7 +115,7 @@ private:
             {in_.points->size(), 0u, in_.policies() | in_.template together<kernels::kth_tie>()},
             {.grid = m.cells_of,
                 .leaks = in_.leaks(),
-                .wanted = s.k,
+                .k = s.k,
                 .photons = m.photons.size(),
                 .visits = s.visits_per_pass,
                 .ranges = s.ranges_per_pass},
@@ -126,7 +126,7 @@ private:
 
     detail::search_inputs<B> in_;
     stage stage_ = stage::finished;
-    // States; each stage holds its own and gives up the last one's.
+    // States. Each stage has its own and releases those of the stage before.
     buffer_of<B, glm::vec4> pivots_;
     buffer_of<B, glm::uvec4> counts_, outer_, bracket_, cursor_, tally_;
 };
