@@ -38,7 +38,7 @@ public:
     /// \name The verbs of a backend, as backend.hpp describes them
     /// @{
 
-    /// As the concept photongrid::backend says.
+    /// See the concept photongrid::backend.
     template <element T>
     buffer<T> make(std::size_t n)
     {

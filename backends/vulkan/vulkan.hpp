@@ -36,8 +36,8 @@ public:
         /// \name A buffer's members, the same on every backend
         /// @{
 
-        /// A buffer holds size() elements T. It is moved, never copied; one that was moved from, or made by default, is
-        /// empty.
+        /// A buffer has size() elements T. It can be moved but not copied. A moved-from or default-constructed buffer
+        /// is empty.
         using value_type = T;
         buffer() = default;
         buffer(buffer&& other) noexcept : memory_(std::move(other.memory_)), n_(std::exchange(other.n_, 0)) {}
@@ -66,8 +66,8 @@ public:
     };
 
 private:
-    // First, since clang wants to know what `auto` is.
-    /// Whether a buffer is this backend's, for check_call.
+    // Defined before its uses, because its return type is deduced.
+    /// Whether a buffer belongs to this backend, for check_call.
     auto owns() const
     {
         return [this](const auto& b) { return !b.memory_ || b.memory_->is_of(*context_); };
@@ -104,7 +104,7 @@ public:
     /// \name The verbs of a backend, as backend.hpp describes them: buffers
     /// @{
 
-    /// As the concept photongrid::backend says.
+    /// See the concept photongrid::backend.
     template <element T>
     buffer<T> make(std::size_t n)
     {
@@ -197,7 +197,7 @@ public:
     /// \name The verbs of a backend, as backend.hpp describes them: passes
     /// @{
 
-    /// As the concept photongrid::backend says.
+    /// See the concept photongrid::backend.
     template <gather_kernel K, class Reads, class Writes>
     void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
     {
@@ -599,6 +599,6 @@ static_assert(backend<vulkan_backend>);
 
 } // namespace photongrid
 
-// Declared wherever the backend is, so that no two files of a program can take different ways.
+// Declared with the backend, so that all files of a program use the same overrides.
 #include <photongrid/backends/vulkan/overrides/bitonic_sort.hpp>
 #include <photongrid/backends/vulkan/overrides/trace_batch.hpp>

@@ -274,8 +274,7 @@ inline void check(const render_settings& s)
     for_each_setting([&](const auto& row) { row.values.check(row.name, row.of(s)); });
     detail::require(s.estimate.edges == edge_correction::none || s.estimate.leaks.min_cosine > 0,
         "edge_correction: photons of adjoining walls would count, though their area does not; it needs the leak policy "
-        "min_cosine "
-        "above 0, for example 0.5 (or edge_correction none)");
+        "min_cosine above 0, for example 0.5 (or edge_correction none)");
 }
 
 } // namespace photongrid
