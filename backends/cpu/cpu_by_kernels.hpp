@@ -196,8 +196,8 @@ public:
     const std::map<std::string, kernel_cost>& costs() const { return costs_; }
     /// @}
 
-    // --- for overrides
-    // ------------------------------------------------------------------------------------------------
+    // For overrides.
+
     /// The threads that passes run on, the caller's among them.
     cpu::pool& threads() { return pool_; }
 
