@@ -23,7 +23,7 @@ namespace {
     void give_way()
     {
         (void)::setpriority(
-            PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 5); // of one thread, on Linux; it may be refused
+            PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 5); // of one thread, on Linux; it may fail
     }
 } // namespace
 

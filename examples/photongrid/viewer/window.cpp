@@ -101,7 +101,7 @@ namespace {
         double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
     };
 
-    /// Where a part of the scene stands in the picture; nothing where some of it is behind the camera.
+    /// The outline of a part of the scene in the picture; empty if some of it is behind the camera.
     std::optional<frame_box> box_of(const scene& s, const scene_part& part, double width, double height)
     {
         bounds b;
@@ -507,7 +507,7 @@ namespace {
             bool side = s.estimate.leaks.side;
             if (ImGui::Checkbox("side", &side))
                 change("side", [&](render_settings& r) { r.estimate.leaks.side = side; });
-            tip("Refuse photons that came from behind a surface. Speed: hardly any. Error: no light leaks through "
+            tip("Reject photons that came from behind a surface. Speed: hardly any. Error: no light leaks through "
                 "walls.");
             measure(setting_table::exposure, "exposure, EV", -10, 10, "%+.1f", false,
                 "Brightness of the screen and of saved PNGs (E, e). Draws nothing anew.");
