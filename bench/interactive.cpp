@@ -1,5 +1,5 @@
 // How soon a change is seen (section 3.4): the Cornell box with the paper's settings, camera and lamp moved again and
-// again, in the loop that the window and the program use. Exit status 1 when a row misses what is wanted of it:
+// again, in the loop that the window and the program use. Exit status 1 when a row misses its target:
 // docs/reference/measures.md.
 //
 //   interactive SCENE.json [REPETITIONS [BACKEND...]]      BACKEND: cpu (default), serial, vulkan or gl

@@ -4,7 +4,7 @@
 #
 #   bench/write_measures.sh MEASURED [PAGE]      PAGE: docs/reference/measures.md
 set -euo pipefail
-measured=${1:?"the output of bench/run.sh is wanted"} page=${2:-$(dirname "${BASH_SOURCE[0]}")/../docs/reference/measures.md}
+measured=${1:?"give the output of bench/run.sh as the first argument"} page=${2:-$(dirname "${BASH_SOURCE[0]}")/../docs/reference/measures.md}
 written=$(mktemp)
 trap 'rm -f "$written"' EXIT
 awk '

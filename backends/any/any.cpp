@@ -6,7 +6,7 @@ namespace photongrid {
 
 namespace any {
     namespace {
-        /// Backends that this source tree has, and what a build without them lacks.
+        /// All backends, and the packages and options that a build without them lacks.
         struct known_backend {
             const char* name;
             const char* lacks;
@@ -29,7 +29,7 @@ namespace any {
         }
         std::string not_built(const known_backend& b)
         {
-            return std::string(b.name) + ": this photongrid was built without it; install " + b.lacks;
+            return std::string(b.name) + ": photongrid was built without it; install " + b.lacks;
         }
     } // namespace
 
@@ -70,8 +70,7 @@ std::unique_ptr<renderer> make_renderer(const renderer_options& asked)
             throw backend_error(any::not_built(b));
         names += std::string(", ") + b.name;
     }
-    throw std::invalid_argument(
-        "make_renderer: backend: no backend is called \"" + o.backend + "\"; there are " + names);
+    throw std::invalid_argument("make_renderer: backend: there is no backend \"" + o.backend + "\"; use " + names);
 }
 
 std::vector<device_report> find_devices()
@@ -81,7 +80,7 @@ std::vector<device_report> find_devices()
         const auto* e = any::find(b.name);
         if (!e)
             all.push_back({.backend = b.name, .description = any::not_built(b)});
-        else if (e->names.front() == b.name) // one that has several names reports on all
+        else if (e->names.front() == b.name) // an entry with several names reports on all of them
             for (auto& d : e->devices())
                 all.push_back(std::move(d));
     }

@@ -1,5 +1,5 @@
-// What the chooser knows of each backend. One file per backend defines its entry, so that the renderer is compiled for
-// each apart; CMake lists the entries of those that are built.
+// The entry of a backend for make_renderer. Each backend has a file that defines its entry, so that renderers are
+// compiled separately; CMake generates the list of entries that are built.
 #pragma once
 
 #include <photongrid/backends/any/any.hpp>
@@ -9,12 +9,12 @@
 
 namespace photongrid::any {
 
-/// A backend's way in.
+/// The entry of a backend.
 struct backend_entry {
-    std::vector<std::string> names; ///< by which renderer_options asks for it
+    std::vector<std::string> names; ///< its names in renderer_options
     std::unique_ptr<renderer> (*make)(const renderer_options&);
     std::vector<device_report> (*devices)();
-    /// The device that "auto" should take, where there is one that is no CPU; null for a backend that never has.
+    /// The hardware device that "auto" should use, if there is one; null for a backend that has none.
     std::optional<std::string> (*hardware)();
 };
 
@@ -23,10 +23,10 @@ backend_entry cpu_entry();
 backend_entry gl_entry();
 backend_entry vulkan_entry();
 
-/// Those that are built; CMake makes its file.
+/// The backends that are built, in a file that CMake generates.
 std::span<const backend_entry> built_backends();
 
-/// A device's limits in words.
+/// Describes a device's limits.
 std::string limits(const capabilities& c);
 
 } // namespace photongrid::any

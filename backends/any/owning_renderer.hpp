@@ -8,7 +8,7 @@
 
 namespace photongrid::any {
 
-/// Constructed before the renderer that refers to it.
+/// A base class, so that the backend is constructed before the renderer that refers to it.
 template <class B>
 struct backend_holder {
     B held;

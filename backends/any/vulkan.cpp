@@ -14,7 +14,7 @@ namespace {
     std::optional<std::string> hardware()
     {
         try {
-            // In the order of the driver; a discrete device before any other.
+            // The first discrete device, else the first hardware device.
             std::optional<std::string> found;
             for (const auto& d : vulkan_devices())
                 if (!d.software && d.unusable.empty() && (!found || d.type == "discrete")) {

@@ -1,4 +1,4 @@
-// photongrid::cpu_compiled: what cpu.hpp defines in headers, compiled once.
+// photongrid::cpu_compiled: the definitions of cpu.hpp, compiled once.
 #include <photongrid/backends/cpu/cpu_backend.hpp>
 #include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>
 #include <photongrid/backends/cpu/overrides/grid_index.hpp>

@@ -1,10 +1,10 @@
-// The cpu backend: kernels on as many threads as the caller wants, with sorting, building maps and searching by SIMD
-// and other algorithms. Slow to compile, since it is compiled for several instruction sets: include it in one file of a
-// program, or link photongrid::cpu_compiled.
+// The cpu backend: runs kernels on any number of threads, and sorts, builds maps and searches by its own SIMD code. It
+// is compiled for several instruction sets and therefore slow to compile: include it in one file of a program, or link
+// photongrid::cpu_compiled.
 #pragma once
 
 #include <photongrid/backends/cpu/cpu_backend.hpp>
-#if !defined(PHOTONGRID_CPU_COMPILED) // else the library has them
+#if !defined(PHOTONGRID_CPU_COMPILED) // otherwise they are in the library
 #include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>
 #include <photongrid/backends/cpu/overrides/grid_index.hpp>
 #include <photongrid/backends/cpu/overrides/knn_grid_estimate.hpp>

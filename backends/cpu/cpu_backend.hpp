@@ -1,5 +1,5 @@
-// The type cpu_backend, and what is declared for it: whoever sees the type sees these declarations, so that no two
-// files of a program can take different ways. Include cpu.hpp, which defines them.
+// The type cpu_backend and the declarations of its overrides. They are in one header, so that all files of a program
+// use the same overrides. Include cpu.hpp, which defines them.
 #pragma once
 
 #include <photongrid/backends/cpu/cpu_by_kernels.hpp>
@@ -11,17 +11,17 @@
 
 namespace photongrid {
 
-// The type has another name in programs that link photongrid::cpu_compiled, so that what the library has compiled and
-// what a file compiles for itself are never taken for one another: they do not link.
+// The type is in another namespace in programs that link photongrid::cpu_compiled, so that a program cannot mix the
+// library's code with code that it compiles itself: that does not link.
 #if defined(PHOTONGRID_CPU_COMPILED)
 inline namespace compiled {
 #else
 inline namespace header_only {
 #endif
-    /// Threads and SIMD. Sorting, building maps and searching have algorithms of their own here (overrides/), with the
-    /// same results as the kernels'; all else runs by kernels. One thread at a time drives a cpu_backend and its
-    /// buffers. Results do not depend on how many threads it uses. Up to 128 MiB of memory that buffers gave back are
-    /// kept for the next ones, and are not counted in bytes().
+    /// Threads and SIMD. It sorts, builds maps and searches by its own algorithms (overrides/), with the same results
+    /// as the kernels, and runs kernels for everything else. One thread at a time may use a cpu_backend and its
+    /// buffers. Results do not depend on the number of threads. It keeps up to 128 MiB of freed memory for new buffers,
+    /// which bytes() does not count.
     /// \headerfile backends/cpu/cpu.hpp <photongrid/backends/cpu/cpu.hpp>
     /// \snippet snippets_cpu.cpp cpu_backend
     class cpu_backend : public cpu_by_kernels {
@@ -35,8 +35,8 @@ static_assert(backend<cpu_backend>);
 sort_report bitonic_sort(cpu_backend& b, cpu_backend::buffer<glm::uvec2>& pairs);
 cpu_backend::buffer<glm::uvec2> grid_index(cpu_backend& b, const cpu_backend::buffer<glm::uvec2>& pairs, uint cells);
 map_buffers<cpu_backend> sorted_map(cpu_backend& b, photons<cpu_backend> p, const grid& g, uint parts = every_part);
-/// Finds the same photons as the kernels do; sums differ from theirs by 10^-6 at most, since they are added up in
-/// another order. A pass searches for some points whole, and advance() counts those.
+/// The search on the cpu backend. It finds the same photons as the kernels. Sums differ by at most 10^-6, because the
+/// order of summation differs. A pass completes the searches of some of the points.
 template <>
 class knn_search<cpu_backend> {
 public:
@@ -52,7 +52,7 @@ public:
     {
     }
 
-    // A search refers to both until it is gone.
+    // Temporaries would dangle.
     knn_search(cpu_backend&, const map_buffers<cpu_backend>&&, const vectors&, const knn_settings&) = delete;
     knn_search(cpu_backend&, const map_buffers<cpu_backend>&, const vectors&&, const knn_settings&) = delete;
     knn_search(cpu_backend&, const map_buffers<cpu_backend>&&, const vectors&, const vectors&, const knn_settings&)
@@ -62,13 +62,13 @@ public:
     knn_search(cpu_backend&, const map_buffers<cpu_backend>&, const vectors&, const vectors&&, const knn_settings&)
         = delete;
 
-    /// A point's estimate is made at once: there is none of it before.
+    /// False: a point's search is completed in one pass.
     static constexpr bool shows_running_estimate(const knn_settings&) { return false; }
 
     progress advance(uint passes = nowhere);
 
     [[nodiscard]] knn_estimates<cpu_backend> estimates() &;
-    /// Of a search that goes away: nothing is copied.
+    /// The same without a copy.
     [[nodiscard]] knn_estimates<cpu_backend> estimates() &&;
 
 private:
@@ -78,7 +78,7 @@ private:
     detail::search_inputs<cpu_backend> in_;
     knn_estimates<cpu_backend> e_;
     cpu_backend::buffer<uint> order_;
-    std::size_t done_ = 0; // in that order
+    std::size_t done_ = 0; // points done, in that order
 };
 
 neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& b, const map_buffers<cpu_backend>& map,

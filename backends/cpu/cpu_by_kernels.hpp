@@ -38,7 +38,7 @@ public:
     /// \name The verbs of a backend, as backend.hpp describes them
     /// @{
 
-    /// As the concept photongrid::backend says.
+    /// See the concept photongrid::backend.
     template <element T>
     buffer<T> make(std::size_t n)
     {
@@ -196,8 +196,8 @@ public:
     const std::map<std::string, kernel_cost>& costs() const { return costs_; }
     /// @}
 
-    // --- for overrides
-    // ------------------------------------------------------------------------------------------------
+    // For overrides.
+
     /// The threads that passes run on, the caller's among them.
     cpu::pool& threads() { return pool_; }
 

@@ -1,4 +1,4 @@
-// The threads of the cpu backend: blocks of a fixed size, handed to whichever thread is free (oneTBB).
+// The thread pool of the cpu backend: distributes blocks of a fixed size over threads (oneTBB).
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -17,8 +17,8 @@
 
 namespace photongrid::cpu {
 
-/// Threads to share work among. Blocks do not depend on the number of threads, so that neither does what is computed
-/// per block. With one thread no pool is made: everything runs in the caller's.
+/// A thread pool. Blocks, and so results per block, do not depend on the number of threads. With one thread everything
+/// runs in the caller's thread.
 class pool {
 public:
     /// `threads`: 0 for as many as the machine has.
@@ -28,17 +28,17 @@ public:
     {
         if (threads_ > 4096)
             throw std::invalid_argument("cpu: threads: " + std::to_string(threads_)
-                + " asked for; 1 to 4,096, or 0 for as many as the machine has");
+                + "; it must be from 1 to 4,096, or 0 for as many as the machine has");
         if (threads_ > static_cast<unsigned>(tbb::info::default_concurrency()))
-            more_.emplace(tbb::global_control::max_allowed_parallelism, threads_); // than the machine has
+            more_.emplace(tbb::global_control::max_allowed_parallelism, threads_); // more threads than cores
         if (threads_ > 1)
             arena_.emplace(static_cast<int>(threads_));
     }
 
     unsigned threads() const { return threads_; }
 
-    /// Calls f(first, past) for every block of [0, n), each `block` long but the last; in no order, returns when all
-    /// are done.
+    /// Calls f(first, past) for every block of [0, n), in any order, and waits for all. Blocks have `block` elements,
+    /// the last one possibly fewer.
     template <class F>
     void for_blocks(std::size_t n, std::size_t block, const F& f)
     {

@@ -1,6 +1,6 @@
-// The state of a caller's context: what a call of this backend changes there is as it was when the call is over, also
-// by an exception. What passes change is in device.hpp (set_state), what routing changes in routing.hpp; each piece is
-// saved before it is first changed and put back here. Contexts of our own have none of this.
+// Saves and restores the OpenGL state of a caller's context, so that a call of this backend leaves it unchanged, also
+// after an exception. device.hpp (set_state) and routing.hpp change the state; each group of state is saved before it
+// is first changed. The backend's own contexts do not use this.
 #pragma once
 
 #include <photongrid/backends/gl/functions.hpp>
@@ -12,11 +12,11 @@
 
 namespace photongrid::gl {
 
-/// Render targets of one pass, texture units for inputs, for states (textures.glsl, fragment_prelude.glsl).
+/// The render targets of a pass, and the texture units of inputs and states (textures.glsl, fragment_prelude.glsl).
 inline constexpr GLuint max_outputs = 8, max_inputs = 8, state_unit = 8, units = state_unit + max_outputs;
 
-/// What has to be off in passes, beside blending and the scissor test, which are so for each draw buffer and each
-/// viewport; a pass has one viewport, the first.
+/// Capabilities that are disabled in passes. Blending, which is per draw buffer, and the scissor test, which is per
+/// viewport, are disabled separately; a pass uses the first viewport only.
 inline constexpr std::array<GLenum, 22> off_in_passes{GL_CULL_FACE, GL_DEPTH_TEST, GL_STENCIL_TEST,
     GL_RASTERIZER_DISCARD, GL_COLOR_LOGIC_OP, GL_DEPTH_CLAMP, GL_POLYGON_OFFSET_FILL, GL_POLYGON_SMOOTH, GL_SAMPLE_MASK,
     GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE, GL_SAMPLE_COVERAGE, GL_SAMPLE_SHADING, GL_DITHER,
@@ -30,7 +30,7 @@ inline const char* error_name(GLenum code)
     case GL_INVALID_VALUE: return "GL_INVALID_VALUE";
     case GL_INVALID_OPERATION: return "GL_INVALID_OPERATION";
     case GL_INVALID_FRAMEBUFFER_OPERATION: return "GL_INVALID_FRAMEBUFFER_OPERATION";
-    case GL_OUT_OF_MEMORY: return "GL_OUT_OF_MEMORY: the device has no memory left for it";
+    case GL_OUT_OF_MEMORY: return "GL_OUT_OF_MEMORY: the device is out of memory";
     case GL_CONTEXT_LOST: return "GL_CONTEXT_LOST: the device was reset";
     default: return "an unknown OpenGL error";
     }
@@ -50,7 +50,7 @@ namespace detail {
         on ? gl.Enablei(what, index) : gl.Disablei(what, index);
     }
 
-    /// The program in use, with what glUseProgram forgets: the subroutines chosen, also of a program pipeline.
+    /// The program in use, and the selected subroutines, which glUseProgram resets, also those of a program pipeline.
     class program_in_use {
     public:
         explicit program_in_use(functions& gl) : program_(get_name(gl, GL_CURRENT_PROGRAM))
@@ -62,7 +62,8 @@ namespace detail {
                 if (dying || !linked)
                     throw backend_error("gl: the program in use, " + std::to_string(program_)
                         + (dying ? ", is marked for deletion" : ", failed to link again after glUseProgram")
-                        + ": it could not be put back; call glUseProgram with another, or with 0, before the library");
+                        + ": it could not be restored; call glUseProgram with another program, or with 0, before the "
+                          "library");
             }
             const GLuint pipeline = program_ != 0 ? 0 : get_name(gl, GL_PROGRAM_PIPELINE_BINDING);
             if (program_ == 0 && pipeline == 0)
@@ -74,7 +75,7 @@ namespace detail {
                 if (program != 0)
                     gl.GetProgramInterfaceiv(
                         static_cast<GLuint>(program), subroutine_uniforms[s], GL_ACTIVE_RESOURCES, &n);
-                if (n == 0) // also where the program lacks the stage, about which the next call must not ask
+                if (n == 0) // also if the program lacks this stage, for which the next call would be an error
                     continue;
                 gl.GetProgramStageiv(
                     static_cast<GLuint>(program), stages[s], GL_ACTIVE_SUBROUTINE_UNIFORM_LOCATIONS, &n);
@@ -102,7 +103,7 @@ namespace detail {
         std::array<std::vector<GLuint>, 6> subroutines_;
     };
 
-    /// What every pass changes.
+    /// The state that every pass changes.
     class pass_state {
     public:
         explicit pass_state(functions& gl) : program_(gl)
@@ -144,7 +145,8 @@ namespace detail {
             gl.ScissorIndexed(0, scissor_[0], scissor_[1], scissor_[2], scissor_[3]);
             gl.PolygonMode(GL_FRONT_AND_BACK, static_cast<GLenum>(polygon_mode_[0]));
             if (polygon_mode_[1] != 0
-                && polygon_mode_[1] != polygon_mode_[0]) // compatibility contexts have one for either side
+                && polygon_mode_[1]
+                    != polygon_mode_[0]) // compatibility contexts have separate modes for front and back
                 gl.PolygonMode(GL_BACK, static_cast<GLenum>(polygon_mode_[1]));
             gl.ClipControl(clip_origin_, clip_depth_);
             gl.BindVertexArray(vertices_);
@@ -155,7 +157,7 @@ namespace detail {
                     static_cast<GLsizeiptr>(block_size_));
             else
                 gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, block_);
-            gl.BindBuffer(GL_UNIFORM_BUFFER, uniforms_); // after the indexed one, which sets it too
+            gl.BindBuffer(GL_UNIFORM_BUFFER, uniforms_); // after the indexed binding, which changes it too
             program_.restore(gl);
         }
 
@@ -173,8 +175,9 @@ namespace detail {
         program_in_use program_;
     };
 
-    /// What routing changes beside. To be saved with an 8-bit stencil buffer bound: OpenGL clamps the reference value
-    /// that it tells to the bits of the one that is bound, and the caller may have set it for another framebuffer.
+    /// The state that only routing changes. Save it while an 8-bit stencil buffer is bound: OpenGL clamps the reference
+    /// value that it returns to the bits of the bound stencil buffer, and the caller may have set it for another
+    /// framebuffer.
     class stencil_state {
     public:
         explicit stencil_state(functions& gl)
@@ -208,7 +211,7 @@ namespace detail {
         std::array<side, 2> sides_;
     };
 
-    /// How the first draw buffer blends.
+    /// Blending of the first draw buffer.
     class blend_state {
     public:
         explicit blend_state(functions& gl)
@@ -231,7 +234,7 @@ namespace detail {
         std::array<GLenum, 6> values_{};
     };
 
-    /// How pixels are packed (into memory) or unpacked (from it), and the buffer that they would go to instead.
+    /// Pixel storage modes for packing (to memory) or unpacking (from memory), and the pixel buffer binding.
     class pixel_state {
     public:
         enum direction { pack, unpack };
@@ -243,7 +246,7 @@ namespace detail {
             for (std::size_t v = 0; v < names_.size(); ++v)
                 values_[v] = get(gl, names_[v]);
         }
-        /// As transfers want it: rows without gaps, from memory.
+        /// Sets the modes for transfers: rows without gaps, no pixel buffer.
         void clear(functions& gl) const
         {
             gl.BindBuffer(target_, 0);
@@ -269,12 +272,12 @@ namespace detail {
         std::array<GLint, 7> values_{};
     };
 
-    /// The 2D texture and the sampler of a unit; other targets' textures stay where they are.
+    /// The 2D texture and the sampler of a unit. Textures of other targets are not changed.
     struct unit_state {
         GLuint texture, sampler;
     };
 
-    /// Messages come from the call at fault, in its thread.
+    /// Makes messages synchronous: from the failing call, in its thread.
     inline void hear_driver(functions& gl, GLDEBUGPROC hear, const void* user)
     {
         gl.Enable(GL_DEBUG_OUTPUT);
@@ -282,7 +285,7 @@ namespace detail {
         gl.DebugMessageCallback(hear, user);
     }
 
-    /// Who hears the driver's messages.
+    /// The debug callback.
     class debug_state {
     public:
         explicit debug_state(functions& gl)
@@ -304,11 +307,11 @@ namespace detail {
     };
 } // namespace detail
 
-/// Keeps a caller's state from the outermost call's beginning to its end. Calls nest; each piece is saved once.
+/// Keeps a caller's state during a call. Calls may nest; each group of state is saved once and restored at the end of
+/// the outermost call.
 class callers_state {
 public:
-    /// `question`: an occlusion query that nobody else uses. `hear`: gets the driver's messages during calls, if not
-    /// null.
+    /// `question`: an occlusion query for internal use. `hear`: debug callback during calls; may be null.
     callers_state(functions& call, GLuint question, GLDEBUGPROC hear, const void* user)
         : gl_(call), question_(question), hear_(hear), user_(user)
     {
@@ -316,9 +319,8 @@ public:
     callers_state(const callers_state&) = delete;
     callers_state& operator=(const callers_state&) = delete;
 
-    /// A call begins. The errors that the context has noted are the caller's: they are kept until the end, and not
-    /// ours.
-    /// \throws backend_error for one that cannot be given back, such as GL_OUT_OF_MEMORY.
+    /// Begins a call. Errors that are already pending belong to the caller: they are saved, and restored at the end.
+    /// \throws backend_error for a pending error that cannot be restored, such as GL_OUT_OF_MEMORY.
     void enter()
     {
         if (depth_ == 0) {
@@ -330,7 +332,7 @@ public:
         }
         ++depth_;
     }
-    /// A call ends: with the outermost, everything is as it was.
+    /// Ends a call. The outermost one restores everything.
     void leave() noexcept
     {
         if (--depth_ > 0)
@@ -357,8 +359,8 @@ public:
         debug_.reset();
     }
 
-    /// These save a piece unless that is done, and say whether they did: who passes then sets what it wants.
-    /// \throws backend_error that names what a pass would disturb and nobody could put back.
+    /// Saves the state on first use; returns true if it did, and the caller then sets its own.
+    /// \throws backend_error for state that a pass would disturb and that cannot be restored.
     bool save_passes()
     {
         if (passes_)
@@ -379,7 +381,7 @@ public:
             detail::get_name(gl_, GL_TEXTURE_BINDING_2D), detail::get_name(gl_, GL_SAMPLER_BINDING)};
         return true;
     }
-    /// Saves how pixels are packed or unpacked and sets what transfers want.
+    /// Saves the pixel storage modes and sets those for transfers.
     void set_transfer(detail::pixel_state::direction d)
     {
         auto& saved = d == detail::pixel_state::pack ? pack_ : unpack_;
@@ -411,20 +413,20 @@ private:
 
     void keep_errors()
     {
-        for (int n = 0; n < 8; ++n) { // a lost context may have no end of them
+        for (int n = 0; n < 8; ++n) { // a lost context may return errors forever
             const GLenum code = gl_.GetError();
             if (code == GL_NO_ERROR)
                 return;
             if (code != GL_INVALID_ENUM && code != GL_INVALID_VALUE && code != GL_INVALID_OPERATION
                 && code != GL_INVALID_FRAMEBUFFER_OPERATION) {
                 errors_.clear();
-                throw backend_error(std::string("gl: before this call the context had noted ") + error_name(code)
-                    + "; what the program did last has failed");
+                throw backend_error(std::string("gl: before this call glGetError had a pending ") + error_name(code)
+                    + "; an earlier OpenGL call of the program has failed");
             }
             errors_.push_back(code);
         }
     }
-    /// Forgets what we did wrong and no exception has told, and makes the same mistakes that the caller made.
+    /// Clears errors of this call that no exception has reported, and causes the caller's pending errors again.
     void give_errors_back() noexcept
     {
         for (int n = 0; n < 8 && gl_.GetError() != GL_NO_ERROR; ++n) {}
@@ -435,14 +437,14 @@ private:
         for (const GLenum code : errors_)
             switch (code) {
             case GL_INVALID_ENUM: gl_.Enable(GL_NONE); break;
-            case GL_INVALID_VALUE: gl_.BindSampler(~0u, 0); break;        // no such unit
-            case GL_INVALID_OPERATION: gl_.EndConditionalRender(); break; // none has begun
+            case GL_INVALID_VALUE: gl_.BindSampler(~0u, 0); break;        // there is no such unit
+            case GL_INVALID_OPERATION: gl_.EndConditionalRender(); break; // none is active
             default: clear_without_targets();
             }
         detail::turn(gl_, GL_DEBUG_OUTPUT, heard);
         errors_.clear();
     }
-    /// Clears a framebuffer that is not complete.
+    /// Clears an incomplete framebuffer, which is an error.
     void clear_without_targets()
     {
         GLuint framebuffer = 0;
@@ -463,23 +465,23 @@ private:
             gl_.GetQueryiv(static_cast<GLenum>(target), GL_CURRENT_QUERY, &active);
             if (active != 0)
                 throw backend_error(std::string("gl: a query of ") + name
-                    + " is active, which would count what the library draws; call glEndQuery before the library");
+                    + " is active and would count the library's drawing; call glEndQuery before the library");
         }
         if (detail::get(gl_, GL_TRANSFORM_FEEDBACK_ACTIVE) != 0 && detail::get(gl_, GL_TRANSFORM_FEEDBACK_PAUSED) == 0)
-            throw backend_error("gl: transform feedback is active, which would record what the library draws; call "
+            throw backend_error("gl: transform feedback is active and would record the library's drawing; call "
                                 "glPauseTransformFeedback or glEndTransformFeedback before the library");
         refuse_conditional_rendering();
     }
-    /// OpenGL does not say whether conditional rendering has begun, but refuses to begin it twice.
+    /// OpenGL has no query for active conditional rendering, but beginning it twice is an error.
     void refuse_conditional_rendering()
     {
-        if (!std::exchange(asked_, true)) { // a query without a result is no condition
+        if (!std::exchange(asked_, true)) { // conditional rendering needs a query that has a result
             gl_.BeginQuery(GL_SAMPLES_PASSED, question_);
             gl_.EndQuery(GL_SAMPLES_PASSED);
         }
         gl_.BeginConditionalRender(question_, GL_QUERY_NO_WAIT);
         if (gl_.GetError() != GL_NO_ERROR)
-            throw backend_error("gl: conditional rendering has begun, which may discard what the library draws; call "
+            throw backend_error("gl: conditional rendering is active and may discard the library's drawing; call "
                                 "glEndConditionalRender before the library");
         gl_.EndConditionalRender();
     }
@@ -500,7 +502,7 @@ private:
     const void* user_;
 };
 
-/// A call of the backend, from its beginning to its end; `state` is null in contexts of our own.
+/// The scope of a call of the backend. `state` is null in the backend's own contexts.
 class call_scope {
 public:
     explicit call_scope(callers_state* state) : state_(state)

@@ -1,4 +1,4 @@
-// An OpenGL 4.5 core context without a window: EGL surfaceless, OSMesa, or the one the caller has current.
+// OpenGL 4.5 core contexts without a window: EGL surfaceless, OSMesa, or the caller's current context.
 #pragma once
 
 #include <photongrid/backends/gl/functions.hpp>
@@ -18,19 +18,19 @@
 
 namespace photongrid {
 
-/// Where the OpenGL context comes from.
+/// The origin of the OpenGL context.
 enum class gl_context_kind {
     any,     ///< EGL, else OSMesa
     egl,     ///< EGL without a surface
     osmesa,  ///< OSMesa: always software
-    current, ///< the context that the caller has current, at construction and at every call
+    current, ///< the caller's context, which must be current at construction and at every call
 };
 
 } // namespace photongrid
 
 namespace photongrid::gl {
 
-/// A context. `use()` makes it the thread's current one; a context belongs to one thread at a time.
+/// A context. `use()` makes it current. A context belongs to one thread at a time.
 class context {
 public:
     functions call;
@@ -49,23 +49,22 @@ public:
         living().contexts.erase(this);
     }
 
-    /// \throws backend_error when the context cannot be made current.
+    /// \throws backend_error if the context cannot be made current.
     void use()
     {
-        // Without a destructor, so that backends in static storage can still be destroyed when the thread's own
-        // variables are gone.
+        // It has no destructor, so that backends in static storage can be destroyed after the thread-local variables.
         thread_local context* last = nullptr;
         if (last == this && is_current())
             return;
-        // EGL's and OSMesa's Mesa share one "current context" per thread without knowing of each other, so the one
-        // that leaves must be told.
+        // Mesa's EGL and OSMesa share one current context per thread but do not notify each other, so the previous
+        // context must be released.
         if (last != nullptr && last != this && !is_callers() && is_living(last))
             last->release();
         bind();
         last = this;
     }
 
-    /// True for the caller's own context, whose state may have changed since the last call.
+    /// Whether it is the caller's context, whose state may have changed since the last call.
     virtual bool is_callers() const { return false; }
 
 protected:
@@ -78,7 +77,7 @@ private:
         std::mutex mutex;
         std::set<const context*> contexts;
     };
-    /// All contexts there are; never destroyed, for the same reason.
+    /// All contexts. Never destroyed, for the same reason.
     static registry& living()
     {
         static auto* const all = new registry;
@@ -103,7 +102,7 @@ inline std::string egl_error_name(EGLint code)
 
 class egl_context final : public context {
 public:
-    /// An OpenGL 4.5 core context on `display`; the text of the exception says which step failed.
+    /// Creates an OpenGL 4.5 core context on `display`. The exception says which step failed.
     egl_context(EGLDisplay display, bool debug) : display_(display)
     {
         const auto fail = [](const char* step) {
@@ -129,7 +128,7 @@ public:
     ~egl_context() override
     {
         egl_context::release();
-        eglDestroyContext(display_, context_); // the display stays: terminating it would end every other context on it
+        eglDestroyContext(display_, context_); // do not terminate the display: other contexts may use it
     }
 
 protected:
@@ -174,7 +173,7 @@ protected:
     bool is_current() const override { return OSMesaGetCurrentContext() == context_; }
     void bind() override
     {
-        // OSMesa wants a window's memory; nothing is ever drawn there.
+        // OSMesa needs memory for a window, though nothing is drawn into it.
         if (!OSMesaMakeCurrent(context_, window_.data(), GL_UNSIGNED_BYTE, 4, 4))
             throw backend_error("gl-osmesa: OSMesaMakeCurrent failed");
     }
@@ -190,19 +189,19 @@ private:
 };
 #endif
 
-/// The context that the caller has current. Which one that is stays checked where EGL or OSMesa can tell.
+/// The caller's context. Every call checks that it is current, if EGL or OSMesa can tell.
 class callers_context final : public context {
 public:
     callers_context() : token_(current_token()) {}
     bool is_callers() const override { return true; }
 
 protected:
-    bool is_current() const override { return false; } // asks bind() at every call
+    bool is_current() const override { return false; } // so that every call uses bind()
     void bind() override
     {
         if (current_token() != token_)
-            throw backend_error("gl: the context that was current when this backend was made is not current now; make "
-                                "it current before every call");
+            throw backend_error("gl: the context that was current when this backend was created is not current now; "
+                                "make it current before every call");
     }
     void release() noexcept override {}
 
@@ -226,7 +225,7 @@ inline void (*find_by_egl(const char* name))() { return eglGetProcAddress(name);
 inline void (*find_by_osmesa(const char* name))() { return OSMesaGetProcAddress(name); }
 #endif
 
-/// True for the renderers of Mesa that run on the CPU.
+/// Whether a renderer is one of Mesa's that run on the CPU.
 inline bool is_software(std::string_view renderer)
 {
     for (const char* name : {"llvmpipe", "softpipe", "SWR", "Software Rasterizer"})
@@ -235,7 +234,7 @@ inline bool is_software(std::string_view renderer)
     return false;
 }
 
-/// EGL: a hardware device if there is one, else Mesa's software renderer.
+/// Creates an EGL context on a hardware device if there is one, else on Mesa's software renderer.
 inline std::shared_ptr<context> make_egl_context(bool debug, std::string& tried)
 {
     const auto find = [](auto& f, const char* name) {
@@ -266,7 +265,7 @@ inline std::shared_ptr<context> make_egl_context(bool debug, std::string& tried)
         tried += "  EGL, surfaceless: the library has no EGL_MESA_platform_surfaceless (Debian packages libegl1, "
                  "libegl-mesa0)\n";
     }
-    // Drivers that know no surfaceless platform offer their devices instead.
+    // Drivers without the surfaceless platform have the device platform.
     PFNEGLQUERYDEVICESEXTPROC query_devices = nullptr;
     PFNEGLQUERYDEVICESTRINGEXTPROC query_string = nullptr;
     find(query_devices, "eglQueryDevicesEXT");
@@ -289,8 +288,8 @@ inline std::shared_ptr<context> make_egl_context(bool debug, std::string& tried)
     return software;
 }
 
-/// A context of the kind asked for, with its functions loaded, current in this thread. `find`: for kind `current`, the
-/// caller's function loader; empty: EGL's or OSMesa's, whichever has a context current.
+/// Creates a context of the given kind, loads its functions and makes it current. `find`: for the kind `current`, the
+/// caller's function loader; empty: that of EGL or OSMesa, whichever has a current context.
 /// \throws backend_error that says what was tried, what failed and which package to install.
 inline std::shared_ptr<context> make_context(gl_context_kind kind, bool debug, loader find)
 {
@@ -308,7 +307,7 @@ inline std::shared_ptr<context> make_context(gl_context_kind kind, bool debug, l
         const auto* version = reinterpret_cast<const char*>(c->call.GetString(GL_VERSION));
         if (version == nullptr)
             throw backend_error("gl: no OpenGL context is current in this thread; make yours current before "
-                                "constructing the backend, or ask for gl_context_kind::any");
+                                "constructing the backend, or use gl_context_kind::any");
         GLint major = 0, minor = 0;
         c->call.GetIntegerv(GL_MAJOR_VERSION, &major);
         c->call.GetIntegerv(GL_MINOR_VERSION, &minor);
@@ -336,7 +335,7 @@ inline std::shared_ptr<context> make_context(gl_context_kind kind, bool debug, l
         tried += "  OSMesa: this program was built without it (Debian package libosmesa6-dev, then configure again)\n";
 #endif
     }
-    throw backend_error("gl: no OpenGL 4.5 core context could be had. Tried:\n" + tried
+    throw backend_error("gl: no OpenGL 4.5 core context could be created. Tried:\n" + tried
         + "Install a driver: apt install libegl1 libgl1-mesa-dri (Mesa, also without a GPU), or libosmesa6");
 }
 

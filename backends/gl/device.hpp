@@ -1,4 +1,4 @@
-// A context with its limits and the account of its memory, and buffers as textures on it.
+// An OpenGL device: a context, its limits, its memory, and textures as buffers.
 #pragma once
 
 #include <photongrid/backends/gl/callers_state.hpp>
@@ -12,10 +12,10 @@
 
 namespace photongrid::gl {
 
-/// Elements in a row of a buffer's texture; textures.glsl knows it as 2047u and 11u.
+/// The elements per row of a buffer's texture. textures.glsl has it as 2047u and 11u.
 inline constexpr uint row_width = 2048;
 
-/// How element type T is stored.
+/// The texture format of element type T.
 template <element T>
 struct texture_format {
     static constexpr bool is_integer
@@ -34,10 +34,10 @@ struct texture_format {
 
 class texture;
 
-/// What a backend, its buffers and its programs share. Buffers may outlive the backend.
+/// The state that a backend, its buffers and its programs share. Buffers may outlive the backend.
 class device : public std::enable_shared_from_this<device> {
 public:
-    /// `debug`: hear what the driver says of high severity.
+    /// `debug`: collect the driver's messages of high severity.
     device(std::shared_ptr<context> c, bool debug) : context_(std::move(c)), call(context_->call)
     {
         std::array<GLint, 2> viewport{};
@@ -53,7 +53,7 @@ public:
         call.CreateFramebuffers(1, &blank_);
         call.CreateBuffers(1, &uniforms_);
         call.NamedFramebufferParameteri(blank_, GL_FRAMEBUFFER_DEFAULT_WIDTH, static_cast<GLint>(row_width));
-        // What kernels read is not filtered, whatever a texture of the caller's says of itself.
+        // Kernels read unfiltered texels, also from a caller's texture.
         call.CreateSamplers(1, &sampler_);
         call.SamplerParameteri(sampler_, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         call.SamplerParameteri(sampler_, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
@@ -75,7 +75,7 @@ public:
         try {
             context_->use();
         } catch (const backend_error&) {
-            return; // the caller's context is gone, and everything in it
+            return; // the caller's context was destroyed, and all its objects
         }
         call.DeleteVertexArrays(1, &vertices_);
         call.DeleteFramebuffers(1, &targets_);
@@ -85,21 +85,21 @@ public:
         if (callers_)
             call.DeleteQueries(1, &question_);
         else
-            call.DebugMessageCallback(nullptr, nullptr); // it may be this that hears
+            call.DebugMessageCallback(nullptr, nullptr); // the callback's user pointer may be `this`
     }
 
-    /// To be called first by every call of the backend and held to its end: makes the context current, and a caller's
-    /// state as it was in the end.
+    /// Every call of the backend creates this scope first. It makes the context current; its destructor restores a
+    /// caller's state.
     [[nodiscard]] call_scope use()
     {
         make_current();
         return call_scope(callers_ ? &*callers_ : nullptr);
     }
-    /// Enough for what changes no state, such as deleting objects.
+    /// Sufficient for calls that change no state, such as deleting objects.
     void make_current() { context_->use(); }
     bool is_callers() const { return callers_.has_value(); }
 
-    /// To be called before the first pass of a verb, before an upload, a download.
+    /// To be called before the first pass of a verb, before an upload, and before a download.
     void prepare_passes()
     {
         if (callers_ && callers_->save_passes())
@@ -115,7 +115,7 @@ public:
         if (callers_)
             callers_->set_transfer(detail::pixel_state::pack);
     }
-    /// To be called before these are changed. The stencil's: with an 8-bit stencil buffer bound.
+    /// To be called before this state is changed; keep_stencil() while an 8-bit stencil buffer is bound.
     void keep_stencil()
     {
         if (callers_)
@@ -126,14 +126,14 @@ public:
         if (callers_)
             callers_->save_blending();
     }
-    /// A pass reads `texture` from this unit; 0: none.
+    /// Binds `texture` to this unit; 0: none.
     void bind_texture(GLuint unit, GLuint texture)
     {
         if (callers_ && callers_->save_unit(unit))
             call.BindSampler(unit, sampler_);
         if (texture != 0) {
             call.BindTextureUnit(unit, texture);
-        } else { // as a unit, 0 would mean no texture of any target
+        } else { // glBindTextureUnit(unit, 0) would unbind the textures of all targets
             call.ActiveTexture(GL_TEXTURE0 + unit);
             call.BindTexture(GL_TEXTURE_2D, 0);
         }
@@ -144,10 +144,10 @@ public:
             static_cast<GLfloat>(height));
     }
 
-    /// An uninitialised texture.
-    /// \throws backend_error with the numbers when the device refuses.
+    /// Creates an uninitialised texture.
+    /// \throws backend_error with the numbers if the device has no room.
     texture make(GLenum internal, uint width, uint height, std::size_t texel_bytes, const std::string& what);
-    /// A texture of the caller's, which stays that.
+    /// Wraps a texture that the caller continues to own.
     texture adopt(GLuint id, uint width, uint height);
 
     /// Binds a framebuffer whose colour targets are `textures`.
@@ -169,12 +169,12 @@ public:
         call.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets_);
         check_framebuffer(targets_);
     }
-    /// Fills the first target of `draw_into` with `value`.
+    /// Clears the first target of `draw_into` to `value`.
     void clear_targets(const std::array<GLfloat, 4>& value)
     {
         call.ClearNamedFramebufferfv(targets_, GL_COLOR, 0, value.data());
     }
-    /// Binds a framebuffer without targets, of `rows` rows of a buffer: for passes that only count.
+    /// Binds a framebuffer without targets, with `rows` rows of a buffer, for passes that only count.
     void draw_into_nothing(uint rows)
     {
         const uint height = std::bit_ceil(rows);
@@ -195,7 +195,7 @@ public:
                   "prescribes");
     }
 
-    /// The values of a kernel's Params, which std140 lays out as C++ does (docs/design/design.md).
+    /// Sets a kernel's Params, which std140 lays out as C++ does (docs/design/design.md).
     void set_uniforms(const void* data, std::size_t size)
     {
         const auto* first = static_cast<const std::byte*>(data);
@@ -207,7 +207,7 @@ public:
         uniform_bytes_ = std::move(block);
     }
 
-    /// \throws backend_error when OpenGL has noted an error since the last check.
+    /// \throws backend_error for an OpenGL error since the last check.
     void check_errors(const std::string& what)
     {
         const GLenum code = call.GetError();
@@ -224,14 +224,15 @@ private:
     friend texture;
     void forget(GLuint id)
     {
-        // A deleted texture's name comes back; the framebuffer must not be thought to hold it still.
+        // The name of a deleted texture can be reused; forget that it is attached to the framebuffer.
         for (std::size_t t = 0; t < max_outputs; ++t)
             if (attached_[t] == id) {
                 call.NamedFramebufferTexture(targets_, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(t), 0, 0);
                 attached_[t] = 0;
             }
     }
-    /// Everything that the passes rely on, saved by pass_state (callers_state.hpp). A context of our own keeps it.
+    /// Sets all state that passes rely on; pass_state (callers_state.hpp) saves it. In the backend's own contexts it
+    /// stays set.
     void set_state()
     {
         for (const GLenum off : off_in_passes)
@@ -245,7 +246,7 @@ private:
         call.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
         call.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
         call.BindVertexArray(vertices_);
-        call.BindBuffer(GL_QUERY_BUFFER, 0); // results of queries would go there
+        call.BindBuffer(GL_QUERY_BUFFER, 0); // otherwise query results would be written to it
         call.BindBufferBase(GL_UNIFORM_BUFFER, 0, uniforms_);
     }
     static void APIENTRY note_message(
@@ -266,7 +267,7 @@ public:
     std::string messages; ///< from the driver, in debug contexts
 
 private:
-    std::optional<callers_state> callers_; ///< none in contexts of our own
+    std::optional<callers_state> callers_; ///< empty in the backend's own contexts
     GLuint vertices_ = 0, targets_ = 0, blank_ = 0, uniforms_ = 0, sampler_ = 0, question_ = 0;
     std::array<GLuint, max_outputs> attached_{};
     std::size_t target_count_ = 1;
@@ -291,10 +292,10 @@ public:
         try {
             if (const GLuint mine = let_go(); mine != 0 && !adopted_)
                 device_->call.DeleteTextures(1, &mine);
-        } catch (const backend_error&) { // the caller's context is not current: its textures die with it
+        } catch (const backend_error&) { // the caller's context is not current; its textures are destroyed with it
         }
     }
-    /// Gives the texture away: it is the caller's now. 0 for none.
+    /// Releases the texture to the caller; 0: none.
     GLuint let_go()
     {
         if (id == 0)
@@ -306,7 +307,7 @@ public:
         return given;
     }
 
-    /// Whether it is of this device: of none, if there is no texture.
+    /// Whether it belongs to this device; true if there is no texture.
     bool is_of(const device& d) const { return device_ == nullptr || device_.get() == &d; }
 
     GLuint id = 0;
@@ -324,7 +325,7 @@ private:
         std::swap(device_, other.device_);
     }
     std::uint64_t bytes_ = 0;
-    bool adopted_ = false; ///< the caller's: neither counted nor deleted
+    bool adopted_ = false; ///< owned by the caller: neither counted nor deleted
     std::shared_ptr<device> device_;
 };
 

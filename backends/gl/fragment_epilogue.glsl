@@ -1,4 +1,4 @@
-// LOAD_STATES_(at): load_state_B(at) for every slot B that is a STATE. Written by the backend, which knows them.
+// LOAD_STATES_(at): load_state_B(at) for every slot B that is a STATE. The backend defines it.
 void main()
 {
     ivec2 at = ivec2(gl_FragCoord.xy);
@@ -11,7 +11,7 @@ void main()
         kernel(i);
 #elif defined(UNTIL_DONE_)
         if (done())
-            discard; // keeps the state of the pass that finished it
+            discard; // keeps the element's final state
         else
             kernel(i);
 #elif defined(NOT_DONE_)

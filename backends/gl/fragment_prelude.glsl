@@ -1,7 +1,7 @@
 #version 450
-// The kernel dialect for fragment programs: element i is the fragment at its texel, outputs are render targets.
+// The kernel dialect for fragment programs: element i is the fragment at its texel; outputs are render targets.
 #include "textures.glsl"
-// `precise`: what a kernel stores equals the serial backend's bits where the operations allow it.
+// `precise`: so that results equal the serial backend's bit for bit, if the operations round correctly.
 #define OUTPUT(B, T, NAME) layout(location = B) precise out T NAME;
 // A state's texture is read and written in one pass: each fragment reads its own texel only, which glTextureBarrier makes
 // legal (OpenGL 4.5 core, 9.3.1).

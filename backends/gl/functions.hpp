@@ -1,6 +1,6 @@
-// The OpenGL 4.5 core functions that this backend calls, in a table filled at run time: no loader library sees contexts
-// of EGL, OSMesa and the caller alike. Nothing here calls through a global symbol, so whatever reads pixels or buffers
-// back is counted (`functions::readbacks`).
+// The OpenGL 4.5 core functions that this backend calls, in a table that is filled at run time, because no loader
+// library supports contexts of EGL, OSMesa and the caller alike. All calls go through this table, so every readback of
+// pixels or buffers is counted (`functions::readbacks`).
 #pragma once
 
 #include <photongrid/backend/backend.hpp>
@@ -76,7 +76,7 @@ struct counted {
     X(GETNAMEDBUFFERSUBDATA, GetNamedBufferSubData) X(MAPBUFFER, MapBuffer) X(MAPBUFFERRANGE, MapBufferRange)          \
     X(MAPNAMEDBUFFER, MapNamedBuffer) X(MAPNAMEDBUFFERRANGE, MapNamedBufferRange)
 
-/// The functions, by their names without "gl". Valid for the context (or the driver) that `load` asked.
+/// The functions, by their names without "gl". Valid for the context (or driver) for which they were loaded.
 struct functions {
 #define X(TYPE, NAME) PFNGL##TYPE##PROC NAME = nullptr;
     PHOTONGRID_GL_CALLS(X)
@@ -85,8 +85,8 @@ struct functions {
     PHOTONGRID_GL_READS(X)
 #undef X
 
-    /// Fills the table.
-    /// \throws backend_error that names what the driver lacks.
+    /// Loads the functions.
+    /// \throws backend_error that names the missing functions.
     void load(loader find)
     {
         std::string missing;
@@ -106,7 +106,7 @@ struct functions {
             throw backend_error("gl: the driver has no " + missing + "; OpenGL 4.5 core is needed");
     }
 
-    /// How often pixels or buffers were read back or mapped so far.
+    /// The number of readbacks and mappings of pixels and buffers so far.
     std::uint64_t readbacks() const
     {
         std::uint64_t n = 0;

@@ -1,5 +1,5 @@
-// The OpenGL backend: kernels as fragment programs, buffers as textures, as the paper has it, on OpenGL 4.5 core. No
-// compute shaders, no storage buffers, and nothing is read back between passes but occlusion queries.
+// The OpenGL backend: kernels as fragment programs and buffers as textures, as in the paper, on OpenGL 4.5 core. It
+// uses no compute shaders and no storage buffers, and reads nothing back between passes except occlusion queries.
 #pragma once
 
 #include <photongrid/backend/self_test.hpp>
@@ -8,27 +8,27 @@
 
 namespace photongrid {
 
-/// Which OpenGL context to work in, and how.
+/// Options of the OpenGL backend.
 /// \headerfile backends/gl/gl.hpp <photongrid/backends/gl/gl.hpp>
 struct gl_options {
-    gl_context_kind context = gl_context_kind::any; ///< where it comes from
-    gl::loader find = nullptr; ///< for gl_context_kind::current: finds OpenGL functions; null: EGL's or OSMesa's own
+    gl_context_kind context = gl_context_kind::any; ///< the origin of the context
+    gl::loader find = nullptr; ///< for gl_context_kind::current: function loader; null: EGL's or OSMesa's
     uint tile = 64;            ///< run_until_done skips finished tiles of tile x tile elements (3.3); 1 to 2048
-    bool time_passes = false;  ///< measure each verb by the device's clock, for costs(), and wait for it; slower
+    bool time_passes = false;  ///< measure verbs by the device's clock, for costs(), and wait for each; slower
     bool debug = false;        ///< check for errors after every pass, with the driver's own messages; slow
 };
 
 /// A backend on an OpenGL context. It and its buffers belong to one thread at a time. Every call makes its context
-/// current and leaves it so. With gl_context_kind::current the caller does, and finds its OpenGL state as it was, also
-/// after an exception: every binding, switch and mask, and the errors that it left to glGetError. Verbs that draw throw
-/// backend_error where they would disturb what nobody can put back: an active query that counts samples or primitives,
-/// active transform feedback, conditional rendering, a program in use that is marked for deletion
+/// current and leaves it current. With gl_context_kind::current the caller makes it current, and every call preserves
+/// the caller's OpenGL state, also after an exception: bindings, capabilities, masks and pending errors. Verbs that
+/// draw throw backend_error if they would disturb state that cannot be restored: an active query that counts samples or
+/// primitives, active transform feedback, conditional rendering, or a program in use that is marked for deletion
 /// (docs/guide/embed_in_opengl.md).
 /// \headerfile backends/gl/gl.hpp <photongrid/backends/gl/gl.hpp>
 /// \snippet snippets_gl.cpp gl_backend
 class gl_backend {
 public:
-    /// Elements in a texture, which gl_texture describes.
+    /// Elements in a texture, with the layout that gl_texture describes.
     /// \headerfile backends/gl/gl.hpp <photongrid/backends/gl/gl.hpp>
     template <element T>
     class buffer {
@@ -36,8 +36,8 @@ public:
         /// \name A buffer's members, the same on every backend
         /// @{
 
-        /// A buffer holds size() elements T. It is moved, never copied; one that was moved from, or made by default, is
-        /// empty.
+        /// A buffer has size() elements T. It can be moved but not copied. A moved-from or default-constructed buffer
+        /// is empty.
         using value_type = T;
         buffer() = default;
         buffer(buffer&& other) noexcept { swap(other); }
@@ -61,8 +61,8 @@ public:
     };
 
 private:
-    // First, since clang wants to know what `auto` is.
-    /// Whether a buffer is this backend's, for check_call.
+    // Defined before its uses, because its return type is deduced.
+    /// Whether a buffer belongs to this backend, for check_call.
     auto owns() const
     {
         return [this](const auto& b) { return b.texture_.is_of(*device_); };
@@ -97,13 +97,13 @@ public:
         caps_.software = gl::is_software(renderer);
         caps_.max_elements = std::min(std::uint64_t{gl::row_width} * device_->max_size, (std::uint64_t{1} << 31) - 1);
         caps_.max_route_slots = std::min(16u, device_->max_point);
-        // llvmpipe ends loops silently after that many iterations of an invocation group (lp_bld_limits.h).
+        // llvmpipe ends loops silently after so many iterations of an invocation group (lp_bld_limits.h).
         caps_.loop_limit = renderer.find("llvmpipe") != std::string::npos ? 65535u : 0u;
         std::tie(caps_.exact_division, caps_.exact_sqrt) = test_arithmetic(*this);
         made_->costs.clear();
         device_->peak_bytes = device_->bytes;
     }
-    /// Buffers of the one that is moved are this one's afterwards.
+    /// The buffers of the moved-from backend then belong to this one.
     gl_backend(gl_backend&&) = default;
     gl_backend& operator=(gl_backend&&) = delete;
     ~gl_backend()
@@ -114,7 +114,7 @@ public:
             device_->make_current();
             device_->call.DeleteQueries(static_cast<GLsizei>(queries_.size()), queries_.data());
             device_->call.DeleteQueries(static_cast<GLsizei>(clock_.size()), clock_.data());
-        } catch (const backend_error&) { // the caller's context is gone, and its queries with it
+        } catch (const backend_error&) { // the caller's context was destroyed, and its queries
         }
     }
 
@@ -124,13 +124,13 @@ public:
     /// \name The verbs of a backend, as backend.hpp describes them: buffers
     /// @{
 
-    /// As the concept photongrid::backend says.
+    /// See the concept photongrid::backend.
     template <element T>
     buffer<T> make(std::size_t n)
     {
         if (n > caps_.max_elements)
             throw backend_error(device_->name() + ": a buffer of " + std::to_string(n)
-                + " elements was asked for; the limit of this device is " + std::to_string(caps_.max_elements)
+                + " elements was requested; the limit of this device is " + std::to_string(caps_.max_elements)
                 + " (textures of " + std::to_string(gl::row_width) + " x " + std::to_string(device_->max_size) + ")");
         buffer<T> b;
         if (n == 0)
@@ -180,8 +180,8 @@ public:
 
     /// @}
 
-    /// The buffer as a texture, to read or write with OpenGL in the order of calls, without a copy. It stays the
-    /// buffer's. Who writes it by image stores calls glMemoryBarrier before the buffer is used again.
+    /// The buffer as a texture, which OpenGL calls of the caller may read or write, in the order of calls and without a
+    /// copy. The buffer continues to own it. After image stores, call glMemoryBarrier before using the buffer again.
     /// \throws std::invalid_argument for a buffer of another backend.
     /// \snippet snippets_gl.cpp texture_of
     template <element T>
@@ -191,9 +191,9 @@ public:
         return {b.texture_.id, b.texture_.width, b.texture_.height, b.size_ > 0 ? gl::texture_format<T>::internal : 0u};
     }
 
-    /// A buffer over a texture of the caller's, laid out as gl_texture says. The texture stays the caller's and must
-    /// live as long as the buffer; bytes() does not count it. Texels of level 0 beyond the n elements may be
-    /// overwritten; its filters do not matter. A buffer of 0 elements has no texture, whatever is given.
+    /// A buffer over a caller's texture with the layout of gl_texture. The caller continues to own the texture, which
+    /// must outlive the buffer; bytes() does not count it. Texels of level 0 beyond the n elements may be overwritten.
+    /// The texture's filters do not matter. For n = 0 the texture is ignored.
     /// \throws std::invalid_argument for a texture of another kind, format or size.
     /// \snippet snippets_gl.cpp adopt
     template <element T>
@@ -213,7 +213,7 @@ public:
         return b;
     }
 
-    /// Gives the buffer's texture to the caller, who deletes it. bytes() no longer counts it.
+    /// Releases the buffer's texture to the caller, who must delete it. bytes() no longer counts it.
     /// \throws std::invalid_argument for a buffer of another backend.
     /// \snippet snippets_gl.cpp release
     template <element T>
@@ -230,7 +230,7 @@ public:
     /// \name The verbs of a backend, as backend.hpp describes them: passes
     /// @{
 
-    /// As the concept photongrid::backend says.
+    /// See the concept photongrid::backend.
     template <gather_kernel K, class Reads, class Writes>
     void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
     {
@@ -248,8 +248,8 @@ public:
         finish_verb<K>("run");
     }
 
-    /// Tiles with occlusion queries (3.3): each tile of a pass is drawn only if the pass before found an element of it
-    /// not done, which the device itself decides. The host looks at the queries once in `query_ring` passes.
+    /// Uses tiles with occlusion queries (3.3): by conditional rendering, the device draws a tile only if the pass
+    /// before had an unfinished element in it. The host reads the queries once per `query_ring` passes.
     template <iterative_kernel K, class Reads, class Writes>
     progress run_until_done(launch l, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
     {
@@ -266,7 +266,7 @@ public:
         bind<K>(args, reads, writes);
         target<K>(reads, writes);
         std::vector<region> tiles = tiles_of(l);
-        const std::size_t stride = tiles.size() + 1; // the last of a set is for the final question
+        const std::size_t stride = tiles.size() + 1; // the last query of a set counts unfinished elements at the end
         make_queries(query_ring * stride);
         const auto query = [&](uint pass, std::size_t tile) { return queries_[pass % query_ring * stride + tile]; };
         std::vector<char> live(tiles.size(), 1);
@@ -292,7 +292,7 @@ public:
             }
             gl.Disablei(GL_SCISSOR_TEST, 0);
             p.passes = end;
-            // Asked for few passes: is everything done after the last of them?
+            // These were the last passes: count the elements that are still unfinished.
             const GLuint rest = end == max_passes ? query(end - 1, tiles.size()) : 0;
             if (rest != 0)
                 ask_not_done<K>(l, args, rest);
@@ -376,9 +376,8 @@ public:
 
     /// @}
 
-    /// Compiles kernel K for every verb that it serves, without running it.
-    /// \throws backend_error with the compiler's
-    /// log.
+    /// Compiles kernel K for every verb that can use it, without running it.
+    /// \throws backend_error with the compiler's log.
     template <kernel_struct K>
     void compile(uint switches = ~0u)
     {
@@ -397,10 +396,10 @@ public:
         }
     }
 
-    /// \name The verbs of a backend, as backend.hpp describes them: what it is and has spent
+    /// \name The verbs of a backend, as backend.hpp describes them: properties and costs
     /// @{
 
-    /// As the concept photongrid::backend says.
+    /// See the concept photongrid::backend.
     void finish()
     {
         const auto scope = device_->use();
@@ -413,13 +412,13 @@ public:
     const std::map<std::string, kernel_cost>& costs() const { return made_->costs; }
     /// @}
 
-    /// How often pixels or buffers were read back or mapped: only `download` does.
+    /// The number of readbacks and mappings. Only `download` reads back.
     std::uint64_t readbacks() const { return device_->call.readbacks(); }
 
-    /// What the driver has said of high severity since the last call, a line each: errors that no exception has told
-    /// yet, and those of its compiler. Always empty unless options.debug.
+    /// The driver's messages of high severity since the last call, one per line, that no exception has reported,
+    /// including its compiler's. Always empty without options.debug.
     std::string take_debug_messages() { return std::exchange(device_->messages, {}); }
-    /// How often the host waited for results of occlusion queries.
+    /// The number of times that the host waited for occlusion queries.
     std::uint64_t query_polls() const { return query_polls_; }
 
 private:
@@ -428,7 +427,7 @@ private:
         GLint x, y;
         GLsizei width, height;
     };
-    static constexpr uint query_ring = 8; ///< passes between two looks at the queries
+    static constexpr uint query_ring = 8; ///< passes per readback of the queries
 
     /// Calls f(first element, row, width, rows) for the full rows of a buffer and for its last, shorter one.
     template <class F>
@@ -442,7 +441,7 @@ private:
             f(full * gl::row_width, static_cast<GLint>(full), static_cast<GLsizei>(rest), 1);
     }
 
-    /// The texels that a launch covers: part of one row, or whole rows (the program drops what is outside).
+    /// The texels of a launch: part of one row, or whole rows, of which the program discards texels outside the launch.
     static region region_of(const launch& l)
     {
         const uint last = l.first + (l.elements - 1);
@@ -452,7 +451,7 @@ private:
                 static_cast<GLsizei>(l.elements), 1};
         return {0, static_cast<GLint>(row), static_cast<GLsizei>(gl::row_width), static_cast<GLsizei>(end - row)};
     }
-    /// Tiles of about tile x tile elements; wider where there are few rows.
+    /// Tiles of about tile x tile elements, wider if there are few rows.
     std::vector<region> tiles_of(const launch& l) const
     {
         const region all = region_of(l);
@@ -481,7 +480,7 @@ private:
                     device_->bind_texture(gl::state_unit + s.index, std::get<s.index>(writes).texture_.id);
             });
     }
-    /// Makes the written buffers the render targets. True when the pass also reads one of them.
+    /// Sets the written buffers as render targets. Returns whether the pass also reads one of them.
     template <class K, class Reads, class Writes>
     bool target(const Reads& reads, const Writes& writes)
     {
@@ -503,8 +502,8 @@ private:
     }
     void set_launch(GLuint program, const launch& l)
     {
-        // The triangle covers the viewport exactly, so no fragment outside the launch's rectangle is computed;
-        // gl_FragCoord counts from the target's corner and is the texel.
+        // The triangle covers exactly the viewport, so only fragments in the launch's rectangle are computed.
+        // gl_FragCoord is relative to the target's corner, so it is the texel.
         const region r = region_of(l);
         device_->set_viewport(r.x, r.y, r.width, r.height);
         device_->call.UseProgram(program);
@@ -523,7 +522,7 @@ private:
         draw(program, l);
         device_->call.EndQuery(GL_SAMPLES_PASSED);
     }
-    /// Counts the elements not done into `query`, by a pass that writes nothing. States stay bound.
+    /// Counts the unfinished elements in `query`, by a pass that writes nothing. States stay bound.
     template <class K>
     void ask_not_done(const launch& l, const typename K::Params&, GLuint query)
     {
@@ -566,7 +565,7 @@ private:
             const std::uint64_t start = result(clock_[0]), end = result(clock_[1]); // ns
             made_->costs[std::string(kernel_name<K>())].ms += 1e-6 * static_cast<double>(end - std::min(start, end));
         }
-        if (options_.debug || device_->is_callers()) // whose glGetError must not find ours
+        if (options_.debug || device_->is_callers()) // so that our errors do not remain for the caller
             device_->check_errors(std::string(verb) + "<" + std::string(kernel_name<K>()) + ">");
     }
     gl_options options_;
@@ -582,5 +581,5 @@ static_assert(backend<gl_backend>);
 
 } // namespace photongrid
 
-// Declared wherever the backend is, so that no two files of a program can take different ways.
+// Declared with the backend, so that all files of a program use the same overrides.
 #include <photongrid/backends/gl/overrides/bitonic_sort.hpp>

@@ -1,4 +1,4 @@
-// Buffers handed over as textures and taken from textures, without a trip through the CPU.
+// Buffers as textures for the caller, and the caller's textures as buffers, without copies through the CPU.
 #pragma once
 
 #include <photongrid/backends/gl/device.hpp>
@@ -8,7 +8,7 @@
 namespace photongrid {
 
 /// A buffer as a texture: element i is the texel (i % 2048, i / 2048) of level 0. A buffer of up to 2048 elements is
-/// the beginning of one row, which may be shorter than 2048; all others are 2048 wide, and the last row's rest is
+/// one row, which may be shorter than 2048 texels; others are 2048 texels wide, and the rest of the last row is
 /// undefined. The format is R32F, RG32F or RGBA32F for float, vec2 and vec4, R32UI, RG32UI or RGBA32UI for uint, uvec2
 /// and uvec4.
 /// \headerfile backends/gl/gl.hpp <photongrid/backends/gl/gl.hpp>
@@ -21,8 +21,8 @@ struct gl_texture {
 
 namespace gl {
 
-    /// Checks that a texture of the caller's can be a buffer of n elements, and gives its size.
-    /// \throws std::invalid_argument that says what was expected.
+    /// Checks that a caller's texture can be a buffer of n elements, and returns its size.
+    /// \throws std::invalid_argument that says what is wrong.
     inline gl_texture check_adoptable(
         functions& gl, GLuint texture, std::size_t n, GLenum format, const char* format_name)
     {
@@ -30,7 +30,7 @@ namespace gl {
             throw std::invalid_argument("gl_backend::adopt: texture: " + std::to_string(texture) + " " + text);
         };
         if (texture == 0 || gl.IsTexture(texture) == GL_FALSE)
-            fail("is no texture of this context, or was never bound");
+            fail("is not a texture of this context, or was never bound");
         const auto parameter = [&](GLenum what) {
             GLint value = 0;
             gl.GetTextureParameteriv(texture, what, &value);
@@ -42,7 +42,7 @@ namespace gl {
             return value;
         };
         if (parameter(GL_TEXTURE_TARGET) != GL_TEXTURE_2D)
-            fail("is no 2D texture; buffers are GL_TEXTURE_2D");
+            fail("is not a 2D texture; give one with the target GL_TEXTURE_2D");
         if (level(GL_TEXTURE_INTERNAL_FORMAT) != static_cast<GLint>(format))
             fail(
                 std::string("has another internal format at level 0; buffers of this element type are ") + format_name);
@@ -60,7 +60,7 @@ namespace gl {
                 + "; elements are read from level 0");
         if (parameter(GL_TEXTURE_SWIZZLE_R) != GL_RED || parameter(GL_TEXTURE_SWIZZLE_G) != GL_GREEN
             || parameter(GL_TEXTURE_SWIZZLE_B) != GL_BLUE || parameter(GL_TEXTURE_SWIZZLE_A) != GL_ALPHA)
-            fail("has a GL_TEXTURE_SWIZZLE of its own, which would change what is read; buffers have none");
+            fail("has a GL_TEXTURE_SWIZZLE; reset it, because it would change the elements");
         return {texture, width, height, format};
     }
 

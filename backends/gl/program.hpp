@@ -1,4 +1,4 @@
-// Kernels as OpenGL programs: each is compiled once per verb and set of switches.
+// Kernels as OpenGL programs. Each is compiled once per verb and set of switches.
 #pragma once
 
 #include <photongrid/backend/kernel_source.hpp>
@@ -9,11 +9,11 @@
 
 namespace photongrid::gl {
 
-/// What a kernel's program does.
+/// The verb of a kernel's program.
 enum class verb { run, until_done, not_done, holds, route_payload, route_amount };
 
-/// A shader.
-/// \throws backend_error whose text is the compiler's log with each message at its own file and line.
+/// Compiles a shader.
+/// \throws backend_error with the compiler's log, in which each message has its own file and line.
 inline GLuint compile(device& d, GLenum stage, const spliced_source& source, const std::string& what)
 {
     functions& gl = d.call;
@@ -30,10 +30,10 @@ inline GLuint compile(device& d, GLenum stage, const spliced_source& source, con
     gl.GetShaderInfoLog(shader, length, nullptr, log.data());
     log.resize(std::min(log.find('\0'), log.size()));
     gl.DeleteShader(shader);
-    throw backend_error(d.name() + ": " + what + ": the OpenGL compiler refuses it:\n" + translate_log(log, source));
+    throw backend_error(d.name() + ": " + what + ": the OpenGL compiler failed:\n" + translate_log(log, source));
 }
 
-/// A program of two shaders, which it takes over.
+/// Links a program of two shaders and deletes them.
 /// \throws backend_error with the linker's log.
 inline GLuint link(device& d, GLuint vertex, GLuint fragment, const std::string& what)
 {
@@ -53,10 +53,10 @@ inline GLuint link(device& d, GLuint vertex, GLuint fragment, const std::string&
     gl.GetProgramInfoLog(program, length, nullptr, log.data());
     log.resize(std::min(log.find('\0'), log.size()));
     gl.DeleteProgram(program);
-    throw backend_error(d.name() + ": " + what + ": the OpenGL linker refuses it:\n" + log);
+    throw backend_error(d.name() + ": " + what + ": the OpenGL linker failed:\n" + log);
 }
 
-/// The programs of one backend, made when first asked for.
+/// The programs of a backend, which are compiled when they are first needed.
 class programs {
 public:
     explicit programs(std::shared_ptr<device> d) : device_(std::move(d)) { add_texts(gl_texts); }
@@ -78,7 +78,7 @@ public:
     /// More kernel texts, in addition to the library's. They must outlive the backend.
     void add_texts(std::span<const text_file> texts) { library_.insert(library_.end(), texts.begin(), texts.end()); }
 
-    /// The program of kernel K for verb `v` with these switches on.
+    /// The program of kernel K for verb `v` with these switches.
     template <kernel_struct K>
     GLuint get(verb v, uint switches)
     {
@@ -116,7 +116,7 @@ public:
         return program;
     }
 
-    /// A program of this backend's own, whose fragment shader is `file`.
+    /// A program of the backend itself, with the fragment shader `file`.
     GLuint own(const char* file)
     {
         GLuint& program = own_[file];
@@ -147,7 +147,7 @@ private:
             });
         return calls;
     }
-    /// Params reach the program as bytes: the driver's layout must be C++'s.
+    /// Params are passed as bytes, so the driver's layout must be that of C++.
     void check_layout(GLuint program, std::size_t size, const std::string& what)
     {
         const GLuint block = device_->call.GetUniformBlockIndex(program, "args_block_");

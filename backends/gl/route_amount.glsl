@@ -1,5 +1,5 @@
 #version 450
-// Amounts add up by blending: exact counts and flux, which an 8-bit stencil cannot hold.
+// Sums amounts by blending, because an 8-bit stencil cannot hold exact counts or powers.
 flat in vec4 amount_out_;
 layout(location = 0) out vec4 total_;
 void main()

@@ -1,6 +1,6 @@
 #version 450
-// From the drawn footprints, m x m pixels a destination, to the linear list of slots.
-layout(location = 0) uniform uvec4 shape_; // destinations in a row, in all, m, capacity
+// Copies the drawn footprints, m x m pixels per destination, to the linear list of slots.
+layout(location = 0) uniform uvec4 shape_; // destinations per row, all destinations, m, capacity
 layout(binding = 0) uniform usampler2D drawn_;
 layout(location = 0) out uint slot_;
 void main()

@@ -1,7 +1,7 @@
 #version 450
-// One bit plane of the stencil pattern: slot s of a destination begins at capacity - 1 - s, so that each arriving point
-// finds one slot at capacity - 1; a slot past the capacity begins at 255 and is never found. Bit planes, because
-// ARB_shader_stencil_export is not everywhere.
+// Draws one bit plane of the stencil pattern: slot s of a destination starts at capacity - 1 - s, so that each arriving
+// point finds exactly one slot at capacity - 1. Slots past the capacity start at 255 and never match. It uses bit
+// planes because ARB_shader_stencil_export is not always available.
 layout(location = 0) uniform uvec4 plane_; // m, capacity, bit
 void main()
 {

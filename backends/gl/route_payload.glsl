@@ -1,5 +1,5 @@
 #version 450
-// The stencil test has chosen the slot; the payload goes there (2.2.2, figure 5).
+// Writes the payload to the slot that the stencil test has selected (2.2.2, figure 5).
 flat in uint payload_out_;
 layout(location = 0) out uint slot_;
 void main()

@@ -1,5 +1,5 @@
-// Stencil routing as the paper draws it (2.2.2, figure 5): every draw is a point of m x m pixels over its destination,
-// and the stencil buffer lets one pixel of it through, the destination's next free slot.
+// Stencil routing as in the paper (2.2.2, figure 5): every draw is a point of m x m pixels over its destination, of
+// which the stencil test passes one pixel, the destination's next free slot.
 #pragma once
 
 #include <photongrid/backends/gl/program.hpp>
@@ -8,7 +8,7 @@
 
 namespace photongrid::gl {
 
-/// One routing pass. `payload` and `amount` are a route kernel's two programs, its inputs and Params are bound.
+/// A routing pass. `payload` and `amount` are the two programs of a route kernel, whose inputs and Params are bound.
 struct routing {
     device& on;
     programs& made;
@@ -16,14 +16,14 @@ struct routing {
     launch draws;
     uint destinations, m;
 
-    /// slots[d * capacity + r] = payload of the r-th draw to d; `n` slots in all, the rest 0xFFFFFFFF.
-    /// Overwrites texture unit 0.
-    /// \throws backend_error when the footprints exceed the device's largest target.
+    /// Computes slots[d * capacity + r] = payload of the r-th draw to d, for `n` slots; empty slots are 0xFFFFFFFF. It
+    /// changes texture unit 0.
+    /// \throws backend_error if the footprints exceed the device's largest render target.
     void fill(const texture& slots, std::size_t n)
     {
         functions& gl = on.call;
         const uint capacity = route_capacity(m);
-        // As square as can be: both edges are limited.
+        // About square, because both edges are limited.
         const uint columns = std::max(1u, static_cast<uint>(std::ceil(std::sqrt(static_cast<double>(destinations)))));
         const uint rows = std::max(1u, (destinations + columns - 1) / columns);
         const std::string what = "route: " + std::to_string(destinations) + " destinations of " + std::to_string(m)
@@ -59,8 +59,8 @@ struct routing {
         gl.DeleteFramebuffers(1, &framebuffer);
     }
 
-    /// totals[d * sums + p] = sum of the amounts of the draws to d in the p-th block of draws, in draw order, by
-    /// blending.
+    /// Computes totals[d * sums + p] = sum of the amounts of the draws to d in the p-th block of draws, in draw order,
+    /// by blending.
     void sum(const texture& totals, uint sums)
     {
         functions& gl = on.call;
@@ -92,7 +92,7 @@ private:
             GLenum format, attachment;
             std::size_t bytes;
         };
-        // Stencil alone is optional in OpenGL; beside depth it is not.
+        // A stencil format without depth is optional in OpenGL; one with depth is not.
         for (const auto& c : {choice{GL_STENCIL_INDEX8, GL_STENCIL_ATTACHMENT, 1},
                  choice{GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL_ATTACHMENT, 4}}) {
             stencil = on.make(c.format, drawn.width, drawn.height, c.bytes, what + ", stencil");
@@ -102,7 +102,8 @@ private:
             gl.NamedFramebufferTexture(framebuffer, c.attachment, 0, 0);
         }
         gl.DeleteFramebuffers(1, &framebuffer);
-        throw backend_error(on.name() + ": " + what + ": the driver offers no 8-bit stencil beside an R32UI target");
+        throw backend_error(
+            on.name() + ": " + what + ": the driver supports no 8-bit stencil together with an R32UI target");
     }
 
     void draw_pattern(uint capacity)
@@ -131,7 +132,8 @@ private:
         gl.UseProgram(payload);
         gl.ProgramUniform4ui(payload, 1, columns, destinations, m, rows);
         gl.ProgramUniform4ui(payload, 2, 1, draws.elements, draws.first, 0);
-        // GL_INCR stops at 255, beyond every reference value: a full destination stays full (docs/design/decisions.md).
+        // GL_INCR saturates at 255, above every reference value, so a full destination stays full
+        // (docs/design/decisions.md).
         gl.StencilFunc(GL_EQUAL, static_cast<GLint>(capacity - 1), 0xFFu);
         gl.StencilOp(GL_INCR, GL_INCR, GL_INCR);
         gl.DrawArrays(GL_POINTS, static_cast<GLint>(draws.first), static_cast<GLsizei>(draws.elements));

@@ -1,7 +1,7 @@
 #ifndef PHOTONGRID_GL_TEXTURES
 #define PHOTONGRID_GL_TEXTURES
-// Buffers as textures. Element i lies at (i mod 2048, i / 2048); a texture of fewer elements is one row, where that is
-// (i, 0). Constant shift and mask: no address is computed in float, none divided.
+// Buffers as textures. Element i is texel (i mod 2048, i / 2048); a texture with fewer elements is one row. Addresses
+// use a constant shift and mask, not floats or divisions.
 #define SAMPLER_float sampler2D
 #define SAMPLER_vec2 sampler2D
 #define SAMPLER_vec4 sampler2D
@@ -22,7 +22,7 @@ ivec2 texel_(uint i) { return ivec2(int(i & 2047u), int(i >> 11u)); }
 #define inline
 #define PARAMS(P) layout(std140, binding = 0) uniform args_block_ { P args; };
 #define SWITCH(B, NAME) const bool NAME = ((SWITCHES_ >> B) & 1u) != 0u;
-// A group is one element.
+// Groups have one element.
 #define IN_GROUPS(B)
 #define GROUP_LANES 1u
 #define EACH_LANE(F) F(0u);
@@ -33,5 +33,5 @@ uint group_max(uint v) { return v; }
 uint group_sum_up_to(uint v) { return v; }
 #define lane_value(V, LANE) (V)
 #define from_lane(V, LANE) (V)
-layout(location = 0) uniform uvec4 launch_; // first element, how many; unused
+layout(location = 0) uniform uvec4 launch_; // first element, number of elements; unused
 #endif

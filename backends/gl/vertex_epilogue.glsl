@@ -10,7 +10,7 @@ void main()
     payload_out_ = output_1();
     amount_out_ = output_2();
     gl_PointSize = float(blocks_.z);
-    gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside: clipped
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside the viewport: clipped
     if (d < blocks_.y) {
         uint block = d * sums_.x + (uint(gl_VertexID) - sums_.z) / sums_.y;
         uvec2 cell = uvec2(block % blocks_.x, block / blocks_.x);

@@ -1,5 +1,5 @@
-// The serial backend: plain loops over the kernel structs. It is the specification that the other backends are held
-// to, and the sanitizer of all kernels: its accessors check every index in debug builds.
+// The serial backend: plain loops over the kernel structs. It is the specification of all other backends. In debug
+// builds its accessors check every index of a kernel.
 #pragma once
 
 #include <photongrid/backend/backend.hpp>
@@ -11,8 +11,8 @@
 
 namespace photongrid {
 
-/// Kernels in plain loops on one thread, in single precision as IEEE 754 has it: what the other backends are compared
-/// with. It needs no device. One thread at a time may use a backend and its buffers; a buffer may outlive it.
+/// Runs kernels in plain loops on one thread, in IEEE 754 single precision. The other backends are compared with it.
+/// One thread at a time may use a backend and its buffers; a buffer may outlive it.
 /// \headerfile backends/serial/serial.hpp <photongrid/backends/serial/serial.hpp>
 /// \snippet snippets.cpp serial_backend
 class serial_backend {
@@ -29,8 +29,8 @@ public:
         /// \name A buffer's members, the same on every backend
         /// @{
 
-        /// A buffer holds size() elements T. It is moved, never copied; one that was moved from, or made by default, is
-        /// empty.
+        /// A buffer has size() elements T. It can be moved but not copied. A moved-from or default-constructed buffer
+        /// is empty.
         using value_type = T;
         buffer() = default;
         buffer(buffer&& other) noexcept { swap(other); }
@@ -65,7 +65,7 @@ public:
         std::vector<T> data_;
     };
 
-    /// Nothing to be opened.
+    /// It needs no device.
     serial_backend()
     {
         caps_.backend = "serial";
@@ -80,7 +80,7 @@ public:
     /// \name The verbs of a backend, as backend.hpp describes them
     /// @{
 
-    /// As the concept photongrid::backend says.
+    /// See the concept photongrid::backend.
     template <element T>
     buffer<T> make(std::size_t n)
     {
@@ -128,7 +128,7 @@ public:
             for (; q < max_passes && !k.done(); ++q)
                 k.kernel(i);
             p.finished = k.done() && p.finished;
-            if (q > 0) // else its outputs are still the last element's
+            if (q > 0) // else the outputs still belong to the previous element
                 store(k, i, writes);
             if (q >= ended.size())
                 ended.resize(q + std::size_t{1});

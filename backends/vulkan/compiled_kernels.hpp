@@ -1,4 +1,4 @@
-// Compiling kernels, or finding them compiled: their SPIR-V, and what the driver made of it.
+// Compiles kernels, and caches their SPIR-V and the driver's pipelines.
 #pragma once
 
 #include <photongrid/backends/vulkan/file_cache.hpp>
@@ -12,7 +12,7 @@ namespace photongrid::vulkan_detail {
 
 class compiled_kernels {
 public:
-    /// `folder`: where they are kept from one start to the next; "": nowhere. `optimized`: by the SPIR-V optimizer.
+    /// `folder`: cache folder; "": none. `optimized`: run the SPIR-V optimizer.
     compiled_kernels(std::shared_ptr<context> c, const std::string& folder, bool optimized)
         : context_(std::move(c)), cache_(folder), optimized_(optimized)
     {
@@ -29,7 +29,7 @@ public:
         info.initialDataSize = kept_.size();
         info.pInitialData = kept_.data();
         if (vkCreatePipelineCache(context_->device(), &info, nullptr, &drivers_) != VK_SUCCESS)
-            drivers_ = VK_NULL_HANDLE; // without one, then
+            drivers_ = VK_NULL_HANDLE; // continue without the driver's cache
     }
     compiled_kernels(const compiled_kernels&) = delete;
     compiled_kernels& operator=(const compiled_kernels&) = delete;
@@ -43,13 +43,13 @@ public:
             if (vkGetPipelineCacheData(context_->device(), drivers_, &size, now.data()) == VK_SUCCESS && now != kept_)
                 try {
                     cache_.keep(drivers_key_, std::string_view(now.data(), size));
-                } catch (const std::bad_alloc&) { // not kept, then
+                } catch (const std::bad_alloc&) { // continue without storing it
                 }
         }
         vkDestroyPipelineCache(context_->device(), drivers_, nullptr);
     }
 
-    /// As compile_spirv(), unless the very same text was compiled by the same tools before.
+    /// compile_spirv(), unless the cache has the same text compiled by the same tools.
     spirv_words compile(const spliced_source& source, const std::string& name)
     {
         static const std::string tools = "SPIR-V by photongrid 1, glslang " + std::to_string(GLSLANG_VERSION_MAJOR)
@@ -69,7 +69,7 @@ public:
         return words;
     }
 
-    /// The driver's own cache, null without a folder.
+    /// The driver's pipeline cache; null without a folder.
     VkPipelineCache drivers() const { return drivers_; }
     std::uint64_t found() const { return found_; }
 

@@ -1,28 +1,29 @@
 #version 450
-// The kernel dialect read as a Vulkan compute shader: one invocation an element. The backend defines, before this file,
+// The kernel dialect for Vulkan compute shaders, with one invocation per element. The backend defines, before this
+// file:
 //   GROUP      invocations in a workgroup      SWITCHES   the bits of launch.switches
 //   OUTPUTS    how many OUTPUTs and STATEs the kernel has
-//   LANES      elements to a group of those kernels that are IN_GROUPS: a subgroup's invocations, or 1
-//   LANE_LOOPS 1: what is said of each lane is a loop, 0: written out, which lets lavapipe know the lane
+//   LANES      elements per group in kernels that are IN_GROUPS: a subgroup's invocations, or 1
+//   LANE_LOOPS 1: EACH_LANE is a loop; 0: it is unrolled, so that lanes are constants for lavapipe
 //   TEXELS     1: inputs are read as texel buffers, 0: as storage buffers
-// Bindings: 0 to 7 inputs, 8 to 15 outputs and states, 16 up the verb's own. No buffer is `restrict`: a pass may read
-// one frame of a buffer and write another.
+// Bindings: 0 to 7 inputs, 8 to 15 outputs and states, from 16 on the verb's own. No buffer is `restrict`, because a
+// pass may read one frame of a buffer and write another.
 #if LANES > 1
 #extension GL_KHR_shader_subgroup_shuffle : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
 #define inline
-// Every float operation is marked NoContraction in the SPIR-V (spirv.hpp), so the word adds nothing; and glslang 12 loops
-// for ever, out of memory, where precise values depend on each other in a circle (eye_bounce.glsl).
+// `precise` is not needed, because every float operation gets NoContraction in the SPIR-V (spirv.hpp). And glslang 12
+// loops until it is out of memory if precise values depend on each other in a cycle (eye_bounce.glsl).
 #define precise
 layout(local_size_x = GROUP) in;
 
-// launch_.x: elements, y: first element, z: workgroups, w: where the first element's outputs go.
-// The parameters stand last: what follows a nested struct is padded differently in std430 and C++.
+// launch_.x: elements, y: first element, z: workgroups, w: index of the first element's outputs. The parameters come
+// last, because members after a nested struct are padded differently in std430 and C++.
 #define PARAMS(P) layout(push_constant) uniform launch_block_ { uvec4 launch_; P args; };
 
 #if TEXELS
-// lavapipe fetches a texel of all its lanes by vector loads, but a storage buffer word by word and lane by lane.
+// lavapipe reads texels with vector loads, but storage buffers word by word and lane by lane.
 #define BUFFER_float samplerBuffer
 #define BUFFER_vec2 samplerBuffer
 #define BUFFER_vec4 samplerBuffer
@@ -64,7 +65,7 @@ uint group_max(uint v) { return subgroupMax(v); }
 uint group_sum_up_to(uint v) { return subgroupInclusiveAdd(v); }
 #define EACH_LANE(F) for (uint lane_ = 0u; lane_ < GROUP_LANES; ++lane_) { F(lane_); }
 #else
-// lavapipe shuffles by one instruction where it knows the places, and does all else lane by lane.
+// lavapipe shuffles with one instruction if the lanes are constants, and does everything else lane by lane.
 uint from_xor_(uint v, uint places) { return subgroupShuffle(v, gl_SubgroupInvocationID ^ places); }
 uint from_below_(uint v, uint places)
 {
@@ -151,7 +152,7 @@ uint group_sum_up_to(uint v) { return v; }
 #define STORE_ALL(i) EACH_8(store_, i)
 #endif
 
-// The number of this workgroup, and of this invocation among all; groups are laid out in two dimensions because one holds
-// 65,535 at most.
+// The number of this workgroup, and of this invocation. Workgroups have two dimensions, because one is limited to
+// 65,535.
 uint group_() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 uint element_() { return group_() * uint(GROUP) + gl_LocalInvocationIndex; }

@@ -1,4 +1,4 @@
-// How many elements `holds` is true for: a sum in the workgroup, then one atomic addition.
+// Counts the elements for which `holds` is true: a sum per workgroup, then one atomic addition.
 layout(std430, binding = 16) buffer held_block_ { uint held_; };
 shared uint group_held_;
 

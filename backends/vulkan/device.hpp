@@ -1,4 +1,4 @@
-// Finding a Vulkan device and opening it. Plain C API: <vulkan/vulkan_raii.hpp> takes seconds to compile in every file.
+// Finds and opens a Vulkan device. It uses the C API: <vulkan/vulkan_raii.hpp> takes seconds to compile in every file.
 #pragma once
 
 #include <photongrid/backends/vulkan/errors.hpp>
@@ -15,49 +15,49 @@
 
 namespace photongrid {
 
-/// Which device to open, and how.
+/// Options of the Vulkan backend.
 /// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
 struct vulkan_options {
     std::string device{}; ///< "": the best (discrete, integrated, virtual, CPU); else an index or a part of the name
-    bool hardware_only = false; ///< refuse devices that are a CPU
+    bool hardware_only = false; ///< reject devices that are a CPU
     bool validation = false;   ///< run the Khronos validation layer (core and synchronization) and collect its messages
-    bool gpu_assisted = false; ///< with validation: instrument kernels too, so that their accesses past a buffer's end
-                               ///< are messages; slow
-    bool staging = false; ///< work as on a discrete GPU even where it is not needed: copy through staging buffers, read
-                          ///< inputs as storage buffers
-    bool subgroups = true;      ///< let neighbouring points search together where the device can
-    bool time_passes = false;   ///< measure each pass by the device's clock, for costs(); a little slower
-    std::string cache_folder{}; ///< keep compiled kernels in this folder, so that the next start is quick; "": nowhere
+    bool gpu_assisted = false; ///< with validation: instrument kernels, so that accesses past a buffer's end give
+                               ///< messages; slow
+    bool staging = false;      ///< always work as on a discrete GPU: copy through staging buffers, and read inputs as
+                               ///< storage buffers
+    bool subgroups = true;     ///< let neighbouring points search in a subgroup, if the device supports it
+    bool time_passes = false;  ///< measure passes by the device's clock, for costs(); a little slower
+    std::string cache_folder{}; ///< folder in which compiled kernels are cached; "": none
 };
 
-/// A device that the caller has opened, and goes on owning. The instance must be for Vulkan 1.1 or later, the queue of
-/// a family with compute; nobody else may use the queue at the same time.
+/// A device that the caller has opened and continues to own. The instance must be for Vulkan 1.1 or later, and the
+/// queue of a family with compute. No other thread may use the queue at the same time.
 /// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
 struct vulkan_handles {
-    VkInstance instance = VK_NULL_HANDLE;              ///< made for Vulkan 1.1 or later
-    VkPhysicalDevice physical_device = VK_NULL_HANDLE; ///< of that instance
-    VkDevice device = VK_NULL_HANDLE;                  ///< of that physical device
-    VkQueue queue = VK_NULL_HANDLE;                    ///< of that device; passes are submitted here
-    std::uint32_t queue_family = 0;                    ///< that the queue is of
+    VkInstance instance = VK_NULL_HANDLE;              ///< created for Vulkan 1.1 or later
+    VkPhysicalDevice physical_device = VK_NULL_HANDLE; ///< a physical device of that instance
+    VkDevice device = VK_NULL_HANDLE;                  ///< a device of that physical device
+    VkQueue queue = VK_NULL_HANDLE;                    ///< a queue of that device, to which passes are submitted
+    std::uint32_t queue_family = 0;                    ///< the family of the queue
 };
 
-/// A device as `vulkan_devices()` lists it.
+/// A device in the list of `vulkan_devices()`.
 /// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
 struct vulkan_device_info {
-    std::uint32_t index = 0;               ///< that vulkan_options::device may name
-    std::string name;                      ///< the driver's
+    std::uint32_t index = 0;               ///< for vulkan_options::device
+    std::string name;                      ///< the driver's name for it
     std::string type;                      ///< "discrete", "integrated", "virtual", "cpu", "other"
-    std::string driver;                    ///< its name and version
+    std::string driver;                    ///< the driver's name and version
     std::string api_version;               ///< "1.3.230"
-    bool software = false;                 ///< true where the device is a CPU
-    std::uint64_t max_buffer_bytes = 0;    ///< of one buffer that a pass binds
+    bool software = false;                 ///< true if the device is a CPU
+    std::uint64_t max_buffer_bytes = 0;    ///< of one buffer in a pass
     std::uint64_t memory_bytes = 0;        ///< largest device-local heap
-    std::uint32_t max_storage_buffers = 0; ///< that one pass can bind
-    std::string unusable;                  ///< why this backend cannot use it; empty: it can
+    std::uint32_t max_storage_buffers = 0; ///< per pass
+    std::string unusable;                  ///< the reason why this backend cannot use it; empty if it can
 };
 
 namespace vulkan_detail {
-    /// What the validation layer said.
+    /// Messages of the validation layer.
     struct message_log {
         std::mutex mutex;
         std::vector<std::string> messages;
@@ -72,10 +72,10 @@ namespace vulkan_detail {
         return VK_FALSE;
     }
 
-    /// An instance of our own, or a caller's.
+    /// An instance of the backend, or a caller's.
     class instance {
     public:
-        /// \throws backend_error when there is no driver, or no validation layer where one is wanted.
+        /// \throws backend_error if there is no driver, or no validation layer although it was requested.
         explicit instance(bool validation, bool gpu_assisted = false)
         {
             std::uint32_t version = VK_API_VERSION_1_0;
@@ -83,8 +83,9 @@ namespace vulkan_detail {
                     vkGetInstanceProcAddr(nullptr, "vkEnumerateInstanceVersion")))
                 f(&version);
             if (version < VK_API_VERSION_1_1)
-                throw backend_error("vulkan: the loader knows Vulkan 1.0 only; 1.1 is needed. Update it (Debian: apt "
-                                    "install libvulkan1)");
+                throw backend_error(
+                    "vulkan: the loader supports Vulkan 1.0 only; 1.1 is needed. Update it (Debian: apt "
+                    "install libvulkan1)");
             VkApplicationInfo app{};
             app.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
             app.pApplicationName = "photongrid";
@@ -96,20 +97,20 @@ namespace vulkan_detail {
             constexpr const char* portability = "VK_KHR_portability_enumeration";
             if (has_extension(nullptr, portability)) {
                 extensions.push_back(portability);
-                info.flags = 1; // VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR: MoltenVK counts too
+                info.flags = 1; // VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR: for MoltenVK
             }
 
             constexpr const char* layer = "VK_LAYER_KHRONOS_validation";
             VkDebugUtilsMessengerCreateInfoEXT messenger{};
             VkValidationFeaturesEXT features{};
-            // GPU-assisted validation needs a descriptor set of its own, which it reserves.
+            // GPU-assisted validation reserves a descriptor set.
             constexpr VkValidationFeatureEnableEXT enabled[]
                 = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT,
                     VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT,
                     VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT};
             if (validation) {
                 if (!has_layer(layer))
-                    throw backend_error(std::string("vulkan: validation was asked for, but the layer ") + layer
+                    throw backend_error(std::string("vulkan: validation was requested, but the layer ") + layer
                         + " is not installed (Debian: apt install vulkan-validationlayers)");
                 extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
                 if (has_extension(layer, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME))
@@ -134,8 +135,8 @@ namespace vulkan_detail {
             info.ppEnabledExtensionNames = extensions.data();
             const VkResult r = vkCreateInstance(&info, nullptr, &handle_);
             if (r != VK_SUCCESS)
-                throw backend_error("vulkan: vkCreateInstance: " + result_name(r) + "; drivers were sought in "
-                    + driver_search_paths() + ". " + install_hint);
+                throw backend_error("vulkan: vkCreateInstance: " + result_name(r)
+                    + "; the loader searched for drivers in " + driver_search_paths() + ". " + install_hint);
             owned_ = true;
             if (validation) {
                 const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
@@ -169,7 +170,7 @@ namespace vulkan_detail {
         {
             std::uint32_t n = 0;
             const VkResult r = vkEnumeratePhysicalDevices(handle_, &n, nullptr);
-            if (r == VK_ERROR_INITIALIZATION_FAILED) // some loaders say so where drivers find no device
+            if (r == VK_ERROR_INITIALIZATION_FAILED) // some loaders return it if drivers find no device
                 return {};
             check(r, "vkEnumeratePhysicalDevices");
             std::vector<VkPhysicalDevice> devices(n);
@@ -214,7 +215,7 @@ namespace vulkan_detail {
             [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
     }
 
-    /// The first queue family with compute; nothing if there is none.
+    /// The first queue family with compute, if there is one.
     inline std::optional<std::uint32_t> compute_family(VkPhysicalDevice d)
     {
         std::uint32_t n = 0;
@@ -227,7 +228,7 @@ namespace vulkan_detail {
         return std::nullopt;
     }
 
-    /// Ticks of its clock that a family's timestamps hold: 0 bits where it has none.
+    /// The number of valid bits of a family's timestamps; 0 if it has none.
     inline std::uint32_t timestamp_bits(VkPhysicalDevice d, std::uint32_t family)
     {
         std::uint32_t n = 0;
@@ -237,8 +238,8 @@ namespace vulkan_detail {
         return families[family].timestampValidBits;
     }
 
-    /// Invocations to a subgroup, where that is the same for every shader and they can count votes, add up and hand
-    /// values around; else 1.
+    /// The size of a subgroup, if it is the same for every shader and the device supports votes, arithmetic and
+    /// shuffles; otherwise 1.
     inline std::uint32_t lanes_of_subgroups(VkPhysicalDevice d)
     {
         VkPhysicalDeviceSubgroupProperties subgroup{};
@@ -259,7 +260,7 @@ namespace vulkan_detail {
         return can && sizes.minSubgroupSize == sizes.maxSubgroupSize ? subgroup.subgroupSize : 1;
     }
 
-    /// 3 for a discrete device down to 0 for a CPU.
+    /// The rank of a device's type, from 3 for discrete to 0 for CPU.
     inline int rank(VkPhysicalDeviceType t)
     {
         return t == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU  ? 4
@@ -291,7 +292,7 @@ namespace vulkan_detail {
                 i.memory_bytes = std::max<std::uint64_t>(i.memory_bytes, m.memoryHeaps[h].size);
         i.driver = "driver " + std::to_string(p.driverVersion);
         if (p.apiVersion < VK_API_VERSION_1_1) {
-            i.unusable = "it offers Vulkan " + i.api_version + "; 1.1 is needed";
+            i.unusable = "it supports Vulkan " + i.api_version + "; 1.1 is needed";
             return i;
         }
         if (device_has_extension(d, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME)) {
@@ -317,13 +318,13 @@ namespace vulkan_detail {
         return text.empty() ? "none" : text;
     }
 
-    /// The device that `options` means.
-    /// \throws backend_error that lists the devices there are.
+    /// The device that `options` select.
+    /// \throws backend_error that lists the available devices.
     inline VkPhysicalDevice choose_device(const instance& in, const vulkan_options& options)
     {
         const auto devices = in.physical_devices();
         if (devices.empty())
-            throw backend_error("vulkan: no device: drivers were found, but none has a device (sought in "
+            throw backend_error("vulkan: no device: drivers were found, but none has a device (searched in "
                 + driver_search_paths() + "). " + install_hint);
         std::vector<vulkan_device_info> all;
         for (std::uint32_t d = 0; d < devices.size(); ++d)
@@ -353,13 +354,13 @@ namespace vulkan_detail {
         if (!best)
             throw backend_error("vulkan: no device"
                 + (options.device.empty() ? std::string() : " '" + options.device + "'")
-                + (options.hardware_only ? " that is hardware" : "") + " can be used; there are: " + in_words(all)
+                + (options.hardware_only ? " that is hardware" : "") + " can be used; available: " + in_words(all)
                 + (options.hardware_only ? ". Install the GPU's Vulkan driver, or allow software devices"
-                                         : ". Name one of these by index or part of its name"));
+                                         : ". Select one of these by its index or part of its name"));
         return devices[*best];
     }
 
-    /// A logical device of our own, or a caller's.
+    /// A logical device of the backend, or a caller's.
     class logical_device {
     public:
         logical_device(VkPhysicalDevice physical)
@@ -406,7 +407,8 @@ namespace vulkan_detail {
     };
 } // namespace vulkan_detail
 
-/// Every Vulkan device here, usable or not. No driver at all is a backend_error that says what to install.
+/// All Vulkan devices, usable or not.
+/// \throws backend_error, which says what to install, if there is no driver.
 inline std::vector<vulkan_device_info> vulkan_devices()
 {
     const vulkan_detail::instance in(false);

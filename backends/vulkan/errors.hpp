@@ -9,7 +9,7 @@
 
 namespace photongrid::vulkan_detail {
 
-/// "VK_ERROR_DEVICE_LOST" for that code.
+/// The name of a result code, such as "VK_ERROR_DEVICE_LOST".
 inline std::string result_name(VkResult r)
 {
     switch (r) {
@@ -38,21 +38,21 @@ inline std::string result_name(VkResult r)
     }
 }
 
-/// Throws backend_error unless `r` is VK_SUCCESS. `what` is the call and what it was for.
+/// Throws backend_error unless `r` is VK_SUCCESS. `what` is the call and its purpose.
 inline void check(VkResult r, const std::string& what)
 {
     if (r == VK_SUCCESS)
         return;
     std::string text = "vulkan: " + what + ": " + result_name(r);
     if (r == VK_ERROR_DEVICE_LOST)
-        text += ". The device was lost: the driver reset it, most often because a pass ran too long. Ask for less work "
-                "a pass (visits_per_pass), and make a new backend: every later call on this one fails";
+        text += ". The device was lost: the driver reset it, usually because a pass ran too long. Reduce the work per "
+                "pass (visits_per_pass), and create a new backend: all further calls on this one will fail";
     if (r == VK_ERROR_OUT_OF_DEVICE_MEMORY || r == VK_ERROR_OUT_OF_HOST_MEMORY)
         text += ". Use fewer photons, a smaller picture or a coarser grid, or close other programs on this device";
     throw backend_error(text);
 }
 
-/// Where the loader was told to look for drivers, for messages.
+/// The folders in which the loader searches for drivers, for messages.
 inline std::string driver_search_paths()
 {
     std::string text;

@@ -1,4 +1,4 @@
-// A folder of things that take long to make: compiled kernels, from one start of the program to the next.
+// A folder that caches data between runs of a program: compiled kernels.
 #pragma once
 
 #include <algorithm>
@@ -18,13 +18,14 @@
 
 namespace photongrid::vulkan_detail {
 
-/// Keeps bytes under a text, a file each. A cache: what is damaged, another's or cannot be read counts as not there,
-/// what cannot be written is not kept, and nothing is an error. Several programs may use a folder at once.
+/// Stores byte strings in files, with texts as keys. Files that are damaged, unreadable or of other origin count as
+/// missing, failed writes are ignored, and nothing is reported as an error. Several programs may use a folder at the
+/// same time.
 class file_cache {
 public:
     using bytes = std::vector<char>;
 
-    /// "" keeps nothing. The folder is made when something is kept.
+    /// "": stores nothing. The folder is created when the first file is stored.
     explicit file_cache(std::string folder) : folder_(std::move(folder)) {}
 
     std::optional<bytes> find(std::string_view key) const
@@ -54,7 +55,7 @@ public:
         remove_oldest();
         const std::string contents = std::string(key) + std::string(value);
         const std::uint64_t sizes_and_sum[3] = {key.size(), value.size(), hash(contents)};
-        // Written beside and renamed, so that nobody reads half a file.
+        // Write to a temporary file and rename it, so that other programs never read an incomplete file.
         const auto whole = path_of(key),
                    beside
             = std::filesystem::path(whole.string() + "." + std::to_string(std::random_device()()) + ".new");
@@ -75,7 +76,7 @@ public:
 
 private:
     static constexpr char magic[8] = {'p', 'h', 'g', 'r', 'i', 'd', '0', '1'};
-    static constexpr std::size_t most_files = 1000; ///< a scene takes some 40
+    static constexpr std::size_t most_files = 1000; ///< a scene needs about 40
 
     /// 64-bit FNV-1a (Fowler, Noll, Vo).
     static std::uint64_t hash(std::string_view text)
@@ -92,7 +93,7 @@ private:
         return std::filesystem::path(folder_) / name;
     }
 
-    /// What other versions and drivers left behind: half of all files, once there are too many.
+    /// Removes files of other versions and drivers: half of all files, when there are too many.
     void remove_oldest()
     {
         if (std::exchange(looked_, true))

@@ -1,7 +1,7 @@
-// Turns the length of the list of a pass into the workgroups of its indirect dispatch.
+// Converts the length of a pass's list into the workgroups of its indirect dispatch.
 struct Params {
     uint pass_number;
-    uint most; // workgroups in one dimension
+    uint most; // the most workgroups in one dimension
 };
 PARAMS(Params)
 layout(std430, binding = 0) buffer control_block_ { uint control_[]; };

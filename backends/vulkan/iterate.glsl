@@ -1,17 +1,17 @@
-// One pass over the elements that are not yet done (3.3, 4.3), and the list of those for the next one. With LISTING, only
-// the list. The order of the list changes from run to run; no result depends on it. Where elements work in groups (LANES > 1),
-// a group stays as it is until all of it are done: what it visits together does not depend on that order either.
+// Runs one pass over the elements that are not done (3.3, 4.3), and lists those that are not done after it. With
+// LISTING it only makes the list. The order of the list varies between runs; no result depends on it. If elements run
+// in groups (LANES > 1), a group stays together until all its elements are done, so that its common work does not
+// depend on that order either.
 //
-// control_ holds eight words a pass: workgroups in x, y, z for the indirect dispatch, how many places the list has, and how
-// many elements are not done. launch_.z: this pass, launch_.w: how much further on its elements are than those
-// of the list.
+// control_ has eight words per pass: workgroups in x, y, z for the indirect dispatch, the length of the list, and the
+// number of elements that are not done. launch_.z: this pass; launch_.w: offset of its elements from those of the list.
 layout(std430, binding = 16) readonly buffer listed_block_ { uint listed_[]; };
 layout(std430, binding = 17) buffer next_block_ { uint next_[]; };
 layout(std430, binding = 18) buffer control_block_ { uint control_[]; };
 
 const uint words_ = (uint(GROUP) + 31u) / 32u;
-const uint NOBODY = 0xFFFFFFFFu; // a place in the list without an element, so that groups stay whole
-shared uint kept_[words_];       // a bit an invocation
+const uint NOBODY = 0xFFFFFFFFu; // an entry without an element, so that groups stay together
+shared uint kept_[words_];       // a bit per invocation
 shared uint unfinished_;
 shared uint base_;
 
@@ -39,8 +39,8 @@ void main()
     uint target = launch_.z * 8u + 8u;
     bool keep = false;
 #if LANES > 1
-    // The first of a group is always an element; what empty places and done elements do, for the others
-    // to hear of, is dropped.
+    // The first entry of a group is always an element. Lanes without an element, and elements that are done, take part
+    // for the others' sake; their results are discarded.
     if (at < control_[launch_.z * 8u + 3u]) {
         i = listed_[at];
         uint first = lane_value(i, 0u);
@@ -66,7 +66,7 @@ void main()
     }
 #endif
 #endif
-    // One atomic addition a workgroup reserves its places in the next list; neighbours stay neighbours.
+    // One atomic addition per workgroup reserves a range of the next list, so that neighbours stay together.
     if (keep)
         atomicOr(kept_[mine / 32u], 1u << (mine % 32u));
     if (more)

@@ -1,5 +1,4 @@
-// The device as the backend's parts share it, and its memory. Buffers own a part of it together, so a buffer may
-// outlive the backend that made it.
+// The open device and its memory. Buffers share ownership of it, so a buffer may outlive its backend.
 #pragma once
 
 #include <photongrid/backends/vulkan/device.hpp>
@@ -11,15 +10,15 @@ namespace photongrid::vulkan_detail {
 
 enum class memory_kind { device, host };
 
-/// A VkBuffer with memory of its own.
+/// A VkBuffer with its memory.
 struct block {
     VkBuffer buffer = VK_NULL_HANDLE;
     VkDeviceMemory memory = VK_NULL_HANDLE;
     VkDeviceSize bytes = 0;
-    void* mapped = nullptr; ///< where the host sees it; null: it does not
+    void* mapped = nullptr; ///< the host's address; null if it is not mapped
 };
 
-/// A device, open, and the blocks that are free for use again.
+/// An open device, and blocks of memory that can be used again.
 class context {
 public:
     explicit context(const vulkan_options& o)
@@ -30,8 +29,8 @@ public:
     explicit context(const vulkan_handles& h) : instance_(h.instance), physical_(h.physical_device), device_(h)
     {
         if (!h.instance || !h.physical_device || !h.device || !h.queue)
-            throw std::invalid_argument("vulkan_backend: handles: an instance, a physical device, a device and a queue "
-                                        "are needed; one is null");
+            throw std::invalid_argument("vulkan_backend: handles: the instance, the physical device, the device or the "
+                                        "queue is null; give all four");
         query_device(false);
     }
     context(const context&) = delete;
@@ -44,18 +43,18 @@ public:
     std::uint32_t family() const { return device_.family(); }
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
     std::vector<std::string> messages() const { return instance_.messages(); }
-    /// True where staging buffers were asked for.
+    /// Whether staging buffers were requested.
     bool staging() const { return staging_; }
     std::uint64_t max_buffer_bytes() const { return max_buffer_bytes_; }
-    /// Bytes in buffers that somebody can still name.
+    /// Bytes in buffers that have not been destroyed.
     std::uint64_t bytes() const { return named_; }
-    /// The most bytes held at once, those included that waited for their last pass.
+    /// The most bytes allocated at once, including buffers that were waiting for their last pass.
     std::uint64_t peak_bytes() const { return peak_; }
     void forget(const block& b) { named_ -= b.bytes; }
 
     block acquire(VkDeviceSize size, memory_kind kind)
     {
-        // Sizes in steps of 256 bytes, 16 at least: a buffer of no elements can be bound too.
+        // Sizes are multiples of 256 bytes, so that even a buffer without elements can be bound.
         const VkDeviceSize bytes = (std::max<VkDeviceSize>(size, 16) + 255) / 256 * 256;
         auto& free = free_[kind];
         block b;
@@ -72,7 +71,7 @@ public:
         return b;
     }
 
-    /// Somebody else's from now on.
+    /// Releases a block to the caller.
     void let_go(const block& b)
     {
         bytes_ -= b.bytes;
@@ -92,7 +91,7 @@ public:
     }
 
 private:
-    // Algorithms ask for the same sizes again and again, and allocating costs more than a pass.
+    // Algorithms allocate the same sizes repeatedly, and an allocation costs more than a pass.
     static constexpr VkDeviceSize keep_bytes = VkDeviceSize{64} << 20;
     static constexpr std::size_t keep_blocks = 64;
 
@@ -109,7 +108,7 @@ private:
         max_buffer_bytes_
             = std::min<std::uint64_t>(properties_.limits.maxStorageBufferRange, m3.maxMemoryAllocationSize);
         vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
-        // Where host and device share their memory, copies are a waste; across a bus, reading by the host is slow.
+        // If host and device share memory, staging copies are not needed; across a bus, reads by the host are slow.
         unified_ = !staging && properties_.deviceType != VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU
             && find_type(~0u, shared_memory) != none;
     }
@@ -206,15 +205,15 @@ private:
     std::uint64_t bytes_ = 0, named_ = 0, peak_ = 0;
 };
 
-/// A block in use: by a buffer, and by each batch of passes that touches it until that batch is done.
+/// A block in use. A buffer owns it, and so does each batch of passes that uses it, until that batch is done.
 class allocation {
 public:
-    /// `format` is that of an element, where it is to be read as a texel.
+    /// `format`: that of an element, if the buffer is to be read as texels.
     allocation(std::shared_ptr<context> c, VkDeviceSize bytes, memory_kind kind, VkFormat format = VK_FORMAT_UNDEFINED)
         : context_(std::move(c)), kind_(kind), format_(format), bytes_(bytes), block_(context_->acquire(bytes, kind))
     {
     }
-    /// Over a buffer that stays the caller's: its first `bytes` bytes.
+    /// Wraps the first `bytes` bytes of a buffer that the caller continues to own.
     allocation(std::shared_ptr<context> c, VkBuffer callers, VkDeviceSize bytes, VkFormat format)
         : context_(std::move(c)), kind_(memory_kind::device), format_(format), bytes_(bytes), named_(false),
           ours_(false), block_{.buffer = callers, .bytes = bytes}
@@ -230,7 +229,7 @@ public:
             context_->release(block_, kind_);
     }
 
-    /// The caller's from now on, who destroys it when the device is done with it.
+    /// Releases it to the caller, who must destroy it after the device has finished with it.
     block give_up()
     {
         forget();
@@ -241,7 +240,7 @@ public:
     }
     bool is_of(const context& c) const { return context_.get() == &c; }
 
-    /// Nobody can name it any more; only passes that are not done hold it.
+    /// The buffer was destroyed; only unfinished passes still use the block.
     void forget()
     {
         if (named_)
@@ -252,9 +251,9 @@ public:
     VkBuffer buffer() const { return block_.buffer; }
     VkDeviceSize bytes() const { return bytes_; }
     void* mapped() const { return block_.mapped; }
-    /// What a descriptor covers: of ours something, even where there are no elements.
+    /// The range of a descriptor. For the backend's own buffers it is never empty.
     VkDeviceSize range() const { return ours_ ? std::max<VkDeviceSize>(bytes_, 16) : bytes_; }
-    /// The same as a texel buffer.
+    /// A view of it as a texel buffer.
     VkBufferView view()
     {
         if (view_)

@@ -1,9 +1,10 @@
-// Stable radix sort, step 1 of 3: how often each of 16 digits occurs in each chunk of consecutive keys. One invocation a
-// chunk; counters lie digit by digit, so that their running sum is where the chunk's keys with that digit go.
+// Stable radix sort, step 1 of 3: counts each of 16 digits in each chunk of consecutive keys, with one invocation per
+// chunk. Counters are ordered by digit, so that their prefix sums are the destinations of a chunk's keys with that
+// digit.
 struct Params {
     uint keys;
     uint shift;  // of the digit
-    uint chunk;  // keys in a chunk
+    uint chunk;  // keys per chunk
     uint chunks;
 };
 PARAMS(Params)

@@ -1,4 +1,4 @@
-// Stable radix sort, step 2 of 3: counters to their exclusive running sums, in one workgroup.
+// Stable radix sort, step 2 of 3: exclusive prefix sums of the counters, in one workgroup.
 struct Params {
     uint counters;
 };

@@ -1,5 +1,5 @@
-// Stable radix sort, step 3 of 3: every key to its place. A chunk's keys are taken in order by one invocation, so equal
-// digits keep theirs.
+// Stable radix sort, step 3 of 3: moves every key to its destination. One invocation processes a chunk in order, so
+// keys with equal digits keep their order.
 struct Params {
     uint keys;
     uint shift;

@@ -1,4 +1,5 @@
-// Passes, recorded many to a submission: command buffers, descriptor sets, and what must live until the device is done.
+// Records passes and submits many at once: command buffers, descriptor sets, and the resources that must live until the
+// device is done.
 #pragma once
 
 #include <photongrid/backends/vulkan/memory.hpp>
@@ -10,13 +11,13 @@
 
 namespace photongrid::vulkan_detail {
 
-/// Where a buffer is bound, and as what.
+/// A binding of a buffer, and its type.
 struct binding {
     std::uint32_t number = 0;
     VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 };
 
-/// A compute pipeline and the bindings it expects, in the order in which buffers are handed to it.
+/// A compute pipeline, and its bindings in the order of the buffers that are passed to it.
 class pipeline {
 public:
     /// `cache` may be null.
@@ -47,7 +48,7 @@ public:
     VkDescriptorSetLayout set_layout() const { return set_layout_; }
     std::span<const binding> bindings() const { return bindings_; }
 
-    /// Every pipeline takes as many bytes of push constants as every device offers.
+    /// Every pipeline uses the number of bytes of push constants that all devices support.
     static constexpr std::uint32_t push_bytes = 128;
 
 private:
@@ -110,11 +111,11 @@ private:
     VkPipeline pipeline_ = VK_NULL_HANDLE;
 };
 
-/// Records operations and submits them in batches. Every operation sees what all earlier ones wrote.
+/// Records operations and submits them in batches. Every operation sees the results of all earlier ones.
 class recorder {
 public:
     /// `timed`: measure passes.
-    /// \throws backend_error where the device has no clock.
+    /// \throws backend_error if the device has no timestamps.
     explicit recorder(std::shared_ptr<context> c, bool timed) : context_(std::move(c)), timed_(timed)
     {
         if (timed && timestamp_bits(context_->physical(), context_->family()) == 0)
@@ -132,7 +133,7 @@ public:
     {
         try {
             finish();
-        } catch (...) { // a lost device has nothing left to wait for
+        } catch (...) { // the device was lost: nothing to wait for
         }
         for (auto* list : {&flying_, &idle_})
             for (auto& b : *list)
@@ -142,8 +143,8 @@ public:
         vkDestroyCommandPool(context_->device(), commands_, nullptr);
     }
 
-    /// A pass over a number of workgroups known now. `push` is the launch header and the parameters. What it takes is
-    /// added to `ms` when it is done, if passes are timed.
+    /// A pass with a given number of workgroups. `push`: the launch header and the parameters. If passes are timed, its
+    /// time is added to `ms` when it is done.
     void dispatch(const pipeline& p, std::span<const memory> buffers, std::span<const std::byte> push,
         std::uint64_t groups, double& ms)
     {
@@ -162,7 +163,7 @@ public:
         counted();
     }
 
-    /// A pass over as many workgroups as the device wrote at `offset` (bytes) of `groups`.
+    /// A pass with the number of workgroups that the device has written at `offset` (bytes) of `groups`.
     void dispatch_indirect(const pipeline& p, std::span<const memory> buffers, std::span<const std::byte> push,
         const memory& groups, VkDeviceSize offset, double& ms)
     {
@@ -189,7 +190,7 @@ public:
         counted();
     }
 
-    /// Fills new memory from the host: no pass has seen it yet.
+    /// Writes from the host into new memory, which no pass has used yet.
     void write(const memory& to, const void* data, std::size_t bytes)
     {
         if (bytes == 0)
@@ -203,7 +204,7 @@ public:
         copy(staged, 0, to, 0, bytes);
     }
 
-    /// Waits for all passes, then reads the first `bytes` bytes.
+    /// Waits for all passes and reads the first `bytes` bytes.
     void read(const memory& from, void* data, std::size_t bytes)
     {
         if (bytes == 0)
@@ -217,8 +218,8 @@ public:
         std::memcpy(data, seen->mapped(), bytes);
     }
 
-    /// Hands what is recorded to the device, and from now on lets the caller's commands on the queue take turns with
-    /// ours: those submitted later see what ours wrote, and ours see what theirs wrote.
+    /// Submits the recorded operations, and from now on synchronises with the caller's commands on the queue: commands
+    /// that the caller submits later see our results, and our later passes see theirs.
     void take_turns()
     {
         taking_turns_ = true;
@@ -231,7 +232,7 @@ public:
         submit();
     }
 
-    /// Hands what is recorded to the device.
+    /// Submits the recorded operations.
     void submit()
     {
         if (!recording_)
@@ -269,7 +270,7 @@ public:
 
 private:
     static constexpr std::uint32_t passes_per_batch = 64;
-    static constexpr std::uint32_t buffers_per_pass = 20; // 8 inputs, 8 outputs, 4 of the verb's
+    static constexpr std::uint32_t buffers_per_pass = 20; // 8 inputs, 8 outputs, 4 for verbs
     static constexpr std::uint32_t inputs_per_pass = 8;
     static constexpr std::size_t most_flying = 4;
 
@@ -279,11 +280,11 @@ private:
         VkDescriptorPool sets = VK_NULL_HANDLE;
         std::uint32_t passes = 0;
         std::vector<memory> kept;
-        VkQueryPool clock = VK_NULL_HANDLE; ///< two queries a timed pass
-        std::vector<double*> timed;         ///< where each timed pass's time goes
+        VkQueryPool clock = VK_NULL_HANDLE; ///< two queries per timed pass
+        std::vector<double*> timed;         ///< the destinations of the passes' times
     };
 
-    /// The device's clock before a pass and after it.
+    /// Timestamps before and after a pass.
     class timing {
     public:
         timing(recorder& r, double& ms) : r_(r)
@@ -372,7 +373,7 @@ private:
             stages, 0, 1, &b, 0, nullptr, 0, nullptr);
     }
 
-    /// Between ours and whatever the caller does on the queue.
+    /// A barrier between our commands and the caller's on the queue.
     void full_barrier()
     {
         VkMemoryBarrier b{};
@@ -456,7 +457,7 @@ private:
         b = batch{};
     }
 
-    /// Waits for the oldest batch and makes its parts free for use.
+    /// Waits for the oldest batch and makes its resources available again.
     void retire()
     {
         batch b = std::move(flying_.front());

@@ -1,4 +1,4 @@
-// (destination, draw) of every draw; a destination that does not exist comes last.
+// The pair (destination, draw) of every draw. Destinations that do not exist become the largest key.
 struct Params {
     uint destinations;
 };

@@ -1,4 +1,4 @@
-// Where each destination's draws stand in the sorted keys, how many they are, and the most that any has.
+// The range of each destination's draws in the sorted keys, and the largest number of draws of any destination.
 struct Params {
     uint keys;
 };

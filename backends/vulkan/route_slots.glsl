@@ -1,4 +1,4 @@
-// Slot r of destination d holds the payload of its r-th draw, if it has so many.
+// Slot r of destination d: the payload of its r-th draw, if it exists.
 struct Params {
     uint destinations;
     uint capacity;

@@ -1,5 +1,6 @@
-// The partial sums of each destination's amounts, a block of draws each, in the order of the draws, a bounded number of
-// them a pass: software devices end loops silently, others kill long passes. The order makes the sums the same everywhere.
+// The partial sums of each destination's amounts, one per block of draws, in draw order, so that they are the same on
+// all devices. The number of draws per pass is bounded: software devices end long loops silently, others end long
+// passes.
 struct Params {
     uint destinations;
     uint sums;  // partial sums per destination
@@ -13,7 +14,7 @@ layout(std430, binding = 1) readonly buffer ranges_block_ { uvec2 ranges_[]; };
 layout(std430, binding = 2) readonly buffer amounts_block_ { vec4 amounts_[]; };
 layout(std430, binding = 3) buffer totals_block_ { vec4 totals_[]; };
 
-// The first of a destination's keys, sorted by draw, that is not before this draw.
+// The first of a destination's keys, which are sorted by draw, that is not before this draw.
 uint first_from(uvec2 range, uint draw)
 {
     uint low = range.x;

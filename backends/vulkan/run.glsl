@@ -1,9 +1,9 @@
-// One pass: every element once.
+// One pass over all elements.
 void main()
 {
     uint at = element_();
 #if LANES > 1
-    // All of a group work; those beyond the last element do again what it does, which is dropped.
+    // All lanes of a group must run. Those past the last element repeat its work, and their results are discarded.
     uint end = group_() < launch_.z ? launch_.x : 0u;
     if (at - group_lane() < end) {
         uint element = min(at, end - 1u);

@@ -1,4 +1,4 @@
-// GLSL to SPIR-V: glslang, then the SPIRV-Tools optimizer, with NoContraction on all float arithmetic.
+// Compiles GLSL to SPIR-V by glslang and the SPIRV-Tools optimizer, with NoContraction on all float arithmetic.
 #pragma once
 
 #include <photongrid/backend/backend.hpp>
@@ -29,7 +29,7 @@ void for_each_instruction(std::span<const std::uint32_t> words, F f)
     }
 }
 
-/// How many instructions stand in a module's functions: what a device executes, without names, types and decorations.
+/// The number of instructions in a module's functions, without names, types and decorations.
 inline std::uint64_t count_instructions(std::span<const std::uint32_t> words)
 {
     std::uint64_t n = 0;
@@ -43,8 +43,8 @@ inline std::uint64_t count_instructions(std::span<const std::uint32_t> words)
     return n;
 }
 
-/// Decorates every float arithmetic instruction with NoContraction, so that no driver and no optimizer fuses a*b+c,
-/// reassociates, or turns a division into a multiplication: results equal the serial backend's bit for bit.
+/// Decorates every float arithmetic instruction with NoContraction, so that neither drivers nor the optimizer contract
+/// a*b+c, reassociate, or replace a division by a multiplication. Results then equal the serial backend's bit for bit.
 inline spirv_words forbid_contraction(const spirv_words& in)
 {
     constexpr std::uint32_t decorate = 71, member_decorate = 72, no_contraction = 42;
@@ -73,10 +73,10 @@ inline spirv_words forbid_contraction(const spirv_words& in)
 }
 
 /// Compiles a compute shader to SPIR-V for Vulkan 1.1. `name` is for messages.
-/// \throws backend_error whose text gives file and line in the kernel's own source.
+/// \throws backend_error with file and line in the kernel's own source.
 inline spirv_words compile_spirv(const spliced_source& source, const std::string& name, bool optimized)
 {
-    // glslang counts its users itself; ours lives until the program ends.
+    // glslang counts its users. This reference stays until the program ends.
     static const struct process {
         process() { glslang_initialize_process(); }
         ~process() { glslang_finalize_process(); }
@@ -111,10 +111,11 @@ inline spirv_words compile_spirv(const spliced_source& source, const std::string
     const std::uint32_t* made = glslang_program_SPIRV_get_ptr(program.get());
     const spirv_words plain(made, made + glslang_program_SPIRV_get_size(program.get()));
 
-    // Decorated before, or the optimizer folds constants through float arithmetic, and after, for what it made new.
+    // Before optimization, so that the optimizer does not fold constants through float arithmetic, and after it, for
+    // new instructions.
     const auto decorated = forbid_contraction(plain);
     if (!optimized)
-        return decorated; // what instruments kernels breaks loops of one block, which the optimizer makes
+        return decorated; // the instrumentation breaks loops of one block, which the optimizer creates
     spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_1);
     std::string complaints;
     optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {

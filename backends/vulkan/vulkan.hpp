@@ -1,4 +1,4 @@
-// The Vulkan backend: compute shaders over storage buffers, many passes a submission (docs/design/design.md).
+// The Vulkan backend: compute shaders on storage buffers, with many passes per submission (docs/design/design.md).
 #pragma once
 
 #include <photongrid/backend/self_test.hpp>
@@ -12,13 +12,13 @@
 
 namespace photongrid {
 
-/// Runs kernels as compute shaders, on the best Vulkan 1.1 device, on a chosen one, or on one that the caller has open.
+/// Runs kernels as compute shaders, on the best Vulkan 1.1 device, on a selected one, or on a device that the caller
+/// has opened.
 ///
-/// Work is deferred: passes are recorded and submitted by the dozen; download, count, route, run_until_done and finish
-/// wait. One thread at a time may use a backend and its buffers. A buffer may outlive the backend. The memory of a
-/// buffer that is gone is free again when the last pass that uses it is done: bytes() counts what still has a name,
-/// peak_bytes() the most that was held. Up to 64 MiB of free memory are kept for the next buffers and counted in
-/// neither.
+/// Work is deferred: passes are recorded and submitted in batches; download, count, route, run_until_done and finish
+/// wait for them. One thread at a time may use a backend and its buffers. A buffer may outlive the backend. The memory
+/// of a destroyed buffer is released when the last pass that uses it is done: bytes() counts the buffers that exist,
+/// peak_bytes() the most memory in use. It keeps up to 64 MiB of free memory for new buffers, which neither counts.
 ///
 /// costs()[kernel].instructions is the number of SPIR-V instructions in the functions of the kernel's largest
 /// specialisation so far, after optimisation.
@@ -28,7 +28,7 @@ class vulkan_backend {
     using memory = vulkan_detail::memory;
 
 public:
-    /// Elements in memory of the device.
+    /// Elements in device memory.
     /// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
     template <element T>
     class buffer {
@@ -36,8 +36,8 @@ public:
         /// \name A buffer's members, the same on every backend
         /// @{
 
-        /// A buffer holds size() elements T. It is moved, never copied; one that was moved from, or made by default, is
-        /// empty.
+        /// A buffer has size() elements T. It can be moved but not copied. A moved-from or default-constructed buffer
+        /// is empty.
         using value_type = T;
         buffer() = default;
         buffer(buffer&& other) noexcept : memory_(std::move(other.memory_)), n_(std::exchange(other.n_, 0)) {}
@@ -66,8 +66,8 @@ public:
     };
 
 private:
-    // First, since clang wants to know what `auto` is.
-    /// Whether a buffer is this backend's, for check_call.
+    // Defined before its uses, because its return type is deduced.
+    /// Whether a buffer belongs to this backend, for check_call.
     auto owns() const
     {
         return [this](const auto& b) { return !b.memory_ || b.memory_->is_of(*context_); };
@@ -82,37 +82,38 @@ private:
 
 public:
     /// Opens a device.
-    /// \throws backend_error when there is no driver, no such device, or no validation layer where one is asked for.
+    /// \throws backend_error if there is no driver, no such device, or no validation layer although it was requested.
     explicit vulkan_backend(const vulkan_options& options = {})
         : vulkan_backend(std::make_shared<vulkan_detail::context>(options), options)
     {
     }
 
-    /// Works on a device that the caller owns and that outlives this backend and its buffers. It changes nothing that
-    /// is the caller's: it has a command pool, descriptors and pipelines of its own, and submits to the queue. Of the
-    /// options, those about kernels and timing count; device, validation and staging are the caller's affair.
-    /// \throws backend_error for a device that lacks what the backend needs, std::invalid_argument for a null handle.
+    /// Works on a device that the caller owns, which must outlive this backend and its buffers. It does not change the
+    /// caller's objects: it uses its own command pool, descriptors and pipelines, and submits to the queue. Of the
+    /// options, only those for kernels and timing apply.
+    /// \throws backend_error for a device without the required features, std::invalid_argument for a null handle.
     /// \snippet snippets_vulkan.cpp callers_device
     explicit vulkan_backend(const vulkan_handles& handles, const vulkan_options& options = {})
         : vulkan_backend(std::make_shared<vulkan_detail::context>(handles), options)
     {
     }
 
-    /// More kernel files than the library's own, as photongrid_embed() made them; they must outlive the backend.
+    /// Adds your own kernel texts, embedded by photongrid_embed(). They must outlive the backend.
     void add_texts(std::span<const text_file> texts) { texts_.insert(texts_.end(), texts.begin(), texts.end()); }
 
     /// \name The verbs of a backend, as backend.hpp describes them: buffers
     /// @{
 
-    /// As the concept photongrid::backend says.
+    /// See the concept photongrid::backend.
     template <element T>
     buffer<T> make(std::size_t n)
     {
         const auto limit = context_->max_buffer_bytes() / sizeof(T);
         if (n > limit)
             throw backend_error("vulkan: a buffer of " + std::to_string(n) + " elements of " + std::to_string(sizeof(T))
-                + " bytes was asked for; " + caps_.device + " binds " + std::to_string(context_->max_buffer_bytes())
-                + " bytes (maxStorageBufferRange), " + std::to_string(limit) + " elements");
+                + " bytes was requested; " + caps_.device + " binds at most "
+                + std::to_string(context_->max_buffer_bytes()) + " bytes (maxStorageBufferRange), "
+                + std::to_string(limit) + " elements");
         return buffer<T>(allocate(n * sizeof(T), format_of<T>), n);
     }
     template <element T, std::size_t E>
@@ -133,11 +134,10 @@ public:
 
     /// @}
 
-    /// The Vulkan buffer behind `b`: element i begins at byte i * sizeof(T). It stays this backend's and lives as long
-    /// as `b`. Null for a buffer that was never made. What was asked of this backend so far is submitted. Commands that
-    /// the caller submits to the queue afterwards see its results without a barrier, and what they write is seen by
-    /// passes asked for after they were submitted. Ask again before each of your own submissions that touches a buffer
-    /// of this backend.
+    /// The Vulkan buffer of `b`: element i begins at byte i * sizeof(T). The backend continues to own it, and it lives
+    /// as long as `b`. Null for a default-constructed buffer. It submits all recorded passes. Commands that the caller
+    /// submits to the queue afterwards see their results without a barrier, and passes that are recorded after such a
+    /// submission see its results. Call it again before each of your submissions that uses a buffer of this backend.
     /// \throws std::invalid_argument for a buffer of another backend.
     /// \snippet snippets_vulkan.cpp handle
     template <element T>
@@ -148,16 +148,15 @@ public:
         return b.memory_ ? b.memory_->buffer() : VK_NULL_HANDLE;
     }
 
-    /// What a Vulkan buffer must be usable for, to be adopted.
+    /// The usage flags that an adopted Vulkan buffer needs.
     static constexpr VkBufferUsageFlags adopted_usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT
         | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT
         | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 
-    /// A buffer over the first n elements of one that the caller has on the same device, and goes on owning: it must
-    /// live, and keep its memory, until the buffer is gone and finish() has returned. Not counted in bytes(). As with
-    /// handle(), commands on the queue take turns.
-    /// \throws std::invalid_argument for a null handle, 0 elements or more
-    /// than the device binds.
+    /// A buffer over the first n elements of a caller's buffer on the same device. The caller continues to own it, and
+    /// it must exist, with its memory, until the adopting buffer is destroyed and finish() has returned. bytes() does
+    /// not count it. Commands on the queue are synchronised as with handle().
+    /// \throws std::invalid_argument for a null handle, 0 elements, or more than the device binds.
     /// \snippet snippets_vulkan.cpp adopt
     template <element T>
     buffer<T> adopt(VkBuffer callers, std::size_t n)
@@ -172,14 +171,14 @@ public:
             std::make_shared<vulkan_detail::allocation>(context_, callers, n * sizeof(T), format_of<T>), n);
     }
 
-    /// A buffer that is the caller's to destroy, and the memory that it alone is bound to.
+    /// A buffer that the caller must destroy, and its memory, which no other buffer uses.
     /// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
     struct released_buffer {
-        VkBuffer buffer = VK_NULL_HANDLE;       ///< null for a buffer that was never made
-        VkDeviceMemory memory = VK_NULL_HANDLE; ///< null where the buffer had been adopted
-        VkDeviceSize bytes = 0;                 ///< of the buffer
+        VkBuffer buffer = VK_NULL_HANDLE;       ///< null for a default-constructed buffer
+        VkDeviceMemory memory = VK_NULL_HANDLE; ///< null if the buffer had been adopted
+        VkDeviceSize bytes = 0;                 ///< size of the buffer
     };
-    /// Gives a buffer over to the caller, when all passes are done; the caller destroys both.
+    /// Waits for all passes and releases a buffer to the caller, who must destroy both objects.
     /// \throws std::invalid_argument for a buffer of another backend.
     /// \snippet snippets_vulkan.cpp release
     template <element T>
@@ -197,7 +196,7 @@ public:
     /// \name The verbs of a backend, as backend.hpp describes them: passes
     /// @{
 
-    /// As the concept photongrid::backend says.
+    /// See the concept photongrid::backend.
     template <gather_kernel K, class Reads, class Writes>
     void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
     {
@@ -231,8 +230,8 @@ public:
         return n;
     }
 
-    /// Deterministic: draws are sorted by destination, stably, so that each one's rank is its place in draw order, and
-    /// amounts are added in that order. Scratch: 40 bytes a draw and 8 a destination.
+    /// Deterministic: it sorts draws stably by destination, so that ranks follow the draw order, and adds amounts in
+    /// that order. It needs 40 bytes per draw and 8 per destination while it runs.
     template <route_kernel K, class Reads>
     void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots,
         buffer<glm::vec4>& totals)
@@ -264,7 +263,7 @@ public:
         constexpr uint at_once = 4096;
         const uint sums = route_sums(totals.size(), destinations), block = route_block(l.elements, sums);
         std::uint64_t begin = 0;
-        do { // once at least: it also sets the totals of what nothing is destined for to 0
+        do { // at least once: it also clears the totals of destinations without draws
             own_pass("route_totals", totals.size(), {destinations, sums, block, static_cast<uint>(begin), at_once},
                 {keys.memory_, ranges.memory_, amount.memory_, totals.memory_});
             begin += at_once;
@@ -278,10 +277,10 @@ public:
     const std::map<std::string, kernel_cost>& costs() const { return costs_; }
     /// @}
 
-    // --- for overrides
-    // ------------------------------------------------------------------------------------------------
-    /// One pass of a shader of the backend's or an override's own: `elements` invocations, the buffers bound from 0 up.
-    /// The same shader with other defines is another. Counted under the shader's name.
+    // For overrides.
+
+    /// Runs a pass of a shader of the backend or of an override: `elements` invocations, with the buffers bound from 0
+    /// on. Different defines make a different pipeline. costs() has it under the shader's name.
     template <class... Buffers>
     void own_pass(const std::string& name, const std::string& more_defines, std::uint64_t elements,
         std::initializer_list<uint> args, Buffers&... buffers)
@@ -290,8 +289,8 @@ public:
         ++costs_[name].passes;
     }
 
-    /// As run_until_done, but pass q of element i, from 0, computes element i + q * stride: a frame a pass, of those
-    /// elements whose last frame was not done(). Before the first pass none is done if the kernel has no states.
+    /// run_until_done over frames: pass q of element i, from 0, computes element i + q * stride, for those elements
+    /// whose last frame was not done(). Before the first pass no element is done if the kernel has no states.
     template <iterative_kernel K, class Reads, class Writes>
     progress run_frames(
         launch l, uint stride, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
@@ -302,8 +301,8 @@ public:
         if (l.elements == 0)
             return p;
 
-        // Eight words a pass: the workgroups of its dispatch, the length of its list, and how many elements are not
-        // done. The host looks at them once in `together` passes.
+        // Eight words per pass: the workgroups of its dispatch, the length of its list, and the number of elements that
+        // are not done. The host reads them once per `together` passes.
         struct pass_slot {
             glm::uvec4 dispatch;
             glm::uvec4 unfinished;
@@ -339,7 +338,7 @@ public:
             p.finished = seen[now].unfinished.x == 0;
             if (p.finished || p.passes == max_passes)
                 break;
-            // now == together: the next pass goes on from where the last one ended.
+            // now == together: the next pass continues where the last one ended.
             recorder_.copy(control, together * slot_bytes, control, 0, slot_bytes);
             recorder_.fill(control, slot_bytes, together * slot_bytes, 0);
         }
@@ -347,7 +346,7 @@ public:
         return p;
     }
 
-    /// Sets n elements from `first` on to words of one value.
+    /// Fills n elements from `first` on with a word.
     template <element T>
     void fill(buffer<T>& b, std::size_t first, std::size_t n, uint word)
     {
@@ -356,19 +355,19 @@ public:
             recorder_.fill(b.memory_, first * sizeof(T), n * sizeof(T), word);
     }
 
-    /// Kernels that were found compiled in options.cache_folder.
+    /// The number of kernels found in options.cache_folder.
     std::uint64_t kernels_found() const { return kernels_.found(); }
 
-    /// What the validation layer has said so far; always empty unless options.validation.
+    /// The validation layer's messages so far; always empty without options.validation.
     std::vector<std::string> validation_messages() const { return context_->messages(); }
 
-    /// The optimized SPIR-V of one kernel for `run` (or `count`, where it has no `kernel`), for tools and tests.
+    /// The optimized SPIR-V of a kernel for `run` (or `count`, if it has no `kernel`), for tools and tests.
     template <kernel_struct K>
     std::vector<std::uint32_t> spirv(uint switches = ~0u)
     {
         return compile<K>(gather_kernel<K> ? verb::run : verb::count, switches, texel_limit_ > 0);
     }
-    /// The same for its passes of run_until_done.
+    /// The same for the passes of run_until_done.
     template <iterative_kernel K>
     std::vector<std::uint32_t> iterate_spirv(uint switches = ~0u)
     {
@@ -394,7 +393,7 @@ private:
         caps_.software = info.software;
         caps_.max_elements = context_->max_buffer_bytes() / sizeof(glm::vec4);
         caps_.max_route_slots = 16;
-        // lavapipe ends every loop of a group of invocations after so many iterations of all of them, without a word.
+        // lavapipe ends loops silently after so many iterations, counted over a group of invocations.
         caps_.loop_limit = info.name.find("llvmpipe") != std::string::npos ? 65535u : 0u;
         if (info.software && !context_->staging())
             texel_limit_ = std::uint64_t{context_->properties().limits.maxTexelBufferElements} * sizeof(float);
@@ -414,7 +413,8 @@ private:
         return std::make_shared<vulkan_detail::allocation>(context_, bytes, vulkan_detail::memory_kind::device, format);
     }
 
-    /// The buffers of a call in the order of the kernel's bindings; a buffer without memory is bound as an empty one.
+    /// The buffers of a call in the order of the kernel's bindings. A buffer without memory is replaced by an empty
+    /// one.
     template <class Reads, class Writes>
     std::vector<memory> bound(const Reads& reads, const Writes& writes) const
     {
@@ -430,7 +430,7 @@ private:
 
     std::uint64_t groups(std::uint64_t elements) const { return (elements + group_ - 1) / group_; }
 
-    /// The launch header, 16 bytes, and the parameters behind it.
+    /// The launch header, 16 bytes, followed by the parameters.
     template <class Params>
     static std::array<std::byte, vulkan_detail::pipeline::push_bytes> push(
         const launch& l, std::uint64_t groups, uint where, const Params& args)
@@ -452,7 +452,7 @@ private:
             push(l, groups(l.elements), where, args), groups(l.elements), cost<K>().ms);
     }
 
-    /// One pass of a shader that is the backend's own.
+    /// Runs a pass of the backend's own shader.
     void own_pass(const std::string& name, std::uint64_t elements, std::initializer_list<uint> args,
         std::initializer_list<memory> buffers, const std::string& more_defines = {})
     {
@@ -472,15 +472,14 @@ private:
         own_pass("indirect", 1, {pass, context_->properties().limits.maxComputeWorkGroupCount[0]}, {control});
     }
 
-    /// Sorts (destination, draw) by destination, keeping the order of draws: least significant digit first, 4 bits a
-    /// time.
+    /// Sorts (destination, draw) stably by destination: least significant digit first, 4 bits at a time.
     void sort_by_destination(buffer<glm::uvec2>& keys, uint destinations)
     {
         const uint n = static_cast<uint>(keys.size());
         if (n < 2)
             return;
-        // Chunks are taken in order by one invocation each; more of them than 16,384 would make the counters' sums
-        // long.
+        // One invocation processes a chunk in order. More than 16,384 chunks would make the prefix sums of counters
+        // slow.
         const uint chunk = std::max(256u, (n - 1) / 16384u + 1);
         const uint chunks = (n - 1) / chunk + 1;
         auto sorted = make<glm::uvec2>(n);
@@ -586,8 +585,8 @@ private:
     std::vector<text_file> texts_;
     std::map<std::string, kernel_cost> costs_;
     uint group_ = 64;
-    uint lanes_ = 1;                ///< elements that kernels IN_GROUPS compute together
-    std::uint64_t texel_limit_ = 0; ///< bytes of the largest buffer that is read as texels; 0: none is
+    uint lanes_ = 1;                ///< elements per group in kernels that are IN_GROUPS
+    std::uint64_t texel_limit_ = 0; ///< bytes of the largest buffer that is read as texels; 0: none
     // Declared before the recorder, so that they outlive its last batch.
     std::map<std::tuple<std::string, verb, uint, bool>, std::unique_ptr<vulkan_detail::pipeline>> pipelines_;
     std::map<std::string, std::unique_ptr<vulkan_detail::pipeline>> own_pipelines_;
@@ -599,6 +598,6 @@ static_assert(backend<vulkan_backend>);
 
 } // namespace photongrid
 
-// Declared wherever the backend is, so that no two files of a program can take different ways.
+// Declared with the backend, so that all files of a program use the same overrides.
 #include <photongrid/backends/vulkan/overrides/bitonic_sort.hpp>
 #include <photongrid/backends/vulkan/overrides/trace_batch.hpp>

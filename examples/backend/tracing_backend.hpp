@@ -1,4 +1,4 @@
-// A complete small backend: it wraps any other, hands every verb on to it, and keeps account of what was asked.
+// A complete small backend: it wraps any other, forwards every verb to it, and records each call.
 #pragma once
 
 #include <photongrid/backend/backend.hpp>

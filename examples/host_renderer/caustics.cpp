@@ -1,4 +1,4 @@
-// All that the host needs for caustics: photons of its own, and photongrid to make light of them.
+// All that the host needs for caustics: it traces photons, and photongrid estimates light from them.
 #include "caustics.hpp"
 
 #if __has_include(                                                                                                     \
@@ -38,7 +38,7 @@ static std::vector<photon> shoot(const scene& s, int count, std::uint64_t seed)
 
 irradiance_source caustics_of(const scene& s, int photons, std::uint64_t seed)
 {
-    device_type device; // searches for one place need it no more once the map is built
+    device_type device; // not needed for searches for one point once the map is built
     const auto map = std::make_shared<const photongrid::photon_map<device_type>>(device, shoot(s, photons, seed),
         photongrid::knn_settings{.k = 50,
             .max_radius = 0.1f,

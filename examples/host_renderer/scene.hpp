@@ -61,7 +61,7 @@ struct scene {
     rectangle lamp;
 
     std::optional<hit> nearest(const ray& r) const;
-    /// Whether nothing stands between two points.
+    /// Whether the line between two points is unoccluded.
     bool sees(vec3 from, vec3 to) const;
 };
 

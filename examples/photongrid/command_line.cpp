@@ -197,7 +197,7 @@ command read_command_line(int argc, char** argv)
 
     reference_options reference;
     auto& reference_command = *app.add_subcommand("reference",
-        "Draws a scene without a photon map, by path tracing in double precision: the truth to compare with");
+        "Draws a scene without a photon map, by path tracing in double precision: the reference to compare with");
     add_reference(reference_command, reference);
 
     compare_options compare;

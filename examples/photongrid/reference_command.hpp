@@ -1,4 +1,4 @@
-// The command `reference`: ground truth for a scene, without a photon map.
+// The command `reference`: renders a scene without a photon map, for comparison.
 #pragma once
 
 #include "command_line.hpp"

@@ -1,9 +1,10 @@
-// The mean height of the trees nearest to each point; those close by count more (inverse distance weighting, Shepard 1968).
+// The mean height of the trees nearest to each point; near trees have a larger weight (inverse distance weighting,
+// Shepard 1968).
 struct Params {
-    uint k; // entries to a list
+    uint k; // entries per list
 };
 PARAMS(Params)
-INPUT(0, uint, ids)         // of trees, k for each point; 0xFFFFFFFF: there are no more
+INPUT(0, uint, ids)         // of trees, k for each point; 0xFFFFFFFF: no further tree
 INPUT(1, float, distances2) // m^2
 INPUT(2, float, heights)    // of all trees, m
 OUTPUT(0, float, mean)      // m; 0 where there is no tree
@@ -16,10 +17,10 @@ void kernel(uint i)
         uint tree = ids(entry);
         if (tree != 0xFFFFFFFFu) {
             precise float weight = 1.0f / (1.0f + distances2(entry));
-            precise float more = sum + weight * heights(tree);
-            precise float all = weights + weight;
-            sum = more;
-            weights = all;
+            precise float new_sum = sum + weight * heights(tree);
+            precise float new_weights = weights + weight;
+            sum = new_sum;
+            weights = new_weights;
         }
     }
     mean = weights > 0.0f ? sum / weights : 0.0f;

@@ -301,18 +301,18 @@ void pictures(device_type& device)
         //! [progressive_render]
         photongrid::progressive_render drawing(device);
         drawing.start(room, settings);
-        while (!drawing.step(16ms))     // about; a pass at least
-            if (drawing.pictures() > 0) // whole ones: first few photons and large pixels, then better
+        while (!drawing.step(16ms))     // about 16 ms, but at least one pass
+            if (drawing.pictures() > 0) // complete: at first few photons and large pixels
                 show(drawing.picture());
         show(drawing.picture()); // the bytes of photongrid::render
 
-        edited.camera.position.x += 0.1; // now something else: the photon map is kept ...
+        edited.camera.position.x += 0.1; // move the camera: the photon map is kept ...
         drawing.start(edited, settings);
         while (drawing.pictures() == 0)
             drawing.step(0ms);
-        show(drawing.picture()); // ... and the first look is there
+        show(drawing.picture()); // ... and the first preview needs no new photons
 
-        edited.point_lights[0].position.x += 0.1; // the light: photons are traced anew
+        edited.point_lights[0].position.x += 0.1; // move the light: photons are traced again
         drawing.start(edited, settings);
         //! [progressive_render]
         expect(drawing.step() && drawing.maps() >= 2, "progressive_render");

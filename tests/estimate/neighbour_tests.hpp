@@ -163,7 +163,7 @@ TYPED_TEST_P(neighbours, distances_are_flanns)
 TYPED_TEST_P(neighbours, of_no_point_and_of_none_wanted)
 {
     auto s = make_oriented(distribution::uniform, 50, {3, 3, 3}, 4, 8);
-    s.points[0].w = 0; // not wanted
+    s.points[0].w = 0; // no result needed
     s.points[1].x = std::numeric_limits<float>::quiet_NaN();
     s.points[2].y = std::numeric_limits<float>::infinity();
     ASSERT_EQ(this->difference(s, {.k = 5, .max_radius = 9}), "");

@@ -80,7 +80,7 @@ namespace {
         expect_refusal(refusal(10, "[1, 0, 1]", "[1, 0.5, 1]"), "10:35", {"off the plane"});
         expect_refusal(refusal(10, "[1, 0, 1], [0, 0, 1]", "[0, 0, 1], [1, 0, 1]"), "10:35", {"polygon"});
         expect_refusal(refusal(4, "[0, 0, 0]", "[0, 1, 5]"), "4:25", {"position and look_at"});
-        expect_refusal(refusal(12, "[10, 20, 30]", "[0, 0, 0]"), "12:69", {"the light is black"});
+        expect_refusal(refusal(12, "[10, 20, 30]", "[0, 0, 0]"), "12:69", {"a light needs a channel above 0"});
         expect_refusal(refusal(9, R"({"type": "sphere", "center": [0, 1, 0], "radius": 0.5,)",
                            R"({"type": "cone", "base": [0, 1, 0], "apex": [0, 1, 0], "radius": 0.5,)"),
             "9:28", {"base and apex", "no axis"});

@@ -1,4 +1,4 @@
-// What cpu.hpp includes anyway; kept for programs that name this file.
+// For programs that include this file; cpu.hpp suffices.
 #pragma once
 
 #include <photongrid/backends/cpu/cpu.hpp>

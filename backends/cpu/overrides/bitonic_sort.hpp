@@ -1,4 +1,4 @@
-// The cpu backend's way to do what bitonic_sort does: a radix sort.
+// The cpu backend's override of bitonic_sort: a radix sort.
 #pragma once
 
 #include <photongrid/backends/cpu/cpu_backend.hpp>
@@ -9,7 +9,8 @@
 
 namespace photongrid {
 
-/// Same pairs in the same order as the generic bitonic_sort. `steps` is the network's, `passes` is the radix sort's.
+/// Sorts pairs in the same order as the generic bitonic_sort. `steps` is that of the network, `passes` that of the
+/// radix sort.
 #if !defined(PHOTONGRID_CPU_COMPILED)
 inline
 #endif

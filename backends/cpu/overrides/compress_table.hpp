@@ -1,4 +1,5 @@
-// For each mask of a few lanes, the lanes that it has, in order, and then the others: what store_some() permutes by.
+// For each mask of up to 8 lanes, the permutation by which store_some() compresses a register: first the lanes that are
+// set, then the others.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// A digit of a pair's key or value, as radix_sort.hpp takes one after the other.
+// A digit of a pair's key or value, for radix_sort.hpp.
 #pragma once
 
 #include <photongrid/backend/kernel.hpp>
@@ -9,9 +9,9 @@
 
 namespace photongrid::cpu {
 
-/// Some bits of a pair's key (x) or value (y).
+/// A range of bits of a pair's key (x) or value (y).
 struct digit {
-    static constexpr std::size_t most = 2048; ///< values that a digit can have
+    static constexpr std::size_t most = 2048; ///< the largest number of values of a digit
     bool of_value = false;
     uint shift = 0, mask = 0;
 
@@ -19,7 +19,7 @@ struct digit {
     uint of(const glm::uvec2& pair) const { return (of_value ? pair.y : pair.x) >> shift & mask; }
 };
 
-inline constexpr std::size_t pairs_per_line = 8; ///< of 8 bytes, in a cache line of 64
+inline constexpr std::size_t pairs_per_line = 8; ///< pairs of 8 bytes per cache line of 64
 
 } // namespace photongrid::cpu
 

@@ -1,7 +1,7 @@
-// Adding up the photons that a search chose, in vectors, and the estimate made of them. Read once for every instruction
-// set, so no include guard; other files include simd.hpp.
+// SIMD code that sums the photons that a search found, and makes the estimate. Included once per instruction set, so it
+// has no include guard; other files include simd.hpp.
 //
-// Sums have 16 lanes whatever a register's width, so that results are the same to the bit on every machine.
+// Sums have 16 lanes on every machine, whatever the width of its registers, so that results are the same bit for bit.
 #include <photongrid/backends/cpu/overrides/packet_simd.hpp>
 #include <photongrid/estimate/irradiance_estimate.kernel.hpp>
 #include <photongrid/map/grid.kernel.hpp>
@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// One sum in 16 lanes, whatever a register's width: a few terms in single precision, their sums in double.
+/// A sum in 16 lanes, for any width of registers: up to `few` terms in single precision, then their sums in double.
 class lane_sums {
     static constexpr std::size_t width = hn::MaxLanes(floats()), halves = width > 1 ? 2 : 1;
     using doubles = hn::CappedTag<double, std::max<std::size_t>(1, width / 2)>;
@@ -20,7 +20,7 @@ class lane_sums {
     hn::VFromD<doubles> all_[halves * lanes / width];
 
 public:
-    /// Terms that a lane may take before flush(): an error of 2^-21 at most.
+    /// The most terms per lane before flush(), for an error of at most 2^-21.
     static constexpr std::size_t few = 8;
 
     HWY_INLINE lane_sums()
@@ -30,14 +30,14 @@ public:
         for (auto& l : all_)
             l = hn::Zero(doubles());
     }
-    /// Adds to the lanes from group * width on.
+    /// Adds a register of terms to the lanes from group * width on.
     HWY_INLINE void add(std::size_t group, vector term) { few_[group] = hn::Add(few_[group], term); }
-    /// After `few` terms a lane.
+    /// Must be called after at most `few` terms per lane.
     HWY_INLINE void flush()
     {
         const doubles d;
         for (std::size_t group = 0; group < lanes / width; ++group) {
-#if HWY_TARGET == HWY_SCALAR // has no halves
+#if HWY_TARGET == HWY_SCALAR // has no half vectors
             all_[group] = hn::Add(all_[group], hn::PromoteTo(d, few_[group]));
 #else
             const hn::Half<floats> h;
@@ -47,7 +47,7 @@ public:
             few_[group] = hn::Zero(floats());
         }
     }
-    /// The sum and `more`. Lane l and lane l + 8, then these eight the same way, and so on: the same tree for every
+    /// The sum of all lanes and `more`. It adds lanes l and l + 8, then l and l + 4, and so on: the same tree for every
     /// width.
     HWY_INLINE float total(double more) const
     {
@@ -63,7 +63,7 @@ private:
     template <class D>
     static HWY_INLINE double folded([[maybe_unused]] D d, hn::VFromD<D> v)
     {
-#if HWY_TARGET != HWY_SCALAR // has no halves
+#if HWY_TARGET != HWY_SCALAR // has no half vectors
         if constexpr (hn::MaxLanes(d) > 1) {
             const hn::Half<D> h;
             return folded(h, hn::Add(hn::LowerHalf(h, v), hn::UpperHalf(h, v)));
@@ -96,19 +96,19 @@ inline float weight_of(filter_kind filter, float t)
     return 1.0f;
 }
 
-/// The radius that a search chose.
+/// The radius of a search.
 struct chosen_radius {
     float radius2 = 0;
-    bool by_photon = false; ///< a photon set it; else it was given
+    bool by_photon = false; ///< true: a photon set it; false: it was given
 };
 
-/// What was added up.
+/// The sums over the photons within the radius.
 struct gathered {
     glm::vec4 sum{0}, squares{0};
     uint held = 0;
 };
 
-/// Adds up the photons within the radius, as gather_photons.glsl, by the distances that the packet holds.
+/// Sums the photons within the radius, as gather_photons.glsl does, from the packet's distances.
 template <bool ERRORS>
 HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& near, std::vector<uint>& at_radius)
 {
@@ -126,7 +126,7 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
     for (std::size_t i = 0; i < n;) {
         for (const std::size_t stop = std::min(n, i + lane_sums::few * lanes); i < stop;)
             for (std::size_t group = 0; group < lanes / width;
-                 ++group, i += width) { // unrolled, so that sums stay in registers
+                 ++group, i += width) { // the compiler unrolls it, so that sums stay in registers
                 const auto d2 = hn::Load(d, distances + i);
                 const auto nearer = hn::Lt(d2, radius2);
                 within += hn::CountTrue(d, nearer);
@@ -156,8 +156,8 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
         }
     }
 
-    // At the radius itself: all, or of the k nearest as many as are still wanted, the smallest ids first; of these, the
-    // one that set the radius may be left out.
+    // Photons at the radius: all, or, for the k nearest, as many as are missing, by ascending id. The last of them set
+    // the radius and may be left out.
     std::size_t counted = at_most - within;
     if (j.search == search_kind::exact_k && r.by_photon && at_most > j.k)
         counted = j.k - within;
@@ -191,13 +191,13 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
     return g;
 }
 
-/// Does a point want an estimate?
+/// Whether a point gets an estimate.
 inline bool needs_estimate(const search_job& j, uint point)
 {
     return j.searching && j.points[point].w > 0.0f && kernels::is_finite(j.points[point]);
 }
 
-/// Makes the estimate of what was gathered.
+/// Computes and stores the estimate from the sums.
 inline void finish(const search_job& j, uint point, chosen_radius r, const gathered& g, uint visited)
 {
     const glm::vec4 search_radius(r.radius2, r.by_photon ? 1.0f : 0.0f, 0, 0);

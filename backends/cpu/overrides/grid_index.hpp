@@ -1,4 +1,4 @@
-// The cpu backend's way to find where cells begin: one walk over the sorted pairs.
+// The cpu backend's override of grid_index: one scan of the sorted pairs.
 #pragma once
 
 #include <photongrid/backends/cpu/cpu_backend.hpp>
@@ -8,7 +8,7 @@
 
 namespace photongrid {
 
-/// Same cells as the generic grid_index.
+/// The same result as the generic grid_index.
 #if !defined(PHOTONGRID_CPU_COMPILED)
 inline
 #endif
@@ -20,7 +20,7 @@ inline
     const auto from = b.elements(pairs);
     const auto to = b.elements_to_write(index);
     const std::size_t n = from.size();
-    // Where the key changes, the cells from the last key's next up to this one begin.
+    // Where the key changes, the cells after the last key and up to this one begin.
     const auto cell_after = [&](std::size_t i) {
         return i == 0 ? 0u : i > n ? cells : std::min(cells, from[i - 1].x == nowhere ? cells : from[i - 1].x + 1u);
     };

@@ -1,9 +1,9 @@
-// The growing search (2.3, figure 6) in vectors: at_least_k. Read once for every instruction set, so no include guard;
-// other files include simd.hpp.
+// SIMD code of the growing search (2.3, figure 6), at_least_k. Included once per instruction set, so it has no include
+// guard; other files include simd.hpp.
 //
-// It visits the same photons in the same order as knn_visit.glsl, a register at a time: while fewer than k are held,
-// all within the maximum radius are; the one that makes k sets the radius, and from then on all within that are. So
-// only the register in which the k-th is found has to be looked at photon by photon.
+// It visits the same photons in the same order as knn_visit.glsl, a register at a time. Before the k-th photon it takes
+// all within the maximum radius; with the k-th the radius is set, and after that it takes all within the radius. So
+// only the register with the k-th photon must be examined photon by photon.
 #include <photongrid/backends/cpu/overrides/gather_simd.hpp>
 #include <photongrid/map/grid.kernel.hpp>
 
@@ -15,12 +15,12 @@ HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The photons that one point holds while it visits others. STORE: their distances are kept, for weights that need the
-/// final radius; else their powers are added up at once.
+/// The photons found by one point's search. STORE: keep their distances, for weights that depend on the final radius;
+/// else sum their powers at once.
 template <int POLICIES, bool STORE>
 class growth {
 public:
-    /// Nothing yet. `store` is overwritten.
+    /// No photons yet. `store` is overwritten.
     HWY_INLINE growth(const search_job& j, const query& q, packet& store)
         : job_(j), query_(q), store_(store), limit2_(j.max_radius2)
     {
@@ -28,12 +28,12 @@ public:
         farthest_ = hn::Zero(floats());
     }
 
-    /// Squared: photons farther away are rejected.
+    /// Squared distance beyond which photons are rejected.
     float limit2() const { return limit2_; }
     uint visited() const { return visited_; }
-    /// What the search has chosen, once it has visited all that can lie within limit2().
+    /// The radius, after all photons that can lie within limit2() have been visited.
     chosen_radius chosen() const { return {limit2_, enough()}; }
-    /// Not with STORE: what was added up.
+    /// The sums, without STORE.
     HWY_INLINE gathered sum()
     {
         for (auto& s : sums_)
@@ -77,7 +77,7 @@ public:
 private:
     bool enough() const { return held_ >= job_.k; }
 
-    /// Of those within, which count.
+    /// The photons of a register that count, of those within the limit.
     HWY_INLINE hn::Mask<floats> grow(vector distances2, hn::Mask<floats> within)
     {
         const floats d;
@@ -86,7 +86,8 @@ private:
         farthest_ = hn::Max(farthest_, hn::IfThenElseZero(within, distances2));
         return within;
     }
-    /// The k-th is among these: the farthest so far is the radius, and what comes after the k-th must not exceed it.
+    /// The register with the k-th photon: the largest distance so far becomes the radius, which limits the photons
+    /// after the k-th.
     HWY_NOINLINE hn::Mask<floats> end_growth(vector distances2, hn::Mask<floats> within)
     {
         const floats d;
@@ -101,9 +102,9 @@ private:
             limit2_ = std::max(limit2_, distance2[i]);
             ++held;
         }
-        return hn::Le(hn::LoadU(d, distance2), hn::Set(d, limit2_)); // those before the k-th are no farther either
+        return hn::Le(hn::LoadU(d, distance2), hn::Set(d, limit2_)); // photons before the k-th are within it too
     }
-    /// Adds the powers of those within, of photons from i on.
+    /// Adds the powers of the photons of `within` in the register that begins at photon i.
     HWY_INLINE void add(std::size_t group, hn::Mask<floats> within, std::size_t i)
     {
         const floats d;
@@ -116,24 +117,23 @@ private:
     query_lanes query_;
     packet& store_;
     lane_sums sums_[3]; ///< red, green, blue
-    vector farthest_;   ///< squared distances, while fewer than k are held
+    vector farthest_;   ///< largest squared distances per lane, before the k-th photon
     float limit2_;
     std::size_t held_ = 0;
     uint visited_ = 0, terms_ = 0;
 };
 
-/// A box of cells about a point's own, `ring` cells away from it as far as the grid goes. Its surface is the ring of
-/// that number.
+/// The box of cells around a point's cell that extends by `ring` cells, clipped to the grid. Its surface is that ring.
 struct ring_of_cells {
     glm::uvec4 c; ///< the point's own cell
     glm::vec3 u;  ///< the point, in cells
     uint ring = 0;
-    glm::uvec3 low, high; ///< both in the box
+    glm::uvec3 low, high; ///< its lowest and highest cells
 };
 
-/// Visits a ring, row of cells by row of cells: all of a row on a face of the box, else its two ends, of which the grid
-/// may lack either. A register's width of rows is looked at together, by the limit that stands before the first of
-/// them; the limit only shrinks, so what it rules out then stays out, and the others are asked again.
+/// Visits a ring, row by row: the whole row on a face of the box, else its two end cells, either of which may lie
+/// outside the grid. A register's width of rows is tested at once, with the limit before the first of them. The limit
+/// only shrinks, so rows that fail stay out; the others are tested again.
 template <class Growth>
 HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& found)
 {
@@ -148,22 +148,22 @@ HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& 
     const bool has_low = r.c.x >= r.ring, has_high = r.c.x + r.ring == r.high.x;
     const auto low_gap_x2 = hn::Set(d, gap2(r.u.x, r.c.x, r.low.x, g.cell.x)),
                high_gap_x2 = hn::Set(d, gap2(r.u.x, r.c.x, r.high.x, g.cell.x));
-    // Gathers reach 2^31 words, and cells are two: rows of several layers go together where fifteen layers are not
-    // farther.
+    // Gather indices are below 2^31 words, and a cell has two words: rows of several layers are processed together if
+    // fifteen layers are within that range.
     const std::size_t layer = std::size_t{g.resolution.y} * g.resolution.x;
     const bool together = layer < 1u << 26;
     const uint across = r.high.y - r.low.y + 1;
     const auto of_across = hn::Set(d, 1.0f / static_cast<float>(across));
-    struct ends { // of the box's rows: photons there, their distance
+    struct ends { // the end cells of the box's rows: ranges of photons, and squared distances
         int first[lanes], past[lanes];
         float away2[lanes];
         std::uint8_t some[8] = {};
         bool has(uint i) const { return (some[i / 8] >> i % 8 & 1) != 0; }
     };
-    for (uint z = r.low.z, y = 0; z <= r.high.z;) { // the first row of these; y from the box's lowest
+    for (uint z = r.low.z, y = 0; z <= r.high.z;) { // the first of these rows; y relative to the box
         const uint left = together ? (r.high.z - z + 1) * across - y : across - y;
         const uint rows = std::min(left, static_cast<uint>(hn::Lanes(d)));
-        // Rows beyond the last stand for it. Halves are far enough from whole numbers for the reciprocal's rounding.
+        // Lanes past the last row repeat it. Adding 1/2 makes the division safe against the reciprocal's rounding.
         const auto nth = hn::Min(hn::Add(every(y), hn::Iota(di, 0)), every(y + rows - 1));
         const auto layers = hn::ConvertTo(di, hn::Mul(hn::Add(hn::ConvertTo(d, nth), hn::Set(d, 0.5f)), of_across));
         const auto cell_y = hn::Add(hn::Sub(nth, hn::Mul(layers, every(across))), every(r.low.y)),
@@ -213,7 +213,7 @@ HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& 
     }
 }
 
-/// Visits cell after cell in rings about a point, as knn_visit.glsl, until none beyond can reach into the radius.
+/// Visits rings of cells around a point, as knn_visit.glsl does, until no unexplored cell lies within the radius.
 template <class Growth>
 HWY_INLINE void visit_rings(const search_job& j, const glm::vec4& point, Growth& found)
 {

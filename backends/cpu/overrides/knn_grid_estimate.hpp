@@ -1,4 +1,4 @@
-// The cpu backend's search in vectors, points in an order in which neighbours follow each other.
+// The cpu backend's search, in SIMD code, with the points in an order that keeps neighbours together.
 #pragma once
 
 #include <photongrid/backends/cpu/overrides/search.hpp>

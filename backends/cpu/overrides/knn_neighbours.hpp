@@ -1,4 +1,4 @@
-// The cpu backend's lists of neighbours, in vectors.
+// The cpu backend's lists of neighbours, in SIMD code.
 #pragma once
 
 #include <photongrid/backends/cpu/overrides/search.hpp>

@@ -1,9 +1,10 @@
-// Building a map, in vectors. Read once for every instruction set, so no include guard; other files include simd.hpp.
+// SIMD code that builds a map. Included once per instruction set, so it has no include guard; other files include
+// simd.hpp.
 //
-// Photons go to their places in two moves. The first takes each to its bucket, a run of cells: a photon's data travel
-// with it, a cache line at a time and past the caches, since reading them later, by the sorted ids, would fetch a line
-// of memory for each. The second orders a bucket, which fits the caches, by cells. Both keep the photons' order, so
-// that a cell's photons ascend.
+// Photons are sorted in two steps. The first moves them to buckets, which are ranges of cells: it moves a photon's data
+// too, in whole cache lines and past the caches, because reading the data later by the sorted ids would fetch a line
+// per photon. The second step orders each bucket, which fits the caches, by cell. Both steps are stable, so ids ascend
+// within a cell.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
@@ -16,10 +17,10 @@ HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Jobs are copies, which what is written cannot overwrite.
+// Jobs are passed by value, so that the compiler can assume that stores do not change them.
 
-/// Writes the cells of photons first to past - 1, as photon_cell.glsl, and counts how many go to each bucket, how many
-/// are invalid and how many of other parts.
+/// Finds the cells of photons first to past - 1, as photon_cell.glsl does, and counts the photons of each bucket, the
+/// invalid ones and those of other parts of the light.
 inline void find_cells(map_job j, std::size_t first, std::size_t past, uint* in_bucket, uint& invalid, uint& left_out)
 {
     const hn::CappedTag<float, lanes> d;
@@ -32,7 +33,7 @@ inline void find_cells(map_job j, std::size_t first, std::size_t past, uint* in_
         const uint resolution = g.resolution[axis];
         auto u = hn::Mul(hn::Sub(x, hn::Set(d, g.origin[axis])), hn::Set(d, g.inverse_cell[axis]));
         u = hn::IfThenElseZero(hn::Gt(u, hn::Zero(d)), u);
-        // Truncation is rounding down once the number is not negative.
+        // For numbers that are not negative, truncation rounds down.
         const auto c = hn::ConvertTo(di, hn::Min(u, hn::Set(d, static_cast<float>(resolution - 1u))));
         return hn::BitCast(du, hn::Min(c, hn::Set(di, static_cast<int>(resolution - 1u))));
     };
@@ -112,14 +113,14 @@ inline void scatter_photons(map_job j, std::size_t first, std::size_t past, uint
     hwy::FlushStream();
 }
 
-/// Orders one bucket, which lies at begin to end - 1, by cells.
+/// Orders the bucket at begin to end - 1 by cell.
 inline void order_bucket(map_job j, uint bucket, std::size_t begin, std::size_t end, bucket_scratch& s)
 {
     const uint first_cell = bucket << j.shift, bins = std::min(1u << j.shift, j.cells + 1 - first_cell);
     s.next.assign(bins, 0);
     s.order.resize(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
-        hwy::Prefetch(&j.records[i]); // they are taken out of order below
+        hwy::Prefetch(&j.records[i]); // they are read out of order below
         ++s.next[j.pairs[i].x - first_cell];
     }
     auto next_index = static_cast<uint>(begin);

@@ -1,6 +1,6 @@
-// What a search in vectors works on: photons in soa, their distances from a point, and packets of them. Read once for
-// every instruction set that the compiler knows (Highway), so no include guard: packet_simd.hpp is read by
-// gather_simd.hpp, that by grow_simd.hpp, that by search_simd.hpp, and other files include simd.hpp.
+// SIMD code for photons as structures of arrays, their distances from a point, and packets of photons. Included once
+// per instruction set (Highway), so it has no include guard: search_simd.hpp includes grow_simd.hpp, which includes
+// gather_simd.hpp, which includes this file; other files include simd.hpp.
 #include <hwy/highway.h>
 
 #include <photongrid/backends/cpu/overrides/compress_table.hpp>
@@ -23,15 +23,15 @@ using uints = hn::RebindToUnsigned<floats>;
 using ints = hn::RebindToSigned<floats>;
 using vector = hn::VFromD<floats>;
 
-/// Stores the lanes that the mask has, one after the other, and anything in the rest of a register's width. Returns how
-/// many they are. Not by Highway's own where registers are short: g++ copies its tables to the stack at every call,
-/// which made the whole search five times slower with AVX2.
+/// Stores the lanes of the mask contiguously, and undefined values in the rest of a register's width. Returns the
+/// number of lanes in the mask. It does not use Highway's CompressStore for short registers: g++ copies its tables to
+/// the stack at every call, which made the whole search five times slower with AVX2.
 template <class D, class Mask>
 HWY_INLINE std::size_t store_some(D d, hn::VFromD<D> v, Mask mask, hn::TFromD<D>* to)
 {
     constexpr std::size_t width = hn::MaxLanes(d);
     if constexpr (width > 1 && width <= 8) {
-        std::uint8_t bits[8]; // that many are written
+        std::uint8_t bits[8]; // StoreMaskBits writes up to 8 bytes
         const std::size_t some = hn::CountTrue(d, mask);
         hn::StoreMaskBits(d, mask, bits);
         const std::int32_t* const order = compress_table<width>[bits[0]].data();
@@ -42,17 +42,17 @@ HWY_INLINE std::size_t store_some(D d, hn::VFromD<D> v, Mask mask, hn::TFromD<D>
     }
 }
 
-/// A point that looks for photons.
+/// A query point and its normal.
 struct query {
     glm::vec3 at{0}, normal{0};
 };
 
-/// Where photons lie: in the map, or in a packet.
+/// The attributes of photons in the map or in a packet.
 struct photon_vectors {
     soa_vectors<const float> positions, directions, normals; ///< the last two only where a policy needs them
 };
 
-/// A query in every lane.
+/// A query, broadcast to all lanes.
 struct query_lanes {
     vector x, y, z, normal_x, normal_y, normal_z;
     HWY_INLINE explicit query_lanes(const query& q)
@@ -67,8 +67,8 @@ struct query_lanes {
     }
 };
 
-/// Squared distances of a register of photons, from photon i on, as photon_distance.glsl has it: those that a policy
-/// rejects are farther than any radius. POLICIES: 0 none, 1 the side of the surface, 2 any.
+/// Squared distances of a register of photons, from photon i on, as in photon_distance.glsl: photons that a policy
+/// rejects are farther than any radius. POLICIES: 0: none, 1: only leak_policy::side, 2: any.
 template <int POLICIES>
 HWY_INLINE vector squared_distances(
     const search_job& j, const query_lanes& q, const photon_vectors& photons, std::size_t i)
@@ -96,13 +96,13 @@ HWY_INLINE vector squared_distances(
     return d2;
 }
 
-/// The photons of some rows of cells.
+/// The photons of several rows of cells, as ranges.
 struct rows_found {
     std::vector<uint> first, past;
     std::size_t rows = 0;
 };
 
-/// As kernels::clamped_cell: truncation is rounding down once the number is not negative.
+/// kernels::clamped_cell; for numbers that are not negative, truncation rounds down.
 inline uint cell_at(float u, uint resolution)
 {
     const float last = static_cast<float>(resolution - 1u);
@@ -116,7 +116,7 @@ inline glm::uvec2 cells_within(float x, float radius, float origin, float invers
         cell_at(kernels::in_cells(x + radius, origin, inverse_cell), resolution)};
 }
 
-/// kernels::gap of a register of cells: distances, m, along one axis from a point at u in cell c.
+/// kernels::gap for a register of cells: distances, m, along one axis from a point at u in cell c.
 HWY_INLINE vector gaps(hn::VFromD<ints> cell, float u, uint c, float size)
 {
     const floats d;
@@ -130,7 +130,8 @@ HWY_INLINE vector gaps(hn::VFromD<ints> cell, float u, uint c, float size)
     return hn::Mul(hn::Max(gap, hn::Zero(d)), hn::Set(d, size));
 }
 
-/// The photons of every row of cells that can lie within radius2, as search_rows.glsl has it, 16 rows at a time.
+/// Finds the photons of every row of cells that can lie within radius2, as search_rows.glsl does, a register of rows at
+/// a time.
 HWY_INLINE void find_rows(const search_job& j, const glm::vec3& at, float radius2, rows_found& s)
 {
     const grid& g = j.cells_of;
@@ -160,8 +161,7 @@ HWY_INLINE void find_rows(const search_job& j, const glm::vec3& at, float radius
     std::size_t n = 0;
     for (uint z = rows_z.x; z <= rows_z.y; ++z) {
         const float gap_z = kernels::gap(u_z, c_z, z, g.cell.z);
-        // Indices within a slab of cells; of two words each, so a slab of 2^29 cells is the largest that a gather
-        // reaches.
+        // Gather indices are relative to a slab of cells. A cell has two words, so a slab has at most 2^29 cells.
         const auto* const slab
             = reinterpret_cast<const int*>(j.cells.data() + std::size_t{z} * g.resolution.y * g.resolution.x);
         for (uint y = rows_y.x; y <= rows_y.y; y += static_cast<uint>(width)) {
@@ -190,7 +190,7 @@ HWY_INLINE void find_rows(const search_job& j, const glm::vec3& at, float radius
     s.rows = n;
 }
 
-/// The photons near some queries, or those that a query holds, one after the other.
+/// The photons near several queries, or those found by a query, stored contiguously.
 class packet {
 public:
     enum component {
@@ -213,7 +213,7 @@ public:
 
     std::size_t size() const { return size_; }
     float* of(component p) const { return memory_ + p * stride_; }
-    /// Place of photon i in the map.
+    /// The index of photon i in the map.
     uint index(std::size_t i) const { return indices_[i]; }
     photon_vectors photons() const
     {
@@ -251,7 +251,7 @@ public:
                 store_some(d, pz, near, of(z) + k);
                 const auto take = [&](component p, const float* from)
                                       HWY_ATTR { store_some(d, hn::LoadU(d, from + i), near, of(p) + k); };
-                take(red, j.powers.x); // for lists too: asking here costs estimates more than it saves them
+                take(red, j.powers.x); // for lists too: testing for that would cost estimates more than it saves
                 take(green, j.powers.y);
                 take(blue, j.powers.z);
                 if (j.side) {
@@ -269,7 +269,7 @@ public:
                 k += some;
             }
         }
-        // What is read beyond the last is not near anything and weighs nothing.
+        // Pad with photons that are infinitely far and have no power.
         for (std::size_t i = k; i < k + lanes; ++i) {
             of(x)[i] = of(y)[i] = of(z)[i] = std::numeric_limits<float>::infinity();
             of(red)[i] = of(green)[i] = of(blue)[i] = 0;
@@ -278,15 +278,15 @@ public:
         return n;
     }
 
-    /// Begins anew, for photons that are added by their distances.
+    /// Removes all photons.
     void clear() { size_ = 0; }
-    /// Makes room for n more.
+    /// Makes room for n more photons.
     void reserve(std::size_t n)
     {
         if (size_ + n + slack > stride_)
             grow(size_ + n);
     }
-    /// Adds those of a register of photons that `some` has, its first at `index`.
+    /// Adds the photons of `some` in the register that begins at `index`.
     HWY_INLINE void add(vector distances2, hn::Mask<floats> some, std::size_t index)
     {
         const uints du;
@@ -295,13 +295,13 @@ public:
             indices_ + size_);
         size_ += added;
     }
-    /// Fetches the powers of all that were added.
+    /// Loads the powers of all photons that were added.
     HWY_INLINE void fetch_powers(const search_job& j)
     {
         const floats d;
         const ints di;
         reserve(0);
-        for (std::size_t i = size_; i < size_ + lanes; ++i) { // read with the last, but weighs nothing
+        for (std::size_t i = size_; i < size_ + lanes; ++i) { // padding without power
             of(squared_distance)[i] = std::numeric_limits<float>::infinity();
             indices_[i] = 0;
         }
@@ -315,9 +315,9 @@ public:
     }
 
 private:
-    static constexpr std::size_t slack = 5 * lanes; ///< for what is written past the end
+    static constexpr std::size_t slack = 5 * lanes; ///< for stores past the end
 
-    /// Makes room for n photons; keeps the distances and indices of those that are here.
+    /// Makes room for n photons, and keeps the distances and indices of the present ones.
     void grow(std::size_t n)
     {
         const std::size_t stride = component_stride(2 * n + slack);

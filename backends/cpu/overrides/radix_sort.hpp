@@ -1,5 +1,5 @@
-// Sorting pairs by their bits: stable, by as many digits as the bits that differ need; least significant digit first,
-// but where there are too many pairs for a cache.
+// Radix sort of pairs: stable, with as many digits as the differing bits need. The least significant digit is sorted
+// first, except if there are too many pairs for a cache.
 #pragma once
 
 #include <photongrid/backends/cpu/buffer.hpp>
@@ -15,20 +15,20 @@
 
 namespace photongrid::cpu {
 
-/// What a sort did.
+/// The result of a sort.
 struct radix_report {
     uint passes = 0;
-    bool in_scratch = false; ///< the sorted pairs lie in the second range
+    bool in_scratch = false; ///< the sorted pairs are in the second range
 };
 
-/// Pairs that fit a core's own cache twice.
+/// The number of pairs of which two copies fit a core's cache.
 inline constexpr std::size_t in_cache = 65536;
 
-/// As few digits as 11 bits each allow: 2,048 counters fit the first-level cache.
+/// The number of digits of at most 11 bits: 2,048 counters fit the first-level cache.
 constexpr uint digits_for(uint bits) { return (bits + 10) / 11; }
 
-/// Adds up how often a digit has each value in pairs first to past - 1. The digit is a copy, which counts cannot
-/// overwrite.
+/// Counts how often a digit has each value in pairs first to past - 1. The digit is passed by value, so that the
+/// compiler can assume that stores do not change it.
 inline void count_digits(digit by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* counts)
 {
     if (by.of_value)
@@ -39,7 +39,7 @@ inline void count_digits(digit by, const glm::uvec2* from, std::size_t first, st
             ++counts[from[i].x >> by.shift & by.mask];
 }
 
-/// Moves n pairs to where a digit puts them, one after the other.
+/// Moves n pairs in the order of a digit, one at a time.
 inline void scatter_in_cache(digit by, const glm::uvec2* from, glm::uvec2* to, std::size_t n)
 {
     for (std::size_t i = 0; i < n; i += pairs_per_line)
@@ -54,10 +54,10 @@ inline void scatter_in_cache(digit by, const glm::uvec2* from, glm::uvec2* to, s
         to[next[by.of(from[i])]++] = from[i];
 }
 
-using counters = std::vector<std::array<uint, digit::most>>; ///< of each part
+using counters = std::vector<std::array<uint, digit::most>>; ///< of each range
 
-/// As scatter_in_cache() for any number of pairs, by all threads, each of which takes `part`. `next` holds how often
-/// each part has each digit, and is overwritten. Returns where each digit's pairs begin, and n.
+/// scatter_in_cache() for any number of pairs, in parallel: each task moves a range of `part` pairs. `next` has the
+/// counts of each digit per range, and is overwritten. Returns the index of each digit's first pair, and n.
 inline std::vector<uint> scatter_counted(pool& threads, const digit& by, const glm::uvec2* from, glm::uvec2* to,
     std::size_t n, std::size_t part, counters& next)
 {
@@ -87,7 +87,8 @@ inline std::vector<uint> scatter_counted(pool& threads, const digit& by, const g
     return begin;
 }
 
-/// Which bits differ in some pairs, and whether their values ascend, as ids do: then a stable sort by key is enough.
+/// Which bits differ in a range of pairs, and whether the values ascend, as ids do. If they do, a stable sort by key
+/// suffices.
 struct key_summary {
     glm::uvec2 any{0u}, all{~0u};
     uint descents = 0;
@@ -103,7 +104,7 @@ struct key_summary {
 };
 inline key_summary summarise(const glm::uvec2* pairs, std::size_t first, std::size_t past)
 {
-    uint any_x = 0, all_x = ~0u, any_y = 0, all_y = ~0u; // plain numbers, of which compilers make vectors
+    uint any_x = 0, all_x = ~0u, any_y = 0, all_y = ~0u; // scalars, which compilers vectorise
     for (std::size_t i = first; i < past; ++i) {
         any_x |= pairs[i].x;
         all_x &= pairs[i].x;
@@ -115,7 +116,7 @@ inline key_summary summarise(const glm::uvec2* pairs, std::size_t first, std::si
         descents |= pairs[i - 1].y > pairs[i].y ? 1u : 0u;
     return {{any_x, any_y}, {all_x, all_y}, descents};
 }
-/// The same for a few pairs from all over.
+/// The same for a sample of the pairs.
 inline key_summary sample(const glm::uvec2* pairs, std::size_t n)
 {
     key_summary l;
@@ -124,7 +125,7 @@ inline key_summary sample(const glm::uvec2* pairs, std::size_t n)
     return l;
 }
 
-/// Bits `low` and up of a key or a value.
+/// A range of `bits` bits from bit `low` on.
 struct bit_range {
     uint low = 0, bits = 0;
     explicit bit_range(uint varying)
@@ -134,28 +135,28 @@ struct bit_range {
     }
 };
 
-/// The most significant digit of keys, by which many pairs are parted so that the rest of the work fits a cache.
+/// The most significant digit of keys, by which many pairs are partitioned, so that the rest of the work fits a cache.
 inline digit first_digit(const bit_range& r)
 {
     const uint width = std::min(r.bits, std::clamp(r.bits, 19u, 21u) - 11u);
     return {false, r.low + r.bits - width, (1u << width) - 1};
 }
 
-/// Sorts n pairs by (x, y). Both ranges have room for n and begin on cache lines; which one the result is in is
-/// reported.
+/// Sorts n pairs by (x, y). Both ranges have room for n pairs and begin on cache lines. The report says which one has
+/// the result.
 inline radix_report radix_sort(pool& threads, glm::uvec2* pairs, glm::uvec2* scratch, std::size_t n)
 {
     radix_report report;
     if (n < 2)
         return report;
-    // A part a thread, so that counts need no sharing; the result does not depend on their number.
+    // One range per thread, so that counters are not shared. The result does not depend on the number of ranges.
     const std::size_t parts = n < 16384 ? 1 : threads.threads(), part = (n + parts - 1) / parts;
     counters counts((n + part - 1) / part);
     std::vector<key_summary> seen(counts.size());
 
-    // While all pairs are looked at, digits are counted that a few of them make probable.
+    // While it summarises all pairs, it also counts the digit that a sample suggests as the first.
     const digit probable = first_digit(bit_range(sample(pairs, n).varying().x));
-    constexpr std::size_t block = 2048; // is still in the cache the second time
+    constexpr std::size_t block = 2048; // so small that it stays in the cache for the second loop
     threads.for_blocks(n, part, [&](std::size_t first, std::size_t past) {
         auto& mine = counts[first / part];
         mine.fill(0);

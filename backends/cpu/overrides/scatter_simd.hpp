@@ -1,5 +1,5 @@
-// Moving pairs to where their digit goes, a cache line at a time. Read once for every instruction set, so no include
-// guard; other files include simd.hpp.
+// SIMD code that moves pairs by a digit, a cache line at a time. Included once per instruction set, so it has no
+// include guard; other files include simd.hpp.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
@@ -11,17 +11,17 @@ HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Writes pairs first to past - 1 of `from` to their places in `to`, which begins on a cache line: the next pair with
-/// digit v goes to to[next[v]]. `lines` holds pairs_per_line pairs a digit. Lines are collected there and then written
-/// past the caches (software write-combining; Satish et al., Fast Sort on CPUs and GPUs, 2010): scattered writes would
-/// fetch each line first.
+/// Moves pairs first to past - 1 of `from` to `to`, which begins on a cache line: the next pair with digit v goes to
+/// to[next[v]]. `lines` has room for pairs_per_line pairs per digit. Lines are collected there and then written past
+/// the caches (software write-combining; Satish et al., Fast Sort on CPUs and GPUs, 2010), because scattered writes
+/// would fetch each line first.
 template <bool BY_VALUE>
 HWY_INLINE void scatter(digit by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* next,
     glm::uvec2* to, glm::uvec2* lines)
 {
     const hn::CappedTag<uint, 2 * pairs_per_line> d;
     const std::size_t width = hn::Lanes(d);
-    uint begin[digit::most]; // where this part's pairs with a digit begin: what lies before in a line belongs to others
+    uint begin[digit::most]; // this range's first pair per digit; the beginning of its line may belong to others
     std::copy(next, next + by.mask + 1, begin);
     for (std::size_t i = first; i < past; ++i) {
         const glm::uvec2 pair = from[i];

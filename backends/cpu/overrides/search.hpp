@@ -1,5 +1,4 @@
-// What the cpu backend's estimates and lists share: the order in which points are searched for, and the job of the SIMD
-// code.
+// Code that the cpu backend's estimates and lists share: the order of the query points, and the job for the SIMD code.
 #pragma once
 
 #include <photongrid/backends/cpu/cpu_backend.hpp>
@@ -11,11 +10,12 @@
 
 namespace photongrid::cpu {
 
-/// Points that follow each other on one thread. Blocks stay the same however many threads there are: a block's queries
-/// help each other.
+/// The number of consecutive points that one thread processes. Blocks do not depend on the number of threads, because
+/// the queries of a block share work.
 inline constexpr std::size_t search_block_size = 256;
 
-/// Orders points along a curve that keeps neighbours together (Morton 1966), 1,024 steps along each axis of the grid.
+/// Orders points along a Morton curve (Morton 1966), which keeps neighbours together, with 1,024 steps along each axis
+/// of the grid.
 inline buffer<uint> order_along_curve(cpu_backend& b, const grid& g, const buffer<glm::vec4>& points_of)
 {
     const std::size_t n = points_of.size();
@@ -49,7 +49,7 @@ inline buffer<uint> order_along_curve(cpu_backend& b, const grid& g, const buffe
     return ordered;
 }
 
-/// The search of `in`, but for where its results go.
+/// The job of the search `in`, without the buffers for its results.
 inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, const buffer<uint>& order)
 {
     auto& b = *in.b;

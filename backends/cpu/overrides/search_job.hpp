@@ -1,4 +1,4 @@
-// What the search's SIMD code is given: plain pointers, so that it can be compiled once for each instruction set.
+// The parameters of the search's SIMD code: plain pointers, because it is compiled once per instruction set.
 #pragma once
 
 #include <photongrid/backends/cpu/buffer.hpp>
@@ -11,15 +11,15 @@
 
 namespace photongrid::cpu {
 
-/// A search for many points, and where its results go. Lengths are those of the buffers they come from.
+/// A search for many points, and the arrays for its results.
 struct search_job {
     grid cells_of{};
     std::span<const glm::uvec2> cells;
-    soa_vectors<const float> positions, powers, directions, normals; ///< the last two only where a policy needs them
+    soa_vectors<const float> positions, powers, directions, normals; ///< the last two only if a policy needs them
     const uint* list = nullptr;
     const glm::vec4* points = nullptr;
-    const glm::vec4* point_normals = nullptr; ///< only where a policy needs them
-    const uint* order = nullptr;              ///< of the points: neighbours in it should be neighbours in space
+    const glm::vec4* point_normals = nullptr; ///< only if a policy needs them
+    const uint* order = nullptr;              ///< order of the points; it should keep neighbours in space together
 
     search_kind search = search_kind::exact_k;
     bool searching = true; ///< false: nothing can be found

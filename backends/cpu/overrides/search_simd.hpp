@@ -1,14 +1,14 @@
-// The search in vectors, of exact_k and fixed_radius. Read once for every instruction set, so no include guard; other
-// files include simd.hpp.
+// SIMD code of the searches exact_k and fixed_radius. Included once per instruction set, so it has no include guard;
+// other files include simd.hpp.
 //
-// Queries that lie close together go in packets. The photons near a packet, in all rows of cells that can hold any, are
-// copied once, one after the other, so that each query reads full vectors of just those. It does so twice: the first
-// scan finds the k-th squared distance, the second weighs and adds up.
+// Queries that are close together form packets. The photons near a packet, from all rows of cells that can hold any,
+// are copied to contiguous memory once, so that each query reads full registers of these photons only. Each query scans
+// them twice: to find the k-th squared distance, and to compute the weighted sums.
 //
-// Moving a query point by s changes the distance to its k-th nearest photon by s at most, so that distance lies in a
-// narrow band about the last query's: photons nearer than the band are counted, those in it are kept, and the k-th is
-// selected among these few. The counts prove the result; where they say that it lies elsewhere, the scan is repeated
-// without the band, and where the packet does not reach far enough, a new one is made.
+// If a query point moves by s, the distance to its k-th nearest photon changes by at most s. So that distance lies in a
+// narrow band around the distance of the query before: photons nearer than the band are counted, those in the band are
+// kept, and the k-th is selected among these few. The counts show whether the k-th is in the band. If not, the scan is
+// repeated without the band; if the packet's radius is too small, a new packet is made.
 #include <photongrid/backends/cpu/overrides/grow_simd.hpp>
 #include <photongrid/estimate/kth_guess.kernel.hpp>
 
@@ -20,14 +20,14 @@ HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Writes the squared distance of every photon. Counts those within low2, and keeps the distances of those beyond it,
-/// high2 at most. Returns {counted, kept}.
+/// Computes the squared distance of every photon, counts those up to low2, and keeps the distances above low2 and up to
+/// high2. Returns {counted, kept}.
 template <int POLICIES>
 HWY_INLINE glm::uvec2 scan(const search_job& j, const query& at, float low2, float high2, const packet& near)
 {
     const floats d;
     const std::size_t width = hn::Lanes(d),
-                      n = (near.size() + lanes - 1) / lanes * lanes; // with what is added up later
+                      n = (near.size() + lanes - 1) / lanes * lanes; // including the padding, which the sums read
     float *const distances = near.of(packet::squared_distance), *const kept = near.of(packet::kept);
     const query_lanes q(at);
     const photon_vectors photons = near.photons();
@@ -43,28 +43,27 @@ HWY_INLINE glm::uvec2 scan(const search_job& j, const query& at, float low2, flo
     return {static_cast<uint>(counted), static_cast<uint>(k)};
 }
 
-/// The n-th smallest (from 1) of `count` numbers above low (or 0), high at most. They are expected to be spread evenly,
-/// so that a few rounds of interpolation and counting find a number that n or n - 1 of them do not exceed. `values` is
-/// overwritten, also four registers' width past its end.
+/// The n-th smallest (from 1) of `count` numbers that are above low (or 0) and at most high. If they are evenly
+/// distributed, a few rounds of interpolation and counting find a pivot that n or n - 1 of them do not exceed. `values`
+/// is overwritten, up to four registers' width past its end.
 HWY_INLINE float nth_smallest(float* values, std::size_t count, std::size_t n, float low, float high)
 {
     const floats d;
     const std::size_t width = hn::Lanes(d), whole = (count + 4 * width - 1) / (4 * width) * (4 * width);
     for (std::size_t more = 0; more < 4; ++more)
         hn::StoreU(hn::Set(d, std::numeric_limits<float>::infinity()), d, values + count + more * width);
-    std::size_t below = 0, up_to = count; // how many are low at most, high at most
-    auto beyond = hn::Set(d, -1.0f);      // low, once some are below: squared distances are not negative
+    std::size_t below = 0, up_to = count; // how many are at most low, at most high
+    auto beyond = hn::Set(d, -1.0f);      // low, if it was set; squared distances are not negative
     for (int rounds = 0; below + 1 < n && n < up_to; ++rounds) {
         const float pivot
             = low + (high - low) * (static_cast<float>(n - below) / static_cast<float>(up_to - below + 1));
-        if (rounds == 12 || !(pivot > low && pivot < high)) { // not spread evenly, or equal
+        if (rounds == 12 || !(pivot > low && pivot < high)) { // unevenly distributed, or equal
             std::nth_element(values, values + (n - 1), values + count);
             return values[n - 1];
         }
         const auto p = hn::Set(d, pivot);
         std::size_t within = 0;
-        for (std::size_t i = 0; i < whole;
-             i += 4 * width) // four at a time: nearly always one or two rounds, easy to predict
+        for (std::size_t i = 0; i < whole; i += 4 * width) // four registers at a time, for predictable branches
             for (std::size_t v = 0; v < 4; ++v)
                 within += hn::CountTrue(d, hn::Le(hn::LoadU(d, values + i + v * width), p));
         if (n <= within) {
@@ -93,7 +92,7 @@ HWY_INLINE float nth_smallest(float* values, std::size_t count, std::size_t n, f
     return hn::GetLane(hn::MinOfLanes(d, smallest));
 }
 
-/// Says that the list of a point has no more than its first `held` entries.
+/// Marks the end of a point's list after `held` entries.
 inline void end_list(const search_job& j, uint point, std::size_t held)
 {
     const std::size_t first = std::size_t{point} * j.k;
@@ -101,8 +100,8 @@ inline void end_list(const search_job& j, uint point, std::size_t held)
     std::fill(j.distances2 + first + held, j.distances2 + first + j.k, std::numeric_limits<float>::infinity());
 }
 
-/// Lists the photons within the radius, nearest first, by the distances that scan() wrote. `keys` is scratch. Not
-/// inlined: sorting would take registers from the search for estimates.
+/// Lists the photons within the radius, nearest first, from the distances of scan(). `keys` is scratch. It is not
+/// inlined, because sorting would take registers from the search for estimates.
 HWY_NOINLINE inline void list(
     const search_job& j, uint point, chosen_radius r, const packet& near, std::vector<std::uint64_t>& keys)
 {
@@ -110,7 +109,7 @@ HWY_NOINLINE inline void list(
     const uints du;
     const std::size_t width = hn::Lanes(d), n = near.size();
     const float* const distances = near.of(packet::squared_distance);
-    // Where they stand in the packet.
+    // The photons' numbers in the packet.
     auto* const within = reinterpret_cast<uint*>(near.of(packet::kept));
     const auto radius2 = hn::Set(d, r.radius2);
     std::size_t held = 0;
@@ -119,12 +118,12 @@ HWY_NOINLINE inline void list(
         held += store_some(du, hn::Add(hn::Set(du, static_cast<uint>(i)), hn::Iota(du, 0)),
             hn::RebindMask(du, is_within), within + held);
     }
-    // The bits of squared distances are in their order; the smallest ids come first.
+    // The bits of squared distances have the order of the distances; equal distances are ordered by id.
     keys.resize(held);
     for (std::size_t i = 0; i < held; ++i)
         keys[i] = std::uint64_t{std::bit_cast<uint>(distances[within[i]])} << 32 | j.list[near.index(within[i])];
     std::sort(keys.begin(), keys.end());
-    held = std::min<std::size_t>(held, j.k); // more lie at the radius itself
+    held = std::min<std::size_t>(held, j.k); // there may be more at the radius
     uint* const ids = j.ids + std::size_t{point} * j.k;
     float* const distances2 = j.distances2 + std::size_t{point} * j.k;
     for (std::size_t i = 0; i < held; ++i) {
@@ -154,16 +153,16 @@ inline float distance_between(const glm::vec3& a, const glm::vec3& b)
 template <int POLICIES>
 HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::size_t end)
 {
-    constexpr float surplus = 0.06f; // that a packet reaches farther than the last query's k-th photon
+    constexpr float surplus = 0.06f; // relative margin of a packet's radius over the last k-th distance
     packet near;
     std::vector<uint> at_radius;
     std::vector<std::uint64_t> keys;
     query last;
     float last_radius = -1; // distance of the last query's k-th photon; none: -1
-    float expected = -1;    // this query's, where something better than the last is known
+    float expected = -1;    // this query's, if there is a better guess than the last one
     const bool exact = j.search == search_kind::exact_k;
     const float max_radius = std::sqrt(j.max_radius2);
-    float step = 0; // from one point to the next, on average
+    float step = 0; // mean distance between consecutive points
     for (std::size_t o = begin + 1; o < end; ++o)
         step += distance_between(glm::vec3(j.points[j.order[o - 1]]), glm::vec3(j.points[j.order[o]]));
     step /= static_cast<float>(std::max<std::size_t>(end - begin, 2) - 1);
@@ -189,9 +188,9 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
         }
         expected = std::min(expected, max_radius);
 
-        // The packet: the next points, as long as they are close together. Copying has its cost, and so has every
-        // photon that is too far for most of them: the least of both together lies where their spread goes with the
-        // power 2/3 of their step.
+        // The packet: the next points, as long as they are close together. Larger packets need fewer copies, but have
+        // more photons that are too far from most of their points. The total cost is least if the packet's extent is
+        // proportional to the power 2/3 of the points' distance.
         const float relative_step = std::min(step / expected, 1.0f);
         const float widest = 2 * 1.4f * std::cbrt(relative_step * relative_step) * expected;
         glm::vec3 low(j.points[first]), high = low;
@@ -221,13 +220,13 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             query q{glm::vec3(j.points[point]), glm::vec3(0)};
             if (POLICIES != 0)
                 q.normal = glm::vec3(j.point_normals[point]);
-            // All photons as near as this are in the packet.
+            // The packet contains all photons within this distance.
             const float sure = std::max((packet_radius - distance_between(q.at, center) * 1.000001f) * 0.999998f, 0.0f);
             const float sure2 = std::min(begun_with >= max_radius ? j.max_radius2 : sure * sure, j.max_radius2);
             chosen_radius r{j.max_radius2, false};
             float low2 = -1, high2 = sure2;
             if (exact && last_radius > 0 && (POLICIES == 0 || q.normal == last.normal)) {
-                // The band, trusted only so far as to save time.
+                // The band. A wrong band costs time only.
                 float moved = distance_between(q.at, last.at);
                 if (POLICIES == 2) {
                     const glm::vec3 move(q.at.x - last.at.x, q.at.y - last.at.y, q.at.z - last.at.z);
@@ -253,7 +252,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
                     r = {
                         nth_smallest(near.of(packet::kept), found.y, j.k - found.x, std::max(low2, 0.0f), high2), true};
                 else if (sure2 < j.max_radius2) {
-                    // The packet does not reach far enough: another from here on.
+                    // The packet's radius is too small: start a new packet here.
                     const float growth
                         = 1.2f * static_cast<float>(j.k) / static_cast<float>(std::max(found.x + found.y, 1u));
                     expected = std::max(begun_with * std::sqrt(std::clamp(growth, 1.3f, 8.0f)), 1e-15f);
@@ -272,7 +271,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             last = q;
             if (exact && r.by_photon && last_radius < 0.6f * begun_with) {
                 ++o;
-                break; // this packet has far too many photons
+                break; // this packet has many more photons than needed
             }
         }
     }

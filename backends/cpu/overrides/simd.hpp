@@ -1,22 +1,22 @@
-// SIMD code of the cpu backend's overrides, compiled for every instruction set that the compiler knows; the best one
-// that the machine has is chosen when it runs (Highway).
+// The SIMD code of the cpu backend's overrides, compiled for every instruction set that the compiler supports. At run
+// time Highway selects the best one that the machine has.
 #pragma once
 
-// Highway 1.0.3 leaves out its newest instruction set for x86 unless asked, and stops with an error where the compiler
-// may use it everywhere (-march=sapphirerapids).
+// Highway 1.0.3 disables its newest instruction set for x86 by default, and then fails to compile if the compiler may
+// use that set everywhere (-march=sapphirerapids).
 #if defined(__AVXVNNI__) && defined(__AVX512VPOPCNTDQ__) && !defined(HWY_WANT_AVX3_DL)
 #define HWY_WANT_AVX3_DL
 #define PHOTONGRID_WANTS_AVX3_DL
 #endif
-// Highway reads one file's vector code for every instruction set, once.
+// Highway can process only one file per translation unit.
 #if defined(HIGHWAY_HWY_FOREACH_TARGET_H_)
 #error                                                                                                                 \
-    "photongrid: vector code of your own precedes <photongrid/backends/cpu/cpu.hpp>; link photongrid::cpu_compiled, or include cpu.hpp in another file"
+    "photongrid: this file has Highway code before <photongrid/backends/cpu/cpu.hpp>; link photongrid::cpu_compiled, or include cpu.hpp in another file"
 #endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "photongrid/backends/cpu/overrides/for_each_target.hpp"
 #include <hwy/foreach_target.h>
-// Read by now; not for the user's own vector code.
+// Not needed any more, and must not affect the user's own SIMD code.
 #undef HWY_TARGET_INCLUDE
 #if defined(PHOTONGRID_WANTS_AVX3_DL)
 #undef HWY_WANT_AVX3_DL

@@ -1,5 +1,5 @@
-// The cpu backend's way to build a map by sorting: photons go to runs of cells, and within these to their cells, into
-// soa, as the search reads them (map_simd.hpp).
+// The cpu backend's override of sorted_map: photons are sorted into ranges of cells and then by cell, into structures
+// of arrays, which the search needs (map_simd.hpp).
 #pragma once
 
 #include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>
@@ -12,7 +12,7 @@
 namespace photongrid {
 
 namespace cpu {
-    /// What turns an attribute's order into that of the cells.
+    /// An attribute in the order of the list.
     inline cpu_backend::buffer<glm::vec4> in_order_of(
         cpu_backend& b, std::span<const uint> list, const cpu_backend::buffer<glm::vec4>& attribute)
     {
@@ -21,7 +21,7 @@ namespace cpu {
         auto taken = b.make<glm::vec4>(n);
         const auto to = b.components_to_write(taken);
         b.threads().for_blocks(n, 4096, [&](std::size_t first, std::size_t past) {
-            constexpr std::size_t ahead = 16; // reads are all over memory
+            constexpr std::size_t ahead = 16; // reads have random addresses
             for (std::size_t i = first; i < past; ++i) {
                 if (i + ahead < n)
                     __builtin_prefetch(&from[list[i + ahead]]);
@@ -36,7 +36,8 @@ namespace cpu {
     }
 } // namespace cpu
 
-/// Same map as the generic sorted_map, which also builds those of 2^27 cells and more. Scratch: 44 bytes a photon.
+/// The same map as the generic sorted_map, which it uses for 2^27 cells and more. It needs 44 bytes per photon while it
+/// runs.
 #if !defined(PHOTONGRID_CPU_COMPILED)
 inline
 #endif
@@ -49,7 +50,7 @@ inline
     j.cells = cell_count(g);
     j.parts = parts;
     j.large = n > 131072;
-    // Buckets of some 1,000 photons or more, and not more cells in one than have room for counters in a cache.
+    // Buckets have about 1,000 photons or more, and at most as many cells as counters fit a cache.
     const uint buckets = std::clamp(n / 1024u, 1u, cpu::map_job::most_buckets);
     while (j.shift < cpu::map_job::most_shift && j.buckets() > buckets)
         ++j.shift;
@@ -63,7 +64,7 @@ inline
     map.list = b.make<uint>(n);
     auto positions = b.make<glm::vec4>(n), powers = b.make<glm::vec4>(n);
     {
-        // A part a thread, so that counts need no sharing; the result does not depend on their number.
+        // One range per thread, so that counters are not shared. The result does not depend on the number of ranges.
         const std::size_t threads = n < 16384 ? 1 : b.threads().threads(),
                           part = std::max<std::size_t>((n + threads - 1) / threads, 1);
         std::vector<std::array<uint, cpu::map_job::most_buckets>> next(threads);

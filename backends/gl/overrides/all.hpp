@@ -1,4 +1,4 @@
-// What gl.hpp includes anyway; kept for programs that name this file.
+// For programs that include this file; gl.hpp suffices.
 #pragma once
 
 #include <photongrid/backends/gl/gl.hpp>

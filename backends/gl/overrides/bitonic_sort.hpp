@@ -1,4 +1,4 @@
-// The OpenGL backend's bitonic sort: two pairs to a texel, and up to three steps of the network in a pass.
+// The OpenGL backend's bitonic sort: two pairs per texel, and up to three steps of the network per pass.
 #pragma once
 
 #include <photongrid/backends/gl/gl.hpp>
@@ -7,7 +7,7 @@
 #include <photongrid/backend/begin.hpp>
 namespace photongrid::gl::kernels {
 
-using namespace glm; // kernels are GLSL: its names are GLM's
+using namespace glm; // GLSL's types and functions
 
 #include <photongrid/backends/gl/overrides/two_pairs.glsl>
 
@@ -26,8 +26,8 @@ struct unpack_pairs {
 
 namespace photongrid {
 
-/// Same pairs in the same order as the generic bitonic_sort; 102 passes over half the texels for 1,048,576 pairs, where
-/// that takes 210. Scratch: two more buffers of n pairs, rounded up to a power of two, while it runs.
+/// Sorts pairs in the same order as the generic bitonic_sort, in 102 passes over half as many texels instead of 210
+/// passes for 1,048,576 pairs. While it runs it needs two more buffers of n pairs, rounded up to a power of two.
 inline sort_report bitonic_sort(gl_backend& b, gl_backend::buffer<glm::uvec2>& pairs)
 {
     const std::size_t n = pairs.size();
@@ -44,7 +44,7 @@ inline sort_report bitonic_sort(gl_backend& b, gl_backend::buffer<glm::uvec2>& p
         auto next = b.make<glm::uvec4>(texels);
         for (std::size_t run = 2; run <= texels; run *= 2)
             for (std::size_t stride = run / 2; stride > 0;) {
-                // Two strides at a time; where their number is odd, the last is taken alone.
+                // Two strides per pass; if their number is odd, the last one alone.
                 const bool two = stride > 1, last = stride <= 2;
                 const launch l(texels, 0, (two ? 1u : 0u) | (last ? 2u : 0u));
                 b.run<gl::kernels::bitonic_texels>(

@@ -1,6 +1,6 @@
-// One to three steps of a bitonic merge sort in a pass, over texels of two pairs: a step reads a texel's partner; a second
-// one, of half the stride, needs its other partner after the first, so two more texels are read and compared again; the
-// step of stride 1 is within the texel.
+// One to three steps of a bitonic merge sort in one pass, on texels with two pairs. A step reads the texel's partner. A
+// second step, with half the stride, needs another partner after the first step, so two more texels are read and
+// compared. The step of stride 1 is within the texel.
 #include "two_pairs.glsl"
 
 struct Params {

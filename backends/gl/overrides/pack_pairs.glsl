@@ -1,9 +1,9 @@
-// Two pairs to a texel, each two in the order that the network's first step leaves them in; filled up with the largest pair
-// there is. A pair of the user's that equals the filling is the same bits, so none can be lost.
+// Packs two pairs into a texel, in the order after the network's first step, and pads with the largest possible pair. A
+// user's pair that equals the padding has the same bits, so no pair can be lost.
 #include "two_pairs.glsl"
 
 struct Params {
-    uint pairs; // how many there are
+    uint pairs; // number of pairs
 };
 PARAMS(Params)
 INPUT(0, uvec2, pairs)

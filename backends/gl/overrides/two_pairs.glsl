@@ -1,11 +1,11 @@
-// A texel of two (key, value) pairs, for a sorting network.
+// A texel with two (key, value) pairs, for a sorting network.
 
 inline bool is_less(uvec2 a, uvec2 b)
 {
     return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
 
-// What stays here of a comparison with the partner's pairs: the smaller of each two, or the larger.
+// The result of comparing each pair with the partner's: the smaller ones, or the larger ones.
 inline uvec4 kept_of(uvec4 mine, uvec4 partner, bool smaller)
 {
     bool first = is_less(uvec2(mine.x, mine.y), uvec2(partner.x, partner.y)) == smaller;
@@ -13,7 +13,7 @@ inline uvec4 kept_of(uvec4 mine, uvec4 partner, bool smaller)
     return uvec4(first ? mine.x : partner.x, first ? mine.y : partner.y, second ? mine.z : partner.z, second ? mine.w : partner.w);
 }
 
-// The step of stride 1: within the texel.
+// The step of stride 1, within the texel.
 inline uvec4 in_order(uvec4 t, bool rising)
 {
     bool stays = is_less(uvec2(t.x, t.y), uvec2(t.z, t.w)) == rising;

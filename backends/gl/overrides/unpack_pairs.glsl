@@ -1,4 +1,4 @@
-// The pairs of texels of two.
+// Unpacks pairs from texels with two pairs.
 struct Params {
     uint unused;
 };

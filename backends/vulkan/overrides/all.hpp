@@ -1,4 +1,4 @@
-// What vulkan.hpp includes anyway; kept for programs that name this file.
+// For programs that include this file; vulkan.hpp suffices.
 #pragma once
 
 #include <photongrid/backends/vulkan/vulkan.hpp>

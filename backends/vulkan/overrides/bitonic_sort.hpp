@@ -1,4 +1,4 @@
-// The Vulkan backend's bitonic sort: up to four steps of the network in a pass, in registers, in place.
+// The Vulkan backend's bitonic sort: up to four steps of the network per pass, in registers and in place.
 #pragma once
 
 #include <photongrid/backends/vulkan/vulkan.hpp>
@@ -7,13 +7,14 @@
 
 namespace photongrid {
 
-/// Same pairs in the same order as the generic bitonic_sort; 57 passes for 1,048,576 pairs where that takes 210.
-/// Scratch: none where n is a power of two, else two more buffers of n pairs for a while. `steps_per_pass`: 1 to 4 at
-/// most.
+/// Sorts pairs in the same order as the generic bitonic_sort, in 57 passes instead of 210 for 1,048,576 pairs. It needs
+/// no extra memory if n is a power of two, otherwise two more buffers of n pairs. `steps_per_pass`: at most so many, 1
+/// to 4.
 inline sort_report bitonic_sort(vulkan_backend& b, vulkan_backend::buffer<glm::uvec2>& pairs, uint steps_per_pass = 4)
 {
     if (steps_per_pass < 1 || steps_per_pass > 4)
-        throw std::invalid_argument("bitonic_sort: steps_per_pass: " + std::to_string(steps_per_pass) + "; 1 to 4");
+        throw std::invalid_argument(
+            "bitonic_sort: steps_per_pass: " + std::to_string(steps_per_pass) + "; it must be from 1 to 4");
     const std::size_t n = pairs.size();
     sort_report report;
     if (n < 2)
@@ -32,14 +33,14 @@ inline sort_report bitonic_sort(vulkan_backend& b, vulkan_backend::buffer<glm::u
             padded >> steps, {static_cast<uint>(padded), 1u << run_bits, 1u << (first_bit + 1 - steps)}, pairs);
         ++report.passes;
     };
-    uint run_bits = 1; // of the length of the runs being merged
+    uint run_bits = 1; // log2 of the length of the runs being merged
     if (levels >= steps_per_pass) {
         pass(steps_per_pass, steps_per_pass - 1, steps_per_pass, true);
         run_bits = steps_per_pass + 1;
     }
     for (; run_bits <= levels; ++run_bits)
         for (uint left = run_bits; left > 0;) {
-            // As even a share as that many at most to a pass allows.
+            // Distribute the steps evenly over the passes.
             const uint passes = (left + steps_per_pass - 1) / steps_per_pass, steps = (left + passes - 1) / passes;
             pass(run_bits, left - 1, steps, false);
             left -= steps;

@@ -1,6 +1,6 @@
-// Several steps of a bitonic merge sort in one pass and in place (2.2.1): an invocation holds the 2^STEPS pairs that STEPS
-// consecutive strides compare with each other and with no others. STEPS is 1 to 4, defined by the host. SORT_BLOCKS: the
-// pass takes blocks of 2^STEPS consecutive pairs from unsorted to sorted.
+// Several steps of a bitonic merge sort in one pass, in place (2.2.1): an invocation has the 2^STEPS pairs that STEPS
+// consecutive strides compare with each other only. The host defines STEPS, 1 to 4. SORT_BLOCKS: the pass sorts blocks
+// of 2^STEPS consecutive, unsorted pairs.
 struct Params {
     uint pairs;  // a power of two
     uint run;    // length of the runs being merged
@@ -19,7 +19,7 @@ uvec2 p0, p1, p2, p3, p4, p5, p6, p7, p8, p9, p10, p11, p12, p13, p14, p15;
         A = first;                                                            \
     }
 
-// The last N steps of a merge of 2^N pairs; those in the upper half of what is here first.
+// The last N steps of a merge of 2^N pairs, starting with the largest stride.
 void merge_2(bool rising) { EXCHANGE(p0, p1, rising) }
 void merge_4(bool rising)
 {
@@ -79,7 +79,7 @@ void merge_16(bool rising)
     EXCHANGE(p14, p15, rising)
 }
 #if SORT_BLOCKS
-// Runs of 2, 4 and 8, whose direction depends on the place in the block.
+// Sorts runs of 2, 4 and 8, whose direction depends on their position in the block.
 void sort_runs_of_8()
 {
     EXCHANGE(p0, p1, true)

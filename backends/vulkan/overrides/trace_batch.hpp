@@ -1,4 +1,4 @@
-// The Vulkan backend's photon tracing: a bounce takes the paths that go on, and no others.
+// The Vulkan backend's photon tracing: a bounce processes only the paths that continue.
 #pragma once
 
 #include <photongrid/backends/vulkan/vulkan.hpp>
@@ -9,8 +9,8 @@
 
 namespace photongrid {
 
-/// Same frames as the generic trace_batch, but that powers and directions are left as they were where a path has ended
-/// before.
+/// Computes the same frames as the generic trace_batch, except that the powers and directions of paths that ended
+/// earlier are not written.
 inline uint trace_batch(vulkan_backend& b, const device_scene<vulkan_backend>& s,
     detail::photon_frames<vulkan_backend>& f, uint paths, uint first, const render_settings& settings)
 {
@@ -21,7 +21,7 @@ inline uint trace_batch(vulkan_backend& b, const device_scene<vulkan_backend>& s
     uint frame = 1;
     for (bool finished = false; !finished && frame <= settings.map.photon_depth;) {
         const uint passes = std::min(together, settings.map.photon_depth + 1 - frame);
-        // A photon whose every word is this number has ended before.
+        // A record with this value in every word means that the path has ended before.
         const auto ended = std::bit_cast<uint>(
             kernels::event_code(kernels::NO_SURFACE, kernels::ENDED_BEFORE, kernels::NOTHING_BEFORE));
         b.fill(f.positions, std::size_t{frame} * paths, std::size_t{passes} * paths, ended);

@@ -1,4 +1,4 @@
-// Stands for the window where CMake found no GLFW or no Dear ImGui.
+// Replaces the window where CMake found no GLFW or no Dear ImGui.
 #include "view_command.hpp"
 
 #include <photongrid/backend/backend.hpp>

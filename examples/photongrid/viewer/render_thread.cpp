@@ -23,7 +23,7 @@ namespace {
     void give_way()
     {
         (void)::setpriority(
-            PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 5); // of one thread, on Linux; it may be refused
+            PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 5); // of one thread, on Linux; it may fail
     }
 } // namespace
 
@@ -51,8 +51,8 @@ std::uint64_t render_thread::show(const version& v, bool moving)
         const std::lock_guard lock(guard_);
         number = ++requests_;
         // Of several that were not taken the last is drawn; one that has waited for a look has waited long enough.
-        const bool waits = moving && (!wanted_ || wanted_->moving);
-        wanted_ = request{v, waits, number, steps_, clock::now()};
+        const bool waits = moving && (!requested_ || requested_->moving);
+        requested_ = request{v, waits, number, steps_, clock::now()};
         if (!waits && cancellable_ != nullptr)
             cancellable_->cancel();
     }
@@ -86,7 +86,7 @@ void render_thread::work()
     for (;;) {
         {
             std::unique_lock lock(guard_);
-            changed_.wait(lock, [&] { return ends_ || wanted_ || drawing_; });
+            changed_.wait(lock, [&] { return ends_ || requested_ || drawing_; });
             if (ends_)
                 break;
         }
@@ -102,16 +102,16 @@ void render_thread::work()
     renderer_.reset(); // in this thread: an OpenGL context is its own
 }
 
-/// Begins what is wanted, where it is time to. Returns whether there is something to draw.
+/// Starts the requested drawing once it is due. Returns whether there is something to draw.
 bool render_thread::take()
 {
     request next;
     {
         const std::lock_guard lock(guard_);
-        if (!wanted_ || (wanted_->moving && drawing_ && seen_ == 0))
+        if (!requested_ || (requested_->moving && drawing_ && seen_ == 0))
             return drawing_;
-        next = std::move(*wanted_);
-        wanted_.reset();
+        next = std::move(*requested_);
+        requested_.reset();
     }
     drawing_ = false;
     seen_ = 0;

@@ -76,7 +76,7 @@ private:
 
     mutable std::mutex guard_;
     std::condition_variable changed_;
-    std::optional<request> wanted_; ///< not taken yet
+    std::optional<request> requested_; ///< not taken yet
     bool ends_ = false;
     std::uint64_t requests_ = 0;
     frame newest_;

@@ -111,13 +111,13 @@ void settings_panel::draw()
         "Error: "
         "noise and blotches fade as they come.");
     number(setting_table::light_samples, "light samples", 1, 256,
-        "Shadow rays a lamp and eye ray. Speed: proportional for direct light. Error: smoother half-shadows.");
+        "Shadow rays per lamp and eye ray. Speed: proportional for direct light. Error: smoother half-shadows.");
     choice(setting_table::only, "light",
         "Which part of the light is shown. Caustics or indirect light alone need a map of their own.");
     bool side = s.estimate.leaks.side;
     if (ImGui::Checkbox("side", &side))
         change("side", [&](render_settings& r) { r.estimate.leaks.side = side; });
-    tip("Refuse photons that came from behind a surface. Speed: hardly any. Error: no light leaks through "
+    tip("Reject photons that came from behind a surface. Speed: hardly any. Error: no light leaks through "
         "walls.");
     measure(setting_table::exposure, "exposure, EV", -10, 10, "%+.1f", false,
         "Brightness of the screen and of saved PNGs (E, e). Draws nothing anew.");

@@ -17,7 +17,8 @@
 namespace photongrid {
 
 /// A source text made of several files. Line L of file F is numbered (F + 1) * 100000 + L by `#line`, in one integer,
-/// because drivers lose the file number of `#line` with two (docs/design/design.md, "Errors that point home").
+/// because drivers lose the file number of `#line` with two (docs/design/design.md, "Error messages give the kernel's
+/// own line").
 struct spliced_source {
     std::string text;               ///< the source for the compiler
     std::vector<std::string> files; ///< F -> name

@@ -49,7 +49,7 @@ struct leak_policy {
     bool needs_normals() const { return min_cosine > -1; }                       ///< needs photons' normals
     bool needs_any() const { return side || needs_normals() || flattening > 1; } ///< needs points' normals
 
-    bool operator==(const leak_policy&) const = default; ///< of every member
+    bool operator==(const leak_policy&) const = default;
 };
 
 } // namespace photongrid

@@ -34,7 +34,7 @@ namespace {
         std::size_t at_ = 0;
     };
 
-    /// Where the channels of an RGB float picture lie, for a picture whose first pixel has the box's least coordinates.
+    /// The channels of an RGB float picture whose first pixel has the box's smallest coordinates.
     Imf::FrameBuffer rgb_frame(glm::vec3* pixels, const Imath::Box2i& box)
     {
         const auto width = static_cast<std::size_t>(box.max.x - box.min.x + 1);
@@ -45,13 +45,13 @@ namespace {
         return frame;
     }
 
-    /// A layer and the channel that it is in an EXR.
+    /// A layer and the name of its channel.
     struct layer_channel {
         const char* name;
         const std::vector<float>& values;
     };
 
-    /// The layers that are there.
+    /// The layers of a picture that are not empty.
     std::vector<layer_channel> layers_of(const image& picture)
     {
         const auto& l = picture.layers;
@@ -82,7 +82,7 @@ std::string exr_bytes(const image& picture, const image_notes& notes)
     memory_stream stream;
     {
         Imf::OutputFile file(stream, header);
-        // OpenEXR reads through pointers that are not const.
+        // OpenEXR needs non-const pointers for reading.
         auto frame = rgb_frame(const_cast<glm::vec3*>(picture.pixels.data()), header.dataWindow());
         for (const auto& l : layers)
             frame.insert(

@@ -19,7 +19,7 @@ namespace {
         throw file_error(path + ": " + reason);
     }
 
-    /// The file behind a link, so that the link survives.
+    /// The file that a link refers to, so that the link is kept.
     fs::path target(const std::string& path)
     {
         std::error_code none;

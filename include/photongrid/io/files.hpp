@@ -1,4 +1,4 @@
-// Files, written whole or not at all.
+// Writing of files, all or nothing.
 #pragma once
 
 #include <stdexcept>
@@ -11,12 +11,12 @@ struct file_error : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// \throws file_error when `path` cannot become a file: its folder is not there or does not take files, or something
-///         that is not a file has its name. Said before hours of rendering, not after.
+/// Checks whether `path` can be written, so that a program can report that before it renders.
+/// \throws file_error if its folder does not exist or is not writable, or if it is not a regular file.
 void check_file_path(const std::string& path);
 
-/// Writes bytes by way of a temporary file beside `path`: on an error, or when the program dies, `path` is what it was
-/// before.
+/// Writes bytes to a temporary file beside `path` and renames it. On an error, or if the program dies, the old file
+/// remains.
 /// \throws file_error.
 void write_file(const std::string& path, const std::string& bytes);
 

@@ -1,4 +1,4 @@
-// How far a picture is from a reference.
+// Errors of a picture, compared with a reference.
 #pragma once
 
 #include <photongrid/render/image.hpp>
@@ -7,17 +7,17 @@
 
 namespace photongrid {
 
-/// How far picture a is from the reference b, over all channels of the pixels that are finite in both.
+/// The errors of picture a against the reference b, over all channels of the pixels that are finite in both.
 struct image_difference {
     double mse = 0;               ///< mean of (a - b)^2
     double relmse = 0;            ///< mean of (a - b)^2 / (b + 0.01)^2, as pbrt's MRSE
     double largest = 0;           ///< largest |a - b|
-    std::uint32_t x = 0, y = 0;   ///< where that is
-    std::uint64_t compared = 0;   ///< pixels
+    std::uint32_t x = 0, y = 0;   ///< its pixel
+    std::uint64_t compared = 0;   ///< pixels compared
     std::uint64_t not_finite = 0; ///< pixels skipped
 };
 
-/// \throws std::invalid_argument when the sizes differ.
+/// \throws std::invalid_argument if the sizes differ.
 image_difference compare_images(const image& a, const image& b);
 
 } // namespace photongrid

@@ -20,7 +20,7 @@ void image_formats::check_read_size(const std::string& path, std::int64_t width,
     if (width < 1 || height < 1 || width > max_edge || height > max_edge || width * height > max_pixels)
         fail_file(path,
             "is " + std::to_string(width) + " x " + std::to_string(height)
-                + " pixels; expected 1 to 65536 a side and at most 2^28");
+                + " pixels; expected at most 65536 per side and 2^28 in total");
 }
 
 namespace {
@@ -39,7 +39,7 @@ void check_image_path(const std::string& path)
 {
     const auto e = ending(path);
     if (e != ".png" && e != ".exr" && e != ".pfm")
-        fail_file(path, "has no known ending; expected .png, .exr or .pfm");
+        fail_file(path, "has no known extension; expected .png, .exr or .pfm");
     check_file_path(path);
 }
 
@@ -67,8 +67,9 @@ image read_image(const std::string& path)
 {
     const auto e = ending(path);
     if (e != ".exr" && e != ".pfm")
-        fail_file(
-            path, "has no known ending; expected .exr or .pfm (a PNG is tone-mapped and clamped, hence no measure)");
+        fail_file(path,
+            "has no known extension; expected .exr or .pfm (a PNG is tone-mapped and clamped, so it cannot be "
+            "measured)");
     if (std::error_code none; fs::is_directory(path, none))
         fail_file(path, "is a folder");
     try {

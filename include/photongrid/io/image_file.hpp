@@ -1,4 +1,4 @@
-// Pictures on disk: PNG for looking at, EXR and PFM for measuring. docs/guide/scenes.md describes the tone map.
+// Picture files: PNG for display, EXR and PFM for measurements. docs/guide/scenes.md describes the tone map.
 #pragma once
 
 #include <photongrid/io/files.hpp>
@@ -9,24 +9,23 @@
 
 namespace photongrid {
 
-/// What an EXR says about its making, by attribute name.
+/// Text attributes of an EXR file, by name.
 using image_notes = std::map<std::string, std::string>;
 
-/// \throws file_error when `path` does not end in .png, .exr or .pfm, or its folder does not take files: said before
-/// hours of rendering, not after.
+/// Checks whether a picture can be written to `path`, so that a program can report that before it renders.
+/// \throws file_error if `path` does not end in .png, .exr or .pfm, or cannot be written.
 void check_image_path(const std::string& path);
 
-/// Whether the format of `path`'s ending holds image::layers: EXR does.
+/// Whether the format of `path` can hold image::layers. EXR can.
 bool holds_layers(const std::string& path);
 
-/// Writes a picture in the format of its ending. All or nothing: on an error, or when the program dies, `path` is
-/// what it was before. `exposure` (EV) is used by PNG only. EXR holds the picture's layers too, as single precision
-/// channels estimate.radius (m), estimate.count, estimate.relative_error and, of several passes, noise; PNG and PFM
-/// leave them out.
+/// Writes a picture in the format given by the extension of `path`. On an error, or if the program dies, the old file
+/// remains. `exposure` (EV) applies to PNG only. EXR also has the picture's layers, as single precision channels
+/// estimate.radius (m), estimate.count, estimate.relative_error and, for several passes, noise; PNG and PFM do not.
 /// \throws file_error.
 void write_image(const std::string& path, const image& picture, double exposure = 0, const image_notes& notes = {});
 
-/// Reads an EXR or PFM file; of an EXR's channels R, G and B alone.
+/// Reads an EXR or PFM file. Of an EXR's channels it reads R, G and B.
 /// \throws file_error.
 image read_image(const std::string& path);
 

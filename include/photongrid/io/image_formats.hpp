@@ -1,11 +1,11 @@
-// The formats of image_file.hpp, each in a file that includes its own library.
+// The formats of image_file.hpp, one source file per library.
 #pragma once
 
 #include <photongrid/io/image_file.hpp>
 
 namespace photongrid::image_formats {
 
-// Encoders throw std::exception where a library refuses; readers that, or file_error.
+// Encoders throw std::exception if their library fails; readers throw std::exception or file_error.
 std::string png_bytes(const image& picture, double exposure);
 std::string exr_bytes(const image& picture, const image_notes& notes);
 std::string pfm_bytes(const image& picture);

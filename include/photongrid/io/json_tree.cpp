@@ -12,7 +12,7 @@
 namespace photongrid {
 
 namespace {
-    /// Text in quotes, as short as a message wants it, without characters that would upset a terminal.
+    /// Quotes text for a message: shortened, and without control characters.
     std::string in_quotes(std::string_view s)
     {
         std::string out = "\"";
@@ -22,9 +22,8 @@ namespace {
     }
 } // namespace
 
-// nlohmann calls one of these for each token, in the order of the file. Its parser does not say where a token begins,
-// so `token` finds it again: the text up to here is known to be valid JSON, hence the next token begins after blanks,
-// commas and colons.
+// nlohmann's parser calls one of these functions for each token, in the order of the file, without the token's
+// position. `token` finds it: the text so far is valid JSON, so the next token begins after blanks, commas and colons.
 class json_builder {
 public:
     explicit json_builder(json_tree& tree) : tree_(tree)
@@ -59,8 +58,8 @@ public:
         return true;
     }
 
-    // `position` counts the characters read. What stands after the last accepted token is the one at fault, save a
-    // comma or colon; within a string the last character read is.
+    // `position` counts the characters read. The error is at the token after the last accepted one, except for commas
+    // and colons; inside a string it is at the last character read.
     bool parse_error(std::size_t position, const std::string& last_token, const nlohmann::json::exception& e)
     {
         const auto& t = tree_.text_;
@@ -73,11 +72,11 @@ public:
                     + " is out of range; expected a number that double precision holds");
         std::string what = e.what();
         // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while parsing …": the first
-        // two parts are said better by the place.
+        // two parts repeat the position.
         if (const auto at = what.find("column "); at != std::string::npos)
             if (const auto colon = what.find(": ", at); colon != std::string::npos)
                 what.erase(0, colon + 2);
-        // The text of the file that follows is left out by its length: it may hold anything, these words too.
+        // Leave out the text of the file that follows, by its length: it may contain anything, even these words.
         constexpr std::string_view last_read = "; last read: '";
         if (const auto at = what.find(last_read); at != std::string::npos)
             what.erase(at, last_read.size() + last_token.size() + 1);
@@ -192,7 +191,7 @@ void json_tree::fail(std::size_t place, const std::string& what) const
     const auto line = static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')) + 1;
     auto begin = before.rfind('\n');
     begin = begin == std::string_view::npos ? 0 : begin + 1;
-    // Bytes 10xxxxxx continue a character of UTF-8.
+    // Bytes 10xxxxxx continue a UTF-8 character.
     const auto column = std::count_if(before.begin() + static_cast<std::ptrdiff_t>(begin), before.end(),
         [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; });
     throw scene_error(file_, line, static_cast<std::size_t>(column) + 1, what);
@@ -214,7 +213,7 @@ std::string described(const json_value& v)
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates)
 {
     std::string best;
-    // A third of the letters wrong is a slip; more is another word.
+    // Up to a third of the letters may differ.
     std::size_t best_distance = std::min<std::size_t>(word.size(), 60) / 3 + 2;
     if (word.size() > 60)
         return best;

@@ -1,5 +1,5 @@
-// JSON as a small tree that remembers where in the file everything stands. nlohmann's own tree does not, and a message
-// about a scene file is worth little without a line.
+// JSON as a small tree in which every value has its position in the file, for messages with a line number. nlohmann's
+// own tree has no positions.
 #pragma once
 
 #include <photongrid/io/scene_error.hpp>
@@ -20,7 +20,7 @@ struct json_value {
     std::size_t place = 0;
     bool truth = false;
     double number = 0;
-    std::string text{};              ///< of a string; of a number as it stands in the file
+    std::string text{};              ///< of a string; of a number, its text in the file
     std::vector<json_value> items{}; ///< of an array; of an object, each with its key
     std::string key{};
     std::size_t key_place = 0;
@@ -29,20 +29,20 @@ struct json_value {
     const json_value* find(std::string_view key_wanted) const;
 };
 
-/// A parsed file: its name (for messages), its text, its tree.
+/// A parsed file: its name for messages, its text and its tree.
 class json_tree {
 public:
     static constexpr std::size_t max_bytes = std::size_t{16} << 20;
     static constexpr std::size_t max_depth = 32;
     static constexpr std::size_t max_values = 1'000'000;
 
-    /// Parses `text`. Throws scene_error on a syntax error, a key given twice, a number beyond double, or a limit
-    /// above.
+    /// Parses `text`. Throws scene_error for a syntax error, a duplicate key, a number beyond double precision, or a
+    /// limit exceeded.
     json_tree(std::string file, std::string text);
 
     const json_value& root() const { return root_; }
 
-    /// Throws scene_error for what stands at `place`.
+    /// Throws scene_error for the value at `place`.
     [[noreturn]] void fail(std::size_t place, const std::string& what) const;
 
 private:
@@ -51,10 +51,10 @@ private:
     json_value root_;
 };
 
-/// A value in the words of a message: `the number -1`, `the text "big"`, `an array of 2`.
+/// Describes a value for messages: `the number -1`, `the text "big"`, `an array of 2`.
 std::string described(const json_value& v);
 
-/// The candidate most like `word`, where one is like it enough to be a misspelling; else empty.
+/// The candidate that is most similar to `word`, if `word` is probably a misspelling of it; otherwise empty.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 /// Reads a file's bytes, at most json_tree::max_bytes. Throws scene_error without a line.

@@ -1,4 +1,4 @@
-// What is wrong with a scene file.
+// Errors in scene files.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace photongrid {
 
-/// What is wrong with a scene file and where: "file:line:column: error: what was found and what was expected".
-/// Lines and columns count from 1, columns in characters. Line 0: the file as a whole ("file: error: …").
+/// An error in a scene file: "file:line:column: error: what was found and what was expected". Lines and columns count
+/// from 1, columns in characters. Line 0: the file as a whole ("file: error: …").
 struct scene_error : std::runtime_error {
     scene_error(const std::string& file, std::size_t line_, std::size_t column_, const std::string& what_)
         : std::runtime_error(file + (line_ > 0 ? ":" + std::to_string(line_) + ":" + std::to_string(column_) : "")

@@ -12,8 +12,8 @@ namespace photongrid {
 namespace {
     constexpr std::size_t max_shapes = 65'536, max_materials = 4'096, max_lights = 1'024, max_vertices = 1'024;
 
-    /// The length (m) that a part must not lack: its axis, its least edge, a polygon's extent. Radii are read with
-    /// limits.
+    /// The length, m, that must not be too small: of the axis, of the shortest edge, or a polygon's extent. Radii are
+    /// limited when they are read.
     template <class Part>
     double least_length(const Part& p)
     {
@@ -52,7 +52,7 @@ namespace {
         }
 
     private:
-        /// Runs photongrid::check on a part and puts the place of the member at fault before its words.
+        /// Runs photongrid::check on a part, and adds the position of the invalid member to the message.
         template <class Part>
         void checked(const json_value& v, const Part& part) const
         {
@@ -131,7 +131,7 @@ namespace {
             return found->second;
         }
 
-        /// Reads the member of `part` that `f` names. `most`: how many points a list may have.
+        /// Reads the member `f` of `part`. `most`: the largest number of points in a list.
         template <class Part, class Field>
         void read_field(const json_value& v, Part& part, const Field& f, std::size_t most) const
         {
@@ -141,9 +141,9 @@ namespace {
             else if constexpr (std::is_same_v<std::decay_t<decltype(part.*f.member)>, double>)
                 part.*f.member = radius(value);
             else
-                part.*f.member = f.what_it_says == quantity::direction ? direction(value)
-                    : f.what_it_says == quantity::power                ? power(value)
-                                                                       : point(value);
+                part.*f.member = f.of == quantity::direction ? direction(value)
+                    : f.of == quantity::power                ? power(value)
+                                                             : point(value);
         }
 
         std::vector<dvec3> points(const json_value& list, std::size_t most) const
@@ -226,7 +226,7 @@ namespace {
                 wrong(v, "at most 2^31 cells");
             to = glm::uvec3(along);
         }
-        /// Policies that are not named are off, those of the default too.
+        /// Policies that are not in the file are off, even if the default has them on.
         void set(const json_value& v, const setting_table::policies& p, leak_policy& to) const
         {
             if (v.kind != json_kind::object)

@@ -1,4 +1,4 @@
-// Scene files: JSON in, a checked photongrid::scene in SI units out. docs/guide/scenes.md describes the format.
+// Reads scene files (JSON) into a checked photongrid::scene in SI units. docs/guide/scenes.md describes the format.
 #pragma once
 
 #include <photongrid/io/scene_error.hpp>

@@ -15,7 +15,7 @@ namespace {
     constexpr scene_key mirror_keys[] = {{"type", must}, {"reflectance", may}};
     constexpr scene_key glass_keys[] = {{"type", must}, {"index_of_refraction", must}, {"transmittance", may}};
     constexpr scene_key leaks_keys[] = {{"side", may}, {"min_cosine", may}, {"flattening", may}};
-    // The keys of shapes and lights are those of the tables in scene/ (shape_kind, light_kind).
+    // The keys of shapes and lights come from the tables in scene/ (shape_kind, light_kind).
     template <class Kind>
     std::vector<scene_key> keys_of(Kind kind, std::vector<scene_key> before, std::vector<scene_key> after)
     {

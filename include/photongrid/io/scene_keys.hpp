@@ -1,4 +1,4 @@
-// The keys that objects of a scene file may have, from the tables of shapes, lights and settings.
+// The keys of the objects in scene files, from the tables of shapes, lights and settings.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace photongrid {
 
-/// A key that an object of a scene file may have.
+/// A key of an object in a scene file.
 struct scene_key {
     const char* name;
     bool required;
@@ -20,13 +20,13 @@ struct object_keys {
     std::span<const scene_key> keys;
 };
 
-/// In scene files a polygon of three vertices may be called this.
+/// In scene files, another name for a polygon with three vertices.
 inline constexpr const char* triangle_name = "triangle";
 
 /// Every kind of object.
 std::span<const object_keys> known_objects();
 
-/// The names of all kinds of shapes; of all kinds of lights.
+/// The names of all kinds of shapes, and of all kinds of lights.
 std::vector<std::string> shape_names();
 std::vector<std::string> light_names();
 

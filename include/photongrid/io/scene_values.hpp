@@ -1,5 +1,5 @@
-// Values of a scene file: numbers in range, lengths and powers in the file's units, names, words. Each function throws
-// scene_error "found …; expected …" at the value's line and column.
+// Reads values of a scene file: numbers in a range, lengths and powers in the file's units, names and words. Each
+// function throws scene_error "found …; expected …" with the value's line and column.
 #pragma once
 
 #include <photongrid/io/json_tree.hpp>
@@ -15,18 +15,18 @@ namespace photongrid {
 /// `"a", "b" or "c"`.
 std::string joined(const std::vector<std::string>& words);
 
-/// A unit: a value in it is value * multiply / divide in SI. Two whole numbers round better than 0.001 would.
+/// A unit: a value in SI units is value * multiply / divide. Two whole numbers round better than a factor such as
+/// 0.001.
 struct unit {
     double multiply = 1, divide = 1;
 };
 
-/// A scene file's text as a tree, and what its values say.
+/// A scene file as a tree, and functions that read its values.
 class scene_values {
 public:
-    // Beyond these, single precision (squares and cubes of lengths, photon power) is no longer safe.
+    // Larger values could overflow single precision (squares and cubes of lengths, photons' powers).
     static constexpr double max_length = 1e9, max_power = 1e15;
-    // Below this, squares and cubes of lengths leave even double precision, and normals made of them are no unit
-    // vectors.
+    // The squares and cubes of smaller lengths underflow, and normals computed from them are not unit vectors.
     static constexpr double min_length = 1e-9;
 
     scene_values(const std::string& file, std::string text) : tree_(file, std::move(text)) {}
@@ -34,7 +34,7 @@ public:
     const json_value& root() const { return tree_.root(); }
     [[noreturn]] void fail(std::size_t place, const std::string& what) const { tree_.fail(place, what); }
 
-    /// Lengths and powers are in the units of `v` from now on.
+    /// Sets the units of lengths and powers to those of `v`.
     void read_units(const json_value& v);
 
     [[noreturn]] void wrong(const json_value& v, const std::string& expected) const
@@ -52,7 +52,7 @@ public:
         return all;
     }
 
-    /// Holds `v` to the keys of `kind`: all required ones there, no unknown ones.
+    /// Checks the keys of `v` against those of `kind`: all required ones, and no unknown ones.
     void open(const json_value& v, std::string_view kind) const;
 
     /// The value of "type", one of `types`.
@@ -162,7 +162,7 @@ public:
             [&](const json_value& c) { return in_units(c, power_, 0, max_power, "a power from 0 to 1e15 W"); });
     }
 
-    /// Names stand in messages, so a terminal must bear them.
+    /// Names appear in messages, so control characters are not allowed.
     static bool is_name(const std::string& text)
     {
         return !text.empty() && text.size() <= 100 && std::none_of(text.begin(), text.end(), [](char c) {

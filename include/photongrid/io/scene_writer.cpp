@@ -10,7 +10,7 @@ namespace photongrid {
 namespace {
     using json = nlohmann::ordered_json;
 
-    /// The double that reads like the float: 0.3f is 0.3, not 0.30000001192092896.
+    /// The double with the same shortest decimal form as the float: 0.3 for 0.3f, not 0.30000001192092896.
     double as_written(float v)
     {
         char text[32];
@@ -20,7 +20,7 @@ namespace {
         return d;
     }
 
-    /// In the form that scene files have: the policies that are in force.
+    /// The active policies, as in a scene file.
     json leaks_json(const leak_policy& l)
     {
         json leaks = json::object();
@@ -45,7 +45,7 @@ namespace {
         return all;
     }
 
-    // A setting as scene files have it.
+    // Settings as in a scene file.
     json written(const setting_table::pixels&, const output_settings& s) { return {s.width, s.height}; }
     json written(const setting_table::whole_range&, std::uint32_t v) { return v; }
     json written(const setting_table::real_range&, double v) { return v; }
@@ -68,7 +68,7 @@ namespace {
         return all;
     }
 
-    /// A name for each material, all different.
+    /// A unique name for each material.
     std::vector<std::string> names_of(const std::vector<material>& materials)
     {
         std::vector<std::string> names;

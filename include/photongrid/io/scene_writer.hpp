@@ -1,4 +1,4 @@
-// Scenes and settings as the text of scene files; docs/guide/scenes.md describes the format.
+// Writes scenes and settings as scene files. docs/guide/scenes.md describes the format.
 #pragma once
 
 #include <photongrid/scene/scene.hpp>
@@ -7,11 +7,11 @@
 
 namespace photongrid {
 
-/// The text of a scene file that reads as `s` with `settings`, every number to its last bit. `only` and `aov` are not a
-/// scene's. Materials without a name, or with one that another has, are numbered.
+/// The text of a scene file that reads as `s` with `settings`, with all numbers exact. Scene files do not have `only`
+/// and `aov`. Materials without a name, or with a duplicate name, are numbered.
 std::string scene_text(const scene& s, const render_settings& settings);
 
-/// Settings in the words of a scene file, with `only`, in one line of JSON.
+/// Settings as in a scene file, with `only`, in one line of JSON.
 std::string settings_text(const render_settings& s);
 
 } // namespace photongrid

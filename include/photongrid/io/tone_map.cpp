@@ -20,7 +20,7 @@ unsigned char tone_mapped(float linear, double exposure)
 
 tone_map::tone_map(double exposure)
 {
-    // Positive floats are in the order of their bits.
+    // Positive floats have the order of their bits.
     for (unsigned step = 0; step < steps_.size(); ++step) {
         std::uint32_t low = 0, high = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
         while (low < high) {

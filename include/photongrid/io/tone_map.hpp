@@ -1,4 +1,4 @@
-// Radiance to the eight bits of a screen.
+// Tone mapping to 8 bits.
 #pragma once
 
 #include <array>
@@ -9,7 +9,8 @@ namespace photongrid {
 /// (IEC 61966-2-1).
 unsigned char tone_mapped(float linear, double exposure);
 
-/// The same for many values at one exposure, bit for bit, some twenty times as fast: by the values at which it changes.
+/// The same function for many values at one exposure, about twenty times as fast, by a table of the values at which the
+/// result changes.
 class tone_map {
 public:
     explicit tone_map(double exposure);
@@ -17,7 +18,7 @@ public:
     {
         if (!(linear > 0)) // NaN too
             return 0;
-        unsigned n = 0; // of the steps, those at or below `linear`
+        unsigned n = 0; // number of steps at or below `linear`
         for (unsigned half = 128; half > 0; half /= 2)
             n += steps_[n + half - 1] <= linear ? half : 0;
         return static_cast<unsigned char>(n);

@@ -1,4 +1,4 @@
-// How surfaces answer light, for the reference renderer. Conventions are the photon-map renderer's
+// Scattering of light at surfaces, for the reference renderer, with the conventions of the photon-map renderer
 // (docs/reference/reference_renderer.md).
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace photongrid::reference {
 
-/// A direction about the unit vector n with density cos / pi; u and v in [0, 1).
+/// A direction in the hemisphere about the unit vector n with density cos / pi, for u and v in [0, 1).
 inline dvec3 cosine_direction(const dvec3& n, double u, double v)
 {
     const double r = std::sqrt(u), phi = 2 * M_PI * v;
@@ -16,14 +16,14 @@ inline dvec3 cosine_direction(const dvec3& n, double u, double v)
     return glm::normalize(r * std::cos(phi) * x + r * std::sin(phi) * y + std::sqrt(1 - u) * n);
 }
 
-/// A direction with density 1 / (4 pi); u and v in [0, 1).
+/// A direction with density 1 / (4 pi), for u and v in [0, 1).
 inline dvec3 uniform_direction(double u, double v)
 {
     const double z = 1 - 2 * u, r = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * M_PI * v;
     return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
-/// Share of unpolarised light that a smooth surface between two dielectrics reflects: Fresnel's equations.
+/// Fresnel's reflectance of a smooth surface between two dielectrics, for unpolarised light.
 inline double fresnel_reflectance(double cos_i, double n_i, double cos_t, double n_t)
 {
     const double s = (n_i * cos_i - n_t * cos_t) / (n_i * cos_i + n_t * cos_t);
@@ -31,28 +31,28 @@ inline double fresnel_reflectance(double cos_i, double n_i, double cos_t, double
     return 0.5 * (s * s + p * p);
 }
 
-/// Where a ray goes on from a mirror, metal or glass.
+/// A ray's continuation from a mirror, metal or glass.
 struct specular_bounce {
     dvec3 direction{0, 0, 1}; ///< unit
-    /// What a ray traced against the light multiplies radiance with: (n of the side it comes from / n of the side it
-    /// goes to)^2 through glass, since radiance / n^2 is what stays constant; 1 where it is reflected. Flux traced with
-    /// the light is not scaled.
+    /// The factor for radiance along a ray that is traced from the eye: (n of the side it comes from / n of the side it
+    /// goes to)^2 at refraction, because radiance / n^2 is constant; 1 at reflection. Power traced from the lights is
+    /// not scaled.
     double radiance_scale = 1;
 };
 
-/// Glass chooses reflection with Fresnel's share by `u`, in [0, 1); the material's colour is the caller's to apply.
+/// For glass, `u` in [0, 1) selects reflection with Fresnel's probability. The caller applies the material's colour.
 inline specular_bounce specular(const material& m, const dvec3& d, const dvec3& normal, double u)
 {
-    const double along = glm::dot(d, normal);
-    const specular_bounce reflected{glm::normalize(d - 2 * along * normal), 1};
+    const double d_dot_n = glm::dot(d, normal);
+    const specular_bounce reflected{glm::normalize(d - 2 * d_dot_n * normal), 1};
     if (m.kind != material_kind::glass)
         return reflected;
-    const bool entering = along < 0;
+    const bool entering = d_dot_n < 0;
     const double n_i = entering ? 1 : m.index_of_refraction, n_t = entering ? m.index_of_refraction : 1;
-    const double cos_i = std::min(1.0, std::abs(along));
+    const double cos_i = std::min(1.0, std::abs(d_dot_n));
     const double sin_t = n_i / n_t * std::sqrt(std::max(0.0, 1 - cos_i * cos_i)); // Snell
     if (sin_t >= 1)
-        return reflected; // total
+        return reflected; // total internal reflection
     const double cos_t = std::sqrt(1 - sin_t * sin_t);
     if (u < fresnel_reflectance(cos_i, n_i, cos_t, n_t))
         return reflected;

@@ -1,4 +1,4 @@
-// Ray against scene for the reference renderer: every shape in turn, no acceleration structure.
+// Ray-scene intersection for the reference renderer: tests every shape, without an acceleration structure.
 #pragma once
 
 #include <photongrid/reference/shapes.hpp>
@@ -10,26 +10,26 @@
 
 namespace photongrid::reference {
 
-/// A light, ready to be sampled. Lights are chosen in proportion to their power, rgb together.
+/// A light, prepared for sampling. Lights are chosen with probabilities proportional to their power (sum of rgb).
 struct light_source {
     bool is_area = false;          ///< a rectangle, else a point
     dvec3 corner{0};               ///< m; a point light's position
     dvec3 edge_u{0};               ///< m
     dvec3 edge_v{0};               ///< m
-    dvec3 normal{0};               ///< unit; a rectangle sends light out on this side
+    dvec3 normal{0};               ///< unit; a rectangle emits on this side
     dvec3 power{0};                ///< W, rgb
     double area = 0;               ///< m^2
-    double probability = 0;        ///< of being chosen; those of all lights add up to 1
-    std::uint32_t shape = nothing; ///< a rectangle's own surface, as geometry numbers it
+    double probability = 0;        ///< probability of being chosen
+    std::uint32_t shape = nothing; ///< a rectangle's surface: its number in geometry
 
-    /// Radiance of an area light's front, W/(m^2 sr).
+    /// The radiance of an area light's front, W/(m^2 sr).
     dvec3 radiance() const { return power / (std::numbers::pi * area); }
 };
 
-/// The scene's shapes, numbered in the order of shape_lists(); then the surfaces of rectangle lights.
+/// The shapes of a scene, numbered in the order of shape_lists(), followed by the surfaces of rectangle lights.
 class geometry {
 public:
-    /// Of a scene that check() accepts; it is copied.
+    /// The scene must pass check(). It is copied.
     explicit geometry(const scene& s)
     {
         for_each_shape(s, [&](const auto& list, auto) {
@@ -56,7 +56,7 @@ public:
             l.probability = (l.power.x + l.power.y + l.power.z) / total;
     }
 
-    /// What r meets first; its shape is `nothing` where there is none.
+    /// The closest hit of r; its shape is `nothing` for a miss.
     hit nearest(const ray& r) const
     {
         hit h;
@@ -72,13 +72,13 @@ public:
         h.position = r.origin + h.t * r.direction;
         with(h.shape, [&](const auto& shape) { h.normal = shape.settle(h.position); });
         if (!detail::finite(h.position) || !detail::finite(h.normal))
-            return {}; // a shape too small to be told from a point at its distance from the origin
+            return {}; // the shape is too small for double precision at this distance from the origin
         h.material = materials_[h.shape];
         h.light = h.shape >= first_light_ ? h.shape - first_light_ : nothing;
         return h;
     }
 
-    /// Does anything but shape `target` stand on the ray before `far`, m?
+    /// Whether any shape except `target` occludes the ray before `far`, m.
     bool blocked(const ray& r, double far, std::uint32_t target) const
     {
         bool found = false;
@@ -89,7 +89,7 @@ public:
         return found;
     }
 
-    /// Rectangles first, then points, each in the scene's order.
+    /// Rectangle lights, then point lights, each in the scene's order.
     std::span<const light_source> lights() const { return lights_; }
 
 private:
@@ -99,7 +99,7 @@ private:
         std::get<std::vector<Shape>>(shapes_).push_back(std::move(shape));
         materials_.push_back(material);
     }
-    /// visit(shape, number) for each shape until it returns false.
+    /// Calls visit(shape, number) for each shape until it returns false.
     template <class Visit>
     void each(Visit visit) const
     {
@@ -127,9 +127,9 @@ private:
     }
 
     shape_vectors shapes_;
-    std::vector<std::uint32_t> materials_; ///< of every shape
+    std::vector<std::uint32_t> materials_; ///< per shape
     std::uint32_t first_light_ = 0;
-    std::vector<light_source> lights_; ///< rectangles first, as their shapes are numbered
+    std::vector<light_source> lights_; ///< rectangles first, in the order of their shapes
 };
 
 } // namespace photongrid::reference

@@ -1,5 +1,6 @@
-// Caustics by brute force: light paths from the lights through mirrors and glass to the first diffuse surface, whose
-// bins add up the flux. What a path tracer cannot find, since no eye path hits a point light by chance.
+// Caustics by brute force: traces light paths from the lights through mirrors and glass to the first diffuse surface,
+// and sums their power in bins. A path tracer cannot find caustics of point lights, because no eye path hits a point
+// light.
 #pragma once
 
 #include <photongrid/reference/bsdf.hpp>
@@ -14,21 +15,19 @@
 
 namespace photongrid::reference {
 
-/// Light paths come in this many groups, each with bins of its own: the groups are independent, so the spread between
-/// them is the error of whatever was made from them. Each is traced by one thread in path order: sums do not depend on
-/// threads.
+/// The number of groups of light paths. Each has its own bins, so the groups are independent and the spread between
+/// them measures the error. One thread traces a group, in path order, so sums do not depend on the number of threads.
 constexpr std::uint32_t light_groups = 16;
 
-/// Irradiance that has come through at least one mirror or glass surface, from some lights, straight onto diffuse
-/// surfaces.
+/// The caustic irradiance of diffuse surfaces: light that came from a light by mirrors and glass only, at least one of
+/// them.
 class caustic_bins {
 public:
     /// No bins.
     caustic_bins() = default;
 
-    /// No bins where no light in question can make a caustic.
-    /// \throws std::invalid_argument for too many bins,
-    /// render_cancelled.
+    /// There are no bins if no light needs them or the scene has no caustics.
+    /// \throws std::invalid_argument for too many bins, render_cancelled.
     caustic_bins(const scene& s, const geometry& shapes, const reference_settings& settings,
         const render_observer& observer, reference_stats& stats)
     {
@@ -59,10 +58,11 @@ public:
             stats.caustic_hits += h;
     }
 
-    /// True when there are no bins: nothing is specular, nothing diffuse, or eye paths find every light's caustics.
+    /// Whether there are no bins: nothing is specular, nothing is diffuse, or eye paths find the caustics of all
+    /// lights.
     bool empty() const { return irradiance_.empty(); }
 
-    /// Irradiance on the side from which `h` is seen by a ray of direction d, W/m^2, as group `group` has it.
+    /// The irradiance at `h` on the side that a ray of direction d hits, W/m^2, from group `group`.
     dvec3 irradiance(const hit& h, const dvec3& d, std::uint32_t group) const
     {
         if (empty())
@@ -85,7 +85,7 @@ public:
 private:
     static double brightness(const light_source& l) { return l.power.x + l.power.y + l.power.z; }
 
-    /// Chooses the size of the bins and cuts every diffuse surface.
+    /// Chooses the bins' size and divides every diffuse surface into bins.
     void cut(const scene& s, const reference_settings& settings)
     {
         const auto each_shape = [&](auto visit) {
@@ -102,8 +102,8 @@ private:
         });
         if (!shiny || !(area > 0))
             return;
-        // The noise of a bin falls with its edge, blur grows with it: the best edge goes as the fourth root of the
-        // paths.
+        // Larger bins have less noise and more blur. The best edge is proportional to the number of paths to the power
+        // -1/4.
         bin_ = settings.bin > 0 ? settings.bin
                                 : std::sqrt(area) / (8 * std::pow(static_cast<double>(settings.paths), 0.25));
         each_shape([&](const auto& x, bool diffuse) {
@@ -117,7 +117,7 @@ private:
         });
     }
 
-    /// A bin of the side that faces against d.
+    /// The bin at `h` on the side that a ray of direction d hits.
     std::uint32_t bin_at(const hit& h, const dvec3& d) const
     {
         const auto& surface = surfaces_[h.shape];
@@ -154,7 +154,7 @@ private:
         return hits;
     }
 
-    /// One path, at most to its first diffuse surface; 1 if it left flux there.
+    /// Traces one path up to its first diffuse surface. Returns 1 if it added to a bin there.
     std::uint64_t trace_path(const scene& s, const geometry& shapes, const reference_settings& settings,
         random_stream& random, std::vector<dvec3>& flux) const
     {
@@ -186,7 +186,7 @@ private:
             const auto& m = s.materials[h.material];
             if (m.kind == material_kind::lambertian) {
                 if (surface == 1)
-                    return 0; // direct light: the path tracer's
+                    return 0; // direct light, which the path tracer computes
                 flux[bin_at(h, r.direction)] += power;
                 return 1;
             }

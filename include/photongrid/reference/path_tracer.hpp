@@ -1,4 +1,4 @@
-// Path tracing from the eye, with a shadow ray to a light at every diffuse surface.
+// Path tracing from the camera, with a shadow ray to a light at every diffuse surface.
 #pragma once
 
 #include <photongrid/reference/light_tracer.hpp>
@@ -7,10 +7,10 @@
 
 namespace photongrid::reference {
 
-/// Finds the radiance that comes along rays; each call is one sample.
+/// Estimates radiance along rays. Each call is one sample.
 class path_tracer {
 public:
-    /// All four must outlive the tracer.
+    /// The arguments must outlive the tracer.
     path_tracer(
         const scene& s, const geometry& shapes, const caustic_bins& caustics, const reference_settings& settings)
         : scene_(s), shapes_(shapes), caustics_(caustics), settings_(settings)
@@ -21,10 +21,10 @@ public:
     dvec3 radiance(ray r, random_stream& random, std::uint32_t group) const
     {
         dvec3 sum(0), throughput(1);
-        std::uint32_t specular_before = 0; // surfaces before the first diffuse one
-        std::uint32_t surfaces = 0;        // from the first diffuse one on
-        bool through_specular = false;     // since the last diffuse surface
-        double density = 0;                // of the direction in which the ray left that surface
+        std::uint32_t specular_before = 0; // specular surfaces before the first diffuse one
+        std::uint32_t surfaces = 0;        // surfaces from the first diffuse one on
+        bool through_specular = false;     // whether a specular surface followed the last diffuse one
+        double density = 0;                // of the ray's direction at the last diffuse surface
         for (;;) {
             const hit h = shapes_.nearest(r);
             if (h.shape == nothing)
@@ -37,7 +37,7 @@ public:
                 double share = 1;
                 if (surfaces > 0 && through_specular) // a caustic
                     share = settings_.area_light_caustics == caustics_by::paths ? 1 : 0;
-                else if (surfaces > 0) // the shadow ray could have found it too: balance heuristic (Veach 1997)
+                else if (surfaces > 0) // a shadow ray could have sampled it too: balance heuristic (Veach 1997)
                     share = density / (density + light_density(light, h.t, cosine));
                 return sum + share * throughput * light.radiance();
             }
@@ -65,7 +65,7 @@ public:
                     return sum;
                 const auto bounce = specular(m, r.direction, h.normal, m.kind == material_kind::glass ? random() : 0);
                 throughput *= m.reflectance;
-                if (surfaces > 0) // before, as in the photon-map renderer, radiance is not scaled
+                if (surfaces > 0) // not before the first diffuse surface, as in the photon-map renderer
                     throughput *= bounce.radiance_scale;
                 r = {h.position, bounce.direction, h.shape};
                 through_specular = true;
@@ -76,13 +76,13 @@ public:
     }
 
 private:
-    /// Density of a shadow ray's direction, per sr: this light, any point of it alike.
+    /// The density, per sr, of the direction of a shadow ray to a uniformly distributed point of this light.
     static double light_density(const light_source& light, double distance, double cosine)
     {
         return light.probability * distance * distance / (light.area * cosine);
     }
 
-    /// Irradiance straight from the lights: one shadow ray to a light chosen by power.
+    /// The irradiance of direct light, by one shadow ray to a light chosen by power.
     dvec3 direct(const hit& h, const dvec3& normal, random_stream& random) const
     {
         const auto lights = shapes_.lights();

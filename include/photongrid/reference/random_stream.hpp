@@ -1,5 +1,5 @@
-// Random numbers of the reference renderer: one stream a pixel and one a group of light paths, so that the result does
-// not depend on which thread does what. Nothing is shared with backend/random.glsl.
+// Random numbers of the reference renderer: one stream per pixel and per group of light paths, so that results do not
+// depend on threads. It shares nothing with backend/random.glsl.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 
 namespace photongrid::reference {
 
-/// Stream number `id` of `seed` for one purpose. xoshiro256++ filled by splitmix64 (Blackman and Vigna, Scrambled
+/// Stream number `id` of `seed` for a purpose. xoshiro256++ filled by splitmix64 (Blackman and Vigna, Scrambled
 /// Linear Pseudorandom Number Generators, ACM TOMS 47(4), 2021).
 class random_stream {
 public:
-    /// `purpose` keeps streams with the same seed and id apart: 1 is for groups of light paths, 2 for pixels.
+    /// `purpose` distinguishes streams with the same seed and id: 1 for groups of light paths, 2 for pixels.
     random_stream(std::uint64_t seed, std::uint64_t purpose, std::uint64_t id)
     {
         std::uint64_t x = mixed(mixed(mixed(seed) ^ purpose) ^ id);

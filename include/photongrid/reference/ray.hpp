@@ -1,7 +1,7 @@
-// Rays and hits of the reference renderer: double precision, nothing shared with the kernels.
+// Rays and hits of the reference renderer: in double precision, independent of the kernels.
 //
-// A ray knows the shape it starts on. A plane is then not asked again, and of a round shape's two roots the one at the
-// start is known to be 0, which leaves the other one exactly; so no ray needs to start off its surface.
+// A ray has the number of the shape that it starts on. It cannot hit that shape again if the shape is flat; if it is
+// curved, one root is known to be 0, so the other one is exact. Therefore origins need no offset.
 #pragma once
 
 #include <photongrid/scene/scene.hpp>
@@ -11,30 +11,30 @@
 
 #include <photongrid/backend/exact_begin.hpp>
 
-/// The parts of the reference renderer (docs/reference/reference_renderer.md): double precision, m, W.
+/// The reference renderer (docs/reference/reference_renderer.md): double precision, m, W.
 namespace photongrid::reference {
 
-constexpr std::uint32_t nothing = 0xFFFFFFFFu;                       ///< no shape, no material, no light
-constexpr double infinity = std::numeric_limits<double>::infinity(); ///< the distance of what is not met
+constexpr std::uint32_t nothing = 0xFFFFFFFFu;                       ///< no shape, material or light
+constexpr double infinity = std::numeric_limits<double>::infinity(); ///< distance of a miss
 
-/// Where a ray begins and where it goes.
+/// A ray.
 struct ray {
     dvec3 origin{0};              ///< m
     dvec3 direction{0, 0, 1};     ///< unit
-    std::uint32_t from = nothing; ///< the shape on which the origin lies
+    std::uint32_t from = nothing; ///< the shape that the origin lies on
 };
 
-/// What a ray meets first.
+/// The closest hit of a ray.
 struct hit {
-    double t = infinity;              ///< along the ray, m; infinity: nothing is met
-    std::uint32_t shape = nothing;    ///< number in `geometry`
+    double t = infinity;              ///< distance along the ray, m; infinity: a miss
+    std::uint32_t shape = nothing;    ///< its number in `geometry`
     std::uint32_t material = nothing; ///< index into scene::materials; `nothing` for a light's surface
     std::uint32_t light = nothing;    ///< index into geometry::lights()
     dvec3 position{0};                ///< moved onto the surface
-    dvec3 normal{0, 0, 1};            ///< unit; outward, or as the shape was given
+    dvec3 normal{0, 0, 1};            ///< unit; outward, or as the shape defines it
 };
 
-/// A unit vector at right angles to n.
+/// A unit vector perpendicular to n.
 inline dvec3 across(const dvec3& n)
 {
     const dvec3 a = glm::abs(n);
@@ -42,8 +42,8 @@ inline dvec3 across(const dvec3& n)
     return glm::normalize(glm::cross(n, least));
 }
 
-/// The real roots of a t^2 + 2 b t + c = 0; infinity for one that is not there. `starts_on`: c is 0 but for rounding,
-/// and the root that is then 0 is left out.
+/// The real roots of a t^2 + 2 b t + c = 0, or infinity. `starts_on`: c is 0 except for rounding, and the root 0 is
+/// left out.
 inline std::array<double, 2> real_roots(double a, double b, double c, bool starts_on)
 {
     const auto kept = [](double root) { return std::isfinite(root) ? root : infinity; };

@@ -1,7 +1,7 @@
-// The reference renderer: ground truth for the photon map, on the CPU, in double precision, from none of its kernels. A
-// path tracer with shadow rays, and for caustics that eye paths cannot find a light tracer with bins.
-// docs/reference/reference_renderer.md says which conventions it shares with the photon-map renderer. Uses threads:
-// link Threads::Threads where the system asks for it.
+// The reference renderer, against which errors of the photon map are measured. It runs on the CPU in double precision
+// and shares no kernels. It is a path tracer with shadow rays, and a light tracer with bins for caustics that eye paths
+// cannot find. docs/reference/reference_renderer.md has the conventions that it shares with the photon-map renderer. It
+// uses threads: link Threads::Threads if the system needs that.
 #pragma once
 
 #include <photongrid/reference/path_tracer.hpp>
@@ -10,10 +10,10 @@
 
 namespace photongrid {
 
-/// Renders a view without a photon map. The same scene, settings and seed give the same bytes on any number of threads.
-/// Unbiased but for the bins, which blur caustics over their own size (stats.bin_size), and for the depths of the
-/// settings.
-/// \throws std::invalid_argument for a scene, camera or settings that check() refuses, render_cancelled.
+/// Renders a view without a photon map. The same scene and settings give the same bytes with any number of threads. The
+/// result is unbiased except for the bins, which blur caustics over their size (stats.bin_size), and for the depth
+/// limits.
+/// \throws std::invalid_argument for a scene, camera or settings that check() rejects, render_cancelled.
 /// \snippet snippets.cpp render_reference
 inline reference_picture render_reference(
     const scene& s, const camera& view, const reference_settings& settings, const render_observer& observer = {})
@@ -32,10 +32,10 @@ inline reference_picture render_reference(
     const reference::caustic_bins caustics(s, shapes, settings, observer, out.stats);
     out.stats.light_seconds = seconds_since(light_start);
 
-    // Samples of a pixel that share bins are not independent; groups of samples, each with its own bins, are.
+    // Samples of a pixel that use the same bins are not independent; groups of samples with separate bins are.
     const std::uint32_t groups = caustics.empty() ? settings.spp : reference::light_groups;
-    const std::uint32_t a_group = (settings.spp + groups - 1) / groups;
-    out.stats.spp = groups * a_group;
+    const std::uint32_t per_group = (settings.spp + groups - 1) / groups;
+    out.stats.spp = groups * per_group;
 
     const dvec3 forward = glm::normalize(view.look_at - view.position);
     const dvec3 right = glm::normalize(glm::cross(forward, view.up));
@@ -53,12 +53,12 @@ inline reference_picture render_reference(
             for (std::uint32_t x = 0; x < settings.width; ++x) {
                 const std::size_t i = std::size_t{y} * settings.width + x;
                 reference::random_stream random(settings.seed, 2, i);
-                dvec3 mean(0), squares(0); // of the groups' means; squares about the mean, updated as Welford does
+                dvec3 mean(0), squares(0); // of the groups' means, by Welford's update
                 for (std::uint32_t g = 0; g < groups; ++g) {
                     if (g % 64 == 0 && !w.goes_on(0))
                         return;
                     dvec3 sum(0);
-                    for (std::uint32_t n = 0; n < a_group; ++n) {
+                    for (std::uint32_t n = 0; n < per_group; ++n) {
                         const double dx = random(), dy = random();
                         const dvec3 d = forward + (x + dx - 0.5 * settings.width) * pixel * right
                             + (0.5 * settings.height - (y + dy)) * pixel * up;
@@ -69,7 +69,7 @@ inline reference_picture render_reference(
                         else
                             ++invalid[y];
                     }
-                    const dvec3 group_mean = sum / static_cast<double>(a_group), before = group_mean - mean;
+                    const dvec3 group_mean = sum / static_cast<double>(per_group), before = group_mean - mean;
                     mean += before / (g + 1.0);
                     squares += before * (group_mean - mean);
                 }

@@ -1,5 +1,4 @@
-// What is asked of the reference renderer, and what it did. <photongrid/reference/reference.hpp> is the header to
-// include.
+// Settings and results of the reference renderer. Include <photongrid/reference/reference.hpp>.
 #pragma once
 
 #include <photongrid/render/image.hpp>
@@ -9,29 +8,29 @@
 
 namespace photongrid {
 
-/// How the reference renderer finds the caustics of rectangle lights. Those of point lights can only be had from bins.
+/// How the reference renderer finds the caustics of rectangle lights. Those of point lights always need bins.
 enum class caustics_by {
-    paths, ///< eye paths that meet the light by chance: unbiased
+    paths, ///< eye paths that hit the light by chance: unbiased
     bins,  ///< light paths into bins: less noise, blurred over a bin
 };
 
-/// What is asked of the reference renderer.
+/// Settings of the reference renderer.
 struct reference_settings {
     std::uint32_t width = 512;  ///< pixels, 1 to 16384
     std::uint32_t height = 512; ///< pixels, 1 to 16384
     std::uint32_t spp
-        = 256; ///< eye paths a pixel, at least 2; with bins rounded up to a multiple of 16, the groups of light paths
-    std::uint64_t paths = 1u << 24; ///< light paths, if bins are needed; rounded up likewise
+        = 256; ///< eye paths per pixel, at least 2; with bins rounded up to a multiple of 16, the number of groups
+    std::uint64_t paths = 1u << 24; ///< light paths, if bins are needed; rounded up in the same way
     double bin = 0;                 ///< edge of a bin, m; 0: chosen from the diffuse area and the number of paths
-    std::uint32_t threads = 0;      ///< 0: as many as the machine has; the picture does not depend on it
-    std::uint64_t seed = 1;         ///< of all random numbers
-    std::uint32_t depth = 8;        ///< specular surfaces that an eye path passes before the first diffuse one
+    std::uint32_t threads = 0;      ///< 0: as many as the machine has; the picture does not depend on the number
+    std::uint64_t seed = 1;         ///< seed of all random numbers
+    std::uint32_t depth = 8;        ///< the most specular surfaces of an eye path before the first diffuse one
     std::uint32_t photon_depth
-        = 32; ///< surfaces that light meets at most up to the first diffuse one seen from the eye, that one included
-    caustics_by area_light_caustics = caustics_by::paths; ///< of rectangle lights
+        = 32; ///< the most surfaces of a light path up to and including the first diffuse one seen from the camera
+    caustics_by area_light_caustics = caustics_by::paths; ///< method for rectangle lights
 };
 
-/// The settings that a scene's own render settings ask for: size, seed and depths; the others as they stand.
+/// Reference settings with the size, seed and depths of a scene's render settings.
 inline reference_settings reference_settings_for(const render_settings& s)
 {
     reference_settings r;
@@ -43,7 +42,7 @@ inline reference_settings reference_settings_for(const render_settings& s)
     return r;
 }
 
-/// \throws std::invalid_argument "member: what is wrong" for a setting out of its range, which the message gives.
+/// \throws std::invalid_argument "member: what is wrong" for a setting out of its range.
 inline void check(const reference_settings& s)
 {
     detail::require(s.width >= 1 && s.height >= 1 && s.width <= 16384 && s.height <= 16384,
@@ -51,31 +50,31 @@ inline void check(const reference_settings& s)
     detail::require(
         s.spp >= 2 && s.spp <= (1u << 24), "spp: must be from 2 to 2^24, since one path has no standard error");
     detail::require(s.paths >= 1 && s.paths <= (std::uint64_t{1} << 40), "paths: must be from 1 to 2^40");
-    detail::require(std::isfinite(s.bin) && s.bin >= 0, "bin: must be finite and greater than 0");
+    detail::require(std::isfinite(s.bin) && s.bin >= 0, "bin: must be finite and not negative");
     detail::require(s.threads <= 1024, "threads: must be at most 1024");
     detail::require(s.depth <= 4096, "depth: must be at most 4096");
     detail::require(s.photon_depth >= 1 && s.photon_depth <= 4096, "photon_depth: must be from 1 to 4096");
 }
 
-/// What a reference render did.
+/// Statistics of a reference render.
 struct reference_stats {
-    std::uint32_t spp = 0;             ///< eye paths a pixel
-    std::uint32_t threads = 0;         ///< that it ran on
-    std::uint64_t light_paths = 0;     ///< 0: no bins were needed
-    std::uint64_t caustic_hits = 0;    ///< light paths that came to a diffuse surface by way of mirrors or glass
+    std::uint32_t spp = 0;             ///< eye paths per pixel
+    std::uint32_t threads = 0;         ///< threads used
+    std::uint64_t light_paths = 0;     ///< 0 without bins
+    std::uint64_t caustic_hits = 0;    ///< light paths that reached a diffuse surface by mirrors or glass
     std::uint64_t bins = 0;            ///< on both sides of all diffuse surfaces
-    double bin_size = 0;               ///< edge, m: caustics from bins are blurred over this length; 0 without bins
+    double bin_size = 0;               ///< edge of a bin, m, over which caustics are blurred; 0 without bins
     double mean_standard_error = 0;    ///< over pixels and channels, W/(m^2 sr)
-    std::uint64_t invalid_samples = 0; ///< NaN or infinite, counted as black
-    double light_seconds = 0;          ///< for the light paths
-    double eye_seconds = 0;            ///< for the eye paths
+    std::uint64_t invalid_samples = 0; ///< samples that were NaN or infinite; they count as black
+    double light_seconds = 0;          ///< time for the light paths
+    double eye_seconds = 0;            ///< time for the eye paths
 };
 
-/// The mean of the eye paths and its standard error, W/(m^2 sr).
+/// A reference picture with its standard error.
 struct reference_picture {
     image mean;            ///< W/(m^2 sr)
     image standard_error;  ///< of each pixel and channel, W/(m^2 sr)
-    reference_stats stats; ///< what it took
+    reference_stats stats; ///< statistics
 };
 
 } // namespace photongrid

@@ -1,8 +1,8 @@
-// Every kind of shape as the reference renderer sees it: double precision, each from its own equation. Nothing is
-// shared with trace/intersect/.
+// The shapes of the reference renderer: in double precision, each from its own equation, independent of
+// trace/intersect/.
 //
-// A shape of the scene becomes one here by shape_of(x). Such a shape answers distance(ray, starts_on) and
-// settle(point); bins_of(x, size) and surface_area(x) are for light that is counted on it.
+// shape_of(x) converts a shape of the scene. The result has distance(ray, starts_on) and settle(point). bins_of(x,
+// size) and surface_area(x) are for the light tracer's bins.
 #pragma once
 
 #include <photongrid/reference/surface_bins.hpp>
@@ -15,18 +15,18 @@
 
 namespace photongrid::reference {
 
-/// A convex polygon and its edges; also a rectangle light's surface.
+/// A convex polygon, or the surface of a rectangle light.
 struct flat_shape {
-    dvec3 normal{0, 0, 1}; ///< unit, by the order of the vertices
+    dvec3 normal{0, 0, 1}; ///< unit; its side depends on the order of the vertices
     dvec3 corner{0};       ///< m; the first vertex
-    /// A half plane: points p with dot(inward, p - corner) at least `offset` are inside.
+    /// An edge as a half-plane: points p with dot(inward, p - corner) >= offset are inside.
     struct edge {
         dvec3 inward;  ///< unit, in the plane
         double offset; ///< m
     };
     std::vector<edge> edges; ///< without those of length 0
 
-    /// Of a polygon that check() accepts.
+    /// The polygon must pass check().
     explicit flat_shape(const polygon& p) : normal(glm::normalize(area_vector(p))), corner(p.vertices[0])
     {
         double extent = 0;
@@ -55,7 +55,7 @@ struct flat_shape {
                 return infinity;
         return t;
     }
-    /// Moves p onto the plane; returns the normal.
+    /// Moves p onto the plane and returns the normal.
     dvec3 settle(dvec3& p) const
     {
         p -= glm::dot(p - corner, normal) * normal;
@@ -75,14 +75,14 @@ struct ball_shape {
         const double b = glm::dot(f, r.direction);
         if (starts_on)
             return -2 * b > 0 ? -2 * b : infinity;
-        const dvec3 nearest = f - b * r.direction; // of the whole line to the centre
+        const dvec3 nearest = f - b * r.direction; // the line's closest point to the centre, relative to it
         const double half2 = radius * radius - glm::dot(nearest, nearest);
         if (!(half2 >= 0))
             return infinity;
         const double half = std::sqrt(half2);
         return -b - half > 0 ? -b - half : -b + half > 0 ? -b + half : infinity;
     }
-    /// Moves p onto the sphere; returns the outward normal there.
+    /// Moves p onto the sphere and returns the outward normal.
     dvec3 settle(dvec3& p) const
     {
         const dvec3 n = glm::normalize(p - center);
@@ -108,7 +108,7 @@ struct disk_shape {
         const dvec3 p = r.origin + t * r.direction - center;
         return glm::dot(p, p) <= radius * radius ? t : infinity;
     }
-    /// Moves p onto the plane; returns the normal.
+    /// Moves p onto the plane and returns the normal.
     dvec3 settle(dvec3& p) const
     {
         p -= glm::dot(p - center, normal) * normal;
@@ -119,10 +119,10 @@ struct disk_shape {
 /// A closed box.
 struct box_shape {
     dvec3 middle{0};             ///< m
-    std::array<dvec3, 3> axes{}; ///< unit, at right angles
-    dvec3 half{1};               ///< m; half its length along each
+    std::array<dvec3, 3> axes{}; ///< orthogonal unit vectors
+    dvec3 half{1};               ///< m; half the length along each axis
 
-    /// Of a box that check() accepts.
+    /// The box must pass check().
     explicit box_shape(const box& b) : middle(b.corner + 0.5 * (b.edge_u + b.edge_v + b.edge_w))
     {
         const std::array edges{b.edge_u, b.edge_v, b.edge_w};
@@ -132,10 +132,10 @@ struct box_shape {
         }
     }
 
-    /// Along its own axes.
+    /// The components of v along the box's axes.
     dvec3 local(const dvec3& v) const { return {glm::dot(v, axes[0]), glm::dot(v, axes[1]), glm::dot(v, axes[2])}; }
 
-    /// The axis whose faces p is nearest to, or farthest outside of.
+    /// The axis of the face that p is closest to, or farthest outside of.
     int axis_at(const dvec3& p) const
     {
         const dvec3 out = glm::abs(local(p - middle)) - half;
@@ -156,7 +156,7 @@ struct box_shape {
             enter = std::max(enter, (-beyond - p[i]) / d[i]);
             leave = std::min(leave, (beyond - p[i]) / d[i]);
         }
-        if (starts_on) { // a convex body: outwards nothing more of it is met, inwards another face
+        if (starts_on) { // convex: an outgoing ray misses it, an ingoing ray hits another face
             const int face = axis_at(r.origin);
             return p[face] * d[face] >= 0 ? infinity : std::max(leave, 0.0);
         }
@@ -164,7 +164,7 @@ struct box_shape {
         return enter <= leave && t > 0 ? t : infinity;
     }
 
-    /// Moves p onto the nearest face; returns the outward normal there.
+    /// Moves p onto the nearest face and returns its outward normal.
     dvec3 settle(dvec3& p) const
     {
         const int i = axis_at(p);
@@ -175,10 +175,10 @@ struct box_shape {
     }
 };
 
-/// A box's bins: those of its faces.
+/// The bins of a box: those of its faces.
 class box_bins {
 public:
-    /// As plane_bins.
+    /// See plane_bins.
     box_bins(const box& b, double size) : shape_(b)
     {
         for (const auto& face : faces_of(b)) {
@@ -188,7 +188,7 @@ public:
             require_few_bins(size_, size);
         }
     }
-    /// Bins, those without area included.
+    /// The number of bins, including those without area.
     std::uint32_t size() const { return size_; }
     /// m^2
     double area(std::uint32_t bin) const
@@ -213,7 +213,7 @@ private:
     std::uint32_t size_ = 0;
 };
 
-/// \name A shape of the scene as one of the above
+/// \name Conversion of a scene's shape
 /// @{
 inline ball_shape shape_of(const sphere& x) { return {x.center, x.radius}; }
 inline turned_shape shape_of(const cylinder& x) { return {turned_shape::profile::cylinder, x.base, x.top, x.radius}; }
@@ -227,14 +227,14 @@ inline box_shape shape_of(const box& x) { return box_shape(x); }
 inline flat_shape shape_of(const polygon& x) { return flat_shape(x); }
 /// @}
 
-/// Shapes by what they are here, in the order of shape_lists().
+/// Vectors of all shapes, in the order of shape_lists().
 using shape_vectors = std::tuple<std::vector<ball_shape>, std::vector<turned_shape>, std::vector<disk_shape>,
     std::vector<box_shape>, std::vector<flat_shape>>;
 
 /// The bins of any surface.
 using surface_bins = std::variant<ring_bins, plane_bins, box_bins>;
 
-/// Bins of about `size`, m. \throws std::invalid_argument for more bins than most_bins.
+/// Divides a surface into bins of about `size`, m. \throws std::invalid_argument for more bins than most_bins.
 template <class Round>
 surface_bins bins_of(const Round& x, double size)
 {

@@ -1,5 +1,5 @@
-// Surfaces cut into bins whose areas are known exactly: where light paths leave their flux. Flat polygons are cut by a
-// square grid, clipped; turned.hpp has the rings of surfaces of revolution.
+// Divides surfaces into bins of exactly known area, in which light paths sum their power. Polygons are divided by a
+// square grid; turned.hpp divides surfaces of revolution into rings and sectors.
 #pragma once
 
 #include <photongrid/reference/ray.hpp>
@@ -11,7 +11,7 @@
 
 namespace photongrid::reference {
 
-/// Bins of all surfaces of a scene together are at most this many.
+/// The largest number of bins of a scene.
 constexpr double most_bins = 0x1p23;
 
 /// \throws std::invalid_argument for more bins than most_bins; `size`, m, is for the message.
@@ -19,7 +19,7 @@ inline void require_few_bins(double count, double size)
 {
     if (!(count <= most_bins))
         throw std::invalid_argument("bin: bins of " + std::to_string(size)
-            + " m cut the diffuse surfaces into more than 2^23; choose a larger size");
+            + " m divide the diffuse surfaces into more than 2^23; choose a larger size");
 }
 
 /// The part of a convex polygon with coordinate `axis` at least (`above`) or at most `bound` (Sutherland and Hodgman).
@@ -49,8 +49,8 @@ inline double area_of(const std::vector<glm::dvec2>& p)
     return 0.5 * std::abs(twice);
 }
 
-/// A convex polygon's bins: squares of about `size`, cut at its edges. What is left of a square that is mostly cut off
-/// is joined to a neighbour, since little area means much noise.
+/// The bins of a convex polygon: squares of about `size`, clipped at its edges. Small remainders are joined to a
+/// neighbour, because a small area has much noise.
 class plane_bins {
 public:
     /// `size`: m.
@@ -83,9 +83,9 @@ public:
         join(cut);
     }
 
-    /// Bins, those without area included.
+    /// The number of bins, including those without area.
     std::uint32_t size() const { return columns_ * rows_; }
-    /// m^2; 0 for one outside the polygon, or joined to a neighbour.
+    /// m^2; 0 for a bin outside the polygon, or joined to a neighbour.
     double area(std::uint32_t bin) const { return areas_[bin]; }
     /// The bin of a point of the polygon, m.
     std::uint32_t at(const dvec3& p) const
@@ -99,7 +99,7 @@ private:
     glm::dvec2 flat(const dvec3& p) const { return {glm::dot(p - corner_, u_), glm::dot(p - corner_, v_)}; }
     std::uint32_t index(std::uint32_t x, std::uint32_t y) const { return y * columns_ + x; }
 
-    /// Cells of less than a quarter of a square go to the neighbour with the most area.
+    /// Joins cells of less than a quarter of a square to the neighbour with the largest area.
     void join(const std::vector<double>& cut)
     {
         const double small = 0.25 * step_.x * step_.y;
@@ -115,7 +115,7 @@ private:
                             if (cut[index(a, b)] > cut[best])
                                 best = index(a, b);
                     if (cut[best] < small && cut[mine] > 0)
-                        best = mine; // among small ones each keeps its own
+                        best = mine; // if all neighbours are small too, it stays separate
                 }
                 bin_of_[mine] = best;
                 areas_[best] += cut[mine];

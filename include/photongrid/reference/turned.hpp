@@ -1,4 +1,5 @@
-// Surfaces of revolution, for the reference renderer: each from its own equation, and cut into bins, rings of sectors.
+// Surfaces of revolution, for the reference renderer: intersection by their own equations, and bins in rings of
+// sectors.
 #pragma once
 
 #include <photongrid/reference/surface_bins.hpp>
@@ -11,14 +12,14 @@ namespace photongrid::reference {
 
 /// A surface of revolution about an axis from z = 0 at `base` to z = height.
 struct turned_shape {
-    /// How the radius changes along the axis.
-    enum class profile { cylinder, cone, paraboloid } kind = profile::cylinder; ///< which of them it is
+    /// The radius along the axis.
+    enum class profile { cylinder, cone, paraboloid } kind = profile::cylinder; ///< the kind of profile
     dvec3 base{0};                                                              ///< m; where z is 0
     dvec3 axis{0, 0, 1};                                                        ///< unit
     double height = 1;                                                          ///< m
     double radius = 1; ///< m; of a cone at z = 0, of a paraboloid at z = height
 
-    /// Along the axis from `from` to `to`, m; they differ.
+    /// The axis goes from `from` to `to`, m, which must differ.
     turned_shape(profile k, const dvec3& from, const dvec3& to, double r)
         : kind(k), base(from), axis(glm::normalize(to - from)), height(glm::length(to - from)), radius(r)
     {
@@ -34,10 +35,11 @@ struct turned_shape {
         }
     }
 
-    /// As geometry::nearest measures it, m; infinity where r misses. `starts_on`: r begins on this shape.
+    /// The distance to the hit, m, or infinity for a miss. `starts_on`: r starts on this shape.
     double distance(const ray& r, bool starts_on) const
     {
-        // Seen from the point of the ray nearest the middle, so that squares of long distances do not cancel.
+        // Compute from the point of the ray that is closest to the centre, so that squares of long distances do not
+        // cancel.
         const double ahead = starts_on ? 0 : -glm::dot(r.origin - (base + 0.5 * height * axis), r.direction);
         const dvec3 f = r.origin + ahead * r.direction - base;
         const double z = glm::dot(f, axis), dz = glm::dot(r.direction, axis);
@@ -65,7 +67,7 @@ struct turned_shape {
         return nearest;
     }
 
-    /// Moves p onto the surface; returns the outward normal there (the axis at a cone's apex).
+    /// Moves p onto the surface and returns the outward normal (at a cone's apex, the axis).
     dvec3 settle(dvec3& p) const
     {
         const double z = std::clamp(glm::dot(p - base, axis), 0.0, height);
@@ -83,7 +85,8 @@ struct turned_shape {
     }
 };
 
-/// Bins of a surface of revolution: rings along its profile, each in as many sectors as keep bins about square.
+/// The bins of a surface of revolution: rings along its profile, each divided into sectors so that bins are about
+/// square.
 class ring_bins {
 public:
     /// \name Bins of about `size`, m
@@ -114,7 +117,7 @@ public:
     }
     /// @}
 
-    /// Bins.
+    /// The number of bins.
     std::uint32_t size() const { return first_.back(); }
     /// m^2
     double area(std::uint32_t bin) const
@@ -123,7 +126,7 @@ public:
             = static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), bin) - first_.begin()) - 1;
         return (area_within(edges_[ring + 1]) - area_within(edges_[ring])) / (first_[ring + 1] - first_[ring]);
     }
-    /// m^2, of the whole surface.
+    /// The area of the whole surface, m^2.
     double area_of_all() const { return area_within(edges_.back()); }
     /// The bin of a point of the surface, m.
     std::uint32_t at(const dvec3& p) const
@@ -149,8 +152,8 @@ private:
         const double step = f == form::sphere ? size / radius : size;
         require_few_bins(length / step, size);
         edges_.push_back(0);
-        if (f == form::paraboloid) { // rings as wide along the bowl as elsewhere: d(arc) = sqrt(1 + (2 height rho /
-                                     // radius^2)^2) d(rho)
+        if (f == form::paraboloid) { // rings of equal arc length:
+                                     // d(arc) = sqrt(1 + (2 height rho / radius^2)^2) d(rho)
             require_few_bins(2 * (radius + height) / size, size);
             while (edges_.back() < length)
                 edges_.push_back(std::min(
@@ -188,7 +191,7 @@ private:
         default: return s;
         }
     }
-    /// Area from coordinate 0 to s.
+    /// The area from coordinate 0 to s.
     double area_within(double s) const
     {
         switch (form_) {
@@ -198,7 +201,8 @@ private:
         case form::cone: return M_PI * radius_ / std::hypot(height_, radius_) * s * s;
         default: break;
         }
-        // z = a rho^2: pi / (6 a^2) ((1 + 4 a^2 rho^2)^(3/2) - 1), written so that a shallow bowl does not cancel.
+        // z = a rho^2: pi / (6 a^2) ((1 + 4 a^2 rho^2)^(3/2) - 1), written so that it does not cancel for a shallow
+        // bowl.
         const double a = height_ / (radius_ * radius_), x = 4 * a * a * s * s;
         return x > 0 ? M_PI / (6 * a * a) * std::expm1(1.5 * std::log1p(x)) : M_PI * s * s;
     }
@@ -206,8 +210,8 @@ private:
     form form_;
     dvec3 origin_, axis_, u_, v_;
     double radius_, height_;
-    std::vector<double> edges_;        ///< of the rings
-    std::vector<std::uint32_t> first_; ///< first bin of each ring, and how many bins there are
+    std::vector<double> edges_;        ///< coordinates of the rings' edges
+    std::vector<std::uint32_t> first_; ///< first bin of each ring, and the number of bins
 };
 
 } // namespace photongrid::reference

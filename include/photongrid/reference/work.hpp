@@ -1,4 +1,4 @@
-// Jobs shared out among threads, with someone watching.
+// Distributes jobs over threads, and reports progress to an observer.
 #pragma once
 
 #include <photongrid/render/render_stats.hpp>
@@ -16,17 +16,17 @@
 
 namespace photongrid::reference {
 
-/// What a job of `share_out` calls now and then: goes_on(n) says that n more units of work are done and asks whether to
-/// carry on. Only the calling thread talks to the observer.
+/// Progress of the jobs of `share_out`. A job calls goes_on(n) when n more units of work are done; the result says
+/// whether to continue. Only the calling thread calls the observer.
 class watch {
 public:
-    /// Of the stage `stage`, of `units` of work in all; the thread that makes it is the one that calls the observer.
+    /// For a stage with `units` of work. The thread that constructs it is the one that calls the observer.
     watch(const render_observer& observer, std::string_view stage, double units)
         : observer_(observer), stage_(stage), units_(units)
     {
     }
 
-    /// Adds `done` units; false: stop now.
+    /// Adds `done` units. Returns false if the job must stop.
     bool goes_on(std::uint64_t done)
     {
         done_ += done;
@@ -34,7 +34,7 @@ public:
             report();
         return !stop_;
     }
-    /// Tells the observer how far the work is, and asks whether it is cancelled. The calling thread only.
+    /// Reports progress to the observer and asks whether to cancel. Only in the calling thread.
     void report()
     {
         if (observer_.progress)
@@ -42,9 +42,9 @@ public:
         if (observer_.cancelled && observer_.cancelled())
             stop_ = cancelled_ = true;
     }
-    /// Makes goes_on false from now on, on every thread.
+    /// Makes goes_on() return false from now on, in every thread.
     void stop() { stop_ = true; }
-    /// True when it was the observer who wanted to stop.
+    /// Whether the observer cancelled the work.
     bool was_cancelled() const { return cancelled_; }
 
 private:
@@ -56,14 +56,14 @@ private:
     std::atomic<bool> stop_{false}, cancelled_{false};
 };
 
-/// `asked`, or for 0 as many threads as the machine has, 1 at least.
+/// `asked` or, if it is 0, the machine's number of threads; at least 1.
 inline std::uint32_t threads_for(std::uint32_t asked)
 {
     return asked > 0 ? asked : std::max(1u, std::thread::hardware_concurrency());
 }
 
-/// Runs job(i, watch) for i = 0 … n-1, in any order, on `threads` threads of which the caller is one; `units` is the
-/// work of all jobs together.
+/// Runs job(i, watch) for i = 0 … n-1, in any order, on `threads` threads including the caller's. `units` is the work
+/// of all jobs together.
 /// \throws render_cancelled, or what a job throws.
 template <class Job>
 void share_out(std::uint32_t n, std::uint32_t threads, std::string_view stage, double units,
@@ -94,7 +94,7 @@ void share_out(std::uint32_t n, std::uint32_t threads, std::string_view stage, d
                 });
             }
         } catch (const std::system_error&) {
-            --at_work; // no more threads to be had: those that there are do it all
+            --at_work; // no more threads available: the others do all the work
         }
         work();
         while (at_work > 0) {

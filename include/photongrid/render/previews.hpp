@@ -17,7 +17,7 @@ struct preview {
     std::uint32_t divisor = 1;   ///< side of its pixels, in the picture's pixels
     std::uint32_t k_divisor = 1; ///< divisor of k; at least 8 photons are sought, or k if that is less
 
-    bool operator==(const preview&) const = default; ///< of every member
+    bool operator==(const preview&) const = default;
 };
 
 /// Settings of previews. The picture does not depend on them.

@@ -11,7 +11,7 @@
 
 namespace photongrid {
 
-/// A closed box in any position: a corner and the three edges from it. Its faces are no polygons to edge_correction.
+/// A closed box in any orientation: a corner and the three edges from it. edge_correction does not apply to its faces.
 struct box {
     dvec3 corner{0};            ///< m
     dvec3 edge_u{1, 0, 0};      ///< m; from the corner; the three edges are at right angles
@@ -19,7 +19,7 @@ struct box {
     dvec3 edge_w{0, 0, 1};      ///< m
     std::uint32_t material = 0; ///< index into scene::materials
 
-    bool operator==(const box&) const = default; ///< of every member
+    bool operator==(const box&) const = default;
 };
 
 /// \throws std::invalid_argument for a corner or an edge that is not finite, an edge of length 0, or edges that are not
@@ -57,7 +57,7 @@ inline std::array<polygon, 6> faces_of(const box& b)
 namespace detail {
     inline dvec3 middle_of(const box& b) { return b.corner + 0.5 * (b.edge_u + b.edge_v + b.edge_w); }
 
-    /// How far a box reaches from its middle along a unit vector, m.
+    /// Half the extent of a box along a unit vector, m.
     inline double extent_along(const box& b, const dvec3& n)
     {
         return 0.5
@@ -65,14 +65,14 @@ namespace detail {
     }
 } // namespace detail
 
-/// Do two boxes have more than a touch in common? Convex bodies are apart where a plane is between them: one along a
-/// face of either, or along an edge of both.
+/// Whether two boxes overlap; touching does not count. Convex bodies are separate if a plane separates them, and for
+/// boxes it is parallel to a face of one or to an edge of each.
 inline bool overlaps(const box& a, const box& b)
 {
     const dvec3 between = detail::middle_of(b) - detail::middle_of(a);
     const auto apart = [&](const dvec3& direction) {
         const double length = glm::length(direction);
-        if (!(length > 1e-9)) // edges along each other: their faces say it
+        if (!(length > 1e-9)) // parallel edges: the planes of the faces suffice
             return false;
         const dvec3 n = direction / length;
         return std::abs(glm::dot(between, n)) >= (detail::extent_along(a, n) + detail::extent_along(b, n)) * (1 - 1e-9);
@@ -86,11 +86,11 @@ inline bool overlaps(const box& a, const box& b)
     return true;
 }
 
-/// The same of a box and a ball.
+/// The same for a box and a sphere.
 inline bool overlaps(const box& b, const sphere& s)
 {
     const dvec3 from_middle = s.center - detail::middle_of(b);
-    double beyond2 = 0; // squared distance of the ball's centre from the box, m^2
+    double beyond2 = 0; // squared distance of the sphere's centre from the box, m^2
     for (const auto& e : {b.edge_u, b.edge_v, b.edge_w}) {
         const double half = 0.5 * glm::length(e);
         const double beyond = std::max(0.0, std::abs(glm::dot(from_middle, glm::normalize(e))) - half);
@@ -99,7 +99,7 @@ inline bool overlaps(const box& b, const sphere& s)
     return std::sqrt(beyond2) < s.radius * (1 - 1e-9);
 }
 
-/// Boxes in the table of shapes.
+/// The shape_kind of boxes.
 template <>
 struct shape_kind<box> {
     static constexpr const char* name = "box";   ///< in scene files
@@ -107,9 +107,9 @@ struct shape_kind<box> {
     static constexpr std::uint32_t number = 8;   ///< intersect/box.glsl
     static constexpr std::tuple fields{field{"corner", &box::corner, quantity::point},
         field{"edge_u", &box::edge_u, quantity::edge}, field{"edge_v", &box::edge_v, quantity::edge},
-        field{"edge_w", &box::edge_w, quantity::edge}}; ///< all
+        field{"edge_w", &box::edge_w, quantity::edge}}; ///< all fields
 
-    /// \name See the general template
+    /// \name See shape_kind
     /// @{
     static void add_bounds(bounds& all, const box& b)
     {

@@ -10,15 +10,15 @@ namespace photongrid {
 /// A pinhole camera.
 struct camera {
     dvec3 position{0};        ///< m
-    dvec3 look_at{0, 0, -1};  ///< m; the point in the middle of the picture
-    dvec3 up{0, 1, 0};        ///< a direction that is up in the picture; not along the line of sight
-    double vertical_fov = 45; ///< degrees from the picture's lower edge to its upper one, above 0 and below 179
+    dvec3 look_at{0, 0, -1};  ///< m; the point at the centre of the picture
+    dvec3 up{0, 1, 0};        ///< the direction that is up in the picture; not parallel to the line of sight
+    double vertical_fov = 45; ///< degrees between the picture's lower and upper edges, above 0 and below 179
 
-    bool operator==(const camera&) const = default; ///< of every member
+    bool operator==(const camera&) const = default;
 };
 
 namespace detail {
-    /// The directions of a camera's picture, unit vectors.
+    /// A camera's axes, unit vectors.
     struct camera_axes {
         dvec3 forward, right, up;
 
@@ -30,17 +30,18 @@ namespace detail {
     };
 } // namespace detail
 
-/// \throws std::invalid_argument for a camera that looks nowhere, whose `up` is along its line of sight, or that opens
-/// by 0, 179 degrees or more.
+/// \throws std::invalid_argument for a camera without a direction of view, whose `up` is parallel to its line of sight,
+///         or with a field of view outside 0 to 179 degrees.
 inline void check(const camera& c)
 {
     detail::require(detail::finite(c.position) && detail::finite(c.look_at), "position and look_at: must be finite");
-    detail::require(c.position != c.look_at, "position and look_at: are the same point, so the camera looks nowhere");
+    detail::require(
+        c.position != c.look_at, "position and look_at: are the same point, so the camera has no direction of view");
     detail::require(detail::finite(c.up)
             && glm::length(glm::cross(c.up, c.look_at - c.position))
                 > 1e-9 * glm::length(c.up) * glm::length(c.look_at - c.position)
             && glm::length(c.up) > 0,
-        "up: must be finite, not zero, and not along the line of sight");
+        "up: must be finite, not zero, and not parallel to the line of sight");
     detail::require(detail::finite(c.vertical_fov) && c.vertical_fov > 0 && c.vertical_fov < 179,
         "vertical_fov: must be between 0 and 179 degrees");
 }

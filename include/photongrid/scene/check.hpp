@@ -1,4 +1,4 @@
-// What the checks of a scene's parts have in common.
+// Helpers for checking the parts of a scene.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,7 +11,7 @@
 
 namespace photongrid {
 
-/// Double precision, as all of a scene is: m, W or a direction.
+/// Scenes are in double precision: positions in m, powers in W, or directions.
 using glm::dvec3;
 
 namespace detail {

@@ -9,31 +9,32 @@ namespace photongrid {
 
 /// The side of a cone, open at its base.
 struct cone {
-    dvec3 base{0};              ///< m; the middle of the open end
+    dvec3 base{0};              ///< m; the centre of the open end
     dvec3 apex{0, 1, 0};        ///< m; the tip
     double radius = 1;          ///< m, above 0; at the base
     std::uint32_t material = 0; ///< index into scene::materials
 
-    bool operator==(const cone&) const = default; ///< of every member
+    bool operator==(const cone&) const = default;
 };
 
-/// \throws std::invalid_argument for a base and an apex in one place or not finite, or a radius that is not above 0.
+/// \throws std::invalid_argument for a base and an apex that coincide or are not finite, or a radius that is not above
+///         0.
 inline void check(const cone& x)
 {
     detail::require_axis(x.base, x.apex, "base and apex");
     detail::require_radius(x.radius);
 }
 
-/// Cones in the table of shapes.
+/// The shape_kind of cones.
 template <>
 struct shape_kind<cone> {
     static constexpr const char* name = "cone";                     ///< in scene files
     static constexpr const char* list = "cones";                    ///< member of scene
     static constexpr std::uint32_t number = detail::quadric_number; ///< intersect/quadric.glsl
     static constexpr std::tuple fields{field{"base", &cone::base, quantity::point},
-        field{"apex", &cone::apex, quantity::point}, field{"radius", &cone::radius, quantity::length}}; ///< all
+        field{"apex", &cone::apex, quantity::point}, field{"radius", &cone::radius, quantity::length}}; ///< all fields
 
-    /// \name See the general template
+    /// \name See shape_kind
     /// @{
     static void add_bounds(bounds& b, const cone& x)
     {
@@ -45,7 +46,7 @@ struct shape_kind<cone> {
     static double extent(const cone& x) { return glm::length(x.apex - x.base); }
     static void write(record_writer& w, const cone& x)
     {
-        // radius z/h from the apex on: there the equation has no constants that cancel
+        // With z from the apex on, radius z/h, the equation has no constants that cancel.
         const double h = extent(x);
         detail::put_quadric(w, x.apex, x.base, {.a = -x.radius * x.radius / (h * h)}, x.material);
     }

@@ -1,5 +1,5 @@
-// The members of a scene's shapes and lights by name: what readers, writers and editors of scenes go through, so that
-// none of them lists the kinds of shapes.
+// The members of shapes and lights by name. Readers, writers and editors of scenes iterate over them, so that none of
+// them lists the kinds of shapes.
 #pragma once
 
 #include <photongrid/scene/check.hpp>
@@ -11,11 +11,11 @@
 
 namespace photongrid {
 
-/// What a member says, and so how files and editors treat it.
+/// The physical quantity of a member, which determines how files and editors treat it.
 enum class quantity {
-    point,     ///< m; moves with its part
-    points,    ///< m; several, a std::vector<dvec3>
-    edge,      ///< m; from one point to another
+    point,     ///< m; moves with the shape or light
+    points,    ///< m; std::vector<dvec3>
+    edge,      ///< m; difference of two points
     direction, ///< of any length above 0
     length,    ///< m, above 0
     power,     ///< W, rgb
@@ -24,29 +24,30 @@ enum class quantity {
 /// A member of Part.
 template <class Part, class Value>
 struct field {
-    const char* name;      ///< in C++ and in scene files
-    Value Part::*member;   ///< where it is
-    quantity what_it_says; ///< of the member's number or numbers
+    const char* name;    ///< in C++ and in scene files
+    Value Part::*member; ///< the member
+    quantity of;         ///< its quantity
 };
-/// As clang 14 needs it: it deduces no aggregate's arguments.
+/// For clang 14, which does not deduce the arguments of aggregates.
 template <class Part, class Value>
 field(const char*, Value Part::*, quantity) -> field<Part, Value>;
 
-/// What the library must know of a kind of shape. A specialisation stands beside each shape:
+/// The properties of a kind of shape that the library needs. Each shape has a specialisation:
 /// - `name`, in scene files and for people; `list`, the member of `scene` that holds such shapes;
-/// - `number`, below kernels::SCENE_TABLES: SWITCH and table of the kernels' shape that draws it (trace/intersect/);
-/// - `fields`, a tuple of `field`; all but the material;
-/// - `add_bounds(bounds, shape)`; `size(shape)`, m, which single precision must resolve; `round_size(shape)`, m: how
-/// far
-///   from the place in its record the coordinates of its points reach, where they are computed with roots or by axes;
-///   else 0;
-/// - `write(writer, shape)`: its records, as the kernels read them;
-/// - `extent(shape)`, m, where files must limit more than radii: its axis, or its least edge.
+/// - `number`, below kernels::SCENE_TABLES: the SWITCH and the table of its kernel code (trace/intersect/);
+/// - `fields`, a tuple of `field`: all members but the material;
+/// - `add_bounds(bounds, shape)`; `size(shape)`, m, which single precision must resolve;
+/// - `round_size(shape)`, m: if points of the shape are computed with roots or along axes, their largest distance from
+/// the
+///   position in its record; otherwise 0;
+/// - `write(writer, shape)`: writes its records for the kernels;
+/// - `extent(shape)`, m, if files must limit more than radii: its axis, or its shortest edge.
 template <class Shape>
 struct shape_kind;
 
-/// What the library must know of a kind of light: `name`, `list` and `fields` as in shape_kind, all but the light's own
-/// name; `add_bounds`; `write_record`, as trace/lights.glsl reads it; `size` and `extent` where it has any.
+/// The properties of a kind of light that the library needs: `name`, `list`, `fields` (all members but the light's
+/// name) and `add_bounds` as in shape_kind; `write_record`, for trace/lights.glsl; `size` and `extent` if it has an
+/// extent.
 template <class Light>
 struct light_kind;
 
@@ -58,7 +59,7 @@ void for_each_field(const Fields& fields, F&& f)
 }
 
 namespace detail {
-    /// Moves a shape or light whose fields these are.
+    /// Moves a shape or light with these fields.
     template <class Part, class Fields>
     void move_points(Part& part, const Fields& fields, const dvec3& by)
     {
@@ -68,7 +69,7 @@ namespace detail {
                 for (auto& p : value)
                     p += by;
             } else if constexpr (requires { value += by; }) {
-                if (f.what_it_says == quantity::point)
+                if (f.of == quantity::point)
                     value += by;
             }
         });

@@ -11,32 +11,32 @@
 
 namespace photongrid {
 
-/// A point light: power (W, rgb) sent out evenly in all directions.
+/// A point light, which emits its power (W, rgb) uniformly in all directions.
 struct point_light {
     std::string name;  ///< for messages
     dvec3 position{0}; ///< m
-    dvec3 power{1};    ///< W, rgb; no channel below 0, one above
+    dvec3 power{1};    ///< W, rgb; no channel is negative, at least one is positive
 
-    bool operator==(const point_light&) const = default; ///< of every member
+    bool operator==(const point_light&) const = default;
 };
 
-/// A rectangle that sends power (W, rgb) out diffusely on the side of cross(edge_u, edge_v); its own surface is black.
+/// A rectangle that emits its power (W, rgb) diffusely on the side of cross(edge_u, edge_v). Its surface is black.
 struct rectangle_light {
     std::string name;      ///< for messages
     dvec3 corner{0};       ///< m
     dvec3 edge_u{1, 0, 0}; ///< m; from the corner
     dvec3 edge_v{0, 0, 1}; ///< m; from the corner, at a right angle to edge_u
-    dvec3 power{1};        ///< W, rgb; no channel below 0, one above
+    dvec3 power{1};        ///< W, rgb; no channel is negative, at least one is positive
 
-    bool operator==(const rectangle_light&) const = default; ///< of every member
+    bool operator==(const rectangle_light&) const = default;
 };
 
-/// \throws std::invalid_argument for a power (W, rgb) with a channel that is not finite or below 0, or with no light.
+/// \throws std::invalid_argument for a power (W, rgb) with a channel that is not finite or negative, or of 0.
 inline void check_power(const dvec3& power)
 {
     detail::require(detail::finite(power) && power.x >= 0 && power.y >= 0 && power.z >= 0,
         "power: each channel must be finite and not negative");
-    detail::require(power.x + power.y + power.z > 0, "power: the light is black");
+    detail::require(power.x + power.y + power.z > 0, "power: is 0; a light needs a channel above 0");
 }
 /// \throws std::invalid_argument for a position that is not finite, or a power as in check_power.
 inline void check(const point_light& l)
@@ -44,8 +44,8 @@ inline void check(const point_light& l)
     detail::require(detail::finite(l.position), "position: must be finite");
     check_power(l.power);
 }
-/// \throws std::invalid_argument for what is not finite, edges without area or not at right angles, or a power as in
-/// check_power.
+/// \throws std::invalid_argument for members that are not finite, edges without area or not at right angles, or a power
+///         as in check_power.
 inline void check(const rectangle_light& l)
 {
     detail::require(detail::finite(l.corner) && detail::finite(l.edge_u) && detail::finite(l.edge_v),
@@ -57,22 +57,22 @@ inline void check(const rectangle_light& l)
     check_power(l.power);
 }
 
-/// The surface of a light, in order round it.
+/// The surface of a light.
 inline polygon surface_of(const rectangle_light& l)
 {
     return {{l.corner, l.corner + l.edge_u, l.corner + l.edge_u + l.edge_v, l.corner + l.edge_v}, 0};
 }
 
-/// Point lights in the table of lights.
+/// The light_kind of point lights.
 template <>
 struct light_kind<point_light> {
     static constexpr const char* name = "point";        ///< in scene files
     static constexpr const char* list = "point_lights"; ///< member of scene
     static constexpr std::tuple fields{field{"position", &point_light::position, quantity::point},
-        field{"power", &point_light::power, quantity::power}}; ///< all but the name
-    static constexpr bool is_area = false;                     ///< what Light::is_area says of it
+        field{"power", &point_light::power, quantity::power}}; ///< all fields but the name
+    static constexpr bool is_area = false;                     ///< Light::is_area in kernels
 
-    /// \name See the general template
+    /// \name See light_kind
     /// @{
     static void add_bounds(bounds& b, const point_light& l) { b.add(l.position); }
     static void write_record(record_writer& w, const point_light& l)
@@ -86,7 +86,7 @@ struct light_kind<point_light> {
     /// @}
 };
 
-/// Rectangle lights in the table of lights.
+/// The light_kind of rectangle lights.
 template <>
 struct light_kind<rectangle_light> {
     static constexpr const char* name = "rectangle";        ///< in scene files
@@ -94,10 +94,10 @@ struct light_kind<rectangle_light> {
     static constexpr std::tuple fields{field{"corner", &rectangle_light::corner, quantity::point},
         field{"edge_u", &rectangle_light::edge_u, quantity::edge},
         field{"edge_v", &rectangle_light::edge_v, quantity::edge},
-        field{"power", &rectangle_light::power, quantity::power}}; ///< all but the name
-    static constexpr bool is_area = true;                          ///< what Light::is_area says of it
+        field{"power", &rectangle_light::power, quantity::power}}; ///< all fields but the name
+    static constexpr bool is_area = true;                          ///< Light::is_area in kernels
 
-    /// \name See the general template
+    /// \name See light_kind
     /// @{
     static void add_bounds(bounds& b, const rectangle_light& l)
     {

@@ -1,4 +1,4 @@
-// Materials: how surfaces answer light.
+// Materials.
 #pragma once
 
 #include <photongrid/scene/check.hpp>
@@ -7,17 +7,17 @@
 
 namespace photongrid {
 
-/// How a surface answers light. `metal` is a mirror with a colour.
+/// How a surface scatters light. `metal` is a coloured mirror.
 enum class material_kind { lambertian, mirror, metal, glass };
 
-/// A material. Reflectance per channel (rgb), 0 to 1; for glass it is the transmittance of each crossing (1: clear).
+/// A material.
 struct material {
-    std::string name;                               ///< free; in a scene file, the key that shapes name it by
-    material_kind kind = material_kind::lambertian; ///< what `reflectance` means
-    dvec3 reflectance{0.5};                         ///< rgb, 0 to 1: see above
-    double index_of_refraction = 1.5;               ///< glass only, 1 to 10; air, 1, is outside
+    std::string name;                               ///< any text; in a scene file, the key by which shapes refer to it
+    material_kind kind = material_kind::lambertian; ///< how it scatters light
+    dvec3 reflectance{0.5};                         ///< rgb, 0 to 1; of glass, the transmittance per crossing
+    double index_of_refraction = 1.5;               ///< of glass, 1 to 10; outside is air, 1
 
-    bool operator==(const material&) const = default; ///< of every member
+    bool operator==(const material&) const = default;
 };
 
 /// \throws std::invalid_argument for a reflectance outside 0 to 1, or glass with an index of refraction outside 1

@@ -14,17 +14,18 @@ struct paraboloid {
     double radius = 1;          ///< m, above 0; of the rim
     std::uint32_t material = 0; ///< index into scene::materials
 
-    bool operator==(const paraboloid&) const = default; ///< of every member
+    bool operator==(const paraboloid&) const = default;
 };
 
-/// \throws std::invalid_argument for a vertex and a rim in one place or not finite, or a radius that is not above 0.
+/// \throws std::invalid_argument for a vertex and a rim that coincide or are not finite, or a radius that is not above
+///         0.
 inline void check(const paraboloid& x)
 {
     detail::require_axis(x.vertex, x.rim, "vertex and rim");
     detail::require_radius(x.radius);
 }
 
-/// Paraboloids in the table of shapes.
+/// The shape_kind of paraboloids.
 template <>
 struct shape_kind<paraboloid> {
     static constexpr const char* name = "paraboloid";               ///< in scene files
@@ -32,9 +33,9 @@ struct shape_kind<paraboloid> {
     static constexpr std::uint32_t number = detail::quadric_number; ///< intersect/quadric.glsl
     static constexpr std::tuple fields{field{"vertex", &paraboloid::vertex, quantity::point},
         field{"rim", &paraboloid::rim, quantity::point},
-        field{"radius", &paraboloid::radius, quantity::length}}; ///< all
+        field{"radius", &paraboloid::radius, quantity::length}}; ///< all fields
 
-    /// \name See the general template
+    /// \name See shape_kind
     /// @{
     static void add_bounds(bounds& b, const paraboloid& x)
     {

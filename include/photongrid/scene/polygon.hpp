@@ -11,15 +11,15 @@
 
 namespace photongrid {
 
-/// A convex polygon (a triangle has three vertices), planar, vertices in order round it.
+/// A convex, planar polygon, with its vertices in order around it.
 struct polygon {
     std::vector<dvec3> vertices; ///< m; 3 or more
     std::uint32_t material = 0;  ///< index into scene::materials
 
-    bool operator==(const polygon&) const = default; ///< of every member
+    bool operator==(const polygon&) const = default;
 };
 
-/// The area vector of a polygon: its normal, as long as its area, m^2 (Newell's method).
+/// The area vector of a polygon: along its normal, with its area, m^2, as length (Newell's method).
 inline dvec3 area_vector(const polygon& p)
 {
     dvec3 sum(0);
@@ -28,7 +28,7 @@ inline dvec3 area_vector(const polygon& p)
     return 0.5 * sum;
 }
 
-/// The longest way from the first vertex to another, m.
+/// The largest distance between the first vertex and another, m.
 inline double extent(const polygon& p)
 {
     double longest = 0;
@@ -67,7 +67,7 @@ namespace detail {
     {
         const dvec3 n = glm::normalize(area_vector(p));
         w.put_plane(n, p.vertices[0]);
-        double off = 0; // the vertices need lie on one plane only roughly
+        double off = 0; // vertices may lie slightly off the plane
         for (const auto& v : p.vertices)
             off = std::max(off, std::abs(glm::dot(n, v - p.vertices[0])));
         w.put(dvec3(static_cast<double>(p.vertices.size()), p.material, static_cast<double>(light)),
@@ -85,15 +85,15 @@ namespace detail {
     }
 } // namespace detail
 
-/// Polygons in the table of shapes.
+/// The shape_kind of polygons.
 template <>
 struct shape_kind<polygon> {
     static constexpr const char* name = "polygon";  ///< in scene files
     static constexpr const char* list = "polygons"; ///< member of scene
     static constexpr std::uint32_t number = 3;      ///< intersect/polygon.glsl
-    static constexpr std::tuple fields{field{"vertices", &polygon::vertices, quantity::points}}; ///< all
+    static constexpr std::tuple fields{field{"vertices", &polygon::vertices, quantity::points}}; ///< all fields
 
-    /// \name See the general template
+    /// \name See shape_kind
     /// @{
     static void add_bounds(bounds& b, const polygon& p)
     {

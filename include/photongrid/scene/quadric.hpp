@@ -1,5 +1,4 @@
-// What surfaces of revolution with quadratic profiles have in common: one shape of the kernels draws them all
-// (trace/intersect/quadric.glsl).
+// Surfaces of revolution with quadratic profiles, which share one shape of the kernels (trace/intersect/quadric.glsl).
 #pragma once
 
 #include <photongrid/scene/bounds.hpp>
@@ -10,15 +9,15 @@
 
 namespace photongrid::detail {
 
-/// shape_kind::number of all of them.
+/// Their common shape_kind::number.
 constexpr std::uint32_t quadric_number = 1;
 
-/// Coefficients of x^2 + y^2 + a z^2 + b z + c = 0, z along the axis from its beginning to its end.
+/// The coefficients of x^2 + y^2 + a z^2 + b z + c = 0, with z along the axis from its first end.
 struct quadric_profile {
     double a = 0, b = 0, c = 0;
 };
 
-/// Writes one: `from` and `to` are the ends of its axis.
+/// Writes a quadric with an axis from `from` to `to`.
 inline void put_quadric(
     record_writer& w, const dvec3& from, const dvec3& to, const quadric_profile& profile, std::uint32_t material)
 {
@@ -32,7 +31,7 @@ inline void put_quadric(
     w.put_number(material);
 }
 
-/// shape_kind::round_size of one with this axis.
+/// The shape_kind::round_size of a quadric with this axis.
 inline double quadric_size(const dvec3& axis, double radius) { return 2 * (glm::length(axis) + radius); }
 
 } // namespace photongrid::detail

@@ -10,7 +10,7 @@
 
 namespace photongrid {
 
-/// Shapes and lights write themselves with it. Layouts stand in the kernels' files that read them.
+/// Writes the records of shapes and lights. The kernel files that read them describe their layouts.
 class record_writer {
 public:
     /// Appends to `out`; `center` is subtracted from positions; `scale` is half the scene's diagonal, m.
@@ -34,9 +34,9 @@ public:
 
     /// Subtracted from positions, m.
     const dvec3& center() const { return center_; }
-    /// Bound on the rounding of distances from planes and edges, m.
+    /// A bound on the rounding error of distances from planes and edges, m.
     double rounding() const { return rounding_; }
-    /// The record that comes next.
+    /// The number of the next record.
     std::uint32_t next() const { return static_cast<std::uint32_t>(out_.size()); }
 
 private:

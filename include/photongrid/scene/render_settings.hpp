@@ -1,5 +1,5 @@
-// How to render: the paper's parameters and what goes beyond them, by stage. What values each may have, and the word
-// for it in scene files and on the command line, stands in setting_table.hpp.
+// Render settings by stage: the paper's parameters and extensions. setting_table.hpp has the range of each setting, and
+// its name in scene files and on the command line.
 #pragma once
 
 #include <photongrid/estimate/estimate_settings.hpp>
@@ -14,20 +14,20 @@ namespace photongrid {
 /// How a photon map is built: sorted_map (2.2.1) or routed_map (2.2.2).
 enum class map_builder { sort, route };
 
-/// Which part of the light a picture shows. The photon map's part is split by the photons' paths: a caustic photon met
-/// mirrors and glass only, an indirect one a diffuse surface too. Lamps that the eye sees count as direct.
+/// Which part of the light a picture shows. Photons are divided by their paths: a caustic photon has hit mirrors and
+/// glass only, an indirect photon a diffuse surface too. Lamps that are directly visible count as direct light.
 enum class light_part { all, direct, caustic, indirect };
 
 /// The photon map (2.1, 2.2).
 struct map_settings {
-    std::uint32_t photons = 65000;           ///< photons *stored*
-    std::uint32_t photon_depth = 32;         ///< surfaces a photon path meets at most
+    std::uint32_t photons = 65000;           ///< photons stored
+    std::uint32_t photon_depth = 32;         ///< the most surfaces that a photon path hits
     map_builder builder = map_builder::sort; ///< sorted or routed
     std::uint32_t slots = 4;                 ///< m: routed cells have m x m slots
-    /// Cells of the map over the scene; 0, 0, 0: fitted to photons and k (fitting_grid.hpp).
+    /// Cells of the map over the scene; 0, 0, 0: fitted to the photons and k (fitting_grid.hpp).
     glm::uvec3 grid{25, 25, 50};
 
-    /// Without what a map of this builder does not read.
+    /// The same settings, with defaults for those that this builder does not use.
     map_settings in_use() const
     {
         map_settings s = *this;
@@ -35,42 +35,42 @@ struct map_settings {
             s.slots = map_settings{}.slots;
         return s;
     }
-    bool operator==(const map_settings&) const = default; ///< of every member
+    bool operator==(const map_settings&) const = default;
 };
 
 /// The radiance estimate of a picture (2.3).
 struct estimate_settings {
-    std::uint32_t k = 500;                         ///< photons sought by an estimate
+    std::uint32_t k = 500;                         ///< photons sought per estimate
     double max_radius = 0.1;                       ///< m
     search_kind search = search_kind::exact_k;     ///< which photons an estimate uses
-    filter_kind filter = filter_kind::silverman;   ///< their weight by distance
-    bias_kind bias = bias_kind::unbiased;          ///< does the photon that sets the radius count?
-    leak_policy leaks{.side = true};               ///< photons that are refused
+    filter_kind filter = filter_kind::silverman;   ///< weight by distance
+    bias_kind bias = bias_kind::unbiased;          ///< whether the photon that sets the radius counts
+    leak_policy leaks{.side = true};               ///< which photons are rejected
     edge_correction edges = edge_correction::none; ///< polygons: needs leak_policy::min_cosine above 0
 
-    bool operator==(const estimate_settings&) const = default; ///< of every member
+    bool operator==(const estimate_settings&) const = default;
 };
 
 /// The eye rays (2.4).
 struct view_settings {
     std::uint32_t spp = 1;            ///< eye rays per pixel and pass
     std::uint32_t light_samples = 32; ///< shadow rays per light and eye ray; a point light needs one
-    std::uint32_t depth = 8;          ///< reflections and refractions an eye ray follows
+    std::uint32_t depth = 8;          ///< the most reflections and refractions of an eye ray
 
-    bool operator==(const view_settings&) const = default; ///< of every member
+    bool operator==(const view_settings&) const = default;
 };
 
 /// The picture.
 struct output_settings {
     std::uint32_t width = 512;  ///< pixels, 1 to 16384
     std::uint32_t height = 512; ///< pixels, 1 to 16384
-    /// Passes that the picture is the mean of; each has photons, eye rays and shadow rays of its own.
+    /// The picture is the mean of so many passes, each with its own photons, eye rays and shadow rays.
     std::uint32_t passes = 1;
-    light_part only = light_part::all; ///< what of the light is drawn
+    light_part only = light_part::all; ///< the part of the light to draw
     double exposure = 0;               ///< EV for tone-mapped output: pixel values times 2^exposure
     bool aov = false;                  ///< radius, count and relative standard error of the estimate per pixel
 
-    bool operator==(const output_settings&) const = default; ///< of every member
+    bool operator==(const output_settings&) const = default;
 };
 
 /// How to render.
@@ -79,13 +79,13 @@ struct render_settings {
     estimate_settings estimate{};
     view_settings view{};
     output_settings output{};
-    std::uint32_t seed = 1; ///< of all random numbers; the same seed gives the same picture
+    std::uint32_t seed = 1; ///< seed of all random numbers; the same seed gives the same picture
 
-    bool operator==(const render_settings&) const = default; ///< of every member
+    bool operator==(const render_settings&) const = default;
 };
 
-/// The settings that reproduce the paper's estimate (2.3): at least k, constant filter, no policy, no correction, one
-/// pass. The rest stays.
+/// The settings that reproduce the paper's estimate (2.3): at least k, constant filter, no leak policy, no edge
+/// correction, one pass. Other settings are unchanged.
 /// \snippet snippets.cpp as_paper
 inline render_settings as_paper(render_settings s)
 {

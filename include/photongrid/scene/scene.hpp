@@ -1,5 +1,5 @@
-// What goes into a picture: shapes, materials, lights, a camera, and how to render them. Plain data in double precision
-// and SI units; nothing here knows a device or a file. docs/guide/scenes.md shows the scene files.
+// Scenes: shapes, materials, lights, a camera and render settings. Plain data in double precision and SI units,
+// independent of devices and files. docs/guide/scenes.md describes scene files.
 #pragma once
 
 #include <photongrid/scene/box.hpp>
@@ -20,27 +20,27 @@
 
 namespace photongrid {
 
-/// A scene. `render` holds the settings that its file asks for; a program may change them.
+/// A scene. `render` has the settings of its file, which a program may override.
 struct scene {
-    std::string name;                              ///< free; the program names pictures after it
+    std::string name;                              ///< any text; the program names pictures after it
     photongrid::camera camera;                     ///< the view that render() draws
-    std::vector<material> materials;               ///< shapes name them by index; one at least that is Lambertian
-    std::vector<sphere> spheres;                   ///< balls of glass must not overlap
+    std::vector<material> materials;               ///< shapes refer to them by index; at least one is Lambertian
+    std::vector<sphere> spheres;                   ///< those of glass must not overlap
     std::vector<cylinder> cylinders;               ///< open
     std::vector<cone> cones;                       ///< open
     std::vector<paraboloid> paraboloids;           ///< open
-    std::vector<disk> disks;                       ///< Lambertian ones are so on both sides
+    std::vector<disk> disks;                       ///< two-sided if Lambertian
     std::vector<box> boxes;                        ///< closed; those of glass must not overlap
-    std::vector<polygon> polygons;                 ///< Lambertian ones are so on both sides
-    std::vector<point_light> point_lights;         ///< a scene has one light at least, of either kind
-    std::vector<rectangle_light> rectangle_lights; ///< the eye sees them
-    render_settings render;                        ///< what the scene's file asks for
+    std::vector<polygon> polygons;                 ///< two-sided if Lambertian
+    std::vector<point_light> point_lights;         ///< a scene has at least one light of either kind
+    std::vector<rectangle_light> rectangle_lights; ///< visible to the camera
+    render_settings render;                        ///< the settings of the scene's file
 
-    bool operator==(const scene&) const = default; ///< of every member
+    bool operator==(const scene&) const = default;
 };
 
-/// The shapes of a scene, one row for each kind (shape_kind). Rows of one `number` follow each other. Polygons come
-/// last, since the surfaces of rectangle lights come after them.
+/// The lists of shapes of a scene, one per kind (shape_kind). Lists with the same `number` are consecutive. Polygons
+/// come last, because the surfaces of rectangle lights follow them.
 template <class Scene>
 constexpr auto shape_lists(Scene& s)
 {
@@ -53,7 +53,7 @@ constexpr auto shape_lists(Scene& s)
         s.polygons); // clang-format on
 }
 
-/// The lights of a scene, one row for each kind (light_kind). Lights are numbered in this order; rectangles come first,
+/// The lists of lights of a scene, one per kind (light_kind). Lights are numbered in this order; rectangles come first,
 /// so that the n-th rectangle is light n.
 template <class Scene>
 constexpr auto light_lists(Scene& s)
@@ -62,12 +62,12 @@ constexpr auto light_lists(Scene& s)
 }
 
 namespace detail {
-    /// What a list of shapes or lights holds.
+    /// The element type of a list of shapes or lights.
     template <class List>
     using item_of = typename std::remove_cvref_t<List>::value_type;
 } // namespace detail
 
-/// Calls f(list, kind) for each list of shapes; decltype(kind) is shape_kind<...> of what it holds.
+/// Calls f(list, kind) for each list of shapes; decltype(kind) is the shape_kind of its elements.
 template <class Scene, class F>
 void for_each_shape(Scene& s, F&& f)
 {
@@ -75,7 +75,7 @@ void for_each_shape(Scene& s, F&& f)
         [&](auto&... lists) { (f(lists, shape_kind<detail::item_of<decltype(lists)>>{}), ...); }, shape_lists(s));
 }
 
-/// Calls f(list, kind) for each list of lights; decltype(kind) is light_kind<...> of what it holds.
+/// Calls f(list, kind) for each list of lights; decltype(kind) is the light_kind of its elements.
 template <class Scene, class F>
 void for_each_light(Scene& s, F&& f)
 {
@@ -83,7 +83,7 @@ void for_each_light(Scene& s, F&& f)
         [&](auto&... lists) { (f(lists, light_kind<detail::item_of<decltype(lists)>>{}), ...); }, light_lists(s));
 }
 
-/// How many shapes a scene has.
+/// The number of shapes of a scene.
 inline std::size_t count_shapes(const scene& s)
 {
     std::size_t n = 0;
@@ -91,7 +91,7 @@ inline std::size_t count_shapes(const scene& s)
     return n;
 }
 
-/// How many lights a scene has.
+/// The number of lights of a scene.
 inline std::size_t count_lights(const scene& s)
 {
     std::size_t n = 0;
@@ -99,14 +99,14 @@ inline std::size_t count_lights(const scene& s)
     return n;
 }
 
-/// True where light goes the same ways in both scenes: same materials, shapes and lights.
+/// Whether two scenes have the same light paths: the same materials, shapes and lights.
 inline bool same_light_paths(const scene& a, const scene& b)
 {
     return a.materials == b.materials && shape_lists(a) == shape_lists(b) && light_lists(a) == light_lists(b);
 }
 
 namespace detail {
-    /// Calls visit(shape, list, index) for each body of glass; `list` is its name.
+    /// Calls visit(shape, list, index) for each glass shape; `list` is the name of its list.
     template <class F>
     void for_each_glass(const scene& s, F&& visit)
     {
@@ -117,7 +117,7 @@ namespace detail {
         });
     }
 
-    /// Glass surfaces have air outside, whatever is there: light is followed through one dielectric at a time.
+    /// Throws if glass bodies overlap: the outside of glass is taken to be air.
     inline void require_glass_apart(const scene& s)
     {
         const auto named
@@ -129,8 +129,7 @@ namespace detail {
                 if constexpr (requires { overlaps(a, b); })
                     if (earlier && overlaps(a, b))
                         throw std::invalid_argument(named(list, i) + ": overlaps " + named(other, j)
-                            + ", and both are glass; light is followed through one glass body at a time, so move them "
-                              "apart");
+                            + ", and both are glass; the outside of glass must be air, so move them apart");
             });
         });
     }
@@ -142,7 +141,7 @@ namespace detail {
             try {
                 check(parts[i]);
                 if constexpr (requires { parts[i].material; })
-                    require(parts[i].material < materials, "material: no such material");
+                    require(parts[i].material < materials, "material: is not an index into the scene's materials");
             } catch (const std::invalid_argument& e) {
                 throw std::invalid_argument(std::string(list) + "[" + std::to_string(i) + "]." + e.what());
             }
@@ -150,16 +149,17 @@ namespace detail {
     }
 } // namespace detail
 
-/// Checks a whole scene, its parts and their references. A scene file's reader checks part by part and adds the place.
-/// \throws std::invalid_argument "part[index].member: what is wrong"; also for a scene without lights, or bodies of
-/// glass that overlap.
+/// Checks a whole scene. The reader of scene files checks each part and adds its line.
+/// \throws std::invalid_argument "part[index].member: what is wrong"; also for a scene without lights, or for glass
+///         bodies
+///         that overlap.
 inline void check(const scene& s)
 {
     detail::check_all("materials", s.materials, s.materials.size());
     const auto all = [&](const auto& list, auto kind) { detail::check_all(kind.list, list, s.materials.size()); };
     for_each_shape(s, all);
     for_each_light(s, all);
-    detail::require(count_lights(s) > 0, "lights: the scene has none");
+    detail::require(count_lights(s) > 0, "lights: the scene has none; add at least one");
     detail::require_glass_apart(s);
     check(s.camera);
     check(s.render);

@@ -1,4 +1,4 @@
-// Every setting once: its name, its place in render_settings, its range, what it is for. Scene files, statistics, the
+// The table of settings: name, member of render_settings, range and description of each. Scene files, statistics, the
 // command line and the window read, write and check settings by this table. A new setting is a member of a stage's
 // struct and a row here.
 #pragma once
@@ -14,7 +14,7 @@
 
 namespace photongrid {
 
-/// A value of a setting and the word for it.
+/// A value of a setting and its name.
 template <class Value>
 struct named {
     const char* name;
@@ -25,9 +25,9 @@ named(const char*, Value) -> named<Value>;
 
 namespace setting_table {
 
-    // What a setting may be. Each has check(), which throws std::invalid_argument "name: must be …".
+    // The ranges of settings. Each has check(), which throws std::invalid_argument "name: must be …".
 
-    /// A whole number; both ends are allowed.
+    /// A whole number, both ends included.
     struct whole_range {
         std::uint32_t least, most;
         void check(const char* name, std::uint32_t v) const
@@ -36,10 +36,10 @@ namespace setting_table {
                 std::string(name) + ": must be from " + std::to_string(least) + " to " + std::to_string(most));
         }
     };
-    /// A number; both ends are allowed.
+    /// A number, both ends included.
     struct real_range {
         double least, most;
-        const char* unit; ///< with a space before it
+        const char* unit; ///< with a leading space
         /// "-64 to 64 EV"
         std::string ends() const
         {
@@ -57,7 +57,7 @@ namespace setting_table {
             detail::require(detail::finite(v) && v > 0, std::string(name) + ": must be finite and greater than 0");
         }
     };
-    /// One of some words.
+    /// One of several words.
     template <class Value, std::size_t N>
     struct one_of {
         named<Value> values[N];
@@ -69,7 +69,7 @@ namespace setting_table {
                     return n.name;
             return nullptr;
         }
-        /// Null for a word that is none of them.
+        /// Null for an unknown word.
         constexpr const Value* find(std::string_view word) const
         {
             for (const auto& n : values)
@@ -84,7 +84,7 @@ namespace setting_table {
     };
     template <class Value, std::size_t N>
     one_of(const named<Value> (&)[N]) -> one_of<Value, N>;
-    /// Cells of the photon map along three axes, or 0, 0, 0.
+    /// Numbers of cells of the photon map along three axes, or 0, 0, 0.
     struct cells {
         std::uint32_t most_per_axis;
         double most;
@@ -107,7 +107,7 @@ namespace setting_table {
                 std::string(name) + ": width and height must be from 1 to " + std::to_string(most) + " pixels");
         }
     };
-    /// Photons that are refused.
+    /// Leak policies.
     struct policies {
         real_range min_cosine, flattening;
         void check(const char* name, const leak_policy& l) const
@@ -118,10 +118,10 @@ namespace setting_table {
     };
 } // namespace setting_table
 
-/// Whether scene files have a setting.
+/// Whether scene files contain a setting.
 enum class in_scenes { required, optional, never };
 
-/// A row: `of(s)` is the member of the render_settings `s`.
+/// A row of the table. `of(s)` is the member of the render_settings `s`.
 template <class Member, class Values>
 struct setting {
     const char* name; ///< in scene files and statistics; on the command line --name, with - for _
@@ -147,12 +147,13 @@ inline constexpr setting photons{"photons", [](auto& s) -> auto& {return s.map.p
 ;
 inline constexpr setting k{"k", [](auto& s) -> auto& {return s.estimate.k;
 }
-, whole_range{1, 1u << 24}, in_scenes::required, "photons sought by an estimate; fixed_radius seeks none"
+, whole_range{1, 1u << 24}, in_scenes::required, "photons sought per estimate; not used by fixed_radius"
 }
 ;
 inline constexpr setting grid{"grid", [](auto& s) -> auto& {return s.map.grid;
 }
-, cells{1u << 20, 0x1p31}, in_scenes::required, "cells of the photon map over the scene, or fitted to the photons and k"
+, cells{1u << 20, 0x1p31}, in_scenes::required,
+    "cells of the photon map over the scene, or auto: fitted to the photons and k"
 }
 ;
 inline constexpr setting max_radius{"max_radius", [](auto& s) -> auto& {return s.estimate.max_radius;
@@ -173,17 +174,17 @@ inline constexpr setting spp{"spp", [](auto& s) -> auto& {return s.view.spp;
 inline constexpr setting passes{"passes", [](auto& s) -> auto& {return s.output.passes;
 }
 , whole_range{1, 65536}, in_scenes::optional,
-    "the picture is the mean of so many, each with photons, eye rays and shadow rays of its own"
+    "the picture is the mean of so many passes, each with its own photons, eye rays and shadow rays"
 }
 ;
 inline constexpr setting depth{"depth", [](auto& s) -> auto& {return s.view.depth;
 }
-, whole_range{0, 64}, in_scenes::optional, "reflections and refractions an eye ray follows"
+, whole_range{0, 64}, in_scenes::optional, "most reflections and refractions of an eye ray"
 }
 ;
 inline constexpr setting photon_depth{"photon_depth", [](auto& s) -> auto& {return s.map.photon_depth;
 }
-, whole_range{1, 64}, in_scenes::optional, "surfaces a photon path meets at most"
+, whole_range{1, 64}, in_scenes::optional, "most surfaces that a photon path hits"
 }
 ;
 inline constexpr setting seed{"seed", [](auto& s) -> auto& {return s.seed;
@@ -212,7 +213,7 @@ inline constexpr setting search{"search", [](auto& s) -> auto& {return s.estimat
 ,
     one_of{{named{"at_least_k", search_kind::at_least_k}, {"exact_k", search_kind::exact_k},
         {"fixed_radius", search_kind::fixed_radius}}},
-    in_scenes::optional, "photons used: k and a few more, as the paper has it; the k nearest; all within --max-radius"
+    in_scenes::optional, "photons used: at least k, as in the paper; the k nearest; all within --max-radius"
 }
 ;
 inline constexpr setting filter{"filter", [](auto& s) -> auto& {return s.estimate.filter;
@@ -232,17 +233,17 @@ inline constexpr setting bias{"bias", [](auto& s) -> auto& {return s.estimate.bi
 inline constexpr setting leaks{"leaks", [](auto& s) -> auto& {return s.estimate.leaks;
 }
 , policies{{-1, 1, ""}, {1, 1e6, ""}}, in_scenes::optional,
-    "photons refused: none, or some of side (came from behind the surface), min_cosine=COS (lie on a surface "
-    "turned away by more than this cosine; 0.5 where none is given), flattening=F (distances along the normal "
-    "count F times; 4 where none is given), with commas between them"
+    "photons rejected: none, or a list with commas of side (photons from behind the surface), min_cosine=COS "
+    "(photons on surfaces whose normal has a smaller cosine; default 0.5), flattening=F (distances along the "
+    "normal count F times; default 4)"
 }
 ;
 inline constexpr setting edge_correction{"edge_correction", [](auto& s) -> auto& {return s.estimate.edges;
 }
 , one_of{{named{"none", photongrid::edge_correction::none}, {"polygons", photongrid::edge_correction::polygons}}},
     in_scenes::optional,
-    "polygons: divide estimates by the share of their disc that lies on the surface, so that polygons do not "
-    "darken towards their edges; needs min_cosine among --leaks"
+    "polygons: divide estimates by the share of their disc that lies on the surface, so that polygons are not "
+    "darker near their edges; needs min_cosine in --leaks"
 }
 ;
 inline constexpr setting only{"only", [](auto& s) -> auto& {return s.output.only;
@@ -256,7 +257,7 @@ inline constexpr setting only{"only", [](auto& s) -> auto& {return s.output.only
 
 } // namespace setting_table
 
-/// Calls visit(row) for every setting that has a name, in the order of scene files.
+/// Calls visit(row) for every row, in the order of scene files.
 template <class Visit>
 constexpr void for_each_setting(const Visit& visit)
 {
@@ -267,7 +268,7 @@ constexpr void for_each_setting(const Visit& visit)
         t::edge_correction, t::only);
 }
 
-/// \throws std::invalid_argument "name: must be …" for a setting out of its range, or for two that exclude each other.
+/// \throws std::invalid_argument "name: must be …" for a setting out of its range, or for two incompatible settings.
 inline void check(const render_settings& s)
 {
     for_each_setting([&](const auto& row) { row.values.check(row.name, row.of(s)); });

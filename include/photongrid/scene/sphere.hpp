@@ -15,7 +15,7 @@ struct sphere {
     double radius = 1;          ///< m, above 0
     std::uint32_t material = 0; ///< index into scene::materials
 
-    bool operator==(const sphere&) const = default; ///< of every member
+    bool operator==(const sphere&) const = default;
 };
 
 /// \throws std::invalid_argument for a centre that is not finite, or a radius that is not above 0.
@@ -25,22 +25,22 @@ inline void check(const sphere& s)
     detail::require_radius(s.radius);
 }
 
-/// Do two balls have more than a touch in common?
+/// Whether two spheres overlap; touching does not count.
 inline bool overlaps(const sphere& a, const sphere& b)
 {
     return glm::length(a.center - b.center) < (a.radius + b.radius) * (1 - 1e-9);
 }
 
-/// Spheres in the table of shapes.
+/// The shape_kind of spheres.
 template <>
 struct shape_kind<sphere> {
     static constexpr const char* name = "sphere";  ///< in scene files
     static constexpr const char* list = "spheres"; ///< member of scene
     static constexpr std::uint32_t number = 0;     ///< intersect/sphere.glsl
-    static constexpr std::tuple fields{
-        field{"center", &sphere::center, quantity::point}, field{"radius", &sphere::radius, quantity::length}}; ///< all
+    static constexpr std::tuple fields{field{"center", &sphere::center, quantity::point},
+        field{"radius", &sphere::radius, quantity::length}}; ///< all fields
 
-    /// \name See the general template
+    /// \name See shape_kind
     /// @{
     static void add_bounds(bounds& b, const sphere& s) { b.add(s.center, dvec3(s.radius)); }
     static double size(const sphere& s) { return s.radius; }

@@ -207,8 +207,7 @@ namespace detail {
 
 /// Lays a scene out for kernels.
 /// \throws std::invalid_argument as check(scene) does, if no surface is Lambertian, or if a size or a power does not
-///         fit
-///         single precision.
+///         fit single precision.
 inline scene_layout lay_out(const scene& original)
 {
     check(original);
