@@ -1,5 +1,5 @@
-// render<serial_backend> as a function, compiled once, in serial_pictures.cpp: who needs the picture alone does not read
-// how it is made.
+// render<serial_backend> as a function, compiled once, in serial_pictures.cpp: who needs the picture alone does not
+// read how it is made.
 #pragma once
 
 #include <photongrid/render/image.hpp>
