@@ -196,8 +196,7 @@ TEST(cpu_backend, maps_equal_the_generic_ones)
 
 TEST(cpu_backend, the_growing_search_visits_and_holds_what_serials_does)
 {
-    // What the result depends on, the order of visits among it: any grid, any k, with photons enough in a
-    // cell or few.
+    // What the result depends on, the order of visits among it: any grid, any k, with photons enough in a cell or few.
     cpu_backend b(2);
     serial_backend serial;
     EXPECT_TRUE(rc::check("held, visited, radius: the same bits", [&] {

@@ -144,7 +144,7 @@ namespace {
             }
         }
         EXPECT_GE(interruptions, 1) << "no picture was ever interrupted";
-        EXPECT_FALSE(fs::exists(folder / "unfinished")) << "the file has served";
+        EXPECT_FALSE(fs::exists(folder / "unfinished")) << "the picture is complete";
         EXPECT_EQ(contents(folder / "a.exr"), contents(folder / "whole.exr"));
     }
 

@@ -1,4 +1,4 @@
-// What is edited in the window, and the thread that draws it, without a display.
+// The window's document, and the thread that draws it, without a display.
 #include "../backends/serial_pictures.hpp"
 #include "../scene/test_scenes.hpp"
 #include "viewer/document.hpp"

@@ -25,7 +25,7 @@ namespace {
     constexpr float panel_width = 330;
     constexpr GLenum context_lost = 0x0507; // GL_CONTEXT_LOST
 
-    /// GLFW, open for as long as this lives. What it says last is in `said`.
+    /// GLFW, initialised for the lifetime of this object. Its last message is in `said`.
     class glfw {
     public:
         glfw()
@@ -58,7 +58,7 @@ namespace {
         {
             IMGUI_CHECKVERSION();
             ImGui::CreateContext();
-            ImGui::GetIO().IniFilename = nullptr; // nothing of ours is written where nobody asked for it
+            ImGui::GetIO().IniFilename = nullptr; // write no settings file
             ImGui::StyleColorsDark();
             ImGui_ImplGlfw_InitForOpenGL(w, true);
             if (!ImGui_ImplOpenGL3_Init("#version 130"))
@@ -75,7 +75,7 @@ namespace {
         }
     };
 
-    /// What the last item does, where the mouse rests on it.
+    /// Shows a description of the last item while the mouse rests on it.
     void tip(const char* text)
     {
         if (!ImGui::IsItemHovered())
@@ -87,7 +87,7 @@ namespace {
         ImGui::EndTooltip();
     }
 
-    /// A file's name that is not taken: STEM.png, STEM-2.png, …
+    /// A file name that is not in use: STEM.png, STEM-2.png, …
     std::string free_name(const std::string& stem, const std::string& ending)
     {
         auto name = stem + ending;
@@ -179,7 +179,7 @@ namespace {
             const int width = static_cast<int>(scale * static_cast<float>(s.output.width) + panel_width),
                       height = std::max(720, static_cast<int>(scale * static_cast<float>(s.output.height)));
             glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS,
-                GLFW_LOSE_CONTEXT_ON_RESET); // so that a loss is said; ignored where it cannot be
+                GLFW_LOSE_CONTEXT_ON_RESET); // so that a loss is reported; ignored if not supported
             std::unique_ptr<GLFWwindow, window_closer> w(
                 glfwCreateWindow(std::min(width, 1600), std::min(height, 1000), "photongrid", nullptr, nullptr));
             if (!w)
@@ -194,10 +194,10 @@ namespace {
         void note(const std::string& line)
         {
             const std::lock_guard lock(journal_guard_);
-            journal_ << line << std::endl; // whole lines, at once: a test reads along
+            journal_ << line << std::endl; // whole lines, flushed: a test reads them as they come
         }
 
-        // --- what is drawn ---
+        // --- requests and pictures ---
         void send(bool moving)
         {
             sent_ = document_.now();
@@ -479,7 +479,7 @@ namespace {
                 "Largest search radius (R, r). Speed: dark places search this far. Error: where fewer than k photons "
                 "lie within it, estimates are noisier instead of more blurred.");
             choice(setting_table::search, "search",
-                "Which photons (s): the k nearest; at least k, as the paper has it, which uses more photons and is a "
+                "Which photons (s): the k nearest; at least k, as in the paper, which uses more photons and is a "
                 "little too bright; or all within the radius.");
             choice(setting_table::filter, "filter",
                 "Weight by distance (w). Speed: the same. Error: constant is the least noisy and shows discs; "
@@ -492,16 +492,18 @@ namespace {
                 "is approximate.");
             if (s.map.builder == map_builder::route)
                 number(setting_table::slots, "slots", 1, 16,
-                    "Cells have slots x slots places. More lose fewer photons and take more memory.");
+                    "Cells have slots x slots slots. More lose fewer photons and take more memory.");
             ImGui::Separator();
             number(setting_table::spp, "eye rays", 1, 64,
                 "Eye rays per pixel. Speed: proportional. Error: smooth edges, less noise of glass and lamps.");
             number(setting_table::passes, "passes", 1, 1024,
-                "The picture is the mean of so many, each with photons and rays of its own. Speed: proportional. "
+                "The picture is the mean of this many passes, each with photons and rays of its own. Speed: "
+                "proportional. "
                 "Error: "
                 "noise and blotches fade as they come.");
             number(setting_table::light_samples, "light samples", 1, 256,
-                "Shadow rays a lamp and eye ray. Speed: proportional for direct light. Error: smoother half-shadows.");
+                "Shadow rays per lamp and eye ray. Speed: proportional for direct light. Error: smoother "
+                "half-shadows.");
             choice(setting_table::only, "light",
                 "Which part of the light is shown. Caustics or indirect light alone need a map of their own.");
             bool side = s.estimate.leaks.side;
@@ -510,7 +512,7 @@ namespace {
             tip("Reject photons that came from behind a surface. Speed: hardly any. Error: no light leaks through "
                 "walls.");
             measure(setting_table::exposure, "exposure, EV", -10, 10, "%+.1f", false,
-                "Brightness of the screen and of saved PNGs (E, e). Draws nothing anew.");
+                "Brightness of the screen and of saved PNGs (E, e). Needs no new drawing.");
             ImGui::Separator();
             draw_buttons();
             draw_curve();
@@ -528,11 +530,11 @@ namespace {
                     }
                 ImGui::EndCombo();
             }
-            tip("What draws (b). The same photons give the same picture on all; speed differs. cpu is the fastest "
+            tip("The backend (b). The same photons give the same picture on all; speed differs. cpu is the fastest "
                 "without a GPU.");
         }
 
-        /// The grid that is not fitted: the scene's, or one where it names none.
+        /// The grid that is not fitted: the scene's, or a default if it names none.
         glm::uvec3 cells_of_scene() const
         {
             return options_.begin.settings.map.grid == glm::uvec3(0) ? glm::uvec3(32)
@@ -559,21 +561,21 @@ namespace {
         {
             if (ImGui::Button("undo"))
                 undo();
-            tip("Takes the last change back (Ctrl+Z).");
+            tip("Undoes the last change (Ctrl+Z).");
             ImGui::SameLine();
             if (ImGui::Button("redo"))
                 redo();
-            tip("Does it again (Ctrl+Y).");
+            tip("Redoes it (Ctrl+Y).");
             ImGui::SameLine();
             if (ImGui::Button("save picture"))
                 save_picture();
-            tip("Writes the picture as it is, PNG and EXR, under a name that is free (p).");
+            tip("Writes the current picture, PNG and EXR, under an unused name (p).");
             ImGui::SameLine();
             if (ImGui::Button("save scene"))
                 save_scene();
-            tip("Writes the scene with its changes and settings as a scene file, under a name that is free (Ctrl+S).");
+            tip("Writes the scene with its changes and settings as a scene file, under an unused name (Ctrl+S).");
             ImGui::Checkbox("numbers over the picture", &overlay_);
-            tip("What runs, for how long, and what is left to do (o).");
+            tip("The current stage, its time, and the work left (o).");
             if (!message_.empty())
                 ImGui::TextWrapped("%s", message_.c_str());
         }
