@@ -1,5 +1,4 @@
-// A program with an OpenGL context of its own: the library sorts what lies in the program's texture, and hands back a
-// texture.
+// A program with an OpenGL context of its own: the library sorts the program's texture and returns a texture.
 #include <photongrid/backends/gl/gl.hpp>
 #include <photongrid/map/grid_index.hpp>
 
@@ -17,7 +16,7 @@ Function find(const char* name)
     return reinterpret_cast<Function>(eglGetProcAddress(name));
 }
 
-/// A context without a window; a program with one makes its own as ever.
+/// A context without a window; a program with a window creates its context as usual.
 bool make_context_current()
 {
     const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
@@ -54,9 +53,9 @@ int main()
     {
         photongrid::gl_backend backend({.context = photongrid::gl_context_kind::current});
         auto pairs = backend.adopt<glm::uvec2>(texture, 4); // a buffer over the program's texture
-        photongrid::bitonic_sort(backend, pairs);           // which is sorted now
+        photongrid::bitonic_sort(backend, pairs);           // the texture is now sorted
         auto first_of_key = photongrid::grid_index(backend, pairs, 40);
-        index = backend.release(std::move(first_of_key)); // the program's texture from here on
+        index = backend.release(std::move(first_of_key)); // now owned by the program
     }
 
     std::array<glm::uvec2, 4> sorted{};

@@ -1,5 +1,5 @@
-// A program with a Vulkan device of its own: the library sorts what lies in the program's buffer, and the program's
-// commands on the same queue read the result. Nobody waits between them.
+// A program with a Vulkan device of its own: the library sorts the program's buffer, and the program's commands on the
+// same queue read the result, without waiting in between.
 #include <photongrid/backends/vulkan/vulkan.hpp>
 
 #include <cstring>
@@ -14,7 +14,7 @@ void check(VkResult r, const char* what)
         throw std::runtime_error(std::string(what) + " failed with " + std::to_string(r));
 }
 
-/// What a program with Vulkan has anyway: a device, a queue, commands, buffers that the host can see.
+/// Objects that a Vulkan program has anyway: a device, a queue, commands, buffers that the host can see.
 struct application {
     photongrid::vulkan_handles handles;
     VkCommandPool pool = VK_NULL_HANDLE;
@@ -67,7 +67,7 @@ struct application {
         VkDevice device = VK_NULL_HANDLE;
         VkBuffer buffer = VK_NULL_HANDLE;
         VkDeviceMemory memory = VK_NULL_HANDLE;
-        void* seen = nullptr; ///< by the host
+        void* seen = nullptr; ///< the memory as mapped for the host
         memory_buffer() = default;
         memory_buffer(const memory_buffer&) = delete;
         memory_buffer& operator=(const memory_buffer&) = delete;
@@ -101,7 +101,7 @@ struct application {
         check(vkBindBufferMemory(handles.device, b.buffer, b.memory, 0), "vkBindBufferMemory");
         check(vkMapMemory(handles.device, b.memory, 0, VK_WHOLE_SIZE, 0, &b.seen), "vkMapMemory");
     }
-    /// Commands of the program's own; not waited for.
+    /// Submits commands of the program's own, without waiting for them.
     void submit_copy(VkBuffer from, VkBuffer to, VkDeviceSize bytes)
     {
         VkCommandBufferAllocateInfo info{};

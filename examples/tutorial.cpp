@@ -1,11 +1,11 @@
-// docs/guide/tutorial.md, whole: photons of one's own, and how bright they make a floor.
+// The whole program of docs/guide/tutorial.md: your own photons, and the irradiance that they give on a floor.
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/photon_map.hpp>
 
 #include <cstdio>
 #include <random>
 
-// A photon as your renderer has it: your vectors, your names. photongrid looks for `position` and `power`.
+// A photon of your renderer: your vectors, your names. photongrid reads `position` and `power`.
 struct my_vector {
     double x, y, z;
 };
@@ -16,7 +16,7 @@ struct my_photon {
 
 int main()
 {
-    // 100,000 photons of a lamp that sends 12 W to a floor of 2 m by 2 m, evenly: 3 W/m^2 in each channel.
+    // 100,000 photons of a lamp that gives 12 W uniformly to a floor of 2 m by 2 m: 3 W/m^2 in each channel.
     std::mt19937 random(2003);
     std::uniform_real_distribution<double> unit(0, 1);
     std::vector<my_photon> photons;

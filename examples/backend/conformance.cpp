@@ -1,4 +1,4 @@
-// Every test that a backend has to pass, on the tracing one.
+// Every test that a backend has to pass, on the tracing backend.
 #include "tracing_backend.hpp"
 
 #include <photongrid/backend_tests.hpp>

@@ -1,4 +1,4 @@
-// What a photon map and estimates from it ask of a backend: a table of verbs and kernels.
+// The calls that a photon map and estimates from it make to a backend: a table of verbs and kernels.
 #include "tracing_backend.hpp"
 
 #include <photongrid/backends/serial/serial.hpp>

@@ -10,13 +10,13 @@
 
 namespace photongrid::examples {
 
-/// What was asked of one verb with one kernel.
+/// The calls of one verb with one kernel.
 struct trace_entry {
     std::uint64_t calls = 0;
     std::uint64_t elements = 0; ///< over all passes
     std::uint64_t passes = 0;
     std::uint64_t bytes = 0; ///< uploaded, downloaded, or written by passes
-    double ms = 0;           ///< until the call returned; until it was done, where the tracer waits
+    double ms = 0;           ///< until the call returned, or until the work was done if the tracer waits
 };
 
 /// Has a backend of its own, made from the constructor's arguments; tracing_backend<B&> works on one of yours.
@@ -115,7 +115,7 @@ public:
 private:
     using clock = std::chrono::steady_clock;
 
-    /// What one element takes in all the buffers that a kernel writes.
+    /// Bytes of one element in all buffers that a kernel writes.
     template <class... Buffers>
     static constexpr std::uint64_t element_bytes(const std::tuple<Buffers&...>&)
     {

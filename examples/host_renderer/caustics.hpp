@@ -5,7 +5,7 @@
 
 namespace host {
 
-/// Caustic light of the scene, from so many photons of the lamp.
+/// Caustic light of the scene, from this number of photons emitted by the lamp.
 irradiance_source caustics_of(const scene& s, int photons, std::uint64_t seed);
 
 } // namespace host

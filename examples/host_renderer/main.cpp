@@ -1,4 +1,4 @@
-// The host's program. It says when to add caustics and knows nothing of how.
+// The host's program. It selects whether to add caustics, but does not know how.
 #include "caustics.hpp"
 
 #include <png.h>
@@ -19,7 +19,7 @@ unsigned char tone_mapped(double radiance)
     return static_cast<unsigned char>(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055) + 0.5);
 }
 
-/// Throws std::runtime_error where the file cannot be written.
+/// Throws std::runtime_error if the file cannot be written.
 void write_png(const std::string& path, const std::vector<host::vec3>& picture, int size)
 {
     std::vector<unsigned char> bytes;

@@ -79,7 +79,7 @@ std::vector<vec3> render(const scene& s, const render_settings& settings, const 
                 const int pixel = y * size + x;
                 random_stream random(
                     settings.seed, static_cast<std::uint64_t>(sample) << 32 | static_cast<std::uint64_t>(pixel));
-                // The picture's frame is the box's open front, 2 m a side at z = 1.
+                // The picture's frame is the box's open front, 2 m wide and high, at z = 1.
                 const vec3 through{2 * (x + random.next()) / size - 1, 2 - 2 * (y + random.next()) / size, 1};
                 auto& radiance = picture[static_cast<std::size_t>(pixel)];
                 radiance

@@ -7,17 +7,17 @@
 
 namespace host {
 
-/// Irradiance, W/m^2, of light that reaches a point by mirrors and glass alone. `normal`: unit vector, towards the side
-/// that is looked at. Called from many threads at once.
+/// Irradiance, W/m^2, of light that reaches a point by mirrors and glass alone. `normal`: unit vector, towards the
+/// visible side. Called from many threads at once.
 using irradiance_source = std::function<vec3(vec3 position, vec3 normal)>;
 
 struct render_settings {
-    int size = 400;   ///< pixels a side
-    int samples = 64; ///< paths a pixel
+    int size = 400;   ///< width and height, pixels
+    int samples = 64; ///< paths per pixel
     int threads = 1;
     std::uint64_t seed = 1;
-    /// Count the lamp where a path meets it by mirrors and glass after a diffuse surface. True to nature, but so few
-    /// paths do that they show as bright specks.
+    /// Count the lamp where a path reaches it by mirrors and glass after a diffuse surface. This is correct, but so few
+    /// paths do it that they show as bright specks.
     bool keeps_specks = false;
 };
 

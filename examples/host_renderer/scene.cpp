@@ -5,10 +5,10 @@
 namespace host {
 
 namespace {
-    constexpr double least_distance = 1e-6; // m; nearer ones are the surface that the ray starts on
+    constexpr double least_distance = 1e-6; // m; nearer hits are on the surface that the ray starts on
     constexpr double index_of_refraction = 1.5;
 
-    /// Where a ray first meets each shape, beyond least_distance; nothing if it does not.
+    /// The first intersection of a ray with each shape beyond least_distance; empty if there is none.
     std::optional<double> distance_to(const sphere& s, const ray& r)
     {
         const vec3 to_middle = s.middle - r.origin;
@@ -52,7 +52,7 @@ namespace {
     vec3 normal_at(const rectangle& q, vec3) { return q.normal(); }
     vec3 normal_at(const tube& c, vec3 p) { return (1 / c.radius) * vec3{p.x - c.foot.x, 0, p.z - c.foot.z}; }
 
-    /// Reflectance of glass, not polarized, by the cosines and indices on both sides (Fresnel).
+    /// Reflectance of glass, unpolarized, by the cosines and indices on both sides (Fresnel).
     double fresnel(double cos_in, double cos_out, double index_in, double index_out)
     {
         const double s = (index_in * cos_in - index_out * cos_out) / (index_in * cos_in + index_out * cos_out);

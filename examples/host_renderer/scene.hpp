@@ -1,4 +1,4 @@
-// What the host draws: spheres, rectangles and tubes, diffuse, mirrors or glass, and one lamp.
+// The host's scene: spheres, rectangles and tubes, diffuse, mirrors or glass, and one lamp.
 #pragma once
 
 #include "vec3.hpp"
@@ -27,7 +27,7 @@ struct sphere {
     double radius; ///< m
     material of;
 };
-/// Its front, where a lamp shines to, is the side of cross(a, b).
+/// Its front, the side on which a lamp emits, is the side of cross(a, b).
 struct rectangle {
     vec3 corner, a, b; ///< a, b: edges, at right angles, m
     material of;
@@ -68,8 +68,8 @@ struct scene {
 /// A box with a glass ball and a gold ring.
 scene box_scene();
 
-/// How light goes on from a mirror or from glass, whichever way it travels. Glass reflects or refracts at random, by
-/// Fresnel's equations, so that what is left of the light is the surface's colour alone.
+/// The next ray from a mirror or from glass, for light in either direction. Glass reflects or refracts at random, by
+/// Fresnel's equations, so only the surface's colour scales the light.
 ray specular_bounce(const ray& r, const hit& h, random_stream& random);
 
 } // namespace host

@@ -50,7 +50,7 @@ private:
     std::uint64_t state_;
 };
 
-/// A direction about the unit vector `normal`, with density cosine / pi.
+/// A direction in the hemisphere of the unit vector `normal`, with density cosine / pi.
 inline vec3 cosine_direction(vec3 normal, random_stream& random)
 {
     const vec3 aside = normalized(cross(std::abs(normal.x) < 0.5 ? vec3{1, 0, 0} : vec3{0, 1, 0}, normal));

@@ -42,7 +42,7 @@ Exit codes:
         return name;
     }
 
-    // What --help says of a setting that is not given.
+    // The default that --help shows for a setting.
     const char* without(in_scenes use) { return use == in_scenes::never ? "" : "; default: as the scene has it"; }
 
     /// An option for a row of the table of settings.
@@ -66,7 +66,7 @@ Exit codes:
             ->type_name(type_of(row.values));
     }
 
-    /// Scene, backend and settings: what a picture depends on, in a file or in a window.
+    /// Options for scene, backend and settings, common to `render` and `view`.
     void add_picture(CLI::App& to, render_options& o)
     {
         to.add_option("scene", o.scene_path, "scene file")->required()->type_name("SCENE.json");
@@ -191,8 +191,8 @@ command read_command_line(int argc, char** argv)
     add_render(render_command, render);
 
     view_options view;
-    auto& view_command = *app.add_subcommand(
-        "view", "Opens a window on a scene: move camera, things and lights, change settings, watch the light settle");
+    auto& view_command = *app.add_subcommand("view",
+        "Opens a window on a scene: move camera, objects and lights, change settings, watch the picture converge");
     add_view(view_command, view);
 
     reference_options reference;
@@ -216,8 +216,8 @@ command read_command_line(int argc, char** argv)
     auto& check_command = *app.add_subcommand("check", "Reads and checks a scene file");
     check_command.add_option("scene", check_scene.scene_path, "scene file")->required()->type_name("SCENE.json");
 
-    auto& devices_command
-        = *app.add_subcommand("devices", "Every backend and device that works here, its limits, and why others do not");
+    auto& devices_command = *app.add_subcommand(
+        "devices", "Lists every backend and device that works here with its limits, and why others do not");
 
     try {
         app.parse(argc, argv);

@@ -1,4 +1,4 @@
-// The command line: what was asked for, as data.
+// The parsed command line, as data.
 #pragma once
 
 #include "picture_series.hpp"
@@ -26,11 +26,11 @@ enum exit_code {
     interrupted = 130
 };
 
-/// `render`. What is empty is as the scene file has it.
+/// Options of `render`. Empty members keep the scene file's value.
 struct render_options {
     std::string scene_path, backend = "auto", device;
     std::optional<std::uint32_t> threads;
-    std::vector<std::function<void(render_settings&)>> settings; ///< that are given, each to be put into the scene's
+    std::vector<std::function<void(render_settings&)>> settings; ///< the settings given; each changes the scene's
     bool aov = false, as_paper = false;
     std::vector<std::string> outputs;
     std::string stats, progressive, strip, reference, resume;
@@ -42,11 +42,11 @@ struct render_options {
 
 /// `view`.
 struct view_options {
-    render_options picture; ///< but for what becomes of it
+    render_options picture; ///< without the members for output
     std::string journal;
 };
 
-/// `reference`. What is empty is as the scene file has it, or as reference_settings has it.
+/// Options of `reference`. Empty members keep the value of the scene file or of reference_settings.
 struct reference_options {
     std::string scene_path;
     std::optional<std::uint32_t> spp, threads, depth, photon_depth, seed;
@@ -71,14 +71,14 @@ struct check_options {
 
 struct devices_options {};
 
-/// What to do; or the exit code where the command line has been answered already (help, version, mistake).
+/// The command to run, or the exit code if parsing has already printed the answer (help, version, mistake).
 using command = std::variant<exit_code, render_options, view_options, reference_options, compare_options, check_options,
     devices_options>;
 
 command read_command_line(int argc, char** argv);
 
-/// The scene's settings, or with --as-paper the paper's estimate in them, with those of the command line in their
-/// place. Throws std::invalid_argument.
+/// The scene's settings, with the paper's estimate for --as-paper, and overridden by those of the command line. Throws
+/// std::invalid_argument.
 render_settings settings_for(const scene& s, const render_options& o);
 
 } // namespace photongrid

@@ -24,8 +24,9 @@ namespace {
     volatile std::sig_atomic_t stop_asked = 0;
     std::time_t stop_time = 0;
 
-    // The first signal asks; the renderer looks between passes. One that comes seconds later finds a pass that does not
-    // end and takes the process down; files are only ever put in place whole.
+    // The first signal requests a stop, which the renderer checks between passes. A second one, seconds later, means
+    // that a pass does not end: it ends the process. Output files are always complete, because they are renamed into
+    // place.
     extern "C" void ask_to_stop(int)
     {
         timespec now{};
@@ -45,7 +46,7 @@ namespace {
         sigemptyset(&action.sa_mask);
         sigaction(SIGINT, &action, nullptr);
         sigaction(SIGTERM, &action, nullptr);
-        // A file beyond `ulimit -f` is then an error of write(), said as such, and no half-written file stays behind.
+        // A file beyond `ulimit -f` is then an error of write(), which is reported, and no partial file remains.
         std::signal(SIGXFSZ, SIG_IGN);
     }
 
@@ -113,7 +114,7 @@ int main(int argc, char** argv)
         std::cerr << "photongrid: interrupted; no picture written\n";
         return interrupted;
     } catch (const scene_error& e) {
-        std::cerr << e.what() << '\n'; // as compilers write it, so that editors find the place
+        std::cerr << e.what() << '\n'; // in compilers' format, so that editors can jump to the line
         return scene_file_error;
     } catch (const backend_error& e) {
         say(e);

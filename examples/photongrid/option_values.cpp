@@ -14,7 +14,8 @@ double parsed_number(const std::string& option, const std::string& text, const c
 }
 
 namespace {
-    // Of --leaks min_cosine and flattening where no value is given: 60 degrees, and a disc four times as wide as high.
+    // Defaults of --leaks min_cosine and flattening if given without a value: 60 degrees, and a disc four times as wide
+    // as high.
     constexpr float usual_cosine = 0.5f, usual_flattening = 4;
 
     /// Whole numbers with `separator` between them.

@@ -15,7 +15,7 @@
 
 namespace photongrid {
 
-// std::from_chars, so that "010" is ten, "-1" no number and "1e9x" an error.
+// By std::from_chars, so that "010" is ten, "-1" is not a number and "1e9x" is an error.
 template <class T>
 T parsed(const std::string& option, std::string_view text, const char* expected)
 {
@@ -42,7 +42,7 @@ void add_number(CLI::App& to, const std::string& option, std::optional<double>& 
 std::uint32_t parsed_setting(const std::string& option, const std::string& text, const setting_table::whole_range&);
 double parsed_setting(const std::string& option, const std::string& text, const setting_table::real_range&);
 double parsed_setting(const std::string& option, const std::string& text, const setting_table::any_length&);
-/// Width and height in what are otherwise the settings of a default.
+/// Default settings with this width and height.
 glm::uvec2 parsed_setting(const std::string& option, const std::string& text, const setting_table::pixels&);
 glm::uvec3 parsed_setting(const std::string& option, const std::string& text, const setting_table::cells&);
 leak_policy parsed_setting(const std::string& option, const std::string& text, const setting_table::policies&);

@@ -17,26 +17,25 @@ struct crop {
     std::uint32_t x = 0, y = 0, width = 0, height = 0;
 };
 
-/// What becomes of a picture's course. Empty members are off.
+/// Which files record the running estimate. Empty members are off.
 struct series_options {
     std::string folder;             ///< for numbered pictures and the table
-    std::string stem;               ///< of their names
+    std::string stem;               ///< of the files' names
     std::string strip;              ///< a picture of several stages side by side, as the paper's figure 8
-    std::optional<crop> strip_crop; ///< of each; all of it where nothing is given
-    std::string reference;          ///< a picture to measure errors against
+    std::optional<crop> strip_crop; ///< of each picture; empty: the whole picture
+    std::string reference;          ///< a picture to compute errors against
     glm::uvec2 size{0};             ///< of all pictures
     double exposure = 0;            ///< EV
-    double every_ms = 0;            ///< between pictures; 0: each, but none sooner than a tenth of the time so far
+    double every_ms = 0; ///< between pictures; 0: every picture, but at least a tenth of the elapsed time apart
 };
 
-/// Writes pictures STEM-0001.png, STEM-0002.png … as they come and, at the end, STEM.csv with a line for each: its
-/// file, when it was there, in ms since the series began less what writing has taken, its relMSE to the last picture,
-/// and to the reference.
+/// Writes pictures STEM-0001.png, STEM-0002.png … as they are made and, at the end, STEM.csv with a line for each: its
+/// file, its time in ms since the series began without the time for writing, its relMSE to the last picture, and to the
+/// reference.
 class picture_series {
 public:
-    /// \throws file_error when the folder cannot be made or the reference not be read, std::invalid_argument when the
-    /// reference
-    ///         is of another size or the crop does not lie in the picture.
+    /// \throws file_error when the folder cannot be made or the reference cannot be read, std::invalid_argument when the
+    ///         reference has another size or the crop is not inside the picture.
     explicit picture_series(series_options o);
 
     bool enabled() const { return !options_.folder.empty() || !options_.strip.empty(); }
@@ -47,7 +46,7 @@ public:
     /// \throws file_error.
     void finish(const image& picture);
 
-    /// ms of the stages in the strip.
+    /// Times of the stages in the strip, ms.
     const std::vector<double>& strip_times() const { return strip_times_; }
 
 private:

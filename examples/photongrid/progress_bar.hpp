@@ -1,4 +1,4 @@
-// A line on the terminal that says which stage runs and how far it is.
+// A line on the terminal that shows the current stage and its progress.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace photongrid {
 
 class progress_bar {
 public:
-    /// Draws on stderr where that is a terminal, and not at all when `quiet`.
+    /// Draws on stderr if that is a terminal and not `quiet`.
     explicit progress_bar(bool quiet) : on_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
     progress_bar(const progress_bar&) = delete;
     progress_bar& operator=(const progress_bar&) = delete;

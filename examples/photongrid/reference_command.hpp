@@ -7,7 +7,7 @@
 
 namespace photongrid {
 
-/// Renders, writes the pictures and says what was done. Throws as `render` does.
+/// Renders, writes the pictures and prints a summary. Throws as `render` does.
 exit_code run_reference(const reference_options& o, const std::function<bool()>& cancelled);
 
 } // namespace photongrid

@@ -14,13 +14,13 @@
 namespace photongrid {
 
 namespace {
-    /// Where compiled kernels are kept: "" for nowhere.
+    /// The folder for compiled kernels; "": none.
     std::string shader_cache_folder(const render_options& o)
     {
         if (o.shader_cache)
             return *o.shader_cache == "none" ? "" : *o.shader_cache;
         if (const char* caches = std::getenv("XDG_CACHE_HOME");
-            caches != nullptr && caches[0] == '/') // else not valid, says its specification
+            caches != nullptr && caches[0] == '/') // relative paths are invalid by its specification
             return std::string(caches) + "/photongrid";
         if (const char* home = std::getenv("HOME"); home != nullptr && home[0] == '/')
             return std::string(home) + "/.cache/photongrid";
@@ -29,7 +29,7 @@ namespace {
 
     std::string percent(double fraction) { return std::to_string(static_cast<int>(100 * fraction)) + " %"; }
 
-    /// A picture on its way, and the file that it can go on from.
+    /// An unfinished picture, and the file from which it can be continued.
     class resumable {
     public:
         /// An empty path: there is no file.
@@ -44,7 +44,7 @@ namespace {
             if (auto state = read_resume_file(path_, identity_))
                 drawing_.resume(std::move(*state));
         }
-        /// Keeps what there is, if it is more than nothing. Returns whether there is a file.
+        /// Saves the state if any work is done. Returns whether there is a file.
         bool keep()
         {
             if (path_.empty())
@@ -55,13 +55,13 @@ namespace {
                 write_resume_file(path_, identity_, state);
             return std::filesystem::exists(path_);
         }
-        /// The same now and then, so that a machine that fails costs half a minute.
+        /// Saves every half minute, so that a crash of the machine loses no more than that.
         void keep_sometimes()
         {
             if (!path_.empty() && clock::now() - saved_ > std::chrono::seconds(30))
                 keep();
         }
-        /// The picture is there: the file has served.
+        /// The picture is complete: removes the file.
         void done() const
         {
             if (!path_.empty())

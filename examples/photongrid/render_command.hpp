@@ -8,14 +8,14 @@
 
 namespace photongrid {
 
-/// Renders, writes the pictures and says what was done. When `stop_asked` says so, what there is is written, or kept
-/// for --resume. Throws scene_error, file_error, backend_error, render_cancelled when there is no picture yet.
+/// Renders, writes the pictures and prints a summary. When `stop_asked` is set, writes the picture so far, or saves it
+/// for --resume. Throws scene_error, file_error, backend_error, or render_cancelled if there is no picture yet.
 exit_code run_render(const render_options& o, const std::function<bool()>& stop_asked);
 
-/// The renderer that --backend and its companions name; says on stderr what `auto` chose.
+/// The renderer chosen by --backend and related options; prints to stderr what `auto` chose.
 renderer_options renderer_asked(const render_options& o);
 
-/// A scene's name as a file's.
+/// The scene's name made into a file name.
 std::string file_stem(const std::string& name);
 
 } // namespace photongrid

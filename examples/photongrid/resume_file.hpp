@@ -1,4 +1,4 @@
-// --resume: a picture that is not finished, in a file, to go on with another day.
+// --resume: an unfinished picture in a file, to be continued later.
 #pragma once
 
 #include <photongrid/io/image_file.hpp>
@@ -11,14 +11,14 @@
 
 namespace photongrid {
 
-/// What a picture's bytes depend on: program, backend, device, scene and settings. One line of JSON.
+/// Everything that a picture's bytes depend on: program, backend, device, scene and settings. One line of JSON.
 std::string picture_identity(const scene& s, const render_settings& settings, const capabilities& caps);
 
-/// Writes a state, whole or not at all. Throws file_error.
+/// Writes a state; on failure no partial file is left. Throws file_error.
 void write_resume_file(const std::string& path, const std::string& identity, const render_state& state);
 
-/// Reads the state of the picture with this identity; nothing where there is no such file. Throws file_error for a file
-/// that is damaged, or another picture's.
+/// Reads the state of the picture with this identity; empty if there is no such file. Throws file_error for a file
+/// that is damaged or belongs to another picture.
 std::optional<render_state> read_resume_file(const std::string& path, const std::string& identity);
 
 } // namespace photongrid

@@ -60,7 +60,7 @@ image_notes picture_notes(const scene& s, const render_settings& settings, const
 
 std::uint64_t peak_memory_bytes()
 {
-    // getrusage's figure outlives exec: a small program started by a large one would report the large one's.
+    // getrusage's value survives exec: a small program started by a large one would report the large one's.
     std::ifstream status("/proc/self/status");
     for (std::string word; status >> word;)
         if (std::uint64_t kib = 0; word == "VmHWM:" && status >> kib)

@@ -1,4 +1,4 @@
-// --stats: what a render did, as JSON; and the same facts as notes in an EXR.
+// --stats: statistics of a render as JSON, and as attributes of an EXR.
 #pragma once
 
 #include <photongrid/backends/any/any.hpp>

@@ -1,5 +1,5 @@
 // Density and nearest neighbours of a point cloud that has nothing to do with photons: a forest of 200,000 trees, 500
-// to the hectare in the west and 150 in the east, where they are taller.
+// per hectare in the west and 150 in the east, where they are taller.
 #include "forest.hpp"
 
 #include <photongrid/backends/serial/serial.hpp>

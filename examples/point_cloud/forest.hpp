@@ -1,4 +1,4 @@
-// What photongrid can say of a forest: nothing here is light.
+// A survey of a forest by photongrid, without any light.
 #pragma once
 
 #include "forest_kernels.hpp"
@@ -10,13 +10,13 @@
 
 #include <vector>
 
-/// A tree as a forester has it.
+/// A tree in a forester's data.
 struct tree {
     double east, north; // m
     float height;       // m
 };
 
-/// How photongrid reads it: as a photon of power 1, so that an estimate counts trees.
+/// How photongrid reads a tree: as a photon of power 1, so that an estimate counts trees.
 template <>
 struct photongrid::photon_reader<tree> {
     static glm::dvec3 position(const tree& t) { return {t.east, t.north, 0}; }
@@ -26,7 +26,7 @@ struct photongrid::photon_reader<tree> {
 /// The survey of one query point.
 struct survey {
     float trees_per_hectare = 0;
-    float standard_error = 0;           ///< of it
+    float standard_error = 0;           ///< of the density
     float mean_height = 0;              ///< m
     std::vector<std::uint32_t> nearest; ///< indices into the vector of trees
     std::vector<float> distances;       ///< m
@@ -42,13 +42,13 @@ std::vector<survey> survey_forest(
     const auto points = photongrid::upload_points(device, queries);
     const photongrid::knn_settings settings{.k = k, .errors = true};
 
-    // Density, with its error: trees a square metre.
+    // Density, with its error: trees per square metre.
     const auto density = photongrid::knn_grid_estimate(device, map, points, settings);
 
     // The neighbours themselves.
     const auto neighbours = photongrid::knn_neighbours(device, map, points, settings);
 
-    // What the library does not know: their mean height, by a kernel of our own.
+    // A value that the library does not compute: their mean height, by a kernel of our own.
     std::vector<float> heights;
     for (const auto& t : trees)
         heights.push_back(t.height);

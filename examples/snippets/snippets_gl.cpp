@@ -27,7 +27,7 @@ void snippets(photongrid::gl_backend& device)
 
     //! [texture_of]
     const photongrid::gl_texture t
-        = device.texture_of(sums); // t.name for glBindTextureUnit(); the buffer goes on owning it
+        = device.texture_of(sums); // t.name for glBindTextureUnit(); the buffer still owns it
     //! [texture_of]
     expect(t.name != 0 && t.width == 4 && t.height == 1 && t.internal_format == GL_R32UI, "texture_of");
 
@@ -41,7 +41,7 @@ void snippets(photongrid::gl_backend& device)
         = device.adopt<photongrid::uint>(mine.name, 4); // a buffer over a texture of the caller's, without a copy
     //! [adopt]
     expect(device.download(again) == expected && device.texture_of(again).name == mine.name, "adopt");
-} // the context goes with the backend, and the texture with the context
+} // the backend destroys its context, and the context the texture
 
 } // namespace
 

@@ -83,7 +83,7 @@ void snippets(const photongrid::vulkan_handles& handles)
         expect(device.download(sums) == expected, "callers_device");
 
         //! [handle]
-        const VkBuffer buffer = device.handle(sums); // what is submitted to the queue from here on sees the sums
+        const VkBuffer buffer = device.handle(sums); // commands submitted to the queue after this see the sums
         //! [handle]
         expect(buffer != VK_NULL_HANDLE, "handle");
 

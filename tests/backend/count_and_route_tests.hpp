@@ -1,4 +1,4 @@
-// count, route, and what a backend says of itself.
+// count, route, and what a backend reports about itself.
 #pragma once
 
 #include "verbs.hpp"
@@ -84,7 +84,7 @@ TYPED_TEST_P(verbs, a_route_keeps_the_first_draws_and_adds_up_all)
                     }
 }
 
-// --- what it says of itself
+// --- reports
 // -------------------------------------------------------------------------------------------
 
 TYPED_TEST_P(verbs, passes_are_counted_by_kernel)

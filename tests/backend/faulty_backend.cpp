@@ -129,7 +129,7 @@ namespace {
             run();
             return b.calls();
         }
-        /// The n-th call fails; returns what is said.
+        /// Makes the n-th call fail; returns the error message.
         std::string failure(fault f, std::uint64_t n)
         {
             b.set(f, n);

@@ -1,4 +1,4 @@
-// A backend that fails on purpose: wraps any other and, at the n-th call of a kind, does what a device may do to us.
+// A backend that fails on purpose: wraps any other and, at the n-th call of a kind, fails as a device may fail.
 #pragma once
 
 #include <photongrid/backend/backend.hpp>
@@ -25,7 +25,7 @@ enum class fault {
 /// spoil).
 using spoils_whole = std::function<bool(std::string_view kernel)>;
 
-/// B, but for the fault that is set. What it throws says "injected".
+/// B with an optional fault. Its exceptions contain "injected".
 template <backend B>
 class faulty_backend {
 public:
@@ -34,7 +34,7 @@ public:
 
     explicit faulty_backend(B& inner) : inner_(&inner) {}
 
-    /// From now on counts calls, and at the n-th (from 1) that `f` counts does what it says. n = 0: never.
+    /// From now on counts calls, and at the n-th (from 1) that `f` counts, fails as `f` says. n = 0: never.
     void set(fault f, std::uint64_t n, std::uint64_t wrong = 0, spoils_whole whole = {})
     {
         fault_ = f;

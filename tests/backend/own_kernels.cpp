@@ -36,7 +36,7 @@ std::vector<tree> random_trees(std::size_t n)
     return trees;
 }
 
-/// All trees, nearest first: squared distance in double, place.
+/// All trees, nearest first: squared distance in double, index.
 std::vector<std::pair<double, std::size_t>> by_distance(const std::vector<tree>& trees, glm::vec3 place)
 {
     std::vector<std::pair<double, std::size_t>> all;

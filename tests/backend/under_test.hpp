@@ -78,7 +78,7 @@ private:
     B* instance_ = nullptr;
 };
 
-/// What is so unless a tag says otherwise: sorts take the network's passes, and sums of light equal serial's to the bit
+/// Defaults unless a tag says otherwise: sorts take the network's passes, and sums of light equal serial's to the bit
 /// where division rounds correctly.
 template <class Tag>
 constexpr bool sorts_by_network()

@@ -60,7 +60,7 @@ TYPED_TEST_P(verbs, memory_is_given_back)
         first = std::move(second);
         return b.template count<verb_kernels::is_marked>(n, {.marks = ~0u}, reads(first));
     };
-    use(); // what a backend keeps for its own from the first use on
+    use(); // memory that a backend keeps after its first use
     b.finish();
     const auto before = b.bytes();
     for (int again = 0; again < 3; ++again)

@@ -1,5 +1,5 @@
-// The kernels of tests/backend/verbs, by which verb_tests.hpp asks a backend what it does. Each carries its text, so
-// that no backend has to be told of them.
+// The kernels of tests/backend/verbs, with which verb_tests.hpp tests a backend. Each carries its text, so that no
+// backend has to be told of them.
 #pragma once
 
 #include <photongrid/backend/kernel.hpp>

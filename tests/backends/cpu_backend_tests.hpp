@@ -20,7 +20,7 @@ namespace {
     using glm::uvec3;
     using glm::vec4;
 
-    /// Whatever a search finds, of every kind.
+    /// All results of a search.
     struct findings {
         std::vector<vec4> irradiance, errors;
         std::vector<uvec2> used, cells;
@@ -196,8 +196,7 @@ TEST(cpu_backend, maps_equal_the_generic_ones)
 
 TEST(cpu_backend, the_growing_search_visits_and_holds_what_serials_does)
 {
-    // What the result depends on, the order of visits among it: any grid, any k, with photons enough in a
-    // cell or few.
+    // The result depends on the order of visits: any grid, any k, with many or few photons per cell.
     cpu_backend b(2);
     serial_backend serial;
     EXPECT_TRUE(rc::check("held, visited, radius: the same bits", [&] {

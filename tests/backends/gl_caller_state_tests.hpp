@@ -178,7 +178,7 @@ namespace {
         EXPECT_EQ(gl.GetError(), GLenum(GL_NO_ERROR));
     }
 
-    /// What a verb that draws says, or nothing.
+    /// The error message of a verb that draws, or "".
     std::string said(gl_backend& b, buffer_of<gl_backend, glm::uvec2>& pairs)
     {
         try {

@@ -1,4 +1,4 @@
-// What the caller is refused, and textures that go from one side to the other.
+// Errors for unsuitable state of the caller, and textures exchanged with the caller.
 #pragma once
 
 #include "gl_caller.hpp"

@@ -84,7 +84,7 @@ TEST(bitonic_sort_on_vulkan, takes_one_to_four_steps_a_pass)
     EXPECT_THROW((void)bitonic_sort(*b, buffer, 5), std::invalid_argument);
 }
 
-/// The kernels of a scene hold code only for what the scene has.
+/// The kernels of a scene contain code only for its features.
 TEST(specialisation, a_scene_without_glass_and_lamps_has_smaller_kernels)
 {
     std::string reason;

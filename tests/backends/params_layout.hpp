@@ -1,4 +1,4 @@
-// Where the members of a kernel's Params stand: in C++, by taking the struct apart, and in its SPIR-V.
+// Offsets of the members of a kernel's Params: in C++, by taking the struct apart, and in its SPIR-V.
 #pragma once
 
 #include <photongrid/backends/vulkan/spirv.hpp>

@@ -1,4 +1,4 @@
-// What the Vulkan backend makes of kernels.
+// Kernels as compiled by the Vulkan backend.
 #pragma once
 
 #include "vulkan_under_test.hpp"

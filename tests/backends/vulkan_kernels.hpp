@@ -55,7 +55,7 @@ void expect_valid(vulkan_backend& b, kernel_list<K...>)
     (one(std::type_identity<K>{}), ...);
 }
 
-// Params travel as bytes, to GL too: std140 and std430 place scalars, vectors and structs of whole 16 bytes alike.
+// Params are passed as bytes, to GL too: std140 and std430 place scalars, vectors and structs of whole 16 bytes alike.
 template <class... K>
 void expect_equal_layouts(vulkan_backend& b, kernel_list<K...>)
 {

@@ -103,7 +103,7 @@ TEST_F(vulkan, passes_over_unfinished_elements_fall_and_can_be_resumed)
     }
 }
 
-/// Neighbours of a subgroup tell each other the truth, in all of `run` and `run_until_done`, of any number of elements,
+/// Neighbours of a subgroup exchange correct values, in all of `run` and `run_until_done`, of any number of elements,
 /// done or not; and a group is one element where the switch is off or subgroups are.
 TEST_F(vulkan, elements_of_a_group_hear_of_each_other)
 {

@@ -41,7 +41,7 @@ TEST_KERNEL(
         return state.x == 0u;
     } void kernel(uint i) { state = uvec2(state.x - args.step, state.y + i); })
 
-// What the elements of a group tell each other, for as many passes as the state says.
+// Values that the elements of a group exchange, for as many passes as the state says.
 TEST_KERNEL(
     group_probe, struct Params { uint unused; }; PARAMS(Params) IN_GROUPS(3) INPUT(0, uint, numbers) STATE(0, uvec2,
         state) OUTPUT(1, uvec4, over_all) OUTPUT(2, uvec4, of_lanes) bool done() { return state.x == 0u; } uint weighed;

@@ -1,4 +1,4 @@
-// What the estimates promise beyond the paper's: exact k, kernels, bias, leak policies, standard errors. References:
+// Guarantees of the estimates beyond the paper's: exact k, kernels, bias, leak policies, standard errors. References:
 // brute force in double over float distances, FLANN, statistics of uniform fields. Included by each on_<backend>.cpp.
 #pragma once
 #include "exact_search_tests.hpp"

@@ -68,7 +68,7 @@ TYPED_TEST_P(estimators, exact_k_finds_flanns_photons_on_every_distribution)
 
 TYPED_TEST_P(estimators, ties_at_the_kth_distance_go_by_id)
 {
-    // 70,000 photons at one place, 20 nearer: of the k = 520 nearest, 500 are the tied ones with the smallest ids.
+    // 70,000 photons at one point, 20 nearer: of the k = 520 nearest, 500 are the tied ones with the smallest ids.
     auto& b = this->b();
     photon_set set;
     set.g = make_grid(glm::vec3(0), glm::vec3(1), {3, 3, 3});

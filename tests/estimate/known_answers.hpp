@@ -33,7 +33,7 @@ struct brute_estimate {
 /// precision, in the order that photon_distance.glsl promises.
 std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std::size_t id, const leak_policy& leaks);
 
-/// `at_least_radius2`: what the at-least-k search says it used, since that depends on the order of cells.
+/// `at_least_radius2`: the radius that the at-least-k search reports, since that depends on the order of cells.
 brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>& in_map,
     const std::vector<glm::vec4>& powers, std::size_t q, const knn_settings& k, float at_least_radius2);
 

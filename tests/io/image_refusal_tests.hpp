@@ -19,7 +19,7 @@ namespace {
         EXPECT_EQ(refusal([&] { check_image_path(path("a.png")); }), "");
     }
 
-    // A file-size limit stands for a full disk.
+    // A file-size limit simulates a full disk.
     TEST_F(image_file, a_failed_write_leaves_the_old_file)
     {
         write_text(path("a.pfm"), "old");

@@ -1,4 +1,4 @@
-// What the reader of scene files promises for any bytes at all. The fuzzer (fuzz_scene.cpp) and the replay of the
+// Guarantees of the reader of scene files for arbitrary bytes. The fuzzer (fuzz_scene.cpp) and the replay of the
 // committed corpus (scene_corpus.cpp) hold it to the same function.
 #pragma once
 
@@ -13,7 +13,7 @@
 namespace photongrid::testing {
 
 namespace detail {
-    /// A message for people: it names the file and a place that exists, is no novel, and cannot upset a terminal.
+    /// A message for users: it names the file and an existing line, is short, and has no control characters.
     inline std::string broken_in_message(const scene_error& e, std::string_view text)
     {
         const std::string_view said = e.what();
@@ -78,7 +78,7 @@ namespace detail {
     }
 } // namespace detail
 
-/// Reads `text` as a scene and lays it out for a device. Returns what was broken of the promise, or "": either a good
+/// Reads `text` as a scene and lays it out for a device. Returns the violated guarantee, or "": either a good
 /// scene_error, or a scene that check() takes and that lay_out() takes or refuses with std::invalid_argument.
 inline std::string broken_promise(std::string_view text)
 {

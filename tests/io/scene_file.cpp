@@ -1,4 +1,4 @@
-// The reader of scene files: what it takes, and the place and words of every kind of refusal.
+// The reader of scene files: accepted files, and the line and text of every kind of error.
 #include "scene_reading_tests.hpp"
 #include "scene_refusal_tests.hpp"
 #include "scene_schema_tests.hpp"

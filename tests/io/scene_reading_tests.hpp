@@ -1,4 +1,4 @@
-// What a scene file holds.
+// The contents of a scene file.
 #pragma once
 
 #include "scene_texts.hpp"

@@ -123,7 +123,7 @@ namespace {
         EXPECT_THROW(read_scene("/dev/zero"), scene_error);
     }
 
-    // As many as the limit are taken, one more is refused at its own place. Each part stands on a line of its own.
+    // The limit is accepted, one more is rejected at its own line. Each part is on a line of its own.
     TEST(scene_file, limits_the_number_of_parts)
     {
         const auto times = [](std::size_t n, const auto& one) {

@@ -6,7 +6,7 @@
 namespace photongrid {
 namespace {
 
-    // Whatever is cut off or changed, the reader answers with a scene or a scene_error.
+    // For any truncated or changed file the reader returns a scene or throws a scene_error.
     TEST(scene_file, survives_damage)
     {
         const auto whole = text(good);

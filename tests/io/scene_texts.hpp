@@ -43,7 +43,7 @@ namespace {
         return all;
     }
 
-    /// What the reader says of `content`, or "" when it takes it.
+    /// The reader's error for `content`, or "" if it accepts it.
     std::string refusal(const std::string& content)
     {
         try {
@@ -54,7 +54,7 @@ namespace {
         }
     }
 
-    /// What it says of `good` with `from` replaced by `to` in one line (counted from 1).
+    /// The reader's error for `good` with `from` replaced by `to` in one line (counted from 1).
     std::string refusal(std::size_t line, const std::string& from, const std::string& to)
     {
         auto lines = good;

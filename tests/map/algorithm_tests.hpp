@@ -1,5 +1,5 @@
-// What the four algorithms promise, on any backend. References: std::, brute force, FLANN; then the serial backend, bit
-// for bit. Included by each on_<backend>.cpp, which instantiates the suite for its tags.
+// Guarantees of the four algorithms, on any backend. References: std::, brute force, FLANN; then the serial backend,
+// bit for bit. Included by each on_<backend>.cpp, which instantiates the suite for its tags.
 #pragma once
 #include "buffer_tests.hpp"
 #include "route_tests.hpp"

@@ -1,5 +1,5 @@
-// Photon maps in files that somebody or something has changed: an error each, that says what is wrong; never a crash, a
-// hang or another map. The serial backend; map_file_tests.hpp has all of them.
+// Damaged or modified map files: each gives an error that names the fault; never a crash, a hang or another map. The
+// serial backend; map_file_tests.hpp has all of them.
 #include "../backends/on_serial.hpp"
 #include "map_file_tests.hpp"
 
@@ -14,7 +14,7 @@ namespace {
             save_map(b, sorted_map(b, upload_photons(b, set), set.g), folder / "map", "a note of 18 bytes");
             whole = bytes_of(folder / "map");
         }
-        /// What load_map() says of these bytes; empty when it takes them.
+        /// The error of load_map() for these bytes; empty if it accepts them.
         std::string complaint(const std::string& bytes)
         {
             write_bytes(folder / "changed", bytes);

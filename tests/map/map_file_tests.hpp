@@ -1,4 +1,4 @@
-// Photon maps in files: whatever comes back is what was saved, or an error that says what is wrong. Included by each
+// Photon maps in files: loading returns what was saved, or an error that names the fault. Included by each
 // on_<backend>.cpp.
 #pragma once
 

@@ -24,7 +24,7 @@ namespace {
         glm::vec3 normal;
     };
 
-    /// Photons in a slab; on a lattice of few steps where `ties` are wanted.
+    /// Photons in a slab; on a coarse lattice if `ties` is set.
     std::vector<host_photon> some_photons(uint seed, std::size_t n, bool ties)
     {
         std::mt19937 random(seed);
@@ -185,7 +185,7 @@ TYPED_TEST(host_maps, attributes_that_lie_apart_give_the_same_map)
     }
 }
 
-/// Single queries from eight threads on one map, while this thread searches for many places on its device.
+/// Single queries from eight threads on one map, while this thread searches for many points on its device.
 TYPED_TEST(host_maps, any_thread_may_ask)
 {
     const auto photons = some_photons(5, 20000, false);

@@ -71,7 +71,7 @@ TYPED_TEST_P(algorithms, a_fitting_grid_suits_any_photons)
                 ASSERT_GT(cell_count(g), 50u) << where; // strays have not made one cell of all
             }
 
-            // Whatever grid it is, the search is exact in it.
+            // The search is exact in any grid.
             const auto points = make_points(set, 40, 5);
             const auto map = sorted_map(b, upload_photons(b, set), g);
             const auto e = b.download(

@@ -1,4 +1,4 @@
-// What the program's commands do and refuse.
+// The program's commands: results and errors.
 #pragma once
 
 #include "program_under_test.hpp"

@@ -58,7 +58,7 @@ namespace {
         EXPECT_NE(e.err.find("--backend auto: "), std::string::npos) << e.err;
     }
 
-    // A file-size limit stands for a full disk. Of two pictures the first fits.
+    // A file-size limit simulates a full disk. Of two pictures the first fits.
     TEST_F(program, a_full_disk_leaves_whole_files_or_none)
     {
         rlimit old{};
@@ -144,7 +144,7 @@ namespace {
             }
         }
         EXPECT_GE(interruptions, 1) << "no picture was ever interrupted";
-        EXPECT_FALSE(fs::exists(folder / "unfinished")) << "the file has served";
+        EXPECT_FALSE(fs::exists(folder / "unfinished")) << "the picture is complete";
         EXPECT_EQ(contents(folder / "a.exr"), contents(folder / "whole.exr"));
     }
 

@@ -1,4 +1,4 @@
-// The program from outside: what it prints, writes and returns.
+// The program as a process: its output, files and exit codes.
 #include "command_tests.hpp"
 #include "estimate_option_tests.hpp"
 #include "interrupt_tests.hpp"

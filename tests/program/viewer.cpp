@@ -1,4 +1,4 @@
-// What is edited in the window, and the thread that draws it, without a display.
+// The document of the window, and the thread that draws it, without a display.
 #include "../backends/serial_picture.hpp"
 #include "../scene/test_scenes.hpp"
 #include "viewer/document.hpp"
@@ -132,7 +132,7 @@ namespace {
         d.pan(0.5, 0);
         const auto after = d.now().scene.camera;
         EXPECT_LT(glm::length((after.position - before.position) - (after.look_at - before.look_at)), 1e-12);
-        // What was in the picture's middle is now half a picture's height to the left.
+        // The picture's former middle is now half a picture's height to the left.
         const auto line = sight_line_at(after, 100, 100, 0, 50);
         EXPECT_LT(glm::length(glm::cross(glm::normalize(before.look_at - after.position), line.direction)), 1e-9);
     }
@@ -174,7 +174,7 @@ namespace {
         EXPECT_EQ(undone, 200);
     }
 
-    /// A thread that draws, and what it said.
+    /// A thread that draws, and its messages.
     class drawn : public ::testing::Test {
     protected:
         drawn()
@@ -292,7 +292,7 @@ namespace {
     TEST_F(drawn, what_cannot_be_drawn_is_said_and_forgotten)
     {
         auto good = begun(small_cornell()), bad = good, none = good;
-        bad.scene.spheres.push_back(bad.scene.spheres[1]); // two balls of glass in one place
+        bad.scene.spheres.push_back(bad.scene.spheres[1]); // two overlapping balls of glass
         none.backend = "abacus";
         for (const auto& [wrong, word] : {std::pair{bad, "overlaps"}, {none, "abacus"}}) {
             ASSERT_TRUE(whole(thread.show(wrong, false)));

@@ -66,7 +66,7 @@ TEST_F(window, follows_camera_lamp_and_keys)
             && fs::exists(folder / "ball-changed.json");
     }));
 
-    // Whatever was given up, was given up within a pass.
+    // Every cancelled drawing ended within a pass.
     for (const auto& j : journal()) {
         EXPECT_NE(j["event"], "error") << j;
         if (j["event"] == "start" && j["moving"] == false) {

@@ -238,7 +238,7 @@ protected:
         std::this_thread::sleep_for(std::chrono::milliseconds(120));
     }
 
-    // --- what is seen ---
+    // --- picking ---
     /// The picture's part of the screen, rgb.
     struct screenshot {
         std::vector<unsigned char> bytes;

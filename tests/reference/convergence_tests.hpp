@@ -11,7 +11,7 @@ namespace {
     // --- convergence
     // ------------------------------------------------------------------------------------------------------
 
-    /// One row of a convergence table: means over places of squared errors relative to the known value.
+    /// One row of a convergence table: means over points of squared errors relative to the known value.
     struct convergence_row {
         double photons = 0, k = 0, bias2 = 0, variance = 0;
         double total() const { return bias2 + variance; }
@@ -28,7 +28,7 @@ namespace {
         return (n * sxy - sx * sy) / (n * sxx - sx * sx);
     }
 
-    /// From values[seed][place]: bias^2 and variance, relative, the mean's own noise and the reference's taken off
+    /// From values[seed][point]: bias^2 and variance, relative, without the noise of the mean and of the reference
     /// bias^2.
     convergence_row split_error(const std::vector<std::vector<double>>& values, const std::vector<double>& known,
         const std::vector<double>& known_error, double floor)

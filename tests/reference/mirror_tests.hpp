@@ -103,8 +103,7 @@ namespace {
 
     TEST(validation, light_from_far_away_draws_a_nephroid)
     {
-        // A paraboloid with the lamp at its focus stands for a lamp far away: its light is parallel, and it wastes
-        // none.
+        // A paraboloid with the lamp at its focus replaces a distant lamp: its light is parallel, and it wastes none.
         const double tilt = M_PI / 4, focal = 0.4, rim = 1.6;
         auto s = mirror_cylinder(1, 1);
         const dvec3 beam(std::cos(tilt), -std::sin(tilt), 0), vertex = dvec3(0, 0.5, 0) - 5.0 * beam;

@@ -78,7 +78,7 @@ namespace {
                     ASSERT_EQ(used[q].x, k);
                     ++compared;
                     if (flushed(distances[k]) == nth || nth <= floor2 || k > 64)
-                        continue; // a tie at the k-th place: which of the equals is taken, nanoflann does not promise
+                        continue; // a tie at the k-th: nanoflann does not specify which one it returns
                     glm::dvec3 sum(0);
                     for (uint n = 0; n < k; ++n)
                         sum += glm::dvec3(set.powers[ids[n]]);

@@ -1,4 +1,4 @@
-// Sums of passes, lists of steps and schedules of previews: what a picture is made of, without a device.
+// Sums of passes, lists of steps and schedules of previews: the parts of a picture, without a device.
 #include <photongrid/render/film.hpp>
 #include <photongrid/render/previews.hpp>
 #include <photongrid/render/step_list.hpp>

@@ -1,4 +1,4 @@
-// What the interactive loop promises, on any backend: it ends with the bytes of render(), shows pictures of the same
+// Guarantees of the interactive loop, on any backend: it ends with the bytes of render(), shows pictures of the same
 // brightness before, traces photons only when it must, and stops when it is told to. Included by each on_<backend>.cpp.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace photongrid::testing {
 
-/// Mean over pixels and channels of what a screen shows: lamps are white, however bright.
+/// Mean over pixels and channels of the displayed values: lamps are white, however bright.
 inline double brightness(const image& im)
 {
     double sum = 0;

@@ -1,4 +1,4 @@
-// What the renderer promises, on any backend: scenes with known answers, the account of every photon, and the serial
+// Guarantees of the renderer, on any backend: scenes with known answers, the balance of photons, and the serial
 // backend's picture. Included by each on_<backend>.cpp.
 #pragma once
 
@@ -261,7 +261,7 @@ TYPED_TEST_P(pictures, every_photon_and_every_watt_is_accounted_for)
 
 TYPED_TEST_P(pictures, flux_balances_per_channel)
 {
-    // What a light sends out is absorbed at surfaces, escapes, or is cut off; per path and channel, on average.
+    // A light's power is absorbed at surfaces, escapes, or is cut off; per path and channel, on average.
     for (auto s : {small_cornell(), all_shapes()}) {
         auto& b = this->b();
         s.render.map.photon_depth = 6; // so that some is cut off

@@ -24,7 +24,7 @@ TYPED_TEST_P(hard_cases, b9_what_is_outside_a_shaft_blocks_nothing_in_it)
             auto from = place(), corner = place(), edge_u = 0.3f * size * random_direction(u),
                  edge_v = 0.3f * size * random_direction(u);
             if (i % 4 == 1)
-                from.y = low.y + 1e-5f * size.y; // just above the floor, or below what stands there
+                from.y = low.y + 1e-5f * size.y; // just above the floor, or below an object there
             if (i % 4 == 2)
                 corner.y = low.y + size.y, edge_u.y = edge_v.y = 0; // on the ceiling
             if (i % 16 == 3)

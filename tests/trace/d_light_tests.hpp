@@ -37,7 +37,7 @@ inline double lambert(const rectangle_light& l, const dvec3& point, const dvec3&
 
 TYPED_TEST_P(hard_cases, d2_irradiance_close_to_a_lamp_is_bounded)
 {
-    // On a wall, from 1e-5 m to 1 m under a ceiling that is a lamp; each distance at many places.
+    // On a wall, from 1e-5 m to 1 m under a ceiling that is a lamp; each distance at many points.
     const auto s = room_under_a_lamp(1e-3);
     const auto& lamp = s.rectangle_lights[0];
     random_source u(31);

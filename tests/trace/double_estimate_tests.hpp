@@ -62,7 +62,7 @@ public:
 
     estimate operator()(uint q)
     {
-        std::vector<std::pair<double, uint>> near; // squared distance, place
+        std::vector<std::pair<double, uint>> near; // squared distance, index
         for (uint at = 0; at < list_.size(); ++at)
             if (const double d2 = gather_.photon_distance2(at, points_[q], normals_[q]); d2 < 1e30)
                 near.emplace_back(d2, at);

@@ -73,7 +73,7 @@ namespace photongrid::testing {
 /// The same numbers in double.
 inline std::vector<glm::dvec4> widened(const std::vector<glm::vec4>& v) { return {v.begin(), v.end()}; }
 
-/// The scene's records in double, of the numbers in float: what the float kernels see.
+/// The scene's records in double, converted from the float records of the float kernels.
 struct double_scene {
     std::vector<glm::dvec4> records;
     uint features;

@@ -99,7 +99,7 @@ struct rays {
     std::size_t size() const { return origins.size(); }
 };
 
-/// What ray_probe.glsl says of them.
+/// Results of ray_probe.glsl.
 struct ray_hits {
     std::vector<glm::vec4> places, facings, starts;
     bool hit(std::size_t i) const { return places[i].w >= 0; }

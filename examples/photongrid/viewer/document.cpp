@@ -14,7 +14,7 @@ namespace {
 
 void document::begin(const std::string& name)
 {
-    if (!past_.empty() && past_.back().before == now_) // nothing came of the last one
+    if (!past_.empty() && past_.back().before == now_) // the last step changed nothing
         past_.pop_back();
     past_.push_back({now_, name});
     if (past_.size() > most_steps)
@@ -31,7 +31,7 @@ std::string document::undo()
     auto last = std::move(past_.back());
     past_.pop_back();
     std::swap(last.before, now_);
-    future_.push_back(last); // before: what redo brings back
+    future_.push_back(last); // `before` is what redo restores
     return last.name;
 }
 

@@ -1,4 +1,4 @@
-// What is edited in the window: a scene, its settings, the part that is selected, and the way back. Knows no window.
+// The document of the window: a scene, its settings, the selected part, and undo. Independent of the window itself.
 #pragma once
 
 #include "scene_parts.hpp"
@@ -8,13 +8,13 @@
 
 namespace photongrid::viewer {
 
-/// Everything that undo brings back.
+/// Everything that undo restores.
 struct version {
-    photongrid::scene scene; ///< its own settings are not looked at
+    photongrid::scene scene; ///< its own settings are ignored
     render_settings settings;
     std::string backend; ///< as --backend takes it, not auto
 
-    bool operator==(const version&) const = default; ///< of every member
+    bool operator==(const version&) const = default;
 };
 
 class document {
@@ -23,24 +23,24 @@ public:
 
     const version& now() const { return now_; }
     const std::vector<scene_part>& parts() const { return parts_; }
-    /// Index into parts(); nothing where none is selected.
+    /// Index into parts(); empty if none is selected.
     std::optional<std::size_t> selected() const { return selected_; }
     void select(std::optional<std::size_t> part) { selected_ = part; }
 
-    /// Changes until the next begin() are one step of undo, which `name` says. Redo is forgotten.
+    /// Changes until the next begin() are one step of undo, called `name`. Clears redo.
     void begin(const std::string& name);
-    /// The version that is drawn, to be changed; after begin().
+    /// The version that is drawn. Call begin() before changing it.
     version& edit() { return now_; }
-    /// Takes back, or does again, one step; says which, or "" where there is none.
+    /// Undoes or redoes one step; returns its name, or "" if there is none.
     std::string undo();
     std::string redo();
 
     // The camera. Angles in degrees.
-    /// Turns about the point that is looked at; up stays up.
+    /// Turns around the camera's target; the up direction does not change.
     void orbit(double across, double upward);
-    /// Moves camera and point by parts of the picture's height.
+    /// Moves camera and target by fractions of the picture's height.
     void pan(double right, double up);
-    /// Nearer by a factor above 1.
+    /// A factor above 1 moves nearer.
     void zoom(double factor);
 
 private:

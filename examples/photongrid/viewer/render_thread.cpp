@@ -15,11 +15,11 @@ namespace {
     using clock = std::chrono::steady_clock;
     double ms_since(clock::time_point t) { return std::chrono::duration<double, std::milli>(clock::now() - t).count(); }
 
-    /// Time that a step may take before it is asked again what to do.
+    /// Time that a step may take before the thread checks for new requests.
     constexpr renderer::milliseconds step_time{8};
 
-    /// Where every core renders, the window comes first: this thread, and those that the backend makes in it, give way
-    /// to others.
+    /// Gives this thread, and threads that the backend creates in it, a lower priority than the window's, so that the
+    /// window reacts when every core renders.
     void give_way()
     {
         (void)::setpriority(
@@ -50,7 +50,7 @@ std::uint64_t render_thread::show(const version& v, bool moving)
     {
         const std::lock_guard lock(guard_);
         number = ++requests_;
-        // Of several that were not taken the last is drawn; one that has waited for a look has waited long enough.
+        // Of several requests not yet taken, the last is drawn; one that has waited for a preview waits no longer.
         const bool waits = moving && (!requested_ || requested_->moving);
         requested_ = request{v, waits, number, steps_, clock::now()};
         if (!waits && cancellable_ != nullptr)
@@ -99,7 +99,7 @@ void render_thread::work()
     }
     const std::lock_guard lock(guard_);
     cancellable_ = nullptr;
-    renderer_.reset(); // in this thread: an OpenGL context is its own
+    renderer_.reset(); // in this thread: an OpenGL context belongs to it
 }
 
 /// Starts the requested drawing once it is due. Returns whether there is something to draw.

@@ -1,4 +1,4 @@
-// The window's renderer, in a thread of its own: takes what is to be drawn, gives back pictures as they come.
+// The window's renderer, in a thread of its own: takes versions to draw, returns pictures as they are made.
 #pragma once
 
 #include "document.hpp"
@@ -14,16 +14,16 @@
 
 namespace photongrid::viewer {
 
-/// A picture, and what it took.
+/// A picture, its number and its times.
 struct frame {
     std::uint64_t request = 0; ///< which request it answers
     std::uint64_t number = 0;  ///< pictures since the window opened; 0: none
     image picture;
     double ms = 0;     ///< since the request was begun
-    double change = 0; ///< relMSE of the picture before to this one; 0 of a request's first
+    double change = 0; ///< relMSE of the previous picture to this one; 0 for the first of a request
 };
 
-/// Where the renderer is.
+/// The renderer's progress.
 struct render_report {
     std::uint64_t request = 0; ///< being drawn
     render_progress progress{};
@@ -32,22 +32,22 @@ struct render_report {
     std::uint64_t passes = 0; ///< run since the window opened
     std::string backend{};    ///< as --backend takes it
     std::string device{};
-    std::string error{}; ///< why the last request is not drawn; empty where it is
+    std::string error{}; ///< why the last request is not drawn; empty if it is
 };
 
-/// What happened, for --journal: one line of JSON without its end.
+/// An event for --journal: one line of JSON without the line break.
 using journal = std::function<void(const std::string& line)>;
 
 class render_thread {
 public:
-    /// `wake` is called in this object's thread when there is something new; `log` may be empty.
+    /// `wake` is called in this object's thread when there is a new picture or state; `log` may be empty.
     render_thread(renderer_options options, std::function<void()> wake, journal log);
     ~render_thread();
     render_thread(const render_thread&) = delete;
     render_thread& operator=(const render_thread&) = delete;
 
-    /// From now on draws `v`. Work in flight ends after its pass; while `moving`, more requests are to follow soon, so
-    /// it goes on to its first look. Returns the request's number.
+    /// From now on draws `v`. The current drawing ends after its pass. `moving` means that more requests will follow
+    /// soon; then the current drawing continues until its first preview. Returns the request's number.
     std::uint64_t show(const version& v, bool moving);
 
     /// The newest picture, if its number is above `seen`.
@@ -81,10 +81,10 @@ private:
     std::uint64_t requests_ = 0;
     frame newest_;
     render_report report_;
-    renderer* cancellable_ = nullptr; ///< the renderer, while it may be told to stop
+    renderer* cancellable_ = nullptr; ///< the renderer, while it may be cancelled
     std::atomic<std::uint64_t> steps_ = 0;
 
-    // The thread's own.
+    // Used by the thread only.
     std::unique_ptr<renderer> renderer_;
     std::string opened_backend_;
     request current_;

@@ -10,7 +10,7 @@
 namespace photongrid::viewer {
 
 namespace {
-    /// Which polygons share a corner with which, directly or by others: a number for each polygon, the same in a group.
+    /// Groups of polygons connected by shared corners: a number for each polygon, the same within a group.
     std::vector<std::size_t> groups_of(const std::vector<polygon>& polygons)
     {
         std::vector<std::size_t> group(polygons.size());
@@ -108,7 +108,7 @@ std::optional<grip> pick(
     const auto line = sight_line_at(s.camera, width, height, x, y);
     const auto hit = shapes.nearest({line.origin, line.direction});
 
-    // Point lights, by how far their place in the picture is.
+    // Point lights, by the distance of their position in the picture.
     const double pixel = 2 * std::tan(glm::radians(s.camera.vertical_fov) / 2) / height; // at 1 m
     for (std::size_t p = 0; p < parts.size(); ++p)
         for (const auto* light : items_of<point_light>(s, parts[p])) {

@@ -1,4 +1,4 @@
-// What a user can take hold of in a scene: its shapes, polygons that share corners as one, and its lights.
+// The parts of a scene that a user can select: its shapes, its lights, and groups of polygons that share corners.
 #pragma once
 
 #include <photongrid/scene/scene.hpp>
@@ -9,21 +9,21 @@
 
 namespace photongrid::viewer {
 
-/// A shape or a light of the scene: a list, numbered as shape_lists() and then light_lists() have them, and its place
-/// there.
+/// A shape or a light of the scene: the number of its list, first those of shape_lists(), then those of light_lists(),
+/// and its index there.
 struct scene_item {
     std::size_t list = 0;  ///< number of the list
     std::size_t index = 0; ///< in the list
 
-    bool operator==(const scene_item&) const = default; ///< of every member
+    bool operator==(const scene_item&) const = default;
 };
 
 /// Shapes and lights that move together.
 struct scene_part {
-    std::vector<scene_item> items{}; ///< one at least
-    std::string name{};              ///< what it is, and its material or its own name
+    std::vector<scene_item> items{}; ///< at least one
+    std::string name{};              ///< its kind, and its material or its own name
 
-    bool operator==(const scene_part&) const = default; ///< of every member
+    bool operator==(const scene_part&) const = default;
 };
 
 /// Calls f(list, kind, number) for each list of shapes and of lights (shape_kind, light_kind).
@@ -47,7 +47,7 @@ void for_each_item(Scene& s, const scene_part& part, F&& f)
     });
 }
 
-/// Those of a part's shapes or lights that are a T.
+/// Those of a part's shapes or lights that have type T.
 template <class T>
 std::vector<const T*> items_of(const scene& s, const scene_part& part)
 {
@@ -59,16 +59,16 @@ std::vector<const T*> items_of(const scene& s, const scene_part& part)
     return all;
 }
 
-/// Everything in the scene, each thing in one part.
+/// All parts of the scene; each shape and light is in exactly one.
 std::vector<scene_part> parts_of(const scene& s);
 
 /// Moves a part by `by`, m.
 void move(scene& s, const scene_part& part, const dvec3& by);
 
-/// A place in the picture, and what is seen there.
+/// A point of the scene that is visible in the picture, and its part.
 struct grip {
     std::size_t part = 0; ///< index into parts_of(scene)
-    dvec3 position{0};    ///< m; where it is met
+    dvec3 position{0};    ///< m
 };
 
 /// A rectangle of the picture's pixels.
@@ -76,11 +76,11 @@ struct picture_box {
     double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
 };
 
-/// Where a part of the scene stands in a picture of width x height pixels; nothing where some of it is behind the
+/// The outline of a part of the scene in a picture of width x height pixels; empty if some of it is behind the
 /// camera.
 std::optional<picture_box> box_of(const scene& s, const scene_part& part, double width, double height);
 
-/// A ray of the camera's, through a point of a picture.
+/// A camera ray through a point of a picture.
 struct sight_line {
     dvec3 origin{0};          ///< m
     dvec3 direction{0, 0, 1}; ///< unit
@@ -89,13 +89,14 @@ struct sight_line {
 /// Through (x, y) of a picture of width x height: 0, 0 is its top left corner, width, height the other one.
 sight_line sight_line_at(const camera& c, double width, double height, double x, double y);
 
-/// What is seen at (x, y); point lights, which no ray meets, within 12 pixels of it and not hidden. Nothing where there
-/// is none.
+/// The part visible at (x, y). Point lights, which no ray can hit, count if they are visible and within 12 pixels.
+/// Empty if there is nothing.
 std::optional<grip> pick(
     const scene& s, const std::vector<scene_part>& parts, double width, double height, double x, double y);
 
-/// Where a line of sight meets the plane through `point` that faces the camera, or with `level` the one at right angles
-/// to `up`; in the latter, which may be seen from its edge, nothing where it is met behind the camera or very far away.
+/// The intersection of a line of sight with the plane through `point` that faces the camera, or with `level` the plane
+/// perpendicular to `up`. The latter may be seen edge-on: empty if the intersection is behind the camera or very far
+/// away.
 std::optional<dvec3> on_plane(const camera& c, const sight_line& line, const dvec3& point, bool level);
 
 } // namespace photongrid::viewer

@@ -5,7 +5,7 @@
 
 namespace photongrid {
 
-/// Returns when the window is closed, or when `stop_asked` says so. Throws scene_error, file_error, backend_error where
+/// Returns when the window is closed, or when `stop_asked` is set. Throws scene_error, file_error, or backend_error if
 /// there is no display.
 exit_code run_view(const view_options& o, bool (*stop_asked)());
 

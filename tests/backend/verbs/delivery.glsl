@@ -1,4 +1,4 @@
-// Draws whose destinations and amounts stand in buffers.
+// Draws with destinations and amounts in buffers.
 struct Params {
     uint first_payload;
 };

@@ -1,4 +1,4 @@
-// What the files of a host give each other. The host has macros that are called like words of photongrid's kernels.
+// Declarations shared by the host's files. The host has macros with names that photongrid's kernels use.
 #pragma once
 
 #define INPUT 1

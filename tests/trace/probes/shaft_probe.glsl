@@ -1,4 +1,4 @@
-// A ray from a point to a place on a parallelogram, for tests: is it blocked by what can come between the two, and by anything?
+// A ray from a point to a point of a parallelogram, for tests: is it occluded by shapes in the shaft, and by any shape?
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
@@ -8,8 +8,8 @@ struct Params {
 PARAMS(Params)
 SWITCH(7, AREA_LIGHTS)
 INPUT(0, vec4, scene)
-INPUT(1, vec4, points)   // xyz: where the ray begins; w: the place, a share of edge u
-INPUT(2, vec4, corners)  // xyz: the parallelogram's corner; w: the place, a share of edge v
+INPUT(1, vec4, points)   // xyz: where the ray begins; w: the end point, a fraction of edge u
+INPUT(2, vec4, corners)  // xyz: the parallelogram's corner; w: the end point, a fraction of edge v
 INPUT(3, vec4, edges_u)
 INPUT(4, vec4, edges_v)
 OUTPUT(0, uvec4, answer) // blocked by the candidates, by anything; candidates: polygons, spheres
