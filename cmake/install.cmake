@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 set(config_dir ${CMAKE_INSTALL_DATADIR}/cmake/photongrid)
 # A file of targets for the core and for each component, so that find_package defines what was asked for and nothing else.
 set(photongrid_components "")
-install(TARGETS photongrid EXPORT photongrid-core FILE_SET HEADERS COMPONENT dev)
+install(TARGETS photongrid EXPORT photongrid-core FILE_SET HEADERS COMPONENT dev FILE_SET kernels COMPONENT dev)
 install(EXPORT photongrid-core NAMESPACE photongrid:: DESTINATION ${config_dir} COMPONENT dev)
 foreach(component IN ITEMS serial cpu cpu_compiled gl vulkan renderer io backend_tests)
   if(TARGET photongrid_${component})

@@ -186,8 +186,8 @@ namespace {
             }
             EXPECT_EQ(gl.GetError(), GLenum(GL_NO_ERROR)) << text;
         };
-        expect_refusal(0, 5, "texture: 0 is no texture");
-        expect_refusal(123456, 5, "is no texture");
+        expect_refusal(0, 5, "texture: 0 is not a texture");
+        expect_refusal(123456, 5, "is not a texture");
         expect_refusal(make_texture(gl, GL_TEXTURE_1D_ARRAY, GL_RG32F, 8, 1), 5, "GL_TEXTURE_2D");
         expect_refusal(make_texture(gl, GL_TEXTURE_2D, GL_RG16F, 8, 1), 5, "GL_RG32F");
         expect_refusal(make_texture(gl, GL_TEXTURE_2D, GL_RG32UI, 8, 1), 5, "GL_RG32F");
