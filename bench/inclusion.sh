@@ -45,9 +45,9 @@ int main()
 CPP
 }
 include "GLM alone" glm glm/glm.hpp
-include "core: one algorithm" photongrid photongrid/knn_grid_estimate.hpp
-include "core: maps, estimates, lists" photongrid photongrid/build_map.hpp photongrid/knn_grid_estimate.hpp photongrid/knn_neighbours.hpp photongrid/own_photons.hpp
-include "core: everything" photongrid photongrid/render.hpp photongrid/map_file.hpp photongrid/own_photons.hpp
+include "core: one algorithm" photongrid photongrid/estimate/knn_grid_estimate.hpp
+include "core: maps, estimates, lists" photongrid photongrid/map/build_map.hpp photongrid/estimate/knn_grid_estimate.hpp photongrid/estimate/knn_neighbours.hpp photongrid/map/own_photons.hpp
+include "core: everything" photongrid photongrid/render/render.hpp photongrid/map/map_file.hpp photongrid/map/own_photons.hpp
 headers=${#names[@]}
 for backend in "${backends[@]}"; do
   program "$backend" "photongrid-$backend" "$backend/$backend.hpp" "${backend}_backend"

@@ -7,6 +7,14 @@
 #include <algorithm>
 #include <memory>
 
+// g++ may leave a large kernel out of line, which costs a twentieth of tracing. Inlining all of it makes a user's file
+// compile five times as long, so only photongrid::renderer does.
+#ifdef PHOTONGRID_FLATTENS_PASSES
+#define PHOTONGRID_SERIAL_PASS [[gnu::noinline, gnu::flatten]]
+#else
+#define PHOTONGRID_SERIAL_PASS [[gnu::noinline]]
+#endif
+
 #include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
@@ -100,9 +108,8 @@ public:
         return b.data_;
     }
 
-    // Flattened: else g++ may leave a kernel out of line, which costs a twentieth of tracing.
     template <gather_kernel K, class Reads, class Writes>
-    [[gnu::noinline, gnu::flatten]] void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
+    PHOTONGRID_SERIAL_PASS void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
     {
         detail::check_call<K>("run", l, reads, writes);
         K k = prepare<K>(l, args, reads);
@@ -223,3 +230,5 @@ static_assert(backend<serial_backend>);
 } // namespace photongrid
 
 #include <photongrid/backend/exact_end.hpp>
+
+#undef PHOTONGRID_SERIAL_PASS
