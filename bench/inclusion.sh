@@ -60,7 +60,7 @@ for ((run = 0; run < runs; ++run)); do
   for ((n = 1; n <= ${#names[@]}; ++n)); do
     read -ra flags <<<"$(pkg-config --cflags "${packages[n - 1]}")"
     begin=$(date +%s%N)
-    g++ -std=c++20 -O2 "${flags[@]}" -c "$work/$n.cpp" -o "$work/$n.o"
+    g++ -std=c++20 -O2 "${flags[@]}" -c "$work/$n.cpp" -o "$work/$n.o" || exit 2 # broken, not too slow
     echo $((($(date +%s%N) - begin) / 1000000)) >>"$work/$n.ms"
   done
 done
@@ -77,7 +77,7 @@ for ((n = 1; n <= ${#names[@]}; ++n)); do
   size=
   if ((n > headers)); then
     read -ra libraries <<<"$(pkg-config --libs "${packages[n - 1]}")"
-    g++ "$work/$n.o" -s -o "$work/$n.out" "${libraries[@]}"
+    g++ "$work/$n.o" -s -o "$work/$n.out" "${libraries[@]}" || exit 2
     size=$(($(stat -c %s "$work/$n.out") / 1000))
   fi
   printf '| %s | %s | %s | %s |\n' "${names[n - 1]}" "$(seconds "$ms")" "$(seconds $((ms - glm)))" "$size"

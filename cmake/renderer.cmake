@@ -1,24 +1,12 @@
 # photongrid::renderer: the renderer, compiled once for each backend that is built, which is chosen at run time.
-set(root ${PROJECT_BINARY_DIR}/backends/any)
-file(MAKE_DIRECTORY ${root}/photongrid/backends)
-file(CREATE_LINK ${PROJECT_SOURCE_DIR}/backends/any ${root}/photongrid/backends/any SYMBOLIC)
-set(sources "")
-set(entries "")
-set(libraries "")
-foreach(name IN ITEMS serial cpu gl vulkan)
-  if(TARGET photongrid::${name})
-    list(APPEND sources ${PROJECT_SOURCE_DIR}/backends/any/${name}.cpp)
-    list(APPEND entries "${name}_entry()")
-    if(TARGET photongrid_${name}_compiled)
-      list(APPEND libraries photongrid_${name}_compiled)
-    else()
-      list(APPEND libraries photongrid_${name})
-    endif()
-  endif()
-endforeach()
-list(JOIN entries ", " entries)
-file(CONFIGURE OUTPUT ${root}/built_backends.cpp CONTENT [[
-// The backends that are built: cmake/renderer.cmake.
+
+# photongrid_built_backends(FILE NAME...): the source file that lists these backends to backends/any.
+function(photongrid_built_backends file)
+  set(entries ${ARGN})
+  list(TRANSFORM entries APPEND "_entry()")
+  list(JOIN entries ", " entries)
+  file(CONFIGURE OUTPUT ${file} CONTENT [[
+// The backends that are built in: cmake/renderer.cmake.
 #include <photongrid/backends/any/backend_entry.hpp>
 
 std::span<const photongrid::any::backend_entry> photongrid::any::built_backends()
@@ -27,6 +15,26 @@ std::span<const photongrid::any::backend_entry> photongrid::any::built_backends(
     return all;
 }
 ]] @ONLY)
+endfunction()
+
+set(root ${PROJECT_BINARY_DIR}/backends/any)
+file(MAKE_DIRECTORY ${root}/photongrid/backends)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/backends/any ${root}/photongrid/backends/any SYMBOLIC)
+set(sources "")
+set(names "")
+set(libraries "")
+foreach(name IN ITEMS serial cpu gl vulkan)
+  if(TARGET photongrid::${name})
+    list(APPEND sources ${PROJECT_SOURCE_DIR}/backends/any/${name}.cpp)
+    list(APPEND names ${name})
+    if(TARGET photongrid_${name}_compiled)
+      list(APPEND libraries photongrid_${name}_compiled)
+    else()
+      list(APPEND libraries photongrid_${name})
+    endif()
+  endif()
+endforeach()
+photongrid_built_backends(${root}/built_backends.cpp ${names})
 
 add_library(photongrid_renderer STATIC ${PROJECT_SOURCE_DIR}/backends/any/any.cpp ${root}/built_backends.cpp ${sources})
 add_library(photongrid::renderer ALIAS photongrid_renderer)

@@ -13,12 +13,9 @@ namespace photongrid {
 
 namespace fs = std::filesystem;
 
-namespace {
-    [[noreturn]] void fail(const std::string& path, const std::string& reason)
-    {
-        throw file_error(path + ": " + reason);
-    }
+void fail_file(const std::string& path, const std::string& reason) { throw file_error(path + ": " + reason); }
 
+namespace {
     /// The file that a link refers to, so that the link is kept.
     fs::path target(const std::string& path)
     {
@@ -34,13 +31,13 @@ void check_file_path(const std::string& path)
     const auto status = fs::status(path, none);
     // Renaming a file onto /dev/null would replace the device.
     if (fs::exists(status) && !fs::is_regular_file(status))
-        fail(path, fs::is_directory(status) ? "is a folder; expected a file's name" : "is not a regular file");
+        fail_file(path, fs::is_directory(status) ? "is a folder; expected a file's name" : "is not a regular file");
     const auto folder = target(path).parent_path();
     const auto shown = folder.empty() ? fs::path(".") : folder;
     if (!fs::is_directory(shown, none))
-        fail(path, "there is no folder " + shown.string());
+        fail_file(path, "there is no folder " + shown.string());
     if (::access(shown.c_str(), W_OK | X_OK) != 0)
-        fail(path, "the folder " + shown.string() + " cannot be written to: " + std::strerror(errno));
+        fail_file(path, "the folder " + shown.string() + " cannot be written to: " + std::strerror(errno));
 }
 
 void write_file(const std::string& path, const std::string& bytes)
@@ -50,7 +47,7 @@ void write_file(const std::string& path, const std::string& bytes)
     const auto temporary = real.string() + "." + std::to_string(::getpid()) + ".tmp";
     const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (file < 0)
-        fail(path, "cannot write " + temporary + ": " + std::strerror(errno));
+        fail_file(path, "cannot write " + temporary + ": " + std::strerror(errno));
     int error = 0;
     for (std::size_t at = 0; at < bytes.size() && error == 0;) {
         const auto n = ::write(file, bytes.data() + at, std::min<std::size_t>(bytes.size() - at, std::size_t{1} << 30));
@@ -65,7 +62,7 @@ void write_file(const std::string& path, const std::string& bytes)
         error = errno;
     if (error != 0) {
         ::unlink(temporary.c_str());
-        fail(path, std::string("cannot be written: ") + std::strerror(error));
+        fail_file(path, std::string("cannot be written: ") + std::strerror(error));
     }
 }
 

@@ -11,6 +11,9 @@ struct file_error : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// \throws file_error "path: reason".
+[[noreturn]] void fail_file(const std::string& path, const std::string& reason);
+
 /// Checks whether `path` can be written, so that a program can report that before it renders.
 /// \throws file_error if its folder does not exist or is not writable, or if it is not a regular file.
 void check_file_path(const std::string& path);

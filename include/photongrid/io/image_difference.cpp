@@ -1,14 +1,11 @@
 #include <photongrid/io/image_difference.hpp>
+#include <photongrid/scene/check.hpp>
 
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
 namespace photongrid {
-
-namespace {
-    bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-} // namespace
 
 image_difference compare_images(const image& a, const image& b)
 {
@@ -19,7 +16,7 @@ image_difference compare_images(const image& a, const image& b)
     d.largest = -1;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {
         const glm::dvec3 p(a.pixels[i]), q(b.pixels[i]);
-        if (!is_finite(p) || !is_finite(q)) {
+        if (!detail::finite(p) || !detail::finite(q)) {
             ++d.not_finite;
             continue;
         }

@@ -7,12 +7,6 @@
 namespace photongrid {
 
 namespace fs = std::filesystem;
-using image_formats::fail_file;
-
-void image_formats::fail_file(const std::string& path, const std::string& reason)
-{
-    throw file_error(path + ": " + reason);
-}
 
 void image_formats::check_read_size(const std::string& path, std::int64_t width, std::int64_t height)
 {

@@ -12,8 +12,6 @@ std::string pfm_bytes(const image& picture);
 image read_exr(const std::string& path);
 image read_pfm(const std::string& path);
 
-/// Throws file_error "path: reason".
-[[noreturn]] void fail_file(const std::string& path, const std::string& reason);
 /// Throws file_error for a picture that is empty or too large to hold.
 void check_read_size(const std::string& path, std::int64_t width, std::int64_t height);
 
