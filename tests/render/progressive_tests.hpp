@@ -2,7 +2,7 @@
 // brightness before, traces photons only when it must, and stops when it is told to. Included by each on_<backend>.cpp.
 #pragma once
 
-#include "render_tests.hpp"
+#include "pictures.hpp"
 
 #include <photongrid/render/progressive_render.hpp>
 
@@ -18,12 +18,6 @@ inline double brightness(const image& im)
         for (int c = 0; c < 3; ++c)
             sum += std::min(static_cast<double>(p[c]), 1.0);
     return sum / static_cast<double>(3 * im.pixels.size());
-}
-
-inline bool same_bytes(const image& a, const image& b)
-{
-    return a.width == b.width && a.height == b.height && a.pixels.size() == b.pixels.size()
-        && std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
 }
 
 template <class Tag>

@@ -1,7 +1,7 @@
 // The paper's three scenes, from their files, on any backend: both maps agree with each other, and with serial.
 #pragma once
 
-#include "render_tests.hpp"
+#include "pictures.hpp"
 #include <photongrid/io/scene_file.hpp>
 
 namespace photongrid::testing {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "../map/photon_sets.hpp"
-#include "../render/render_tests.hpp"
+#include "../render/pictures.hpp"
 #include <photongrid/io/scene_file.hpp>
 #include <probes_kernels.hpp>
 

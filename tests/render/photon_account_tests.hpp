@@ -1,0 +1,116 @@
+// What becomes of photons and of their power, and the memory that they take.
+#pragma once
+
+#include "pictures.hpp"
+
+#include <photongrid/trace/photon_event.kernel.hpp>
+
+namespace photongrid::testing {
+
+TYPED_TEST_P(pictures, every_photon_and_every_watt_is_accounted_for)
+{
+    for (const auto& s : {small_cornell(), all_shapes()}) {
+        auto& b = this->b();
+        const auto device = upload_scene(b, s);
+        const auto t = trace_photons(b, s, device, s.render);
+        const auto stats = count_photons(b, t, t.photons.size());
+        expect_an_exact_account(stats, s.render.map.photons);
+        EXPECT_GT(stats.absorbed, 0u);
+        EXPECT_GT(stats.escaped, 0u);
+        EXPECT_GT(stats.direct, 0u);
+        EXPECT_LT(stats.dropped, s.render.map.photon_depth);
+        // No photon carries more than its light's power over the paths: roulette only takes colour.
+        const dvec3 total = power_of_lights(s);
+        for (const auto& p : b.download(t.photons.powers))
+            ASSERT_LE(p.x + p.y + p.z, 3.01 * (total.x + total.y + total.z) / static_cast<double>(stats.emitted));
+    }
+}
+
+TYPED_TEST_P(pictures, flux_balances_per_channel)
+{
+    // A light's power is absorbed at surfaces, escapes, or is cut off; per path and channel, on average.
+    for (auto s : {small_cornell(), all_shapes()}) {
+        auto& b = this->b();
+        s.render.map.photon_depth = 6; // so that some is cut off
+        const auto device = upload_scene(b, s);
+        const uint paths = 16384;
+        detail::photon_frames<typename TestFixture::B> f(b, std::size_t{paths} * 7);
+        const uint frames = trace_batch(b, device, f, paths, 0, s.render);
+        const auto positions = b.download(f.positions), powers = b.download(f.powers),
+                   directions = b.download(f.directions);
+        dvec3 mean(0), squares(0);
+        for (uint p = 0; p < paths; ++p) {
+            dvec3 balance(0);
+            for (uint frame = 1; frame < frames; ++frame) {
+                const std::size_t i = std::size_t{frame} * paths + p;
+                const uint end = kernels::event_end(positions[i]);
+                if (end == kernels::ENDED_BEFORE)
+                    break;
+                const dvec3 arriving(powers[i]);
+                if (kernels::event_kind(positions[i]) == kernels::NO_SURFACE) { // escaped, or on a lamp
+                    balance += arriving;
+                    continue;
+                }
+                const dvec3 reflectance = s.materials[static_cast<std::size_t>(directions[i].w)].reflectance;
+                balance += arriving * (dvec3(1) - reflectance);
+                if (frame == 6) // whether cut off or absorbed here: what would have gone on, on average
+                    balance += arriving * reflectance;
+            }
+            mean += balance;
+            squares += balance * balance;
+        }
+        mean /= paths;
+        const dvec3 error = glm::sqrt(glm::max(dvec3(0), squares / double(paths) - mean * mean) / double(paths));
+        const dvec3 power = power_of_lights(s);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(mean[c], power[c], 4 * error[c]) << s.name << " channel " << c;
+    }
+}
+
+TYPED_TEST_P(pictures, a_photon_takes_at_most_64_bytes)
+{
+    // Positions, powers, directions, and the pairs twice while they are sorted; grid apart.
+    auto& b = this->b();
+    auto s = integrating_sphere(dvec3(0.5));
+    s.render.map.photons = 65536;
+    const auto device = upload_scene(b, s);
+    auto t = trace_photons(b, s, device, s.render);
+    b.finish();
+    const auto traced = b.bytes();
+    EXPECT_LE(traced, 48u * 65536u + 100000u);
+    const auto g = make_grid(device.layout.low, device.layout.high, {8, 8, 8});
+    const auto map = sorted_map(b, std::move(t.photons), g);
+    b.finish();
+    EXPECT_LE(b.bytes(), 64u * 65536u + 100000u);
+}
+
+TYPED_TEST_P(pictures, cut_off_paths_are_counted)
+{
+    auto s = integrating_sphere(dvec3(0.9));
+    s.render.map.photon_depth = 3;
+    s.render.map.photons = 2000;
+    render_stats stats;
+    this->picture(s, s.render, &stats);
+    expect_an_exact_account(stats.photons, 2000);
+    const double share = static_cast<double>(stats.photons.cut_off) / static_cast<double>(stats.photons.emitted);
+    EXPECT_NEAR(share, 0.9 * 0.9 * 0.9, 4 * std::sqrt(0.2 / static_cast<double>(stats.photons.emitted)));
+}
+
+TYPED_TEST_P(pictures, a_light_that_stores_no_photon_is_named)
+{
+    scene s;
+    s.materials = {{"floor", material_kind::lambertian, dvec3(0.5)}};
+    s.polygons = {{{{-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}}, 0}};
+    s.point_lights = {{"the bulb", {0, 1, 0}, dvec3(1)}};
+    s.camera = {{0, 1, -3}, {0, 0, 0}, {0, 1, 0}, 45};
+    s.render.map.photons = 50000; // long batches
+    s.render.map.photon_depth = 2;
+    try {
+        (void)render(this->b(), s);
+        FAIL() << "a scene that stores no photon was rendered";
+    } catch (const std::runtime_error& e) {
+        EXPECT_NE(std::string(e.what()).find("'the bulb'"), std::string::npos) << e.what();
+    }
+}
+
+} // namespace photongrid::testing
