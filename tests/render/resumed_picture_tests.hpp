@@ -1,0 +1,113 @@
+// Pictures that go on from a saved state, and pictures of several passes.
+#pragma once
+
+#include "progressive.hpp"
+
+namespace photongrid::testing {
+
+TYPED_TEST_P(progressive, a_picture_goes_on_from_its_state)
+{
+    using ms = typename TestFixture::ms;
+    auto s = this->small_scene();
+    s.render.view.spp = 4;
+    s.render.output.aov = true;
+    const auto expected = this->whole(s, s.render);
+    render_state state;
+    uint least = 1;
+    int lives = 0;
+    for (; state.film.passes() == 0; ++lives) {
+        ASSERT_LT(lives, 20);
+        typename TestFixture::loop drawing(this->b());
+        drawing.start(s, s.render);
+        if (!state.empty())
+            drawing.resume(state);
+        while (!drawing.finished() && drawing.state().pass.rays < least)
+            drawing.step(ms(0));
+        state = drawing.state();
+        EXPECT_TRUE(drawing.finished() || state.pass.rays >= least);
+        least = state.pass.rays + 3; // of 16: four ways through the glass, four samples
+        if (drawing.finished()) {
+            EXPECT_TRUE(same_bytes(drawing.picture(), expected));
+            EXPECT_EQ(drawing.picture().layers.relative_error, expected.layers.relative_error);
+        }
+    }
+    EXPECT_GE(lives, 4);
+
+    typename TestFixture::loop other(this->b());
+    auto larger = s.render, without_layers = s.render;
+    larger.output.width += 1;
+    without_layers.output.aov = false;
+    for (const auto& settings : {larger, without_layers}) {
+        other.start(s, settings);
+        EXPECT_THROW(other.resume(state), std::invalid_argument);
+        EXPECT_THROW(other.resume({{}, {0, 1, {}}}), std::invalid_argument);
+        EXPECT_FALSE(other.finished());
+    }
+    other.start(s, s.render);
+    const auto n = expected.pixels.size();
+    const std::vector<glm::vec4> some(n);
+    other.resume({{}, {0, 17, {some, some, some}}}); // more rays than there are
+    EXPECT_THROW(other.step(), std::invalid_argument);
+}
+
+TYPED_TEST_P(progressive, passes_add_up_in_any_order)
+{
+    using ms = typename TestFixture::ms;
+    auto s = this->small_scene();
+    s.render.map.photons = 1000;
+    s.render.output.passes = 4;
+    s.render.output.aov = true;
+    const auto expected = this->whole(s, s.render);
+    typename TestFixture::loop drawing(this->b());
+    drawing.start(s, s.render);
+    std::uint64_t seen = 0;
+    while (!drawing.finished()) {
+        drawing.step(ms(0));
+        EXPECT_GE(drawing.pictures(), seen);
+        seen = drawing.pictures();
+    }
+    EXPECT_TRUE(same_bytes(drawing.picture(), expected));
+    EXPECT_EQ(drawing.picture().layers.noise, expected.layers.noise);
+    EXPECT_EQ(drawing.progress().passes, 4u);
+    EXPECT_EQ(drawing.stats().photons.stored, 4000u);
+    expect_an_exact_account(drawing.stats().photons, 4000);
+    // Another view begins with the pass whose map is there: the last one.
+    auto moved = s;
+    moved.camera.position.x += 0.1;
+    const auto maps = drawing.maps();
+    const auto bounces = this->passes("bounce_photon");
+    drawing.start(moved, s.render, {.enabled = false});
+    while (drawing.state().film.passes() == 0)
+        drawing.step(ms(0));
+    EXPECT_TRUE(drawing.state().film.holds(3));
+    EXPECT_EQ(this->passes("bounce_photon"), bounces);
+    drawing.step();
+    EXPECT_EQ(drawing.maps(), maps + 3);
+    EXPECT_TRUE(same_bytes(drawing.picture(), this->whole(moved, s.render)));
+    // From states in the middle, too.
+    render_state state;
+    for (int lives = 0; state.film.passes() < 4; ++lives) {
+        ASSERT_LT(lives, 40);
+        typename TestFixture::loop next(this->b());
+        next.start(s, s.render);
+        if (!state.empty())
+            next.resume(state);
+        const auto before = next.state();
+        while (!next.finished() && next.state().film.passes() == before.film.passes()
+            && next.state().pass.rays < before.pass.rays + 3)
+            next.step(ms(0));
+        state = next.state();
+        if (next.finished()) {
+            EXPECT_TRUE(same_bytes(next.picture(), expected));
+        }
+    }
+    // Each pass has photons, eye rays and shadow rays of its own.
+    for (const auto only : {light_part::direct, light_part::indirect}) {
+        auto a = settings_of_pass(s.render, 0), b = settings_of_pass(s.render, 1);
+        a.output.only = b.output.only = only;
+        a.output.passes = b.output.passes = 1;
+        EXPECT_GT(relative_mse(this->whole(s, a), this->whole(s, b)), 1e-5);
+    }
+}
+
+} // namespace photongrid::testing
