@@ -1,5 +1,6 @@
 // All state of an OpenGL 4.5 core context, a piece at a time: how to set it to something else than OpenGL starts with,
-// and how to read it. For tests that a library leaves it alone.
+// and how to read it. For tests that a library leaves it alone. The file is long because it is one list, in which a
+// reader looks for what is missing.
 #pragma once
 
 #define GL_GLEXT_PROTOTYPES // types of functions; none is linked
@@ -193,9 +194,14 @@ private:
     void fill()
     {
         add_switches_of_the_context();
+        add_viewports();
         add_rasterization();
+        add_blending();
         add_fragments();
+        add_stencil();
         add_objects();
+        add_program_and_attribute();
+        add_debugging();
         add_buffers();
         add_pixel_store();
         add_units();
@@ -236,7 +242,7 @@ private:
         add_switches("GL_SCISSOR_TEST", GL_SCISSOR_TEST, 16);
     }
 
-    void add_rasterization()
+    void add_viewports()
     {
         for (GLuint i = 0; i < 16; ++i) {
             const auto n = std::to_string(i);
@@ -265,6 +271,10 @@ private:
                     return v;
                 });
         }
+    }
+
+    void add_rasterization()
+    {
         add("GL_CLIP_ORIGIN", GL_CLIP_ORIGIN,
             [this] { gl.ClipControl(GL_UPPER_LEFT, GLenum(get(GL_CLIP_DEPTH_MODE, 1)[0])); });
         add("GL_CLIP_DEPTH_MODE", GL_CLIP_DEPTH_MODE,
@@ -304,7 +314,7 @@ private:
             add(name, GLenum(what), [this, w = GLenum(what)] { gl.Hint(w, GL_NICEST); });
     }
 
-    void add_fragments()
+    void add_blending()
     {
         for (GLuint i = 0; i < 8; ++i) {
             const auto n = "[" + std::to_string(i) + "]";
@@ -336,6 +346,10 @@ private:
         }
         add(
             "GL_BLEND_COLOR", GL_BLEND_COLOR, [this] { gl.BlendColor(0.25f, 0.5f, 0.75f, 1.0f); }, 4);
+    }
+
+    void add_fragments()
+    {
         add(
             "GL_COLOR_CLEAR_VALUE", GL_COLOR_CLEAR_VALUE, [this] { gl.ClearColor(0.25f, 0.5f, 0.75f, 1.0f); }, 4);
         add("GL_DEPTH_CLEAR_VALUE", GL_DEPTH_CLEAR_VALUE, [this] { gl.ClearDepth(0.5); });
@@ -355,6 +369,10 @@ private:
         add(
             "GL_DRAW_FRAMEBUFFER_BINDING", GL_DRAW_FRAMEBUFFER_BINDING,
             [this] { gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, draw_target); }, 1, true);
+    }
+
+    void add_stencil()
+    {
         add(
             "GL_STENCIL front",
             [this] {
@@ -390,11 +408,10 @@ private:
     {
         add("GL_READ_FRAMEBUFFER_BINDING", GL_READ_FRAMEBUFFER_BINDING,
             [this, f = make_target()] { gl.BindFramebuffer(GL_READ_FRAMEBUFFER, f); });
-        GLuint renderbuffer = 0, vertices = 0, feedback = 0, query = 0;
+        GLuint renderbuffer = 0, vertices = 0, feedback = 0;
         gl.CreateRenderbuffers(1, &renderbuffer);
         gl.CreateVertexArrays(1, &vertices);
         gl.CreateTransformFeedbacks(1, &feedback);
-        gl.CreateQueries(GL_TIME_ELAPSED, 1, &query);
         add("GL_RENDERBUFFER_BINDING", GL_RENDERBUFFER_BINDING,
             [this, renderbuffer] { gl.BindRenderbuffer(GL_RENDERBUFFER, renderbuffer); });
         add(
@@ -403,6 +420,10 @@ private:
         add(
             "GL_TRANSFORM_FEEDBACK_BINDING", GL_TRANSFORM_FEEDBACK_BINDING,
             [this, feedback] { gl.BindTransformFeedback(GL_TRANSFORM_FEEDBACK, feedback); }, 1, true);
+    }
+
+    void add_program_and_attribute()
+    {
         program = make_program(gl, any_vertex, fragment_of_two);
         add(
             "GL_CURRENT_PROGRAM", GL_CURRENT_PROGRAM, [this] { gl.UseProgram(program); }, 1, true);
@@ -425,6 +446,12 @@ private:
                 gl.GetVertexAttribdv(3, GL_CURRENT_VERTEX_ATTRIB, v.data());
                 return v;
             });
+    }
+
+    void add_debugging()
+    {
+        GLuint query = 0;
+        gl.CreateQueries(GL_TIME_ELAPSED, 1, &query);
         add(
             "query of GL_TIME_ELAPSED", [this, query] { gl.BeginQuery(GL_TIME_ELAPSED, query); },
             [this] {
