@@ -29,20 +29,35 @@ namespace {
         EXPECT_EQ(files(), 0u);
     }
 
-    TEST_F(program, obeys_what_is_said_of_the_estimate)
+    using nlohmann::json;
+
+    // Settings of the estimate, as the statistics have them.
+    const json by_default = json::parse(
+        R"({"search": "exact_k", "filter": "silverman", "bias": "unbiased", "leaks": {"side": true}, "edge_correction": "none", "only": "all"})");
+    const json paper = json::parse(
+        R"({"search": "at_least_k", "filter": "constant", "bias": "paper", "leaks": {}, "edge_correction": "none", "only": "all"})");
+    json but(json all, const char* more)
+    {
+        all.update(json::parse(more));
+        return all;
+    }
+
+    /// Settings of a scene of these tests. Lengths are in m there and in statistics.
+    const char* const of_scene
+        = R"({"search": "fixed_radius", "filter": "silverman", "bias": "paper", "leaks": {"min_cosine": 0.25, "flattening": 3}, "edge_correction": "polygons"})";
+    /// Writes the ring's scene with these settings.
+    void write_scene_with_estimate(const fs::path& ring, const fs::path& path)
+    {
+        auto scene = json::parse(contents(ring), nullptr, true, true);
+        scene["render"].update(json::parse(of_scene));
+        std::ofstream(path) << scene;
+    }
+
+    TEST_F(program, options_set_the_estimate)
     {
         struct row {
             std::vector<std::string> options;
-            nlohmann::json settings; ///< some of those in the statistics
-        };
-        using json = nlohmann::json;
-        const json by_default = json::parse(
-            R"({"search": "exact_k", "filter": "silverman", "bias": "unbiased", "leaks": {"side": true}, "edge_correction": "none", "only": "all"})");
-        const json paper = json::parse(
-            R"({"search": "at_least_k", "filter": "constant", "bias": "paper", "leaks": {}, "edge_correction": "none", "only": "all"})");
-        const auto but = [](json all, const char* more) {
-            all.update(json::parse(more));
-            return all;
+            json settings; ///< some of those in the statistics
         };
         const std::vector<row> rows{
             {{}, by_default},
@@ -73,49 +88,45 @@ namespace {
             {{"--as-paper", "--search", "exact_k", "--bias", "unbiased", "--only", "caustic"},
                 but(paper, R"({"search": "exact_k", "bias": "unbiased", "only": "caustic"})")},
         };
-        const auto expect = [&](const std::vector<std::string>& arguments, const json& expected) {
-            const auto e = run(arguments);
-            ASSERT_EQ(e.code, 0) << e.err;
-            const auto set = json::parse(contents(folder / "stats.json")).at("settings");
-            for (const auto& [key, value] : expected.items())
-                EXPECT_EQ(set.at(key), value) << key << " of " << json(arguments);
-        };
         for (const auto& [options, settings] : rows) {
             auto arguments = small_with({"--stats", "stats.json"});
             arguments.insert(arguments.end(), options.begin(), options.end());
-            expect(arguments, settings);
+            expect_settings(arguments, settings);
         }
-        // A scene that has wishes of its own; lengths are in m, so its statistics' settings are a scene's again.
-        auto wishes = json::parse(contents(ring), nullptr, true, true);
-        wishes["render"].update(json::parse(
-            R"({"search": "fixed_radius", "filter": "silverman", "bias": "paper", "leaks": {"min_cosine": 0.25, "flattening": 3}, "edge_correction": "polygons"})"));
-        std::ofstream(folder / "wishes.json") << wishes;
+    }
+
+    TEST_F(program, options_override_the_scenes_estimate)
+    {
+        write_scene_with_estimate(ring, folder / "own.json");
         auto arguments = small_with({"--stats", "stats.json", "-o", "a.exr"});
-        arguments[1] = "wishes.json";
-        const auto wished = but(by_default,
-            R"({"search": "fixed_radius", "filter": "silverman", "bias": "paper", "leaks": {"min_cosine": 0.25, "flattening": 3}, "edge_correction": "polygons"})");
-        expect(arguments, wished);
+        arguments[1] = "own.json";
+        const auto own = but(by_default, of_scene);
+        expect_settings(arguments, own);
         EXPECT_NE(
             contents(folder / "a.exr")
                 .find(
                     R"("search":"fixed_radius","filter":"silverman","bias":"paper","leaks":{"min_cosine":0.25,"flattening":3.0},"edge_correction":"polygons","only":"all")"),
             std::string::npos)
             << "the EXR's note";
-        // A policy taken away that the scene's correction needs is refused, with the way out; nothing is drawn.
-        auto torn = arguments;
-        torn.back() = "torn.exr";
-        torn.insert(torn.end(), {"--leaks", "side"});
-        const auto refused = run(torn);
-        EXPECT_EQ(refused.code, 2);
-        EXPECT_NE(refused.err.find("on the command line: edge_correction: photons of adjoining walls would count"),
-            std::string::npos)
-            << refused.err;
-        EXPECT_NE(refused.err.find("needs the leak policy min_cosine above 0"), std::string::npos) << refused.err;
-        EXPECT_FALSE(fs::exists(folder / "torn.exr"));
         arguments.insert(arguments.end(), {"--filter", "cone", "--leaks", "side", "--edge-correction", "none"});
-        expect(arguments, but(wished, R"({"filter": "cone", "leaks": {"side": true}, "edge_correction": "none"})"));
+        expect_settings(
+            arguments, but(own, R"({"filter": "cone", "leaks": {"side": true}, "edge_correction": "none"})"));
         arguments.emplace_back("--as-paper");
-        expect(arguments, but(paper, R"({"filter": "cone", "leaks": {"side": true}})"));
+        expect_settings(arguments, but(paper, R"({"filter": "cone", "leaks": {"side": true}})"));
+    }
+
+    TEST_F(program, a_leak_policy_that_edge_correction_needs_cannot_be_taken_away)
+    {
+        write_scene_with_estimate(ring, folder / "own.json");
+        auto arguments = small_with({"--leaks", "side", "-o", "a.exr"});
+        arguments[1] = "own.json";
+        const auto e = run(arguments);
+        EXPECT_EQ(e.code, 2);
+        EXPECT_NE(e.err.find("on the command line: edge_correction: photons of adjoining walls would count"),
+            std::string::npos)
+            << e.err;
+        EXPECT_NE(e.err.find("needs the leak policy min_cosine above 0"), std::string::npos) << e.err;
+        EXPECT_FALSE(fs::exists(folder / "a.exr"));
     }
 
     TEST_F(program, layers_need_a_file_that_holds_them)

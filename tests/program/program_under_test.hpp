@@ -79,6 +79,15 @@ namespace {
             return e;
         }
         ended run(std::vector<std::string> arguments) const { return wait(start(std::move(arguments))); }
+        /// Runs a render that writes stats.json, and compares some of the settings in that file.
+        void expect_settings(const std::vector<std::string>& arguments, const nlohmann::json& expected) const
+        {
+            const auto e = run(arguments);
+            ASSERT_EQ(e.code, 0) << e.err;
+            const auto settings = nlohmann::json::parse(contents(folder / "stats.json")).at("settings");
+            for (const auto& [key, value] : expected.items())
+                EXPECT_EQ(settings.at(key), value) << key << " of " << nlohmann::json(arguments);
+        }
         std::size_t files() const
         {
             return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
