@@ -103,9 +103,38 @@ TEST_F(vulkan, passes_over_unfinished_elements_fall_and_can_be_resumed)
     }
 }
 
+/// What group_probe must have found in each element's group: over_all holds the smallest and the largest number, the
+/// sum up to the element and whether any is a multiple of 5; of_lanes the width of the group, the element's lane, the
+/// middle lane's number and a weighed sum. `width` is set to the width.
+inline void expect_groups(const std::vector<uint>& numbers, const std::vector<uvec4>& over_all,
+    const std::vector<uvec4>& of_lanes, uint& width)
+{
+    const auto n = static_cast<uint>(numbers.size());
+    width = of_lanes[0].x;
+    ASSERT_TRUE(width >= 1 && width <= 64 && 64 % width == 0) << width;
+    for (uint i = 0; i < n; ++i) {
+        const uint first = i - i % width, past = std::min(first + width, n);
+        uint low = ~0u, high = 0, up_to = 0, weighed = 0;
+        bool any = false;
+        for (uint j = first; j < past; ++j) {
+            low = std::min(low, numbers[j]);
+            high = std::max(high, numbers[j]);
+            up_to += j <= i ? numbers[j] : 0;
+            weighed += numbers[j] * (j - first + 1);
+            any = any || numbers[j] % 5 == 0;
+        }
+        ASSERT_EQ(over_all[i], uvec4(low, high, up_to, any ? 1 : 0)) << i << " of " << n << ", groups of " << width;
+        ASSERT_EQ(of_lanes[i].y, i - first);
+        if (past - first == width) {
+            ASSERT_EQ(of_lanes[i].z, numbers[first + width / 2]);
+            ASSERT_EQ(of_lanes[i].w, weighed);
+        }
+    }
+}
+
 /// Neighbours of a subgroup exchange correct values, in all of `run` and `run_until_done`, of any number of elements,
 /// done or not; and a group is one element where the switch is off or subgroups are.
-TEST_F(vulkan, elements_of_a_group_hear_of_each_other)
+TEST_F(vulkan, elements_of_a_group_exchange_values)
 {
     uint most_lanes = 1;
     for (const bool staging : {false, true})
@@ -128,35 +157,15 @@ TEST_F(vulkan, elements_of_a_group_hear_of_each_other)
                     const auto input = up(device, numbers);
                     auto state = up(device, states);
                     auto over_all = device.make<uvec4>(n), of_lanes = device.make<uvec4>(n);
-                    const auto check = [&](bool whole) {
-                        const auto all = device.download(over_all), lanes = device.download(of_lanes);
-                        const uint width = lanes[0].x;
-                        ASSERT_TRUE(width >= 1 && width <= 64 && 64 % width == 0) << width;
+                    const auto check = [&] {
+                        uint width = 1;
+                        expect_groups(numbers, device.download(over_all), device.download(of_lanes), width);
                         EXPECT_TRUE(width == 1 || (switches != 0 && subgroups)) << width;
                         most_lanes = std::max(most_lanes, width);
-                        for (uint i = 0; i < n; ++i) {
-                            const uint first = i - i % width, past = std::min(first + width, n);
-                            uint low = ~0u, high = 0, up_to = 0, weighed = 0;
-                            bool any = false;
-                            for (uint j = first; j < past; ++j) {
-                                low = std::min(low, numbers[j]);
-                                high = std::max(high, numbers[j]);
-                                up_to += j <= i ? numbers[j] : 0;
-                                weighed += numbers[j] * (j - first + 1);
-                                any = any || numbers[j] % 5 == 0;
-                            }
-                            ASSERT_EQ(all[i], uvec4(low, high, up_to, any ? 1 : 0))
-                                << i << " of " << n << ", groups of " << width;
-                            ASSERT_EQ(lanes[i].y, i - first);
-                            if (whole && past - first == width) {
-                                ASSERT_EQ(lanes[i].z, numbers[first + width / 2]);
-                                ASSERT_EQ(lanes[i].w, weighed);
-                            }
-                        }
                     };
                     device.run<test_kernels::group_probe>(
                         {n, 0u, switches}, {}, reads(input), writes(state, over_all, of_lanes));
-                    check(true);
+                    check();
                     state = up(device, states);
                     const auto p = device.run_until_done<test_kernels::group_probe>(
                         {n, 0u, switches}, {}, reads(input), writes(state, over_all, of_lanes), nowhere);
@@ -172,7 +181,7 @@ TEST_F(vulkan, elements_of_a_group_hear_of_each_other)
                         EXPECT_EQ(p.active[q],
                             static_cast<std::uint64_t>(
                                 std::count_if(states.begin(), states.end(), [&](uvec2 s) { return s.x > q; })));
-                    check(true);
+                    check();
                     EXPECT_EQ(device.validation_messages(), std::vector<std::string>{});
                 }
     RecordProperty("lanes", static_cast<int>(most_lanes));
