@@ -146,6 +146,48 @@ namespace {
         return same;
     }
 
+    /// Calls that throw: before a pass, in the compiler, and between a pass's state and its drawing. `pairs` has 5000
+    /// elements, `few` fewer.
+    template <class Check>
+    void call_what_throws(
+        gl_backend& b, const buffer_of<gl_backend, glm::uvec2>& pairs, buffer_of<gl_backend, uint>& few, Check&& check)
+    {
+        EXPECT_THROW((b.run<kernels::pair_value>(5000, {}, reads(pairs), writes(few))), std::invalid_argument);
+        check("run with too small a buffer");
+        EXPECT_THROW(b.compile<test_kernels::broken>(), backend_error);
+        check("compile of a broken kernel");
+        EXPECT_THROW((b.run<test_kernels::broken>(10, {}, std::tuple<>{}, writes(few))), backend_error);
+        check("run of a broken kernel");
+        b.run<kernels::pair_value>(10, {}, reads(b.make<glm::uvec2>(0)), writes(few));
+        check("run that reads a buffer without elements");
+    }
+
+    /// Gives `few`, of 10 elements, to the caller and takes it back; then uses a texture that the caller deleted.
+    template <class Check>
+    void exchange_textures(gl_backend& b, const buffer_of<gl_backend, glm::uvec2>& pairs,
+        buffer_of<gl_backend, uint>& few, const test_gl& gl, Check&& check)
+    {
+        gl_texture given = b.texture_of(few);
+        check("texture_of");
+        given = b.release(std::move(few));
+        check("release");
+        {
+            auto taken = b.adopt<uint>(given.name, 10);
+            check("adopt");
+            EXPECT_THROW(b.adopt<float>(given.name, 10), std::invalid_argument);
+            check("adopt of another format");
+        }
+        check("the destructor of an adopted buffer");
+        gl.DeleteTextures(1, &given.name);
+        GLuint mine = 0; // which no pass can draw into when this is done with it
+        gl.CreateTextures(GL_TEXTURE_2D, 1, &mine);
+        gl.TextureStorage2D(mine, 1, GL_R32UI, 2048, 1);
+        auto taken = b.adopt<uint>(mine, 2048);
+        gl.DeleteTextures(1, &mine);
+        EXPECT_THROW((b.run<kernels::pair_value>(2048, {}, reads(pairs), writes(taken))), backend_error);
+        check("run into a texture that is gone");
+    }
+
     /// Calls everything that the backend has; `check` after each.
     template <class Check>
     void call_everything(auto&& make_backend, const test_gl& gl, Check&& check)
@@ -176,37 +218,9 @@ namespace {
                 EXPECT_TRUE(same_results(results(*b, m), results(cpu, m))) << "m " << m;
                 check(m == 0 ? "sorted_map, knn_grid_estimate" : "routed_map, knn_grid_estimate");
             }
-            // Exceptions: before a pass, in the compiler, and between a pass's state and its drawing.
             auto few = b->make<uint>(10);
-            EXPECT_THROW((b->run<kernels::pair_value>(5000, {}, reads(up), writes(few))), std::invalid_argument);
-            check("run with too small a buffer");
-            EXPECT_THROW(b->compile<test_kernels::broken>(), backend_error);
-            check("compile of a broken kernel");
-            EXPECT_THROW((b->run<test_kernels::broken>(10, {}, std::tuple<>{}, writes(few))), backend_error);
-            check("run of a broken kernel");
-            b->run<kernels::pair_value>(10, {}, reads(b->make<glm::uvec2>(0)), writes(few));
-            check("run that reads a buffer without elements");
-            gl_texture given = b->texture_of(few);
-            check("texture_of");
-            given = b->release(std::move(few));
-            check("release");
-            {
-                auto taken = b->adopt<uint>(given.name, 10);
-                check("adopt");
-                EXPECT_THROW(b->adopt<float>(given.name, 10), std::invalid_argument);
-                check("adopt of another format");
-            }
-            check("the destructor of an adopted buffer");
-            gl.DeleteTextures(1, &given.name);
-            {
-                GLuint mine = 0; // which no pass can draw into when this is done with it
-                gl.CreateTextures(GL_TEXTURE_2D, 1, &mine);
-                gl.TextureStorage2D(mine, 1, GL_R32UI, 2048, 1);
-                auto taken = b->adopt<uint>(mine, 2048);
-                gl.DeleteTextures(1, &mine);
-                EXPECT_THROW((b->run<kernels::pair_value>(2048, {}, reads(up), writes(taken))), backend_error);
-                check("run into a texture that is gone");
-            }
+            call_what_throws(*b, up, few, check);
+            exchange_textures(*b, up, few, gl, check);
         }
         check("destructors of buffers");
         b.reset();

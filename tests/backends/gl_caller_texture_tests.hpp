@@ -7,16 +7,33 @@
 namespace photongrid::testing {
 namespace {
 
-    TYPED_TEST(gl_callers_context, refuses_to_disturb_what_nobody_can_put_back)
+    /// Pairs to be sorted, unless the caller's state forbids passes.
+    class unsorted_pairs {
+    public:
+        explicit unsorted_pairs(gl_backend& b) : b_(b), buffer_(b.upload(view(data_))) {}
+
+        void expect_error(const char* name)
+        {
+            EXPECT_NE(said(b_, buffer_).find(name), std::string::npos) << name << ", but: " << said(b_, buffer_);
+            EXPECT_TRUE(same_bits(b_.download(buffer_), data_)) << name; // uploads and downloads go on
+        }
+        void expect_sorting()
+        {
+            EXPECT_EQ(said(b_, buffer_), "");
+            EXPECT_TRUE(same_bits(b_.download(buffer_), sorted(data_)));
+        }
+
+    private:
+        gl_backend& b_;
+        const std::vector<glm::uvec2> data_ = random_pairs(100);
+        buffer_of<gl_backend, glm::uvec2> buffer_;
+    };
+
+    TYPED_TEST(gl_callers_context, no_pass_runs_during_queries_and_conditional_rendering)
     {
         const test_gl& gl = *this->call;
         std::unique_ptr<gl_backend> b = this->make_backend();
-        const auto data = random_pairs(100);
-        auto pairs = b->upload(view(data));
-        const auto expect_refusal = [&](const char* name) {
-            EXPECT_NE(said(*b, pairs).find(name), std::string::npos) << name << ", but: " << said(*b, pairs);
-            EXPECT_TRUE(same_bits(b->download(pairs), data)) << name; // uploads and downloads go on
-        };
+        unsorted_pairs pairs(*b);
         for (const auto& [target, name] :
             {std::pair{GL_SAMPLES_PASSED, "GL_SAMPLES_PASSED "}, {GL_ANY_SAMPLES_PASSED, "GL_ANY_SAMPLES_PASSED "},
                 {GL_ANY_SAMPLES_PASSED_CONSERVATIVE, "GL_ANY_SAMPLES_PASSED_CONSERVATIVE "},
@@ -24,18 +41,25 @@ namespace {
             GLuint query = 0;
             gl.CreateQueries(GLenum(target), 1, &query);
             gl.BeginQuery(GLenum(target), query);
-            expect_refusal(name);
+            pairs.expect_error(name);
             gl.EndQuery(GLenum(target));
             if (target == GL_SAMPLES_PASSED) {
                 gl.BeginConditionalRender(query, GL_QUERY_WAIT);
-                expect_refusal("conditional rendering");
+                pairs.expect_error("conditional rendering");
                 EXPECT_EQ(gl.GetError(), GLenum(GL_NO_ERROR));
                 gl.EndConditionalRender();
                 EXPECT_EQ(gl.GetError(), GLenum(GL_NO_ERROR)) << "it was still in force";
             }
         }
+        pairs.expect_sorting();
+    }
 
-        GLuint program = gl.CreateProgram();
+    TYPED_TEST(gl_callers_context, no_pass_runs_during_transform_feedback)
+    {
+        const test_gl& gl = *this->call;
+        std::unique_ptr<gl_backend> b = this->make_backend();
+        unsorted_pairs pairs(*b), others(*b);
+        const GLuint program = gl.CreateProgram();
         const GLuint shader = gl.CreateShader(GL_VERTEX_SHADER);
         gl.ShaderSource(shader, 1, &any_vertex, nullptr);
         gl.CompileShader(shader);
@@ -49,16 +73,24 @@ namespace {
         gl.NamedBufferData(buffer, 4096, nullptr, GL_STATIC_DRAW);
         gl.BindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer, 0, 4096);
         gl.BeginTransformFeedback(GL_TRIANGLES);
-        expect_refusal("transform feedback");
+        pairs.expect_error("transform feedback");
         gl.PauseTransformFeedback();
-        auto others = b->upload(view(data));
-        EXPECT_EQ(said(*b, others), ""); // while it pauses, nothing is recorded
+        others.expect_sorting(); // while it pauses, nothing is recorded
         gl.ResumeTransformFeedback();
         gl.EndTransformFeedback();
         EXPECT_EQ(gl.GetError(), GLenum(GL_NO_ERROR)) << "it could not go on";
+        pairs.expect_sorting();
+    }
 
+    TYPED_TEST(gl_callers_context, no_pass_runs_if_the_callers_program_could_not_be_restored)
+    {
+        const test_gl& gl = *this->call;
+        std::unique_ptr<gl_backend> b = this->make_backend();
+        unsorted_pairs pairs(*b);
+        GLuint program = make_program(gl, any_vertex, fragment_of_two);
+        gl.UseProgram(program);
         gl.DeleteProgram(program);
-        expect_refusal("marked for deletion");
+        pairs.expect_error("marked for deletion");
         GLint marked = 0;
         gl.GetProgramiv(program, GL_DELETE_STATUS, &marked);
         EXPECT_TRUE(marked) << "it was deleted under the caller's hands";
@@ -67,10 +99,9 @@ namespace {
         const char* no_varying = "no such";
         gl.TransformFeedbackVaryings(program, 1, &no_varying, GL_INTERLEAVED_ATTRIBS);
         gl.LinkProgram(program);
-        expect_refusal("failed to link again");
+        pairs.expect_error("failed to link again");
         gl.UseProgram(0);
-        EXPECT_EQ(said(*b, pairs), "");
-        EXPECT_TRUE(same_bits(b->download(pairs), sorted(data)));
+        pairs.expect_sorting();
     }
 
     GLuint make_texture(const test_gl& gl, GLenum target, GLenum format, GLsizei width, GLsizei height)
