@@ -102,6 +102,85 @@ namespace {
         EXPECT_NEAR(slope(rows, [](const auto& r) { return r.total(); }), -2.0 / 3, 0.15);
     }
 
+    /// Pixels of a picture that show one shape each, and which of these are far from any edge.
+    class comparable_pixels {
+    public:
+        static constexpr double clear = 0.1; ///< m, from edges of shapes
+
+        comparable_pixels(const scene& s, const reference_settings& settings)
+            : scene_(s), settings_(settings), shapes_(s)
+        {
+            for (std::uint32_t y = 0; y < settings.height; ++y)
+                for (std::uint32_t x = 0; x < settings.width; ++x) {
+                    const auto middle = shape_at(x + 0.5, y + 0.5);
+                    bool one = middle.shape != reference::nothing && middle.light == reference::nothing;
+                    for (const auto& [dx, dy] : {std::pair{-0.1, -0.1}, {1.1, -0.1}, {-0.1, 1.1}, {1.1, 1.1}})
+                        one = one && shape_at(x + dx, y + dy).shape == middle.shape;
+                    if (!one)
+                        continue;
+                    whole_.push_back(std::size_t{y} * settings.width + x);
+                    smooth_.push_back(is_clear(middle));
+                }
+        }
+
+        /// The channels of the pixels that show one shape.
+        std::vector<double> of(const image& im) const
+        {
+            std::vector<double> out;
+            for (const auto i : whole_)
+                for (int c = 0; c < 3; ++c)
+                    out.push_back(static_cast<double>(im.pixels[i][c]));
+            return out;
+        }
+        /// Of what `of` returned, what is far from edges.
+        std::vector<double> smooth(const std::vector<double>& all) const
+        {
+            std::vector<double> out;
+            for (std::size_t i = 0; i < all.size(); ++i)
+                if (smooth_[i / 3])
+                    out.push_back(all[i]);
+            return out;
+        }
+        void print_counts() const
+        {
+            std::printf("%zu of %zu pixels lie within one shape, %td of them %.1f m from any edge\n", whole_.size(),
+                std::size_t{settings_.width} * settings_.height, std::count(smooth_.begin(), smooth_.end(), true),
+                clear);
+        }
+
+    private:
+        reference::hit shape_at(double x, double y) const
+        {
+            const auto& c = scene_.camera;
+            const dvec3 forward = glm::normalize(c.look_at - c.position),
+                        right = glm::normalize(glm::cross(forward, c.up)), up = glm::cross(right, forward);
+            const double pixel = 2 * std::tan(glm::radians(0.5 * c.vertical_fov)) / settings_.height;
+            return shapes_.nearest({c.position,
+                glm::normalize(
+                    forward + (x - 0.5 * settings_.width) * pixel * right + (0.5 * settings_.height - y) * pixel * up),
+                reference::nothing});
+        }
+        /// Nothing else and no edge near: there irradiance is smooth over the discs of the estimates.
+        bool is_clear(const reference::hit& h) const
+        {
+            const dvec3 n = glm::dot(h.normal, scene_.camera.position - h.position) > 0 ? h.normal : -h.normal,
+                        u = reference::across(n), v = glm::cross(n, u);
+            for (int i = 0; i < 32; ++i) {
+                const dvec3 way = std::cos(i * M_PI / 16) * u + std::sin(i * M_PI / 16) * v;
+                if (shapes_.nearest({h.position + 1e-6 * n, way, reference::nothing}).t < clear
+                    || shapes_.nearest({h.position + clear * way + 1e-3 * n, -n, reference::nothing}).shape != h.shape)
+                    return false;
+            }
+            return true;
+        }
+
+        const scene& scene_;
+        const reference_settings settings_;
+        const reference::geometry shapes_;
+        std::vector<std::size_t> whole_;
+        std::vector<bool> smooth_; ///< of those
+    };
+
     TEST(validation, long_cornell_blocks_converge_to_the_reference)
     {
         auto s = read_scene(PHOTONGRID_SCENES "/cornell_blocks.json");
@@ -110,60 +189,10 @@ namespace {
         fine.spp = 4096;
         fine.seed = 99;
         const auto exact = render_reference(s, s.camera, fine);
-
         // Pixels over an edge of a shape or the lamp are left out: their noise is that of 32 eye rays, whatever the
         // photons do.
-        const reference::geometry shapes(s);
-        const dvec3 forward = glm::normalize(s.camera.look_at - s.camera.position),
-                    right = glm::normalize(glm::cross(forward, s.camera.up)), up = glm::cross(right, forward);
-        const double pixel = 2 * std::tan(glm::radians(0.5 * s.camera.vertical_fov)) / fine.height;
-        const auto shape_at = [&](double x, double y) {
-            return shapes.nearest({s.camera.position,
-                glm::normalize(forward + (x - 0.5 * fine.width) * pixel * right + (0.5 * fine.height - y) * pixel * up),
-                reference::nothing});
-        };
-        // Of these, pixels with nothing else and no edge near: there irradiance is smooth over the discs of the
-        // estimates.
-        const double clear = 0.1;
-        const auto is_clear = [&](const reference::hit& h) {
-            const dvec3 n = glm::dot(h.normal, s.camera.position - h.position) > 0 ? h.normal : -h.normal,
-                        u = reference::across(n), v = glm::cross(n, u);
-            for (int i = 0; i < 32; ++i) {
-                const dvec3 way = std::cos(i * M_PI / 16) * u + std::sin(i * M_PI / 16) * v;
-                if (shapes.nearest({h.position + 1e-6 * n, way, reference::nothing}).t < clear
-                    || shapes.nearest({h.position + clear * way + 1e-3 * n, -n, reference::nothing}).shape != h.shape)
-                    return false;
-            }
-            return true;
-        };
-        std::vector<std::size_t> whole;
-        std::vector<bool> smooth; // of those
-        for (std::uint32_t y = 0; y < fine.height; ++y)
-            for (std::uint32_t x = 0; x < fine.width; ++x) {
-                const auto middle = shape_at(x + 0.5, y + 0.5);
-                bool one = middle.shape != reference::nothing && middle.light == reference::nothing;
-                for (const auto& [dx, dy] : {std::pair{-0.1, -0.1}, {1.1, -0.1}, {-0.1, 1.1}, {1.1, 1.1}})
-                    one = one && shape_at(x + dx, y + dy).shape == middle.shape;
-                if (!one)
-                    continue;
-                whole.push_back(std::size_t{y} * fine.width + x);
-                smooth.push_back(is_clear(middle));
-            }
-        const auto spread_out = [&](const image& im) {
-            std::vector<double> out;
-            for (const auto i : whole)
-                for (int c = 0; c < 3; ++c)
-                    out.push_back(static_cast<double>(im.pixels[i][c]));
-            return out;
-        };
-        const auto smooth_ones = [&](const std::vector<double>& all) {
-            std::vector<double> out;
-            for (std::size_t i = 0; i < all.size(); ++i)
-                if (smooth[i / 3])
-                    out.push_back(all[i]);
-            return out;
-        };
-        const auto known = spread_out(exact.mean), known_error = spread_out(exact.standard_error);
+        const comparable_pixels pixels(s, fine);
+        const auto known = pixels.of(exact.mean), known_error = pixels.of(exact.standard_error);
 
         auto settings = s.render;
         settings.output.width = settings.output.height = 32;
@@ -176,9 +205,9 @@ namespace {
         const auto row = [&](std::vector<std::vector<double>> values, bool only_smooth) {
             if (only_smooth)
                 for (auto& v : values)
-                    v = smooth_ones(v);
-            auto r = split_error(values, only_smooth ? smooth_ones(known) : known,
-                only_smooth ? smooth_ones(known_error) : known_error, 0.01);
+                    v = pixels.smooth(v);
+            auto r = split_error(values, only_smooth ? pixels.smooth(known) : known,
+                only_smooth ? pixels.smooth(known_error) : known_error, 0.01);
             r.photons = settings.map.photons;
             r.k = settings.estimate.k;
             return r;
@@ -189,18 +218,17 @@ namespace {
             std::vector<std::vector<double>> values, corrected;
             for (uint seed = 1; seed <= seeds; ++seed) {
                 settings.seed = seed;
-                values.push_back(spread_out(serial_picture(s, settings)));
+                values.push_back(pixels.of(serial_picture(s, settings)));
                 auto with_edges = settings;
                 with_edges.estimate.leaks.min_cosine = 0.5f;
                 with_edges.estimate.edges = edge_correction::polygons;
-                corrected.push_back(spread_out(serial_picture(s, with_edges)));
+                corrected.push_back(pixels.of(serial_picture(s, with_edges)));
             }
             rows.push_back(row(values, false));
             corrected_rows.push_back(row(corrected, false));
             smooth_rows.push_back(row(values, true));
         }
-        std::printf("%zu of %zu pixels lie within one shape, %td of them %.1f m from any edge\n", whole.size(),
-            exact.mean.pixels.size(), std::count(smooth.begin(), smooth.end(), true), clear);
+        pixels.print_counts();
         print("cornell_blocks", rows);
         print("cornell_blocks, edges corrected", corrected_rows);
         print("cornell_blocks, far from edges", smooth_rows);

@@ -42,88 +42,119 @@ namespace {
         return out;
     }
 
-    TEST(validation, a_glass_balls_caustic_has_the_profile_of_ray_density)
-    {
-        const double radius = 0.3, middle = 0.4, lamp = 0.9, index = 1.5, power = 10;
-        scene s;
-        s.name = "ball_on_axis";
-        s.materials
-            = {{"black", material_kind::lambertian, dvec3(0)}, {"glass", material_kind::glass, dvec3(1), index}};
-        s.polygons = {{{{-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}}, 0}};
-        s.spheres = {{{0, middle, 0}, radius, 1}};
-        s.point_lights = {{"lamp", {0, middle + lamp, 0}, dvec3(power)}};
-        s.camera = {{0, 1, -3}, {0, 0, 0}, {0, 1, 0}, 45};
-        s.render = {.map = {.photons = 150000, .grid = {200, 1, 200}}, .estimate = {.k = 200, .max_radius = 0.5}};
+    /// A point light, a glass ball and a black floor on one axis, and the irradiance of the floor by ray density: power
+    /// spread over rings of the floor, by angle at the lamp and number of reflections.
+    class ball_on_axis {
+    public:
+        ball_on_axis()
+        {
+            const int steps = 100000, orders = 24;
+            const double widest = std::asin(radius / lamp);
+            for (int order = 0; order < orders; ++order)
+                for (int n = 0; n < steps; ++n) {
+                    const double alpha = (n + 0.5) / steps * widest;
+                    const auto g = through_ball(alpha, lamp, middle, radius, index, order);
+                    if (!g.arrives || g.rho >= width * static_cast<double>(rings_.size()))
+                        continue;
+                    rings_[static_cast<std::size_t>(g.rho / width)]
+                        += power / 2 * std::sin(alpha) * widest / steps * g.weight;
+                    if (order == 1 && alpha < 0.9 * widest)
+                        fold_ = std::max(fold_, g.rho);
+                }
+        }
 
-        // Ray density: power spread over rings of the floor, by angle at the lamp and number of reflections.
-        const int steps = 100000, orders = 24;
-        const double widest = std::asin(radius / lamp), width = 2.5e-4;
-        std::vector<double> rings(4000, 0.0); // flux
-        double fold = 0;                      // where the main caustic ends: its radius has a maximum over angles
-        for (int order = 0; order < orders; ++order)
-            for (int n = 0; n < steps; ++n) {
-                const double alpha = (n + 0.5) / steps * widest;
-                const auto g = through_ball(alpha, lamp, middle, radius, index, order);
-                if (!g.arrives || g.rho >= width * static_cast<double>(rings.size()))
-                    continue;
-                rings[static_cast<std::size_t>(g.rho / width)]
-                    += power / 2 * std::sin(alpha) * widest / steps * g.weight;
-                if (order == 1 && alpha < 0.9 * widest)
-                    fold = std::max(fold, g.rho);
-            }
-        const auto density = [&](double rho) { // over 1 mm either side
+        scene as_scene() const
+        {
+            scene s;
+            s.name = "ball_on_axis";
+            s.materials
+                = {{"black", material_kind::lambertian, dvec3(0)}, {"glass", material_kind::glass, dvec3(1), index}};
+            s.polygons = {{{{-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}}, 0}};
+            s.spheres = {{{0, middle, 0}, radius, 1}};
+            s.point_lights = {{"lamp", {0, middle + lamp, 0}, dvec3(power)}};
+            s.camera = {{0, 1, -3}, {0, 0, 0}, {0, 1, 0}, 45};
+            s.render = {.map = {.photons = 150000, .grid = {200, 1, 200}}, .estimate = {.k = 200, .max_radius = 0.5}};
+            return s;
+        }
+        /// Where the main caustic ends, m off the axis: its radius has a maximum over angles.
+        double fold() const { return fold_; }
+        /// Irradiance at `rho` off the axis, over 1 mm either side.
+        double density(double rho) const
+        {
             const auto first = static_cast<std::size_t>((rho - 1e-3) / width),
                        past = static_cast<std::size_t>((rho + 1e-3) / width);
             const double inner = static_cast<double>(first) * width, outer = static_cast<double>(past) * width;
-            return std::accumulate(rings.begin() + static_cast<std::ptrdiff_t>(first),
-                       rings.begin() + static_cast<std::ptrdiff_t>(past), 0.0)
+            return std::accumulate(rings_.begin() + static_cast<std::ptrdiff_t>(first),
+                       rings_.begin() + static_cast<std::ptrdiff_t>(past), 0.0)
                 / (M_PI * (outer * outer - inner * inner));
-        };
-        // The mean over a disc of radius r about a point at `rho`: each ring's share that lies inside.
-        const auto disc_mean = [&](double rho, double r) {
-            double flux = 0;
-            for (std::size_t i = 0; i < rings.size(); ++i) {
+        }
+        /// The mean over a disc of radius r about a point at `rho`: each ring's share that lies inside.
+        double disc_mean(double rho, double r) const
+        {
+            double total = 0; // W
+            for (std::size_t i = 0; i < rings_.size(); ++i) {
                 const double ring = width * (static_cast<double>(i) + 0.5),
                              c = (ring * ring + rho * rho - r * r) / (2 * ring * rho);
-                flux += c >= 1 ? 0 : c <= -1 ? rings[i] : rings[i] * std::acos(c) / M_PI;
+                total += c >= 1 ? 0 : c <= -1 ? rings_[i] : rings_[i] * std::acos(c) / M_PI;
             }
-            return flux / (M_PI * r * r);
-        };
+            return total / (M_PI * r * r);
+        }
 
+    private:
+        static constexpr double radius = 0.3, middle = 0.4, lamp = 0.9, index = 1.5, power = 10;
+        static constexpr double width = 2.5e-4;                      ///< m, of a ring
+        std::vector<double> rings_ = std::vector<double>(4000, 0.0); ///< W
+        double fold_ = 0;
+    };
+
+    constexpr int points_around = 12;
+
+    /// Estimates at points on circles about the axis, points_around on each.
+    struct ring_estimates {
+        std::vector<vec4> irradiance, errors;
+    };
+    ring_estimates estimates_on_circles(const scene& s, const std::vector<double>& radii)
+    {
         serial_backend b;
         const auto device = upload_scene(b, s);
         auto t = trace_photons(b, s, device, s.render);
         const auto map
             = sorted_map(b, std::move(t.photons), make_grid(device.layout.low, device.layout.high, s.render.map.grid));
-        std::vector<double> radii;
-        for (double r = 0.02; r < 0.5; r += r < 0.24 ? 0.02 : 0.05)
-            radii.push_back(r);
-        const int around = 12;
         std::vector<dvec3> points;
         for (const double r : radii)
-            for (int n = 0; n < around; ++n)
+            for (int n = 0; n < points_around; ++n)
                 points.emplace_back(
-                    r * std::cos(2 * M_PI * n / around + r), 0, r * std::sin(2 * M_PI * n / around + r));
+                    r * std::cos(2 * M_PI * n / points_around + r), 0, r * std::sin(2 * M_PI * n / points_around + r));
         const auto where = recentred(points, device.layout.center);
         const auto estimates = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(where)),
             {.k = s.render.estimate.k, .max_radius = static_cast<float>(s.render.estimate.max_radius), .errors = true});
-        const auto irradiance = b.download(estimates.irradiance), errors = b.download(estimates.standard_error);
+        return {b.download(estimates.irradiance), b.download(estimates.standard_error)};
+    }
+
+    TEST(validation, a_glass_balls_caustic_has_the_profile_of_ray_density)
+    {
+        const ball_on_axis ball;
+        const scene s = ball.as_scene();
+        std::vector<double> radii;
+        for (double r = 0.02; r < 0.5; r += r < 0.24 ? 0.02 : 0.05)
+            radii.push_back(r);
+        const auto [irradiance, errors] = estimates_on_circles(s, radii);
 
         std::printf("glass ball: light refracted twice folds at %.4f m\n| rho, m | ray density, W/m^2 | photon map | "
                     "standard error | mean over the discs searched |\n|---|---|---|---|---|\n",
-            fold);
+            ball.fold());
         double chi2 = 0, ratio_sum = 0;
         int compared = 0;
         for (std::size_t i = 0; i < radii.size(); ++i) {
             double mean = 0, variance = 0, discs = 0, largest = 0;
-            for (int n = 0; n < around; ++n) {
-                const std::size_t q = i * around + static_cast<std::size_t>(n);
+            for (int n = 0; n < points_around; ++n) {
+                const std::size_t q = i * points_around + static_cast<std::size_t>(n);
                 const double r = std::sqrt(static_cast<double>(irradiance[q].w)),
-                             e = static_cast<double>(irradiance[q].x), known = disc_mean(radii[i], r);
+                             e = static_cast<double>(irradiance[q].x), known = ball.disc_mean(radii[i], r);
                 largest = std::max(largest, r);
-                mean += e / around;
-                discs += known / around;
-                variance += std::pow(static_cast<double>(errors[q].x) / around, 2);
+                mean += e / points_around;
+                discs += known / points_around;
+                variance += std::pow(static_cast<double>(errors[q].x) / points_around, 2);
                 // Given where k photons end, those before it lie anywhere in the disc: estimate over the disc's mean is
                 // 1 on average for any density, with relative variance 1 / (k - 2).
                 ratio_sum += e / known;
@@ -132,11 +163,12 @@ namespace {
             }
             // Discs round the same circle overlap near the axis, and then their errors do not average out.
             const double se = std::sqrt(variance)
-                * std::sqrt(std::max(1.0, around * M_PI * largest * largest / (4 * M_PI * radii[i] * largest)));
-            const double known = density(radii[i]);
+                * std::sqrt(std::max(1.0, points_around * M_PI * largest * largest / (4 * M_PI * radii[i] * largest)));
+            const double known = ball.density(radii[i]);
             std::printf("| %.2f | %.4f | %.4f | %.4f | %.4f |\n", radii[i], known, mean, se, discs);
             EXPECT_NEAR(mean, discs, 5 * se) << "rho " << radii[i];
-            if (std::abs(radii[i] - fold) > 5 * largest && radii[i] > largest) { // the density is smooth over the disc
+            if (std::abs(radii[i] - ball.fold()) > 5 * largest
+                && radii[i] > largest) { // the density is smooth over the disc
                 EXPECT_NEAR(mean, known, 5 * se + 0.02 * known) << "rho " << radii[i];
             }
         }
