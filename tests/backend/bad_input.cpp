@@ -59,33 +59,32 @@ void expect_all(const std::vector<bad_call>& table)
     }
 }
 
+constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+const glm::vec3 zero(0), one(1);
+
+/// A map and query points without mistakes, on a device of their own.
+template <class B>
+struct good_map {
+    B b;
+    const photon_set set = make_photons(distribution::uniform, 100, {4, 4, 4}, 1);
+    const buffer_of<B, glm::vec4> points = b.upload(std::span<const glm::vec4>(make_points(set, 10, 1)));
+    const map_buffers<B> map = sorted_map(b, upload_photons(b, set), set.g);
+
+    /// After mistakes all is as before.
+    void expect_that_searches_work()
+    {
+        EXPECT_EQ(b.download(knn_grid_estimate(b, map, points, {.k = 5}).used)[0].x, 5u);
+    }
+};
+
 template <class B>
 class bad_input : public ::testing::Test {
 };
 TYPED_TEST_SUITE(bad_input, backends_under_test<::testing::Types>);
 
-TYPED_TEST(bad_input, is_refused_by_name)
+TEST(bad_grids, are_named)
 {
-    constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-    TypeParam b;
-    const auto set = make_photons(distribution::uniform, 100, {4, 4, 4}, 1);
-    const auto points = b.upload(std::span<const glm::vec4>(make_points(set, 10, 1)));
-    const auto map = sorted_map(b, upload_photons(b, set), set.g);
-    const glm::vec3 zero(0), one(1);
-    const auto search
-        = [&](const knn_settings& s) { return [&b, &map, &points, s] { (void)knn_grid_estimate(b, map, points, s); }; };
-    const auto fixed = [](float r) {
-        knn_settings s{.max_radius = r};
-        s.search = search_kind::fixed_radius;
-        return s;
-    };
-    knn_settings no_passes{.k = 5, .max_radius = 1};
-    no_passes.visits_per_pass = 0;
-    auto few = b.template make<uint>(3);
-    auto pairs = b.template make<glm::uvec2>(8);
-
     expect_all({
-        // grids
         {"a grid of no cells", thrown::invalid_argument, "make_grid: resolution",
             [&] {
                 (void)make_grid(zero, one, {0, 4, 4});
@@ -106,14 +105,23 @@ TYPED_TEST(bad_input, is_refused_by_name)
             [&] {
                 (void)make_grid(zero, glm::vec3(inf), {4, 4, 4});
             }},
-        // buffers and passes
+    });
+}
+
+TYPED_TEST(bad_input, of_passes_and_routing_is_named)
+{
+    good_map<TypeParam> good;
+    auto& b = good.b;
+    const auto& set = good.set;
+    auto few = b.template make<uint>(3);
+    auto pairs = b.template make<glm::uvec2>(8);
+    expect_all({
         {"a buffer larger than any device", thrown::backend_error, "elements",
             [&] { (void)b.template make<glm::vec4>(std::size_t{1} << 60); }},
         {"more elements than a pass has", thrown::invalid_argument, "launch: elements",
             [&] { (void)launch(std::size_t{1} << 33); }},
         {"a pass past the end of its output", thrown::invalid_argument, "buffer 'value'",
             [&] { b.template run<kernels::pair_value>(8, {}, reads(pairs), writes(few)); }},
-        // routing
         {"no slots", thrown::invalid_argument, "stencil_route: m: 0",
             [&] { (void)stencil_route(b, upload_photons(b, set), set.g, 0); }},
         {"too many slots", thrown::invalid_argument, "stencil_route: m: 17",
@@ -122,7 +130,26 @@ TYPED_TEST(bad_input, is_refused_by_name)
             [&] {
                 (void)routed_map(b, upload_photons(b, set), make_grid(zero, one, {1000, 1000, 1000}), 16);
             }},
-        // searches
+    });
+    good.expect_that_searches_work();
+}
+
+TYPED_TEST(bad_input, of_searches_is_named)
+{
+    good_map<TypeParam> good;
+    auto& b = good.b;
+    const auto& map = good.map;
+    const auto& points = good.points;
+    const auto search
+        = [&](const knn_settings& s) { return [&b, &map, &points, s] { (void)knn_grid_estimate(b, map, points, s); }; };
+    const auto fixed = [](float r) {
+        knn_settings s{.max_radius = r};
+        s.search = search_kind::fixed_radius;
+        return s;
+    };
+    knn_settings no_passes{.k = 5, .max_radius = 1};
+    no_passes.visits_per_pass = 0;
+    expect_all({
         {"k = 0", thrown::invalid_argument, "k: 0", search({.k = 0, .max_radius = 1})},
         {"k = 0, the paper's search", thrown::invalid_argument, "k: 0",
             search(as_paper(knn_settings{.k = 0, .max_radius = 1}))},
@@ -154,13 +181,21 @@ TYPED_TEST(bad_input, is_refused_by_name)
             [&] { (void)knn_neighbours(b, map, points, {.k = 4000000000u, .max_radius = 1}); }},
         {"lists of another search", thrown::invalid_argument, "search",
             [&] { (void)knn_neighbours(b, map, points, fixed(1)); }},
-        // files
+    });
+    good.expect_that_searches_work();
+}
+
+TYPED_TEST(bad_input, of_map_files_is_named)
+{
+    good_map<TypeParam> good;
+    auto& b = good.b;
+    const auto& map = good.map;
+    expect_all({
         {"a map to nowhere", thrown::map_file_error, "/no/such/folder/map",
             [&] { save_map(b, map, "/no/such/folder/map"); }},
         {"a map from nowhere", thrown::map_file_error, "/no/such/map", [&] { (void)load_map(b, "/no/such/map"); }},
     });
-    // Afterwards all is as before.
-    EXPECT_EQ(b.download(knn_grid_estimate(b, map, points, {.k = 5}).used)[0].x, 5u);
+    good.expect_that_searches_work();
 }
 
 TYPED_TEST(bad_input, that_is_empty_is_no_mistake)

@@ -20,18 +20,66 @@ namespace {
         }
     };
 
-    TEST(validation, exact_k_equals_flann_and_nanoflann)
-    {
+    /// FLANN's and nanoflann's trees over the same positions.
+    class both_trees {
+    public:
+        explicit both_trees(const std::vector<vec4>& positions)
+            : cloud_{positions}, nano_(3, cloud_, nanoflann::KDTreeSingleIndexAdaptorParams(10)),
+              coordinates_(coordinates_of(positions)),
+              flann_(flann::Matrix<float>(coordinates_.data(), positions.size(), 3))
+        {
+            nano_.buildIndex();
+            flann_.buildIndex();
+        }
+        both_trees(const both_trees&) = delete;
+        both_trees& operator=(const both_trees&) = delete;
+
+        /// The k + 1 nearest by nanoflann; the k-th squared distance by FLANN.
+        struct nearest {
+            std::vector<std::uint32_t> ids;
+            std::vector<float> distances2;
+            float kth_of_flann = 0;
+        };
+        nearest find(const vec4& point, uint k)
+        {
+            float query[3] = {point.x, point.y, point.z};
+            nearest n{std::vector<std::uint32_t>(k + 1), std::vector<float>(k + 1)};
+            nanoflann::KNNResultSet<float, std::uint32_t> found(k + 1);
+            found.init(n.ids.data(), n.distances2.data());
+            nano_.findNeighbors(found, query, nano_search);
+            std::vector<std::vector<std::size_t>> ids;
+            std::vector<std::vector<float>> distances;
+            flann_.knnSearch(flann::Matrix<float>(query, 1, 3), ids, distances, k, flann_search);
+            n.kth_of_flann = distances[0][k - 1];
+            return n;
+        }
+
+    private:
+        static std::vector<float> coordinates_of(const std::vector<vec4>& positions)
+        {
+            std::vector<float> coordinates;
+            for (const auto& p : positions)
+                coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
+            return coordinates;
+        }
+
         // Both trees prune by sums rounded in another order than the distances themselves; a slightly negative epsilon
         // makes them look a little farther, so that no neighbour is lost to the last bit.
-        const float slack = -1e-4f;
+        static constexpr float slack = -1e-4f;
 #if NANOFLANN_VERSION >= 0x150
-        const nanoflann::SearchParameters nano_search(slack);
+        const nanoflann::SearchParameters nano_search{slack};
 #else
-        const nanoflann::SearchParams nano_search(0, slack);
+        const nanoflann::SearchParams nano_search{0, slack};
 #endif
-        flann::SearchParams flann_search(flann::FLANN_CHECKS_UNLIMITED, slack);
-        using nano_tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, cloud>, cloud, 3>;
+        const flann::SearchParams flann_search{flann::FLANN_CHECKS_UNLIMITED, slack};
+        const cloud cloud_;
+        nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, cloud>, cloud, 3> nano_;
+        std::vector<float> coordinates_;
+        flann::KDTreeSingleIndex<flann::L2_Simple<float>> flann_;
+    };
+
+    TEST(validation, exact_k_equals_flann_and_nanoflann)
+    {
         serial_backend b;
         for (const auto d : all_distributions) {
             auto set = make_photons(d, 6000, {12, 12, 12}, 77);
@@ -41,15 +89,7 @@ namespace {
                     static_cast<float>(u.below(1u << 13)), 0.0f);
             const auto points = make_points(set, 400, 78);
             const auto map = sorted_map(b, upload_photons(b, set), set.g);
-            const cloud c{set.positions};
-            nano_tree nano(3, c, nanoflann::KDTreeSingleIndexAdaptorParams(10));
-            nano.buildIndex();
-            std::vector<float> coordinates;
-            for (const auto& p : set.positions)
-                coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
-            flann::KDTreeSingleIndex<flann::L2_Simple<float>> tree(
-                flann::Matrix<float>(coordinates.data(), set.positions.size(), 3));
-            tree.buildIndex();
+            both_trees trees(set.positions);
 
             int compared = 0, sets = 0;
             for (const uint k : {1u, 7u, 64u, 500u}) {
@@ -60,28 +100,19 @@ namespace {
                 const float floor2
                     = std::pow(std::max({set.g.cell.x * 12, set.g.cell.y * 12, set.g.cell.z * 12}) * 0x1p-20f, 2.0f);
                 for (std::size_t q = 0; q < points.size(); ++q) {
-                    float query[3] = {points[q].x, points[q].y, points[q].z};
-                    std::vector<std::uint32_t> ids(k + 1);
-                    std::vector<float> distances(k + 1);
-                    nanoflann::KNNResultSet<float, std::uint32_t> found(k + 1);
-                    found.init(ids.data(), distances.data());
-                    nano.findNeighbors(found, query, nano_search);
-                    std::vector<std::vector<std::size_t>> flann_ids;
-                    std::vector<std::vector<float>> flann_distances;
-                    tree.knnSearch(flann::Matrix<float>(query, 1, 3), flann_ids, flann_distances, k, flann_search);
-
+                    const auto n = trees.find(points[q], k);
                     const auto flushed
                         = [](float x) { return x < std::numeric_limits<float>::min() ? 0.0f : x; }; // as kernels do
-                    const float nth = flushed(distances[k - 1]), fth = flushed(flann_distances[0][k - 1]);
+                    const float nth = flushed(n.distances2[k - 1]), fth = flushed(n.kth_of_flann);
                     ASSERT_EQ(irradiance[q].w, nth) << name_of(d) << ", k " << k << ", point " << q << ": nanoflann";
                     ASSERT_EQ(irradiance[q].w, fth) << name_of(d) << ", k " << k << ", point " << q << ": FLANN";
                     ASSERT_EQ(used[q].x, k);
                     ++compared;
-                    if (flushed(distances[k]) == nth || nth <= floor2 || k > 64)
+                    if (flushed(n.distances2[k]) == nth || nth <= floor2 || k > 64)
                         continue; // a tie at the k-th: nanoflann does not specify which one it returns
                     glm::dvec3 sum(0);
-                    for (uint n = 0; n < k; ++n)
-                        sum += glm::dvec3(set.powers[ids[n]]);
+                    for (uint i = 0; i < k; ++i)
+                        sum += glm::dvec3(set.powers[n.ids[i]]);
                     for (int channel = 0; channel < 3; ++channel)
                         ASSERT_EQ(std::round(static_cast<double>(irradiance[q][channel])
                                       * static_cast<double>(3.14159265f) * static_cast<double>(nth)),
