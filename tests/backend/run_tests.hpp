@@ -22,6 +22,7 @@ TYPED_TEST_P(verbs, a_pass_computes_its_elements_and_no_other)
         }
 }
 
+// Longer than others because each of sixteen buffers has a name and contents of its own.
 TYPED_TEST_P(verbs, a_pass_has_eight_inputs_and_eight_outputs_of_mixed_types)
 {
     using glm::uvec2, glm::uvec4, glm::vec2, glm::vec4;

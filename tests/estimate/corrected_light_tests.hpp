@@ -3,6 +3,8 @@
 
 #include "edges.hpp"
 
+#include <array>
+
 namespace photongrid::testing {
 
 TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
@@ -67,16 +69,16 @@ TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
         }
 }
 
-TYPED_TEST_P(edges, a_floor_lit_by_a_mirror_is_right_up_to_its_rim)
+// A bulb below a mirror: caustic light falls onto the floor as from a bulb as far above the mirror.
+inline constexpr double bulb_height = 1.5, bulb_power = 100; ///< m above the floor, in the mirror; W
+inline scene floor_lit_by_a_mirror()
 {
-    // A bulb below a mirror: caustic light falls onto the floor as from a bulb as far above the mirror.
     scene s;
     s.materials = {{"white", material_kind::lambertian, dvec3(0.5)}, {"mirror", material_kind::mirror, dvec3(1)}};
     s.polygons
         = {{{{-0.5, 0, -0.5}, {-0.5, 0, 0.5}, {0.5, 0, 0.5}}, 0}, {{{-0.5, 0, -0.5}, {0.5, 0, 0.5}, {0.5, 0, -0.5}}, 0},
             {{{-3, 1.25, -3}, {3, 1.25, -3}, {3, 1.25, 3}, {-3, 1.25, 3}}, 1}};
-    const double height = 1.5, power = 100;
-    s.point_lights = {{"bulb", {0, 1, 0}, dvec3(power)}};
+    s.point_lights = {{"bulb", {0, 1, 0}, dvec3(bulb_power)}};
     s.camera = {{0, 1.2, 0}, {0, 0, 0}, {0, 0, -1}, glm::degrees(2 * std::atan(0.5 / 1.2)) - 0.01};
     s.render = {.map = {.photons = 15000, .grid = {40, 1, 40}},
         .estimate = {.k = 100, .max_radius = 0.2},
@@ -84,6 +86,37 @@ TYPED_TEST_P(edges, a_floor_lit_by_a_mirror_is_right_up_to_its_rim)
     s.render.output.only = light_part::caustic;
     s.render.estimate.leaks = {.side = true, .min_cosine = 0.5f};
     s.render.output.aov = true;
+    return s;
+}
+
+/// Means of radiance over the known: inside, along the rim without its corners, in the corners.
+inline std::array<double, 3> light_over_known(const image& picture)
+{
+    std::array<double, 3> sums{}, counts{};
+    for (uint y = 0; y < 48; ++y)
+        for (uint x = 0; x < 48; ++x) {
+            const double fx = (x + 0.5) / 48 - 0.5, fz = (y + 0.5) / 48 - 0.5,
+                         d2 = bulb_height * bulb_height + fx * fx + fz * fz;
+            const double known = 0.5 / M_PI * bulb_power / (4 * M_PI) * bulb_height / (d2 * std::sqrt(d2)); // radiance
+            const uint across = std::min(x, 47 - x), down = std::min(y, 47 - y);
+            const int zone = across < 1 && down < 1                    ? 2
+                : (across < 1 && down > 5) || (down < 1 && across > 5) ? 1
+                : across > 6 && down > 6                               ? 0
+                                                                       : -1;
+            if (zone >= 0) {
+                const auto place = static_cast<std::size_t>(zone);
+                sums[place] += static_cast<double>(picture.pixels[y * 48 + x].x) / known;
+                counts[place] += 1;
+            }
+        }
+    for (std::size_t place = 0; place < 3; ++place)
+        sums[place] /= counts[place];
+    return sums;
+}
+
+TYPED_TEST_P(edges, a_floor_lit_by_a_mirror_is_right_up_to_its_rim)
+{
+    const scene s = floor_lit_by_a_mirror();
     image pictures[2];
     render_stats stats[2];
     const auto built = build_map(this->b(), s, s.render);
@@ -93,24 +126,7 @@ TYPED_TEST_P(edges, a_floor_lit_by_a_mirror_is_right_up_to_its_rim)
         auto drawn = draw(this->b(), built, s.camera, settings);
         pictures[corrected] = std::move(drawn.picture);
         stats[corrected] = drawn.stats;
-        double sums[3] = {}, counts[3] = {};
-        for (uint y = 0; y < 48; ++y)
-            for (uint x = 0; x < 48; ++x) {
-                const double fx = (x + 0.5) / 48 - 0.5, fz = (y + 0.5) / 48 - 0.5,
-                             d2 = height * height + fx * fx + fz * fz;
-                const double known = 0.5 / M_PI * power / (4 * M_PI) * height / (d2 * std::sqrt(d2)); // radiance
-                const uint across = std::min(x, 47 - x), down = std::min(y, 47 - y);
-                const int place = across < 1 && down < 1                   ? 2
-                    : (across < 1 && down > 5) || (down < 1 && across > 5) ? 1
-                    : across > 6 && down > 6                               ? 0
-                                                                           : -1;
-                if (place >= 0) {
-                    sums[place] += static_cast<double>(pictures[corrected].pixels[y * 48 + x].x) / known;
-                    counts[place] += 1;
-                }
-            }
-        for (double* v : {&sums[0], &sums[1], &sums[2]})
-            *v /= counts[v - sums];
+        const auto sums = light_over_known(pictures[corrected]);
         std::printf("edges: light over the known, %s: inside %.3f, rim %.3f, corners %.3f\n",
             corrected ? "corrected" : "as it is", sums[0], sums[1], sums[2]);
         // Discs have some 0.045 m radius, pixels of the rim lie 0.01 m inside.

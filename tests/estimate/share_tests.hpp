@@ -32,55 +32,69 @@ TYPED_TEST_P(edges, angles_and_logarithms_are_those_of_the_library)
     EXPECT_LE(logarithm, 2e-7);
 }
 
+/// Convex polygons, in a plane of their own, of the `number`-th surface.
+inline std::vector<std::vector<glm::dvec2>> convex_parts(int number, random_source& u)
+{
+    std::vector<std::vector<glm::dvec2>> parts;
+    switch (number % 4) {
+    case 0: { // a convex polygon
+        std::vector<double> angles;
+        for (int i = 0; i < 3 + number % 7; ++i)
+            angles.push_back(2 * M_PI * (i + 0.8 * static_cast<double>(u())) / (3 + number % 7));
+        parts.emplace_back();
+        for (const double a : angles)
+            parts[0].emplace_back(0.9 * std::cos(a), 0.5 * std::sin(a));
+        break;
+    }
+    case 1: // a square of two triangles
+        parts = {{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}}, {{-0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
+        break;
+    case 2: // an L
+        parts = {{{-0.6, -0.6}, {0.6, -0.6}, {0.6, -0.1}, {-0.6, -0.1}},
+            {{-0.6, -0.1}, {0.1, -0.1}, {0.1, 0.7}, {-0.6, 0.7}}};
+        break;
+    default: // a star of triangles about a square hole
+        parts = {{{-0.2, -0.2}, {0, -0.8}, {0.2, -0.2}}, {{0.2, -0.2}, {0.8, 0}, {0.2, 0.2}},
+            {{0.2, 0.2}, {0, 0.8}, {-0.2, 0.2}}, {{-0.2, 0.2}, {-0.8, 0}, {-0.2, -0.2}}};
+    }
+    return parts;
+}
+
+/// A surface made of polygons wound either way; beside it what must not count: a wall, a floor 1 mm below, a mirror and
+/// a lamp in the plane.
+inline scene surface_beside_others(
+    const std::vector<std::vector<glm::dvec2>>& parts, const drawing_board& board, random_source& u)
+{
+    auto s = empty_scene(board.at({0.2, 0.1}) + board.normal());
+    s.materials.push_back({"mirror", material_kind::mirror, dvec3(1)});
+    for (const auto& p : parts) {
+        auto wound = p;
+        if (u() < 0.5f)
+            std::reverse(wound.begin(), wound.end());
+        s.polygons.push_back(board.draw(wound));
+    }
+    s.polygons.push_back(
+        {{board.at({-1, 0}), board.at({1, 0}), board.at({1, 0}) + board.normal(), board.at({-1, 0}) + board.normal()},
+            0});
+    auto below = board;
+    below.origin -= 1e-3 * board.normal();
+    s.polygons.push_back(below.draw({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}));
+    s.polygons.push_back(board.draw({{-1.2, -1}, {-0.3, -1}, {-0.3, 1}, {-1.2, 1}}));
+    s.polygons.back().material = 2;
+    s.rectangle_lights.push_back({"lamp", board.at({0.3, -1}), 0.8 * board.right, 2.0 * board.up, dvec3(1)});
+    s.camera = {board.at({0, 0}) + 3.0 * board.normal(), board.at({0, 0}), board.up, 40};
+    return s;
+}
+
 TYPED_TEST_P(edges, shares_equal_integration_over_lines)
 {
-    // Surfaces made of convex polygons of one plane, wound either way; beside them what must not count: a wall, a floor
-    // 1 mm below, a mirror and a lamp in the plane.
     random_source u(2);
     const auto number = [&] { return static_cast<double>(u()); };
     double largest = 0;
     for (int round = 0; round < 24; ++round) {
-        std::vector<std::vector<glm::dvec2>> parts;
-        switch (round % 4) {
-        case 0: { // a convex polygon
-            std::vector<double> angles;
-            for (int i = 0; i < 3 + round % 7; ++i)
-                angles.push_back(2 * M_PI * (i + 0.8 * number()) / (3 + round % 7));
-            parts.emplace_back();
-            for (const double a : angles)
-                parts[0].emplace_back(0.9 * std::cos(a), 0.5 * std::sin(a));
-            break;
-        }
-        case 1: // a square of two triangles
-            parts = {{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}}, {{-0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
-            break;
-        case 2: // an L
-            parts = {{{-0.6, -0.6}, {0.6, -0.6}, {0.6, -0.1}, {-0.6, -0.1}},
-                {{-0.6, -0.1}, {0.1, -0.1}, {0.1, 0.7}, {-0.6, 0.7}}};
-            break;
-        default: // a star of triangles about a square hole
-            parts = {{{-0.2, -0.2}, {0, -0.8}, {0.2, -0.2}}, {{0.2, -0.2}, {0.8, 0}, {0.2, 0.2}},
-                {{0.2, 0.2}, {0, 0.8}, {-0.2, 0.2}}, {{-0.2, 0.2}, {-0.8, 0}, {-0.2, -0.2}}};
-        }
+        const auto parts = convex_parts(round, u);
         const auto board = random_board(u);
-        auto s = empty_scene(board.at({0.2, 0.1}) + board.normal());
-        s.materials.push_back({"mirror", material_kind::mirror, dvec3(1)});
-        for (const auto& p : parts) {
-            auto wound = p;
-            if (u() < 0.5f)
-                std::reverse(wound.begin(), wound.end());
-            s.polygons.push_back(board.draw(wound));
-        }
-        s.polygons.push_back({{board.at({-1, 0}), board.at({1, 0}), board.at({1, 0}) + board.normal(),
-                                  board.at({-1, 0}) + board.normal()},
-            0});
-        auto below = board;
-        below.origin -= 1e-3 * board.normal();
-        s.polygons.push_back(below.draw({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}));
-        s.polygons.push_back(board.draw({{-1.2, -1}, {-0.3, -1}, {-0.3, 1}, {-1.2, 1}}));
-        s.polygons.back().material = 2;
-        s.rectangle_lights.push_back({"lamp", board.at({0.3, -1}), 0.8 * board.right, 2.0 * board.up, dvec3(1)});
-        s.camera = {board.at({0, 0}) + 3.0 * board.normal(), board.at({0, 0}), board.up, 40};
+        const auto s = surface_beside_others(parts, board, u);
 
         discs d;
         std::vector<std::pair<glm::dvec2, double>> places;

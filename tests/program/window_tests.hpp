@@ -5,6 +5,7 @@
 
 namespace {
 
+// One long test, since a display and a window take longer to open than all that follows.
 TEST_F(window, follows_camera_lamp_and_keys)
 {
     ASSERT_NO_FATAL_FAILURE(open_display());

@@ -181,6 +181,17 @@ namespace {
         std::vector<bool> smooth_; ///< of those
     };
 
+    /// Settings for pictures of 32 x 32 pixels whose noise of direct light and edges is well below the photons'.
+    render_settings settings_with_noise_of_photons_alone(const scene& s)
+    {
+        auto settings = s.render;
+        settings.output.width = settings.output.height = 32;
+        settings.view.spp = 32;
+        settings.view.light_samples = 16; // shadow rays
+        settings.estimate.max_radius = 0.5;
+        return settings;
+    }
+
     TEST(validation, long_cornell_blocks_converge_to_the_reference)
     {
         auto s = read_scene(PHOTONGRID_SCENES "/cornell_blocks.json");
@@ -194,11 +205,7 @@ namespace {
         const comparable_pixels pixels(s, fine);
         const auto known = pixels.of(exact.mean), known_error = pixels.of(exact.standard_error);
 
-        auto settings = s.render;
-        settings.output.width = settings.output.height = 32;
-        settings.view.spp = 32; // with the shadow rays below, noise of direct light and edges well below the photons'
-        settings.view.light_samples = 16;
-        settings.estimate.max_radius = 0.5;
+        auto settings = settings_with_noise_of_photons_alone(s);
         serial_backend b;
         const int seeds = 8;
         std::vector<convergence_row> rows, smooth_rows, corrected_rows;

@@ -64,6 +64,26 @@ struct exact_box {
     }
 };
 
+/// Rays at a box's faces, edges and corners, and along its faces; from outside, from far away and from inside.
+inline rays rays_at(const box& b, const dvec3& center, random_source& u)
+{
+    rays r;
+    for (int i = 0; i < 6000; ++i) {
+        const auto part = [&] { return i % 3 == 0 ? static_cast<double>(u.below(2)) : static_cast<double>(u()); };
+        const double last = i % 3 == 1 ? static_cast<double>(u.below(2)) : part();
+        const dvec3 at = b.corner + part() * b.edge_u + part() * b.edge_v + last * b.edge_w - center;
+        const dvec3 inside
+            = b.corner - center + (0.1 + 0.8 * static_cast<double>(u())) * (b.edge_u + b.edge_v + b.edge_w);
+        if (i % 2 == 0)
+            r.aim(glm::vec3(at + std::pow(10.0, 3 * static_cast<double>(u()) - 1) * dvec3(random_direction(u))), at);
+        else if (i % 5 == 0)
+            r.add(glm::vec3(at - 3.0 * b.edge_u), glm::vec3(glm::normalize(b.edge_u)));
+        else
+            r.aim(glm::vec3(inside), at);
+    }
+    return r;
+}
+
 TYPED_TEST_P(boxes, rays_hit_them_where_long_double_says)
 {
     // A ray may slide along a face, where rounding decides by which face it enters. So what is asked for is the exact
@@ -77,23 +97,7 @@ TYPED_TEST_P(boxes, rays_hit_them_where_long_double_says)
         s.boxes = {random_box(u, 2, 0)};
         const auto layout = lay_out(s);
         const exact_box e(layout);
-        const auto& b = s.boxes[0];
-        rays r;
-        for (int i = 0; i < 6000; ++i) {
-            // At faces, edges and corners, and along faces; from outside, from far away and from inside.
-            const auto part = [&] { return i % 3 == 0 ? static_cast<double>(u.below(2)) : static_cast<double>(u()); };
-            const double last = i % 3 == 1 ? static_cast<double>(u.below(2)) : part();
-            const dvec3 at = b.corner + part() * b.edge_u + part() * b.edge_v + last * b.edge_w - layout.center;
-            const dvec3 inside
-                = b.corner - layout.center + (0.1 + 0.8 * static_cast<double>(u())) * (b.edge_u + b.edge_v + b.edge_w);
-            if (i % 2 == 0)
-                r.aim(
-                    glm::vec3(at + std::pow(10.0, 3 * static_cast<double>(u()) - 1) * dvec3(random_direction(u))), at);
-            else if (i % 5 == 0)
-                r.add(glm::vec3(at - 3.0 * b.edge_u), glm::vec3(glm::normalize(b.edge_u)));
-            else
-                r.aim(glm::vec3(inside), at);
-        }
+        const rays r = rays_at(s.boxes[0], layout.center, u);
         const auto hits = this->trace(s, r);
         for (std::size_t i = 0; i < r.size(); ++i) {
             const vec3l o(r.origins[i]), d(r.directions[i]);

@@ -130,9 +130,9 @@ private:
     double_kernels::gather_photons gather_;
 };
 
-TEST(double_oracle, estimates)
+/// Photons and points on the faces of a box.
+inline oriented_set photons_on_a_box()
 {
-    // Photons and points on the faces of a box.
     auto s = make_oriented(distribution::box_faces, 20000, {12, 12, 12}, 0, 71);
     random_source u(72);
     for (int i = 0; i < 1000; ++i) {
@@ -145,6 +145,61 @@ TEST(double_oracle, estimates)
         n[axis] = 1 - 2 * side;
         s.point_normals.emplace_back(n, 0.0f);
     }
+    return s;
+}
+
+/// Whether the photons within a squared radius, found in float, are those found in double, the k-th last. The k-th and
+/// its neighbour may have changed places or become one distance in float, so that another is left out; or a photon that
+/// grazes the surface has changed its side.
+inline bool has_photons(
+    const oriented_set& s, uint point, float radius2, const leak_policy& leaks, const std::vector<uint>& in_double)
+{
+    std::vector<uint> ids;
+    uint at_the_radius = 0;
+    for (uint id = 0; id < s.photons.positions.size(); ++id)
+        if (const auto d2 = policy_distance2(s, point, id, leaks); d2 && *d2 <= radius2) {
+            ids.push_back(id);
+            at_the_radius += *d2 == radius2 ? 1u : 0u;
+        }
+    auto expected = in_double;
+    std::sort(expected.begin(), expected.end());
+    return expected == ids && at_the_radius == 1 && *policy_distance2(s, point, in_double.back(), leaks) == radius2;
+}
+
+/// How much rounding may change an estimate, in units of 2^-24.
+class rounding_limits {
+public:
+    rounding_limits(filter_kind filter, const leak_policy& leaks)
+    {
+        // A squared distance: 2 for each difference, 1 for its square, 2 for the sum; flattened, up to 18.
+        // t = d^2 / r^2: two of them, and 2. A weight's error is that times its slope, and what rounds in it: cone 1
+        // for the root (its slope times t is at most 1/2) and 1, Epanechnikov 1, Silverman twice that and 1.
+        const double distance = leaks.flattening > 1 ? 18 : 5, t = 2 * distance + 2;
+        weight_ = filter == filter_kind::constant ? 0
+            : filter == filter_kind::cone         ? 0.5 * t + 2
+            : filter == filter_kind::epanechnikov ? t + 1
+                                                  : 2 * (t + 1) + 1;
+        // The rest: the disc, 3.14159265f, two products, a quotient, the weighted power, and 2 for a compensated sum.
+        rest_ = distance + 0.5 + 3 + 1 + 2;
+    }
+    double irradiance(const double_estimates::estimate& exact) const
+    {
+        return rest_ * exact.irradiance.x + weight_ * exact.unweighted;
+    }
+    double relative_standard_error(const double_estimates::estimate& exact, uint k) const
+    {
+        // Half the error of the variance, whose k - 2 plain additions round k - 2 times; 3 in each square, 3 in its
+        // factor.
+        return rest_ + 1 + weight_ * exact.conditioning + 0.5 * (k - 2 + 6);
+    }
+
+private:
+    double weight_ = 0, rest_ = 0;
+};
+
+TEST(double_oracle, estimates)
+{
+    const auto s = photons_on_a_box();
     serial_backend b;
     const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
     const auto points = b.upload(std::span<const vec4>(s.points)),
@@ -170,46 +225,22 @@ TEST(double_oracle, estimates)
         const auto e = knn_grid_estimate(b, map, points, normals, k);
         const auto irradiance = b.download(e.irradiance), standard_error = b.download(e.standard_error);
         double_estimates wide(s, k, k.min_radius);
-        // In units of 2^-24. A squared distance: 2 for each difference, 1 for its square, 2 for the sum; flattened, up
-        // to 18. t = d^2 / r^2: two of them, and 2. A weight's error is that times its slope, and what rounds in it:
-        // cone 1 for the root (its slope times t is at most 1/2) and 1, Epanechnikov 1, Silverman twice that and 1.
-        const double distance = r.leaks.flattening > 1 ? 18 : 5, t = 2 * distance + 2;
-        const double weight = r.filter == filter_kind::constant ? 0
-            : r.filter == filter_kind::cone                     ? 0.5 * t + 2
-            : r.filter == filter_kind::epanechnikov             ? t + 1
-                                                                : 2 * (t + 1) + 1;
-        // The rest: the disc, 3.14159265f, two products, a quotient, the weighted power, and 2 for a compensated sum.
-        const double rest = distance + 0.5 + 3 + 1 + 2;
+        const rounding_limits limits(r.filter, r.leaks);
         std::vector<double> errors, spread_errors;
         double nearest_limit = 0, nearest_spread_limit = 0;
         for (uint q = 0; q < s.points.size(); ++q) {
             const auto exact = wide(q);
-            std::vector<uint> ids;
-            uint at_the_radius = 0;
-            for (uint id = 0; id < s.photons.positions.size(); ++id)
-                if (const auto d2 = policy_distance2(s, q, id, r.leaks); d2 && *d2 <= irradiance[q].w) {
-                    ids.push_back(id);
-                    at_the_radius += *d2 == irradiance[q].w ? 1u : 0u;
-                }
-            // The k-th and its neighbour may have changed places or become one distance in float, so that another is
-            // left out; or a photon that grazes the surface has changed its side.
-            auto expected = exact.ids;
-            std::sort(expected.begin(), expected.end());
             ++compared;
-            if (expected != ids || at_the_radius != 1
-                || *policy_distance2(s, q, exact.ids.back(), r.leaks) != irradiance[q].w) {
+            if (!has_photons(s, q, irradiance[q].w, r.leaks, exact.ids)) {
                 ++other;
                 continue;
             }
             const double error = std::abs(static_cast<double>(irradiance[q].x) - exact.irradiance.x);
-            nearest_limit
-                = std::max(nearest_limit, error * 0x1p24 / (rest * exact.irradiance.x + weight * exact.unweighted));
+            nearest_limit = std::max(nearest_limit, error * 0x1p24 / limits.irradiance(exact));
             errors.push_back(error / exact.irradiance.x);
-            // Half the error of the variance, whose k - 2 plain additions round k - 2 times; 3 in each square, 3 in its
-            // factor.
             const double spread_error = std::abs(static_cast<double>(standard_error[q].x) / exact.standard_error.x - 1);
-            const double spread_limit = rest + 1 + weight * exact.conditioning + 0.5 * (r.k - 2 + 6);
-            nearest_spread_limit = std::max(nearest_spread_limit, spread_error * 0x1p24 / spread_limit);
+            nearest_spread_limit
+                = std::max(nearest_spread_limit, spread_error * 0x1p24 / limits.relative_standard_error(exact, r.k));
             spread_errors.push_back(spread_error);
         }
         ASSERT_FALSE(errors.empty()) << r.name << ": no point has the photons it should";

@@ -83,19 +83,9 @@ TEST(double_oracle, refraction)
     EXPECT_LE(report_errors("reflected share times the refracted cosine", share_errors), 1e-5);
 }
 
-TEST(double_oracle, photons_after_eight_bounces)
+/// Positions of photons traced in double, frame by frame.
+inline std::vector<glm::dvec4> photons_in_double(const double_scene& wide, uint paths, uint frames, uint seed)
 {
-    auto s = small_cornell();
-    s.render.map.photon_depth = 8;
-    const uint paths = 16384, frames = 9;
-    const auto layout = lay_out(s);
-    const double_scene wide(layout);
-    serial_backend b;
-    const auto device = upload_scene(b, s);
-    detail::photon_frames<serial_backend> f(b, std::size_t{paths} * frames);
-    trace_batch(b, device, f, paths, 0, s.render);
-    const auto positions = b.download(f.positions);
-
     std::vector<glm::dvec4> p(std::size_t{paths} * frames), power(p), direction(p), origin(p), next(p);
     const auto store = [&](std::size_t i, const auto& k) {
         p[i] = k.position;
@@ -106,7 +96,7 @@ TEST(double_oracle, photons_after_eight_bounces)
     };
     double_kernels::emit_photon emit;
     emit.args.first_path = 0;
-    emit.args.seed = s.render.seed;
+    emit.args.seed = seed;
     turn_switches(emit, wide.features);
     emit.scene_data = wide.records;
     for (uint i = 0; i < paths; ++i) {
@@ -117,7 +107,7 @@ TEST(double_oracle, photons_after_eight_bounces)
     bounce.args.paths = paths;
     bounce.args.first_path = 0;
     bounce.args.last_frame = frames - 1;
-    bounce.args.seed = s.render.seed;
+    bounce.args.seed = seed;
     turn_switches(bounce, wide.features);
     bounce.scene_data = wide.records;
     bounce.positions_data = p;
@@ -129,6 +119,21 @@ TEST(double_oracle, photons_after_eight_bounces)
         bounce.kernel(i);
         store(i, bounce);
     }
+    return p;
+}
+
+TEST(double_oracle, photons_after_eight_bounces)
+{
+    auto s = small_cornell();
+    s.render.map.photon_depth = 8;
+    const uint paths = 16384, frames = 9;
+    serial_backend b;
+    const auto device = upload_scene(b, s);
+    detail::photon_frames<serial_backend> f(b, std::size_t{paths} * frames);
+    trace_batch(b, device, f, paths, 0, s.render);
+    const auto positions = b.download(f.positions);
+    const auto layout = lay_out(s);
+    const auto p = photons_in_double(double_scene(layout), paths, frames, s.render.seed);
 
     std::vector<bool> same(paths, true);
     std::size_t parted = 0;
