@@ -1,0 +1,164 @@
+// The sum of a picture's passes.
+#pragma once
+
+#include <photongrid/render/film.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace photongrid;
+
+/// A pass of random pixels.
+pass_pixels random_pass(std::uint32_t seed, std::size_t n, bool layers)
+{
+    std::mt19937_64 random(seed);
+    std::lognormal_distribution<float> light(0, 2);
+    pass_pixels p;
+    for (std::size_t i = 0; i < n; ++i) {
+        p.pixels.emplace_back(light(random), light(random), light(random), 0);
+        p.searches.emplace_back(light(random), light(random), light(random), 2);
+        if (layers)
+            p.errors.emplace_back(light(random), 0, 0, 0);
+    }
+    return p;
+}
+
+bool same_picture(const image& a, const image& b)
+{
+    return a.pixels == b.pixels && a.layers.noise == b.layers.noise && a.layers.radius == b.layers.radius
+        && a.layers.count == b.layers.count && a.layers.relative_error == b.layers.relative_error;
+}
+
+TEST(film, one_pass_is_the_pass_itself)
+{
+    film f(4, 3, 0.25, true);
+    EXPECT_THROW(f.picture(), std::logic_error);
+    const auto p = random_pass(1, 12, true);
+    f.add(5, p);
+    EXPECT_TRUE(f.holds(5));
+    EXPECT_FALSE(f.holds(0));
+    const auto picture = f.picture().picture;
+    for (std::size_t i = 0; i < 12; ++i)
+        EXPECT_EQ(picture.pixels[i], glm::vec3(p.pixels[i]));
+    EXPECT_TRUE(picture.layers.noise.empty());
+}
+
+TEST(film, any_order_of_passes_gives_the_same_bytes)
+{
+    std::vector<std::uint32_t> order(20);
+    std::iota(order.begin(), order.end(), 0u);
+    std::mt19937_64 random(7);
+    image first;
+    std::string bytes;
+    for (int turn = 0; turn < 10; ++turn) {
+        film f(5, 4, 0x1p-6, true);
+        for (const auto pass : order)
+            f.add(pass, random_pass(pass, 20, true));
+        if (turn == 0) {
+            first = f.picture().picture;
+            bytes = f.bytes();
+        }
+        EXPECT_TRUE(same_picture(f.picture().picture, first));
+        EXPECT_EQ(f.bytes(), bytes);
+        std::shuffle(order.begin(), order.end(), random);
+    }
+}
+
+TEST(film, is_the_mean_and_its_noise_the_spread)
+{
+    constexpr std::size_t n = 30;
+    constexpr int passes = 50;
+    film f(n, 1, 1, true);
+    std::vector<glm::dvec3> sums(n, glm::dvec3(0));
+    std::vector<double> squares(n, 0), means(n, 0);
+    for (int pass = 0; pass < passes; ++pass) {
+        const auto p = random_pass(static_cast<std::uint32_t>(pass), n, true);
+        for (std::size_t i = 0; i < n; ++i) {
+            const auto value = glm::dvec3(p.pixels[i]);
+            const double mean = (value.x + value.y + value.z) / 3;
+            sums[i] += value;
+            means[i] += mean / passes;
+            squares[i] += mean * mean;
+        }
+        f.add(static_cast<std::uint32_t>(pass), p);
+    }
+    const auto picture = f.picture().picture;
+    for (std::size_t i = 0; i < n; ++i) {
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(picture.pixels[i][c], sums[i][c] / passes, 1e-6 * sums[i][c] / passes);
+        const double variance = (squares[i] - passes * means[i] * means[i]) / (passes - 1);
+        EXPECT_NEAR(picture.layers.noise[i], std::sqrt(variance / passes), 1e-5 * std::sqrt(variance / passes));
+    }
+}
+
+TEST(film, pixels_that_are_not_finite_are_black_in_their_pass_and_counted)
+{
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (const float bad : {std::nanf(""), infinity, -infinity}) {
+        film f(2, 1, 1, false);
+        auto p = random_pass(1, 2, false);
+        p.pixels[1] = {bad, 1, 1, 0};
+        f.add(0, p);
+        EXPECT_EQ(f.picture().invalid_pixels, 1u);
+        EXPECT_EQ(f.picture().picture.pixels[1], glm::vec3(0));
+        f.add(1, random_pass(2, 2, false));
+        EXPECT_EQ(f.picture().invalid_pixels, 1u);
+        EXPECT_GT(f.picture().picture.pixels[1].x, 0);
+        EXPECT_TRUE(std::isfinite(f.picture().picture.pixels[1].x));
+    }
+}
+
+TEST(film, very_bright_and_very_dark_pixels_are_kept)
+{
+    film f(3, 1, 0x1p-10, true);
+    for (std::uint32_t pass = 0; pass < 4; ++pass) {
+        auto p = random_pass(pass, 3, true);
+        p.pixels[0] = {1e8f, 1e8f, 1e8f, 0};
+        p.pixels[1] = {1e-12f, 1e-12f, 1e-12f, 0};
+        f.add(pass, p);
+    }
+    const auto developed = f.picture();
+    EXPECT_EQ(developed.invalid_pixels, 0u);
+    EXPECT_EQ(developed.picture.pixels[0].x, 1e8f);
+    EXPECT_EQ(developed.picture.pixels[1].x, 1e-12f);
+    EXPECT_EQ(developed.picture.layers.noise[0], std::numeric_limits<float>::infinity()); // too bright to know
+}
+
+TEST(film, refuses_what_does_not_fit)
+{
+    film f(4, 3, 1, false);
+    f.add(0, random_pass(1, 12, false));
+    EXPECT_THROW(f.add(0, random_pass(1, 12, false)), std::invalid_argument);
+    EXPECT_THROW(f.add(1, random_pass(1, 11, false)), std::invalid_argument);
+    EXPECT_THROW(f.add(1, random_pass(1, 12, true)), std::invalid_argument);
+    EXPECT_EQ(f.passes(), 1u);
+}
+
+TEST(film, goes_through_bytes)
+{
+    for (const int passes : {0, 1, 2, 9}) {
+        film f(4, 3, 0.5, true);
+        for (int pass = 0; pass < passes; ++pass)
+            f.add(static_cast<std::uint32_t>(3 * pass), random_pass(static_cast<std::uint32_t>(pass), 12, true));
+        const auto bytes = f.bytes();
+        auto g = film::from_bytes(bytes);
+        EXPECT_EQ(g.bytes(), bytes);
+        f.add(100, random_pass(100, 12, true));
+        g.add(100, random_pass(100, 12, true));
+        EXPECT_TRUE(same_picture(f.picture().picture, g.picture().picture));
+        for (std::size_t size = 0; size < bytes.size(); ++size)
+            EXPECT_THROW(film::from_bytes(std::string_view(bytes).substr(0, size)), std::invalid_argument) << size;
+        EXPECT_THROW(film::from_bytes(bytes + "x"), std::invalid_argument);
+    }
+}
+
+} // namespace
