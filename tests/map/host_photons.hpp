@@ -1,0 +1,61 @@
+// Photons and query points as hosts have them, and their neighbours by brute force.
+#pragma once
+
+#include <photongrid/photon_map.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace photongrid::testing {
+
+struct host_photon {
+    glm::vec3 position;
+    glm::vec3 power;
+    glm::vec3 direction;
+    glm::vec3 normal;
+};
+
+/// Photons in a slab; on a coarse lattice if `ties` is set.
+inline std::vector<host_photon> some_photons(uint seed, std::size_t n, bool ties)
+{
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(0, 1);
+    const auto number = [&] { return ties ? std::floor(8 * unit(random)) / 8 : unit(random); };
+    std::vector<host_photon> photons(n);
+    for (auto& p : photons) {
+        p.position = {2 * number(), number(), 0.25f * number()};
+        p.power = {unit(random), unit(random), unit(random)};
+        p.direction = glm::normalize(glm::vec3(unit(random) - 0.5f, unit(random) - 0.5f, unit(random) - 0.7f));
+        p.normal = glm::normalize(glm::vec3(unit(random) - 0.5f, unit(random) - 0.5f, unit(random) + 0.2f));
+    }
+    return photons;
+}
+inline std::vector<glm::vec3> some_places(uint seed, std::size_t n, bool ties)
+{
+    std::vector<glm::vec3> places;
+    for (const auto& p : some_photons(seed + 1000, n, ties))
+        places.push_back(p.position * 1.2f - 0.1f * (ties ? 0.0f : 1.0f));
+    return places;
+}
+
+using neighbours_of_point = std::vector<std::pair<float, photon_id>>;
+/// Every photon by distance and id, the specification's distances.
+inline neighbours_of_point by_brute_force(const std::vector<host_photon>& photons, glm::vec3 p)
+{
+    neighbours_of_point all;
+    for (uint i = 0; i < photons.size(); ++i) {
+        const float dx = photons[i].position.x - p.x, dy = photons[i].position.y - p.y,
+                    dz = photons[i].position.z - p.z;
+        const float xx = dx * dx, yy = dy * dy, zz = dz * dz, xy = xx + yy;
+        all.emplace_back(xy + zz, i);
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+inline constexpr glm::vec3 up{0, 0, 1};
+
+} // namespace photongrid::testing
