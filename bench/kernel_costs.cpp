@@ -74,6 +74,65 @@ void row(const char* name, const tally& t, const char* paper)
         static_cast<unsigned long long>(t.casts), paper);
 }
 
+void print_table(vulkan_backend& b)
+{
+    std::printf("| kernel | instructions | buffer reads | integer operations | bit casts | the paper's Inst, TEX, "
+                "Addr, Pack |\n|---|---|---|---|---|---|\n");
+    row("bitonic_step", count(b.spirv<kernels::bitonic_step>(0)), "Bitonic Sort: 52, 2, 13, 0");
+    row("bitonic_step_float", count(b.spirv<kernels::bitonic_step_float>(0)), "the same, with float addresses");
+    row("first_in_cell", count(b.spirv<kernels::first_in_cell>(0)), "Binary Search, one iteration: 18, 1, 13, 0");
+    row("route_photon", count(b.spirv<kernels::route_photon>(0)), "Stencil Routing: 42, 0, 25, 0");
+    row("knn_visit", count(b.iterate_spirv<kernels::knn_visit>(0)),
+        "Rad. Estimate: 202, 6, 47, 41 (sort); 193, 5, 20, 41 (route)");
+    row("kth_distance", count(b.iterate_spirv<kernels::kth_distance>(0)), "");
+    row("gather_photons", count(b.iterate_spirv<kernels::gather_photons>(0)), "");
+    row("photon_cell", count(b.spirv<kernels::photon_cell>(0)), "");
+    row("emit_photon", count(b.spirv<kernels::emit_photon>()), "");
+    row("bounce_photon", count(b.spirv<kernels::bounce_photon>()), "");
+    row("eye_bounce", count(b.iterate_spirv<kernels::eye_bounce>()), "");
+    row("direct_light", count(b.spirv<kernels::direct_light>()), "");
+}
+
+/// Ten steps of each on a million pairs, in turn. Returns whether they give the same.
+bool compare_steps(vulkan_backend& b)
+{
+    constexpr uint n = 1u << 20, stride = 1024;
+    std::mt19937 engine(1);
+    std::vector<glm::uvec2> pairs;
+    for (uint i = 0; i < n; ++i)
+        pairs.emplace_back(static_cast<uint>(engine()), i);
+    const auto in = b.upload(std::span<const glm::uvec2>(pairs));
+    auto by_integers = b.make<glm::uvec2>(n), by_floats = b.make<glm::uvec2>(n);
+    const auto ms = [&](const auto& pass) {
+        b.finish();
+        const auto start = std::chrono::steady_clock::now();
+        for (int i = 0; i < 10; ++i)
+            pass();
+        b.finish();
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / 10;
+    };
+    std::vector<double> integers, floats;
+    for (int i = 0; i < 6; ++i) {
+        const double a = ms([&] {
+            b.run<kernels::bitonic_step>(n, {.run = 2 * stride, .stride = stride}, reads(in), writes(by_integers));
+        });
+        const double c = ms([&] {
+            b.run<kernels::bitonic_step_float>(
+                n, {.run = 2.0f * stride, .stride = stride}, reads(in), writes(by_floats));
+        });
+        if (i > 0) { // kernels compile in the first
+            integers.push_back(a);
+            floats.push_back(c);
+        }
+    }
+    const bool same = b.download(by_integers) == b.download(by_floats);
+    std::printf("\nA step over %u pairs on %s: %.1f ms with integer addresses, %.1f ms with float addresses; ratio "
+                "%.2f; results %s.\n",
+        n, b.caps().device.c_str(), median(integers), median(floats), median(floats) / median(integers),
+        same ? "equal" : "DIFFER");
+    return same;
+}
+
 } // namespace
 
 int main()
@@ -84,58 +143,8 @@ int main()
         const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
         const text_file texts[] = {{"bench/kernels/bitonic_step_float.glsl", text}};
         b.add_texts(texts);
-        std::printf("| kernel | instructions | buffer reads | integer operations | bit casts | the paper's Inst, TEX, "
-                    "Addr, Pack |\n|---|---|---|---|---|---|\n");
-        row("bitonic_step", count(b.spirv<kernels::bitonic_step>(0)), "Bitonic Sort: 52, 2, 13, 0");
-        row("bitonic_step_float", count(b.spirv<kernels::bitonic_step_float>(0)), "the same, with float addresses");
-        row("first_in_cell", count(b.spirv<kernels::first_in_cell>(0)), "Binary Search, one iteration: 18, 1, 13, 0");
-        row("route_photon", count(b.spirv<kernels::route_photon>(0)), "Stencil Routing: 42, 0, 25, 0");
-        row("knn_visit", count(b.iterate_spirv<kernels::knn_visit>(0)),
-            "Rad. Estimate: 202, 6, 47, 41 (sort); 193, 5, 20, 41 (route)");
-        row("kth_distance", count(b.iterate_spirv<kernels::kth_distance>(0)), "");
-        row("gather_photons", count(b.iterate_spirv<kernels::gather_photons>(0)), "");
-        row("photon_cell", count(b.spirv<kernels::photon_cell>(0)), "");
-        row("emit_photon", count(b.spirv<kernels::emit_photon>()), "");
-        row("bounce_photon", count(b.spirv<kernels::bounce_photon>()), "");
-        row("eye_bounce", count(b.iterate_spirv<kernels::eye_bounce>()), "");
-        row("direct_light", count(b.spirv<kernels::direct_light>()), "");
-
-        // Ten steps of each on a million pairs, in turn.
-        constexpr uint n = 1u << 20, stride = 1024;
-        std::mt19937 engine(1);
-        std::vector<glm::uvec2> pairs;
-        for (uint i = 0; i < n; ++i)
-            pairs.emplace_back(static_cast<uint>(engine()), i);
-        const auto in = b.upload(std::span<const glm::uvec2>(pairs));
-        auto by_integers = b.make<glm::uvec2>(n), by_floats = b.make<glm::uvec2>(n);
-        const auto ms = [&](const auto& pass) {
-            b.finish();
-            const auto start = std::chrono::steady_clock::now();
-            for (int i = 0; i < 10; ++i)
-                pass();
-            b.finish();
-            return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / 10;
-        };
-        std::vector<double> integers, floats;
-        for (int i = 0; i < 6; ++i) {
-            const double a = ms([&] {
-                b.run<kernels::bitonic_step>(n, {.run = 2 * stride, .stride = stride}, reads(in), writes(by_integers));
-            });
-            const double c = ms([&] {
-                b.run<kernels::bitonic_step_float>(
-                    n, {.run = 2.0f * stride, .stride = stride}, reads(in), writes(by_floats));
-            });
-            if (i > 0) { // kernels compile in the first
-                integers.push_back(a);
-                floats.push_back(c);
-            }
-        }
-        const bool same = b.download(by_integers) == b.download(by_floats);
-        std::printf("\nA step over %u pairs on %s: %.1f ms with integer addresses, %.1f ms with float addresses; ratio "
-                    "%.2f; results %s.\n",
-            n, b.caps().device.c_str(), median(integers), median(floats), median(floats) / median(integers),
-            same ? "equal" : "DIFFER");
-        return same ? 0 : 3;
+        print_table(b);
+        return compare_steps(b) ? 0 : 3;
     } catch (const backend_error& e) {
         std::fprintf(stderr, "kernel_costs: %s\n", e.what());
         return 2;

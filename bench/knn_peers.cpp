@@ -10,32 +10,25 @@
 //
 // --avx2: no AVX-512 on our side, and half of each ratio wanted, whatever the machine has.
 //
-// photongrid makes whole estimates (it adds up the photons' flux as well); peers only find. A peer takes every n-th run
-// of 64 points so that it ends within S seconds; photongrid takes all.
+// photongrid makes whole estimates (it adds up the photons' power as well); peers only find. A peer takes every n-th
+// run of 64 points so that it ends within S seconds; photongrid takes all.
 #include "data_sets.hpp"
 #include "median.hpp"
+#include "peers.hpp"
 
 #include <photongrid/backends/cpu/cpu.hpp>
 #include <photongrid/backends/gl/gl.hpp>
 #include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/map/fitting_grid.hpp>
 
-#include <CGAL/Orthogonal_k_neighbor_search.h>
-#include <CGAL/Search_traits_3.h>
-#include <CGAL/Simple_cartesian.h>
-#include <flann/flann.hpp>
 #include <hwy/targets.h>
-#include <nanoflann.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <functional>
-#include <memory>
+#include <optional>
+#include <random>
+#include <string>
 #include <thread>
 
 namespace {
@@ -44,137 +37,6 @@ using namespace photongrid;
 using namespace photongrid::bench;
 using std::size_t;
 
-double seconds_of(const std::function<void()>& work)
-{
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-/// Median of three.
-double median_seconds_of(const std::function<void()>& work)
-{
-    std::vector<double> all;
-    for (int repetition = 0; repetition < 3; ++repetition)
-        all.push_back(seconds_of(work));
-    return median(all);
-}
-/// A peer: how long it built, and its search.
-struct peer {
-    std::string name;
-    double build_seconds;
-    std::function<float(const vec4& point)> kth; ///< squared distance of the k-th nearest; from any thread
-};
-
-using kernel_of_cgal = CGAL::Simple_cartesian<float>;
-using cgal_search = CGAL::Orthogonal_k_neighbor_search<CGAL::Search_traits_3<kernel_of_cgal>>;
-
-peer cgal(const data_set& s)
-{
-    std::vector<kernel_of_cgal::Point_3> points;
-    for (const auto& p : s.positions)
-        points.emplace_back(p.x, p.y, p.z);
-    std::shared_ptr<cgal_search::Tree> tree;
-    const double build = median_seconds_of([&] {
-        tree = std::make_shared<cgal_search::Tree>(points.begin(), points.end());
-        tree->build();
-    });
-    return {"CGAL", build, [tree, k = s.k](const vec4& q) {
-                const cgal_search search(*tree, kernel_of_cgal::Point_3(q.x, q.y, q.z), k);
-                float last = 0;
-                for (const auto& found : search)
-                    last = found.second;
-                return last;
-            }};
-}
-
-peer flann_tree(const data_set& s, int leaf)
-{
-    auto coordinates = std::make_shared<std::vector<float>>();
-    for (const auto& p : s.positions)
-        coordinates->insert(coordinates->end(), {p.x, p.y, p.z});
-    const flann::Matrix<float> data(coordinates->data(), s.positions.size(), 3);
-    std::shared_ptr<flann::KDTreeSingleIndex<flann::L2_Simple<float>>> tree;
-    const double build = median_seconds_of([&] {
-        tree = std::make_shared<flann::KDTreeSingleIndex<flann::L2_Simple<float>>>(
-            data, flann::KDTreeSingleIndexParams(leaf));
-        tree->buildIndex();
-    });
-    return {"FLANN, leaves of " + std::to_string(leaf), build, [coordinates, tree, k = s.k](const vec4& q) {
-                thread_local std::vector<size_t> indices;
-                thread_local std::vector<float> distances;
-                indices.resize(k);
-                distances.resize(k);
-                float at[3] = {q.x, q.y, q.z};
-                flann::Matrix<size_t> i(indices.data(), 1, k);
-                flann::Matrix<float> d(distances.data(), 1, k);
-                tree->knnSearch(
-                    flann::Matrix<float>(at, 1, 3), i, d, k, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
-                return distances.back();
-            }};
-}
-
-/// Points as nanoflann wants them.
-struct cloud {
-    const std::vector<vec4>& points;
-    size_t kdtree_get_point_count() const { return points.size(); }
-    float kdtree_get_pt(size_t i, size_t axis) const { return points[i][static_cast<int>(axis)]; }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const
-    {
-        return false;
-    }
-};
-
-peer nanoflann_tree(const data_set& s, size_t leaf)
-{
-    using tree_type = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, cloud>, cloud, 3, uint>;
-    auto data = std::make_shared<cloud>(cloud{s.positions});
-    std::shared_ptr<tree_type> tree;
-    const double build = median_seconds_of(
-        [&] { tree = std::make_shared<tree_type>(3, *data, nanoflann::KDTreeSingleIndexAdaptorParams(leaf)); });
-    return {"nanoflann, leaves of " + std::to_string(leaf), build, [data, tree, k = s.k](const vec4& q) {
-                thread_local std::vector<uint> indices;
-                thread_local std::vector<float> distances;
-                indices.resize(k);
-                distances.resize(k);
-                const float at[3] = {q.x, q.y, q.z};
-                tree->knnSearch(at, k, indices.data(), distances.data());
-                return distances.back();
-            }};
-}
-
-/// Points a second of a peer; every one's k-th squared distance is compared with `known` and counted in `wrong`.
-double rate(
-    const peer& p, const data_set& s, const std::vector<float>& known, unsigned threads, double seconds, size_t& wrong)
-{
-    constexpr size_t run = 64;
-    const size_t runs = s.points.size() / run;
-    const auto search = [&](size_t every) {
-        std::atomic<size_t> done = 0, differ = 0;
-        const auto one = [&](size_t r) {
-            size_t bad = 0;
-            for (size_t i = r * every * run; i < r * every * run + run; ++i)
-                bad += p.kth(s.points[i]) != known[i] ? 1u : 0u;
-            done += run;
-            differ += bad;
-        };
-        const size_t n = std::max<size_t>(runs / every, 1);
-        const double t = seconds_of([&] {
-            if (threads == 1) {
-                for (size_t r = 0; r < n; ++r)
-                    one(r);
-            } else {
-                tbb::task_arena arena(static_cast<int>(threads));
-                arena.execute([&] { tbb::parallel_for(size_t{0}, n, one); });
-            }
-        });
-        wrong += differ;
-        return static_cast<double>(done) / t;
-    };
-    const double first = search(std::max<size_t>(runs / 40, 1));
-    return search(std::max<size_t>(static_cast<size_t>(static_cast<double>(s.points.size()) / (first * seconds)), 1));
-}
-
 struct arguments {
     std::string backend = "cpu";
     unsigned threads = 1;
@@ -182,6 +44,9 @@ struct arguments {
     double seconds = 1;
     bool shuffle = false, avx2 = false;
 };
+
+/// On one thread of the cpu backend, builds and searches on two threads are measured as well.
+bool is_alone(const arguments& a) { return a.backend == "cpu" && a.threads == 1; }
 
 /// What the table must show: least ratios with AVX-512; with AVX2, half of them, and so for points in random order. 0:
 /// whatever it is.
@@ -196,8 +61,8 @@ double wanted(const arguments& a, int number)
 /// Points a second of whole estimates, all points again and again for as long as a peer gets, after one run to warm up,
 /// as a peer has. `e`: the last ones.
 template <backend B>
-double rate(B& b, const map_buffers<B>& map, const buffer_of<B, vec4>& points, const knn_settings& settings,
-    double seconds, std::optional<knn_estimates<B>>& e)
+double points_per_second(B& b, const map_buffers<B>& map, const buffer_of<B, vec4>& points,
+    const knn_settings& settings, double seconds, std::optional<knn_estimates<B>>& e)
 {
     e = knn_grid_estimate(b, map, points, settings);
     double spent = 0, done = 0;
@@ -224,7 +89,7 @@ public:
     }
     double rate(const knn_settings& settings, double seconds)
     {
-        return ::rate(b_, map_, points_, settings, seconds, last_);
+        return points_per_second(b_, map_, points_, settings, seconds, last_);
     }
 
 private:
@@ -238,6 +103,45 @@ constexpr double least_build
     = 8; ///< how many times as fast as the fastest tree's build a million photons' is, on one thread
 constexpr double most_bytes = 48;    ///< a photon, after the build
 constexpr double least_by_two = 1.8; ///< points a second on two threads over those on one
+
+std::vector<peer> all_peers(const data_set& s)
+{
+    std::vector<peer> all{cgal(s)};
+    for (const int leaf : {10, 25, 50}) {
+        all.push_back(flann_tree(s, leaf));
+        all.push_back(nanoflann_tree(s, static_cast<size_t>(leaf)));
+    }
+    return all;
+}
+
+/// What is measured of one data set.
+struct measured {
+    double rate = 0, peers_rate = 0; ///< points per second; the fastest peer's
+    std::string fastest_peer;
+    double build_ms = 0, build_ratio = 0; ///< how many times as fast as the fastest peer's build
+    double bytes_per_photon = 0;          ///< after the build
+    std::optional<double> by_two{};       ///< points per second on two threads over those on one
+    size_t wrong = 0;                     ///< k-th distances that differ
+};
+
+/// Prints a row of the table. Returns the exit code.
+int report(const data_set& s, const grid& g, const measured& m, int number, const arguments& a)
+{
+    const double ratio = m.rate / m.peers_rate, least = wanted(a, number);
+    const bool large = s.positions.size() >= 1000000;
+    const bool pass = ratio >= least && m.wrong == 0
+        && (!is_alone(a)
+            || (m.by_two.value_or(least_by_two) >= least_by_two && m.bytes_per_photon <= most_bytes
+                && (!large || a.avx2 || m.build_ratio >= least_build)));
+    std::printf("| %s | %s | %u | %u x %u x %u | %.0f | %.1f | %s | %.1f | %g | %.1f | %.1f | %.0f |", s.name.c_str(),
+        s.what.c_str(), s.k, g.resolution.x, g.resolution.y, g.resolution.z, m.rate / 1000, m.peers_rate / 1000,
+        m.fastest_peer.c_str(), ratio, least, m.build_ms, m.build_ratio, m.bytes_per_photon);
+    if (is_alone(a))
+        std::printf(" %.2f |", m.by_two.value_or(0));
+    std::printf(" %zu | %s |\n", m.wrong, pass ? "PASS" : "FAIL");
+    std::fflush(stdout);
+    return m.wrong > 0 ? 3 : pass ? 0 : 1;
+}
 
 template <backend B>
 int measure(B& b, int number, const arguments& a)
@@ -261,19 +165,14 @@ int measure(B& b, int number, const arguments& a)
         }));
     }
     const auto after = b.bytes();
-    std::vector<peer> peers{cgal(s)};
-    for (const int leaf : {10, 25, 50}) {
-        peers.push_back(flann_tree(s, leaf));
-        peers.push_back(nanoflann_tree(s, static_cast<size_t>(leaf)));
-    }
-    const bool alone = a.backend == "cpu" && a.threads == 1;
+    const auto peers = all_peers(s);
     std::optional<two_threads> two;
-    if (alone && std::thread::hardware_concurrency() > 1)
+    if (is_alone(a) && std::thread::hardware_concurrency() > 1)
         two.emplace(s, g);
     size_t wrong = 0;
     for (int repetition = 0; repetition < 3; ++repetition) {
         std::optional<knn_estimates<B>> e;
-        searches.push_back(rate(b, map, points, settings, a.seconds, e));
+        searches.push_back(points_per_second(b, map, points, settings, a.seconds, e));
         if (two)
             searches_by_two.push_back(two->rate(settings, a.seconds));
         if (known.empty())
@@ -289,29 +188,20 @@ int measure(B& b, int number, const arguments& a)
             best = i;
         best_build = std::min(best_build, peers[i].build_seconds);
     }
-    const double ours = median(searches), theirs = median(peer_rates[best]), ratio = ours / theirs;
-    const double build_ratio = best_build / median(builds),
-                 bytes = static_cast<double>(after - 16 * s.points.size()) / static_cast<double>(s.positions.size());
-    const double by_two = two ? median(searches_by_two) / ours : 0;
-    const double least = wanted(a, number);
-    const bool large = s.positions.size() >= 1000000;
-    const bool pass = ratio >= least && wrong == 0
-        && (!alone
-            || ((!two || by_two >= least_by_two) && bytes <= most_bytes
-                && (!large || a.avx2 || build_ratio >= least_build)));
-    std::printf("| %s | %s | %u | %u x %u x %u | %.0f | %.1f | %s | %.1f | %g | %.1f | %.1f | %.0f |", s.name.c_str(),
-        s.what.c_str(), s.k, g.resolution.x, g.resolution.y, g.resolution.z, ours / 1000, theirs / 1000,
-        peers[best].name.c_str(), ratio, least, median(builds) * 1000, build_ratio, bytes);
-    if (alone)
-        std::printf(" %.2f |", by_two);
-    std::printf(" %zu | %s |\n", wrong, pass ? "PASS" : "FAIL");
-    std::fflush(stdout);
-    return wrong > 0 ? 3 : pass ? 0 : 1;
+    measured m{.rate = median(searches),
+        .peers_rate = median(peer_rates[best]),
+        .fastest_peer = peers[best].name,
+        .build_ms = median(builds) * 1000,
+        .build_ratio = best_build / median(builds),
+        .bytes_per_photon = static_cast<double>(after - 16 * s.points.size()) / static_cast<double>(s.positions.size()),
+        .wrong = wrong};
+    if (two)
+        m.by_two = median(searches_by_two) / m.rate;
+    return report(s, g, m, number, a);
 }
 
-} // namespace
-
-int main(int argc, char** argv)
+/// The command line; nothing where it is wrong, which has been said then.
+std::optional<arguments> read_arguments(int argc, char** argv)
 {
     arguments a;
     for (int i = 1; i < argc; ++i) {
@@ -332,12 +222,12 @@ int main(int argc, char** argv)
             std::fprintf(stderr,
                 "knn_peers [--backend cpu|vulkan|gl] [--threads N] [--sets 12345] [--seconds S] [--shuffle] "
                 "[--avx2]\n");
-            return 2;
+            return std::nullopt;
         }
     }
     if (a.backend != "cpu" && a.backend != "vulkan" && a.backend != "gl") {
         std::fprintf(stderr, "knn_peers: --backend: '%s'; cpu, vulkan or gl\n", a.backend.c_str());
-        return 2;
+        return std::nullopt;
     }
     if (a.avx2) {
         hwy::DisableTargets(HWY_AVX3 | HWY_AVX3_DL);
@@ -346,20 +236,35 @@ int main(int argc, char** argv)
             std::fprintf(stderr,
                 "knn_peers: --avx2: this machine has none, or the program is compiled for a better one alone; "
                 "knn_peers_portable is not\n");
-            return 2;
+            return std::nullopt;
         }
     }
+    return a;
+}
+
+void print_head(const arguments& a)
+{
     std::printf("%s, %u thread%s%s%s\n\n", a.backend.c_str(), a.threads, a.threads == 1 ? "" : "s",
         a.shuffle ? ", points in random order" : "", a.avx2 ? ", AVX2" : "");
-    const bool alone = a.backend == "cpu" && a.threads == 1;
-    if (alone)
+    if (is_alone(a))
         std::printf("Wanted besides: a build of a million photons %g times as fast as the fastest peer's%s, %g bytes a "
                     "photon at most, %g times the speed on two threads.\n\n",
             least_build, a.avx2 ? " (not with AVX2)" : "", most_bytes, least_by_two);
     std::printf("| set | photons | k | grid | photongrid, 1000/s | fastest peer, 1000/s | which | ratio | wanted | "
                 "build, ms | fastest peer's build over it | bytes a photon |%s k-th distances that differ | "
                 "|\n|---|---|---|---|---|---|---|---|---|---|---|---|%s---|---|\n",
-        alone ? " two threads over one |" : "", alone ? "---|" : "");
+        is_alone(a) ? " two threads over one |" : "", is_alone(a) ? "---|" : "");
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    const auto given = read_arguments(argc, argv);
+    if (!given)
+        return 2;
+    const arguments& a = *given;
+    print_head(a);
     const auto all = [&](auto&& b) {
         int worst = 0;
         for (int number = 1; number <= 5; ++number)
