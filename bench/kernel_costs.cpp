@@ -93,7 +93,7 @@ void print_table(vulkan_backend& b)
     row("direct_light", count(b.spirv<kernels::direct_light>()), "");
 }
 
-/// Ten steps of each on a million pairs, in turn. Returns whether they give the same.
+/// Times ten steps of each kind on a million pairs, in turn. Returns whether they give the same.
 bool compare_steps(vulkan_backend& b)
 {
     constexpr uint n = 1u << 20, stride = 1024;
