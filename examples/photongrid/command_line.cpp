@@ -177,6 +177,43 @@ Exit codes:
         to.add_option("--stats", o.stats, "statistics, as JSON")->type_name("OUT.json");
         to.add_flag("--quiet", o.quiet, "no progress, no remarks");
     }
+
+    void add_compare(CLI::App& to, compare_options& o)
+    {
+        to.add_option("A", o.a, "picture")->required()->type_name("A.exr|.pfm");
+        to.add_option("B", o.b, "reference")->required()->type_name("B.exr|.pfm");
+        to.add_option_function<std::string>(
+              "--max-relmse",
+              [&o](const std::string& text) { o.max_relmse = parsed_number("--max-relmse", text, "a number"); },
+              "exit with 1 above this")
+            ->type_name("V");
+    }
+
+    void check_device(const render_options& o)
+    {
+        if (!o.device.empty() && o.backend != "vulkan")
+            throw CLI::ValidationError("--device", "names a Vulkan device; expected --backend vulkan with it");
+    }
+
+    /// Options that mean something only beside others.
+    void check_combinations(const render_options& o)
+    {
+        if (o.time_passes && o.backend != "vulkan" && o.backend != "gl" && o.backend != "gl-osmesa")
+            throw CLI::ValidationError("--time-passes",
+                "is for --backend vulkan, gl and gl-osmesa; cpu times its passes always, serial never");
+        if (o.strip_crop && o.strip.empty())
+            throw CLI::ValidationError("--crop", "is what --strip shows; expected --strip OUT.png with it");
+        if (o.every > 0 && o.strip.empty() && o.progressive.empty())
+            throw CLI::ValidationError(
+                "--every", "is between pictures of --progressive or --strip; expected one of them with it");
+        if (!o.reference.empty() && o.progressive.empty())
+            throw CLI::ValidationError(
+                "--reference", "is for the table that --progressive writes; expected --progressive DIR with it");
+        if (o.aov && std::none_of(o.outputs.begin(), o.outputs.end(), holds_layers))
+            throw CLI::ValidationError("--aov",
+                (o.outputs.empty() ? "no output" : "\"" + o.outputs.front() + "\"")
+                    + std::string(" given; expected an EXR picture, which holds layers: -o OUT.exr"));
+    }
 } // namespace
 
 command read_command_line(int argc, char** argv)
@@ -203,14 +240,7 @@ command read_command_line(int argc, char** argv)
     compare_options compare;
     auto& compare_command = *app.add_subcommand("compare",
         "MSE, relMSE = mean of (A - B)^2 / (B + 0.01)^2 (pbrt's MRSE), largest difference of two linear pictures");
-    compare_command.add_option("A", compare.a, "picture")->required()->type_name("A.exr|.pfm");
-    compare_command.add_option("B", compare.b, "reference")->required()->type_name("B.exr|.pfm");
-    compare_command
-        .add_option_function<std::string>(
-            "--max-relmse",
-            [&](const std::string& text) { compare.max_relmse = parsed_number("--max-relmse", text, "a number"); },
-            "exit with 1 above this")
-        ->type_name("V");
+    add_compare(compare_command, compare);
 
     check_options check_scene;
     auto& check_command = *app.add_subcommand("check", "Reads and checks a scene file");
@@ -221,24 +251,9 @@ command read_command_line(int argc, char** argv)
 
     try {
         app.parse(argc, argv);
-        for (const auto* picture : {&render, &view.picture})
-            if (!picture->device.empty() && picture->backend != "vulkan")
-                throw CLI::ValidationError("--device", "names a Vulkan device; expected --backend vulkan with it");
-        if (render.time_passes && render.backend != "vulkan" && render.backend != "gl" && render.backend != "gl-osmesa")
-            throw CLI::ValidationError("--time-passes",
-                "is for --backend vulkan, gl and gl-osmesa; cpu times its passes always, serial never");
-        if (render.strip_crop && render.strip.empty())
-            throw CLI::ValidationError("--crop", "is what --strip shows; expected --strip OUT.png with it");
-        if (render.every > 0 && render.strip.empty() && render.progressive.empty())
-            throw CLI::ValidationError(
-                "--every", "is between pictures of --progressive or --strip; expected one of them with it");
-        if (!render.reference.empty() && render.progressive.empty())
-            throw CLI::ValidationError(
-                "--reference", "is for the table that --progressive writes; expected --progressive DIR with it");
-        if (render.aov && std::none_of(render.outputs.begin(), render.outputs.end(), holds_layers))
-            throw CLI::ValidationError("--aov",
-                (render.outputs.empty() ? "no output" : "\"" + render.outputs.front() + "\"")
-                    + std::string(" given; expected an EXR picture, which holds layers: -o OUT.exr"));
+        check_device(render);
+        check_device(view.picture);
+        check_combinations(render);
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? success : usage_error;
     }

@@ -102,50 +102,87 @@ renderer_options renderer_asked(const render_options& o)
     return r;
 }
 
-exit_code run_render(const render_options& o, const std::function<bool()>& stop_asked)
-{
-    const auto s = read_scene(o.scene_path);
-    render_settings settings;
-    renderer_options backend;
-    std::optional<picture_series> series;
-    auto outputs = o.outputs;
-    try {
-        settings = settings_for(s, o);
-        backend = renderer_asked(o);
-        if (outputs.empty())
-            outputs.push_back(file_stem(s.name) + ".png");
-        for (const auto& path : outputs)
+namespace {
+    /// What the command line asks for, apart from pictures on the way.
+    struct render_plan {
+        render_settings settings;
+        renderer_options backend;
+        std::vector<std::string> outputs;
+    };
+    /// \throws std::invalid_argument for what cannot be done.
+    render_plan plan_of(const scene& s, const render_options& o)
+    {
+        render_plan plan{settings_for(s, o), renderer_asked(o), o.outputs};
+        if (plan.outputs.empty())
+            plan.outputs.push_back(file_stem(s.name) + ".png");
+        for (const auto& path : plan.outputs)
             check_image_path(path);
         if (!o.stats.empty())
             check_file_path(o.stats);
-        series.emplace(series_options{.folder = o.progressive,
+        return plan;
+    }
+
+    series_options series_asked(const scene& s, const render_options& o, const render_settings& settings)
+    {
+        return {.folder = o.progressive,
             .stem = file_stem(s.name),
             .strip = o.strip,
             .strip_crop = o.strip_crop,
             .reference = o.reference,
             .size = {settings.output.width, settings.output.height},
             .exposure = settings.output.exposure,
-            .every_ms = o.every});
+            .every_ms = o.every};
+    }
+
+    /// Draws until the picture is complete or a stop is asked for.
+    void draw_until_done(renderer& drawing, picture_series& series, resumable& file, progress_bar& bar,
+        const std::function<bool()>& stop_asked)
+    {
+        const renderer::milliseconds slice(series.enabled() ? 0 : 50);
+        for (std::uint64_t seen = 0; !stop_asked() && !drawing.step(slice);) {
+            const auto now = drawing.progress();
+            bar.show(now.stage, now.fraction);
+            if (drawing.pictures() > seen && series.due()) {
+                seen = drawing.pictures();
+                series.add(drawing.picture());
+            }
+            file.keep_sometimes();
+        }
+        bar.clear();
+    }
+
+    void print_strip(const render_options& o, const picture_series& series)
+    {
+        std::cout << o.strip << '\n';
+        if (o.quiet)
+            return;
+        std::cerr << "photongrid: --strip, from the left, ms:";
+        for (const double ms : series.strip_times())
+            std::cerr << ' ' << static_cast<long>(ms);
+        std::cerr << '\n';
+    }
+} // namespace
+
+exit_code run_render(const render_options& o, const std::function<bool()>& stop_asked)
+{
+    const auto s = read_scene(o.scene_path);
+    render_plan plan;
+    std::optional<picture_series> series;
+    try {
+        plan = plan_of(s, o);
+        series.emplace(series_asked(s, o, plan.settings));
     } catch (const std::invalid_argument& e) {
         std::cerr << "photongrid: error: on the command line: " << e.what() << '\n';
         return usage_error;
     }
+    const auto& settings = plan.settings;
 
     const auto start = std::chrono::steady_clock::now();
     progress_bar bar(o.quiet);
-    const auto drawing = make_renderer(backend);
+    const auto drawing = make_renderer(plan.backend);
     drawing->start(s, settings, {.enabled = series->enabled()});
     resumable file(*drawing, o.resume, s, settings);
-    for (std::uint64_t seen = 0; !stop_asked() && !drawing->step(renderer::milliseconds(series->enabled() ? 0 : 50));) {
-        const auto now = drawing->progress();
-        bar.show(now.stage, now.fraction);
-        if (drawing->pictures() > seen && series->due()) {
-            seen = drawing->pictures();
-            series->add(drawing->picture());
-        }
-        file.keep_sometimes();
-    }
-    bar.clear();
+    draw_until_done(*drawing, *series, file, bar, stop_asked);
     const bool finished = drawing->finished();
     const bool kept = !finished && file.keep();
     const auto go_on = kept ? "; the same command goes on from " + o.resume : "";
@@ -161,19 +198,12 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
         std::cerr << "photongrid: warning: " << drawing->stats().invalid_pixels
                   << " pixels were NaN or infinite and are black\n";
     series->finish(picture);
-    for (const auto& path : outputs) {
+    for (const auto& path : plan.outputs) {
         write_image(path, picture, settings.output.exposure, picture_notes(s, settings, *drawing));
         std::cout << path << '\n';
     }
-    if (!o.strip.empty()) {
-        std::cout << o.strip << '\n';
-        if (!o.quiet) {
-            std::cerr << "photongrid: --strip, from the left, ms:";
-            for (const double ms : series->strip_times())
-                std::cerr << ' ' << static_cast<long>(ms);
-            std::cerr << '\n';
-        }
-    }
+    if (!o.strip.empty())
+        print_strip(o, *series);
     if (!finished) {
         std::cerr << "photongrid: interrupted at " << percent(done) << "; the picture is the best there was" << go_on
                   << '\n';
