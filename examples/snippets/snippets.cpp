@@ -1,4 +1,5 @@
 // The manual's snippets, run and checked. The parts between "//! [name]" are those that the headers' comments name.
+// They are in one file since these comments name the file as well.
 #include "expect.hpp"
 
 #include <photongrid/backends/serial/serial.hpp>
@@ -123,6 +124,27 @@ void maps(device_type& device)
     //! [fitting_grid]
     expect(photongrid::cell_count(fitted) > 100 && photongrid::cell_count(fitted) <= 12500, "fitting_grid");
 
+    //! [sorted_map]
+    const auto map = photongrid::sorted_map(device, std::move(p), cells);
+    const glm::uvec2 range = device.download(map.cells)[0]; // cell 0 has the photons range.x to range.x + range.y - 1
+    const photongrid::uint id
+        = device.download(map.list)[range.x]; // the first of them is photon `id` of those uploaded
+    //! [sorted_map]
+    expect(range.y > 0 && mine[id].position.x < -0.45f && mine[id].position.z < -0.45f, "sorted_map");
+
+    //! [fitted_map]
+    const auto ready
+        = photongrid::fitted_map(device, photongrid::upload_photons(device, mine), 50); // for the 50 nearest
+    //! [fitted_map]
+    expect(ready.photons.size() == mine.size() && ready.invalid == 0, "fitted_map");
+}
+
+void routed_maps(device_type& device)
+{
+    const std::vector<photon> mine = photons_on_a_square();
+    const photongrid::grid cells = photongrid::make_grid({-0.5f, 0, -0.5f}, {0.5f, 0, 0.5f}, {20, 1, 20});
+    const photongrid::photons<device_type> p = photongrid::upload_photons(device, mine);
+
     //! [stencil_route]
     const auto routed = photongrid::stencil_route(device, p, cells, 4); // 4 x 4 slots a cell
     const std::vector<photongrid::uint> slots
@@ -133,14 +155,6 @@ void maps(device_type& device)
         slots.size() == 6400 && first_cell == glm::uvec2(0, 16) && slots[0] < p.size() && routed.overflowing_cells > 0,
         "stencil_route");
 
-    //! [sorted_map]
-    const auto map = photongrid::sorted_map(device, std::move(p), cells);
-    const glm::uvec2 range = device.download(map.cells)[0]; // cell 0 has the photons range.x to range.x + range.y - 1
-    const photongrid::uint id
-        = device.download(map.list)[range.x]; // the first of them is photon `id` of those uploaded
-    //! [sorted_map]
-    expect(range.y > 0 && mine[id].position.x < -0.45f && mine[id].position.z < -0.45f, "sorted_map");
-
     //! [routed_map]
     const auto approximate
         = photongrid::routed_map(device, photongrid::upload_photons(device, mine), cells, 4); // 4 x 4 slots a cell
@@ -150,13 +164,8 @@ void maps(device_type& device)
     //! [redistributed_power]
     const double moved = photongrid::redistributed_power(device, approximate); // W, of 3 W in three channels
     //! [redistributed_power]
-    expect(moved > 0.5 && moved < 3 && photongrid::redistributed_power(device, map) == 0, "redistributed_power");
-
-    //! [fitted_map]
-    const auto ready
-        = photongrid::fitted_map(device, photongrid::upload_photons(device, mine), 50); // for the 50 nearest
-    //! [fitted_map]
-    expect(ready.photons.size() == mine.size() && ready.invalid == 0, "fitted_map");
+    const auto exact = photongrid::sorted_map(device, photongrid::upload_photons(device, mine), cells);
+    expect(moved > 0.5 && moved < 3 && photongrid::redistributed_power(device, exact) == 0, "redistributed_power");
 }
 
 void estimates(device_type& device, const photongrid::map_buffers<device_type>& map)
@@ -264,6 +273,37 @@ void edges(device_type& device)
     expect(is_near(before, 0.5, 0.15) && is_near(device.download(found.irradiance)[0].x, 1, 0.15), "correct_edges");
 }
 
+void progressive_pictures(
+    device_type& device, const photongrid::scene& room, const photongrid::render_settings& settings)
+{
+    using namespace std::chrono_literals;
+    photongrid::scene edited = room;
+    std::vector<photongrid::image> window;
+    const auto show = [&](const photongrid::image& shown) { window.push_back(shown); };
+
+    //! [progressive_render]
+    photongrid::progressive_render drawing(device);
+    drawing.start(room, settings);
+    while (!drawing.step(16ms))     // about 16 ms, but at least one pass
+        if (drawing.pictures() > 0) // complete: at first few photons and large pixels
+            show(drawing.picture());
+    show(drawing.picture()); // the bytes of photongrid::render
+
+    edited.camera.position.x += 0.1; // move the camera: the photon map is kept ...
+    drawing.start(edited, settings);
+    while (drawing.pictures() == 0)
+        drawing.step(0ms);
+    show(drawing.picture()); // ... and the first preview needs no new photons
+
+    edited.point_lights[0].position.x += 0.1; // move the light: photons are traced again
+    drawing.start(edited, settings);
+    //! [progressive_render]
+    expect(drawing.step() && drawing.maps() >= 2, "progressive_render");
+    expect(window.size() >= 2
+            && window[window.size() - 2].pixels == photongrid::render(device, room, settings).picture.pixels,
+        "its last picture");
+}
+
 void pictures(device_type& device)
 {
     const photongrid::scene room = a_corner();
@@ -291,35 +331,7 @@ void pictures(device_type& device)
     const photongrid::image picture = photongrid::render(device, room, settings).picture; // by the scene's own camera
     //! [render]
     expect(picture.pixels == photongrid::draw(device, built, room.camera, settings).picture.pixels, "render");
-
-    {
-        using namespace std::chrono_literals;
-        photongrid::scene edited = room;
-        std::vector<photongrid::image> window;
-        const auto show = [&](const photongrid::image& shown) { window.push_back(shown); };
-
-        //! [progressive_render]
-        photongrid::progressive_render drawing(device);
-        drawing.start(room, settings);
-        while (!drawing.step(16ms))     // about 16 ms, but at least one pass
-            if (drawing.pictures() > 0) // complete: at first few photons and large pixels
-                show(drawing.picture());
-        show(drawing.picture()); // the bytes of photongrid::render
-
-        edited.camera.position.x += 0.1; // move the camera: the photon map is kept ...
-        drawing.start(edited, settings);
-        while (drawing.pictures() == 0)
-            drawing.step(0ms);
-        show(drawing.picture()); // ... and the first preview needs no new photons
-
-        edited.point_lights[0].position.x += 0.1; // move the light: photons are traced again
-        drawing.start(edited, settings);
-        //! [progressive_render]
-        expect(drawing.step() && drawing.maps() >= 2, "progressive_render");
-        expect(window.size() >= 2
-                && window[window.size() - 2].pixels == photongrid::render(device, room, settings).picture.pixels,
-            "its last picture");
-    }
+    progressive_pictures(device, room, settings);
 
     //! [render_reference]
     const auto drawn = photongrid::render_reference(room, room.camera, {.width = 16, .height = 12, .spp = 64});
@@ -364,6 +376,7 @@ try {
     host_maps(device);
     algorithms(device);
     maps(device);
+    routed_maps(device);
     const auto map = photongrid::fitted_map(device, photongrid::upload_photons(device, photons_on_a_square()), 50);
     estimates(device, map);
     files(device, map);
