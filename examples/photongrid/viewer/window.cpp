@@ -1,12 +1,12 @@
 #include "window.hpp"
 
 #include "display.hpp"
+#include "picture_pane.hpp"
 #include "render_thread.hpp"
 #include "settings_panel.hpp"
 #include <photongrid/io/image_difference.hpp>
 #include <photongrid/io/image_file.hpp>
 #include <photongrid/io/scene_writer.hpp>
-#include <photongrid/io/tone_map.hpp>
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
@@ -36,19 +36,13 @@ namespace {
     public:
         window(const window_options& o, bool (*stop_asked)())
             : options_(o), stop_asked_(stop_asked), handle_(open_window(o.begin.settings, panel_width)),
-              interface_(handle_.get()), document_(o.begin), panel_(document_), journal_(o.journal),
+              interface_(handle_.get()), document_(o.begin), panel_(document_), pane_(document_), journal_(o.journal),
               renderer_(
                   o.renderer, [] { glfwPostEmptyEvent(); },
                   o.journal.empty() ? journal() : [this](const std::string& line) { note(line); })
         {
             if (!o.journal.empty() && !journal_.is_open())
                 throw file_error(o.journal + ": cannot be written");
-            glGenTextures(1, &texture_);
-            glBindTexture(GL_TEXTURE_2D, texture_);
-            for (const auto& [name, value] :
-                {std::pair{GL_TEXTURE_MIN_FILTER, GL_LINEAR}, {GL_TEXTURE_MAG_FILTER, GL_LINEAR},
-                    {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE}, {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE}})
-                glTexParameteri(GL_TEXTURE_2D, static_cast<GLenum>(name), value);
             glfwSetWindowUserPointer(handle_.get(), this);
             send(false);
         }
@@ -124,22 +118,7 @@ namespace {
                     static_cast<float>(std::log10(std::max(1e-12, compare_images(shown_.picture, *r).relmse))));
             upload();
         }
-
-        void upload()
-        {
-            const auto& p = shown_.picture;
-            if (p.pixels.empty())
-                return;
-            const tone_map to_screen(document_.now().settings.output.exposure);
-            bytes_.clear();
-            for (const auto& pixel : p.pixels)
-                for (int c = 0; c < 3; ++c)
-                    bytes_.push_back(to_screen(pixel[c]));
-            glBindTexture(GL_TEXTURE_2D, texture_);
-            glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-            glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, static_cast<GLsizei>(p.width), static_cast<GLsizei>(p.height), 0,
-                GL_RGB, GL_UNSIGNED_BYTE, bytes_.data());
-        }
+        void upload() { pane_.upload(shown_.picture, document_.now().settings.output.exposure); }
 
         // --- the screen ---
         void draw()
@@ -156,7 +135,8 @@ namespace {
             ImGui::Begin(
                 "picture", nullptr, fixed | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground);
             ImGui::PopStyleVar();
-            draw_picture();
+            pane_.draw(shown_.number > 0);
+            draw_report(report_, shown_, overlay_);
             ImGui::End();
             ImGui::SetNextWindowPos({size.x - panel_width, 0});
             ImGui::SetNextWindowSize({panel_width, size.y});
@@ -175,109 +155,6 @@ namespace {
             glClear(GL_COLOR_BUFFER_BIT);
             ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
             glfwSwapBuffers(handle_.get());
-        }
-
-        void draw_picture()
-        {
-            const auto& s = document_.now().settings;
-            const auto room = ImGui::GetContentRegionAvail();
-            const float scale = std::max(1e-3f,
-                std::min(room.x / static_cast<float>(s.output.width), room.y / static_cast<float>(s.output.height)));
-            const ImVec2 size(scale * static_cast<float>(s.output.width), scale * static_cast<float>(s.output.height));
-            const ImVec2 corner(std::max(0.0f, 0.5f * (room.x - size.x)), std::max(0.0f, 0.5f * (room.y - size.y)));
-            if (shown_.number > 0)
-                ImGui::GetWindowDrawList()->AddImage(
-                    reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)), corner,
-                    {corner.x + size.x, corner.y + size.y});
-            ImGui::SetCursorPos(corner);
-            ImGui::InvisibleButton("mouse", size,
-                ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle
-                    | ImGuiButtonFlags_MouseButtonRight);
-            mouse(corner, size);
-            if (const auto part = document_.selected())
-                if (const auto box = box_of(document_.now().scene, document_.parts()[*part],
-                        static_cast<double>(size.x), static_cast<double>(size.y)))
-                    ImGui::GetWindowDrawList()->AddRect(
-                        {corner.x + static_cast<float>(box->left) - 3, corner.y + static_cast<float>(box->top) - 3},
-                        {corner.x + static_cast<float>(box->right) + 3, corner.y + static_cast<float>(box->bottom) + 3},
-                        IM_COL32(255, 200, 60, 200), 4, 0, 1.5f);
-            draw_overlay();
-        }
-
-        void draw_overlay()
-        {
-            const auto& r = report_;
-            char text[512];
-            const auto& st = r.stats;
-            std::snprintf(text, sizeof text,
-                "%s on %s\n%s %.0f %%  pictures %llu  after %.0f ms\nphotons %u  maps %llu  passes %llu  unfinished "
-                "%llu\ntrace %.0f  build %.0f  rays %.0f  estimate %.0f ms",
-                r.backend.c_str(), r.device.substr(0, 40).c_str(), std::string(r.progress.stage).c_str(),
-                100 * r.progress.fraction, static_cast<unsigned long long>(shown_.number), shown_.ms,
-                r.progress.photons, static_cast<unsigned long long>(r.maps), static_cast<unsigned long long>(r.passes),
-                static_cast<unsigned long long>(r.progress.unfinished), st.trace_photons.ms, st.build_map.ms,
-                st.trace_rays.ms, st.radiance_estimate.ms);
-            auto* list = ImGui::GetWindowDrawList();
-            if (overlay_) {
-                list->AddText({9, 9}, IM_COL32(0, 0, 0, 255), text);
-                list->AddText({8, 8}, IM_COL32(255, 255, 255, 230), text);
-            }
-            if (!r.error.empty())
-                list->AddText(nullptr, 0, {8, 80}, IM_COL32(255, 120, 90, 255), ("not drawn: " + r.error).c_str(),
-                    nullptr, std::max(100.0f, ImGui::GetIO().DisplaySize.x - panel_width - 16));
-        }
-
-        // --- the mouse ---
-        void mouse(const ImVec2& corner, const ImVec2& size)
-        {
-            const auto& io = ImGui::GetIO();
-            const double width = static_cast<double>(size.x), height = static_cast<double>(size.y);
-            const double x = static_cast<double>(io.MousePos.x - corner.x),
-                         y = static_cast<double>(io.MousePos.y - corner.y);
-            if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f) {
-                document_.begin("zoom");
-                document_.zoom(std::pow(1.1, static_cast<double>(io.MouseWheel)));
-            }
-            if (ImGui::IsItemActivated()) {
-                pressed_ = pick(document_.now().scene, document_.parts(), width, height, x, y);
-                moved_ = false;
-                moves_part_
-                    = ImGui::IsMouseDown(ImGuiMouseButton_Left) && pressed_ && document_.selected() == pressed_->part;
-            }
-            if (ImGui::IsItemActive()) {
-                const bool left = ImGui::IsMouseDown(ImGuiMouseButton_Left);
-                if (!moved_
-                    && ImGui::IsMouseDragging(left                        ? ImGuiMouseButton_Left
-                            : ImGui::IsMouseDown(ImGuiMouseButton_Middle) ? ImGuiMouseButton_Middle
-                                                                          : ImGuiMouseButton_Right,
-                        3.0f)) {
-                    moved_ = true;
-                    document_.begin(moves_part_    ? "move of " + document_.parts()[pressed_->part].name
-                            : left && !io.KeyShift ? "turn"
-                                                   : "pan");
-                }
-                if (!moved_)
-                    return;
-                if (moves_part_)
-                    drag(sight_line_at(document_.now().scene.camera, width, height, x, y), io.KeyShift);
-                else if (left && !io.KeyShift)
-                    document_.orbit(180 * static_cast<double>(io.MouseDelta.x) / width,
-                        180 * static_cast<double>(io.MouseDelta.y) / height);
-                else
-                    document_.pan(
-                        -static_cast<double>(io.MouseDelta.x) / height, static_cast<double>(io.MouseDelta.y) / height);
-            }
-            if (ImGui::IsItemDeactivated() && !moved_ && ImGui::IsMouseReleased(ImGuiMouseButton_Left))
-                document_.select(pressed_ ? std::optional(pressed_->part) : std::nullopt);
-        }
-
-        void drag(const sight_line& line, bool level)
-        {
-            const auto to = on_plane(document_.now().scene.camera, line, pressed_->position, level);
-            if (!to)
-                return;
-            move(document_.edit().scene, document_.parts()[pressed_->part], *to - pressed_->position);
-            pressed_->position = *to;
         }
 
         void draw_panel()
@@ -403,19 +280,16 @@ namespace {
         interface interface_;
         document document_;
         settings_panel panel_;
+        picture_pane pane_;
         std::mutex journal_guard_;
         std::ofstream journal_;
 
-        GLuint texture_ = 0;
-        std::vector<unsigned char> bytes_;
         frame shown_;
         render_report report_;
         version sent_;
         std::vector<float> changes_, errors_; ///< log10, since the last request
         std::string message_;
         bool overlay_ = true;
-        std::optional<grip> pressed_; ///< where a button went down
-        bool moved_ = false, moves_part_ = false;
         render_thread renderer_; ///< last: its thread ends first
     };
 } // namespace
