@@ -98,7 +98,7 @@ TEST(backend_concept, every_algorithm_compiles_for_a_minimal_backend)
     EXPECT_EQ(e.used.size(), 0u);
 }
 
-TEST(make_grid, refuses_what_no_device_could_hold)
+TEST(make_grid, throws_for_wrong_resolutions_and_bounds)
 {
     EXPECT_THROW(make_grid(glm::vec3(0), glm::vec3(1), {0, 1, 1}), std::invalid_argument);
     EXPECT_THROW(make_grid(glm::vec3(0), glm::vec3(1), {2048, 2048, 2048}), std::invalid_argument);
@@ -111,7 +111,7 @@ TEST(make_grid, refuses_what_no_device_could_hold)
     EXPECT_EQ(cell_count(make_grid(glm::vec3(0), glm::vec3(0), {250, 1, 250})), 62500u); // no extent at all
 }
 
-TEST(launch, refuses_more_elements_than_it_can_number)
+TEST(launch, throws_for_more_elements_than_it_can_number)
 {
     EXPECT_THROW(launch(std::size_t{1} << 32), std::invalid_argument);
     EXPECT_THROW(launch(0xFFFFFFFFu, 1u), std::invalid_argument);

@@ -154,7 +154,7 @@ namespace {
         all, faulty_backend, ::testing::ValuesIn(jobs), [](const auto& info) { return std::string(info.param.name); });
 
     // No path emitted would mean tracing for ever.
-    TEST(faulty_tracer, refuses_that_no_path_was_emitted)
+    TEST(faulty_tracer, throws_if_no_path_was_emitted)
     {
         serial_backend inner;
         faulty b(inner);

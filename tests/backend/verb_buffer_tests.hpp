@@ -36,7 +36,7 @@ TYPED_TEST_P(verbs, buffers_move_and_may_outlive_their_backend)
     EXPECT_EQ(kept.size(), 0u);
 }
 
-TYPED_TEST_P(verbs, a_buffer_may_go_before_the_passes_that_use_it_are_done)
+TYPED_TEST_P(verbs, a_buffer_may_be_destroyed_before_passes_that_use_it_end)
 {
     auto& b = this->b();
     const uint n = 5000;

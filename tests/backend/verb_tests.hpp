@@ -8,7 +8,7 @@
 namespace photongrid::testing {
 
 REGISTER_TYPED_TEST_SUITE_P(verbs, buffers_keep_delicate_floats, buffers_move_and_may_outlive_their_backend,
-    a_buffer_may_go_before_the_passes_that_use_it_are_done, memory_is_given_back,
+    a_buffer_may_be_destroyed_before_passes_that_use_it_end, memory_is_given_back,
     a_buffer_beyond_the_limit_is_refused_and_nothing_else, too_small_buffers_are_refused_by_name,
     a_pass_computes_its_elements_and_no_other, a_pass_has_eight_inputs_and_eight_outputs_of_mixed_types,
     states_change_in_place_and_outputs_beside_them, switches_are_on_and_off_one_by_one, parameters_of_every_kind_arrive,

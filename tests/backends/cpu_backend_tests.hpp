@@ -239,7 +239,7 @@ TEST(cpu_backend, the_growing_search_visits_and_holds_what_serials_does)
     }));
 }
 
-TEST(cpu_backend, refuses_what_it_cannot_do)
+TEST(cpu_backend, throws_for_too_many_threads_and_too_large_buffers)
 {
     EXPECT_THROW(cpu_backend(5000), std::invalid_argument);
     cpu_backend b(1);

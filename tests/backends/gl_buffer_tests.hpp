@@ -8,7 +8,7 @@ namespace photongrid {
 namespace {
 
     // Without this, silence of the driver would prove nothing.
-    TYPED_TEST(gl_backend_test, hears_the_driver)
+    TYPED_TEST(gl_backend_test, records_the_drivers_messages)
     {
         auto& b = this->gpu();
         const auto before = b.upload(view(noise<glm::uvec2>(4, 1)));
@@ -33,7 +33,7 @@ namespace {
         EXPECT_EQ(b.take_debug_messages(), "");
     }
 
-    TYPED_TEST(gl_backend_test, says_what_it_is)
+    TYPED_TEST(gl_backend_test, describes_its_device)
     {
         const capabilities& c = this->gpu().caps();
         EXPECT_EQ(c.backend, TypeParam::name);
@@ -75,7 +75,7 @@ namespace {
         EXPECT_GE(b.peak_bytes(), before + 65536);
     }
 
-    TYPED_TEST(gl_backend_test, refuses_what_it_cannot_hold_with_numbers)
+    TYPED_TEST(gl_backend_test, names_the_limit_that_a_buffer_exceeds)
     {
         gl_backend& b = this->gpu();
         const auto before = b.bytes();

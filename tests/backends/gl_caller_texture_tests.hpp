@@ -202,7 +202,7 @@ namespace {
         EXPECT_EQ(gl.GetError(), GLenum(GL_NO_ERROR));
     }
 
-    TYPED_TEST(gl_callers_context, refuses_textures_that_are_no_buffers)
+    TYPED_TEST(gl_callers_context, throws_for_textures_that_are_no_buffers)
     {
         const test_gl& gl = *this->call;
         std::unique_ptr<gl_backend> b = this->make_backend();

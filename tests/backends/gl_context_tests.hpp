@@ -28,7 +28,7 @@ namespace {
         EXPECT_THROW(gl_backend({.context = TypeParam::kind, .tile = 0}), std::invalid_argument);
     }
 
-    TYPED_TEST(gl_backend_test, tells_its_costs)
+    TYPED_TEST(gl_backend_test, counts_the_costs_of_kernels)
     {
         gl_backend b({.context = TypeParam::kind});
         EXPECT_TRUE(b.costs().empty());

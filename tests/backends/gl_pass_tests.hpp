@@ -72,7 +72,7 @@ namespace {
             b.download(s5), b.download(s6), b.download(s7));
     }
 
-    TYPED_TEST(gl_backend_test, passes_only_over_what_is_not_done)
+    TYPED_TEST(gl_backend_test, runs_only_unfinished_elements)
     {
         for (std::size_t n : {1u, 50u, 2048u, 30000u})
             for (std::initializer_list<uint> passes : {std::initializer_list<uint>{~0u},

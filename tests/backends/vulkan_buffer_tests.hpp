@@ -48,7 +48,7 @@ TEST_F(vulkan, buffers_move_and_may_outlive_their_backend)
     EXPECT_EQ(kept.size(), 1000u);
 }
 
-TEST_F(vulkan, a_buffer_that_recorded_passes_use_may_go_first)
+TEST_F(vulkan, a_buffer_may_be_destroyed_before_recorded_passes_that_use_it)
 {
     const std::vector<uint> host(5000, 1u);
     auto last = up(b(), host);

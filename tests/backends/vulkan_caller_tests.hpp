@@ -94,7 +94,7 @@ TEST_F(callers_device, owns_a_buffer_that_was_released)
     vkFreeMemory(app.handles.device, given.memory, nullptr);
 }
 
-TEST_F(callers_device, is_refused_what_cannot_be)
+TEST_F(callers_device, rejects_wrong_handles_and_buffers)
 {
     EXPECT_THROW(vulkan_backend{vulkan_handles{}}, std::invalid_argument);
     vulkan_backend b(app.handles), other(app.handles);

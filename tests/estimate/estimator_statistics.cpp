@@ -125,7 +125,7 @@ namespace {
         }
     }
 
-    TEST(estimates, the_error_of_the_channels_sum_knows_that_channels_go_together)
+    TEST(estimates, the_error_of_the_channels_sum_includes_their_correlation)
     {
         serial_backend b;
         const auto map = uniform_field(b, 5000, 16, 1);

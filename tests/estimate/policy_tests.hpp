@@ -101,7 +101,7 @@ TYPED_TEST_P(estimators, no_light_comes_through_a_thin_wall)
     this->report("A10", "irradiance on the dark side of a wall under any policy:", leaked);
 }
 
-TYPED_TEST_P(estimators, searches_refuse_what_they_cannot_do)
+TYPED_TEST_P(estimators, searches_throw_for_wrong_settings)
 {
     auto& b = this->b();
     const auto set = make_photons(distribution::uniform, 100, {4, 4, 4}, 1);

@@ -108,7 +108,7 @@ namespace {
         }
     }
 
-    TEST_F(image_file, refuses_layers_of_another_size)
+    TEST_F(image_file, rejects_layers_of_another_size)
     {
         auto p = with_layers();
         p.layers.count.pop_back();

@@ -6,7 +6,7 @@
 namespace photongrid {
 namespace {
 
-    TEST_F(image_file, refuses_paths_that_cannot_be_written)
+    TEST_F(image_file, rejects_paths_that_cannot_be_written)
     {
         const auto p = gradient();
         EXPECT_NE(
@@ -46,7 +46,7 @@ namespace {
         EXPECT_EQ(read_image(path("real.pfm")).width, 7u);
     }
 
-    TEST_F(image_file, refuses_broken_files)
+    TEST_F(image_file, rejects_broken_files)
     {
         EXPECT_NE(refusal([&] { read_image(path("none.pfm")); }).find("No such file"), std::string::npos);
         EXPECT_NE(refusal([&] { read_image(path("none.exr")); }), "");

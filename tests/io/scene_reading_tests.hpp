@@ -115,7 +115,7 @@ namespace {
         EXPECT_EQ(with(R"(, "leaks": {"min_cosine": 1, "flattening": 1e6})").estimate.leaks.flattening, 1e6f);
     }
 
-    TEST(scene_file, refuses_unknown_kinds_of_estimates)
+    TEST(scene_file, rejects_unknown_kinds_of_estimates)
     {
         const auto said = [](const std::string& more) { return refusal(13, "\"k\": 20", more + ", \"k\": 20"); };
         expect_refusal(said(R"("search": "exact")"), "13:58",

@@ -23,7 +23,7 @@ namespace {
         expect_refusal(refusal("{\"comment\": \"äöü\", \"nam\": 1}"), "1:20", {"unknown key \"nam\"", "\"name\""});
     }
 
-    TEST(scene_file, refuses_unknown_and_doubled_keys)
+    TEST(scene_file, rejects_unknown_and_doubled_keys)
     {
         expect_refusal(refusal(9, "\"center\"", "\"centre\""), "9:22",
             {"unknown key \"centre\" in \"sphere\"", "expected \"center\"?"});
@@ -34,7 +34,7 @@ namespace {
         EXPECT_EQ(refusal(9, "\"radius\"", "\"comment\": [1, {}], \"radius\""), "");
     }
 
-    TEST(scene_file, refuses_missing_keys)
+    TEST(scene_file, rejects_missing_keys)
     {
         expect_refusal(refusal(9, ", \"radius\": 0.5", ""), "9:3", {"\"sphere\" lacks the key \"radius\""});
         expect_refusal(
@@ -43,7 +43,7 @@ namespace {
         expect_refusal(refusal("{\"photongrid\": 1}"), "1:1", {"lacks the key \"units\""});
     }
 
-    TEST(scene_file, refuses_wrong_types)
+    TEST(scene_file, rejects_wrong_types)
     {
         expect_refusal(refusal(9, "0.5", "\"big\""), "9:53", {"found the text \"big\"", "expected a length"});
         expect_refusal(refusal(9, "[0, 1, 0]", "[0, 1]"), "9:32", {"found an array of 2", "expected a point"});
@@ -56,7 +56,7 @@ namespace {
             refusal(9, "\"sphere\"", "\"spehre\""), "9:12", {"found the text \"spehre\"", "\"sphere\", \"cylinder\""});
     }
 
-    TEST(scene_file, refuses_numbers_out_of_range)
+    TEST(scene_file, rejects_numbers_out_of_range)
     {
         expect_refusal(refusal(9, "0.5", "1e400"), "9:53", {"number 1e400 is out of range"});
         expect_refusal(refusal(9, "0.5", "-1e400"), "9:53", {"number -1e400 is out of range"});
@@ -73,7 +73,7 @@ namespace {
         expect_refusal(refusal(4, "40", "180"), "4:74", {"degrees"});
     }
 
-    TEST(scene_file, refuses_what_cannot_be_drawn)
+    TEST(scene_file, rejects_what_cannot_be_drawn)
     {
         expect_refusal(
             refusal(10, "[1, 0, 1], [0, 0, 1]", "[2, 0, 0]"), "10:35", {"vertices: the polygon has no area"});
@@ -89,7 +89,7 @@ namespace {
             "12:54", {"right angles"});
     }
 
-    TEST(scene_file, refuses_missing_lights_and_unknown_materials)
+    TEST(scene_file, rejects_missing_lights_and_unknown_materials)
     {
         auto lines = good;
         lines[11] = "],";
@@ -98,7 +98,7 @@ namespace {
         expect_refusal(refusal(9, "\"clear\"", "7"), "9:70", {"found the number 7", "the name of a material"});
     }
 
-    TEST(scene_file, refuses_unknown_units)
+    TEST(scene_file, rejects_unknown_units)
     {
         expect_refusal(refusal(3, "\"m\"", "\"inch\""), "3:22", {"found the text \"inch\"", "\"m\", \"cm\" or \"mm\""});
         expect_refusal(refusal(3, "\"W\"", "\"lm\""), "3:36", {"found the text \"lm\"", "\"kW\""});
@@ -174,7 +174,7 @@ namespace {
     }
 
     // Found by fuzzing: a material's name went to the terminal as it was, in "perhaps …".
-    TEST(scene_file, refuses_names_that_upset_a_terminal)
+    TEST(scene_file, rejects_names_with_control_characters)
     {
         for (const auto* bad : {"wh\x7Fte", "wh\\u001b[2Jte", "", "wh\\nte"}) {
             expect_refusal(refusal(6, "white", bad), "6:3",
@@ -185,7 +185,7 @@ namespace {
     }
 
     // Found by fuzzing: normals and axes of parts this small came out as no unit vectors.
-    TEST(scene_file, refuses_parts_too_small_to_have_a_direction)
+    TEST(scene_file, rejects_parts_too_small_to_have_a_direction)
     {
         expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)",
                            R"("cylinder", "base": [0, 0, 0], "top": [0, 1e-160, 0], "radius": 0.5)"),

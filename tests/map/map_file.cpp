@@ -45,7 +45,7 @@ namespace {
         std::string whole;
     };
 
-    TEST_F(damaged_map_files, are_told_by_any_byte)
+    TEST_F(damaged_map_files, are_detected_whichever_byte_changed)
     {
         ASSERT_EQ(complaint(whole), "");
         for (std::size_t at = 0; at < whole.size(); ++at)
@@ -63,7 +63,7 @@ namespace {
         EXPECT_EQ(note, "a note of 18 bytes");
     }
 
-    TEST_F(damaged_map_files, are_told_when_cut_short_or_longer)
+    TEST_F(damaged_map_files, are_detected_when_cut_short_or_longer)
     {
         for (std::size_t n = 0; n < whole.size(); n += n < 200 ? 1 : 61)
             EXPECT_NE(complaint(whole.substr(0, n)), "") << n << " bytes";
@@ -71,7 +71,7 @@ namespace {
         EXPECT_NE(complaint(summed(whole + std::string(64, '\0'))), "");
     }
 
-    TEST_F(damaged_map_files, are_refused_for_what_they_are)
+    TEST_F(damaged_map_files, are_rejected_with_the_reason)
     {
         EXPECT_THROW((void)load_map(b, folder / "none"), map_file_error);
         EXPECT_THROW((void)load_map(b, folder / "."), map_file_error);
@@ -85,7 +85,7 @@ namespace {
         EXPECT_NE(complaint(other).find("byte order"), std::string::npos);
     }
 
-    TEST_F(damaged_map_files, made_with_care_are_refused_too)
+    TEST_F(damaged_map_files, with_a_valid_checksum_are_rejected_too)
     {
         ASSERT_EQ(summed(whole), whole);
         // Every word of the header, and the first cells: a wrong one is seen, or it is one of those that only tell a

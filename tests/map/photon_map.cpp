@@ -50,7 +50,7 @@ RC_GTEST_PROP(host_map_properties, nearest_are_those_of_brute_force, ())
 
 /// Every filter, bias and policy: the single query has the radius and the photons of the search for many points, to the
 /// bit, and its light to rounding.
-TYPED_TEST(host_maps, one_place_at_a_time_gives_what_many_give)
+TYPED_TEST(host_maps, single_queries_equal_a_search_for_many_points)
 {
     serial_backend serial;
     query_scratch scratch;

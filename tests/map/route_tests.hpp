@@ -19,7 +19,7 @@ TEST(permutation, is_one_for_every_size_and_seed)
         }
 }
 
-TYPED_TEST_P(algorithms, route_keeps_the_first_in_draw_order_and_all_the_flux)
+TYPED_TEST_P(algorithms, route_keeps_the_first_in_draw_order_and_all_power)
 {
     auto& b = this->b();
     double largest = 0;
@@ -134,7 +134,7 @@ TYPED_TEST_P(algorithms, route_takes_a_hundred_thousand_photons_to_one_cell)
     this->report("A2", "relative error of flux, 100,000 photons of a power of two in a cell:", largest);
 }
 
-TYPED_TEST_P(algorithms, route_conserves_flux_in_crowded_cells)
+TYPED_TEST_P(algorithms, route_conserves_power_in_crowded_cells)
 {
     // Float sums of a third: 1e-5 up to 2,048 photons a cell, 5e-4 at 70,000.
     auto& b = this->b();
@@ -213,7 +213,7 @@ TYPED_TEST_P(algorithms, a_map_of_one_part_of_the_light_holds_that_part)
         }
 }
 
-TYPED_TEST_P(algorithms, route_says_no_to_what_it_cannot_do)
+TYPED_TEST_P(algorithms, route_throws_for_wrong_arguments)
 {
     auto& b = this->b();
     const auto set = make_photons(distribution::uniform, 10, {2, 2, 2}, 1);

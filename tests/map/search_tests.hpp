@@ -63,7 +63,7 @@ TYPED_TEST_P(algorithms, estimate_uses_exactly_the_photons_within_its_radius)
     }));
 }
 
-TYPED_TEST_P(algorithms, estimate_adds_up_the_flux_it_says)
+TYPED_TEST_P(algorithms, estimate_adds_up_the_power_of_its_photons)
 {
     auto& b = this->b();
     const auto set = make_photons(distribution::box_faces, 4000, {10, 10, 20}, 4);

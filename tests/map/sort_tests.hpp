@@ -30,7 +30,7 @@ TYPED_TEST_P(algorithms, sort_handles_the_sizes_where_networks_break)
     }
 }
 
-TYPED_TEST_P(algorithms, the_generic_sort_is_right_where_another_stands_for_it)
+TYPED_TEST_P(algorithms, the_generic_sort_is_right_where_an_override_replaces_it)
 {
     auto& b = this->b();
     using B = std::remove_reference_t<decltype(b)>;

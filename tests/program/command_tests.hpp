@@ -25,7 +25,7 @@ namespace {
         EXPECT_EQ(version.out.substr(0, 11), "photongrid ");
     }
 
-    TEST_F(program, refuses_wrong_command_lines)
+    TEST_F(program, rejects_wrong_command_lines)
     {
         EXPECT_EQ(run({}).code, 2);
         EXPECT_EQ(run({"draw"}).code, 2);
@@ -180,7 +180,7 @@ namespace {
         EXPECT_EQ(contents(folder / "none.pfm"), contents(folder / "second.pfm"));
     }
 
-    TEST_F(program, refuses_outputs_before_rendering)
+    TEST_F(program, rejects_outputs_before_rendering)
     {
         EXPECT_EQ(run(small_with({"-o", "a.jpg"})).code, 5);
         EXPECT_EQ(run(small_with({"-o", "none/a.png"})).code, 5);

@@ -6,7 +6,7 @@
 namespace photongrid {
 namespace {
 
-    TEST_F(program, refuses_wrong_leak_policies)
+    TEST_F(program, rejects_wrong_leak_policies)
     {
         const std::string list = "expected none, or some of side, min_cosine, min_cosine=COS, flattening, flattening=F "
                                  "with commas between them";

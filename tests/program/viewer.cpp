@@ -127,7 +127,7 @@ namespace {
         }
     }
 
-    TEST_F(drawn, what_cannot_be_drawn_is_said_and_forgotten)
+    TEST_F(drawn, errors_are_reported_and_the_next_picture_is_drawn)
     {
         auto good = begun(small_cornell()), bad = good, none = good;
         bad.scene.spheres.push_back(bad.scene.spheres[1]); // two overlapping balls of glass

@@ -133,7 +133,7 @@ TEST(film, very_bright_and_very_dark_pixels_are_kept)
     EXPECT_EQ(developed.picture.layers.noise[0], std::numeric_limits<float>::infinity()); // too bright to know
 }
 
-TEST(film, refuses_what_does_not_fit)
+TEST(film, throws_for_passes_that_do_not_fit)
 {
     film f(4, 3, 1, false);
     f.add(0, random_pass(1, 12, false));

@@ -137,7 +137,7 @@ struct ball_over_floor {
     }
 };
 
-TYPED_TEST_P(pictures, a_glass_ball_focuses_the_flux_it_should)
+TYPED_TEST_P(pictures, a_glass_ball_focuses_the_power_that_optics_predicts)
 {
     const ball_over_floor ball;
     const scene s = ball.as_scene();

@@ -26,7 +26,7 @@ TYPED_TEST_P(pictures, every_photon_and_every_watt_is_accounted_for)
     }
 }
 
-TYPED_TEST_P(pictures, flux_balances_per_channel)
+TYPED_TEST_P(pictures, power_balances_per_channel)
 {
     // A light's power is absorbed at surfaces, escapes, or is cut off; per path and channel, on average.
     for (auto s : {small_cornell(), all_shapes()}) {
