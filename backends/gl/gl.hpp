@@ -1,24 +1,17 @@
 // The OpenGL backend: kernels as fragment programs and buffers as textures, as in the paper, on OpenGL 4.5 core. It
-// uses no compute shaders and no storage buffers, and reads nothing back between passes except occlusion queries.
+// uses no compute shaders and no storage buffers, and reads nothing back between passes except occlusion queries. The
+// file is long because it is one class with its manual; what its members do is in the headers that it includes.
 #pragma once
 
 #include <photongrid/backend/self_test.hpp>
 #include <photongrid/backends/gl/hand_over.hpp>
+#include <photongrid/backends/gl/make_context.hpp>
 #include <photongrid/backends/gl/passes.hpp>
 #include <photongrid/backends/gl/routing.hpp>
+#include <photongrid/backends/gl/texture.hpp>
 #include <photongrid/backends/gl/tiles.hpp>
 
 namespace photongrid {
-
-/// Options of the OpenGL backend.
-/// \headerfile backends/gl/gl.hpp <photongrid/backends/gl/gl.hpp>
-struct gl_options {
-    gl_context_kind context = gl_context_kind::any; ///< the origin of the context
-    gl::loader find = nullptr; ///< for gl_context_kind::current: function loader; null: EGL's or OSMesa's
-    uint tile = 64;            ///< run_until_done skips finished tiles of tile x tile elements (3.3); 1 to 2048
-    bool time_passes = false;  ///< measure verbs by the device's clock, for costs(), and wait for each; slower
-    bool debug = false;        ///< check for errors after every pass, with the driver's own messages; slow
-};
 
 /// A backend on an OpenGL context. It and its buffers belong to one thread at a time. Every call makes its context
 /// current and leaves it current. With gl_context_kind::current the caller makes it current, and every call preserves
@@ -130,8 +123,8 @@ public:
         const auto scope = device_->use();
         const uint width = std::min(gl::row_width, std::bit_ceil(static_cast<uint>(n)));
         const auto rows = static_cast<uint>((n + gl::row_width - 1) / gl::row_width);
-        b.texture_ = device_->make(
-            gl::texture_format<T>::internal, width, rows, sizeof(T), "a buffer of " + std::to_string(n) + " elements");
+        b.texture_ = gl::texture::make(*device_, gl::texture_format<T>::internal, width, rows, sizeof(T),
+            "a buffer of " + std::to_string(n) + " elements");
         b.size_ = n;
         return b;
     }
@@ -200,7 +193,7 @@ public:
         const auto scope = device_->use();
         const gl_texture t = gl::check_adoptable(
             device_->call, texture, n, gl::texture_format<T>::internal, gl::texture_format<T>::internal_name);
-        b.texture_ = device_->adopt(t.name, t.width, t.height);
+        b.texture_ = gl::texture::adopt(*device_, t.name, t.width, t.height);
         b.size_ = n;
         return b;
     }

@@ -1,6 +1,7 @@
 // One pass: binds a kernel's Params and textures, sets its render targets, and draws a launch.
 #pragma once
 
+#include <photongrid/backends/gl/device.hpp>
 #include <photongrid/backends/gl/regions.hpp>
 
 namespace photongrid::gl {

@@ -1,7 +1,11 @@
 // The rectangles of texels that launches, tiles and transfers cover.
 #pragma once
 
-#include <photongrid/backends/gl/device.hpp>
+#include <photongrid/backends/gl/layout.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <vector>
 
 namespace photongrid::gl {
 
