@@ -1,4 +1,5 @@
 // The Vulkan backend: compute shaders on storage buffers, with many passes per submission (docs/design/design.md).
+// The file is long because it is one class with its manual; what its members do is in the headers that it includes.
 #pragma once
 
 #include <photongrid/backend/self_test.hpp>
