@@ -96,7 +96,7 @@ faults=(
   "vulkan: groups hear another lane|backends/vulkan/compute_prelude.glsl|#define from_lane(V, LANE) subgroupShuffle(V, LANE)|#define from_lane(V, LANE) subgroupShuffle(V, (LANE) & 6u)"
   "vulkan: an element left off the list|backends/vulkan/iterate.glsl|keep = more;|keep = more && (i & 1023u) != 1023u;"
   "vulkan: a stride sorts one way|backends/vulkan/overrides/bitonic_strides.glsl|EXCHANGE(p6, p7, rising)|EXCHANGE(p6, p7, true)"
-  "gl: tiles end with one element left|backends/gl/gl.hpp|live[t] = n != 0;|live[t] = n > 1;"
+  "gl: tiles end with one element left|backends/gl/tiles.hpp|live_[t] = n != 0;|live_[t] = n > 1;"
 )
 
 # The separator is a bar, so bars inside are written \|.

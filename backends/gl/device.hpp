@@ -1,38 +1,19 @@
-// An OpenGL device: a context, its limits, its memory, and textures as buffers.
+// An OpenGL device: a context, its limits, the objects that all passes use, and the caller's state.
 #pragma once
 
 #include <photongrid/backends/gl/callers_state.hpp>
 #include <photongrid/backends/gl/context.hpp>
+#include <photongrid/backends/gl/layout.hpp>
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
 namespace photongrid::gl {
-
-/// The elements per row of a buffer's texture. textures.glsl has it as 2047u and 11u.
-inline constexpr uint row_width = 2048;
-
-/// The texture format of element type T.
-template <element T>
-struct texture_format {
-    static constexpr bool is_integer
-        = std::same_as<T, uint> || std::same_as<T, glm::uvec2> || std::same_as<T, glm::uvec4>;
-    static constexpr GLenum type = is_integer ? GL_UNSIGNED_INT : GL_FLOAT;
-    static constexpr GLenum format = sizeof(T) == 4 ? (is_integer ? GL_RED_INTEGER : GL_RED)
-        : sizeof(T) == 8                            ? (is_integer ? GL_RG_INTEGER : GL_RG)
-                                                    : (is_integer ? GL_RGBA_INTEGER : GL_RGBA);
-    static constexpr GLenum internal = sizeof(T) == 4 ? (is_integer ? GL_R32UI : GL_R32F)
-        : sizeof(T) == 8                              ? (is_integer ? GL_RG32UI : GL_RG32F)
-                                                      : (is_integer ? GL_RGBA32UI : GL_RGBA32F);
-    static constexpr const char* internal_name = sizeof(T) == 4 ? (is_integer ? "GL_R32UI" : "GL_R32F")
-        : sizeof(T) == 8                                        ? (is_integer ? "GL_RG32UI" : "GL_RG32F")
-                                                                : (is_integer ? "GL_RGBA32UI" : "GL_RGBA32F");
-};
-
-class texture;
 
 /// The state that a backend, its buffers and its programs share. Buffers may outlive the backend.
 class device : public std::enable_shared_from_this<device> {
@@ -144,12 +125,6 @@ public:
             static_cast<GLfloat>(height));
     }
 
-    /// Creates an uninitialised texture.
-    /// \throws backend_error with the numbers if the device has no room.
-    texture make(GLenum internal, uint width, uint height, std::size_t texel_bytes, const std::string& what);
-    /// Wraps a texture that the caller continues to own.
-    texture adopt(GLuint id, uint width, uint height);
-
     /// Binds a framebuffer whose colour targets are `textures`.
     void draw_into(std::span<const GLuint> textures)
     {
@@ -168,6 +143,16 @@ public:
         }
         call.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets_);
         check_framebuffer(targets_);
+    }
+    /// To be called before a texture is deleted.
+    void forget(GLuint id)
+    {
+        // The name of a deleted texture can be reused; forget that it is attached to the framebuffer.
+        for (std::size_t t = 0; t < max_outputs; ++t)
+            if (attached_[t] == id) {
+                call.NamedFramebufferTexture(targets_, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(t), 0, 0);
+                attached_[t] = 0;
+            }
     }
     /// Clears the first target of `draw_into` to `value`.
     void clear_targets(const std::array<GLfloat, 4>& value)
@@ -221,17 +206,7 @@ public:
     const std::string& name() const { return context_->name; }
 
 private:
-    friend texture;
-    void forget(GLuint id)
-    {
-        // The name of a deleted texture can be reused; forget that it is attached to the framebuffer.
-        for (std::size_t t = 0; t < max_outputs; ++t)
-            if (attached_[t] == id) {
-                call.NamedFramebufferTexture(targets_, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(t), 0, 0);
-                attached_[t] = 0;
-            }
-    }
-    /// Sets all state that passes rely on; pass_state (callers_state.hpp) saves it. In the backend's own contexts it
+    /// Sets all state that passes rely on; pass_state (saved_state.hpp) saves it. In the backend's own contexts it
     /// stays set.
     void set_state()
     {
@@ -274,95 +249,5 @@ private:
     uint blank_height_ = 0;
     std::vector<std::byte> uniform_bytes_;
 };
-
-/// A texture, or none.
-class texture {
-public:
-    texture() = default;
-    texture(texture&& other) noexcept { swap(other); }
-    texture& operator=(texture&& other) noexcept
-    {
-        texture(std::move(other)).swap(*this);
-        return *this;
-    }
-    texture(const texture&) = delete;
-    texture& operator=(const texture&) = delete;
-    ~texture()
-    {
-        try {
-            if (const GLuint mine = let_go(); mine != 0 && !adopted_)
-                device_->call.DeleteTextures(1, &mine);
-        } catch (const backend_error&) { // the caller's context is not current; its textures are destroyed with it
-        }
-    }
-    /// Releases the texture to the caller; 0: none.
-    GLuint let_go()
-    {
-        if (id == 0)
-            return 0;
-        device_->bytes -= std::exchange(bytes_, 0);
-        const GLuint given = std::exchange(id, 0);
-        device_->make_current();
-        device_->forget(given);
-        return given;
-    }
-
-    /// Whether it belongs to this device; true if there is no texture.
-    bool is_of(const device& d) const { return device_ == nullptr || device_.get() == &d; }
-
-    GLuint id = 0;
-    uint width = 0, height = 0;
-
-private:
-    friend device;
-    void swap(texture& other) noexcept
-    {
-        std::swap(id, other.id);
-        std::swap(width, other.width);
-        std::swap(height, other.height);
-        std::swap(bytes_, other.bytes_);
-        std::swap(adopted_, other.adopted_);
-        std::swap(device_, other.device_);
-    }
-    std::uint64_t bytes_ = 0;
-    bool adopted_ = false; ///< owned by the caller: neither counted nor deleted
-    std::shared_ptr<device> device_;
-};
-
-inline texture device::make(GLenum internal, uint width, uint height, std::size_t texel_bytes, const std::string& what)
-{
-    const auto text = [&] {
-        return what + " (a texture of " + std::to_string(width) + " x " + std::to_string(height) + " texels)";
-    };
-    if (width > max_size || height > max_size)
-        throw backend_error(name() + ": " + text() + ": this device's textures have at most " + std::to_string(max_size)
-            + " x " + std::to_string(max_size));
-    check_errors("before allocating");
-    texture t;
-    call.CreateTextures(GL_TEXTURE_2D, 1, &t.id);
-    t.device_ = shared_from_this();
-    t.width = width;
-    t.height = height;
-    t.bytes_ = std::uint64_t{width} * height * texel_bytes;
-    bytes += t.bytes_;
-    call.TextureStorage2D(t.id, 1, internal, static_cast<GLsizei>(width), static_cast<GLsizei>(height));
-    call.TextureParameteri(t.id, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    call.TextureParameteri(t.id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    check_errors(
-        text() + ", " + std::to_string(t.bytes_) + " bytes beside " + std::to_string(bytes - t.bytes_) + " held");
-    peak_bytes = std::max(peak_bytes, bytes);
-    return t;
-}
-
-inline texture device::adopt(GLuint id, uint width, uint height)
-{
-    texture t;
-    t.id = id;
-    t.width = width;
-    t.height = height;
-    t.adopted_ = true;
-    t.device_ = shared_from_this();
-    return t;
-}
 
 } // namespace photongrid::gl

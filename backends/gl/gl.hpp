@@ -1,22 +1,17 @@
 // The OpenGL backend: kernels as fragment programs and buffers as textures, as in the paper, on OpenGL 4.5 core. It
-// uses no compute shaders and no storage buffers, and reads nothing back between passes except occlusion queries.
+// uses no compute shaders and no storage buffers, and reads nothing back between passes except occlusion queries. The
+// file is long because it is one class with its manual; what its members do is in the headers that it includes.
 #pragma once
 
 #include <photongrid/backend/self_test.hpp>
 #include <photongrid/backends/gl/hand_over.hpp>
+#include <photongrid/backends/gl/make_context.hpp>
+#include <photongrid/backends/gl/passes.hpp>
 #include <photongrid/backends/gl/routing.hpp>
+#include <photongrid/backends/gl/texture.hpp>
+#include <photongrid/backends/gl/tiles.hpp>
 
 namespace photongrid {
-
-/// Options of the OpenGL backend.
-/// \headerfile backends/gl/gl.hpp <photongrid/backends/gl/gl.hpp>
-struct gl_options {
-    gl_context_kind context = gl_context_kind::any; ///< the origin of the context
-    gl::loader find = nullptr; ///< for gl_context_kind::current: function loader; null: EGL's or OSMesa's
-    uint tile = 64;            ///< run_until_done skips finished tiles of tile x tile elements (3.3); 1 to 2048
-    bool time_passes = false;  ///< measure verbs by the device's clock, for costs(), and wait for each; slower
-    bool debug = false;        ///< check for errors after every pass, with the driver's own messages; slow
-};
 
 /// A backend on an OpenGL context. It and its buffers belong to one thread at a time. Every call makes its context
 /// current and leaves it current. With gl_context_kind::current the caller makes it current, and every call preserves
@@ -87,6 +82,7 @@ public:
             gl::make_context(options.context, options.debug, options.find), options.debug);
         const auto scope = device_->use();
         made_ = std::make_unique<gl::programs>(device_);
+        queries_ = std::make_unique<gl::queries>(device_);
         const auto text = [&](GLenum what) {
             const auto* s = reinterpret_cast<const char*>(device_->call.GetString(what));
             return std::string(s != nullptr ? s : "unknown");
@@ -106,17 +102,6 @@ public:
     /// The buffers of the moved-from backend then belong to this one.
     gl_backend(gl_backend&&) = default;
     gl_backend& operator=(gl_backend&&) = delete;
-    ~gl_backend()
-    {
-        if (!device_)
-            return;
-        try {
-            device_->make_current();
-            device_->call.DeleteQueries(static_cast<GLsizei>(queries_.size()), queries_.data());
-            device_->call.DeleteQueries(static_cast<GLsizei>(clock_.size()), clock_.data());
-        } catch (const backend_error&) { // the caller's context was destroyed, and its queries
-        }
-    }
 
     /// Kernel texts of your own, embedded by photongrid_embed(); they must outlive the backend.
     void add_texts(std::span<const text_file> texts) { made_->add_texts(texts); }
@@ -138,8 +123,8 @@ public:
         const auto scope = device_->use();
         const uint width = std::min(gl::row_width, std::bit_ceil(static_cast<uint>(n)));
         const auto rows = static_cast<uint>((n + gl::row_width - 1) / gl::row_width);
-        b.texture_ = device_->make(
-            gl::texture_format<T>::internal, width, rows, sizeof(T), "a buffer of " + std::to_string(n) + " elements");
+        b.texture_ = gl::texture::make(*device_, gl::texture_format<T>::internal, width, rows, sizeof(T),
+            "a buffer of " + std::to_string(n) + " elements");
         b.size_ = n;
         return b;
     }
@@ -153,7 +138,7 @@ public:
         auto b = make<T>(data.size());
         device_->prepare_upload();
         using format = gl::texture_format<T>;
-        for_blocks(data.size(), [&](std::size_t first, GLint y, GLsizei width, GLsizei rows) {
+        gl::for_blocks(data.size(), [&](std::size_t first, GLint y, GLsizei width, GLsizei rows) {
             device_->call.TextureSubImage2D(
                 b.texture_.id, 0, 0, y, width, rows, format::format, format::type, data.data() + first);
         });
@@ -169,7 +154,7 @@ public:
         device_->prepare_download();
         std::vector<T> data(b.size());
         using format = gl::texture_format<T>;
-        for_blocks(data.size(), [&](std::size_t first, GLint y, GLsizei width, GLsizei rows) {
+        gl::for_blocks(data.size(), [&](std::size_t first, GLint y, GLsizei width, GLsizei rows) {
             const auto bytes = sizeof(T) * static_cast<std::size_t>(width) * static_cast<std::size_t>(rows);
             device_->call.GetTextureSubImage(b.texture_.id, 0, 0, y, 0, width, rows, 1, format::format, format::type,
                 static_cast<GLsizei>(bytes), data.data() + first);
@@ -208,7 +193,7 @@ public:
         const auto scope = device_->use();
         const gl_texture t = gl::check_adoptable(
             device_->call, texture, n, gl::texture_format<T>::internal, gl::texture_format<T>::internal_name);
-        b.texture_ = device_->adopt(t.name, t.width, t.height);
+        b.texture_ = gl::texture::adopt(*device_, t.name, t.width, t.height);
         b.size_ = n;
         return b;
     }
@@ -241,15 +226,17 @@ public:
         if (l.elements == 0)
             return;
         start_clock();
-        bind<K>(args, reads, writes);
-        if (target<K>(reads, writes))
+        const auto from = names(reads);
+        const auto to = names(writes);
+        gl::bind<K>(*device_, args, from, to);
+        if (gl::set_targets<K>(*device_, from, to))
             device_->call.TextureBarrier();
-        draw(program, l);
+        gl::draw(*device_, program, l);
         finish_verb<K>("run");
     }
 
     /// Uses tiles with occlusion queries (3.3): by conditional rendering, the device draws a tile only if the pass
-    /// before had an unfinished element in it. The host reads the queries once per `query_ring` passes.
+    /// before had an unfinished element in it. The host reads the queries once per 8 passes.
     template <iterative_kernel K, class Reads, class Writes>
     progress run_until_done(launch l, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
     {
@@ -261,64 +248,36 @@ public:
             p.finished = true;
             return p;
         }
-        functions_t& gl = device_->call;
         start_clock();
-        bind<K>(args, reads, writes);
-        target<K>(reads, writes);
-        std::vector<region> tiles = tiles_of(l);
-        const std::size_t stride = tiles.size() + 1; // the last query of a set counts unfinished elements at the end
-        make_queries(query_ring * stride);
-        const auto query = [&](uint pass, std::size_t tile) { return queries_[pass % query_ring * stride + tile]; };
-        std::vector<char> live(tiles.size(), 1);
-        set_launch(program, l);
+        const auto from = names(reads);
+        const auto to = names(writes);
+        gl::bind<K>(*device_, args, from, to);
+        gl::set_targets<K>(*device_, from, to);
+        gl::tiled_passes tiles(*device_, *queries_, l, options_.tile);
+        gl::set_launch(*device_, program, l);
         while (!p.finished && p.passes < max_passes) {
             const uint begin = p.passes;
-            const uint end = begin + std::min(query_ring, max_passes - begin);
-            gl.Enablei(GL_SCISSOR_TEST, 0);
-            for (uint pass = begin; pass < end; ++pass) {
-                gl.TextureBarrier(); // states are read where the last pass wrote them
-                for (std::size_t t = 0; t < tiles.size(); ++t) {
-                    if (!live[t])
-                        continue;
-                    if (pass > begin)
-                        gl.BeginConditionalRender(query(pass - 1, t), GL_QUERY_WAIT);
-                    gl.BeginQuery(GL_SAMPLES_PASSED, query(pass, t));
-                    gl.ScissorIndexed(0, tiles[t].x, tiles[t].y, tiles[t].width, tiles[t].height);
-                    gl.DrawArrays(GL_TRIANGLES, 0, 3);
-                    gl.EndQuery(GL_SAMPLES_PASSED);
-                    if (pass > begin)
-                        gl.EndConditionalRender();
-                }
-            }
-            gl.Disablei(GL_SCISSOR_TEST, 0);
+            const uint end = begin + std::min(gl::tiled_passes::together, max_passes - begin);
+            tiles.draw(begin, end);
             p.passes = end;
             // These were the last passes: count the elements that are still unfinished.
-            const GLuint rest = end == max_passes ? query(end - 1, tiles.size()) : 0;
+            const GLuint rest = end == max_passes ? tiles.rest(end - 1) : 0;
             if (rest != 0)
-                ask_not_done<K>(l, args, rest);
+                ask_not_done<K>(l, rest);
             ++query_polls_;
-            for (uint pass = begin; pass < end; ++pass) {
-                std::uint64_t active = 0;
-                for (std::size_t t = 0; t < tiles.size(); ++t)
-                    if (live[t]) {
-                        const std::uint64_t n = result(query(pass, t));
-                        live[t] = n != 0;
-                        active += n;
-                    }
-                p.active.push_back(active);
-            }
+            tiles.read(begin, end, p.active);
             if (rest != 0)
-                p.finished = result(rest) == 0;
+                p.finished = queries_->result(rest) == 0;
             while (!p.active.empty() && p.active.back() == 0) {
                 p.active.pop_back();
                 p.finished = true;
             }
         }
         if (max_passes == 0) {
-            const GLuint rest = query(0, tiles.size());
-            ask_not_done<K>(l, args, rest);
+            const GLuint rest = tiles.rest(0);
+            ask_not_done<K>(l, rest);
             ++query_polls_;
-            p.finished = result(rest) == 0;
+            p.finished = queries_->result(rest) == 0;
         }
         p.passes = static_cast<uint>(p.active.size());
         count_passes<K>(p.passes);
@@ -335,16 +294,13 @@ public:
         count_passes<K>(1);
         if (l.elements == 0)
             return 0;
-        if (std::uint64_t{l.first} + l.elements > caps_.max_elements)
-            throw backend_error(device_->name() + ": count: elements up to "
-                + std::to_string(std::uint64_t{l.first} + l.elements) + "; the limit of this device is "
-                + std::to_string(caps_.max_elements));
-        make_queries(1);
+        check_end("count: elements", l);
+        queries_->make(1);
         start_clock();
-        bind<K>(args, reads, std::tuple<>{});
-        draw_counted(program, l, queries_[0]);
+        gl::bind<K>(*device_, args, names(reads), std::array<GLuint, 0>{});
+        gl::draw_counted(*device_, program, l, (*queries_)[0]);
         ++query_polls_;
-        const std::uint64_t n = result(queries_[0]);
+        const std::uint64_t n = queries_->result((*queries_)[0]);
         finish_verb<K>("count");
         return n;
     }
@@ -357,16 +313,13 @@ public:
         detail::check_reads<K>("route", reads, owns());
         check_owner("route: slots", slots);
         check_owner("route: totals", totals);
-        if (std::uint64_t{l.first} + l.elements > caps_.max_elements)
-            throw backend_error(device_->name() + ": route: draws up to "
-                + std::to_string(std::uint64_t{l.first} + l.elements) + "; the limit of this device is "
-                + std::to_string(caps_.max_elements));
+        check_end("route: draws", l);
         const auto scope = device_->use();
         gl::routing pass{*device_, *made_, made_->get<K>(gl::verb::route_payload, l.switches),
             made_->get<K>(gl::verb::route_amount, l.switches), l, destinations, m};
         count_passes<K>(1);
         start_clock();
-        bind<K>(args, reads, std::tuple<>{});
+        gl::bind<K>(*device_, args, names(reads), std::array<GLuint, 0>{});
         if (totals.size() > 0)
             pass.sum(totals.texture_, route_sums(totals.size(), destinations));
         if (slots.size() > 0)
@@ -422,126 +375,28 @@ public:
     std::uint64_t query_polls() const { return query_polls_; }
 
 private:
-    using functions_t = gl::functions;
-    struct region {
-        GLint x, y;
-        GLsizei width, height;
-    };
-    static constexpr uint query_ring = 8; ///< passes per readback of the queries
-
-    /// Calls f(first element, row, width, rows) for the full rows of a buffer and for its last, shorter one.
-    template <class F>
-    static void for_blocks(std::size_t n, F&& f)
+    /// Checks the last element of a launch that writes no buffer, whose size would limit it.
+    void check_end(const char* what, const launch& l) const
     {
-        const std::size_t full = n / gl::row_width;
-        const std::size_t rest = n % gl::row_width;
-        if (full > 0)
-            f(std::size_t{0}, 0, static_cast<GLsizei>(gl::row_width), static_cast<GLsizei>(full));
-        if (rest > 0)
-            f(full * gl::row_width, static_cast<GLint>(full), static_cast<GLsizei>(rest), 1);
+        if (std::uint64_t{l.first} + l.elements > caps_.max_elements)
+            throw backend_error(device_->name() + ": " + what + " up to "
+                + std::to_string(std::uint64_t{l.first} + l.elements) + "; the limit of this device is "
+                + std::to_string(caps_.max_elements));
     }
 
-    /// The texels of a launch: part of one row, or whole rows, of which the program discards texels outside the launch.
-    static region region_of(const launch& l)
+    /// The textures of the buffers of a call.
+    template <class... Buffers>
+    static std::array<GLuint, sizeof...(Buffers)> names(const std::tuple<Buffers...>& buffers)
     {
-        const uint last = l.first + (l.elements - 1);
-        const uint row = l.first / gl::row_width, end = last / gl::row_width + 1;
-        if (end - row == 1)
-            return {static_cast<GLint>(l.first % gl::row_width), static_cast<GLint>(row),
-                static_cast<GLsizei>(l.elements), 1};
-        return {0, static_cast<GLint>(row), static_cast<GLsizei>(gl::row_width), static_cast<GLsizei>(end - row)};
-    }
-    /// Tiles of about tile x tile elements, wider if there are few rows.
-    std::vector<region> tiles_of(const launch& l) const
-    {
-        const region all = region_of(l);
-        const auto high = std::min(static_cast<GLsizei>(options_.tile), all.height);
-        const auto wide = static_cast<GLsizei>(std::bit_ceil(options_.tile * options_.tile / static_cast<uint>(high)));
-        std::vector<region> tiles;
-        for (GLint y = all.y; y < all.y + all.height; y += high)
-            for (GLint x = all.x; x < all.x + all.width; x += wide)
-                tiles.push_back({x, y, std::min(wide, all.x + all.width - x), std::min(high, all.y + all.height - y)});
-        return tiles;
+        return std::apply(
+            [](const auto&... b) { return std::array<GLuint, sizeof...(Buffers)>{b.texture_.id...}; }, buffers);
     }
 
-    template <class K, class Reads, class Writes>
-    void bind(const typename K::Params& args, const Reads& reads, const Writes& writes)
-    {
-        static_assert(input_count<K> <= gl::max_inputs && output_count<K> <= gl::max_outputs,
-            "OpenGL passes have at most 8 inputs and 8 outputs");
-        device_->prepare_passes();
-        device_->set_uniforms(&args, sizeof args);
-        if constexpr (input_count<K> != 0)
-            detail::for_each_slot<input_count<K>>(
-                [&](auto s) { device_->bind_texture(s.index, std::get<s.index>(reads).texture_.id); });
-        if constexpr (std::tuple_size_v<Writes> != 0)
-            detail::for_each_slot<output_count<K>>([&](auto s) {
-                if constexpr (K::is_state(s))
-                    device_->bind_texture(gl::state_unit + s.index, std::get<s.index>(writes).texture_.id);
-            });
-    }
-    /// Sets the written buffers as render targets. Returns whether the pass also reads one of them.
-    template <class K, class Reads, class Writes>
-    bool target(const Reads& reads, const Writes& writes)
-    {
-        static_assert(output_count<K> != 0, "a kernel needs an OUTPUT or STATE to run");
-        bool feedback = false;
-        std::array<GLuint, output_count<K>> targets{};
-        if constexpr (output_count<K> != 0)
-            detail::for_each_slot<output_count<K>>([&](auto s) {
-                targets[s.index] = std::get<s.index>(writes).texture_.id;
-                feedback = feedback || K::is_state(s);
-            });
-        if constexpr (input_count<K> != 0)
-            detail::for_each_slot<input_count<K>>([&](auto s) {
-                feedback = feedback
-                    || std::find(targets.begin(), targets.end(), std::get<s.index>(reads).texture_.id) != targets.end();
-            });
-        device_->draw_into(targets);
-        return feedback;
-    }
-    void set_launch(GLuint program, const launch& l)
-    {
-        // The triangle covers exactly the viewport, so only fragments in the launch's rectangle are computed.
-        // gl_FragCoord is relative to the target's corner, so it is the texel.
-        const region r = region_of(l);
-        device_->set_viewport(r.x, r.y, r.width, r.height);
-        device_->call.UseProgram(program);
-        device_->call.ProgramUniform4ui(program, 0, l.first, l.elements, 0, 0);
-    }
-    void draw(GLuint program, const launch& l)
-    {
-        set_launch(program, l);
-        device_->call.DrawArrays(GL_TRIANGLES, 0, 3);
-    }
-    void draw_counted(GLuint program, const launch& l, GLuint query)
-    {
-        const region r = region_of(l);
-        device_->draw_into_nothing(static_cast<uint>(r.y + r.height));
-        device_->call.BeginQuery(GL_SAMPLES_PASSED, query);
-        draw(program, l);
-        device_->call.EndQuery(GL_SAMPLES_PASSED);
-    }
-    /// Counts the unfinished elements in `query`, by a pass that writes nothing. States stay bound.
+    /// Counts the unfinished elements in `query`. States stay bound.
     template <class K>
-    void ask_not_done(const launch& l, const typename K::Params&, GLuint query)
+    void ask_not_done(const launch& l, GLuint query)
     {
-        draw_counted(made_->get<K>(gl::verb::not_done, l.switches), l, query);
-    }
-
-    void make_queries(std::size_t n)
-    {
-        if (n <= queries_.size())
-            return;
-        const std::size_t old = queries_.size();
-        queries_.resize(n);
-        device_->call.CreateQueries(GL_SAMPLES_PASSED, static_cast<GLsizei>(n - old), queries_.data() + old);
-    }
-    std::uint64_t result(GLuint query)
-    {
-        GLuint64 n = 0;
-        device_->call.GetQueryObjectui64v(query, GL_QUERY_RESULT, &n);
-        return n;
+        gl::draw_counted(*device_, made_->get<K>(gl::verb::not_done, l.switches), l, query);
     }
 
     template <class K>
@@ -551,29 +406,23 @@ private:
     }
     void start_clock()
     {
-        if (!options_.time_passes)
-            return;
-        if (clock_[0] == 0)
-            device_->call.CreateQueries(GL_TIMESTAMP, 2, clock_.data());
-        device_->call.QueryCounter(clock_[0], GL_TIMESTAMP);
+        if (options_.time_passes)
+            queries_->start_clock();
     }
     template <class K>
     void finish_verb(const char* verb)
     {
-        if (options_.time_passes) {
-            device_->call.QueryCounter(clock_[1], GL_TIMESTAMP);
-            const std::uint64_t start = result(clock_[0]), end = result(clock_[1]); // ns
-            made_->costs[std::string(kernel_name<K>())].ms += 1e-6 * static_cast<double>(end - std::min(start, end));
-        }
+        if (options_.time_passes)
+            made_->costs[std::string(kernel_name<K>())].ms += queries_->stop_clock();
         if (options_.debug || device_->is_callers()) // so that our errors do not remain for the caller
             device_->check_errors(std::string(verb) + "<" + std::string(kernel_name<K>()) + ">");
     }
+
     gl_options options_;
     std::shared_ptr<gl::device> device_;
     std::unique_ptr<gl::programs> made_;
+    std::unique_ptr<gl::queries> queries_;
     capabilities caps_;
-    std::vector<GLuint> queries_;
-    std::array<GLuint, 2> clock_{}; ///< timestamps of a verb's start and end
     std::uint64_t query_polls_ = 0;
 };
 

@@ -1,9 +1,10 @@
 // Buffers as textures for the caller, and the caller's textures as buffers, without copies through the CPU.
 #pragma once
 
-#include <photongrid/backends/gl/device.hpp>
+#include <photongrid/backends/gl/layout.hpp>
 
 #include <stdexcept>
+#include <string>
 
 namespace photongrid {
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <photongrid/backends/gl/program.hpp>
+#include <photongrid/backends/gl/texture.hpp>
 
 #include <cmath>
 
@@ -28,7 +29,7 @@ struct routing {
         const uint rows = std::max(1u, (destinations + columns - 1) / columns);
         const std::string what = "route: " + std::to_string(destinations) + " destinations of " + std::to_string(m)
             + " x " + std::to_string(m) + " slots";
-        const texture drawn = on.make(GL_R32UI, columns * m, rows * m, 4, what);
+        const texture drawn = texture::make(on, GL_R32UI, columns * m, rows * m, 4, what);
         texture stencil;
         const GLuint framebuffer = make_framebuffer(drawn, stencil, what);
         try {
@@ -95,7 +96,7 @@ private:
         // A stencil format without depth is optional in OpenGL; one with depth is not.
         for (const auto& c : {choice{GL_STENCIL_INDEX8, GL_STENCIL_ATTACHMENT, 1},
                  choice{GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL_ATTACHMENT, 4}}) {
-            stencil = on.make(c.format, drawn.width, drawn.height, c.bytes, what + ", stencil");
+            stencil = texture::make(on, c.format, drawn.width, drawn.height, c.bytes, what + ", stencil");
             gl.NamedFramebufferTexture(framebuffer, c.attachment, stencil.id, 0);
             if (gl.CheckNamedFramebufferStatus(framebuffer, GL_DRAW_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE)
                 return framebuffer;

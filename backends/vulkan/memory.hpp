@@ -42,6 +42,12 @@ public:
     VkQueue queue() const { return device_.queue(); }
     std::uint32_t family() const { return device_.family(); }
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
+    /// The names of the device and of its driver.
+    std::string title() const
+    {
+        const auto info = describe(physical_, 0);
+        return info.name + ", " + info.driver;
+    }
     std::vector<std::string> messages() const { return instance_.messages(); }
     /// Whether staging buffers were requested.
     bool staging() const { return staging_; }

@@ -1,8 +1,8 @@
-// Records passes and submits many at once: command buffers, descriptor sets, and the resources that must live until the
-// device is done.
+// Records passes and submits many at once.
 #pragma once
 
-#include <photongrid/backends/vulkan/memory.hpp>
+#include <photongrid/backends/vulkan/barriers.hpp>
+#include <photongrid/backends/vulkan/batch.hpp>
 
 #include <array>
 #include <cstring>
@@ -11,121 +11,14 @@
 
 namespace photongrid::vulkan_detail {
 
-/// A binding of a buffer, and its type.
-struct binding {
-    std::uint32_t number = 0;
-    VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-};
-
-/// A compute pipeline, and its bindings in the order of the buffers that are passed to it.
-class pipeline {
-public:
-    /// `cache` may be null.
-    pipeline(const context& c, VkPipelineCache cache, std::span<const std::uint32_t> spirv,
-        std::vector<binding> bindings, const std::string& name)
-        : device_(c.device()), bindings_(std::move(bindings))
-    {
-        const auto limit = c.properties().limits.maxPerStageDescriptorStorageBuffers;
-        const auto needed = static_cast<std::size_t>(std::count_if(bindings_.begin(), bindings_.end(),
-            [](const auto& b) { return b.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER; }));
-        if (needed > limit)
-            throw backend_error("vulkan: kernel '" + name + "' needs " + std::to_string(needed)
-                + " storage buffers in one pass; this device (" + c.properties().deviceName + ") binds "
-                + std::to_string(limit) + " at most");
-        try {
-            create(cache, spirv, name);
-        } catch (...) {
-            destroy();
-            throw;
-        }
-    }
-    pipeline(const pipeline&) = delete;
-    pipeline& operator=(const pipeline&) = delete;
-    ~pipeline() { destroy(); }
-
-    VkPipeline get() const { return pipeline_; }
-    VkPipelineLayout layout() const { return layout_; }
-    VkDescriptorSetLayout set_layout() const { return set_layout_; }
-    std::span<const binding> bindings() const { return bindings_; }
-
-    /// Every pipeline uses the number of bytes of push constants that all devices support.
-    static constexpr std::uint32_t push_bytes = 128;
-
-private:
-    void create(VkPipelineCache cache, std::span<const std::uint32_t> spirv, const std::string& name)
-    {
-        std::vector<VkDescriptorSetLayoutBinding> slots;
-        for (const auto& b : bindings_) {
-            VkDescriptorSetLayoutBinding s{};
-            s.binding = b.number;
-            s.descriptorType = b.type;
-            s.descriptorCount = 1;
-            s.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
-            slots.push_back(s);
-        }
-        VkDescriptorSetLayoutCreateInfo set{};
-        set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-        set.bindingCount = static_cast<std::uint32_t>(slots.size());
-        set.pBindings = slots.data();
-        check(vkCreateDescriptorSetLayout(device_, &set, nullptr, &set_layout_),
-            "vkCreateDescriptorSetLayout for kernel '" + name + "'");
-
-        VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes};
-        VkPipelineLayoutCreateInfo layout{};
-        layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-        layout.setLayoutCount = 1;
-        layout.pSetLayouts = &set_layout_;
-        layout.pushConstantRangeCount = 1;
-        layout.pPushConstantRanges = &push;
-        check(vkCreatePipelineLayout(device_, &layout, nullptr, &layout_),
-            "vkCreatePipelineLayout for kernel '" + name + "'");
-
-        VkShaderModuleCreateInfo module_info{};
-        module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-        module_info.codeSize = spirv.size_bytes();
-        module_info.pCode = spirv.data();
-        VkShaderModule module_ = VK_NULL_HANDLE;
-        check(vkCreateShaderModule(device_, &module_info, nullptr, &module_),
-            "vkCreateShaderModule for kernel '" + name + "'");
-        VkComputePipelineCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-        info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-        info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-        info.stage.module = module_;
-        info.stage.pName = "main";
-        info.layout = layout_;
-        const VkResult r = vkCreateComputePipelines(device_, cache, 1, &info, nullptr, &pipeline_);
-        vkDestroyShaderModule(device_, module_, nullptr);
-        check(r, "vkCreateComputePipelines for kernel '" + name + "'");
-    }
-    void destroy()
-    {
-        vkDestroyPipeline(device_, pipeline_, nullptr);
-        vkDestroyPipelineLayout(device_, layout_, nullptr);
-        vkDestroyDescriptorSetLayout(device_, set_layout_, nullptr);
-    }
-    VkDevice device_;
-    std::vector<binding> bindings_;
-    VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
-    VkPipelineLayout layout_ = VK_NULL_HANDLE;
-    VkPipeline pipeline_ = VK_NULL_HANDLE;
-};
-
 /// Records operations and submits them in batches. Every operation sees the results of all earlier ones.
 class recorder {
 public:
     /// `timed`: measure passes.
     /// \throws backend_error if the device has no timestamps.
-    explicit recorder(std::shared_ptr<context> c, bool timed) : context_(std::move(c)), timed_(timed)
+    explicit recorder(std::shared_ptr<context> c, bool timed)
+        : context_(std::move(c)), timed_(timed), pool_(context_, timed)
     {
-        if (timed && timestamp_bits(context_->physical(), context_->family()) == 0)
-            throw backend_error(std::string("vulkan: time_passes: ") + context_->properties().deviceName
-                + " has no timestamps on its compute queue");
-        VkCommandPoolCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-        info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-        info.queueFamilyIndex = context_->family();
-        check(vkCreateCommandPool(context_->device(), &info, nullptr, &commands_), "vkCreateCommandPool");
     }
     recorder(const recorder&) = delete;
     recorder& operator=(const recorder&) = delete;
@@ -135,12 +28,10 @@ public:
             finish();
         } catch (...) { // the device was lost: nothing to wait for
         }
-        for (auto* list : {&flying_, &idle_})
-            for (auto& b : *list)
-                destroy(b);
+        for (auto& b : flying_)
+            pool_.destroy(b);
         if (recording_)
-            destroy(now_);
-        vkDestroyCommandPool(context_->device(), commands_, nullptr);
+            pool_.destroy(now_);
     }
 
     /// A pass with a given number of workgroups. `push`: the launch header and the parameters. If passes are timed, its
@@ -227,7 +118,7 @@ public:
             start(); // begins with the barrier
             recording_ = true;
         } else {
-            full_barrier();
+            full_barrier(now_.commands);
         }
         submit();
     }
@@ -237,7 +128,7 @@ public:
     {
         if (!recording_)
             return;
-        barrier(VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+        barrier(now_.commands, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
         recording_ = false;
         flying_.push_back(std::move(now_));
         batch& b = flying_.back();
@@ -250,7 +141,7 @@ public:
             r = vkQueueSubmit(context_->queue(), 1, &info, b.fence);
         }
         if (r != VK_SUCCESS) {
-            destroy(b);
+            pool_.destroy(b);
             flying_.pop_back();
             check(r, "submitting passes");
         }
@@ -269,20 +160,7 @@ public:
     }
 
 private:
-    static constexpr std::uint32_t passes_per_batch = 64;
-    static constexpr std::uint32_t buffers_per_pass = 20; // 8 inputs, 8 outputs, 4 for verbs
-    static constexpr std::uint32_t inputs_per_pass = 8;
     static constexpr std::size_t most_flying = 4;
-
-    struct batch {
-        VkCommandBuffer commands = VK_NULL_HANDLE;
-        VkFence fence = VK_NULL_HANDLE;
-        VkDescriptorPool sets = VK_NULL_HANDLE;
-        std::uint32_t passes = 0;
-        std::vector<memory> kept;
-        VkQueryPool clock = VK_NULL_HANDLE; ///< two queries per timed pass
-        std::vector<double*> timed;         ///< the destinations of the passes' times
-    };
 
     /// Timestamps before and after a pass.
     class timing {
@@ -317,7 +195,7 @@ private:
             recording_ = true;
         }
         (now_.kept.push_back(used), ...);
-        barrier(
+        barrier(now_.commands,
             VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_READ_BIT
                 | VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
@@ -327,61 +205,13 @@ private:
     VkCommandBuffer bind(const pipeline& p, std::span<const memory> buffers, std::span<const std::byte> push)
     {
         const auto c = begin();
-        VkDescriptorSetAllocateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-        info.descriptorPool = now_.sets;
-        info.descriptorSetCount = 1;
-        const auto set_layout = p.set_layout();
-        info.pSetLayouts = &set_layout;
-        VkDescriptorSet set = VK_NULL_HANDLE;
-        check(vkAllocateDescriptorSets(context_->device(), &info, &set), "vkAllocateDescriptorSets");
-        std::array<VkDescriptorBufferInfo, buffers_per_pass> what{};
-        std::array<VkBufferView, buffers_per_pass> views{};
-        std::array<VkWriteDescriptorSet, buffers_per_pass> writes{};
-        for (std::size_t i = 0; i < buffers.size(); ++i) {
-            what[i] = {buffers[i]->buffer(), 0, buffers[i]->range()};
-            writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-            writes[i].dstSet = set;
-            writes[i].dstBinding = p.bindings()[i].number;
-            writes[i].descriptorCount = 1;
-            writes[i].descriptorType = p.bindings()[i].type;
-            writes[i].pBufferInfo = &what[i];
-            if (writes[i].descriptorType == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER) {
-                views[i] = buffers[i]->view();
-                writes[i].pTexelBufferView = &views[i];
-            }
-            now_.kept.push_back(buffers[i]);
-        }
-        vkUpdateDescriptorSets(
-            context_->device(), static_cast<std::uint32_t>(buffers.size()), writes.data(), 0, nullptr);
+        const VkDescriptorSet set = write_set(context_->device(), now_, p, buffers);
         vkCmdBindPipeline(c, VK_PIPELINE_BIND_POINT_COMPUTE, p.get());
         vkCmdBindDescriptorSets(c, VK_PIPELINE_BIND_POINT_COMPUTE, p.layout(), 0, 1, &set, 0, nullptr);
         std::array<std::byte, pipeline::push_bytes> bytes{};
         std::copy(push.begin(), push.end(), bytes.begin());
         vkCmdPushConstants(c, p.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, pipeline::push_bytes, bytes.data());
         return c;
-    }
-
-    void barrier(VkPipelineStageFlags stages, VkAccessFlags reads)
-    {
-        VkMemoryBarrier b{};
-        b.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-        b.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
-        b.dstAccessMask = reads;
-        vkCmdPipelineBarrier(now_.commands,
-            VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
-            stages, 0, 1, &b, 0, nullptr, 0, nullptr);
-    }
-
-    /// A barrier between our commands and the caller's on the queue.
-    void full_barrier()
-    {
-        VkMemoryBarrier b{};
-        b.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-        b.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
-        b.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-        vkCmdPipelineBarrier(now_.commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0,
-            1, &b, 0, nullptr, 0, nullptr);
     }
 
     void counted()
@@ -392,69 +222,18 @@ private:
 
     void start()
     {
-        if (!idle_.empty()) {
-            now_ = std::move(idle_.back());
-            idle_.pop_back();
-        } else {
-            now_ = batch{};
-            try {
-                create(now_);
-            } catch (...) {
-                destroy(now_);
-                throw;
-            }
-        }
+        now_ = pool_.take();
         VkCommandBufferBeginInfo info{};
         info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
         info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
         const VkResult r = vkBeginCommandBuffer(now_.commands, &info);
         if (r != VK_SUCCESS)
-            destroy(now_);
+            pool_.destroy(now_);
         check(r, "vkBeginCommandBuffer");
         if (taking_turns_)
-            full_barrier();
+            full_barrier(now_.commands);
         if (timed_)
             vkCmdResetQueryPool(now_.commands, now_.clock, 0, 2 * passes_per_batch);
-    }
-
-    void create(batch& b) const
-    {
-        VkCommandBufferAllocateInfo commands{};
-        commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-        commands.commandPool = commands_;
-        commands.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-        commands.commandBufferCount = 1;
-        check(vkAllocateCommandBuffers(context_->device(), &commands, &b.commands), "vkAllocateCommandBuffers");
-        VkFenceCreateInfo fence{};
-        fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-        check(vkCreateFence(context_->device(), &fence, nullptr, &b.fence), "vkCreateFence");
-        constexpr VkDescriptorPoolSize sizes[]
-            = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, passes_per_batch * buffers_per_pass},
-                {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, passes_per_batch * inputs_per_pass}};
-        VkDescriptorPoolCreateInfo pool{};
-        pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-        pool.maxSets = passes_per_batch;
-        pool.poolSizeCount = 2;
-        pool.pPoolSizes = sizes;
-        check(vkCreateDescriptorPool(context_->device(), &pool, nullptr, &b.sets), "vkCreateDescriptorPool");
-        if (timed_) {
-            VkQueryPoolCreateInfo clock{};
-            clock.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
-            clock.queryType = VK_QUERY_TYPE_TIMESTAMP;
-            clock.queryCount = 2 * passes_per_batch;
-            check(vkCreateQueryPool(context_->device(), &clock, nullptr, &b.clock), "vkCreateQueryPool");
-        }
-    }
-
-    void destroy(batch& b) const
-    {
-        b.kept.clear();
-        vkDestroyQueryPool(context_->device(), b.clock, nullptr);
-        vkDestroyDescriptorPool(context_->device(), b.sets, nullptr);
-        vkDestroyFence(context_->device(), b.fence, nullptr);
-        if (b.commands)
-            vkFreeCommandBuffers(context_->device(), commands_, 1, &b.commands);
-        b = batch{};
     }
 
     /// Waits for the oldest batch and makes its resources available again.
@@ -474,25 +253,22 @@ private:
                 ticks.size() * sizeof(std::uint64_t), ticks.data(), sizeof(std::uint64_t),
                 VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
         if (r != VK_SUCCESS) {
-            destroy(b);
+            pool_.destroy(b);
             check(r, "waiting for passes");
         }
         for (std::size_t t = 0; t < b.timed.size(); ++t)
             *b.timed[t] += static_cast<double>(ticks[2 * t + 1] - ticks[2 * t])
                 * static_cast<double>(context_->properties().limits.timestampPeriod) * 1e-6;
-        b.timed.clear();
-        b.kept.clear();
-        b.passes = 0;
-        idle_.push_back(std::move(b));
+        pool_.give_back(std::move(b));
     }
 
     std::shared_ptr<context> context_;
     bool timed_;
-    VkCommandPool commands_ = VK_NULL_HANDLE;
+    batch_pool pool_;
     bool recording_ = false;
     bool taking_turns_ = false;
     batch now_;
-    std::deque<batch> flying_, idle_;
+    std::deque<batch> flying_;
 };
 
 } // namespace photongrid::vulkan_detail

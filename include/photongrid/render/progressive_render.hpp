@@ -5,6 +5,8 @@
 //     progressive_render<B> drawing(device);
 //     for (drawing.start(scene, settings); !drawing.finished(); show(drawing.picture()))
 //         drawing.step(16ms);
+//
+// The file is long because it is one class: every step reads and changes the state of the picture that is being drawn.
 #pragma once
 
 #include <photongrid/render/map_keeper.hpp>

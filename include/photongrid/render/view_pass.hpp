@@ -4,8 +4,10 @@
 
 #include <photongrid/backend/zero_vectors.kernel.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/render/canvas.hpp>
 #include <photongrid/render/copy_light.kernel.hpp>
 #include <photongrid/render/edge_correction.hpp>
+#include <photongrid/render/picture_search.hpp>
 #include <photongrid/render/preview_image.hpp>
 #include <photongrid/render/previews.hpp>
 #include <photongrid/render/scene_map.hpp>
@@ -30,45 +32,6 @@ struct view_options {
     step_size size = step_size::largest;          ///< size of the steps
     bool watched = false;                         ///< provide running estimates, if the search can (3.4)
 };
-
-namespace detail {
-    /// The search in the photon map for a picture with settings `s`.
-    inline knn_settings search_for(const render_settings& s, float min_radius)
-    {
-        knn_settings k;
-        k.k = s.estimate.k;
-        k.max_radius = s.output.only == light_part::direct ? 0.0f : static_cast<float>(s.estimate.max_radius);
-        k.search = s.estimate.search;
-        k.filter = s.estimate.filter;
-        k.bias = s.estimate.bias;
-        k.leaks = s.estimate.leaks;
-        k.errors = s.output.aov;
-        k.min_radius = min_radius;
-        return k;
-    }
-} // namespace detail
-
-/// The pixels to which a pass adds light, row by row as in `raster`.
-template <backend B>
-struct canvas {
-    detail::raster raster;
-    uint rays = 0;                  ///< eye rays per pixel added so far, counting each combination of Fresnel branches
-    buffer_of<B, glm::vec4> pixels; ///< rgb: radiance, W/(m^2 sr)
-    buffer_of<B, glm::vec4> searches; ///< sums: photons used, radius, photons visited, searches
-    buffer_of<B, glm::vec4> errors;   ///< x: sum of relative errors; empty without layers
-};
-
-/// One eye ray per pixel: its hit, and the direct light there.
-template <backend B>
-struct eye_samples {
-    detail::eye_hits<B> hits;
-    buffer_of<B, glm::vec4> direct; ///< irradiance, W/m^2
-};
-
-/// The eye rays of the first sample, one set for each combination of Fresnel branches, which the next pass over the
-/// same pixels can use again.
-template <backend B>
-using kept_samples = std::vector<std::optional<eye_samples<B>>>;
 
 /// One pass over the pixels of the picture or of a preview. Each stage does part of its work for eye ray `ray` (sample
 /// x branches + branch) and returns whether it has finished that ray.
@@ -248,10 +211,7 @@ private:
     {
         knn_settings k = picture_search();
         if (options_.preview) {
-            k.k = std::min(k.k, std::max(8u, k.k / options_.preview->k_divisor));
-            k.errors = false;
-            if (k.search == search_kind::exact_k)
-                k.bias = bias_kind::unbiased; // the paper's is too high by k / (k - 1), which is visible for small k
+            k = detail::search_for_preview(k, *options_.preview);
         } else if (grows()) {
             k.visits_per_pass = 256;
             k.ranges_per_pass = 64;

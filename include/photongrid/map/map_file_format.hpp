@@ -1,0 +1,142 @@
+// The format of map files (map_file.hpp): the header, and the checks of a file that is to be read.
+#pragma once
+
+#include <photongrid/map/map_buffers.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// load_map() throws it for a file that is not a complete photon map of a known version, save_map() for a file that it
+/// cannot write. The message has the file, what is wrong, and what to do.
+class map_file_error : public std::runtime_error {
+public:
+    /// The message is "file: what".
+    map_file_error(const std::filesystem::path& file, const std::string& what)
+        : std::runtime_error(file.string() + ": " + what)
+    {
+    }
+};
+
+namespace detail {
+    inline constexpr std::array<char, 8> map_file_magic{'p', 'h', 'g', 'r', 'i', 'd', 'm', '\n'};
+    inline constexpr std::uint32_t map_file_version = 1, map_file_byte_order = 0x01020304u;
+
+    struct map_file_header {
+        std::array<char, 8> magic = map_file_magic;
+        std::uint32_t version = map_file_version;
+        std::uint32_t byte_order = map_file_byte_order;
+        grid cells_of{};
+        std::uint32_t photons = 0;
+        std::uint32_t cells = 0;
+        std::uint32_t surpluses = 0;  ///< elements; 0 or as many as cells
+        std::uint32_t attributes = 0; ///< bit 0: directions, bit 1: normals
+        std::uint32_t invalid = 0, left_out = 0, overflowing_cells = 0;
+        std::uint32_t note = 0;     ///< bytes
+        std::uint64_t bytes = 0;    ///< of the whole file
+        std::uint64_t checksum = 0; ///< of the whole file, taken with 0 here
+    };
+    static_assert(sizeof(map_file_header) == 128 && std::is_trivially_copyable_v<map_file_header>);
+
+    constexpr std::uint64_t map_file_padded(std::uint64_t bytes) { return (bytes + 63) / 64 * 64; }
+
+    /// Fowler, Noll and Vo's hash (FNV-1a), in words of eight bytes. Any change within one word changes it.
+    class map_file_checksum {
+    public:
+        /// `bytes`: a multiple of eight.
+        void add(const std::byte* data, std::uint64_t bytes)
+        {
+            for (std::uint64_t i = 0; i < bytes; i += 8) {
+                std::uint64_t word;
+                std::memcpy(&word, data + i, 8);
+                value_ = (value_ ^ word) * 0x100000001B3u;
+            }
+        }
+        std::uint64_t value() const { return value_; }
+
+    private:
+        std::uint64_t value_ = 0xCBF29CE484222325u;
+    };
+
+    /// The header of a file with these bytes.
+    /// \throws map_file_error for a file that is damaged, cut short, not a photon map, or of another version.
+    inline map_file_header map_header_of(std::span<const std::byte> bytes, const std::filesystem::path& file)
+    {
+        const auto refuse = [&](const std::string& what) { throw map_file_error(file, what); };
+        map_file_header header;
+        if (bytes.size() < sizeof header.magic
+            || std::memcmp(bytes.data(), map_file_magic.data(), sizeof header.magic) != 0)
+            refuse("is not a photon map; give a file that save_map() wrote");
+        if (bytes.size() < sizeof header)
+            refuse("is cut short; save the map again");
+        std::memcpy(&header, bytes.data(), sizeof header);
+        if (header.byte_order != map_file_byte_order)
+            refuse("is damaged, or from a machine with another byte order; save the map again here");
+        if (header.version != map_file_version)
+            refuse("is a photon map of version " + std::to_string(header.version)
+                + ", and this photongrid reads version " + std::to_string(map_file_version) + "; save the map again");
+        if (header.bytes != bytes.size())
+            refuse("has " + std::to_string(bytes.size()) + " bytes and should have " + std::to_string(header.bytes)
+                + ": it is cut short or damaged; save the map again");
+        map_file_checksum sum;
+        auto unsummed = header;
+        unsummed.checksum = 0;
+        sum.add(reinterpret_cast<const std::byte*>(&unsummed), sizeof unsummed);
+        sum.add(bytes.data() + sizeof header, (bytes.size() - sizeof header) / 8 * 8);
+        if (sum.value() != header.checksum || bytes.size() % 64 != 0)
+            refuse("is damaged: its checksum is wrong; save the map again");
+        return header;
+    }
+
+    [[noreturn]] inline void refuse_map(const std::filesystem::path& file)
+    {
+        throw map_file_error(file, "is inconsistent; it was not written by save_map()");
+    }
+
+    /// Checks the numbers of a header whose checksum is right: a forged file could still be inconsistent, and searches
+    /// must terminate for it too.
+    inline void check_map_header(const map_file_header& header, const std::filesystem::path& file)
+    {
+        const std::uint64_t n = header.photons, cells = header.cells;
+        const auto size_of = [&](std::uint64_t count, std::size_t element) { return map_file_padded(count * element); };
+        const std::uint64_t expected = size_of(1, sizeof header) + size_of(cells, sizeof(glm::uvec2))
+            + size_of(n, sizeof(uint)) + size_of(header.surpluses, sizeof(glm::vec4)) + size_of(header.note, 1)
+            + size_of(n, sizeof(glm::vec4)) * (2u + (header.attributes & 1u) + (header.attributes >> 1 & 1u));
+        const grid& g = header.cells_of;
+        const auto& r = g.resolution;
+        if (header.attributes > 3 || expected != header.bytes || (header.surpluses != 0 && header.surpluses != cells)
+            || r[0] < 1 || r[1] < 1 || r[2] < 1 || r[3] != cells || std::uint64_t{r[0]} * r[1] > cells
+            || std::uint64_t{r[0]} * r[1] * r[2] != cells)
+            refuse_map(file);
+        for (int axis = 0; axis < 3; ++axis)
+            if (!std::isfinite(g.origin[axis]) || !std::isfinite(g.inverse_cell[axis]) || !std::isfinite(g.cell[axis])
+                || !(g.inverse_cell[axis] > 0) || !(g.cell[axis] > 0))
+                refuse_map(file);
+    }
+
+    /// Checks the index of a forged file, in the same way: the cells' photons must follow each other.
+    inline void check_map_index(
+        std::span<const glm::uvec2> index, std::uint64_t photons, const std::filesystem::path& file)
+    {
+        std::uint64_t sum_of_counts = 0;
+        for (const auto& cell : index) {
+            if (cell.x != sum_of_counts)
+                refuse_map(file);
+            sum_of_counts += cell.y;
+        }
+        if (sum_of_counts > photons)
+            refuse_map(file);
+    }
+} // namespace detail
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>
