@@ -80,8 +80,6 @@ struct choice {
 };
 constexpr choice<search_kind> searches[] = {{"at_least_k", search_kind::at_least_k}, {"exact_k", search_kind::exact_k},
     {"fixed_radius", search_kind::fixed_radius}};
-constexpr choice<filter_kind> filters[] = {{"constant", filter_kind::constant}, {"cone", filter_kind::cone},
-    {"epanechnikov", filter_kind::epanechnikov}, {"silverman", filter_kind::silverman}};
 
 /// Prints a row for each way to estimate `s` on backend b. Times are medians of three, with building the map apart.
 template <backend B>
@@ -112,7 +110,7 @@ void measure(B& b, const std::string& name, const field& f, const sample& s, con
         for (const auto& search : searches)
             for (const auto& filter : filters) {
                 const double area = (1 + 2 * margin) * (1 + 2 * margin);
-                knn_settings settings{.k = k, .max_radius = 1.0f, .search = search.value, .filter = filter.value};
+                knn_settings settings{.k = k, .max_radius = 1.0f, .search = search.value, .filter = filter.kind};
                 if (search.value == search_kind::fixed_radius)
                     settings.max_radius = static_cast<float>(std::sqrt(k * area / (n * 3.14159265358979)));
                 std::vector<vec4> irradiance;

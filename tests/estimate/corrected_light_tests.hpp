@@ -31,14 +31,14 @@ TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
         }
     const auto p = b.upload(std::span<const glm::vec4>(points)), np = b.upload(std::span<const glm::vec4>(normals));
     for (const auto search : {search_kind::exact_k, search_kind::fixed_radius})
-        for (const auto filter : filters_over_discs) {
+        for (const auto& f : filters) {
             knn_settings k{.k = 16, .max_radius = search == search_kind::exact_k ? 0.5f : 0.3f, .min_radius = 1e-6f};
             k.search = search;
-            k.filter = filter;
+            k.filter = f.kind;
             k.errors = true;
             auto e = knn_grid_estimate(b, map, p, np, k);
             const auto plain = b.download(e.irradiance), plain_errors = b.download(e.standard_error);
-            correct_edges(b, scene, p, np, e, filter, k.min_radius);
+            correct_edges(b, scene, p, np, e, f.kind, k.min_radius);
             const auto whole = b.download(e.irradiance), errors = b.download(e.standard_error);
             const char* places[] = {"middle", "edge", "corner"};
             for (int place = 0; place < 3; ++place) {
@@ -59,8 +59,8 @@ TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
                              known = place == 0 ? 1
                     : place == 1                ? 0.5
                                                 : 0.25;
-                const auto where = std::string(places[place]) + ", filter " + std::to_string(int(filter)) + ", search "
-                    + std::to_string(int(search));
+                const auto where
+                    = std::string(places[place]) + ", filter " + f.name + ", search " + std::to_string(int(search));
                 EXPECT_NEAR(mean, 1, 4 * spread / std::sqrt(m)) << where;
                 EXPECT_NEAR(without / m, known, 4 * known * spread / std::sqrt(m)) << where;
                 EXPECT_NEAR(error / m, spread, 0.15 * spread) << where << ": standard error reported";

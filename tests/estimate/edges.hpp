@@ -8,9 +8,6 @@
 
 namespace photongrid::testing {
 
-inline constexpr filter_kind filters_over_discs[]
-    = {filter_kind::constant, filter_kind::cone, filter_kind::epanechnikov, filter_kind::silverman};
-
 /// A plane's frame, to draw polygons in.
 struct drawing_board {
     dvec3 origin{0}, right{1, 0, 0}, up{0, 0, 1};

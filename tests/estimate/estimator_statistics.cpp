@@ -1,4 +1,4 @@
-// What estimates are worth on the average: the expectation of every kernel on a uniform field, and whether the standard
+// What estimates are worth on the average: the expectation of every filter on a uniform field, and whether the standard
 // error that an estimate reports is the spread that estimates have. On the serial backend; the others equal it bit for
 // bit.
 #include "../backends/serial_algorithms.hpp"
@@ -13,9 +13,7 @@ namespace {
 
     using glm::vec4;
 
-    constexpr const char* filter_names[] = {"constant", "cone", "epanechnikov", "silverman"};
-    constexpr filter_kind kernels_of_estimates[]
-        = {filter_kind::constant, filter_kind::cone, filter_kind::epanechnikov, filter_kind::silverman};
+    const char* name_of(filter_kind f) { return filters[static_cast<std::size_t>(f)].name; }
 
     /// n photons of power 1/n on the unit square: the irradiance is 1 everywhere.
     map_buffers<serial_backend> uniform_field(serial_backend& b, std::size_t n, uint cells, std::uint64_t seed)
@@ -30,7 +28,7 @@ namespace {
         return sorted_map(b, upload_photons(b, s), s.g);
     }
 
-    TEST(estimates, every_kernel_has_expectation_one_on_a_uniform_field)
+    TEST(estimates, every_filter_has_expectation_one_on_a_uniform_field)
     {
         serial_backend b;
         struct row {
@@ -43,10 +41,10 @@ namespace {
         };
         std::vector<row> rows;
         for (const uint k : {32u, 100u})
-            for (const auto kernel : kernels_of_estimates)
-                rows.push_back({search_kind::exact_k, bias_kind::unbiased, kernel, k, 0.995, 1.005});
-        for (const auto kernel : kernels_of_estimates)
-            rows.push_back({search_kind::fixed_radius, bias_kind::unbiased, kernel, 0, 0.995, 1.005});
+            for (const auto& f : filters)
+                rows.push_back({search_kind::exact_k, bias_kind::unbiased, f.kind, k, 0.995, 1.005});
+        for (const auto& f : filters)
+            rows.push_back({search_kind::fixed_radius, bias_kind::unbiased, f.kind, 0, 0.995, 1.005});
         rows.push_back(
             {search_kind::exact_k, bias_kind::paper, filter_kind::constant, 32, 0.995 * 32 / 31, 1.005 * 32 / 31});
         rows.push_back({search_kind::at_least_k, bias_kind::unbiased, filter_kind::constant, 32, 0.995, 1.022});
@@ -70,14 +68,13 @@ namespace {
             }
         }
         constexpr const char* searches[] = {"at_least_k", "exact_k", "fixed_radius"};
-        std::printf("| search | bias | kernel | k | mean | spread |\n|---|---|---|---|---|---|\n");
+        std::printf("| search | bias | filter | k | mean | spread |\n|---|---|---|---|---|---|\n");
         for (const auto& r : rows) {
             const double mean = r.sum / (maps * points), spread = std::sqrt(r.squares / (maps * points) - mean * mean);
             std::printf("| %s | %s | %s | %u | %.4f | %.3f |\n", searches[static_cast<int>(r.search)],
-                r.bias == bias_kind::paper ? "paper" : "unbiased", filter_names[static_cast<int>(r.filter)], r.k, mean,
-                spread);
-            EXPECT_GE(mean, r.low) << filter_names[static_cast<int>(r.filter)] << " k " << r.k;
-            EXPECT_LE(mean, r.high) << filter_names[static_cast<int>(r.filter)] << " k " << r.k;
+                r.bias == bias_kind::paper ? "paper" : "unbiased", name_of(r.filter), r.k, mean, spread);
+            EXPECT_GE(mean, r.low) << name_of(r.filter) << " k " << r.k;
+            EXPECT_LE(mean, r.high) << name_of(r.filter) << " k " << r.k;
         }
     }
 
@@ -92,11 +89,11 @@ namespace {
             double sum = 0, squares = 0, errors = 0;
         };
         std::vector<row> rows;
-        for (const auto kernel : kernels_of_estimates)
+        for (const auto& f : filters)
             for (const auto search : {search_kind::exact_k, search_kind::fixed_radius, search_kind::at_least_k})
                 for (const auto bias : {bias_kind::unbiased, bias_kind::paper})
                     if (bias == bias_kind::unbiased || search == search_kind::exact_k)
-                        rows.push_back({search, bias, kernel});
+                        rows.push_back({search, bias, f.kind});
         const std::vector<vec4> at(1, vec4(0.5f, 0.0f, 0.5f, 1.0f));
         const auto points = b.upload(std::span<const vec4>(at));
         constexpr int maps = 1000;
@@ -119,9 +116,9 @@ namespace {
             const double mean = r.sum / maps, spread = std::sqrt((r.squares - maps * mean * mean) / (maps - 1)),
                          reported = r.errors / maps;
             std::printf("search %d bias %d %s: spread %.4f, reported %.4f\n", int(r.search), int(r.bias),
-                filter_names[static_cast<int>(r.filter)], spread, reported);
-            EXPECT_NEAR(reported / spread, 1, 0.1) << "search " << int(r.search) << " bias " << int(r.bias) << " "
-                                                   << filter_names[static_cast<int>(r.filter)];
+                name_of(r.filter), spread, reported);
+            EXPECT_NEAR(reported / spread, 1, 0.1)
+                << "search " << int(r.search) << " bias " << int(r.bias) << " " << name_of(r.filter);
         }
     }
 

@@ -23,8 +23,6 @@ using glm::vec4;
 
 inline constexpr search_kind all_searches[]
     = {search_kind::at_least_k, search_kind::exact_k, search_kind::fixed_radius};
-inline constexpr filter_kind all_filters[]
-    = {filter_kind::constant, filter_kind::cone, filter_kind::epanechnikov, filter_kind::silverman};
 inline constexpr bias_kind all_biases[] = {bias_kind::paper, bias_kind::unbiased};
 inline const leak_policy all_policies[] = {{}, {.side = true}, {.min_cosine = 0.3f}, {.flattening = 3},
     {.side = true, .min_cosine = -0.5f, .flattening = 1.5f}};

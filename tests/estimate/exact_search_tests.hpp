@@ -11,18 +11,17 @@ TYPED_TEST_P(estimators, every_combination_equals_brute_force)
     for (const bool routed : {false, true}) {
         const auto map = this->known(s, routed);
         for (const auto search : all_searches)
-            for (const auto filter : all_filters)
+            for (const auto& f : filters)
                 for (const auto bias : all_biases)
                     for (const auto& leaks : all_policies) {
                         knn_settings k{.k = 30, .max_radius = 0.4f, .min_radius = 1e-6f};
                         k.search = search;
-                        k.filter = filter;
+                        k.filter = f.kind;
                         k.bias = bias;
                         k.leaks = leaks;
                         ASSERT_EQ(this->difference(s, map, k), "")
-                            << "search " << int(search) << " filter " << int(filter) << " bias " << int(bias)
-                            << " side " << leaks.side << " cosine " << leaks.min_cosine << " flattening "
-                            << leaks.flattening;
+                            << "search " << int(search) << " filter " << f.name << " bias " << int(bias) << " side "
+                            << leaks.side << " cosine " << leaks.min_cosine << " flattening " << leaks.flattening;
                     }
     }
     this->report("A10_policies",

@@ -113,14 +113,14 @@ TYPED_TEST_P(edges, shares_equal_integration_over_lines)
         for (std::size_t i = 0; i < places.size(); ++i)
             for (const auto& p : parts)
                 expected[i] += share_by_lines(p, places[i].first, places[i].second);
-        for (const auto filter : filters_over_discs) {
-            const auto cover = this->cover(s, d, filter);
+        for (const auto& f : filters) {
+            const auto cover = this->cover(s, d, f.kind);
             for (std::size_t i = 0; i < places.size(); ++i) {
-                const double error = std::abs(static_cast<double>(cover[i].x) - expected[i][static_cast<int>(filter)]);
+                const double error = std::abs(static_cast<double>(cover[i].x) - expected[i][static_cast<int>(f.kind)]);
                 largest = std::max(largest, error);
                 EXPECT_EQ(cover[i].y, 1.0f);
-                ASSERT_LE(error, 3e-6) << "filter " << int(filter) << ", surface " << round << ", point " << i << ": "
-                                       << cover[i].x << ", not " << expected[i][static_cast<int>(filter)];
+                ASSERT_LE(error, 3e-6) << "filter " << f.name << ", surface " << round << ", point " << i << ": "
+                                       << cover[i].x << ", not " << expected[i][static_cast<int>(f.kind)];
             }
         }
     }
@@ -130,7 +130,7 @@ TYPED_TEST_P(edges, shares_equal_integration_over_lines)
 TYPED_TEST_P(edges, shares_have_the_known_values_of_a_square)
 {
     random_source u(3);
-    for (const auto filter : filters_over_discs)
+    for (const auto& f : filters)
         for (int round = 0; round < 8; ++round) {
             const auto board = random_board(u);
             auto s = empty_scene(board.at({0.5, 0.5}) + board.normal());
@@ -157,23 +157,23 @@ TYPED_TEST_P(edges, shares_have_the_known_values_of_a_square)
                     board.at({t, v}), glm::normalize(board.normal() + 0.2 * board.up), r); // on something that meets it
                 off.add(board.at({1.01, v}), board.normal(), r);                           // beside it
             }
-            EXPECT_LE(this->largest_error(this->cover(s, inside, filter), 1), 2e-6);
+            EXPECT_LE(this->largest_error(this->cover(s, inside, f.kind), 1), 2e-6);
             EXPECT_LE(
-                this->largest_error(this->cover(s, edge, filter), 0.5), 2e-5); // rounding, over radii down to 0.01
-            EXPECT_LE(this->largest_error(this->cover(s, corner, filter), 0.25), 2e-5);
-            for (const auto& c : this->cover(s, off, filter))
+                this->largest_error(this->cover(s, edge, f.kind), 0.5), 2e-5); // rounding, over radii down to 0.01
+            EXPECT_LE(this->largest_error(this->cover(s, corner, f.kind), 0.25), 2e-5);
+            for (const auto& c : this->cover(s, off, f.kind))
                 EXPECT_EQ(c.y, 0.0f);
             discs unwanted = inside;
             for (auto& p : unwanted.points)
                 p.w = -1;
-            for (const auto& c : this->cover(s, unwanted, filter))
+            for (const auto& c : this->cover(s, unwanted, f.kind))
                 EXPECT_EQ(c.x + c.y, 0.0f);
         }
 }
 
 TYPED_TEST_P(edges, bent_walls_hold_together_up_to_two_degrees_and_a_half)
 {
-    for (const auto filter : filters_over_discs)
+    for (const auto& f : filters)
         for (const double degrees : {0.1, 1.0, 2.4, 2.6, 30.0}) {
             const double c = std::cos(glm::radians(degrees)), h = std::sin(glm::radians(degrees));
             auto s = empty_scene({0, 2, 0});
@@ -186,7 +186,7 @@ TYPED_TEST_P(edges, bent_walls_hold_together_up_to_two_degrees_and_a_half)
                 right.add({x * c, x * h, 0}, {-h, c, 0}, 0.3);
             }
             for (const auto& side : {left, right}) {
-                const auto cover = this->cover(s, side, filter);
+                const auto cover = this->cover(s, side, f.kind);
                 if (degrees < 2.5)
                     EXPECT_LE(this->largest_error(cover, 1), 2e-3) << degrees;
                 else
@@ -217,10 +217,10 @@ TYPED_TEST_P(edges, thousands_of_polygons_take_several_passes)
     const auto passes = [&] { return this->b().costs().at("covered_share").passes; };
     this->cover(s, inside, filter_kind::constant);
     const auto before = passes();
-    for (const auto filter : filters_over_discs) {
-        EXPECT_LE(this->largest_error(this->cover(s, inside, filter), 1), 2e-5);
-        EXPECT_LE(this->largest_error(this->cover(s, edge, filter), 0.5), 2e-5);
-        EXPECT_LE(this->largest_error(this->cover(s, corner, filter), 0.25), 2e-5);
+    for (const auto& f : filters) {
+        EXPECT_LE(this->largest_error(this->cover(s, inside, f.kind), 1), 2e-5);
+        EXPECT_LE(this->largest_error(this->cover(s, edge, f.kind), 0.5), 2e-5);
+        EXPECT_LE(this->largest_error(this->cover(s, corner, f.kind), 0.25), 2e-5);
     }
     EXPECT_EQ(passes() - before, 12u * 5u); // 2,592 triangles, 571 a pass
 

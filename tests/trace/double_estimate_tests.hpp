@@ -45,11 +45,13 @@ public:
         gather_.args.min_radius2 = min_radius2_;
         gather_.args.visits = settings.visits_per_pass;
         gather_.args.ranges = settings.ranges_per_pass;
-        // SWITCHes of gather_photons.glsl: SIDE, FLATTEN, the kernel, LEAVE_OUT, ERRORS.
+        using K = double_kernels::gather_photons;
         turn_switches(gather_,
-            (settings.leaks.side ? 1u : 0u) | (settings.leaks.flattening > 1 ? 4u : 0u)
-                | (settings.filter == filter_kind::constant ? 0u : 4u << static_cast<uint>(settings.filter)) | 1u << 6
-                | 1u << 7);
+            (settings.leaks.side ? K::SIDE_switch : 0u) | (settings.leaks.flattening > 1 ? K::FLATTEN_switch : 0u)
+                | (settings.filter == filter_kind::cone ? K::CONE_switch : 0u)
+                | (settings.filter == filter_kind::epanechnikov ? K::EPANECHNIKOV_switch : 0u)
+                | (settings.filter == filter_kind::silverman ? K::SILVERMAN_switch : 0u) | K::LEAVE_OUT_switch
+                | K::ERRORS_switch);
         gather_.points_data = points_;
         gather_.normals_data = normals_;
         gather_.cells_data = cells_;

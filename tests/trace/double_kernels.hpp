@@ -23,6 +23,7 @@ inline uint floatBitsToUint(double x) { return glm::floatBitsToUint(static_cast<
 inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintBitsToFloat(bits)); }
 
 #include <photongrid/backend/begin.hpp>
+#include <photongrid/backend/natural_log.kernel.hpp>
 #include <photongrid/map/grid.kernel.hpp>
 #include <photongrid/trace/photon_event.kernel.hpp>
 #include <photongrid/trace/scene_layout.kernel.hpp>
@@ -30,6 +31,7 @@ inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintB
 
 // What kernels share, too.
 #undef PHOTONGRID_SHARED_IS_READ
+#include <photongrid/backend/natural_log.glsl>
 #include <photongrid/backend/random.glsl>
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/map/grid.glsl>

@@ -73,6 +73,7 @@ private:
     }
 };
 
+/// filter_weight() of estimate/filter.glsl in vectors.
 HWY_INLINE vector weight_of(filter_kind filter, vector t)
 {
     const floats d;
@@ -85,17 +86,6 @@ HWY_INLINE vector weight_of(filter_kind filter, vector t)
     }
     return one;
 }
-inline float weight_of(filter_kind filter, float t)
-{
-    switch (filter) {
-    case filter_kind::cone: return 1.0f - std::sqrt(t);
-    case filter_kind::epanechnikov: return 1.0f - t;
-    case filter_kind::silverman: return (1.0f - t) * (1.0f - t);
-    case filter_kind::constant: break;
-    }
-    return 1.0f;
-}
-
 /// The radius of a search.
 struct chosen_radius {
     float radius2 = 0;
@@ -171,7 +161,7 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
                 at_radius.push_back(static_cast<uint>(i));
         std::partial_sort(
             at_radius.begin(), at_radius.begin() + static_cast<std::ptrdiff_t>(counted), at_radius.end(), by_id);
-        const float at_rim = weight_of(filter, std::min(r.radius2 * inverse_disc2, 1.0f));
+        const float at_rim = hn::GetLane(weight_of(filter, hn::Set(d, std::min(r.radius2 * inverse_disc2, 1.0f))));
         for (std::size_t i = 0; i + (apart ? 1 : 0) < counted; ++i) {
             const float f[3]
                 = {p_red[at_radius[i]] * at_rim, p_green[at_radius[i]] * at_rim, p_blue[at_radius[i]] * at_rim};

@@ -79,7 +79,7 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
     j.max_radius2 = in.max_radius2();
     j.min_radius2 = in.min_radius2();
     j.filter = s.filter;
-    j.norm = detail::norm_of(s.filter);
+    j.norm = detail::entry_of(s.filter).norm;
     j.leave_out = s.bias == bias_kind::unbiased;
     j.errors = s.errors;
     return j;

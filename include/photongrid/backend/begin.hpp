@@ -8,10 +8,10 @@
 //   OUTPUT(B, T, NAME)    the variable NAME is written to element i of the buffer at output slot B
 //   STATE(B, T, NAME)     like OUTPUT, but NAME holds the element's old value before `kernel` runs: in place
 //   SWITCH(B, NAME)       a bool that is constant during a pass; on GPUs a compile-time constant, so `if (NAME)` is
-//   free IN_GROUPS(B)          the kernel may use subgroup operations. If the device has them and switch B is on,
-//   GROUP_LANES
-//                         elements run together in a subgroup; otherwise, and always in C++ and on GL, GROUP_LANES
-//                         is 1. Two lanes may compute the same element.
+//                         free. In C++, NAME_switch is its bit of launch::switches.
+//   IN_GROUPS(B)          the kernel may use subgroup operations. If the device has them and switch B is on,
+//                         GROUP_LANES elements run together in a subgroup; otherwise, and always in C++ and on GL,
+//                         GROUP_LANES is 1. Two lanes may compute the same element.
 //     group_lane()        index of this lane
 //     group_any(b)        true if b is true in any lane
 //     group_min(v)        smallest v of all lanes; group_max(v): largest
@@ -94,6 +94,7 @@
 
 #define SWITCH(B, NAME)                                                                                                \
     bool NAME = true;                                                                                                  \
+    static constexpr ::photongrid::uint NAME##_switch = 1u << B;                                                       \
     void turn(::photongrid::slot<B>, bool on) { NAME = on; }
 
 #define GROUP_LANES 1u

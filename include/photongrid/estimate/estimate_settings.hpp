@@ -1,6 +1,8 @@
 // The kind of estimate: which photons are sought, how they are weighted, and which are rejected.
 #pragma once
 
+#include <photongrid/estimate/filter.hpp>
+
 #include <cstdint>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -12,14 +14,6 @@ enum class search_kind : std::uint8_t {
     at_least_k,   ///< section 2.3: k, or more if the radius grew too far; depends on the order of cells
     exact_k,      ///< the k nearest; of several photons at the k-th distance, those with the smallest ids
     fixed_radius, ///< all photons within the maximum radius
-};
-
-/// The weight of a photon at distance d, for the radius r. Each filter is normalised to a mean of 1 over the disc.
-enum class filter_kind : std::uint8_t {
-    constant,     ///< 1
-    cone,         ///< 1 - d/r (Jensen's with slope 1)
-    epanechnikov, ///< 1 - d^2/r^2
-    silverman,    ///< (1 - d^2/r^2)^2 (Silverman 1986)
 };
 
 /// Whether the photon that sets the radius counts.

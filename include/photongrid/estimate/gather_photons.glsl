@@ -1,6 +1,5 @@
 // Sums the power of the photons that a search found, weighted by a filter of their distance that falls from 1 to 0
-// (2.3; filters: Jensen 2001, section 7.3; Silverman 1986). Sums are compensated (Kahan), so that the rounding error
-// does not grow with the number of photons.
+// (2.3, filter.glsl). Sums are compensated (Kahan), so that the rounding error does not grow with the number of photons.
 //
 // LEAVE_OUT excludes the photon that sets the radius: of N photons, N - 1 lie inside the disc whose radius is the
 // largest distance, and with those the mean of the estimate is right for every filter (Garcia Hernandez et al. 2012;
@@ -18,11 +17,9 @@ PARAMS(Params)
 SWITCH(0, SIDE)
 SWITCH(1, NORMALS)
 SWITCH(2, FLATTEN)
-SWITCH(3, CONE)         // weight 1 - d / r
-SWITCH(4, EPANECHNIKOV) // 1 - d^2 / r^2
-SWITCH(5, SILVERMAN)    // (1 - d^2 / r^2)^2; none of the three: 1
+#include <photongrid/estimate/filter.glsl>
 SWITCH(6, LEAVE_OUT)
-SWITCH(7, ERRORS)       // compute the squares too
+SWITCH(7, ERRORS) // compute the squares too
 IN_GROUPS(8)
 INPUT(0, vec4, points)        // xyz: query point, m
 INPUT(1, vec4, normals)       // xyz: unit normal of the surface there
@@ -109,14 +106,7 @@ void kernel(uint i)
             left_power = swaps ? power : left_power;                                       \
             float t = d2 * inverse_disc2;                                                  \
             t = t < 1.0f ? t : 1.0f;                                                       \
-            float weight = 1.0f;                                                           \
-            if (CONE)                                                                      \
-                weight = 1.0f - sqrt(t);                                                   \
-            if (EPANECHNIKOV)                                                              \
-                weight = 1.0f - t;                                                         \
-            if (SILVERMAN)                                                                 \
-                weight = (1.0f - t) * (1.0f - t);                                          \
-            precise vec4 weighted = added * weight;                                        \
+            precise vec4 weighted = added * filter_weight(t);                              \
             precise vec4 term = weighted - correction;                                     \
             precise vec4 more = total + term;                                              \
             precise vec4 error = (more - total) - term;                                    \

@@ -1,5 +1,5 @@
-// The functions that host_search.hpp shares with the search kernels: a photon's distance, and the photons of a row of
-// cells that can lie within a radius. No device runs this kernel; it exists so that host and devices use the same text.
+// The functions that host_search.hpp shares with the search kernels: a photon's distance, its weight, and the photons of
+// a row of cells that can lie within a radius. No device runs this kernel; it exists so that host and devices use the same text.
 #include <photongrid/map/grid.glsl>
 
 struct Params {
@@ -10,6 +10,7 @@ PARAMS(Params)
 SWITCH(0, SIDE)
 SWITCH(1, NORMALS)
 SWITCH(2, FLATTEN)
+#include <photongrid/estimate/filter.glsl>
 INPUT(0, uvec2, cells)         // x: first photon, y: count
 INPUT(1, vec4, positions)      // xyz, m, cell by cell
 INPUT(2, vec4, directions)

@@ -103,7 +103,7 @@ public:
             throw std::invalid_argument("photon_map::irradiance: search: at_least_k is not available for a single "
                                         "point; use exact_k or fixed_radius, "
                                         "or search for many points at once");
-        const auto q = query(s.leaks, policies(s.leaks));
+        const auto q = query(s.leaks, policies(s.leaks) | detail::filter_switch(s.filter));
         const std::size_t n = collect(q, glm::vec4(p, 1), glm::vec4(normal, 0), s, scratch);
         const bool by_photon = s.search == search_kind::exact_k && n >= s.k;
         auto& found = scratch.found_;
@@ -118,7 +118,7 @@ public:
             if (left_out && by_photon && radius2 >= min2 && found[i].key == last->key)
                 continue;
             const float t = std::min(distance2_of(found[i]) * inverse, 1.0f);
-            const glm::vec4 weighted = powers_[found[i].index] * weight(s.filter, t);
+            const glm::vec4 weighted = powers_[found[i].index] * q.filter_weight(t);
             const float all = weighted.x + weighted.y + weighted.z;
             sum += glm::dvec4(weighted);
             squares += glm::dvec4(weighted.x * weighted.x, weighted.y * weighted.y, weighted.z * weighted.z, all * all);
@@ -136,17 +136,6 @@ private:
     {
         return (l.side ? 1u : 0u) | (l.needs_normals() ? 2u : 0u) | (l.flattening > 1 ? 4u : 0u);
     }
-    static float weight(filter_kind filter, float t)
-    {
-        switch (filter) {
-        case filter_kind::cone: return 1.0f - std::sqrt(t);
-        case filter_kind::epanechnikov: return 1.0f - t;
-        case filter_kind::silverman: return (1.0f - t) * (1.0f - t);
-        case filter_kind::constant: break;
-        }
-        return 1.0f;
-    }
-
     kernels::host_query query(const leak_policy& l, uint switches) const
     {
         kernels::host_query q;
@@ -228,7 +217,7 @@ private:
     {
         const glm::uvec4 tally(held, 0, 0, 0);
         kernels::irradiance_estimate e;
-        e.args = {.norm = detail::norm_of(settings_.filter),
+        e.args = {.norm = detail::entry_of(settings_.filter).norm,
             .min_radius2 = detail::min_radius2(settings_),
             .left_out = left_out ? 1u : 0u};
         e.bind(slot<0>{}, std::span(&search_radius, 1));

@@ -107,7 +107,7 @@ public:
         }
         auto errors = s.errors ? std::move(e.standard_error) : b.template make<glm::vec4>(n);
         b.template run<kernels::irradiance_estimate>(n,
-            {.norm = detail::norm_of(s.filter),
+            {.norm = detail::entry_of(s.filter).norm,
                 .min_radius2 = in_.min_radius2(),
                 .left_out = s.bias == bias_kind::unbiased ? 1u : 0u},
             reads(radius_, sum_, squares_, tally_), writes(e.irradiance, e.used, errors));
@@ -187,6 +187,15 @@ private:
         }
     }
 
+    template <class K>
+    uint gather_switches() const
+    {
+        const auto& s = in_.s;
+        return in_.policies() | detail::filter_switch(s.filter)
+            | (s.bias == bias_kind::unbiased ? K::LEAVE_OUT_switch : 0u) | (s.errors ? K::ERRORS_switch : 0u)
+            | in_.template together<K>();
+    }
+
     progress run_stage(uint passes)
     {
         B& b = *in_.b;
@@ -206,11 +215,8 @@ private:
                 writes(gathered_, found_, cursor_), passes);
         case stage::radius: return radius_search_->advance(passes);
         case stage::gather: {
-            const uint filter
-                = s.filter == filter_kind::constant ? 0u : 4u << static_cast<uint>(s.filter); // SWITCHes 3 to 5
-            const uint how = in_.policies() | filter | (s.bias == bias_kind::unbiased ? 1u << 6 : 0u)
-                | (s.errors ? 1u << 7 : 0u) | in_.template together<kernels::gather_photons>();
-            return b.template run_until_done<kernels::gather_photons>({in_.points->size(), 0u, how},
+            return b.template run_until_done<kernels::gather_photons>(
+                {in_.points->size(), 0u, gather_switches<kernels::gather_photons>()},
                 {.grid = m.cells_of,
                     .leaks = in_.leaks(),
                     .min_radius2 = in_.min_radius2(),

@@ -170,12 +170,6 @@ namespace detail {
         all.finished = finished();
         return all;
     }
-    /// 1 / mean of the filter over its disc.
-    constexpr float norm_of(filter_kind k)
-    {
-        constexpr float norms[] = {1, 3, 2, 3};
-        return norms[static_cast<int>(k)];
-    }
 } // namespace detail
 
 } // namespace photongrid

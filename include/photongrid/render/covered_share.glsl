@@ -11,7 +11,6 @@
 // passes near the point within the disc, so that slightly bent walls stay connected. The photons of other polygons must
 // be rejected (leak_policy::min_cosine).
 #include <photongrid/backend/vector.glsl>
-#include <photongrid/backend/natural_log.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
@@ -20,9 +19,7 @@ struct Params {
     uint polygons;     // how many
 };
 PARAMS(Params)
-SWITCH(0, CONE)         // weight 1 - d / r
-SWITCH(1, EPANECHNIKOV) // 1 - d^2 / r^2
-SWITCH(2, SILVERMAN)    // (1 - d^2 / r^2)^2; none of the three: 1
+#include <photongrid/estimate/filter.glsl>
 INPUT(0, vec4, scene)
 INPUT(1, vec4, points)    // xyz, m; w > 0: the point has an estimate
 INPUT(2, vec4, surfaces)  // xyz: unit normal
@@ -31,35 +28,6 @@ STATE(0, vec4, cover)     // x: sum of shares; y: 1 where the point lies on one 
 
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/polygon_record.glsl>
-
-// 2 pi / d times the indefinite integral along the part of an edge inside the unit disc, at s from the foot of the
-// disc's centre. The integral over the whole disc is 1.
-float edge_integral(float d, float s)
-{
-    precise float d2 = d * d;
-    precise float s2 = s * s;
-    precise float value = s;
-    if (CONE) {
-        precise float rho = sqrt(d2 + s2);
-        float logarithm = 0.0f; // its term vanishes with d
-        if (d2 > 1e-8f) {
-            precise float ratio = (abs(s) + rho) / abs(d);
-            logarithm = natural_log(ratio);
-        }
-        logarithm = s < 0.0f ? -logarithm : logarithm;
-        precise float with_cone = 3.0f * s - s * rho - d2 * logarithm;
-        value = with_cone;
-    }
-    if (EPANECHNIKOV) {
-        precise float with_epanechnikov = s * (2.0f - d2 - 0.333333333f * s2);
-        value = with_epanechnikov;
-    }
-    if (SILVERMAN) {
-        precise float with_silverman = s * (3.0f - 3.0f * d2 - s2 + d2 * d2 + 0.666666667f * d2 * s2 + 0.2f * s2 * s2);
-        value = with_silverman;
-    }
-    return value;
-}
 
 // The angle that an edge at distance d subtends between a and b, a <= b.
 float subtended(float d, float a, float b)
@@ -83,7 +51,7 @@ float edge_share(float d, float a, float b)
         rim = subtended(d, a, b);
     } else {
         precise float outside = subtended(d, a, from) + subtended(d, to, b);
-        precise float inside = d * (edge_integral(d, to) - edge_integral(d, from));
+        precise float inside = d * (filter_edge_integral(d, to) - filter_edge_integral(d, from));
         rim = outside;
         within = inside;
     }

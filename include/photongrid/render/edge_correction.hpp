@@ -64,9 +64,8 @@ buffer_of<B, glm::vec4> covered_shares(B& b, const device_scene<B>& s, const buf
     const auto n = points.size();
     auto cover = b.template make<glm::vec4>(n);
     b.template run<kernels::zero_vectors>(n, {}, reads(), writes(cover));
-    const uint weight = filter == filter_kind::constant ? 0u : 1u << (static_cast<uint>(filter) - 1);
     for (const auto& range : detail::ranges_of_polygons(s.layout))
-        b.template run<kernels::covered_share>({n, 0u, weight},
+        b.template run<kernels::covered_share>({n, 0u, detail::filter_switch(filter)},
             {.min_radius2 = std::max(min_radius * min_radius, 1e-36f),
                 .first = range.first,
                 .polygons = range.polygons},

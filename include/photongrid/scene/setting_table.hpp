@@ -135,9 +135,17 @@ setting(const char*, Member, Values, in_scenes, const char*) -> setting<Member, 
 
 /// The rows.
 namespace setting_table {
+    constexpr auto names_of_filters()
+    {
+        one_of<filter_kind, filters.size()> all{};
+        for (std::size_t i = 0; i < filters.size(); ++i)
+            all.values[i] = {filters[i].name, filters[i].kind};
+        return all;
+    }
 
+    // clang-format off: a setting's member, values and use, then its description.
     inline constexpr setting size{"size", [](auto& s) -> auto& {return s.output;
-}
+} // namespace setting_table
 , pixels{16384}, in_scenes::required, "pixels"
 }; // namespace photongrid
 inline constexpr setting photons{"photons", [](auto& s) -> auto& {return s.map.photons;
@@ -218,10 +226,7 @@ inline constexpr setting search{"search", [](auto& s) -> auto& {return s.estimat
 ;
 inline constexpr setting filter{"filter", [](auto& s) -> auto& {return s.estimate.filter;
 }
-,
-    one_of{{named{"constant", filter_kind::constant}, {"cone", filter_kind::cone},
-        {"epanechnikov", filter_kind::epanechnikov}, {"silverman", filter_kind::silverman}}},
-    in_scenes::optional, "weight of a photon by its distance"
+, names_of_filters(), in_scenes::optional, "weight of a photon by its distance"
 }
 ;
 inline constexpr setting bias{"bias", [](auto& s) -> auto& {return s.estimate.bias;
@@ -254,6 +259,7 @@ inline constexpr setting only{"only", [](auto& s) -> auto& {return s.output.only
     in_scenes::never, "draw this part of the light alone"
 }
 ;
+// clang-format on
 
 } // namespace setting_table
 

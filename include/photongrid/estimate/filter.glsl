@@ -1,0 +1,52 @@
+// The filters of an estimate: how much a photon counts by its distance d from the query point, for a radius r (Jensen 2001,
+// section 7.3; Silverman 1986). Included by kernels. All that devices compute of a filter is here; its enumerator, its
+// name and its mean are in filter.hpp.
+#include <photongrid/backend/natural_log.glsl>
+
+// None of them on: the constant filter. The bit of filter f is 2 + f (filter_switch).
+SWITCH(3, CONE)         // 1 - d / r
+SWITCH(4, EPANECHNIKOV) // 1 - d^2 / r^2
+SWITCH(5, SILVERMAN)    // (1 - d^2 / r^2)^2
+
+// The weight of a photon at t = d^2 / r^2, from 0 to 1.
+float filter_weight(float t)
+{
+    float weight = 1.0f;
+    if (CONE)
+        weight = 1.0f - sqrt(t);
+    if (EPANECHNIKOV)
+        weight = 1.0f - t;
+    if (SILVERMAN)
+        weight = (1.0f - t) * (1.0f - t);
+    return weight;
+}
+
+// For the share of a disc that lies on a surface (covered_share.glsl): 2 pi / e times the indefinite integral of the
+// weight over the triangles between the disc's centre and an edge, which lies at distance e from it. s: from the foot
+// of the centre on the edge; all lengths are divided by r. The integral over the whole disc is 1.
+float filter_edge_integral(float e, float s)
+{
+    precise float e2 = e * e;
+    precise float s2 = s * s;
+    precise float value = s;
+    if (CONE) {
+        precise float rho = sqrt(e2 + s2);
+        float logarithm = 0.0f; // its term vanishes with e
+        if (e2 > 1e-8f) {
+            precise float ratio = (abs(s) + rho) / abs(e);
+            logarithm = natural_log(ratio);
+        }
+        logarithm = s < 0.0f ? -logarithm : logarithm;
+        precise float with_cone = 3.0f * s - s * rho - e2 * logarithm;
+        value = with_cone;
+    }
+    if (EPANECHNIKOV) {
+        precise float with_epanechnikov = s * (2.0f - e2 - 0.333333333f * s2);
+        value = with_epanechnikov;
+    }
+    if (SILVERMAN) {
+        precise float with_silverman = s * (3.0f - 3.0f * e2 - s2 + e2 * e2 + 0.666666667f * e2 * s2 + 0.2f * s2 * s2);
+        value = with_silverman;
+    }
+    return value;
+}

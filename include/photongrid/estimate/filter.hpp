@@ -1,0 +1,46 @@
+// The filters of an estimate by name. To add one: its enumerator and row here, its SWITCH, weight and edge integral in
+// filter.glsl, and its weight in vectors in the cpu backend's gather_simd.hpp.
+#pragma once
+
+#include <photongrid/backend/kernel.hpp>
+
+#include <array>
+#include <cstdint>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// The weight of a photon at distance d, for the radius r. Each filter is normalised to a mean of 1 over the disc.
+enum class filter_kind : std::uint8_t {
+    constant,     ///< 1
+    cone,         ///< 1 - d/r (Jensen's with slope 1)
+    epanechnikov, ///< 1 - d^2/r^2
+    silverman,    ///< (1 - d^2/r^2)^2 (Silverman 1986)
+};
+
+/// A filter's name, and its mean over the disc.
+struct filter_entry {
+    const char* name; ///< in scene files and on the command line
+    filter_kind kind;
+    float norm; ///< 1 / mean of the weights in filter.glsl over the disc
+};
+
+/// All filters, in the order of filter_kind.
+inline constexpr std::array filters{
+    filter_entry{"constant", filter_kind::constant, 1},
+    filter_entry{"cone", filter_kind::cone, 3},
+    filter_entry{"epanechnikov", filter_kind::epanechnikov, 2},
+    filter_entry{"silverman", filter_kind::silverman, 3},
+};
+
+namespace detail {
+    constexpr const filter_entry& entry_of(filter_kind f) { return filters[static_cast<std::size_t>(f)]; }
+
+    /// The SWITCH of filter.glsl, as a bit of launch::switches.
+    constexpr uint filter_switch(filter_kind f) { return f == filter_kind::constant ? 0u : 4u << static_cast<uint>(f); }
+} // namespace detail
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>
