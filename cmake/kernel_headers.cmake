@@ -1,4 +1,4 @@
-# photongrid_kernel_headers(OUTPUT folder ROOT folder BASE folder FILES file...)
+# photongrid_kernel_headers(OUTPUT folder ROOT folder BASE folder FILES file... [ALWAYS_WHOLE kernel...])
 #
 # Writes a header `stage/x.kernel.hpp` in OUTPUT for each kernel file `stage/x.glsl` under ROOT, at configure time. It
 # holds
@@ -7,8 +7,12 @@
 #   texts of all files that it includes: own_texts();
 # - for a file that kernels share, its functions, in photongrid::kernels.
 # Files include each other as <photongrid/stage/x.glsl>. Texts are named relative to BASE.
+#
+# Where PHOTONGRID_KERNELS_ARE_COMPILED is defined, a kernel's header only declares its struct: enough for a file whose
+# algorithms another object file has compiled (backends/any/compiled_algorithms.hpp), which an edit of the kernel then
+# does not make stale. ALWAYS_WHOLE: kernels that code which is not a template uses.
 function(photongrid_kernel_headers)
-  cmake_parse_arguments(arg "" "OUTPUT;ROOT;BASE" "FILES" ${ARGN})
+  cmake_parse_arguments(arg "" "OUTPUT;ROOT;BASE" "FILES;ALWAYS_WHOLE" ${ARGN})
   foreach(file IN LISTS arg_FILES)
     file(RELATIVE_PATH path "${arg_ROOT}" "${file}")
     get_filename_component(name "${file}" NAME_WE)
@@ -25,6 +29,12 @@ function(photongrid_kernel_headers)
     endforeach()
     set(content "// Made by CMake (cmake/kernel_headers.cmake) of ${path}; do not edit.\n#pragma once\n\n${includes}#include <photongrid/backend/text_file.hpp>\n")
     if(text MATCHES "\n(void kernel|bool holds)\\(")
+      if(name IN_LIST arg_ALWAYS_WHOLE)
+        string(APPEND content "\n#if 1")
+      else()
+        string(APPEND content "\nnamespace photongrid::kernels {\nstruct ${name};\n} // namespace photongrid::kernels\n
+#if !defined(PHOTONGRID_KERNELS_ARE_COMPILED)")
+      endif()
       string(APPEND content "\n#include <photongrid/backend/begin.hpp>\n
 namespace photongrid::kernel_texts {
 inline constexpr text_file ${name} = ${entry};
@@ -39,6 +49,7 @@ struct ${name} {
 } // namespace photongrid::kernels
 
 #include <photongrid/backend/end.hpp>
+#endif
 ")
     else()
       string(APPEND content "

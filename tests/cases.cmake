@@ -68,16 +68,21 @@ endfunction()
 # What a quick run under sanitizers builds.
 add_custom_target(photongrid_quick_tests)
 
-# photongrid_test(NAME [SOURCES file...] [LIBRARIES lib...] [HEAVY_CASES] [LONG] [HEAVY] [SHARED_OUT] [PLAIN]) builds
-# NAME.cpp, or SOURCES, and runs it. PLAIN: what it computes itself takes less time than optimizing it would.
+# photongrid_test(NAME [SOURCES file...] [LIBRARIES lib...] [HEAVY_CASES] [LONG] [HEAVY] [SHARED_OUT] [PLAIN] [COMPILED])
+# builds NAME.cpp, or SOURCES, and runs it. PLAIN: what it computes itself takes less time than optimizing it would.
+# COMPILED: it reads no kernel of the library and takes the algorithms that photongrid::renderer has compiled.
 function(photongrid_test name)
-  cmake_parse_arguments(arg "LONG;HEAVY_CASES;HEAVY;SHARED_OUT;PLAIN" "" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "LONG;HEAVY_CASES;HEAVY;SHARED_OUT;PLAIN;COMPILED" "" "SOURCES;LIBRARIES" ${ARGN})
   if(NOT arg_SOURCES)
     set(arg_SOURCES ${name}.cpp)
   endif()
   add_executable(${name} ${arg_SOURCES})
   # Debian's rapidcheck and flann headers are not warning-free; SYSTEM is what find_package gives them.
   target_link_libraries(${name} PRIVATE photongrid_warnings ${arg_LIBRARIES} rapidcheck flann::flann_cpp GTest::gtest_main)
+  if(arg_COMPILED)
+    target_compile_definitions(${name} PRIVATE PHOTONGRID_KERNELS_ARE_COMPILED)
+    target_link_libraries(${name} PRIVATE photongrid::renderer)
+  endif()
   set(headers test_headers)
   if(arg_PLAIN)
     set(headers test_headers_plain)

@@ -38,7 +38,7 @@ faults=(
   "grown radius forgets its photon|include/photongrid/estimate/grown_radius.glsl|n.x >= args.k|n.x > args.k"
   "given radius leaves out its rim|include/photongrid/estimate/given_radius.glsl|0xFFFFFFFFu|0u"
   "k-th photon is not left out|include/photongrid/estimate/gather_photons.glsl|LEAVE_OUT && search_radius.y > 0.0f|LEAVE_OUT && search_radius.y > 1.0f"
-  "wrong norm of the cone|include/photongrid/estimate/filter.hpp|"cone", filter_kind::cone, 3}|"cone", filter_kind::cone, 2}"
+  "wrong norm of the cone|include/photongrid/estimate/filter.hpp|filter_kind::cone, 3}|filter_kind::cone, 2}"
   "sums without compensation|include/photongrid/estimate/gather_photons.glsl|term = weighted - correction|term = weighted - (correction - correction)"
   "side reversed|include/photongrid/estimate/photon_distance.glsl|!(arrival < 0.0f)|arrival < 0.0f"
   "normals reversed|include/photongrid/estimate/photon_distance.glsl|cosine >= args.leaks.x|cosine <= args.leaks.x"

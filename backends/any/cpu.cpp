@@ -1,5 +1,6 @@
 #include <photongrid/backends/cpu/cpu.hpp>
 
+#include <photongrid/backends/any/compiled_algorithms.hpp>
 #include <photongrid/backends/any/owning_renderer.hpp>
 
 namespace photongrid::any {
@@ -20,3 +21,10 @@ namespace {
 backend_entry cpu_entry() { return {{"cpu"}, make, devices, nullptr}; }
 
 } // namespace photongrid::any
+
+#ifdef PHOTONGRID_COMPILES_ALGORITHMS
+namespace photongrid {
+PHOTONGRID_ALGORITHMS(, cpu_backend)
+PHOTONGRID_PICTURES(, cpu_backend)
+} // namespace photongrid
+#endif

@@ -1,3 +1,4 @@
+#include <photongrid/backends/any/compiled_algorithms.hpp>
 #include <photongrid/backends/any/owning_renderer.hpp>
 #include <photongrid/backends/gl/gl.hpp>
 
@@ -33,3 +34,10 @@ namespace {
 backend_entry gl_entry() { return {{"gl", "gl-osmesa"}, make, devices, nullptr}; }
 
 } // namespace photongrid::any
+
+#ifdef PHOTONGRID_COMPILES_ALGORITHMS
+namespace photongrid {
+PHOTONGRID_ALGORITHMS(, gl_backend)
+PHOTONGRID_PICTURES(, gl_backend)
+} // namespace photongrid
+#endif

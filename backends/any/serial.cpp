@@ -1,3 +1,4 @@
+#include <photongrid/backends/any/compiled_algorithms.hpp>
 #include <photongrid/backends/any/owning_renderer.hpp>
 #include <photongrid/backends/serial/serial.hpp>
 
@@ -19,3 +20,10 @@ namespace {
 backend_entry serial_entry() { return {{"serial"}, make, devices, nullptr}; }
 
 } // namespace photongrid::any
+
+#ifdef PHOTONGRID_COMPILES_ALGORITHMS
+namespace photongrid {
+PHOTONGRID_ALGORITHMS(, serial_backend)
+PHOTONGRID_PICTURES(, serial_backend)
+} // namespace photongrid
+#endif

@@ -1,5 +1,6 @@
 #include <photongrid/backends/vulkan/vulkan.hpp>
 
+#include <photongrid/backends/any/compiled_algorithms.hpp>
 #include <photongrid/backends/any/owning_renderer.hpp>
 
 namespace photongrid::any {
@@ -61,3 +62,10 @@ namespace {
 backend_entry vulkan_entry() { return {{"vulkan"}, make, devices, hardware}; }
 
 } // namespace photongrid::any
+
+#ifdef PHOTONGRID_COMPILES_ALGORITHMS
+namespace photongrid {
+PHOTONGRID_ALGORITHMS(, vulkan_backend)
+PHOTONGRID_PICTURES(, vulkan_backend)
+} // namespace photongrid
+#endif

@@ -2,7 +2,7 @@
 // can be turned over, overrides that equal the generic algorithms.
 #pragma once
 
-#include <photongrid/backends/cpu/cpu.hpp>
+#include "cpu_algorithms.hpp"
 
 #include "../map/photon_sets.hpp"
 #include "serial_algorithms.hpp"

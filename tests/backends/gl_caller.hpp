@@ -3,6 +3,7 @@
 
 #include "gl_state.hpp"
 
+#include "gl_algorithms.hpp"
 #include "serial_algorithms.hpp"
 
 #include <photongrid/backends/gl/gl.hpp>

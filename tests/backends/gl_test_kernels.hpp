@@ -1,6 +1,7 @@
 // Kernels of the tests of the OpenGL backend: the same text for C++ and for OpenGL.
 #pragma once
 
+#include "gl_algorithms.hpp"
 #include "serial_algorithms.hpp"
 
 #include <photongrid/backends/gl/gl.hpp>

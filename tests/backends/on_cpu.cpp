@@ -1,6 +1,6 @@
 // All backend tests on the cpu backend with its overrides, on three threads whatever the machine has, and those of its
-// own: one program, since compiling the overrides for every instruction set takes long.
-#include <photongrid/backends/cpu/cpu.hpp>
+// own. The overrides are photongrid::cpu_compiled's.
+#include "cpu_algorithms.hpp"
 
 #include "../backend/number_tests.hpp"
 #include "../backend/verb_tests.hpp"

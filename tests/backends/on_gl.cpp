@@ -1,5 +1,5 @@
 // All backend tests on OpenGL with its overrides, in an EGL or in an OSMesa context, with the driver's debug output on.
-#include <photongrid/backends/gl/gl.hpp>
+#include "gl_algorithms.hpp"
 
 #include "../backend/number_tests.hpp"
 #include "../backend/verb_tests.hpp"

@@ -1,5 +1,5 @@
 // All backend tests on Vulkan with its overrides, with the validation layer watching.
-#include <photongrid/backends/vulkan/vulkan.hpp>
+#include "vulkan_algorithms.hpp"
 #include <photongrid/trace/bounce_photon.kernel.hpp>
 
 #include "../backend/number_tests.hpp"

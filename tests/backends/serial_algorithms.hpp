@@ -1,5 +1,5 @@
-// The serial backend with maps and searches on it, which most test programs compare with. They are compiled once, in
-// serial_algorithms.cpp, and not again in each of these.
+// The serial backend with maps and searches on it, which most test programs compare with. They are compiled once: in
+// photongrid::renderer, or, for the installed photongrid::backend_tests, in serial_algorithms.cpp.
 #pragma once
 
 #include <photongrid/backends/serial/serial.hpp>
@@ -21,6 +21,7 @@ PHOTONGRID_COMPILED_HERE template routed_cells<serial_backend> stencil_route(
     serial_backend&, const photons<serial_backend>&, const grid&, uint, uint, uint);
 PHOTONGRID_COMPILED_HERE template grid fitting_grid(serial_backend&, const photons<serial_backend>&, uint, float);
 PHOTONGRID_COMPILED_HERE template sort_report bitonic_sort(serial_backend&, buffer_of<serial_backend, glm::uvec2>&);
+PHOTONGRID_COMPILED_HERE template class knn_radius<serial_backend>;
 PHOTONGRID_COMPILED_HERE template class knn_search_by_kernels<serial_backend>;
 PHOTONGRID_COMPILED_HERE template class knn_search<serial_backend>;
 

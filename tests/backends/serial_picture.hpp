@@ -1,5 +1,4 @@
-// render<serial_backend> as a function, compiled once, in serial_pictures.cpp: who needs the picture alone does not
-// read how it is made.
+// render<serial_backend> as a function, for tests that need the picture alone.
 #pragma once
 
 #include <photongrid/render/image.hpp>

@@ -1,25 +1,13 @@
-// Tracing and pictures on the serial backend, compiled once, in serial_pictures.cpp.
+// Algorithms, tracing and pictures on the serial backend, as photongrid::renderer has compiled them.
 #pragma once
 
-#include "serial_tracing.hpp"
+#include "serial_algorithms.hpp"
 
-#include <photongrid/render/render.hpp>
+#include <photongrid/backends/any/compiled_algorithms.hpp>
 
 namespace photongrid {
 
-PHOTONGRID_PICTURES_COMPILED_HERE template void correct_edges(serial_backend&, const device_scene<serial_backend>&,
-    const buffer_of<serial_backend, glm::vec4>&, const buffer_of<serial_backend, glm::vec4>&,
-    knn_estimates<serial_backend>&, filter_kind, float);
-PHOTONGRID_PICTURES_COMPILED_HERE template built_map<serial_backend> build_map(
-    serial_backend&, const scene&, const render_settings&, const render_observer&);
-PHOTONGRID_PICTURES_COMPILED_HERE template rendered draw(
-    serial_backend&, const built_map<serial_backend>&, const camera&, const render_settings&, const render_observer&);
-PHOTONGRID_PICTURES_COMPILED_HERE template class view_pass<serial_backend>;
-PHOTONGRID_PICTURES_COMPILED_HERE template pass_pixels draw_pass(serial_backend&, const built_map<serial_backend>&,
-    const camera&, const render_settings&, const render_observer&, render_stats&);
-PHOTONGRID_PICTURES_COMPILED_HERE template rendered render(
-    serial_backend&, const scene&, const render_settings&, const render_observer&);
+PHOTONGRID_ALGORITHMS(extern, serial_backend)
+PHOTONGRID_PICTURES(extern, serial_backend)
 
 } // namespace photongrid
-
-#undef PHOTONGRID_PICTURES_COMPILED_HERE

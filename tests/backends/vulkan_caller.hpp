@@ -4,6 +4,7 @@
 #include "../backend/under_test.hpp"
 #include "../map/photon_sets.hpp"
 #include "on_serial.hpp"
+#include "vulkan_algorithms.hpp"
 
 #include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>

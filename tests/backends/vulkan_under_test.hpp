@@ -4,6 +4,7 @@
 #include "../backend/under_test.hpp"
 #include "../map/photon_sets.hpp"
 #include "serial_algorithms.hpp"
+#include "vulkan_algorithms.hpp"
 #include "vulkan_kernels.hpp"
 
 #include <photongrid/backends/vulkan/vulkan.hpp>

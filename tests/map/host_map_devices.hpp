@@ -1,9 +1,9 @@
 // On which backends maps for hosts are tested: serial, and cpu where CMakeLists.txt has linked it.
 #pragma once
 
-#include <photongrid/backends/serial/serial.hpp>
+#include "../backends/serial_pictures.hpp"
 #if __has_include(<photongrid/backends/cpu/cpu.hpp>)
-#include <photongrid/backends/cpu/cpu.hpp>
+#include "../backends/cpu_algorithms.hpp"
 #endif
 
 #include <gtest/gtest.h>

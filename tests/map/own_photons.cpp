@@ -1,5 +1,6 @@
 // Photons of a caller's own types, with the caller's own vectors.
-#include <photongrid/backends/serial/serial.hpp>
+#include "../backends/serial_algorithms.hpp"
+
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/map/build_map.hpp>
 #include <photongrid/map/own_photons.hpp>

@@ -1,7 +1,7 @@
 // Where traced photons land, for comparison with closed forms.
 #pragma once
 
-#include "../backends/serial_tracing.hpp"
+#include "../backends/serial_pictures.hpp"
 #include "../map/photon_sets.hpp"
 #include "../scene/test_scenes.hpp"
 

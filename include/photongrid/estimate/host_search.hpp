@@ -103,7 +103,7 @@ public:
             throw std::invalid_argument("photon_map::irradiance: search: at_least_k is not available for a single "
                                         "point; use exact_k or fixed_radius, "
                                         "or search for many points at once");
-        const auto q = query(s.leaks, policies(s.leaks) | detail::filter_switch(s.filter));
+        auto q = query(s.leaks, policies(s.leaks) | detail::filter_switch(s.filter));
         const std::size_t n = collect(q, glm::vec4(p, 1), glm::vec4(normal, 0), s, scratch);
         const bool by_photon = s.search == search_kind::exact_k && n >= s.k;
         auto& found = scratch.found_;

@@ -84,37 +84,7 @@ public:
 
     /// The estimates: final once the search has finished. Before that they are running estimates if
     /// shows_running_estimate(), else incomplete sums, which are too small.
-    knn_estimates<B> estimates()
-    {
-        B& b = *in_.b;
-        const auto n = in_.points->size();
-        const auto& s = in_.s;
-        knn_estimates<B> e{b.template make<glm::vec4>(n), b.template make<glm::uvec2>(n),
-            b.template make<glm::vec4>(s.errors ? n : 0)};
-        // Errors are 0 until photons are gathered; the contents of a new buffer are undefined.
-        if (s.errors && stage_ != stage::gather && stage_ != stage::finished)
-            b.template run<kernels::zero_vectors>(n, {}, reads(), writes(e.standard_error));
-        if (gathered_.size() > 0 || n == 0) {
-            b.template run<kernels::knn_result>(n,
-                {.k = s.k, .max_radius2 = in_.max_radius2(), .min_radius2 = in_.min_radius2()},
-                reads(gathered_, found_), writes(e.irradiance, e.used));
-            return e;
-        }
-        if (stage_ == stage::radius) {
-            b.template run<kernels::no_estimate>(
-                n, {.radius2 = in_.max_radius2()}, reads(radius_search_->visited()), writes(e.irradiance, e.used));
-            return e;
-        }
-        auto errors = s.errors ? std::move(e.standard_error) : b.template make<glm::vec4>(n);
-        b.template run<kernels::irradiance_estimate>(n,
-            {.norm = detail::entry_of(s.filter).norm,
-                .min_radius2 = in_.min_radius2(),
-                .left_out = s.bias == bias_kind::unbiased ? 1u : 0u},
-            reads(radius_, sum_, squares_, tally_), writes(e.irradiance, e.used, errors));
-        if (s.errors)
-            e.standard_error = std::move(errors);
-        return e;
-    }
+    knn_estimates<B> estimates();
 
 private:
     enum class stage { grow, radius, gather, finished };
@@ -133,59 +103,11 @@ private:
             next_stage();
     }
 
-    void start_growing()
-    {
-        stage_ = stage::grow;
-        gathered_ = in_.template make<glm::vec4>();
-        found_ = in_.template make<glm::uvec4>();
-        cursor_ = in_.template make<glm::uvec4>();
-        in_.b->template run<kernels::knn_start>(in_.points->size(),
-            {.grid = in_.map->cells_of, .searching = in_.searching() ? 1u : 0u}, reads(*in_.points),
-            writes(gathered_, found_, cursor_));
-    }
+    void start_growing();
 
-    void start_gathering()
-    {
-        stage_ = stage::gather;
-        sum_ = in_.template make<glm::vec4>();
-        compensation_ = in_.template make<glm::vec4>();
-        squares_ = in_.template make<glm::vec4>();
-        cursor_ = in_.template make<glm::uvec4>();
-        tally_ = in_.template make<glm::uvec4>();
-        in_.b->template run<kernels::gather_start>(in_.points->size(), {.searching = in_.searching() ? 1u : 0u},
-            reads(*in_.points, chosen_), writes(sum_, compensation_, squares_, cursor_, tally_));
-    }
+    void start_gathering();
 
-    void next_stage()
-    {
-        switch (stage_) {
-        case stage::grow:
-            if (shows_running_estimate(in_.s)) {
-                stage_ = stage::finished; // the growing search has already summed the photons
-                return;
-            }
-            radius_ = in_.template make<glm::vec4>();
-            chosen_ = in_.template make<glm::uvec4>();
-            in_.b->template run<kernels::grown_radius>(in_.points->size(),
-                {.k = in_.s.k, .max_radius2 = in_.max_radius2()}, reads(gathered_, found_), writes(radius_, chosen_));
-            gathered_ = {};
-            found_ = {};
-            start_gathering();
-            return;
-        case stage::radius:
-            radius_ = std::move(radius_search_->radius);
-            chosen_ = std::move(radius_search_->chosen);
-            radius_search_.reset();
-            start_gathering();
-            return;
-        case stage::gather:
-            stage_ = stage::finished;
-            compensation_ = {};
-            cursor_ = {};
-            return;
-        case stage::finished: return;
-        }
-    }
+    void next_stage();
 
     template <class K>
     uint gather_switches() const
@@ -196,42 +118,7 @@ private:
             | in_.template together<K>();
     }
 
-    progress run_stage(uint passes)
-    {
-        B& b = *in_.b;
-        const map_buffers<B>& m = *in_.map;
-        const auto& s = in_.s;
-        switch (stage_) {
-        case stage::grow:
-            return b.template run_until_done<kernels::knn_visit>({in_.points->size(), 0u, in_.policies()},
-                {.grid = m.cells_of,
-                    .leaks = in_.leaks(),
-                    .k = s.k,
-                    .max_radius2 = in_.max_radius2(),
-                    .visits = s.visits_per_pass,
-                    .ranges = s.ranges_per_pass},
-                reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
-                    in_.photon_normals(), m.photons.powers),
-                writes(gathered_, found_, cursor_), passes);
-        case stage::radius: return radius_search_->advance(passes);
-        case stage::gather: {
-            return b.template run_until_done<kernels::gather_photons>(
-                {in_.points->size(), 0u, gather_switches<kernels::gather_photons>()},
-                {.grid = m.cells_of,
-                    .leaks = in_.leaks(),
-                    .min_radius2 = in_.min_radius2(),
-                    .visits = s.visits_per_pass,
-                    .ranges = s.ranges_per_pass},
-                reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
-                    in_.photon_normals(), m.list, m.photons.powers),
-                writes(radius_, chosen_, sum_, compensation_, squares_, cursor_, tally_), passes);
-        }
-        case stage::finished: break;
-        }
-        progress nothing;
-        nothing.finished = true;
-        return nothing;
-    }
+    progress run_stage(uint passes);
 
     detail::search_inputs<B> in_;
     stage stage_ = stage::finished;
@@ -240,6 +127,137 @@ private:
     vectors gathered_, radius_, sum_, compensation_, squares_;
     buffer_of<B, glm::uvec4> found_, chosen_, cursor_, tally_;
 };
+
+// What runs kernels is defined outside of the class: inside, `extern template` would not spare a file its
+// instantiation.
+
+template <backend B>
+knn_estimates<B> knn_search_by_kernels<B>::estimates()
+{
+    B& b = *in_.b;
+    const auto n = in_.points->size();
+    const auto& s = in_.s;
+    knn_estimates<B> e{
+        b.template make<glm::vec4>(n), b.template make<glm::uvec2>(n), b.template make<glm::vec4>(s.errors ? n : 0)};
+    // Errors are 0 until photons are gathered; the contents of a new buffer are undefined.
+    if (s.errors && stage_ != stage::gather && stage_ != stage::finished)
+        b.template run<kernels::zero_vectors>(n, {}, reads(), writes(e.standard_error));
+    if (gathered_.size() > 0 || n == 0) {
+        b.template run<kernels::knn_result>(n,
+            {.k = s.k, .max_radius2 = in_.max_radius2(), .min_radius2 = in_.min_radius2()}, reads(gathered_, found_),
+            writes(e.irradiance, e.used));
+        return e;
+    }
+    if (stage_ == stage::radius) {
+        b.template run<kernels::no_estimate>(
+            n, {.radius2 = in_.max_radius2()}, reads(radius_search_->visited()), writes(e.irradiance, e.used));
+        return e;
+    }
+    auto errors = s.errors ? std::move(e.standard_error) : b.template make<glm::vec4>(n);
+    b.template run<kernels::irradiance_estimate>(n,
+        {.norm = detail::entry_of(s.filter).norm,
+            .min_radius2 = in_.min_radius2(),
+            .left_out = s.bias == bias_kind::unbiased ? 1u : 0u},
+        reads(radius_, sum_, squares_, tally_), writes(e.irradiance, e.used, errors));
+    if (s.errors)
+        e.standard_error = std::move(errors);
+    return e;
+}
+
+template <backend B>
+void knn_search_by_kernels<B>::start_growing()
+{
+    stage_ = stage::grow;
+    gathered_ = in_.template make<glm::vec4>();
+    found_ = in_.template make<glm::uvec4>();
+    cursor_ = in_.template make<glm::uvec4>();
+    in_.b->template run<kernels::knn_start>(in_.points->size(),
+        {.grid = in_.map->cells_of, .searching = in_.searching() ? 1u : 0u}, reads(*in_.points),
+        writes(gathered_, found_, cursor_));
+}
+
+template <backend B>
+void knn_search_by_kernels<B>::start_gathering()
+{
+    stage_ = stage::gather;
+    sum_ = in_.template make<glm::vec4>();
+    compensation_ = in_.template make<glm::vec4>();
+    squares_ = in_.template make<glm::vec4>();
+    cursor_ = in_.template make<glm::uvec4>();
+    tally_ = in_.template make<glm::uvec4>();
+    in_.b->template run<kernels::gather_start>(in_.points->size(), {.searching = in_.searching() ? 1u : 0u},
+        reads(*in_.points, chosen_), writes(sum_, compensation_, squares_, cursor_, tally_));
+}
+
+template <backend B>
+void knn_search_by_kernels<B>::next_stage()
+{
+    switch (stage_) {
+    case stage::grow:
+        if (shows_running_estimate(in_.s)) {
+            stage_ = stage::finished; // the growing search has already summed the photons
+            return;
+        }
+        radius_ = in_.template make<glm::vec4>();
+        chosen_ = in_.template make<glm::uvec4>();
+        in_.b->template run<kernels::grown_radius>(in_.points->size(), {.k = in_.s.k, .max_radius2 = in_.max_radius2()},
+            reads(gathered_, found_), writes(radius_, chosen_));
+        gathered_ = {};
+        found_ = {};
+        start_gathering();
+        return;
+    case stage::radius:
+        radius_ = std::move(radius_search_->radius);
+        chosen_ = std::move(radius_search_->chosen);
+        radius_search_.reset();
+        start_gathering();
+        return;
+    case stage::gather:
+        stage_ = stage::finished;
+        compensation_ = {};
+        cursor_ = {};
+        return;
+    case stage::finished: return;
+    }
+}
+
+template <backend B>
+progress knn_search_by_kernels<B>::run_stage(uint passes)
+{
+    B& b = *in_.b;
+    const map_buffers<B>& m = *in_.map;
+    const auto& s = in_.s;
+    switch (stage_) {
+    case stage::grow:
+        return b.template run_until_done<kernels::knn_visit>({in_.points->size(), 0u, in_.policies()},
+            {.grid = m.cells_of,
+                .leaks = in_.leaks(),
+                .k = s.k,
+                .max_radius2 = in_.max_radius2(),
+                .visits = s.visits_per_pass,
+                .ranges = s.ranges_per_pass},
+            reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
+                in_.photon_normals(), m.photons.powers),
+            writes(gathered_, found_, cursor_), passes);
+    case stage::radius: return radius_search_->advance(passes);
+    case stage::gather: {
+        return b.template run_until_done<kernels::gather_photons>(
+            {in_.points->size(), 0u, gather_switches<kernels::gather_photons>()},
+            {.grid = m.cells_of,
+                .leaks = in_.leaks(),
+                .min_radius2 = in_.min_radius2(),
+                .visits = s.visits_per_pass,
+                .ranges = s.ranges_per_pass},
+            reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
+                in_.photon_normals(), m.list, m.photons.powers),
+            writes(radius_, chosen_, sum_, compensation_, squares_, cursor_, tally_), passes);
+    }
+    case stage::finished: break;
+    }
+    progress nothing;
+    nothing.finished = true;
+    return nothing;
+}
 
 /// The search on backend B: by kernels, unless the backend has an override (its folder overrides/).
 /// \snippet snippets.cpp knn_search

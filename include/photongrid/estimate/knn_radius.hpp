@@ -22,17 +22,7 @@ template <backend B>
 class knn_radius {
 public:
     /// `in.s.search` must be exact_k or fixed_radius.
-    explicit knn_radius(const detail::search_inputs<B>& in) : in_(in)
-    {
-        if (in_.s.search == search_kind::exact_k) {
-            start_distances();
-            return;
-        }
-        radius = in_.template make<glm::vec4>();
-        chosen = in_.template make<glm::uvec4>();
-        in_.b->template run<kernels::given_radius>(
-            in_.points->size(), {.radius2 = in_.max_radius2()}, reads(), writes(radius, chosen));
-    }
+    explicit knn_radius(const detail::search_inputs<B>& in);
 
     /// Runs at most `passes` more passes over the points that are not done.
     progress advance(uint passes = nowhere)
@@ -55,37 +45,8 @@ public:
 private:
     enum class stage { distance, tie, finished };
 
-    void start_distances()
-    {
-        stage_ = stage::distance;
-        pivots_ = in_.template make<glm::vec4>();
-        counts_ = in_.template make<glm::uvec4>();
-        outer_ = in_.template make<glm::uvec4>();
-        bracket_ = in_.template make<glm::uvec4>();
-        cursor_ = in_.template make<glm::uvec4>();
-        tally_ = in_.template make<glm::uvec4>();
-        in_.b->template run<kernels::kth_guess>({in_.points->size(), 0u, in_.template together<kernels::kth_guess>()},
-            {.grid = in_.map->cells_of,
-                .k = in_.s.k,
-                .max_radius2 = in_.max_radius2(),
-                .rows = 1023u,
-                .searching = in_.searching() ? 1u : 0u},
-            reads(*in_.points, in_.map->cells), writes(pivots_, counts_, outer_, bracket_, cursor_, tally_));
-    }
-    void start_ties()
-    {
-        stage_ = stage::tie;
-        radius = in_.template make<glm::vec4>();
-        chosen = in_.template make<glm::uvec4>();
-        auto ids = in_.template make<glm::uvec4>();
-        in_.b->template run<kernels::kth_result>(in_.points->size(),
-            {.k = in_.s.k, .photons = in_.map->photons.size(), .max_radius2 = in_.max_radius2()},
-            reads(bracket_, tally_), writes(radius, chosen, ids, counts_, cursor_));
-        bracket_ = std::move(ids);
-        pivots_ = {};
-        outer_ = {};
-        tally_ = {};
-    }
+    void start_distances();
+    void start_ties();
     void finish()
     {
         stage_ = stage::finished;
@@ -94,35 +55,7 @@ private:
         cursor_ = {};
     }
 
-    progress run_stage(uint passes)
-    {
-        B& b = *in_.b;
-        const map_buffers<B>& m = *in_.map;
-        const auto& s = in_.s;
-        if (stage_ == stage::distance)
-            return b.template run_until_done<kernels::kth_distance>(
-                {in_.points->size(), 0u, in_.policies() | in_.template together<kernels::kth_distance>()},
-                {.grid = m.cells_of,
-                    .leaks = in_.leaks(),
-                    .k = s.k,
-                    .max_radius2 = in_.max_radius2(),
-                    .visits = s.visits_per_pass,
-                    .ranges = s.ranges_per_pass},
-                reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
-                    in_.photon_normals()),
-                writes(pivots_, counts_, outer_, bracket_, cursor_, tally_), passes);
-        return b.template run_until_done<kernels::kth_tie>(
-            {in_.points->size(), 0u, in_.policies() | in_.template together<kernels::kth_tie>()},
-            {.grid = m.cells_of,
-                .leaks = in_.leaks(),
-                .k = s.k,
-                .photons = m.photons.size(),
-                .visits = s.visits_per_pass,
-                .ranges = s.ranges_per_pass},
-            reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
-                in_.photon_normals(), m.list, radius),
-            writes(chosen, bracket_, counts_, cursor_), passes);
-    }
+    progress run_stage(uint passes);
 
     detail::search_inputs<B> in_;
     stage stage_ = stage::finished;
@@ -130,6 +63,88 @@ private:
     buffer_of<B, glm::vec4> pivots_;
     buffer_of<B, glm::uvec4> counts_, outer_, bracket_, cursor_, tally_;
 };
+
+// What runs kernels is defined outside of the class: inside, `extern template` would not spare a file its
+// instantiation.
+
+template <backend B>
+knn_radius<B>::knn_radius(const detail::search_inputs<B>& in) : in_(in)
+{
+    if (in_.s.search == search_kind::exact_k) {
+        start_distances();
+        return;
+    }
+    radius = in_.template make<glm::vec4>();
+    chosen = in_.template make<glm::uvec4>();
+    in_.b->template run<kernels::given_radius>(
+        in_.points->size(), {.radius2 = in_.max_radius2()}, reads(), writes(radius, chosen));
+}
+
+template <backend B>
+void knn_radius<B>::start_distances()
+{
+    stage_ = stage::distance;
+    pivots_ = in_.template make<glm::vec4>();
+    counts_ = in_.template make<glm::uvec4>();
+    outer_ = in_.template make<glm::uvec4>();
+    bracket_ = in_.template make<glm::uvec4>();
+    cursor_ = in_.template make<glm::uvec4>();
+    tally_ = in_.template make<glm::uvec4>();
+    in_.b->template run<kernels::kth_guess>({in_.points->size(), 0u, in_.template together<kernels::kth_guess>()},
+        {.grid = in_.map->cells_of,
+            .k = in_.s.k,
+            .max_radius2 = in_.max_radius2(),
+            .rows = 1023u,
+            .searching = in_.searching() ? 1u : 0u},
+        reads(*in_.points, in_.map->cells), writes(pivots_, counts_, outer_, bracket_, cursor_, tally_));
+}
+
+template <backend B>
+void knn_radius<B>::start_ties()
+{
+    stage_ = stage::tie;
+    radius = in_.template make<glm::vec4>();
+    chosen = in_.template make<glm::uvec4>();
+    auto ids = in_.template make<glm::uvec4>();
+    in_.b->template run<kernels::kth_result>(in_.points->size(),
+        {.k = in_.s.k, .photons = in_.map->photons.size(), .max_radius2 = in_.max_radius2()}, reads(bracket_, tally_),
+        writes(radius, chosen, ids, counts_, cursor_));
+    bracket_ = std::move(ids);
+    pivots_ = {};
+    outer_ = {};
+    tally_ = {};
+}
+
+template <backend B>
+progress knn_radius<B>::run_stage(uint passes)
+{
+    B& b = *in_.b;
+    const map_buffers<B>& m = *in_.map;
+    const auto& s = in_.s;
+    if (stage_ == stage::distance)
+        return b.template run_until_done<kernels::kth_distance>(
+            {in_.points->size(), 0u, in_.policies() | in_.template together<kernels::kth_distance>()},
+            {.grid = m.cells_of,
+                .leaks = in_.leaks(),
+                .k = s.k,
+                .max_radius2 = in_.max_radius2(),
+                .visits = s.visits_per_pass,
+                .ranges = s.ranges_per_pass},
+            reads(
+                *in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(), in_.photon_normals()),
+            writes(pivots_, counts_, outer_, bracket_, cursor_, tally_), passes);
+    return b.template run_until_done<kernels::kth_tie>(
+        {in_.points->size(), 0u, in_.policies() | in_.template together<kernels::kth_tie>()},
+        {.grid = m.cells_of,
+            .leaks = in_.leaks(),
+            .k = s.k,
+            .photons = m.photons.size(),
+            .visits = s.visits_per_pass,
+            .ranges = s.ranges_per_pass},
+        reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(), in_.photon_normals(),
+            m.list, radius),
+        writes(chosen, bracket_, counts_, cursor_), passes);
+}
 
 } // namespace photongrid
 

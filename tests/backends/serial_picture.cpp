@@ -1,7 +1,6 @@
-#define PHOTONGRID_PICTURES_COMPILED_HERE
-#include "serial_pictures.hpp"
-
 #include "serial_picture.hpp"
+
+#include "serial_pictures.hpp"
 
 photongrid::image photongrid::serial_picture(const scene& s, const render_settings& settings)
 {

@@ -1,0 +1,45 @@
+// The algorithms and pictures that photongrid::renderer compiles for each backend where PHOTONGRID_COMPILES_ALGORITHMS
+// is defined (backends/any/<name>.cpp). A file that links it declares them extern and does not compile them again:
+//
+//     namespace photongrid {
+//     PHOTONGRID_ALGORITHMS(extern, gl_backend)
+//     } // namespace photongrid
+//
+// Only tests do so: it would make each user's build of photongrid::renderer longer.
+#pragma once
+
+#include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/estimate/knn_neighbours.hpp>
+#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/fitting_grid.hpp>
+#include <photongrid/render/progressive_render.hpp>
+
+#define PHOTONGRID_ALGORITHMS(EXTERN, B)                                                                               \
+    EXTERN template sort_report bitonic_sort(B&, buffer_of<B, glm::uvec2>&);                                           \
+    EXTERN template buffer_of<B, glm::uvec2> grid_index(B&, const buffer_of<B, glm::uvec2>&, uint);                    \
+    EXTERN template map_buffers<B> sorted_map(B&, photons<B>, const grid&, uint);                                      \
+    EXTERN template routed_cells<B> stencil_route(B&, const photons<B>&, const grid&, uint, uint, uint);               \
+    EXTERN template map_buffers<B> routed_map(B&, photons<B>, const grid&, uint, uint, uint);                          \
+    EXTERN template grid fitting_grid(B&, const photons<B>&, uint, float);                                             \
+    EXTERN template class knn_radius<B>;                                                                               \
+    EXTERN template class knn_search_by_kernels<B>;                                                                    \
+    EXTERN template class knn_search<B>;                                                                               \
+    EXTERN template neighbour_lists<B> knn_neighbours(                                                                 \
+        B&, const map_buffers<B>&, const buffer_of<B, glm::vec4>&, const knn_settings&);                               \
+    EXTERN template neighbour_lists<B> knn_neighbours(B&, const map_buffers<B>&, const buffer_of<B, glm::vec4>&,       \
+        const buffer_of<B, glm::vec4>&, const knn_settings&);
+
+#define PHOTONGRID_PICTURES(EXTERN, B)                                                                                 \
+    EXTERN template device_scene<B> upload_scene(B&, const scene&);                                                    \
+    EXTERN template traced_photons<B> trace_photons(                                                                   \
+        B&, const scene&, const device_scene<B>&, const render_settings&, const render_observer&);                     \
+    EXTERN template void correct_edges(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&,                     \
+        const buffer_of<B, glm::vec4>&, knn_estimates<B>&, filter_kind, float);                                        \
+    EXTERN template built_map<B> build_map(B&, const scene&, const render_settings&, const render_observer&);          \
+    EXTERN template rendered draw(                                                                                     \
+        B&, const built_map<B>&, const camera&, const render_settings&, const render_observer&);                       \
+    EXTERN template class view_pass<B>;                                                                                \
+    EXTERN template pass_pixels draw_pass(                                                                             \
+        B&, const built_map<B>&, const camera&, const render_settings&, const render_observer&, render_stats&);        \
+    EXTERN template rendered render(B&, const scene&, const render_settings&, const render_observer&);                 \
+    EXTERN template class progressive_render<B>;
