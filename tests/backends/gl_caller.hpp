@@ -1,6 +1,7 @@
 // A caller with an OpenGL context of its own.
 #pragma once
 
+#include "gl_broken_kernels.hpp"
 #include "gl_state.hpp"
 
 #include "gl_algorithms.hpp"
@@ -20,23 +21,6 @@
 
 namespace photongrid::testing {
 namespace {
-
-    namespace test_kernels {
-        struct broken {
-            struct Params {
-                uint unused;
-            };
-            Params args{};
-            static constexpr std::string_view path = "broken.glsl";
-#include <photongrid/backend/begin.hpp>
-            OUTPUT(0, uint, value)
-            void kernel(uint i) { value = i; }
-#include <photongrid/backend/end.hpp>
-        };
-    } // namespace test_kernels
-    constexpr text_file test_texts[] = {{"tests/broken.glsl",
-        "struct Params {\n    uint unused;\n};\nPARAMS(Params)\nOUTPUT(0, uint, value)\nvoid kernel(uint i) { value = "
-        "i.w; }\n"}};
 
     template <class T>
     std::span<const T> view(const std::vector<T>& v)
