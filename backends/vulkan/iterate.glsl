@@ -5,6 +5,8 @@
 //
 // control_ has eight words per pass: workgroups in x, y, z for the indirect dispatch, the length of the list, and the
 // number of elements that are not done. launch_.z: this pass; launch_.w: offset of its elements from those of the list.
+//
+// main() is one function, because its steps, from barrier to barrier, share what is known of the invocation's element.
 layout(std430, binding = 16) readonly buffer listed_block_ { uint listed_[]; };
 layout(std430, binding = 17) buffer next_block_ { uint next_[]; };
 layout(std430, binding = 18) buffer control_block_ { uint control_[]; };

@@ -98,7 +98,8 @@ struct gathered {
     uint held = 0;
 };
 
-/// Sums the photons within the radius, as gather_photons.glsl does, from the packet's distances.
+/// Sums the photons within the radius, as gather_photons.glsl does, from the packet's distances. It is one function,
+/// because all of it adds to the same sums, which the compiler keeps in registers.
 template <bool ERRORS>
 HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& near, std::vector<uint>& at_radius)
 {

@@ -8,7 +8,8 @@
 // If a query point moves by s, the distance to its k-th nearest photon changes by at most s. So that distance lies in a
 // narrow band around the distance of the query before: photons nearer than the band are counted, those in the band are
 // kept, and the k-th is selected among these few. The counts show whether the k-th is in the band. If not, the scan is
-// repeated without the band; if the packet's radius is too small, a new packet is made.
+// repeated without the band; if the packet's radius is too small, a new packet is made. The file is long because the
+// steps of this search are of use to no other.
 #include <photongrid/backends/cpu/overrides/grow_simd.hpp>
 #include <photongrid/estimate/kth_guess.kernel.hpp>
 
@@ -150,6 +151,8 @@ inline float distance_between(const glm::vec3& a, const glm::vec3& b)
     return std::sqrt(x * x + y * y + z * z);
 }
 
+/// Searches for the points order[begin] to order[end - 1]. It is one function, because most of its variables pass from
+/// point to point and from packet to packet.
 template <int POLICIES>
 HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::size_t end)
 {

@@ -4,6 +4,8 @@
 // LEAVE_OUT excludes the photon that sets the radius: of N photons, N - 1 lie inside the disc whose radius is the
 // largest distance, and with those the mean of the estimate is right for every filter (Garcia Hernandez et al. 2012;
 // docs/design/decisions.md).
+//
+// The kernel is one function, because its innermost loop changes nearly all of its variables.
 #include <photongrid/map/grid.glsl>
 
 struct Params {

@@ -6,6 +6,8 @@
 // scans suffice.
 //
 // The result is the squared distance of a photon, independent of the pivots and therefore the same on every device.
+//
+// The kernel is one function, because it is one state machine over local copies of the states.
 #include <photongrid/map/grid.glsl>
 #include <photongrid/estimate/distance_key.glsl>
 

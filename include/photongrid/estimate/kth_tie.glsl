@@ -1,5 +1,6 @@
 // If several photons have the k-th distance, those with the smallest ids belong to the k nearest. This kernel finds the
-// last such id: scans count the ids up to four pivots, as kth_distance.glsl counts distances.
+// last such id: scans count the ids up to four pivots, as kth_distance.glsl counts distances. The kernel is one
+// function, because it is one state machine over local copies of the states.
 #include <photongrid/map/grid.glsl>
 
 struct Params {

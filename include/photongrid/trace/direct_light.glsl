@@ -1,5 +1,7 @@
 // Direct light at the ends of eye rays (2.4): shadow rays to every light, with stratified samples of area lights. The
 // number of samples per pass is bounded. Irradiance, W/m^2.
+//
+// The kernel is one function, because its loop over samples uses nearly all that its loop over lights has computed.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
