@@ -15,7 +15,7 @@
 #
 # Without options: clang-format, the serial backend under the address and undefined behaviour sanitizers (build-asan/),
 # clang 14 (build-clang/) and its fuzzer on the scene reader for 20 s, in full 300 s (build-fuzz/), then everything with
-# g++, assertions on (build-tests/), and some of the benches. It stops where something fails.
+# g++, assertions on (build-tests/). It stops where something fails.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
@@ -142,14 +142,10 @@ else
 fi
 
 echo "== g++, all tests"
-configure tests -DPHOTONGRID_BENCH=ON -DPHOTONGRID_FULL_TESTS=$everything
+configure tests -DPHOTONGRID_BENCH=$everything -DPHOTONGRID_FULL_TESTS=$everything
 cmake --build build-tests
 run_tests build-tests "${short[@]}"
 
-if [[ $device == any && $full == no ]]; then
-  echo "== benches, briefly"
-  bench/run.sh --smoke --built --no-install
-fi
 if [[ $full == yes && $device == any ]]; then
   echo "== GPU-assisted validation"
   PHOTONGRID_GPU_AV=1 run_tests build-tests --tests-regex '^on_vulkan(_heavy)?$'

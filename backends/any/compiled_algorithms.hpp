@@ -33,6 +33,15 @@
     EXTERN template device_scene<B> upload_scene(B&, const scene&);                                                    \
     EXTERN template traced_photons<B> trace_photons(                                                                   \
         B&, const scene&, const device_scene<B>&, const render_settings&, const render_observer&);                     \
+    EXTERN template uint trace_batch(                                                                                  \
+        B&, const device_scene<B>&, detail::photon_frames<B>&, uint, uint, const render_settings&);                    \
+    EXTERN template void detail::trace_eye_rays(B&, const device_scene<B>&, const camera&, const render_settings&,     \
+        const detail::raster&, uint, launch, detail::eye_hits<B>&);                                                    \
+    EXTERN template void detail::direct_light(B&, const device_scene<B>&, const detail::eye_hits<B>&,                  \
+        const render_settings&, uint, launch, buffer_of<B, glm::vec4>&);                                               \
+    EXTERN template class photon_tracing<B>;                                                                           \
+    EXTERN template buffer_of<B, glm::vec4> covered_shares(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&, \
+        const buffer_of<B, glm::vec4>&, const buffer_of<B, glm::vec4>&, filter_kind, float);                           \
     EXTERN template void correct_edges(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&,                     \
         const buffer_of<B, glm::vec4>&, knn_estimates<B>&, filter_kind, float);                                        \
     EXTERN template built_map<B> build_map(B&, const scene&, const render_settings&, const render_observer&);          \

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cpu_algorithms.hpp"
+#include <photongrid/backends/cpu/overrides/radix_sort.hpp>
 
 #include "../map/photon_sets.hpp"
 #include "serial_algorithms.hpp"

@@ -1,6 +1,5 @@
-// All backend tests on the cpu backend with its overrides, on three threads whatever the machine has, and those of its
-// own. The overrides are photongrid::cpu_compiled's.
-#include "cpu_algorithms.hpp"
+// All backend tests on the cpu backend with its overrides, which are photongrid::cpu_compiled's, and those of its own.
+#include "on_cpu.hpp"
 
 #include "../backend/number_tests.hpp"
 #include "../backend/verb_tests.hpp"
@@ -18,14 +17,6 @@
 #include "cpu_backend_tests.hpp"
 
 namespace photongrid::testing {
-
-struct cpu_tag {
-    using type = cpu_backend;
-    static constexpr const char* name = "cpu";
-    /// It sorts by digits, in fewer passes than the network's, and adds up photons in another order than the kernels.
-    static constexpr bool sorts_by_network = false, adds_as_serial = false;
-    static std::unique_ptr<type> make() { return std::make_unique<type>(3u); }
-};
 
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, verbs, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, algorithms, ::testing::Types<cpu_tag>, tag_names);

@@ -6,6 +6,7 @@
 #include "../estimate/estimator_tests.hpp"
 #include "../estimate/neighbour_tests.hpp"
 #include "../map/algorithm_tests.hpp"
+#include "serial_pictures.hpp"
 
 namespace photongrid::testing {
 

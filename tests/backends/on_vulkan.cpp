@@ -1,6 +1,5 @@
 // All backend tests on Vulkan with its overrides, with the validation layer watching.
-#include "vulkan_algorithms.hpp"
-#include <photongrid/trace/bounce_photon.kernel.hpp>
+#include "on_vulkan.hpp"
 
 #include "../backend/number_tests.hpp"
 #include "../backend/verb_tests.hpp"
@@ -15,25 +14,10 @@
 #include "../render/scene_picture_tests.hpp"
 #include "../trace/box_tests.hpp"
 #include "../trace/ray_tests.hpp"
-#include "vulkan_kernels.hpp"
 
-#include <all_kernels.hpp>
-#include <photongrid/backends/vulkan/vulkan.hpp>
+#include <photongrid/trace/bounce_photon.kernel.hpp>
 
 namespace photongrid::testing {
-
-struct vulkan_tag {
-    using type = vulkan_backend;
-    static constexpr const char* name = "vulkan";
-    static constexpr bool sorts_by_network = false; // up to four steps of it a pass
-    /// PHOTONGRID_GPU_AV=1 has the layer watch inside the kernels too: tests/run.sh --full.
-    static std::unique_ptr<type> make()
-    {
-        auto b = std::make_unique<type>(
-            vulkan_options{.validation = true, .gpu_assisted = std::getenv("PHOTONGRID_GPU_AV") != nullptr});
-        return b;
-    }
-};
 
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, verbs, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, algorithms, ::testing::Types<vulkan_tag>, tag_names);
@@ -48,18 +32,6 @@ INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases_of_numbers, ::testing::Types<v
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, edges, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, map_files, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, scene_files, ::testing::Types<vulkan_tag>, tag_names);
-
-/// After all other tests of this program: the layer had nothing to say.
-class no_validation_messages : public ::testing::Environment {
-    void TearDown() override
-    {
-        std::string reason;
-        if (auto* b = shared_backend<vulkan_tag>(reason); b != nullptr)
-            for (const auto& m : b->validation_messages())
-                ADD_FAILURE() << m;
-    }
-};
-const auto* const watched = ::testing::AddGlobalTestEnvironment(new no_validation_messages);
 
 TEST(bitonic_sort_on_vulkan, takes_one_to_four_steps_a_pass)
 {
@@ -107,26 +79,6 @@ TEST(specialisation, a_scene_without_glass_and_lamps_has_smaller_kernels)
     EXPECT_GT(instructions(ring), 100u);
     EXPECT_LT(instructions(ring), instructions(ring | has_glass | has_area_lights));
     EXPECT_LT(instructions(ring), instructions(ring | has_spheres));
-}
-
-// Hard case G6.
-TEST(kernels_on_vulkan, every_kernel_compiles_to_valid_spirv_without_contraction)
-{
-    std::string reason;
-    auto* b = shared_backend<vulkan_tag>(reason);
-    if (b == nullptr)
-        GTEST_SKIP() << reason;
-    expect_valid(*b, all_kernels<kernel_list>{});
-}
-
-TEST(kernels_on_vulkan, parameters_stand_where_cpp_has_them)
-{
-    std::string reason;
-    auto* b = shared_backend<vulkan_tag>(reason);
-    if (b == nullptr)
-        GTEST_SKIP() << reason;
-    expect_equal_layouts(*b, all_kernels<kernel_list>{});
-    static_assert(sizeof(kernels::Grid) % 16 == 0);
 }
 
 } // namespace photongrid::testing

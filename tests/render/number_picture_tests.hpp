@@ -6,8 +6,6 @@
 #include "../backends/serial_pictures.hpp"
 #include "../scene/test_scenes.hpp"
 
-#include <photongrid/render/shade.kernel.hpp>
-
 #include <algorithm>
 
 namespace photongrid::testing {
@@ -16,30 +14,6 @@ template <class Tag>
 class hard_cases_of_pictures : public on_backend<Tag> {
 };
 TYPED_TEST_SUITE_P(hard_cases_of_pictures);
-
-TYPED_TEST_P(hard_cases_of_pictures, h2_many_samples_of_a_constant_stay_that_constant)
-{
-    // shade.glsl adds a share of each sample to the pixel: each addition rounds once, and so does the share.
-    auto& b = this->b();
-    for (const uint samples : {4096u, 3000u}) {
-        const std::vector<glm::vec4> light = {{0.1f, 1.0f / 3, 1000.0f, 0.0f}};
-        const auto at = b.upload(std::span<const glm::vec4>(light)),
-                   nothing = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(1)));
-        const auto none = b.upload(std::span<const glm::uvec2>(std::vector<glm::uvec2>(1)));
-        auto pixel = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(1))),
-             searches = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(1)));
-        for (uint i = 0; i < samples; ++i)
-            b.template run<kernels::shade>(1, {.share = 1.0f / static_cast<float>(samples)},
-                reads(nothing, nothing, nothing, nothing, at, nothing, nothing, none), writes(pixel, searches));
-        const auto mean = b.download(pixel)[0];
-        double largest = 0;
-        for (int c = 0; c < 3; ++c)
-            largest = std::max(largest, std::abs(static_cast<double>(mean[c]) / static_cast<double>(light[0][c]) - 1));
-        this->report("H2_" + std::to_string(samples),
-            "mean of " + std::to_string(samples) + " equal samples, relative error:", largest);
-        EXPECT_LE(largest, (0.5 * samples + 2) * 0x1p-24); // partial sums are half the whole on the average
-    }
-}
 
 TYPED_TEST_P(hard_cases_of_pictures, h4_pixels_that_are_not_finite_are_counted_and_black)
 {
@@ -67,7 +41,6 @@ TYPED_TEST_P(hard_cases_of_pictures, h4_pixels_that_are_not_finite_are_counted_a
     EXPECT_EQ(changed, 0u); // all others keep every bit
 }
 
-REGISTER_TYPED_TEST_SUITE_P(hard_cases_of_pictures, h2_many_samples_of_a_constant_stay_that_constant,
-    h4_pixels_that_are_not_finite_are_counted_and_black);
+REGISTER_TYPED_TEST_SUITE_P(hard_cases_of_pictures, h4_pixels_that_are_not_finite_are_counted_and_black);
 
 } // namespace photongrid::testing

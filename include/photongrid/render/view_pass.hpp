@@ -66,40 +66,10 @@ public:
     uint rays() const { return (is_preview() ? 1u : settings_.view.spp) * branches_; }
 
     /// Traces eye rays through mirrors and glass to their ends (2.4).
-    bool trace_eye(uint ray)
-    {
-        if (ray < branches_ && kept_[ray]) {
-            samples_ = std::move(kept_[ray]);
-            kept_[ray].reset();
-            lit_ = true;
-            return true;
-        }
-        if (!samples_) {
-            const auto n = canvas_.raster.size();
-            samples_.emplace(eye_samples<B>{detail::eye_hits<B>(b_, n), b_.template make<glm::vec4>(n)});
-            done_ = 0;
-            lit_ = false;
-        }
-        return over_pixels(stats_.trace_rays, [&](launch pixels) {
-            detail::trace_eye_rays(b_, built_.scene, view_, settings_, canvas_.raster, ray, pixels, samples_->hits);
-        });
-    }
+    bool trace_eye(uint ray);
 
     /// Traces shadow rays from there to the lights (2.4).
-    bool direct_light(uint ray)
-    {
-        if (lit_)
-            return true;
-        const bool drawn = settings_.output.only == light_part::all || settings_.output.only == light_part::direct;
-        return over_pixels(stats_.trace_rays, [&](launch pixels) {
-            if (drawn) {
-                detail::direct_light(b_, built_.scene, samples_->hits, light_settings(), ray, pixels, samples_->direct);
-            } else {
-                b_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->direct));
-                b_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->hits.emissions));
-            }
-        });
-    }
+    bool direct_light(uint ray);
 
     /// Estimates the irradiance there from the photon map (2.3).
     bool irradiance(uint)
@@ -124,22 +94,7 @@ public:
     }
 
     /// Adds the radiance of direct and indirect light to the pixels (2.4).
-    bool shade(uint ray)
-    {
-        detail::time_stage(b_, stats_.radiance_estimate, [&] {
-            const float share = is_preview() ? 1.0f : 1.0f / static_cast<float>(settings_.view.spp);
-            const auto found = shade(std::move(*search_).estimates(), share, canvas_.pixels, canvas_.searches);
-            if (canvas_.errors.size() > 0)
-                b_.template run<kernels::tally_error>(canvas_.errors.size(), {},
-                    reads(samples_->hits.points, found.irradiance, found.standard_error), writes(canvas_.errors));
-        });
-        search_.reset();
-        if (is_preview())
-            kept_[ray] = std::move(samples_); // the next pass may have the same pixels
-        samples_.reset();
-        ++canvas_.rays;
-        return true;
-    }
+    bool shade(uint ray);
 
     /// The side of the pixels, in pixels of the picture.
     uint divisor() const { return options_.preview ? options_.preview->divisor : 1u; }
@@ -240,31 +195,10 @@ private:
     }
 
     knn_estimates<B> shade(
-        knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches)
-    {
-        const auto& hits = samples_->hits;
-        if (settings_.estimate.edges != edge_correction::none)
-            correct_edges(b_, built_.scene, hits.points, hits.surfaces, found, settings_.estimate.filter,
-                least_radius(built_.map.cells_of));
-        b_.template run<kernels::shade>(pixels.size(), {.share = share},
-            reads(built_.scene.records, hits.points, hits.throughputs, hits.surfaces, hits.emissions, samples_->direct,
-                found.irradiance, found.used),
-            writes(pixels, searches));
-        return found;
-    }
+        knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches);
 
-    buffer_of<B, glm::vec4> dark(std::size_t n)
-    {
-        auto light = b_.template make<glm::vec4>(n);
-        b_.template run<kernels::zero_vectors>(n, {}, reads(), writes(light));
-        return light;
-    }
-    buffer_of<B, glm::vec4> copy(const buffer_of<B, glm::vec4>& original)
-    {
-        auto light = b_.template make<glm::vec4>(original.size());
-        b_.template run<kernels::copy_light>(original.size(), {}, reads(original), writes(light));
-        return light;
-    }
+    buffer_of<B, glm::vec4> dark(std::size_t n);
+    buffer_of<B, glm::vec4> copy(const buffer_of<B, glm::vec4>& original);
 
     B& b_;
     const built_map<B>& built_;
@@ -284,6 +218,94 @@ private:
     std::uint64_t unfinished_ = 0;
     canvas<B> canvas_;
 };
+
+// What runs kernels is defined outside of the class: inside, `extern template` would not spare a file its
+// instantiation.
+
+template <backend B>
+bool view_pass<B>::trace_eye(uint ray)
+{
+    if (ray < branches_ && kept_[ray]) {
+        samples_ = std::move(kept_[ray]);
+        kept_[ray].reset();
+        lit_ = true;
+        return true;
+    }
+    if (!samples_) {
+        const auto n = canvas_.raster.size();
+        samples_.emplace(eye_samples<B>{detail::eye_hits<B>(b_, n), b_.template make<glm::vec4>(n)});
+        done_ = 0;
+        lit_ = false;
+    }
+    return over_pixels(stats_.trace_rays, [&](launch pixels) {
+        detail::trace_eye_rays(b_, built_.scene, view_, settings_, canvas_.raster, ray, pixels, samples_->hits);
+    });
+}
+
+template <backend B>
+bool view_pass<B>::direct_light(uint ray)
+{
+    if (lit_)
+        return true;
+    const bool drawn = settings_.output.only == light_part::all || settings_.output.only == light_part::direct;
+    return over_pixels(stats_.trace_rays, [&](launch pixels) {
+        if (drawn) {
+            detail::direct_light(b_, built_.scene, samples_->hits, light_settings(), ray, pixels, samples_->direct);
+        } else {
+            b_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->direct));
+            b_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->hits.emissions));
+        }
+    });
+}
+
+template <backend B>
+bool view_pass<B>::shade(uint ray)
+{
+    detail::time_stage(b_, stats_.radiance_estimate, [&] {
+        const float share = is_preview() ? 1.0f : 1.0f / static_cast<float>(settings_.view.spp);
+        const auto found = shade(std::move(*search_).estimates(), share, canvas_.pixels, canvas_.searches);
+        if (canvas_.errors.size() > 0)
+            b_.template run<kernels::tally_error>(canvas_.errors.size(), {},
+                reads(samples_->hits.points, found.irradiance, found.standard_error), writes(canvas_.errors));
+    });
+    search_.reset();
+    if (is_preview())
+        kept_[ray] = std::move(samples_); // the next pass may have the same pixels
+    samples_.reset();
+    ++canvas_.rays;
+    return true;
+}
+
+template <backend B>
+knn_estimates<B> view_pass<B>::shade(
+    knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches)
+{
+    const auto& hits = samples_->hits;
+    if (settings_.estimate.edges != edge_correction::none)
+        correct_edges(b_, built_.scene, hits.points, hits.surfaces, found, settings_.estimate.filter,
+            least_radius(built_.map.cells_of));
+    b_.template run<kernels::shade>(pixels.size(), {.share = share},
+        reads(built_.scene.records, hits.points, hits.throughputs, hits.surfaces, hits.emissions, samples_->direct,
+            found.irradiance, found.used),
+        writes(pixels, searches));
+    return found;
+}
+
+template <backend B>
+buffer_of<B, glm::vec4> view_pass<B>::dark(std::size_t n)
+{
+    auto light = b_.template make<glm::vec4>(n);
+    b_.template run<kernels::zero_vectors>(n, {}, reads(), writes(light));
+    return light;
+}
+
+template <backend B>
+buffer_of<B, glm::vec4> view_pass<B>::copy(const buffer_of<B, glm::vec4>& original)
+{
+    auto light = b_.template make<glm::vec4>(original.size());
+    b_.template run<kernels::copy_light>(original.size(), {}, reads(original), writes(light));
+    return light;
+}
 
 } // namespace photongrid
 

@@ -131,46 +131,7 @@ public:
     /// Traces one more batch of paths.
     /// \throws std::runtime_error, with the names of the lights, if paths store so few photons that tracing would not
     ///         end.
-    void advance()
-    {
-        if (finished())
-            return;
-        require_progress();
-        const uint missing = settings_.map.photons - stored_;
-        const uint frames = trace_batch(b_, device_, frames_, paths_, static_cast<uint>(t_.emitted), settings_);
-
-        auto storable = b_.template make<uint>(paths_);
-        path_tally<B> tally{b_.template make<glm::uvec4>(paths_), b_.template make<glm::uvec4>(paths_)};
-        b_.template run<kernels::tally_path>(paths_, {.paths = paths_, .frames = frames}, reads(frames_.positions),
-            writes(storable, tally.ends, tally.hits));
-        const auto sums = prefix_sums(b_, storable);
-
-        const uint emitted
-            = detail::checked_count<kernels::path_is_emitted>(b_, paths_, {.photons = missing}, reads(sums, storable));
-        if (emitted == 0) // the first path always is; otherwise tracing would never end
-            throw backend_error(b_.caps().backend + ": count<path_is_emitted>: the device returned 0; at least 1 of "
-                + std::to_string(paths_) + " paths is emitted");
-        // A path stores at most one photon per bounce, and only the last of these paths exceeds the requested number.
-        const auto found = detail::checked_count<kernels::is_found>(
-            b_, std::size_t{missing} + settings_.map.photon_depth, {.emitted = emitted}, reads(sums));
-        const uint taken = std::min(found, missing);
-        b_.template run<kernels::gather_photon>({taken, stored_},
-            {.paths = paths_, .frames = frames, .stored_before = stored_},
-            reads(sums, frames_.positions, frames_.powers, frames_.directions),
-            writes(t_.photons.positions, t_.photons.powers, t_.photons.directions));
-        if (settings_.estimate.leaks.needs_normals())
-            b_.template run<kernels::gather_normal>({taken, stored_},
-                {.paths = paths_, .frames = frames, .stored_before = stored_},
-                reads(sums, frames_.positions, frames_.powers, frames_.next_origins, frames_.next_directions),
-                writes(t_.photons.normals));
-        t_.tallies.push_back(detail::sum_tally(b_, std::move(tally), emitted));
-        t_.dropped += found - taken;
-        t_.emitted += emitted;
-        stored_ += taken;
-        if (finished())
-            b_.template run<kernels::divide_power>(settings_.map.photons,
-                {.share = 1.0f / static_cast<float>(t_.emitted)}, reads(), writes(t_.photons.powers));
-    }
+    void advance();
 
     /// The photons, after tracing has finished.
     traced_photons<B> take() { return std::move(t_); }
@@ -197,6 +158,51 @@ private:
     traced_photons<B> t_;
     uint stored_ = 0;
 };
+
+// What runs kernels is defined outside of the class: inside, `extern template` would not spare a file its
+// instantiation.
+
+template <backend B>
+void photon_tracing<B>::advance()
+{
+    if (finished())
+        return;
+    require_progress();
+    const uint missing = settings_.map.photons - stored_;
+    const uint frames = trace_batch(b_, device_, frames_, paths_, static_cast<uint>(t_.emitted), settings_);
+
+    auto storable = b_.template make<uint>(paths_);
+    path_tally<B> tally{b_.template make<glm::uvec4>(paths_), b_.template make<glm::uvec4>(paths_)};
+    b_.template run<kernels::tally_path>(paths_, {.paths = paths_, .frames = frames}, reads(frames_.positions),
+        writes(storable, tally.ends, tally.hits));
+    const auto sums = prefix_sums(b_, storable);
+
+    const uint emitted
+        = detail::checked_count<kernels::path_is_emitted>(b_, paths_, {.photons = missing}, reads(sums, storable));
+    if (emitted == 0) // the first path always is; otherwise tracing would never end
+        throw backend_error(b_.caps().backend + ": count<path_is_emitted>: the device returned 0; at least 1 of "
+            + std::to_string(paths_) + " paths is emitted");
+    // A path stores at most one photon per bounce, and only the last of these paths exceeds the requested number.
+    const auto found = detail::checked_count<kernels::is_found>(
+        b_, std::size_t{missing} + settings_.map.photon_depth, {.emitted = emitted}, reads(sums));
+    const uint taken = std::min(found, missing);
+    b_.template run<kernels::gather_photon>({taken, stored_},
+        {.paths = paths_, .frames = frames, .stored_before = stored_},
+        reads(sums, frames_.positions, frames_.powers, frames_.directions),
+        writes(t_.photons.positions, t_.photons.powers, t_.photons.directions));
+    if (settings_.estimate.leaks.needs_normals())
+        b_.template run<kernels::gather_normal>({taken, stored_},
+            {.paths = paths_, .frames = frames, .stored_before = stored_},
+            reads(sums, frames_.positions, frames_.powers, frames_.next_origins, frames_.next_directions),
+            writes(t_.photons.normals));
+    t_.tallies.push_back(detail::sum_tally(b_, std::move(tally), emitted));
+    t_.dropped += found - taken;
+    t_.emitted += emitted;
+    stored_ += taken;
+    if (finished())
+        b_.template run<kernels::divide_power>(settings_.map.photons, {.share = 1.0f / static_cast<float>(t_.emitted)},
+            reads(), writes(t_.photons.powers));
+}
 
 /// Traces all photons (photon_tracing).
 /// \throws std::runtime_error as photon_tracing::advance does, render_cancelled.
