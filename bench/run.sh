@@ -3,7 +3,7 @@
 #
 #   bench/run.sh [--algorithms] [--peers] [--paper] [--interactive] [--error] [--inclusion] [--write] [--no-install]     some of it, or all
 #   bench/run.sh --gpu [--no-install]               all of it on a hardware Vulkan device; refuses software
-#   bench/run.sh --smoke [--built] [--no-install]   all of it on little data, to see that it runs
+#   bench/run.sh --smoke [--no-install]             all of it on little data, to see that it runs
 #
 #   --algorithms  each algorithm on each backend by number of photons and entropy of keys: JSON and plots in out/algorithms/
 #   --peers       neighbour searches and sorts against CGAL, FLANN, nanoflann, std::sort, Highway's vqsort, TBB; sorting passes
@@ -13,7 +13,6 @@
 #   --error       time against relMSE of every kind of estimate: CSV and plots in out/error/
 #   --inclusion   what including the headers costs a user's compiler, and the size of the smallest programs
 #   --write       puts what is printed, and the Cornell box's plot, into docs/ too (bench/write_measures.sh)
-#   --built       builds nothing: takes those programs that tests/run.sh has built in build-tests/
 #
 # Whether another commit drew the same pictures as this tree, and as fast: bench/against.sh.
 set -euo pipefail
@@ -21,14 +20,14 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
 
 usage() {
-  sed -n '2,19s/^# \{0,1\}//p' bench/run.sh >&2
+  sed -n '2,18s/^# \{0,1\}//p' bench/run.sh >&2
   exit 2
 }
-install=yes gpu=no smoke=no write=no build=build-bench parts=()
+build=build-bench
+install=yes gpu=no smoke=no write=no parts=()
 for argument in "$@"; do
   case $argument in
     --algorithms | --peers | --paper | --interactive | --error | --inclusion) parts+=("${argument#--}") ;;
-    --built) build=build-tests ;;
     --gpu) gpu=yes ;;
     --smoke) smoke=yes ;;
     --write) write=yes ;;
@@ -38,20 +37,17 @@ for argument in "$@"; do
 done
 ((${#parts[@]})) || parts=(algorithms peers paper interactive error inclusion)
 asked() { [[ " ${parts[*]} " == *" $1 "* ]]; }
-packages=("${program_packages[@]}" "${smoke_packages[@]}")
-[[ $build == build-tests ]] || packages+=("${bench_packages[@]}")
+packages=("${program_packages[@]}" "${smoke_packages[@]}" "${bench_packages[@]}")
 [[ $smoke == yes ]] || ! asked peers || packages+=(povray)
 require_packages "$install" "${packages[@]}"
 
 export NODEVICE_SELECT=1 # the implicit layer has crashed processes that start side by side
-if [[ $build == build-bench ]]; then
-  launcher=()
-  if command -v ccache >/dev/null; then
-    launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-  fi
-  cmake -S . -B build-bench -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release -DPHOTONGRID_BENCH=ON -DPHOTONGRID_TESTS=OFF "${launcher[@]}" >&2
-  cmake --build build-bench >&2
+launcher=()
+if command -v ccache >/dev/null; then
+  launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 fi
+cmake -S . -B $build -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release -DPHOTONGRID_BENCH=ON -DPHOTONGRID_TESTS=OFF "${launcher[@]}" >&2
+cmake --build $build >&2
 export PHOTONGRID_BUILD=$build PHOTONGRID=$build/photongrid
 
 version() { dpkg-query --show --showformat '${Package} ${Version}, ' "$@" 2>/dev/null || true; }
@@ -127,10 +123,6 @@ if [[ $smoke == yes ]]; then
   must $build/bench/unfinished 1 1000
   must bench/convergence.sh --quick cpu
   must bench/inclusion.sh --smoke
-  if [[ $build == build-tests ]]; then
-    echo "Not built beside the tests, so not run: interactive, window.sh, search_times, knn_peers, sort_peers, field_errors"
-    exit $failed
-  fi
   must $build/bench/interactive examples/scenes/cornell_box.json 1 cpu
   must bench/window.sh cpu
   must $build/bench/search_times 1 vulkan 1000

@@ -136,8 +136,23 @@ tests_of() {
     *) echo on_serial_algorithms ;;
   esac
 }
-built() { cmake --build "$1/build" --target "$2" >"$1/log" 2>&1; }
-suite() { RC_PARAMS=seed=20031 NODEVICE_SELECT=1 timeout 900 "$1/build/tests/$2" --gtest_fail_fast --gtest_filter='-*long_*:*scene_files*:GoogleTestVerification*' >"$1/log" 2>&1; }
+# folder_of PROGRAM: its build, which has no other backend but serial, since a fault may make all of them stale
+folder_of() {
+  case $1 in
+    on_cpu | on_gl | on_vulkan) echo "build-${1#on_}" ;;
+    *) echo build-serial ;;
+  esac
+}
+configured() { # worker's folder, build's name
+  [[ ! -e $1/$2/build.ninja ]] || return 0
+  local options=() backend
+  for backend in cpu gl vulkan; do
+    [[ $2 == "build-$backend" ]] || options+=("-DPHOTONGRID_${backend^^}=OFF")
+  done
+  cmake -S "$1/tree" -B "$1/$2" -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DPHOTONGRID_TESTS=ON -DPHOTONGRID_VIEW=OFF "${options[@]}"
+}
+built() { { configured "$1" "$(folder_of "$2")" && cmake --build "$1/$(folder_of "$2")" --target "$2"; } >"$1/log" 2>&1; }
+suite() { RC_PARAMS=seed=20031 NODEVICE_SELECT=1 timeout 900 "$1/$(folder_of "$2")/tests/$2" --gtest_fail_fast --gtest_filter='-*long_*:*scene_files*:GoogleTestVerification*' >"$1/log" 2>&1; }
 plant() { # worker's folder, fault
   local name file from to text program
   parse "$2"
@@ -173,7 +188,6 @@ if ((workers > ${#chosen[@]})); then workers=${#chosen[@]}; fi
 for ((w = 0; w < workers; ++w)); do
   mkdir "$work/$w" "$work/$w/tree"
   tar -c --exclude='./build*' --exclude=./out --exclude=./.git . | tar -x -C "$work/$w/tree"
-  cmake -S "$work/$w/tree" -B "$work/$w/build" -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DPHOTONGRID_TESTS=ON
 done
 echo "== no fault"
 for program in $(for fault in "${chosen[@]}"; do file=${fault#*|}; tests_of "${file%%|*}"; done | sort -u); do

@@ -5,7 +5,8 @@
 #   tests/run.sh --quick | --only NAME [--filter WORD]... | --filter WORD...
 #
 #   --full             adds the long runs, the manual, all benches, planted faults, clang-tidy, GPU-assisted validation,
-#                      the sanitizers over all tests on every backend, and users' projects with clang
+#                      the sanitizers over all tests on every backend, each header alone and users' projects with clang,
+#                      and those of users' projects that show what another does for another backend
 #   --device hardware  every backend on a real GPU; software devices are refused (no sanitizers, no clang)
 #   --no-install       only say which Debian packages are missing, do not install them
 #   --quick            after an edit: builds what it makes stale with g++ and runs the short tests of that; where the
@@ -94,9 +95,10 @@ elif [[ -n $only ]] || ((${#words[@]} > 0)); then
   exit
 fi
 
-short=(--label-exclude "long|full") sanitized=(--label-exclude "long|heavy|full") sanitized_target=photongrid_quick_tests fuzz_seconds=20 everything=OFF
+short=(--label-exclude "long|full") sanitized=(--label-exclude "long|heavy|full") sanitized_target=photongrid_quick_tests fuzz_seconds=20 everything=OFF clang_targets=(photongrid_smoke)
 if [[ $full == yes ]]; then
   short=() sanitized=(--label-exclude long) sanitized_target=all fuzz_seconds=300 everything=ON
+  clang_targets+=(all_verify_interface_header_sets)
 fi
 
 echo "== formatting, texts of planted faults"
@@ -112,7 +114,7 @@ else
     asan=$(readlink -f "$(g++ -print-file-name=libasan.so)")
     lavapipe=$(find /usr/lib -name 'libvulkan_lvp.so' -print -quit)
     layer=$(find /usr/lib -name 'libVkLayer_khronos_validation.so' -print -quit)
-    configure asan -DPHOTONGRID_GL=ON -DPHOTONGRID_VULKAN=ON "-DCMAKE_CROSSCOMPILING_EMULATOR=env;PHOTONGRID_KEEP_LOADED=$lavapipe:$layer;LD_PRELOAD=$asan:$PWD/build-asan/tests/libkeep_loaded.so"
+    configure asan -DPHOTONGRID_CPU=ON -DPHOTONGRID_GL=ON -DPHOTONGRID_VULKAN=ON "-DCMAKE_CROSSCOMPILING_EMULATOR=env;PHOTONGRID_KEEP_LOADED=$lavapipe:$layer;LD_PRELOAD=$asan:$PWD/build-asan/tests/libkeep_loaded.so"
     printf 'leak:%s\n' libOSMesa libvulkan_lvp libVkLayer_khronos_validation libEGL_mesa swrast_dri libLLVM >build-asan/leaks.supp
     export LSAN_OPTIONS=suppressions=$PWD/build-asan/leaks.supp:print_suppressions=0
   else
@@ -126,7 +128,7 @@ else
 
   echo "== clang"
   configure clang
-  cmake --build build-clang --target all_verify_interface_header_sets photongrid_smoke
+  cmake --build build-clang --target "${clang_targets[@]}"
   if [[ $full == yes ]]; then
     run_tests build-clang --tests-regex "smoke|consumer"
   else
@@ -142,7 +144,7 @@ else
 fi
 
 echo "== g++, all tests"
-configure tests -DPHOTONGRID_BENCH=$everything -DPHOTONGRID_FULL_TESTS=$everything
+configure tests -DPHOTONGRID_FULL_TESTS=$everything
 cmake --build build-tests
 run_tests build-tests "${short[@]}"
 

@@ -69,7 +69,7 @@ namespace vulkan_detail {
         return can && sizes.minSubgroupSize == sizes.maxSubgroupSize ? subgroup.subgroupSize : 1;
     }
 
-    /// The rank of a device's type, from 3 for discrete to 0 for CPU.
+    /// The rank of a device's type, from 4 for discrete to 0 for CPU.
     inline int rank(VkPhysicalDeviceType t)
     {
         return t == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU  ? 4

@@ -4,9 +4,6 @@
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/map/build_map.hpp>
-#ifdef PHOTONGRID_TRACE_CPU
-#include <photongrid/backends/cpu/cpu_by_kernels.hpp>
-#endif
 
 #include <iostream>
 
@@ -44,8 +41,4 @@ int main()
 {
     serial_backend serial;
     trace_on(serial);
-#ifdef PHOTONGRID_TRACE_CPU
-    cpu_by_kernels cpu;
-    trace_on(cpu);
-#endif
 }

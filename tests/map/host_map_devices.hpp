@@ -1,30 +1,24 @@
-// On which backends maps for hosts are tested: serial, and cpu where CMakeLists.txt has linked it.
+// On which backends maps for hosts are tested: those that search for one point at a time on the host's memory.
 #pragma once
 
-#include "../backends/serial_pictures.hpp"
-#if __has_include(<photongrid/backends/cpu/cpu.hpp>)
-#include "../backends/cpu_algorithms.hpp"
-#endif
+#include <host_backends.hpp>
 
 #include <gtest/gtest.h>
 
+#include <concepts>
+
 namespace photongrid::testing {
 
+/// A backend, on three threads if it has threads.
 template <class B>
 B make_device()
 {
-    return B();
+    if constexpr (std::constructible_from<B, unsigned>)
+        return B(3u);
+    else
+        return B();
 }
 
-#if __has_include(<photongrid/backends/cpu/cpu.hpp>)
-template <>
-inline cpu_backend make_device<cpu_backend>()
-{
-    return cpu_backend(3);
-}
-using map_devices = ::testing::Types<serial_backend, cpu_backend>;
-#else
-using map_devices = ::testing::Types<serial_backend>;
-#endif
+using map_devices = host_backends<::testing::Types>;
 
 } // namespace photongrid::testing

@@ -1,8 +1,9 @@
 # What a page of ROOT/docs shows is so. Each block of C++, CMake or GLSL stands, as it is, in one of FILES (relative to ROOT), which
-# are compiled elsewhere. Each line "    build/photongrid ..." runs, with the program PROGRAM, in the folder WORK. The block of
-# text is what the program RUN prints.
+# are compiled elsewhere. Each line "    build/photongrid ..." runs, with the program PROGRAM, in the folder WORK; windows open on
+# a virtual display and must still be open after some seconds. A scene (JSON, indented) is drawn by it. Each line "    for ..." is a command of the shell on the
+# tests that BUILD holds, and must print something. The block of text is what the program RUN prints.
 #
-#   cmake -DROOT=... -DPAGE=docs/x.md -DFILES=a,b [-DPROGRAM=... -DWORK=...] [-DRUN=...] -P page.cmake
+#   cmake -DROOT=... -DPAGE=docs/x.md -DFILES=a,b -DWORK=... [-DPROGRAM=...] [-DBUILD=...] [-DRUN=...] -P page.cmake
 cmake_minimum_required(VERSION 3.25)
 
 function(run)
@@ -53,8 +54,12 @@ foreach(language IN ITEMS cpp cmake glsl text)
   endwhile()
 endforeach()
 
+# Only a folder that an earlier run of this made.
+if(EXISTS ${WORK} AND NOT EXISTS ${WORK}/page)
+  message(FATAL_ERROR "WORK: ${WORK} was not made by page.cmake; name a folder that it may delete")
+endif()
 file(REMOVE_RECURSE ${WORK})
-file(MAKE_DIRECTORY ${WORK})
+file(WRITE ${WORK}/page ${PAGE})
 if(PROGRAM)
   file(CREATE_LINK ${ROOT}/examples ${WORK}/examples SYMBOLIC)
   file(STRINGS ${ROOT}/${PAGE} commands REGEX "^    build/photongrid ")
@@ -62,7 +67,35 @@ if(PROGRAM)
     string(REGEX REPLACE "^ *build/photongrid |  +#.*$" "" arguments "${command}")
     separate_arguments(arguments UNIX_COMMAND "${arguments}")
     message(STATUS "photongrid ${arguments}")
-    run(${PROGRAM} ${arguments})
+    if(arguments MATCHES "^view;")
+      execute_process(COMMAND timeout 5 xvfb-run -a ${PROGRAM} ${arguments} WORKING_DIRECTORY ${WORK}
+        RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE errors)
+      if(NOT status EQUAL 124) # timeout's, which ended it
+        message(FATAL_ERROR "the window closed by itself (${status}): ${arguments}\n${output}${errors}")
+      endif()
+    else()
+      run(${PROGRAM} ${arguments})
+    endif()
+    math(EXPR checked "${checked} + 1")
+  endforeach()
+  # A scene: an indented block from a line "{" to a line "}".
+  if(page MATCHES "\n    {\n.*\n    }\n")
+    string(REPLACE "\n    " "\n" scene "${CMAKE_MATCH_0}")
+    file(WRITE ${WORK}/shown.json "${scene}")
+    run(${PROGRAM} render shown.json --backend serial --size 16x12 -o shown.png --quiet)
+    math(EXPR checked "${checked} + 1")
+  endif()
+endif()
+
+if(BUILD)
+  file(STRINGS ${ROOT}/${PAGE} commands REGEX "^    for ")
+  foreach(command IN LISTS commands)
+    string(REGEX REPLACE "^ +" "" command "${command}")
+    string(REPLACE "build-tests" "${BUILD}" command "${command}")
+    run(bash -c "set -eo pipefail; ${command}")
+    if(output STREQUAL "")
+      message(FATAL_ERROR "printed nothing: ${command}")
+    endif()
     math(EXPR checked "${checked} + 1")
   endforeach()
 endif()

@@ -96,7 +96,7 @@ TYPED_TEST_P(hard_cases, long_b5_rays_that_leave_a_surface_do_not_hit_it)
 {
     std::size_t cast = 0;
     const auto again = count_reintersections(
-        1000, 2000, [&](const scene& s, const rays& r) { return this->trace_on(this->b(), s, r); }, cast);
+        1000, 2000, [&](const scene& s, const rays& r) { return trace_rays(this->b(), s, r); }, cast);
     this->report(
         "B5", "rays that hit the surface they leave of " + std::to_string(cast) + ":", static_cast<double>(again));
     EXPECT_EQ(again, 0u);
@@ -196,7 +196,7 @@ TYPED_TEST_P(hard_cases, b7_degenerate_rays_hit_nothing)
                 r.add({0.1f, 0.2f, 0.3f}, d);
         }
     r.add({0.1f, 0.2f, 0.3f}, {nan, nan, nan});
-    const auto hits = this->trace_on(this->b(), s, r);
+    const auto hits = trace_rays(this->b(), s, r);
     EXPECT_EQ(hits.misses(), r.size());
 
     // In the plane of a disk and of a polygon.

@@ -110,32 +110,34 @@ struct ray_hits {
     }
 };
 
+/// Rays against a scene, by ray_probe.glsl.
+template <backend B>
+ray_hits trace_rays(B& b, const scene& s, const rays& r)
+{
+    const auto device = upload_scene(b, s);
+    auto out = std::array{b.template make<glm::vec4>(r.size()), b.template make<glm::vec4>(r.size()),
+        b.template make<glm::vec4>(r.size())};
+    const auto o = b.upload(std::span<const glm::vec4>(r.origins)),
+               d = b.upload(std::span<const glm::vec4>(r.directions)),
+               l = b.upload(std::span<const glm::vec4>(r.leavings));
+    b.template run<probes::ray_probe>({static_cast<uint>(r.size()), 0u, device.layout.features}, {},
+        reads(device.records, o, d, l), writes(out[0], out[1], out[2]));
+    return {b.download(out[0]), b.download(out[1]), b.download(out[2])};
+}
+extern template ray_hits trace_rays(serial_backend&, const scene&, const rays&); // serial_rays.cpp
+
 template <class Tag>
 class hard_cases : public on_backend<Tag> {
 protected:
     using B = typename Tag::type;
 
-    template <class Device>
-    static ray_hits trace_on(Device& b, const scene& s, const rays& r)
-    {
-        const auto device = upload_scene(b, s);
-        auto out = std::array{b.template make<glm::vec4>(r.size()), b.template make<glm::vec4>(r.size()),
-            b.template make<glm::vec4>(r.size())};
-        const auto o = b.upload(std::span<const glm::vec4>(r.origins)),
-                   d = b.upload(std::span<const glm::vec4>(r.directions)),
-                   l = b.upload(std::span<const glm::vec4>(r.leavings));
-        b.template run<probes::ray_probe>({static_cast<uint>(r.size()), 0u, device.layout.features}, {},
-            reads(device.records, o, d, l), writes(out[0], out[1], out[2]));
-        return {b.download(out[0]), b.download(out[1]), b.download(out[2])};
-    }
-
     /// Rays against a scene, on the device; where arithmetic is exact, every bit must be serial's.
     ray_hits trace(const scene& s, const rays& r)
     {
-        auto mine = trace_on(this->b(), s, r);
+        auto mine = trace_rays(this->b(), s, r);
         if (exact()) {
             serial_backend serial;
-            const auto theirs = trace_on(serial, s, r);
+            const auto theirs = trace_rays(serial, s, r);
             EXPECT_EQ(count_different_bits(mine.places, theirs.places), 0u) << "of " << r.size();
             EXPECT_EQ(count_different_bits(mine.facings, theirs.facings), 0u) << "of " << r.size();
             EXPECT_EQ(count_different_bits(mine.starts, theirs.starts), 0u) << "of " << r.size();

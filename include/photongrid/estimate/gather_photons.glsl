@@ -16,19 +16,11 @@ struct Params {
     uint ranges;       // ... and the most rows of cells
 };
 PARAMS(Params)
-SWITCH(0, SIDE)
-SWITCH(1, NORMALS)
-SWITCH(2, FLATTEN)
+#include <photongrid/estimate/search_inputs.glsl>
 #include <photongrid/estimate/filter.glsl>
 SWITCH(6, LEAVE_OUT)
 SWITCH(7, ERRORS) // compute the squares too
 IN_GROUPS(8)
-INPUT(0, vec4, points)        // xyz: query point, m
-INPUT(1, vec4, normals)       // xyz: unit normal of the surface there
-INPUT(2, uvec2, cells)        // x: first photon, y: count
-INPUT(3, vec4, positions)     // xyz, m, cell by cell
-INPUT(4, vec4, directions)
-INPUT(5, vec4, photon_normals)
 INPUT(6, uint, list)          // photon ids
 INPUT(7, vec4, powers)        // rgb, W
 STATE(0, vec4, search_radius) // see kth_result.glsl

@@ -20,15 +20,7 @@ struct Params {
     uint ranges;        // ... and the most rows of cells
 };
 PARAMS(Params)
-SWITCH(0, SIDE)
-SWITCH(1, NORMALS)
-SWITCH(2, FLATTEN)
-INPUT(0, vec4, points)         // xyz: query point, m
-INPUT(1, vec4, normals)        // xyz: unit normal of the surface there
-INPUT(2, uvec2, cells)         // x: first photon, y: count
-INPUT(3, vec4, positions)      // xyz, m, cell by cell
-INPUT(4, vec4, directions)
-INPUT(5, vec4, photon_normals)
+#include <photongrid/estimate/search_inputs.glsl>
 INPUT(6, vec4, powers)         // rgb, W
 STATE(0, vec4, gathered)    // rgb: flux of the photons found, W; w: squared radius of the farthest, m^2
 STATE(1, uvec4, found)      // photons found; photons visited; next photon and end of the row being read
@@ -155,7 +147,8 @@ void kernel(uint i)
             unexplored = nearer(unexplored, low_x > 0u, ux, c.x, low_x - 1u, args.grid.cell.x);
             unexplored = nearer(unexplored, low_y > 0u, uy, c.y, low_y - 1u, args.grid.cell.y);
             unexplored = nearer(unexplored, low_z > 0u, uz, c.z, low_z - 1u, args.grid.cell.z);
-            bool everything = low_x == 0u && low_y == 0u && low_z == 0u && high_x == last_x && high_y == last_y && high_z == last_z;
+            bool everything = low_x == 0u && low_y == 0u && low_z == 0u && high_x == last_x && high_y == last_y
+                && high_z == last_z;
             if (everything || unexplored * unexplored > limit2) {
                 ring = 0xFFFFFFFFu;
             } else {

@@ -20,16 +20,8 @@ struct Params {
     uint ranges;       // ... and the most rows of cells
 };
 PARAMS(Params)
-SWITCH(0, SIDE)
-SWITCH(1, NORMALS)
-SWITCH(2, FLATTEN)
+#include <photongrid/estimate/search_inputs.glsl>
 IN_GROUPS(3)
-INPUT(0, vec4, points)         // xyz: query point, m
-INPUT(1, vec4, normals)        // xyz: unit normal of the surface there
-INPUT(2, uvec2, cells)         // x: first photon, y: count
-INPUT(3, vec4, positions)      // xyz, m, cell by cell
-INPUT(4, vec4, directions)
-INPUT(5, vec4, photon_normals)
 STATE(0, vec4, pivots)   // m^2; COUNTING: the eight pivots are x + y times the factors in the kernel; CLOSING_IN: x
 STATE(1, uvec4, inner)   // COUNTING: photons within pivots 1 to 4; CLOSING_IN: the four largest keys up to the pivot
 STATE(2, uvec4, outer)   // COUNTING: photons within pivots 5 to 8; CLOSING_IN: the four smallest keys beyond the pivot

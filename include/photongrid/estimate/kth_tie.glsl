@@ -12,16 +12,8 @@ struct Params {
     uint ranges;       // ... and the most rows of cells
 };
 PARAMS(Params)
-SWITCH(0, SIDE)
-SWITCH(1, NORMALS)
-SWITCH(2, FLATTEN)
+#include <photongrid/estimate/search_inputs.glsl>
 IN_GROUPS(3)
-INPUT(0, vec4, points)       // xyz: query point, m
-INPUT(1, vec4, normals)      // xyz: unit normal of the surface there
-INPUT(2, uvec2, cells)       // x: first photon, y: count
-INPUT(3, vec4, positions)    // xyz, m, cell by cell
-INPUT(4, vec4, directions)
-INPUT(5, vec4, photon_normals)
 INPUT(6, uint, list)         // photon ids
 INPUT(7, vec4, search_radii) // x: squared distance of the k-th photon, m^2
 STATE(0, uvec4, chosen)      // see kth_result.glsl; z: the last id, once found

@@ -10,15 +10,7 @@ struct Params {
     uint ranges;       // ... and the most rows of cells
 };
 PARAMS(Params)
-SWITCH(0, SIDE)
-SWITCH(1, NORMALS)
-SWITCH(2, FLATTEN)
-INPUT(0, vec4, points)       // xyz: query point, m
-INPUT(1, vec4, normals)      // xyz: unit normal of the surface there
-INPUT(2, uvec2, cells)       // x: first photon, y: count
-INPUT(3, vec4, positions)    // xyz, m, cell by cell
-INPUT(4, vec4, directions)
-INPUT(5, vec4, photon_normals)
+#include <photongrid/estimate/search_inputs.glsl>
 INPUT(6, uint, list)         // photon ids
 INPUT(7, vec4, search_radii) // x: squared radius, m^2
 STATE(0, uvec4, first_four)  // indices of photons, the last one found first

@@ -25,21 +25,6 @@ struct render_observer {
     std::function<bool()> cancelled;                ///< called between passes; true: stop
 };
 
-namespace detail {
-    /// Advances `work` until it is finished, and calls `passed` after each pass.
-    /// \throws render_cancelled.
-    template <class Work, class Passed>
-    void run_to_end(Work& work, const render_observer& observer, Passed passed)
-    {
-        while (!work.finished()) {
-            if (observer.cancelled && observer.cancelled())
-                throw render_cancelled();
-            work.advance();
-            passed();
-        }
-    }
-} // namespace detail
-
 } // namespace photongrid
 
 #include <photongrid/backend/exact_end.hpp>

@@ -211,10 +211,13 @@ traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& dev
     const render_observer& observer = {})
 {
     photon_tracing<B> tracing(b, s, device, settings);
-    detail::run_to_end(tracing, observer, [&] {
+    while (!tracing.finished()) {
+        if (observer.cancelled && observer.cancelled())
+            throw render_cancelled();
+        tracing.advance();
         if (observer.progress)
             observer.progress("trace_photons", tracing.fraction());
-    });
+    }
     return tracing.take();
 }
 
