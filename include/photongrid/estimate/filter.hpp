@@ -34,6 +34,15 @@ inline constexpr std::array filters{
     filter_entry{"silverman", filter_kind::silverman, 3},
 };
 
+static_assert(
+    [] {
+        for (std::size_t i = 0; i < filters.size(); ++i)
+            if (filters[i].kind != static_cast<filter_kind>(i))
+                return false;
+        return true;
+    }(),
+    "filters: in the order of filter_kind");
+
 namespace detail {
     constexpr const filter_entry& entry_of(filter_kind f) { return filters[static_cast<std::size_t>(f)]; }
 
