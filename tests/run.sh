@@ -102,7 +102,7 @@ if [[ $full == yes ]]; then
 fi
 
 echo "== formatting, texts of planted faults"
-git ls-files -z '*.hpp' '*.cpp' | xargs -0 clang-format-14 --dry-run --Werror
+find backends bench examples include tests -name '*.[hc]pp' -print0 | xargs -0 clang-format-14 --dry-run --Werror
 tests/planted_faults.sh --check
 
 if [[ $device == hardware ]]; then

@@ -1,6 +1,5 @@
 #include <photongrid/backends/cpu/cpu.hpp>
 
-#include <photongrid/backends/any/compiled_algorithms.hpp>
 #include <photongrid/backends/any/owning_renderer.hpp>
 
 namespace photongrid::any {
@@ -23,6 +22,8 @@ backend_entry cpu_entry() { return {{"cpu"}, make, devices, nullptr}; }
 } // namespace photongrid::any
 
 #ifdef PHOTONGRID_COMPILES_ALGORITHMS
+#include <photongrid/backends/any/compiled_algorithms.hpp>
+
 namespace photongrid {
 PHOTONGRID_ALGORITHMS(, cpu_backend)
 PHOTONGRID_PICTURES(, cpu_backend)

@@ -1,4 +1,3 @@
-#include <photongrid/backends/any/compiled_algorithms.hpp>
 #include <photongrid/backends/any/owning_renderer.hpp>
 #include <photongrid/backends/gl/gl.hpp>
 
@@ -36,6 +35,8 @@ backend_entry gl_entry() { return {{"gl", "gl-osmesa"}, make, devices, nullptr};
 } // namespace photongrid::any
 
 #ifdef PHOTONGRID_COMPILES_ALGORITHMS
+#include <photongrid/backends/any/compiled_algorithms.hpp>
+
 namespace photongrid {
 PHOTONGRID_ALGORITHMS(, gl_backend)
 PHOTONGRID_PICTURES(, gl_backend)

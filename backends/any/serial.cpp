@@ -1,4 +1,3 @@
-#include <photongrid/backends/any/compiled_algorithms.hpp>
 #include <photongrid/backends/any/owning_renderer.hpp>
 #include <photongrid/backends/serial/serial.hpp>
 
@@ -22,6 +21,8 @@ backend_entry serial_entry() { return {{"serial"}, make, devices, nullptr}; }
 } // namespace photongrid::any
 
 #ifdef PHOTONGRID_COMPILES_ALGORITHMS
+#include <photongrid/backends/any/compiled_algorithms.hpp>
+
 namespace photongrid {
 PHOTONGRID_ALGORITHMS(, serial_backend)
 PHOTONGRID_PICTURES(, serial_backend)

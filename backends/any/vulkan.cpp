@@ -1,6 +1,5 @@
 #include <photongrid/backends/vulkan/vulkan.hpp>
 
-#include <photongrid/backends/any/compiled_algorithms.hpp>
 #include <photongrid/backends/any/owning_renderer.hpp>
 
 namespace photongrid::any {
@@ -64,6 +63,8 @@ backend_entry vulkan_entry() { return {{"vulkan"}, make, devices, hardware}; }
 } // namespace photongrid::any
 
 #ifdef PHOTONGRID_COMPILES_ALGORITHMS
+#include <photongrid/backends/any/compiled_algorithms.hpp>
+
 namespace photongrid {
 PHOTONGRID_ALGORITHMS(, vulkan_backend)
 PHOTONGRID_PICTURES(, vulkan_backend)
