@@ -17,7 +17,7 @@ trap 'rm -rf "$work"' EXIT
 if git rev-parse --git-dir >/dev/null 2>&1; then
   git ls-files >"$work/paths"
 else # a copy without its history
-  find . -name 'build*' -prune -o -name out -prune -o -type f -print | sed 's|^\./||' >"$work/paths"
+  find . -type d \( -name 'build*' -o -name out \) -prune -o -type f -print | sed 's|^\./||' >"$work/paths"
 fi
 sources() { grep -E "$1" "$work/paths" | grep -vxE 'tests/doc_words\.txt|tests/doc_names\.sh|tests/io/scene_corpus/.*' | tr '\n' '\0' | xargs -0 cat; }
 {

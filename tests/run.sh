@@ -59,7 +59,7 @@ if [[ $full == yes ]]; then
   full_packages=(doxygen clang-tidy-14)
 fi
 require_packages "$install" "${program_packages[@]}" libgtest-dev librapidcheck-dev libflann-dev libnanoflann-dev \
-  vulkan-validationlayers clang-14 clang-format-14 libclang-rt-14-dev dpkg-dev file xvfb libx11-dev libxtst-dev \
+  vulkan-validationlayers clang-14 clang-format-14 libclang-rt-14-dev dpkg-dev file xvfb xauth libx11-dev libxtst-dev \
   "${smoke_packages[@]}" "${full_packages[@]}"
 
 export CMAKE_GENERATOR=Ninja          # for the projects that tests configure; a bare Debian has no make
