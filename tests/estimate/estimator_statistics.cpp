@@ -13,8 +13,6 @@ namespace {
 
     using glm::vec4;
 
-    const char* name_of(filter_kind f) { return filters[static_cast<std::size_t>(f)].name; }
-
     /// n photons of power 1/n on the unit square: the irradiance is 1 everywhere.
     map_buffers<serial_backend> uniform_field(serial_backend& b, std::size_t n, uint cells, std::uint64_t seed)
     {
@@ -72,9 +70,9 @@ namespace {
         for (const auto& r : rows) {
             const double mean = r.sum / (maps * points), spread = std::sqrt(r.squares / (maps * points) - mean * mean);
             std::printf("| %s | %s | %s | %u | %.4f | %.3f |\n", searches[static_cast<int>(r.search)],
-                r.bias == bias_kind::paper ? "paper" : "unbiased", name_of(r.filter), r.k, mean, spread);
-            EXPECT_GE(mean, r.low) << name_of(r.filter) << " k " << r.k;
-            EXPECT_LE(mean, r.high) << name_of(r.filter) << " k " << r.k;
+                r.bias == bias_kind::paper ? "paper" : "unbiased", detail::entry_of(r.filter).name, r.k, mean, spread);
+            EXPECT_GE(mean, r.low) << detail::entry_of(r.filter).name << " k " << r.k;
+            EXPECT_LE(mean, r.high) << detail::entry_of(r.filter).name << " k " << r.k;
         }
     }
 
@@ -116,9 +114,9 @@ namespace {
             const double mean = r.sum / maps, spread = std::sqrt((r.squares - maps * mean * mean) / (maps - 1)),
                          reported = r.errors / maps;
             std::printf("search %d bias %d %s: spread %.4f, reported %.4f\n", int(r.search), int(r.bias),
-                name_of(r.filter), spread, reported);
+                detail::entry_of(r.filter).name, spread, reported);
             EXPECT_NEAR(reported / spread, 1, 0.1)
-                << "search " << int(r.search) << " bias " << int(r.bias) << " " << name_of(r.filter);
+                << "search " << int(r.search) << " bias " << int(r.bias) << " " << detail::entry_of(r.filter).name;
         }
     }
 

@@ -1,6 +1,6 @@
-// The filters of an estimate: how much a photon counts by its distance d from the query point, for a radius r (Jensen 2001,
-// section 7.3; Silverman 1986). Included by kernels. All that devices compute of a filter is here; its enumerator, its
-// name and its mean are in filter.hpp.
+// The filters of an estimate: how much a photon counts by its distance d from the query point, for a radius r (Jensen
+// 2001, section 7.3; Silverman 1986). Included by kernels. All that devices compute of a filter is here; its
+// enumerator, its name and its mean are in filter.hpp.
 #include <photongrid/backend/natural_log.glsl>
 
 // None of them on: the constant filter. The bit of filter f is 2 + f (filter_switch).

@@ -19,7 +19,7 @@ enum class filter_kind : std::uint8_t {
     silverman,    ///< (1 - d^2/r^2)^2 (Silverman 1986)
 };
 
-/// A filter's name, and its mean over the disc.
+/// A filter's name, and what normalises it.
 struct filter_entry {
     const char* name; ///< in scene files and on the command line
     filter_kind kind;

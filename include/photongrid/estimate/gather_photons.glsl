@@ -1,5 +1,6 @@
 // Sums the power of the photons that a search found, weighted by a filter of their distance that falls from 1 to 0
-// (2.3, filter.glsl). Sums are compensated (Kahan), so that the rounding error does not grow with the number of photons.
+// (2.3, filter.glsl). Sums are compensated (Kahan), so that the rounding error does not grow with the number of
+// photons.
 //
 // LEAVE_OUT excludes the photon that sets the radius: of N photons, N - 1 lie inside the disc whose radius is the
 // largest distance, and with those the mean of the estimate is right for every filter (Garcia Hernandez et al. 2012;
