@@ -43,9 +43,8 @@ set(folder ${root}/photongrid/backends/any)
 target_sources(photongrid_renderer PUBLIC FILE_SET HEADERS BASE_DIRS ${root} FILES ${folder}/any.hpp)
 target_link_libraries(photongrid_renderer PUBLIC photongrid PRIVATE $<BUILD_INTERFACE:photongrid_warnings> ${libraries})
 target_compile_options(photongrid_renderer PRIVATE -ffp-contract=off) # exact_begin.hpp
-# Tests take its algorithms from it; flattened, they would take minutes to compile.
 target_compile_definitions(photongrid_renderer PRIVATE PHOTONGRID_CONTRACTION_IS_OFF
-  $<IF:$<BOOL:${PHOTONGRID_TESTS}>,PHOTONGRID_COMPILES_ALGORITHMS,PHOTONGRID_FLATTENS_PASSES>)
+  $<$<BOOL:${PHOTONGRID_TESTS}>:PHOTONGRID_COMPILES_ALGORITHMS>) # tests take its algorithms from it
 if(NOT PROJECT_IS_TOP_LEVEL)
   set_target_properties(photongrid_renderer PROPERTIES EXCLUDE_FROM_ALL TRUE)
 endif()

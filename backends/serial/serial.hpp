@@ -7,14 +7,6 @@
 #include <algorithm>
 #include <memory>
 
-// g++ may leave a large kernel out of line, which costs a twentieth of tracing. Inlining all of it makes a user's file
-// compile five times as long, so only photongrid::renderer does.
-#ifdef PHOTONGRID_FLATTENS_PASSES
-#define PHOTONGRID_SERIAL_PASS [[gnu::noinline, gnu::flatten]]
-#else
-#define PHOTONGRID_SERIAL_PASS [[gnu::noinline]]
-#endif
-
 #include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
@@ -109,15 +101,10 @@ public:
     }
 
     template <gather_kernel K, class Reads, class Writes>
-    PHOTONGRID_SERIAL_PASS void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
+    void run(launch l, const typename K::Params& args, Reads reads, Writes writes)
     {
         detail::check_call<K>("run", l, reads, writes);
-        K k = prepare<K>(l, args, reads);
-        for (uint i = l.first; i != l.first + l.elements; ++i) {
-            load(k, i, writes);
-            k.kernel(i);
-            store(k, i, writes);
-        }
+        run_all(prepare<K>(l, args, reads), l, writes);
         ++costs_[std::string(kernel_name<K>())].passes;
     }
 
@@ -204,6 +191,16 @@ private:
                 [&](auto s) { k.bind(s, std::span<const input_t<K, s.index>>(std::get<s.index>(reads).data_)); });
         return k;
     }
+    // g++ leaves the larger kernels out of line if it may, which costs a twentieth of tracing.
+    template <class K, class Writes>
+    [[gnu::noinline, gnu::flatten]] static void run_all(K k, const launch& l, Writes& writes)
+    {
+        for (uint i = l.first; i != l.first + l.elements; ++i) {
+            load(k, i, writes);
+            k.kernel(i);
+            store(k, i, writes);
+        }
+    }
     template <class K, class Writes>
     static void load(K& k, uint i, Writes& writes)
     {
@@ -230,5 +227,3 @@ static_assert(backend<serial_backend>);
 } // namespace photongrid
 
 #include <photongrid/backend/exact_end.hpp>
-
-#undef PHOTONGRID_SERIAL_PASS
