@@ -1,6 +1,8 @@
 // A folder that caches data between runs of a program: compiled kernels.
 #pragma once
 
+#include <photongrid/backend/fnv1a.hpp>
+
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -41,7 +43,7 @@ public:
         std::memcpy(sizes_and_sum, all.data() + sizeof magic, sizeof sizes_and_sum);
         const std::string_view contents(all.data() + head, all.size() - head);
         if (sizes_and_sum[0] != key.size() || sizes_and_sum[1] != contents.size() - key.size()
-            || contents.substr(0, key.size()) != key || sizes_and_sum[2] != hash(contents))
+            || contents.substr(0, key.size()) != key || sizes_and_sum[2] != detail::fnv1a(contents))
             return std::nullopt;
         return bytes(contents.begin() + static_cast<std::ptrdiff_t>(key.size()), contents.end());
     }
@@ -54,7 +56,7 @@ public:
         std::filesystem::create_directories(folder_, failed);
         remove_oldest();
         const std::string contents = std::string(key) + std::string(value);
-        const std::uint64_t sizes_and_sum[3] = {key.size(), value.size(), hash(contents)};
+        const std::uint64_t sizes_and_sum[3] = {key.size(), value.size(), detail::fnv1a(contents)};
         // Write to a temporary file and rename it, so that other programs never read an incomplete file.
         const auto whole = path_of(key),
                    beside
@@ -78,18 +80,10 @@ private:
     static constexpr char magic[8] = {'p', 'h', 'g', 'r', 'i', 'd', '0', '1'};
     static constexpr std::size_t most_files = 1000; ///< a scene needs about 40
 
-    /// 64-bit FNV-1a (Fowler, Noll, Vo).
-    static std::uint64_t hash(std::string_view text)
-    {
-        std::uint64_t h = 14695981039346656037u;
-        for (const char c : text)
-            h = (h ^ static_cast<unsigned char>(c)) * 1099511628211u;
-        return h;
-    }
     std::filesystem::path path_of(std::string_view key) const
     {
         char name[32];
-        std::snprintf(name, sizeof name, "%016llx.bin", static_cast<unsigned long long>(hash(key)));
+        std::snprintf(name, sizeof name, "%016llx.bin", static_cast<unsigned long long>(detail::fnv1a(key)));
         return std::filesystem::path(folder_) / name;
     }
 

@@ -1,5 +1,6 @@
 #include "resume_file.hpp"
 
+#include <photongrid/backend/fnv1a.hpp>
 #include <photongrid/io/scene_writer.hpp>
 
 #include <nlohmann/json.hpp>
@@ -16,15 +17,6 @@ namespace photongrid {
 namespace {
     using json = nlohmann::ordered_json;
     constexpr const char* first_line = "photongrid unfinished picture 2";
-
-    /// Fowler, Noll and Vo's hash (FNV-1a).
-    std::uint64_t hash(const std::string& bytes)
-    {
-        std::uint64_t h = 0xCBF29CE484222325u;
-        for (const char c : bytes)
-            h = (h ^ static_cast<unsigned char>(c)) * 0x100000001B3u;
-        return h;
-    }
 
     std::string bytes_of(const pass_pixels& light)
     {
@@ -46,9 +38,9 @@ std::string picture_identity(const scene& s, const render_settings& settings, co
 void write_resume_file(const std::string& path, const std::string& identity, const render_state& state)
 {
     const auto film = state.film.bytes(), bytes = bytes_of(state.pass.light) + film;
-    const json head
-        = {{"pass", state.pass.number}, {"rays", state.pass.rays}, {"pixels", state.pass.light.pixels.size()},
-            {"layers", !state.pass.light.errors.empty()}, {"film", film.size()}, {"hash", hash(identity + bytes)}};
+    const json head = {{"pass", state.pass.number}, {"rays", state.pass.rays},
+        {"pixels", state.pass.light.pixels.size()}, {"layers", !state.pass.light.errors.empty()}, {"film", film.size()},
+        {"hash", detail::fnv1a(identity + bytes)}};
     write_file(path, std::string(first_line) + "\n" + identity + "\n" + head.dump() + "\n" + bytes);
 }
 
@@ -82,7 +74,7 @@ std::optional<render_state> read_resume_file(const std::string& path, const std:
     const bool layers = head.is_object() && head.contains("layers") && head["layers"] == true;
     if (pixels > bytes.size() || film_size > bytes.size()
         || bytes.size() - film_size != pixels * sizeof(glm::vec4) * (layers ? 3u : 2u)
-        || hash(theirs + bytes) != number("hash"))
+        || detail::fnv1a(theirs + bytes) != number("hash"))
         fail("is damaged");
     if (theirs != identity) {
         const auto a = json::parse(theirs, nullptr, false), b = json::parse(identity);

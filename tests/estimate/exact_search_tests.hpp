@@ -5,6 +5,23 @@
 
 namespace photongrid::testing {
 
+TYPED_TEST_P(estimators, every_setting_equals_brute_force)
+{
+    const auto s = make_oriented(distribution::box_faces, 900, {6, 6, 12}, 60, 3);
+    const auto sorted = this->known(s, false), routed = this->known(s, true);
+    for (std::size_t i = 0; i < std::size(all_policies); ++i) {
+        static_assert(std::size(all_policies) >= std::size(filters));
+        const knn_settings k{.k = 30,
+            .max_radius = 0.4f,
+            .min_radius = 1e-6f,
+            .search = all_searches[i % std::size(all_searches)],
+            .filter = filters[i % std::size(filters)].kind,
+            .bias = all_biases[i % std::size(all_biases)],
+            .leaks = all_policies[i]};
+        ASSERT_EQ(this->difference(s, i < 2 ? routed : sorted, k), "") << "policy " << i;
+    }
+}
+
 TYPED_TEST_P(estimators, every_combination_equals_brute_force)
 {
     const auto s = make_oriented(distribution::box_faces, 900, {6, 6, 12}, 60, 3);

@@ -35,6 +35,8 @@ TYPED_TEST_P(pictures, running_estimates_are_shown_and_a_render_can_be_cancelled
     auto settings = s.render;
     settings.estimate.k = 4000; // some passes
     settings.estimate.max_radius = 1;
+    settings.output.width = 24;
+    settings.output.height = 18;
     std::vector<image> shown;
     render_observer watch;
     watch.intermediate = [&](const image& im) { shown.push_back(im); };

@@ -10,6 +10,7 @@
 // The kernel is one function, because it is one state machine over local copies of the states.
 #include <photongrid/map/grid.glsl>
 #include <photongrid/estimate/distance_key.glsl>
+#include <photongrid/estimate/kth_phases.glsl>
 
 struct Params {
     Grid grid;
@@ -32,11 +33,6 @@ STATE(5, uvec4, tally)   // photons within the pivot, if FOUND within the k-th d
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
 #include <photongrid/estimate/photon_walk.glsl>
-
-// Phases
-const uint COUNTING = 0u;
-const uint CLOSING_IN = 1u;
-const uint FOUND = 3u;
 
 bool done()
 {
@@ -107,7 +103,7 @@ void kernel(uint i)
         float scan2 = phase == COUNTING ? far_pivots.w : high;
         bool mine = joins_walk(phase != FOUND, p, c, scan2, uvec4(resume_at.x, resume_at.y, resume_at.z, phase));
         vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the other lanes count nothing
-        while (walk.w == COUNTING && walks_on()) {
+        while (walk_phase() == COUNTING && walks_on()) {
             uint photons = next_rows();
             visited += mine ? photons : 0u;
             // No branches: they are mispredicted on a CPU and diverge on a GPU.
@@ -121,7 +117,7 @@ void kernel(uint i)
                 EACH_PHOTON(photons, take_chunk, VISIT)
 #undef VISIT
         }
-        while (walk.w != COUNTING && walks_on()) {
+        while (walk_phase() != COUNTING && walks_on()) {
             uint photons = next_rows();
             visited += mine ? photons : 0u;
 #define VISIT(LANE)                                                                   \

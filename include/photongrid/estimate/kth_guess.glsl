@@ -2,6 +2,7 @@
 // the query point, each about twice as wide as the one before, until one holds k photons. A wrong guess costs time
 // only.
 #include <photongrid/map/grid.glsl>
+#include <photongrid/estimate/kth_phases.glsl>
 
 struct Params {
     Grid grid;
@@ -96,7 +97,7 @@ void kernel(uint i)
     bracket = uvec4(0u, 0u, 0u, 0xFFFFFFFFu);
     cursor = uvec4(0u, 0u, 0u, 0u);
     bool searches = args.searching != 0u && p.w > 0.0f && is_finite(p);
-    tally = uvec4(0u, 0u, 0u, searches ? 0u : 3u); // phase COUNTING, or FOUND with nothing
+    tally = uvec4(0u, 0u, 0u, searches ? COUNTING : FOUND); // found: none
 
     uvec4 c = cell_coordinates(args.grid, p);
     bool looking = searches;

@@ -54,6 +54,7 @@ bool joins_walk(bool searching, vec4 p, uvec4 c, float radius2, uvec4 resume_at)
     return mine;
 }
 
+uint walk_phase() { return walk.w; }
 bool has_walked() { return walk.y > walk_z.y; }
 bool walks_on() { return walk_steps > 0u && !has_walked(); }
 

@@ -1,6 +1,7 @@
 // The format of map files (map_file.hpp): the header, and the checks of a file that is to be read.
 #pragma once
 
+#include <photongrid/backend/fnv1a.hpp>
 #include <photongrid/map/map_buffers.hpp>
 
 #include <array>
@@ -48,7 +49,7 @@ namespace detail {
 
     constexpr std::uint64_t map_file_padded(std::uint64_t bytes) { return (bytes + 63) / 64 * 64; }
 
-    /// Fowler, Noll and Vo's hash (FNV-1a), in words of eight bytes. Any change within one word changes it.
+    /// The FNV-1a hash (fnv1a.hpp), of words of eight bytes instead of bytes. Any change within one word changes it.
     class map_file_checksum {
     public:
         /// `bytes`: a multiple of eight.
@@ -57,13 +58,13 @@ namespace detail {
             for (std::uint64_t i = 0; i < bytes; i += 8) {
                 std::uint64_t word;
                 std::memcpy(&word, data + i, 8);
-                value_ = (value_ ^ word) * 0x100000001B3u;
+                value_ = (value_ ^ word) * fnv1a_prime;
             }
         }
         std::uint64_t value() const { return value_; }
 
     private:
-        std::uint64_t value_ = 0xCBF29CE484222325u;
+        std::uint64_t value_ = fnv1a_offset;
     };
 
     /// The header of a file with these bytes.
