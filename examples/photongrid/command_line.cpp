@@ -8,24 +8,27 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <string_view>
 #include <type_traits>
 
 namespace photongrid {
 
 namespace {
-    const char* const footer = R"(Examples:
-  photongrid render examples/scenes/cornell_box.json -o cornell.png
-  photongrid render ring.json --backend vulkan --map route -o ring.exr -o ring.png --stats ring-stats.json
-  photongrid render ring.json --size 128x96 --photons 4000 --exposure 1 --quiet
-  photongrid render glass_ball.json --progressive steps --every 50 --strip figure8.png --crop 96x96+180+150
-  photongrid render cornell_box.json --spp 256 --resume unfinished -o box.exr
-  photongrid render ring.json --only caustic --filter silverman --leaks side,min_cosine=0.7 --aov -o ring.exr
-  photongrid reference ring.json -o reference.exr --error error.exr --paths 100000000
-  photongrid compare ring.exr reference.exr --max-relmse 1e-3
-  photongrid check my_scene.json
-  photongrid view cornell_box.json --size 320x320
+    constexpr const char* commands[] = {"render", "view", "reference", "compare", "check", "devices"};
 
-Exit codes:
+    constexpr std::string_view examples[] = {"render examples/scenes/cornell_box.json -o cornell.png",
+        "render ring.json --backend vulkan --map route -o ring.exr -o ring.png --stats ring-stats.json",
+        "render ring.json --size 128x96 --photons 4000 --exposure 1 --quiet",
+        "render glass_ball.json --progressive steps --every 50 --strip figure8.png --crop 96x96+180+150",
+        "render cornell_box.json --spp 256 --resume unfinished -o box.exr",
+        "render ring.json --only caustic --filter silverman --leaks side,min_cosine=0.7 --aov -o ring.exr",
+        "reference ring.json -o reference.exr --error error.exr --paths 1e8",
+        "compare ring.exr reference.exr --max-relmse 1e-3", "check my_scene.json",
+        "view cornell_box.json --size 320x320"};
+
+    constexpr const char* exit_codes = R"(Exit codes:
   0    done
   1    compare: relMSE above --max-relmse; render, reference: the picture could not be made
   2    the command line is wrong
@@ -34,6 +37,30 @@ Exit codes:
   5    a picture or statistics file could not be read or written, or pictures of different sizes were compared
   130  interrupted (Ctrl-C); the best picture so far is written, if there is one; nothing half-written is left
 )";
+
+    // What --help of a command ends with, or of the whole program if that is "".
+    std::string footer(std::string_view command)
+    {
+        std::string lines;
+        for (const auto e : examples)
+            if (e.starts_with(command))
+                lines += "  photongrid " + std::string(e) + "\n";
+        return (lines.empty() ? "" : "Examples:\n" + lines + "\n") + exit_codes;
+    }
+
+    /// Throws if the first word is no command: CLI11 only says that one is required.
+    void expect_command(int argc, char** argv)
+    {
+        const std::string_view first = argc > 1 ? argv[1] : "";
+        if (first.empty() || first.starts_with("-")
+            || std::find(std::begin(commands), std::end(commands), first) != std::end(commands))
+            return;
+        std::string expected;
+        for (const auto* name : commands)
+            expected += (name == commands[0] ? "" : name == *std::rbegin(commands) ? " or " : ", ") + std::string(name);
+        throw CLI::ValidationError(
+            "photongrid", "\"" + std::string(first) + "\" is not a command; expected " + expected);
+    }
 
     std::string option_name(const char* setting)
     {
@@ -71,7 +98,7 @@ Exit codes:
     {
         to.add_option("scene", o.scene_path, "scene file")->required()->type_name("SCENE.json");
         to.add_option("--backend", o.backend, "auto: a hardware Vulkan device, else cpu")
-            ->check(CLI::IsMember({"auto", "serial", "cpu", "gl", "gl-osmesa", "vulkan"}))
+            ->check(CLI::IsMember({"auto", "serial", "cpu", "gl", "gl-osmesa", "vulkan"}).description(""))
             ->type_name("auto|serial|cpu|gl|gl-osmesa|vulkan");
         add_whole(to, "--threads", o.threads, "of the cpu backend; default: all; the picture does not depend on it");
         to.add_option("--device", o.device, "Vulkan device (with --backend vulkan); see `photongrid devices`")
@@ -159,7 +186,7 @@ Exit codes:
               "--caustics",
               [&o](const std::string& text) { o.caustics = text == "bins" ? caustics_by::bins : caustics_by::paths; },
               "how to find caustics of rectangle lights; those of point lights always need bins")
-            ->check(CLI::IsMember({"bins", "paths"}))
+            ->check(CLI::IsMember({"bins", "paths"}).description(""))
             ->type_name("bins|paths");
         to.add_option_function<std::string>(
               "--size", [&o](const std::string& text) { o.size = parsed_size("--size", text); }, "pixels")
@@ -187,6 +214,57 @@ Exit codes:
               [&o](const std::string& text) { o.max_relmse = parsed_number("--max-relmse", text, "a number"); },
               "exit with 1 above this")
             ->type_name("V");
+    }
+
+    /// The files of a command: what it reads and what it writes must differ.
+    class files_of_command {
+    public:
+        explicit files_of_command(const std::string& scene) { files_.push_back({"the scene", resolved(scene)}); }
+        /// Throws for a file that was added before.
+        void add(const std::string& option, const std::string& path)
+        {
+            if (path.empty())
+                return;
+            const auto real = resolved(path);
+            for (const auto& f : files_)
+                if (f.path == real)
+                    throw CLI::ValidationError(option, "\"" + path + "\" is " + f.what + "; expected another file");
+            files_.push_back({"the file of " + option + " too", real});
+        }
+
+    private:
+        struct file {
+            std::string what;
+            std::filesystem::path path;
+        };
+        static std::filesystem::path resolved(const std::string& path)
+        {
+            std::error_code none;
+            const auto real = std::filesystem::weakly_canonical(std::filesystem::absolute(path, none), none);
+            return none ? std::filesystem::path(path) : real;
+        }
+        std::vector<file> files_;
+    };
+
+    void check_files(const render_options& o, const std::string& journal = {})
+    {
+        files_of_command files(o.scene_path);
+        files.add("--reference", o.reference);
+        for (const auto& output : o.outputs)
+            files.add("-o", output);
+        files.add("--stats", o.stats);
+        files.add("--strip", o.strip);
+        files.add("--resume", o.resume);
+        files.add("--journal", journal);
+    }
+
+    void check_files(const reference_options& o)
+    {
+        files_of_command files(o.scene_path);
+        for (const auto& output : o.outputs)
+            files.add("-o", output);
+        files.add("--error", o.error);
+        files.add("--stats", o.stats);
     }
 
     void check_device(const render_options& o)
@@ -221,7 +299,7 @@ command read_command_line(int argc, char** argv)
     CLI::App app{"photongrid: photon mapping on any device", "photongrid"};
     app.set_version_flag("--version", std::string("photongrid ") + PHOTONGRID_VERSION);
     app.require_subcommand(1);
-    app.footer(footer);
+    app.footer(footer(""));
 
     render_options render;
     auto& render_command = *app.add_subcommand("render", "Draws a scene");
@@ -249,11 +327,18 @@ command read_command_line(int argc, char** argv)
     auto& devices_command = *app.add_subcommand(
         "devices", "Lists every backend and device that works here with its limits, and why others do not");
 
+    for (auto* each : app.get_subcommands([](const CLI::App*) { return true; }))
+        each->footer(footer(each->get_name()));
+
     try {
+        expect_command(argc, argv);
         app.parse(argc, argv);
         check_device(render);
         check_device(view.picture);
         check_combinations(render);
+        check_files(render);
+        check_files(view.picture, view.journal);
+        check_files(reference);
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? success : usage_error;
     }

@@ -7,21 +7,37 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 namespace photongrid {
 
-// By std::from_chars, so that "010" is ten, "-1" is not a number and "1e9x" is an error.
+// By std::from_chars, so that "010" is ten and "1e9x" is an error. Whole numbers may have exponents, as 1e6 has, and no
+// sign.
 template <class T>
 T parsed(const std::string& option, std::string_view text, const char* expected)
 {
+    const auto* const last = text.data() + text.size();
     T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size())
+    auto result = std::from_chars(text.data(), last, value);
+    if constexpr (std::is_integral_v<T>)
+        if (result.ec == std::errc() && result.ptr != last) {
+            double number = 0;
+            result = std::from_chars(text.data(), last, number);
+            // Beyond 2^53 a double cannot tell whole numbers apart.
+            if (number != std::floor(number)
+                || number > std::min(0x1p53, static_cast<double>(std::numeric_limits<T>::max())))
+                result.ec = std::errc::result_out_of_range;
+            else
+                value = static_cast<T>(number);
+        }
+    if (result.ec != std::errc() || result.ptr != last)
         throw CLI::ValidationError(option, "\"" + std::string(text) + "\" given; expected " + expected);
     return value;
 }

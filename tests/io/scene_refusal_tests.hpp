@@ -11,7 +11,7 @@ namespace {
         expect_refusal(refusal(""), "1:1", {"unexpected end of input"});
         expect_refusal(refusal("{\n  \"photongrid\" 1}"), "2:16", {"unexpected number literal", "expected ':'"});
         expect_refusal(refusal(text(good) + " x"), "14:2", {"expected end of input"});
-        expect_refusal(refusal(4, "[0, 1, 5]", "[0, 1, 5"), "4:44", {"expected ']'"}); // the colon
+        expect_refusal(refusal(4, "[0, 1, 5]", "[0, 1, 5"), "4:44", {"expected ',' or ']'"}); // the colon
         expect_refusal(refusal(4, "40", "NaN"), "4:74", {"invalid literal"});
         expect_refusal(refusal("{\"name\": \"\xff\"}"), "1:11", {"UTF-8"});
         // Found by fuzzing: the text itself holds the words after which nlohmann's message goes on.
@@ -39,8 +39,21 @@ namespace {
         expect_refusal(refusal(9, ", \"radius\": 0.5", ""), "9:3", {"\"sphere\" lacks the key \"radius\""});
         expect_refusal(
             refusal(9, "\"type\": \"sphere\", ", ""), "9:3", {"a shape lacks the key \"type\"", "\"sphere\""});
-        expect_refusal(refusal(2, "\"name\": \"small\",", "\"name\": \"small\""), "3:2", {"unexpected string literal"});
+        expect_refusal(refusal(2, "\"name\": \"small\",", "\"name\": \"small\""), "3:2",
+            {"unexpected string literal", "expected ',' or '}'"});
+        expect_refusal(
+            refusal(9, "[0, 1, 0]", "[0 1, 0]"), "9:35", {"unexpected number literal", "expected ',' or ']'"});
         expect_refusal(refusal("{\"photongrid\": 1}"), "1:1", {"lacks the key \"units\""});
+    }
+
+    TEST(scene_file, rejects_what_only_all_shapes_show)
+    {
+        // render() refuses the same without a line.
+        expect_refusal(refusal(6, "lambertian", "mirror"), "8:12", {"shapes: none has a lambertian material"});
+        expect_refusal(
+            refusal(10, "{\"type\": \"polygon\"",
+                R"({"type": "sphere", "center": [0, 1.5, 0], "radius": 0.5, "material": "clear"}, {"type": "polygon")"),
+            "10:3", {"overlaps shapes[0]", "move them apart"});
     }
 
     TEST(scene_file, rejects_wrong_types)
@@ -134,8 +147,9 @@ namespace {
         };
         const auto shapes = [&](std::size_t n) {
             auto lines = good;
-            lines[8] = times(n, [](std::size_t) {
-                return std::string(R"({"type":"sphere","center":[0,1,0],"radius":0.5,"material":"clear"})");
+            lines[8] = times(n, [](std::size_t i) { // a row of glass balls that nearly touch, and one that is matte
+                return R"({"type":"sphere","center":[)" + std::to_string(i) + R"(,1,0],"radius":0.499,"material":")"
+                    + (i == 0 ? "white" : "clear") + "\"}";
             }) + "],";
             lines[9] = "";
             return refusal(text(lines));

@@ -3,6 +3,8 @@
 #include "../backends/on_serial.hpp"
 #include "map_file_tests.hpp"
 
+#include <sys/stat.h>
+
 namespace photongrid::testing {
 namespace {
 
@@ -110,6 +112,31 @@ namespace {
                     << "word at " << at << (is_header ? " of the header" : " of the cells") << " = " << value;
             }
         }
+    }
+
+    TEST_F(damaged_map_files, replace_no_device_and_no_link)
+    {
+        const auto set = make_photons(distribution::uniform, 10, {2, 2, 2}, 1);
+        const auto map = sorted_map(b, upload_photons(b, set), set.g);
+        const auto refused = [&](const std::filesystem::path& file) {
+            try {
+                save_map(b, map, file);
+                return std::string();
+            } catch (const map_file_error& e) {
+                return std::string(e.what());
+            }
+        };
+        ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+        EXPECT_NE(refused(folder / "pipe").find("is not a regular file"), std::string::npos);
+        EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
+        EXPECT_NE(refused(folder / "").find("is a folder"), std::string::npos);
+        EXPECT_NE(refused(folder / "none/map").find("there is no folder"), std::string::npos);
+
+        std::filesystem::create_symlink("map", folder / "link");
+        EXPECT_EQ(refused(folder / "link"), "");
+        EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+        EXPECT_NE(bytes_of(folder / "map"), whole);
+        EXPECT_EQ(bytes_of(folder / "map"), bytes_of(folder / "link"));
     }
 
     TEST_F(damaged_map_files, are_never_left_by_a_failed_save)

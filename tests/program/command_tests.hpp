@@ -20,6 +20,12 @@ namespace {
                 "--leaks", "--edge-correction", "--only", "--aov", "--as-paper", "--stats", "--shader-cache",
                 "--time-passes", "--progressive", "--every", "--strip", "--crop", "--reference", "--resume", "--quiet"})
             EXPECT_NE(render.out.find(option), std::string::npos) << option;
+        EXPECT_EQ(render.out.find("photongrid check my_scene.json"), std::string::npos) << "another command's example";
+        EXPECT_NE(run({"check", "--help"}).out.find("photongrid check my_scene.json"), std::string::npos);
+        for (const auto* command : {"render", "view", "reference"}) {
+            const auto words = run({command, "--help"}).out;
+            EXPECT_EQ(words.find(":{"), std::string::npos) << command << " shows choices twice:\n" << words;
+        }
         const auto version = run({"--version"});
         EXPECT_EQ(version.code, 0);
         EXPECT_EQ(version.out.substr(0, 11), "photongrid ");
@@ -28,15 +34,20 @@ namespace {
     TEST_F(program, rejects_wrong_command_lines)
     {
         EXPECT_EQ(run({}).code, 2);
-        EXPECT_EQ(run({"draw"}).code, 2);
+        const auto unknown = run({"rendr", "ring.json"});
+        EXPECT_EQ(unknown.code, 2);
+        EXPECT_EQ(unknown.err,
+            "photongrid: \"rendr\" is not a command; expected render, view, reference, compare, check or devices\n"
+            "Run with --help for more information.\n");
         EXPECT_EQ(run({"render"}).code, 2);
         for (const auto& wrong : std::vector<std::vector<std::string>>{{"--backend", "cuda"}, {"--size", "32"},
                  {"--size", "32x-4"}, {"--size", "0x4"}, {"--grid", "1,2"}, {"--grid", "1,2,3,4"}, {"--grid", "0,1,1"},
-                 {"--photons", "1e3"}, {"--photons", "-1"}, {"--photons", "99999999999"}, {"--k", "0"},
-                 {"--max-radius", "nan"}, {"--max-radius", "-1"}, {"--exposure", "inf"}, {"--slots", "17"},
-                 {"--map", "hash"}, {"--device", "0"}, {"--time-passes"}, {"--spp", "0"}, {"--nonsense"},
-                 {"--search", "exact"}, {"--filter", "gauss"}, {"--bias", "none"}, {"--edge-correction", "disks"},
-                 {"--edge-correction"}, {"--only", "caustics"}, {"--as-paper", "--as-paper=maybe"}}) {
+                 {"--photons", "15e-1"}, {"--photons", "1e10"}, {"--photons", "-1"}, {"--photons", "1e"},
+                 {"--photons", "nan"}, {"--photons", "99999999999"}, {"--k", "0"}, {"--max-radius", "nan"},
+                 {"--max-radius", "-1"}, {"--exposure", "inf"}, {"--slots", "17"}, {"--map", "hash"}, {"--device", "0"},
+                 {"--time-passes"}, {"--spp", "0"}, {"--nonsense"}, {"--search", "exact"}, {"--filter", "gauss"},
+                 {"--bias", "none"}, {"--edge-correction", "disks"}, {"--edge-correction"}, {"--only", "caustics"},
+                 {"--as-paper", "--as-paper=maybe"}}) {
             const auto e = run([&] {
                 auto all = small;
                 // An option given twice is an error of its own.
@@ -186,6 +197,38 @@ namespace {
         EXPECT_EQ(run(small_with({"-o", "none/a.png"})).code, 5);
         EXPECT_EQ(run(small_with({"-o", "a.png", "--stats", "none/a.json"})).code, 5);
         EXPECT_EQ(files(), 0u);
+    }
+
+    TEST_F(program, takes_whole_numbers_with_exponents)
+    {
+        ASSERT_EQ(run(small_with({"-o", "a.pfm"})).code, 0);
+        auto exponents = small_with({"-o", "b.pfm"});
+        std::replace(exponents.begin(), exponents.end(), std::string("300"), std::string("3e2"));
+        ASSERT_EQ(run(exponents).code, 0);
+        EXPECT_EQ(contents(folder / "a.pfm"), contents(folder / "b.pfm"));
+    }
+
+    TEST_F(program, writes_each_file_once)
+    {
+        fs::copy(PHOTONGRID_SCENES "/ring.json", folder / "ring.json");
+        const auto scene = contents(folder / "ring.json");
+        for (const auto& [more, what] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+                 {{"-o", "a.png", "--stats", "a.png"}, "--stats: \"a.png\" is the file of -o too"},
+                 {{"-o", "a.png", "-o", "./a.png"}, "-o: \"./a.png\" is the file of -o too"},
+                 {{"-o", "a.png", "--strip", "../" + folder.filename().string() + "/a.png"}, "is the file of -o too"},
+                 {{"--stats", "s", "--resume", "s"}, "--resume: \"s\" is the file of --stats too"},
+                 {{"--stats", "ring.json"}, "--stats: \"ring.json\" is the scene"}}) {
+            auto all = small_with(more);
+            all[1] = "ring.json";
+            const auto e = run(all);
+            EXPECT_EQ(e.code, 2);
+            EXPECT_NE(e.err.find(what), std::string::npos) << e.err;
+        }
+        const auto e = run({"reference", "ring.json", "-o", "a.pfm", "--error", "a.pfm"});
+        EXPECT_EQ(e.code, 2);
+        EXPECT_NE(e.err.find("--error: \"a.pfm\" is the file of -o too"), std::string::npos) << e.err;
+        EXPECT_EQ(files(), 1u);
+        EXPECT_EQ(contents(folder / "ring.json"), scene);
     }
 
     TEST_F(program, accounts_for_every_photon)

@@ -83,7 +83,7 @@ namespace {
             const auto child = start({"render", ring, "--backend", "serial", "--size", "64x64", "--spp", "60000",
                 "--photons", "300", "-o", "a.pfm", "--stats", "a.json"});
             std::this_thread::sleep_for(std::chrono::milliseconds(700));
-            ::kill(child, signal);
+            interrupt(child, signal);
             const auto e = wait(child);
             EXPECT_EQ(e.code, 130) << e.err;
             EXPECT_NE(e.err.find("interrupted at 0 %"), std::string::npos) << e.err;
@@ -119,7 +119,7 @@ namespace {
         for (int lives = 0; lives < 100 && !fs::exists(folder / "done"); ++lives) {
             const auto child = start(with({"--resume", "unfinished", "-o", "a.exr"}));
             std::this_thread::sleep_for(std::chrono::milliseconds(100 + 100 * lives));
-            ::kill(child, SIGINT);
+            interrupt(child);
             const auto e = wait(child);
             if (e.code == 0)
                 break;

@@ -67,6 +67,25 @@ namespace {
             }
             return child;
         }
+        /// Sends a signal once the process has a handler for it: one that comes earlier would end it.
+        static void interrupt(pid_t child, int signal = SIGINT)
+        {
+            const auto handles_it = [&] {
+                std::ifstream status("/proc/" + std::to_string(child) + "/status");
+                for (std::string word; status >> word;)
+                    if (word == "State:" && status >> word && word == "Z") {
+                        return true; // it has ended
+                    } else if (word == "SigCgt:") {
+                        std::uint64_t caught = 0;
+                        status >> std::hex >> caught;
+                        return (caught >> (signal - 1) & 1) != 0;
+                    }
+                return true;
+            };
+            for (int ms = 0; !handles_it() && ms < 60000; ++ms)
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            ::kill(child, signal);
+        }
         ended wait(pid_t child) const
         {
             int status = 0;

@@ -1,5 +1,7 @@
 #include <photongrid/io/files.hpp>
 
+#include <photongrid/backend/file_target.hpp>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -15,27 +17,12 @@ namespace fs = std::filesystem;
 
 void fail_file(const std::string& path, const std::string& reason) { throw file_error(path + ": " + reason); }
 
-namespace {
-    /// The file that a link refers to, so that the link is kept.
-    fs::path target(const std::string& path)
-    {
-        std::error_code none;
-        const auto real = fs::canonical(path, none);
-        return none ? fs::path(path) : real;
-    }
-} // namespace
-
 void check_file_path(const std::string& path)
 {
-    std::error_code none;
-    const auto status = fs::status(path, none);
-    // Renaming a file onto /dev/null would replace the device.
-    if (fs::exists(status) && !fs::is_regular_file(status))
-        fail_file(path, fs::is_directory(status) ? "is a folder; expected a file's name" : "is not a regular file");
-    const auto folder = target(path).parent_path();
+    if (const auto reason = detail::unwritable_reason(path); !reason.empty())
+        fail_file(path, reason);
+    const auto folder = detail::file_target(path).parent_path();
     const auto shown = folder.empty() ? fs::path(".") : folder;
-    if (!fs::is_directory(shown, none))
-        fail_file(path, "there is no folder " + shown.string());
     if (::access(shown.c_str(), W_OK | X_OK) != 0)
         fail_file(path, "the folder " + shown.string() + " cannot be written to: " + std::strerror(errno));
 }
@@ -43,7 +30,7 @@ void check_file_path(const std::string& path)
 void write_file(const std::string& path, const std::string& bytes)
 {
     check_file_path(path);
-    const auto real = target(path);
+    const auto real = detail::file_target(path);
     const auto temporary = real.string() + "." + std::to_string(::getpid()) + ".tmp";
     const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (file < 0)

@@ -80,6 +80,10 @@ public:
         constexpr std::string_view last_read = "; last read: '";
         if (const auto at = what.find(last_read); at != std::string::npos)
             what.erase(at, last_read.size() + last_token.size() + 1);
+        // After a value a comma may follow too; the parser names the other token alone.
+        for (const std::string_view end : {"expected '}'", "expected ']'"})
+            if (what.ends_with(end))
+                what.insert(what.size() - 3, "',' or ");
         tree_.fail(place, what.substr(0, 300));
     }
 

@@ -47,6 +47,7 @@ namespace {
             read_list(at(root(), "lights"), max_lights, "lights", [&](const json_value& v) { read_light(v); });
             if (count_lights(scene_) == 0)
                 fail(at(root(), "lights").place, "lights: the scene has none; expected at least one");
+            check_shapes();
             read_render(at(root(), "render"));
             return std::move(scene_);
         }
@@ -66,6 +67,24 @@ namespace {
             if (least_length(part) < min_length)
                 fail(v.place,
                     "its points or edges are less than 1e-9 m apart; expected a larger one (are the units right?)");
+        }
+
+        /// What all shapes together must be, with the position of the one at fault.
+        void check_shapes() const
+        {
+            const auto& shapes = at(root(), "shapes");
+            if (!detail::has_matte_shape(scene_))
+                fail(shapes.place, detail::no_matte_shape);
+            if (const auto pair = detail::overlapping_glass(scene_)) {
+                const auto number = [&](const detail::shape_place& p) {
+                    return std::distance(
+                        shape_places_.begin(), std::find(shape_places_.begin(), shape_places_.end(), p));
+                };
+                const auto [first, second] = std::minmax({number((*pair)[0]), number((*pair)[1])});
+                fail(shapes.items[static_cast<std::size_t>(second)].place,
+                    "is glass and overlaps shapes[" + std::to_string(first)
+                        + "], which is glass too; the outside of glass must be air, so move them apart");
+            }
         }
 
         // --- parts ---
@@ -171,6 +190,7 @@ namespace {
                     kind.fields, [&](const auto& f) { read_field(v, x, f, is_triangle ? 3 : max_vertices); });
                 x.material = material_of(v);
                 checked(v, x);
+                shape_places_.push_back({kind.list, list.size()});
                 list.push_back(std::move(x));
             });
         }
@@ -260,6 +280,7 @@ namespace {
         }
 
         scene scene_;
+        std::vector<detail::shape_place> shape_places_; ///< in the file's order
         std::map<std::string, std::uint32_t> material_index_;
         std::vector<std::string> material_names_;
     };

@@ -5,6 +5,7 @@
 // out. Loading maps the file into memory, if the system supports that, and uploads from there.
 #pragma once
 
+#include <photongrid/backend/file_target.hpp>
 #include <photongrid/map/file_bytes.hpp>
 
 #include <array>
@@ -24,7 +25,10 @@ namespace detail {
     template <class Write>
     void replace_map_file(const std::filesystem::path& file, const Write& write)
     {
-        auto part = file;
+        if (const auto reason = unwritable_reason(file); !reason.empty())
+            throw map_file_error(file, "cannot be written: " + reason);
+        const auto real = file_target(file);
+        auto part = real;
         part += ".part";
         std::error_code failed;
         {
@@ -33,10 +37,10 @@ namespace detail {
             out.close();
             if (!out) {
                 std::filesystem::remove(part, failed);
-                throw map_file_error(file, "cannot be written; check that its folder exists and has room");
+                throw map_file_error(file, "cannot be written; check that its folder can be written to and has room");
             }
         }
-        std::filesystem::rename(part, file, failed);
+        std::filesystem::rename(part, real, failed);
         if (failed) {
             const auto why = failed.message();
             std::filesystem::remove(part, failed);

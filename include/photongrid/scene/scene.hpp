@@ -14,7 +14,12 @@
 #include <photongrid/scene/setting_table.hpp>
 #include <photongrid/scene/sphere.hpp>
 
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -106,32 +111,79 @@ inline bool same_light_paths(const scene& a, const scene& b)
 }
 
 namespace detail {
-    /// Calls visit(shape, list, index) for each glass shape; `list` is the name of its list.
+    /// A shape by its list and its index there, as "spheres" and 1.
+    struct shape_place {
+        std::string_view list;
+        std::size_t index = 0;
+        std::string text() const { return std::string(list) + "[" + std::to_string(index) + "]"; }
+        bool operator==(const shape_place&) const = default;
+    };
+
+    /// Calls visit(shape) for the shape at a place.
     template <class F>
-    void for_each_glass(const scene& s, F&& visit)
+    void visit_shape(const scene& s, const shape_place& place, F&& visit)
     {
         for_each_shape(s, [&](const auto& list, auto kind) {
-            for (std::size_t i = 0; i < list.size(); ++i)
-                if (s.materials[list[i].material].kind == material_kind::glass)
-                    visit(list[i], std::string_view(kind.list), i);
+            if (kind.list == place.list)
+                visit(list[place.index]);
         });
     }
 
-    /// Throws if glass bodies overlap: the outside of glass is taken to be air.
-    inline void require_glass_apart(const scene& s)
+    inline bool shapes_overlap(const scene& s, const shape_place& a, const shape_place& b)
     {
-        const auto named
-            = [](std::string_view list, std::size_t i) { return std::string(list) + "[" + std::to_string(i) + "]"; };
-        for_each_glass(s, [&](const auto& a, std::string_view list, std::size_t i) {
-            bool earlier = true; // each pair once
-            for_each_glass(s, [&](const auto& b, std::string_view other, std::size_t j) {
-                earlier = earlier && !(other == list && j == i);
-                if constexpr (requires { overlaps(a, b); })
-                    if (earlier && overlaps(a, b))
-                        throw std::invalid_argument(named(list, i) + ": overlaps " + named(other, j)
-                            + ", and both are glass; the outside of glass must be air, so move them apart");
+        bool overlap = false;
+        visit_shape(s, a, [&](const auto& x) {
+            visit_shape(s, b, [&](const auto& y) {
+                if constexpr (requires { overlaps(x, y); })
+                    overlap = overlaps(x, y);
+                else if constexpr (requires { overlaps(y, x); })
+                    overlap = overlaps(y, x);
             });
         });
+        return overlap;
+    }
+
+    /// Two glass bodies that overlap, the earlier one first, if any do: the outside of glass is taken to be air. Sorted
+    /// along the longest axis of all, each body is compared with those whose bounds meet its own along that axis.
+    inline std::optional<std::array<shape_place, 2>> overlapping_glass(const scene& s)
+    {
+        struct body {
+            shape_place place;
+            std::size_t number;
+            bounds box{};
+        };
+        std::vector<body> bodies;
+        bounds all;
+        for_each_shape(s, [&](const auto& list, auto kind) {
+            if constexpr (requires { overlaps(list[0], list[0]); })
+                for (std::size_t i = 0; i < list.size(); ++i)
+                    if (s.materials[list[i].material].kind == material_kind::glass) {
+                        kind.add_bounds(bodies.emplace_back(body{{kind.list, i}, bodies.size()}).box, list[i]);
+                        kind.add_bounds(all, list[i]);
+                    }
+        });
+        const dvec3 size = all.high - all.low;
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        std::sort(bodies.begin(), bodies.end(),
+            [axis](const body& a, const body& b) { return a.box.low[axis] < b.box.low[axis]; });
+        for (auto a = bodies.begin(); a != bodies.end(); ++a)
+            for (auto b = a + 1; b != bodies.end() && b->box.low[axis] <= a->box.high[axis]; ++b)
+                if (shapes_overlap(s, a->place, b->place))
+                    return a->number < b->number ? std::array{a->place, b->place} : std::array{b->place, a->place};
+        return std::nullopt;
+    }
+
+    /// What a photon map needs.
+    inline constexpr const char* no_matte_shape
+        = "shapes: none has a lambertian material, so no photon can be stored and nothing can be lit";
+    inline bool has_matte_shape(const scene& s)
+    {
+        bool has = false;
+        for_each_shape(s, [&](const auto& list, auto) {
+            for (const auto& x : list)
+                has = has || s.materials[x.material].kind == material_kind::lambertian;
+        });
+        return has;
     }
 
     template <class Parts>
@@ -151,8 +203,7 @@ namespace detail {
 
 /// Checks a whole scene. The reader of scene files checks each part and adds its line.
 /// \throws std::invalid_argument "part[index].member: what is wrong"; also for a scene without lights, or for glass
-///         bodies
-///         that overlap.
+///         bodies that overlap. Only a photon map needs a Lambertian shape (upload_scene, scene files).
 inline void check(const scene& s)
 {
     detail::check_all("materials", s.materials, s.materials.size());
@@ -160,7 +211,9 @@ inline void check(const scene& s)
     for_each_shape(s, all);
     for_each_light(s, all);
     detail::require(count_lights(s) > 0, "lights: the scene has none; add at least one");
-    detail::require_glass_apart(s);
+    if (const auto pair = detail::overlapping_glass(s))
+        throw std::invalid_argument((*pair)[1].text() + ": overlaps " + (*pair)[0].text()
+            + ", and both are glass; the outside of glass must be air, so move them apart");
     check(s.camera);
     check(s.render);
 }

@@ -119,8 +119,7 @@ namespace detail {
                 out_.features |= list.empty() ? 0u : 1u << kind.number;
                 out_.steps_per_ray += static_cast<uint>(list.size());
             });
-            require(!lambertian.empty(),
-                "materials: no shape is lambertian, so no photon can be stored and nothing can be lit");
+            require(!lambertian.empty(), no_matte_shape);
             for_each_light(s_, [&](const auto& list, auto kind) {
                 for (const auto& l : list)
                     kind.add_bounds(all, l);
