@@ -10,9 +10,9 @@ echo "| scene | estimate | relMSE, 4 eye rays | relMSE, 32 eye rays | CPU s, 4 e
 echo "|---|---|---|---|---|"
 for scene in cornell_blocks cornell_box; do
   reference "$scene" --spp 1024
-  for kernel in constant silverman; do
+  for filter in constant silverman; do
     for options in "--leaks side" "--leaks side,min_cosine" "--leaks side,min_cosine --edge-correction polygons"; do
-      options="--filter $kernel $options"
+      options="--filter $filter $options"
       seconds=$(median_cpu_seconds "$scene" 4 "$options")
       error=$(relmse)
       cpu_seconds "$scene" 32 "$options" >/dev/null

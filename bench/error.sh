@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Time against error of every way to estimate: searches, kernels, k, numbers of photons, map builders, backends; on the three
+# Time against error of every way to estimate: searches, filters, k, numbers of photons, map builders, backends; on the three
 # scenes (against `photongrid reference`) and on fields of light with a known answer. Writes scenes.csv, fields.csv and plots
 # (SVG and PNG, gnuplot) to out/error/. The last column says whether a row is on its scene's Pareto front: none is both
 # faster and more exact.
@@ -40,20 +40,20 @@ with_front() {
 # figure KEY: the first number at KEY in the last run's statistics
 figure() { awk -v key="\"$1\":" '$1 == key { gsub(",", "", $2); print $2; exit }' "$work/stats.json"; }
 
-# row SCENE BACKEND MAP SEARCH KERNEL K PHOTONS [OPTION...]: renders, and prints a line of CSV; seconds are the four stages', kernels compiled apart
+# row SCENE BACKEND MAP SEARCH FILTER K PHOTONS [OPTION...]: renders, and prints a line of CSV; seconds are the four stages', kernels compiled apart
 row() {
-  local scene=$1 backend=$2 map=$3 search=$4 kernel=$5 k=$6 photons=$7
+  local scene=$1 backend=$2 map=$3 search=$4 filter=$5 k=$6 photons=$7
   shift 7
-  "$program" render "examples/scenes/$scene.json" --backend "$backend" --size $size --map "$map" --search "$search" --filter "$kernel" --k "$k" --photons "$photons" --grid auto --stats "$work/stats.json" -o "$work/picture.exr" --quiet "$@" >/dev/null
+  "$program" render "examples/scenes/$scene.json" --backend "$backend" --size $size --map "$map" --search "$search" --filter "$filter" --k "$k" --photons "$photons" --grid auto --stats "$work/stats.json" -o "$work/picture.exr" --quiet "$@" >/dev/null
   local seconds relmse
   seconds=$(awk '$1 == "\"ms\":" && inside { gsub(",", "", $2); sum += $2 } $1 == "\"stages\":" { inside = 1 } $1 == "\"estimate\":" { inside = 0 } END { printf "%.5f", sum / 1000 }' "$work/stats.json")
   relmse=$("$program" compare "$work/picture.exr" "$out/$scene-reference.exr" | awk '$1 == "relMSE" { print $2 }')
-  echo "$scene,$backend,$map,$search,$kernel,$k,$photons,$seconds,$relmse"
+  echo "$scene,$backend,$map,$search,$filter,$k,$photons,$seconds,$relmse"
 }
 
 scene_rows() {
-  echo "scene,backend,map,search,kernel,k,photons,seconds,relmse"
-  local scene photons k factor divisor search kernel backend radius
+  echo "scene,backend,map,search,filter,k,photons,seconds,relmse"
+  local scene photons k factor divisor search filter backend radius
   for scene in cornell_box ring glass_ball; do
     if [[ ! -e $out/$scene-reference.exr ]]; then
       "$program" reference "examples/scenes/$scene.json" --size $size --spp $([[ $quick == yes ]] && echo 16 || echo 512) --paths $([[ $quick == yes ]] && echo 100000 || echo 10000000) -o "$out/$scene-reference.exr" --quiet >/dev/null
@@ -71,9 +71,9 @@ scene_rows() {
         for search in exact_k at_least_k fixed_radius; do
           local more=()
           [[ $search == fixed_radius ]] && more=(--max-radius "$radius")
-          for kernel in constant cone epanechnikov silverman; do
-            [[ $search$kernel != exact_ksilverman ]] || continue
-            row $scene cpu sort $search $kernel $m $n "${more[@]}"
+          for filter in constant cone epanechnikov silverman; do
+            [[ $search$filter != exact_ksilverman ]] || continue
+            row $scene cpu sort $search $filter $m $n "${more[@]}"
           done
         done
         row $scene cpu route exact_k silverman $m $n

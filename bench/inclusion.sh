@@ -30,7 +30,7 @@ program() {
   packages+=("$2")
   cat >"$work/${#names[@]}.cpp" <<CPP
 #include <photongrid/backends/$3>
-#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/map_builders.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/map/own_photons.hpp>
 struct photon { glm::vec3 position, power; };
@@ -46,7 +46,7 @@ CPP
 }
 include "GLM alone" glm glm/glm.hpp
 include "core: one algorithm" photongrid photongrid/estimate/knn_grid_estimate.hpp
-include "core: maps, estimates, lists" photongrid photongrid/map/build_map.hpp photongrid/estimate/knn_grid_estimate.hpp photongrid/estimate/knn_neighbours.hpp photongrid/map/own_photons.hpp
+include "core: maps, estimates, lists" photongrid photongrid/map/map_builders.hpp photongrid/estimate/knn_grid_estimate.hpp photongrid/estimate/knn_neighbours.hpp photongrid/map/own_photons.hpp
 include "core: everything" photongrid photongrid/render/render.hpp photongrid/map/map_file.hpp photongrid/map/own_photons.hpp
 headers=${#names[@]}
 for backend in "${backends[@]}"; do

@@ -10,7 +10,7 @@
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
-#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/map_builders.hpp>
 
 #include <algorithm>
 #include <chrono>

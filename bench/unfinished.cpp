@@ -10,8 +10,8 @@
 #include <photongrid/backends/gl/gl.hpp>
 #include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
-#include <photongrid/map/build_map.hpp>
 #include <photongrid/map/fitting_grid.hpp>
+#include <photongrid/map/map_builders.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -23,7 +23,7 @@ int main()
     for (int i = 0; i < 100000; ++i)
         photons.push_back({{2 * unit(random), 2 * unit(random), 0}, {12e-5, 12e-5, 12e-5}});
 
-    photongrid::serial_backend device; // cpu_backend, gl_backend, vulkan_backend: nothing else changes
+    photongrid::serial_backend device; // or cpu_backend, gl_backend, vulkan_backend, with its header and CMake target
     const photongrid::photon_map map(device, photons, {.k = 400});
 
     const std::vector<my_vector> points{{1, 1, 0}, {0.5, 1.4, 0}};

@@ -10,8 +10,8 @@
 
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/estimate/knn_neighbours.hpp>
-#include <photongrid/map/build_map.hpp>
 #include <photongrid/map/fitting_grid.hpp>
+#include <photongrid/map/map_builders.hpp>
 #include <photongrid/render/progressive_render.hpp>
 
 #define PHOTONGRID_ALGORITHMS(EXTERN, B)                                                                               \

@@ -3,7 +3,7 @@
 
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
-#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/map_builders.hpp>
 
 #include <iostream>
 

@@ -5,7 +5,7 @@
 
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/estimate/knn_neighbours.hpp>
-#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/map_builders.hpp>
 #include <photongrid/map/own_photons.hpp>
 
 #include <vector>

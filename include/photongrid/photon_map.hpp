@@ -9,7 +9,7 @@
 
 #include <photongrid/estimate/host_search.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
-#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/map_builders.hpp>
 #include <photongrid/map/vector_view.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -60,14 +60,14 @@ public:
     /// The origin of positions on the device.
     const glm::dvec3& origin() const { return origin_; }
 
-    /// The irradiance at many points, in their order.
+    /// The irradiance at many points, in their order, computed on the device: one thread at a time.
     /// \throws backend_error if the device has no room.
     [[nodiscard]] std::vector<irradiance_at_point> irradiance(
         const vector_view& points, const irradiance_options& options = {}) const
     {
         return searched(points, nullptr, options);
     }
-    /// The same with the unit normal of the surface at each point, for leak policies.
+    /// The same with the unit normal of the surface at each point, for leak policies. One thread at a time.
     [[nodiscard]] std::vector<irradiance_at_point> irradiance(
         const vector_view& points, const vector_view& normals, const irradiance_options& options = {}) const
     {

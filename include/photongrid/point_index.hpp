@@ -9,7 +9,7 @@
 #include <photongrid/estimate/host_search.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/estimate/knn_neighbours.hpp>
-#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/map_builders.hpp>
 #include <photongrid/map/vector_view.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>

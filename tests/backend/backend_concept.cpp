@@ -2,7 +2,7 @@
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/estimate/knn_visit.kernel.hpp>
 #include <photongrid/map/bitonic_step.kernel.hpp>
-#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/map_builders.hpp>
 #include <photongrid/map/overflowing_cell.kernel.hpp>
 #include <photongrid/map/route_photon.kernel.hpp>
 

@@ -85,13 +85,13 @@ TEST(cpu_backend, instruction_sets_do_not_change_a_byte)
     ASSERT_FALSE(targets.empty());
     for (const auto d : {distribution::uniform, distribution::clustered, distribution::box_faces})
         for (const auto search : {search_kind::at_least_k, search_kind::exact_k})
-            for (const auto filter : {filter_kind::constant, filter_kind::cone, filter_kind::silverman})
+            for (const auto& filter : filters)
                 for (const auto& leaks : policies) {
                     std::vector<findings> all;
                     for (const auto target : targets) {
                         hwy::SetSupportedTargetsForTest(target);
                         hwy::GetChosenTarget().DeInit();
-                        all.push_back(find(b, d, search, filter, leaks));
+                        all.push_back(find(b, d, search, filter.kind, leaks));
                         hwy::SetSupportedTargetsForTest(0);
                         hwy::GetChosenTarget().DeInit();
                     }

@@ -9,8 +9,8 @@
 #include <photongrid/backends/gl/gl.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/map/bitonic_sort.hpp>
-#include <photongrid/map/build_map.hpp>
 #include <photongrid/map/grid_index.hpp>
+#include <photongrid/map/map_builders.hpp>
 #include <photongrid/map/pair_value.kernel.hpp>
 
 #include <gtest/gtest.h>

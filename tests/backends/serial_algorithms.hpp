@@ -4,8 +4,8 @@
 
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
-#include <photongrid/map/build_map.hpp>
 #include <photongrid/map/fitting_grid.hpp>
+#include <photongrid/map/map_builders.hpp>
 
 #ifndef PHOTONGRID_COMPILED_HERE
 #define PHOTONGRID_COMPILED_HERE extern

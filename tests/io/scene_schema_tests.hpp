@@ -90,6 +90,41 @@ namespace {
         EXPECT_TRUE(objects.empty()) << *objects.begin();
     }
 
+    // A setting that is one of several words has the same words in the schema.
+    TEST(scene_file, the_schema_has_the_choices)
+    {
+        const auto schema = nlohmann::json::parse(std::ifstream(scenes + "/photongrid-scene.schema.json"));
+        const auto& settings = schema["$defs"]["render"]["properties"];
+        int choices = 0;
+        for_each_setting([&](const auto& row) {
+            if constexpr (requires { row.values.find(""); })
+                if (row.use != in_scenes::never) {
+                    SCOPED_TRACE(row.name);
+                    std::vector<std::string> words;
+                    for (const auto& n : row.values.values)
+                        words.push_back(n.name);
+                    EXPECT_EQ(settings.at(row.name).at("enum").template get<std::vector<std::string>>(), words);
+                    ++choices;
+                }
+        });
+        EXPECT_GE(choices, 5);
+    }
+
+    // A row that for_each_setting leaves out would be no key, no option and no check.
+    TEST(setting_table, every_row_is_visited)
+    {
+        std::ifstream header(PHOTONGRID_SETTING_TABLE);
+        std::set<std::string> rows, visited;
+        const std::regex row(R"re(^ *inline constexpr setting (\w+)\{.*)re");
+        std::smatch found;
+        for (std::string line; std::getline(header, line);)
+            if (std::regex_match(line, found, row))
+                rows.insert(found[1]);
+        for_each_setting([&](const auto& r) { visited.insert(r.name); });
+        EXPECT_EQ(rows, visited);
+        EXPECT_GE(rows.size(), 20u);
+    }
+
     TEST(scene_writer, what_it_writes_reads_as_the_same_scene)
     {
         std::size_t scenes_read = 0;

@@ -9,8 +9,8 @@
 #include <photongrid/backend/random.kernel.hpp>
 #include <photongrid/backend/self_test.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
-#include <photongrid/map/build_map.hpp>
 #include <photongrid/map/fitting_grid.hpp>
+#include <photongrid/map/map_builders.hpp>
 #include <photongrid/map/pair_value.kernel.hpp>
 #include <photongrid/map/photon_cell.kernel.hpp>
 

@@ -2,7 +2,7 @@
 #include "../backends/serial_algorithms.hpp"
 
 #include <photongrid/estimate/knn_grid_estimate.hpp>
-#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/map_builders.hpp>
 #include <photongrid/map/own_photons.hpp>
 
 #include <gtest/gtest.h>

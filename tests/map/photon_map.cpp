@@ -57,8 +57,7 @@ TYPED_TEST(host_maps, single_queries_equal_a_search_for_many_points)
     int cases = 0;
     for (const bool ties : {false, true})
         for (const auto search : {search_kind::exact_k, search_kind::fixed_radius})
-            for (const auto filter :
-                {filter_kind::constant, filter_kind::cone, filter_kind::epanechnikov, filter_kind::silverman})
+            for (const auto& filter : filters)
                 for (const auto bias : {bias_kind::paper, bias_kind::unbiased})
                     for (const auto& leaks : {leak_policy{}, leak_policy{.side = true}, leak_policy{.min_cosine = 0.3f},
                              leak_policy{.flattening = 3}})
@@ -66,7 +65,7 @@ TYPED_TEST(host_maps, single_queries_equal_a_search_for_many_points)
                             const knn_settings s{.k = 20,
                                 .max_radius = most,
                                 .search = search,
-                                .filter = filter,
+                                .filter = filter.kind,
                                 .bias = bias,
                                 .leaks = leaks};
                             const auto photons = some_photons(7 + static_cast<uint>(cases++), 800, ties);

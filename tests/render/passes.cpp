@@ -12,7 +12,7 @@ TEST(step_list, runs_steps_in_order_until_each_is_done)
     std::string log;
     int left = 0;
     step_list steps;
-    steps.then("a", [&] {
+    steps.add("a", [&] {
         log += 'a';
         return true;
     });
@@ -20,11 +20,11 @@ TEST(step_list, runs_steps_in_order_until_each_is_done)
     steps.repeat(1, 3, [&](std::uint32_t i) {
         left = 2; // made when it is reached, so that this is not overwritten
         step_list inner;
-        inner.then("b", [&, i] {
+        inner.add("b", [&, i] {
             log += static_cast<char>('0' + i);
             return --left == 0;
         });
-        inner.then("c", [&] {
+        inner.add("c", [&] {
             log += 'c';
             return true;
         });

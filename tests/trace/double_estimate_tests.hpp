@@ -48,10 +48,7 @@ public:
         using K = double_kernels::gather_photons;
         turn_switches(gather_,
             (settings.leaks.side ? K::SIDE_switch : 0u) | (settings.leaks.flattening > 1 ? K::FLATTEN_switch : 0u)
-                | (settings.filter == filter_kind::cone ? K::CONE_switch : 0u)
-                | (settings.filter == filter_kind::epanechnikov ? K::EPANECHNIKOV_switch : 0u)
-                | (settings.filter == filter_kind::silverman ? K::SILVERMAN_switch : 0u) | K::LEAVE_OUT_switch
-                | K::ERRORS_switch);
+                | detail::filter_switch(settings.filter) | K::LEAVE_OUT_switch | K::ERRORS_switch);
         gather_.points_data = points_;
         gather_.normals_data = normals_;
         gather_.cells_data = cells_;

@@ -5,7 +5,7 @@
 #include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>
 #include <photongrid/backends/cpu/overrides/grid_index.hpp>
 #include <photongrid/backends/cpu/overrides/simd.hpp>
-#include <photongrid/map/build_map.hpp>
+#include <photongrid/map/map_builders.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>
 

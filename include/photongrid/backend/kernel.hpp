@@ -98,15 +98,13 @@ concept iterative_kernel = gather_kernel<K> && requires(K k) { { k.done() } -> s
 template <class K>
 concept predicate_kernel = kernel_struct<K> && requires(K k, uint i) { { k.holds(i) } -> std::same_as<bool>; };
 
-// clang-format on
-
 /// A routing kernel: draw i has a destination (none: 0xFFFFFFFF), a payload, and an amount that is added to the
 /// destination's total.
 template <class K>
-concept route_kernel = gather_kernel<K> && output_count<K>
-== 3
-    && std::same_as<output_t<K, 0>, uint>&& std::same_as<output_t<K, 1>, uint>&&
-        std::same_as<output_t<K, 2>, glm::vec4>;
+concept route_kernel = gather_kernel<K> && output_count<K> == 3 && std::same_as<output_t<K, 0>, uint>
+    && std::same_as<output_t<K, 1>, uint> && std::same_as<output_t<K, 2>, glm::vec4>;
+
+// clang-format on
 
 /// The kernel's name: its file's name without folder and extension, "bitonic_step".
 template <kernel_struct K>

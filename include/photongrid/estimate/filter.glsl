@@ -1,12 +1,12 @@
 // The filters of an estimate: how much a photon counts by its distance d from the query point, for a radius r (Jensen
 // 2001, section 7.3; Silverman 1986). Included by kernels. All that devices compute of a filter is here; its
-// enumerator, its name and its mean are in filter.hpp.
+// enumerator, its name and its norm are in filter.hpp.
 #include <photongrid/backend/natural_log.glsl>
 
-// None of them on: the constant filter. The bit of filter f is 2 + f (filter_switch).
-SWITCH(3, CONE)         // 1 - d / r
-SWITCH(4, EPANECHNIKOV) // 1 - d^2 / r^2
-SWITCH(5, SILVERMAN)    // (1 - d^2 / r^2)^2
+// None of them on: the constant filter. The bit of filter f is 15 + f (filter_switch); kernels use bits below 16.
+SWITCH(16, CONE)         // 1 - d / r
+SWITCH(17, EPANECHNIKOV) // 1 - d^2 / r^2
+SWITCH(18, SILVERMAN)    // (1 - d^2 / r^2)^2
 
 // The weight of a photon at t = d^2 / r^2, from 0 to 1.
 float filter_weight(float t)

@@ -47,7 +47,10 @@ namespace detail {
     constexpr const filter_entry& entry_of(filter_kind f) { return filters[static_cast<std::size_t>(f)]; }
 
     /// The SWITCH of filter.glsl, as a bit of launch::switches.
-    constexpr uint filter_switch(filter_kind f) { return f == filter_kind::constant ? 0u : 4u << static_cast<uint>(f); }
+    constexpr uint filter_switch(filter_kind f)
+    {
+        return f == filter_kind::constant ? 0u : 1u << (15u + static_cast<uint>(f));
+    }
 } // namespace detail
 
 } // namespace photongrid

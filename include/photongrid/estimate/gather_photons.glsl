@@ -19,8 +19,8 @@ struct Params {
 PARAMS(Params)
 #include <photongrid/estimate/search_inputs.glsl>
 #include <photongrid/estimate/filter.glsl>
-SWITCH(6, LEAVE_OUT)
-SWITCH(7, ERRORS) // compute the squares too
+SWITCH(3, LEAVE_OUT)
+SWITCH(4, ERRORS) // compute the squares too
 IN_GROUPS(8)
 INPUT(6, uint, list)          // photon ids
 INPUT(7, vec4, powers)        // rgb, W

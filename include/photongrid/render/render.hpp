@@ -1,10 +1,10 @@
-// Figure 1 of the paper: a picture is a sum of passes, and a pass is
+// Figure 1 of the paper. A picture is the mean of output.passes passes, and a pass is
 //
 //     scene -> trace_photons -> build_map ----------------------------+
 //     camera -> trace_eye -> direct_light -> irradiance (2.3) -> shade -> film
 //
-// Stages are steps that can be interrupted (step_list.hpp). progressive_render runs the same steps for interactive use
-// (3.4).
+// Each stage is a step that is called until it is done, so that a render can stop between two calls (step_list.hpp).
+// The program and the window run the same steps through progressive_render (3.4), which adds previews and resuming.
 #pragma once
 
 #include <photongrid/render/film.hpp>
@@ -23,36 +23,37 @@ template <backend B>
 step_list map_steps(map_building<B>& m)
 {
     step_list steps;
-    steps.then("trace_photons", [&m] { return m.trace_photons(); }); // 2.1
-    steps.then("build_map", [&m] { return m.build_map(); });         // 2.2
+    steps.add("trace_photons", [&m] { return m.trace_photons(); }); // 2.1
+    steps.add("build_map", [&m] { return m.build_map(); });         // 2.2
     return steps;
 }
 
-/// The right side of figure 1, which runs for every view: eye rays, direct light and irradiance where they end, and
-/// pixels. `v` must outlive the steps.
+/// The right side of figure 1, which runs for every view: traces eye rays, computes direct light and irradiance at
+/// their hits, and adds both to the pixels. `v` must outlive the steps.
 template <backend B>
 step_list view_steps(view_pass<B>& v)
 {
     step_list steps;
-    steps.repeat(v.light().rays, v.rays(), [&v](uint ray) {
+    const uint done = v.light().rays; // above 0 in a picture that was resumed
+    steps.repeat(done, v.rays(), [&v](uint ray) {
         step_list stages;
-        stages.then("trace_eye", [&v, ray] { return v.trace_eye(ray); });       // 2.4
-        stages.then("direct_light", [&v, ray] { return v.direct_light(ray); }); // 2.4
-        stages.then("irradiance", [&v, ray] { return v.irradiance(ray); });     // 2.3
-        stages.then("shade", [&v, ray] { return v.shade(ray); });               // 2.4
+        stages.add("trace_eye", [&v, ray] { return v.trace_eye(ray); });       // 2.4
+        stages.add("direct_light", [&v, ray] { return v.direct_light(ray); }); // 2.4
+        stages.add("irradiance", [&v, ray] { return v.irradiance(ray); });     // 2.3
+        stages.add("shade", [&v, ray] { return v.shade(ray); });               // 2.4
         return stages;
     });
     return steps;
 }
 
 /// Traces photons and builds the map for a pass.
-/// \throws std::invalid_argument for a scene or settings that check() rejects, std::runtime_error if the lights store
-///         too few photons, backend_error, render_cancelled.
+/// \throws std::invalid_argument for a scene or settings that check() rejects, std::runtime_error if too few
+///         photons are stored, backend_error, render_cancelled.
 /// \snippet snippets.cpp build_map
 template <backend B>
-built_map<B> build_map(B& b, const scene& s, const render_settings& settings, const render_observer& observer = {})
+built_map<B> build_map(B& device, const scene& s, const render_settings& settings, const render_observer& observer = {})
 {
-    map_building<B> map(b, s, settings);
+    map_building<B> map(device, s, settings);
     run(map_steps(map), observer, [&](std::string_view stage) {
         if (observer.progress)
             observer.progress(stage, map.fraction());
@@ -63,30 +64,30 @@ built_map<B> build_map(B& b, const scene& s, const render_settings& settings, co
 /// The pixels of one pass over a view. Times and counts are added to `stats`.
 /// \throws as draw does.
 template <backend B>
-pass_pixels draw_pass(B& b, const built_map<B>& built, const camera& view, const render_settings& settings,
+pass_pixels draw_pass(B& device, const built_map<B>& built, const camera& view, const render_settings& settings,
     const render_observer& observer, render_stats& stats)
 {
-    kept_samples<B> kept;
-    const bool watched = static_cast<bool>(observer.intermediate);
-    const auto size = watched || observer.cancelled ? step_size::small : step_size::largest;
+    kept_samples<B> reusable; // samples of a preview that the next view takes over
+    const bool shows_previews = static_cast<bool>(observer.intermediate);
+    const auto size = shows_previews || observer.cancelled ? step_size::small : step_size::largest;
     std::uint64_t invalid = 0;
-    if (watched)
+    if (shows_previews)
         for (const auto& p :
             preview_schedule(settings, settings.map.photons, false, {}, preview_settings{}.target_ms)) {
-            view_pass<B> before(b, built, view, settings, {p, size, watched}, kept, stats);
-            run(view_steps(before), observer, [](std::string_view) {});
-            observer.intermediate(before.mean_of_samples(invalid));
+            view_pass<B> preview(device, built, view, settings, {p, size, shows_previews}, reusable, stats);
+            run(view_steps(preview), observer, [](std::string_view) {});
+            observer.intermediate(preview.mean_of_samples(invalid));
         }
-    view_pass<B> pass(b, built, view, settings, {{}, size, watched}, kept, stats);
-    uint seen = 0;
+    view_pass<B> pass(device, built, view, settings, {{}, size, shows_previews}, reusable, stats);
+    uint shown = 0; // running estimates (2.4)
     run(view_steps(pass), observer, [&](std::string_view) {
         if (observer.progress)
             observer.progress("radiance_estimate", pass.fraction());
-        if (watched && pass.grown() > seen)
+        if (shows_previews && pass.grown() > shown)
             observer.intermediate(pass.running_estimate(invalid));
-        seen = pass.grown();
+        shown = pass.grown();
     });
-    return finish_pass(b, built, pass, stats);
+    return finish_pass(device, built, pass, stats);
 }
 
 /// Draws one pass over a view, from an existing map: no photons are traced. Pixels that are NaN or infinite are set to
@@ -94,35 +95,35 @@ pass_pixels draw_pass(B& b, const built_map<B>& built, const camera& view, const
 /// \throws std::invalid_argument for a camera or settings that check() rejects, backend_error, render_cancelled.
 /// \snippet snippets.cpp draw
 template <backend B>
-[[nodiscard]] rendered draw(B& b, const built_map<B>& built, const camera& view, const render_settings& settings,
+[[nodiscard]] rendered draw(B& device, const built_map<B>& built, const camera& view, const render_settings& settings,
     const render_observer& observer = {})
 {
     rendered out{{}, built.stats};
     film sum(settings.output.width, settings.output.height, 1, settings.output.aov);
-    sum.add(0, draw_pass(b, built, view, settings, observer, out.stats));
+    sum.add(0, draw_pass(device, built, view, settings, observer, out.stats));
     finish_picture(sum, out);
     return out;
 }
 
-/// Draws a picture with the scene's own camera: output.passes passes, each with its own photons, eye rays and shadow
-/// rays.
+/// Draws a picture with the scene's own camera: the mean of output.passes passes, each with its own photons, eye rays
+/// and shadow rays.
 /// \throws what build_map and draw throw.
 /// \snippet snippets.cpp render
 template <backend B>
 [[nodiscard]] rendered render(
-    B& b, const scene& s, const render_settings& settings, const render_observer& observer = {})
+    B& device, const scene& s, const render_settings& settings, const render_observer& observer = {})
 {
     check(settings);
     rendered out;
     film sum;
     for (uint pass = 0; pass < settings.output.passes; ++pass) {
         const auto own = settings_of_pass(settings, pass);
-        const auto map = build_map(b, s, own, observer);
+        const auto map = build_map(device, s, own, observer);
         detail::add_map(out.stats, map.stats);
         if (pass == 0)
             sum = film(settings.output.width, settings.output.height, typical_radiance(s, map.scene.layout),
                 settings.output.aov);
-        sum.add(pass, draw_pass(b, map, s.camera, own, observer, out.stats));
+        sum.add(pass, draw_pass(device, map, s.camera, own, observer, out.stats));
         if (observer.intermediate && pass + 1 < settings.output.passes)
             observer.intermediate(sum.picture().picture);
     }
@@ -131,9 +132,9 @@ template <backend B>
 }
 /// The same with the scene's own settings.
 template <backend B>
-[[nodiscard]] rendered render(B& b, const scene& s)
+[[nodiscard]] rendered render(B& device, const scene& s)
 {
-    return render(b, s, s.render);
+    return render(device, s, s.render);
 }
 
 } // namespace photongrid

@@ -2,8 +2,8 @@
 // geometry, materials, lights or a setting that same_map() compares changes.
 #pragma once
 
-#include <photongrid/map/build_map.hpp>
 #include <photongrid/map/fitting_grid.hpp>
+#include <photongrid/map/map_builders.hpp>
 #include <photongrid/render/stage_clock.hpp>
 #include <photongrid/trace/trace_photons.hpp>
 

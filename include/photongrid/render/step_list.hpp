@@ -20,7 +20,7 @@ public:
     using step = std::function<bool()>;
 
     /// Adds a step. `stage` is its name for observers.
-    void then(std::string_view stage, step run) { entries_.push_back({stage, std::move(run), {}, 0, 0}); }
+    void add(std::string_view stage, step run) { entries_.push_back({stage, std::move(run), {}, 0, 0}); }
     /// Adds the lists that `body` returns for first, first + 1, ..., past - 1. Each is created when it is reached.
     void repeat(std::uint32_t first, std::uint32_t past, std::function<step_list(std::uint32_t)> body)
     {
