@@ -16,7 +16,7 @@ namespace photongrid {
 
 namespace {
     using json = nlohmann::ordered_json;
-    constexpr const char* first_line = "photongrid unfinished picture 2";
+    constexpr const char* first_line = "photongrid unfinished picture 3";
 
     std::string bytes_of(const pass_pixels& light)
     {

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -115,6 +116,47 @@ TEST(film, pixels_that_are_not_finite_are_black_in_their_pass_and_counted)
         EXPECT_GT(f.picture().picture.pixels[1].x, 0);
         EXPECT_TRUE(std::isfinite(f.picture().picture.pixels[1].x));
     }
+}
+
+// Threads with a film each: whatever their shares, the films add up to the bytes of one that has all passes.
+TEST(film, films_of_threads_add_up_to_the_same_bytes)
+{
+    constexpr std::uint32_t passes = 11;
+    for (const bool layers : {false, true}) {
+        film all(5, 4, 0x1p-6, layers);
+        for (std::uint32_t pass = 0; pass < passes; ++pass)
+            all.add(pass, random_pass(pass, 20, layers));
+        for (const std::uint32_t threads : {1u, 2u, 5u, 11u}) {
+            std::vector<film> own(threads, film(5, 4, 0x1p-6, layers));
+            std::vector<std::thread> running;
+            for (std::uint32_t t = 0; t < threads; ++t)
+                running.emplace_back([&, t] {
+                    for (std::uint32_t pass = t; pass < passes; pass += threads)
+                        own[t].add(pass, random_pass(pass, 20, layers));
+                });
+            for (auto& thread : running)
+                thread.join();
+            for (const bool backwards : {false, true}) {
+                film sum(5, 4, 0x1p-6, layers);
+                for (std::uint32_t t = 0; t < threads; ++t)
+                    sum.add(own[backwards ? threads - 1 - t : t]);
+                EXPECT_EQ(sum.passes(), passes);
+                EXPECT_EQ(sum.bytes(), all.bytes()) << threads << " threads";
+            }
+        }
+    }
+    film sum(5, 4, 0x1p-6, false), other(5, 4, 0x1p-6, false);
+    sum.add(3, random_pass(3, 20, false));
+    other.add(3, random_pass(3, 20, false));
+    const auto before = sum.bytes();
+    EXPECT_THROW(sum.add(other), std::invalid_argument) << "the same pass twice";
+    EXPECT_THROW(sum.add([] {
+        film wider(6, 4, 0x1p-6, false);
+        wider.add(1, random_pass(1, 24, false));
+        return wider;
+    }()),
+        std::invalid_argument);
+    EXPECT_EQ(sum.bytes(), before);
 }
 
 TEST(film, very_bright_and_very_dark_pixels_are_kept)

@@ -9,17 +9,17 @@
 
 namespace photongrid {
 
-/// A sum of doubles in fixed point: 128 bits, two's complement, in steps of 2^-80. Each term is rounded to a step once,
-/// before it is added; addition is then exact, so any order of the same terms gives the same bits.
+/// A sum of up to 2^16 doubles in fixed point: 128 bits, two's complement, in steps of 2^-64. Each term is rounded to a
+/// step once, before it is added; addition is then exact, so any order of the same terms gives the same bits.
 class exact_sum {
 public:
-    static constexpr int fraction_bits = 80; ///< a step is 2^-80
-    static constexpr int integer_bits = 46;  ///< of the largest term; 2 more hold the sign and a carry
+    static constexpr int fraction_bits = 64; ///< a step is 2^-64
+    static constexpr int integer_bits = 46;  ///< of the largest term; 16 more hold the number of terms, one the sign
 
     /// Whether `x` may be added: it is finite and |x| < 2^46.
     static bool holds(double x) { return std::abs(x) < 0x1p46; } // false for NaN
 
-    /// Adds a term for which holds() is true. The sum of all terms must stay below 2^47.
+    /// Adds a term for which holds() is true. 2^16 of the largest terms still fit.
     void add(double x)
     {
         const auto bits = std::bit_cast<std::uint64_t>(x);

@@ -39,7 +39,7 @@ class film {
 public:
     film() = default;
     /// For pictures of width x height pixels. `unit` is a typical radiance, a power of two: sums have a resolution of
-    /// 2^-80 units, and pixels above 2^40 units count as infinite. `layers`: also sum the layers
+    /// 2^-64 units, and pixels above 2^40 units count as infinite. `layers`: also sum the layers
     /// (output_settings::aov).
     film(std::uint32_t width, std::uint32_t height, double unit, bool layers)
         : width_(width), height_(height), unit_(unit), layers_(layers)
@@ -60,13 +60,33 @@ public:
             only_ = std::move(p);
             return;
         }
-        if (only_) {
-            sums_.resize(n);
-            if (layers_)
-                layer_sums_.resize(n);
-            add_up(*std::exchange(only_, std::nullopt));
-        }
+        begin_sums();
         add_up(p);
+    }
+    /// Adds the passes of another film, as if each were added here. Threads and machines can each have a film of their
+    /// own: in any order, these add up to the same bytes.
+    /// \throws std::invalid_argument for a film of another size or unit, or one with a pass that was added before.
+    void add(film other)
+    {
+        if (other.passes_.empty())
+            return;
+        if (!other.is_for(width_, height_, layers_) || other.unit_ != unit_)
+            throw std::invalid_argument("film::add: the other film has another size, unit or layers");
+        for (const auto pass : other.passes_)
+            if (holds(pass))
+                throw std::invalid_argument("film::add: pass " + std::to_string(pass) + " was added before");
+        if (other.only_) {
+            add(*other.passes_.begin(), std::move(*other.only_));
+        } else if (passes_.empty()) {
+            *this = std::move(other);
+        } else {
+            begin_sums();
+            for (std::size_t i = 0; i < sums_.size(); ++i)
+                sums_[i].add(other.sums_[i]);
+            for (std::size_t i = 0; i < layer_sums_.size(); ++i)
+                layer_sums_[i].add(other.layer_sums_[i]);
+            passes_.merge(other.passes_);
+        }
     }
 
     /// Whether pass number `pass` was added.
@@ -169,13 +189,40 @@ private:
         exact_sum squares;                   ///< of r + g + b, for the spread
         std::uint32_t invalid = 0;           ///< 1: in some pass it was NaN, infinite or too bright
         std::uint32_t spread_is_unknown = 0; ///< 1: in some pass it was too bright for the sum of squares
+
+        void add(const pixel_sums& other)
+        {
+            for (int c = 0; c < 3; ++c)
+                rgb[c].add(other.rgb[c]);
+            squares.add(other.squares);
+            invalid |= other.invalid;
+            spread_is_unknown |= other.spread_is_unknown;
+        }
     };
     struct layer_sums {
         exact_sum searches, count, radius, error;
+
+        void add(const layer_sums& other)
+        {
+            searches.add(other.searches);
+            count.add(other.count);
+            radius.add(other.radius);
+            error.add(other.error);
+        }
     };
 
     static bool finite(const glm::vec4& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
+    /// Turns the floats of the only pass into sums.
+    void begin_sums()
+    {
+        if (!only_)
+            return;
+        sums_.resize(size());
+        if (layers_)
+            layer_sums_.resize(size());
+        add_up(*std::exchange(only_, std::nullopt));
+    }
     void add_up(const pass_pixels& p)
     {
         for (std::size_t i = 0; i < sums_.size(); ++i) {
@@ -243,11 +290,10 @@ private:
         }
     }
 
-    // exact_sum holds sums below 2^47: enough for 2^7 passes of the brightest pixels, and for 2^16 passes of real
-    // pictures.
+    // Terms of exact_sum are below 2^46.
     static constexpr double largest = 0x1p40;        ///< of a pixel's r + g + b, in units
-    static constexpr double largest_square = 0x1p30; ///< the same for the sum of squares
-    static constexpr double square_scale = 0x1p-20;  ///< so that squares stay below 2^40
+    static constexpr double largest_square = 0x1p26; ///< the same for the sum of squares
+    static constexpr double square_scale = 0x1p-6;   ///< so that squares stay below 2^46
 
     std::uint32_t width_ = 0, height_ = 0;
     double unit_ = 1;

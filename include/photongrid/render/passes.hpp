@@ -43,6 +43,12 @@ inline double typical_radiance(const scene& s, const scene_layout& layout)
     return std::isfinite(radiance) && radiance > 0 ? std::exp2(std::round(std::log2(radiance))) : 1.0;
 }
 
+/// The film for the passes of a picture.
+inline film film_for(const scene& s, const scene_layout& layout, const output_settings& output)
+{
+    return film(output.width, output.height, typical_radiance(s, layout), output.aov);
+}
+
 namespace detail {
     inline void add(photon_stats& sum, const photon_stats& p)
     {

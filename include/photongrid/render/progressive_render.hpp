@@ -237,8 +237,7 @@ private:
         view_.emplace(
             b_, maps_.map(), scene_.camera, with, view_options{p, step_size::small, previews_.enabled}, kept_, stats_);
         if (!p && film_.size() == 0)
-            film_ = film(settings_.output.width, settings_.output.height,
-                typical_radiance(scene_, maps_.map().scene.layout), settings_.output.aov);
+            film_ = film_for(scene_, maps_.map().scene.layout, settings_.output);
         if (!p && unfinished_.rays > 0) {
             const auto& light = unfinished_.light;
             view_->resume(

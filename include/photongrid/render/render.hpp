@@ -121,8 +121,7 @@ template <backend B>
         const auto map = build_map(device, s, own, observer);
         detail::add_map(out.stats, map.stats);
         if (pass == 0)
-            sum = film(settings.output.width, settings.output.height, typical_radiance(s, map.scene.layout),
-                settings.output.aov);
+            sum = film_for(s, map.scene.layout, settings.output);
         sum.add(pass, draw_pass(device, map, s.camera, own, observer, out.stats));
         if (observer.intermediate && pass + 1 < settings.output.passes)
             observer.intermediate(sum.picture().picture);
