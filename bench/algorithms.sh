@@ -15,7 +15,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 "$build/bench/algorithms" --benchmark_out=$out/algorithms.json --benchmark_out_format=json "$@" >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 2; }
-# algorithm, backend, photons, bits of entropy, million items a second
+# algorithm, backend, photons, bits of entropy, million items per second
 jq -r '.benchmarks[] | select(.error_occurred | not)
   | [(.name | split("/")[0, 1]), (.name | capture("photons:(?<n>[0-9]+)").n), (.key_entropy_bits * 10 | round / 10), (.items_per_second / 1e6)] | @tsv' $out/algorithms.json >"$work/rows"
 jq -r '.benchmarks[] | select(.error_occurred) | "\(.name): \(.error_message)"' $out/algorithms.json >"$work/errors"
@@ -41,7 +41,7 @@ table() {
       }
     }' "$work/rows"
 }
-echo "Million photons a second (searches: points), by number of photons; keys of 15 bits of entropy:"
+echo "Million photons per second (searches: points), by number of photons; keys of 15 bits of entropy:"
 echo
 table 3 4 15 ""
 largest=$(cut -f 3 "$work/rows" | sort -n | uniq | awk '$1 <= 1048576' | tail -n 1)

@@ -134,7 +134,7 @@ int main(int argc, char** argv)
         std::vector<std::string> backends(argv + std::min(argc, 3), argv + argc);
         if (backends.empty())
             backends = {"cpu"};
-        std::printf("| backend | pixels | estimate | first picture, ms | updates a second, camera moving | camera "
+        std::printf("| backend | pixels | estimate | first picture, ms | updates per second, camera moving | camera "
                     "rests, whole, ms | lamp moved, first picture, ms | lamp moved, whole, ms | wanted "
                     "|\n|---|---|---|---|---|---|---|---|---|\n");
         bool fast = true;

@@ -101,8 +101,8 @@ private:
 
 constexpr double least_build
     = 8; ///< how many times as fast as the fastest tree's build a million photons' is, on one thread
-constexpr double most_bytes = 48;    ///< a photon, after the build
-constexpr double least_by_two = 1.8; ///< points a second on two threads over those on one
+constexpr double most_bytes = 48;    ///< per photon, after the build
+constexpr double least_by_two = 1.8; ///< points per second on two threads over those on one
 
 std::vector<peer> all_peers(const data_set& s)
 {
@@ -247,11 +247,11 @@ void print_head(const arguments& a)
     std::printf("%s, %u thread%s%s%s\n\n", a.backend.c_str(), a.threads, a.threads == 1 ? "" : "s",
         a.shuffle ? ", points in random order" : "", a.avx2 ? ", AVX2" : "");
     if (is_alone(a))
-        std::printf("Wanted besides: a build of a million photons %g times as fast as the fastest peer's%s, %g bytes a "
-                    "photon at most, %g times the speed on two threads.\n\n",
+        std::printf("Wanted besides: a build of a million photons %g times as fast as the fastest peer's%s, %g bytes "
+                    "per photon at most, %g times the speed on two threads.\n\n",
             least_build, a.avx2 ? " (not with AVX2)" : "", most_bytes, least_by_two);
     std::printf("| set | photons | k | grid | photongrid, 1000/s | fastest peer, 1000/s | which | ratio | wanted | "
-                "build, ms | fastest peer's build over it | bytes a photon |%s k-th distances that differ | "
+                "build, ms | fastest peer's build over it | bytes per photon |%s k-th distances that differ | "
                 "|\n|---|---|---|---|---|---|---|---|---|---|---|---|%s---|---|\n",
         is_alone(a) ? " two threads over one |" : "", is_alone(a) ? "---|" : "");
 }

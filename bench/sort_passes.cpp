@@ -82,7 +82,7 @@ int main(int argc, char** argv)
         std::printf("%zu pairs; medians of five; %s; %s\n\n| backend | version | passes | ms | times the plain one's "
                     "speed | wanted | |\n|---|---|---|---|---|---|---|\n",
             n, vulkan.caps().device.c_str(), gl.caps().device.c_str());
-        std::vector<version<vulkan_backend>> on_vulkan{{"plain: a step a pass, from one buffer to another",
+        std::vector<version<vulkan_backend>> on_vulkan{{"plain: one step per pass, from one buffer to another",
             [](auto& b, auto& p) { return bitonic_sort<vulkan_backend>(b, p); }}};
         for (const uint steps : {1u, 2u, 3u, 4u})
             on_vulkan.push_back(
@@ -90,8 +90,9 @@ int main(int argc, char** argv)
                     [steps](auto& b, auto& p) { return bitonic_sort(b, p, steps); }, steps == 4 ? 4.0 : 0.0,
                     steps == 4 ? 2.5 : 0.0});
         const std::vector<version<gl_backend>> on_gl{
-            {"plain: a step a pass", [](auto& b, auto& p) { return bitonic_sort<gl_backend>(b, p); }},
-            {"two pairs a texel, up to three steps a pass", [](auto& b, auto& p) { return bitonic_sort(b, p); }, 1.6}};
+            {"plain: one step per pass", [](auto& b, auto& p) { return bitonic_sort<gl_backend>(b, p); }},
+            {"two pairs per texel, up to three steps per pass", [](auto& b, auto& p) { return bitonic_sort(b, p); },
+                1.6}};
         return std::max(measure(vulkan, pairs, expected, on_vulkan), measure(gl, pairs, expected, on_gl));
     } catch (const backend_error& e) {
         std::fprintf(stderr, "%s\n", e.what());

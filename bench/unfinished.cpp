@@ -115,7 +115,7 @@ int main(int argc, char** argv)
         every_element<gl_backend> plain_gl;
         vulkan_backend lists;
         every_element<vulkan_backend> plain_vulkan;
-        std::printf("gl: %s; vulkan: %s\n\n| set | backend | photons a pass | finished elements | passes | ms | gain "
+        std::printf("gl: %s; vulkan: %s\n\n| set | backend | photons per pass | finished elements | passes | ms | gain "
                     "over none | |\n|---|---|---|---|---|---|---|---|\n",
             tiles.caps().device.c_str(), lists.caps().device.c_str());
         for (const int number : {1, 3}) {

@@ -16,7 +16,7 @@ struct photon {
     vec3 position, power, direction, normal;
 }; // m, W, unit vectors; photongrid reads members of these names
 
-/// The photons that meet only mirrors and glass on their way from the lamp to a diffuse surface.
+/// The photons that hit only mirrors and glass on their way from the lamp to a diffuse surface.
 static std::vector<photon> shoot(const scene& s, int count, std::uint64_t seed)
 {
     std::vector<photon> landed;

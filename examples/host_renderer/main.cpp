@@ -60,7 +60,7 @@ int main(int argc, char** argv)
     if (arguments.empty() || arguments.size() > 3 || arguments[0].starts_with("-") || (without_caustics && reference)
         || settings.size < 1 || settings.samples < 1) {
         std::cerr << "usage: host_renderer [--without-caustics | --reference] FILE.png [SIZE [SAMPLES]]\n"
-                     "  SIZE: pixels a side, 400; SAMPLES: paths a pixel, 64; whole numbers from 1 to 100000\n";
+                     "  SIZE: pixels per side, 400; SAMPLES: paths per pixel, 64; whole numbers from 1 to 100000\n";
         return 2;
     }
     try {

@@ -174,7 +174,7 @@ namespace {
             ->allow_extra_args(false)
             ->type_name("OUT.exr|.pfm|.png");
         to.add_option("--error", o.error, "standard error of each pixel, as a picture")->type_name("OUT.exr|.pfm|.png");
-        add_whole(to, "--spp", o.spp, "eye paths a pixel, at least 2");
+        add_whole(to, "--spp", o.spp, "eye paths per pixel, at least 2");
         to.add_option_function<std::string>(
               "--paths",
               [&o](const std::string& text) { o.paths = parsed<std::uint64_t>("--paths", text, "a whole number"); },
@@ -193,7 +193,7 @@ namespace {
             ->type_name("WxH");
         add_whole(to, "--depth", o.depth, "mirrors and glass surfaces that an eye path passes before a diffuse one");
         add_whole(to, "--photon-depth", o.photon_depth,
-            "surfaces that light meets at most up to the first diffuse one seen from the eye, that one included");
+            "surfaces that light hits at most up to the first diffuse one seen from the eye, that one included");
         add_whole(to, "--threads", o.threads, "default: all; the picture does not depend on it");
         add_whole(to, "--seed", o.seed, "same seed, same picture");
         to.add_option_function<std::string>(

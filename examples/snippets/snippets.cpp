@@ -146,9 +146,9 @@ void routed_maps(device_type& device)
     const photongrid::photons<device_type> p = photongrid::upload_photons(device, mine);
 
     //! [stencil_route]
-    const auto routed = photongrid::stencil_route(device, p, cells, 4); // 4 x 4 slots a cell
+    const auto routed = photongrid::stencil_route(device, p, cells, 4); // 4 x 4 slots per cell
     const std::vector<photongrid::uint> slots
-        = device.download(routed.list);                             // 16 ids a cell, 0xFFFFFFFF where there are no more
+        = device.download(routed.list); // 16 ids per cell, 0xFFFFFFFF where there are no more
     const glm::uvec2 first_cell = device.download(routed.cells)[0]; // (0, 16): it is full
     //! [stencil_route]
     expect(
@@ -157,7 +157,7 @@ void routed_maps(device_type& device)
 
     //! [routed_map]
     const auto approximate
-        = photongrid::routed_map(device, photongrid::upload_photons(device, mine), cells, 4); // 4 x 4 slots a cell
+        = photongrid::routed_map(device, photongrid::upload_photons(device, mine), cells, 4); // 4 x 4 slots per cell
     //! [routed_map]
     expect(approximate.overflowing_cells > 0 && device.download(approximate.cells)[0].y == 16, "routed_map");
 

@@ -33,12 +33,12 @@ inline std::vector<host_photon> some_photons(uint seed, std::size_t n, bool ties
     }
     return photons;
 }
-inline std::vector<glm::vec3> some_places(uint seed, std::size_t n, bool ties)
+inline std::vector<glm::vec3> some_query_points(uint seed, std::size_t n, bool ties)
 {
-    std::vector<glm::vec3> places;
+    std::vector<glm::vec3> query_points;
     for (const auto& p : some_photons(seed + 1000, n, ties))
-        places.push_back(p.position * 1.2f - 0.1f * (ties ? 0.0f : 1.0f));
-    return places;
+        query_points.push_back(p.position * 1.2f - 0.1f * (ties ? 0.0f : 1.0f));
+    return query_points;
 }
 
 using neighbours_of_point = std::vector<std::pair<float, photon_id>>;

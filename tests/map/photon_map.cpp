@@ -32,7 +32,7 @@ RC_GTEST_PROP(host_map_properties, nearest_are_those_of_brute_force, ())
     serial_backend device;
     const photon_map map(device, photons, {.k = k});
     query_scratch scratch;
-    for (const auto& p : some_places(seed, 20, ties)) {
+    for (const auto& p : some_query_points(seed, 20, ties)) {
         auto expected = by_brute_force(photons, p);
         neighbours_of_point within, nearest;
         const float radius = 0.3f;
@@ -69,13 +69,13 @@ TYPED_TEST(host_maps, single_queries_equal_a_search_for_many_points)
                                 .bias = bias,
                                 .leaks = leaks};
                             const auto photons = some_photons(7 + static_cast<uint>(cases++), 800, ties);
-                            const auto places = some_places(7, 40, ties);
-                            const std::vector<glm::vec3> normals(places.size(), up);
+                            const auto query_points = some_query_points(7, 40, ties);
+                            const std::vector<glm::vec3> normals(query_points.size(), up);
                             const photon_map many(serial, photons, s);
                             const photon_map one(this->device_, photons, s);
-                            const auto expected = many.irradiance(places, normals, {.standard_error = true});
-                            for (std::size_t i = 0; i < places.size(); ++i) {
-                                const auto e = one.irradiance(places[i], up, scratch);
+                            const auto expected = many.irradiance(query_points, normals, {.standard_error = true});
+                            for (std::size_t i = 0; i < query_points.size(); ++i) {
+                                const auto e = one.irradiance(query_points[i], up, scratch);
                                 ASSERT_EQ(e.radius, expected[i].radius);
                                 ASSERT_EQ(e.count, expected[i].count);
                                 for (int c = 0; c < 3; ++c) {
@@ -91,16 +91,17 @@ TYPED_TEST(host_maps, single_queries_equal_a_search_for_many_points)
     EXPECT_EQ(cases, 2 * 2 * 4 * 2 * 4 * 2);
 }
 
-TYPED_TEST(host_maps, many_places_give_named_results)
+TYPED_TEST(host_maps, many_query_points_give_named_results)
 {
     const auto photons = some_photons(3, 5000, false);
-    const auto places = some_places(3, 100, false);
+    const auto query_points = some_query_points(3, 100, false);
     const photon_map map(this->device_, photons, {.k = 30});
     EXPECT_EQ(map.size(), 5000u);
-    const auto plain = map.irradiance(places), with_error = map.irradiance(places, {.standard_error = true});
-    ASSERT_EQ(plain.size(), places.size());
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const auto nearest = by_brute_force(photons, places[i]);
+    const auto plain = map.irradiance(query_points),
+               with_error = map.irradiance(query_points, {.standard_error = true});
+    ASSERT_EQ(plain.size(), query_points.size());
+    for (std::size_t i = 0; i < query_points.size(); ++i) {
+        const auto nearest = by_brute_force(photons, query_points[i]);
         EXPECT_EQ(plain[i].count, 30u);
         EXPECT_EQ(plain[i].radius, std::sqrt(nearest[29].first));
         EXPECT_EQ(plain[i].value, with_error[i].value);
@@ -119,11 +120,11 @@ TYPED_TEST(host_maps, attributes_that_lie_apart_give_the_same_map)
         powers.push_back(p.power);
         normals.push_back(p.normal);
     }
-    const auto places = some_places(4, 50, false);
+    const auto query_points = some_query_points(4, 50, false);
     const photon_map whole(this->device_, photons, {.k = 20});
     const photon_map apart(this->device_, {.positions = positions, .powers = powers, .normals = normals}, {.k = 20});
-    const auto a = whole.irradiance(places), b = apart.irradiance(places);
-    for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto a = whole.irradiance(query_points), b = apart.irradiance(query_points);
+    for (std::size_t i = 0; i < query_points.size(); ++i) {
         EXPECT_EQ(a[i].value, b[i].value);
         EXPECT_EQ(a[i].radius, b[i].radius);
     }
@@ -139,11 +140,11 @@ TYPED_TEST(host_maps, attributes_that_lie_apart_give_the_same_map)
 TYPED_TEST(host_maps, any_thread_may_ask)
 {
     const auto photons = some_photons(5, 20000, false);
-    const auto places = some_places(5, 400, false);
+    const auto query_points = some_query_points(5, 400, false);
     const photon_map map(this->device_, photons, {.k = 50});
     std::vector<irradiance_at_point> expected;
     query_scratch scratch;
-    for (const auto& p : places)
+    for (const auto& p : query_points)
         expected.push_back(map.irradiance(p, up, scratch));
     std::atomic<int> wrong = 0;
     {
@@ -151,16 +152,16 @@ TYPED_TEST(host_maps, any_thread_may_ask)
         for (int t = 0; t < 8; ++t)
             threads.emplace_back([&, t] {
                 query_scratch mine;
-                for (std::size_t i = 0; i < places.size(); ++i) {
-                    const auto at = (i + static_cast<std::size_t>(t) * 50) % places.size();
-                    const auto e = map.irradiance(places[at], up, mine);
+                for (std::size_t i = 0; i < query_points.size(); ++i) {
+                    const auto at = (i + static_cast<std::size_t>(t) * 50) % query_points.size();
+                    const auto e = map.irradiance(query_points[at], up, mine);
                     uint within = 0;
-                    map.for_each_within(places[at], e.radius, [&](photon_id, float) { ++within; });
+                    map.for_each_within(query_points[at], e.radius, [&](photon_id, float) { ++within; });
                     wrong += e.value != expected[at].value || within + 1 < e.count ? 1 : 0;
                 }
             });
         for (int round = 0; round < 3; ++round)
-            EXPECT_EQ(map.irradiance(places).size(), places.size());
+            EXPECT_EQ(map.irradiance(query_points).size(), query_points.size());
     }
     EXPECT_EQ(wrong, 0);
 }
@@ -175,8 +176,8 @@ TYPED_TEST(host_maps, doubles_far_from_zero_are_told_apart)
     for (int i = 0; i < 1000; ++i)
         points.push_back({500000 + 0.1 * i, 5400000.0, 310});
     const point_index index(this->device_, points, 5);
-    const std::vector<surveyed> places{points[436], points[3]};
-    const auto nearest = index.nearest(places, 5);
+    const std::vector<surveyed> query_points{points[436], points[3]};
+    const auto nearest = index.nearest(query_points, 5);
     ASSERT_EQ(nearest.size(), 2u);
     EXPECT_EQ(nearest[0][0], (point_neighbour{436, 0}));
     for (std::size_t i = 1; i < 5; ++i) {
@@ -185,7 +186,7 @@ TYPED_TEST(host_maps, doubles_far_from_zero_are_told_apart)
     }
     query_scratch scratch;
     std::vector<photon_id> ids;
-    index.for_each_nearest(places[1], 3, scratch, [&](photon_id id, float) { ids.push_back(id); });
+    index.for_each_nearest(query_points[1], 3, scratch, [&](photon_id id, float) { ids.push_back(id); });
     std::sort(ids.begin(), ids.end());
     EXPECT_EQ(ids, (std::vector<photon_id>{2, 3, 4}));
 }
@@ -196,25 +197,25 @@ TYPED_TEST(host_maps, points_that_are_not_light_agree_with_flann)
     std::vector<glm::vec3> points;
     for (const auto& p : photons)
         points.push_back(p.position);
-    auto places = some_places(6, 100, false);
+    auto query_points = some_query_points(6, 100, false);
     const point_index index(this->device_, points);
     constexpr uint k = 12;
-    const auto nearest = index.nearest(places, k);
+    const auto nearest = index.nearest(query_points, k);
 
-    flann::Matrix<float> data(&points[0].x, points.size(), 3), queries(&places[0].x, places.size(), 3);
+    flann::Matrix<float> data(&points[0].x, points.size(), 3), queries(&query_points[0].x, query_points.size(), 3);
     flann::Index<flann::L2<float>> tree(data, flann::KDTreeSingleIndexParams());
     tree.buildIndex();
     std::vector<std::vector<int>> ids;
     std::vector<std::vector<float>> distances2;
     tree.knnSearch(queries, ids, distances2, k, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
     constexpr float radius = 0.2f;
-    const auto counts = index.count_within(places, radius);
-    const auto within = index.within(places, radius);
-    for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto counts = index.count_within(query_points, radius);
+    const auto within = index.within(query_points, radius);
+    for (std::size_t i = 0; i < query_points.size(); ++i) {
         ASSERT_EQ(nearest[i].size(), k);
         for (std::size_t j = 0; j < k; ++j)
             EXPECT_FLOAT_EQ(nearest[i][j].distance2, distances2[i][j]);
-        const auto all = by_brute_force(photons, places[i]);
+        const auto all = by_brute_force(photons, query_points[i]);
         const auto expected
             = std::count_if(all.begin(), all.end(), [](const auto& e) { return e.first <= radius * radius; });
         EXPECT_EQ(counts[i], static_cast<uint>(expected));

@@ -136,7 +136,7 @@ TYPED_TEST_P(algorithms, route_takes_a_hundred_thousand_photons_to_one_cell)
 
 TYPED_TEST_P(algorithms, route_conserves_power_in_crowded_cells)
 {
-    // Float sums of a third: 1e-5 up to 2,048 photons a cell, 5e-4 at 70,000.
+    // Float sums of a third: 1e-5 up to 2,048 photons per cell, 5e-4 at 70,000.
     auto& b = this->b();
     for (const auto& [n, tolerance] : {std::pair{2048u, 1e-5}, std::pair{70000u, 5e-4}}) {
         photon_set set;

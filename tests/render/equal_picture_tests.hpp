@@ -7,7 +7,7 @@ namespace photongrid::testing {
 
 TYPED_TEST_P(pictures, long_statistics_of_a_picture_equal_serials)
 {
-    // For devices that round loosely, and a check of all others: over 8 seeds a side, at least 99.75 % of the means
+    // For devices that round loosely, and a check of all others: over 8 seeds per side, at least 99.75 % of the means
     // over 8 x 8 pixels agree in a z-test (0.01, Sidak over the blocks).
     serial_backend serial;
     for (const auto& s : {small_cornell(), all_shapes()}) {

@@ -17,7 +17,7 @@ protected:
             settings.output.width = size.x;
             settings.output.height = size.y;
         }
-        // What 16 slots a cell cost in each scene, twice over (docs/reference/measures.md): a sharper estimate shows
+        // What 16 slots per cell cost in each scene, twice over (docs/reference/measures.md): a sharper estimate shows
         // more of it.
         expect_maps_agree(name + ", the paper's estimate", s, as_paper(settings), 0.005);
         expect_maps_agree(name, s, settings, 0.015);

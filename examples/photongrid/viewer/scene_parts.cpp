@@ -122,14 +122,14 @@ std::optional<grip> pick(
 
     // The reference numbers shapes in the order of the lists, then rectangle lights, which are the next list.
     std::size_t before = 0;
-    std::optional<scene_item> met;
+    std::optional<scene_item> hit_item;
     for_each_list(s, [&](const auto& list, auto, std::size_t number) {
-        if (!met && hit.shape < before + list.size())
-            met = scene_item{number, hit.shape - before};
+        if (!hit_item && hit.shape < before + list.size())
+            hit_item = scene_item{number, hit.shape - before};
         before += list.size();
     });
     for (std::size_t p = 0; p < parts.size(); ++p)
-        if (met && std::find(parts[p].items.begin(), parts[p].items.end(), *met) != parts[p].items.end())
+        if (hit_item && std::find(parts[p].items.begin(), parts[p].items.end(), *hit_item) != parts[p].items.end())
             return grip{p, hit.position};
     return std::nullopt;
 }

@@ -32,7 +32,7 @@ bool settings_panel::begun(const char* name)
 
 /// A word for each value.
 template <class Row>
-void settings_panel::choice(const Row& row, const char* label, const char* about)
+void settings_panel::choice(const Row& row, const char* label, const char* help)
 {
     const auto value = row.of(document_.now().settings);
     if (ImGui::BeginCombo(label, row.values.word_for(value))) {
@@ -41,31 +41,31 @@ void settings_panel::choice(const Row& row, const char* label, const char* about
                 change(label, [&](render_settings& s) { row.of(s) = n.value; });
         ImGui::EndCombo();
     }
-    tip(about);
+    tip(help);
 }
 
 /// A whole number, by a slider whose steps are even in its logarithm.
 template <class Row>
-void settings_panel::number(const Row& row, const char* label, int low, int high, const char* about)
+void settings_panel::number(const Row& row, const char* label, int low, int high, const char* help)
 {
     int value = static_cast<int>(row.of(document_.now().settings));
     const bool edited
         = ImGui::SliderInt(label, &value, low, high, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     if (begun(label) && edited)
         row.of(document_.edit().settings) = static_cast<std::uint32_t>(value);
-    tip(about);
+    tip(help);
 }
 
 template <class Row>
 void settings_panel::measure(
-    const Row& row, const char* label, float low, float high, const char* format, bool logarithmic, const char* about)
+    const Row& row, const char* label, float low, float high, const char* format, bool logarithmic, const char* help)
 {
     float value = static_cast<float>(row.of(document_.now().settings));
     const bool edited = ImGui::SliderFloat(label, &value, low, high, format,
         (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp);
     if (begun(label) && edited)
         row.of(document_.edit().settings) = static_cast<double>(value);
-    tip(about);
+    tip(help);
 }
 
 template <class Change>

@@ -19,12 +19,12 @@ public:
 
 private:
     template <class Row>
-    void choice(const Row& row, const char* label, const char* about);
+    void choice(const Row& row, const char* label, const char* help);
     template <class Row>
-    void number(const Row& row, const char* label, int low, int high, const char* about);
+    void number(const Row& row, const char* label, int low, int high, const char* help);
     template <class Row>
     void measure(const Row& row, const char* label, float low, float high, const char* format, bool logarithmic,
-        const char* about);
+        const char* help);
     template <class Change>
     void change(const std::string& name, Change apply);
     bool begun(const char* name);

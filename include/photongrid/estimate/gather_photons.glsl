@@ -26,9 +26,9 @@ INPUT(6, uint, list)          // photon ids
 INPUT(7, vec4, powers)        // rgb, W
 STATE(0, vec4, search_radius) // see kth_result.glsl
 STATE(1, uvec4, chosen)
-STATE(2, vec4, sum)           // rgb: weighted flux, W
+STATE(2, vec4, sum)           // rgb: weighted power, W
 STATE(3, vec4, compensation)  // rgb: rounding error of the sum so far (Kahan)
-STATE(4, vec4, squares)       // rgb: squares of the weighted fluxes; w: of their sums over channels
+STATE(4, vec4, squares)       // rgb: squares of the weighted powers; w: of their sums over channels
 STATE(5, uvec4, cursor)       // y, z of the next row; the first photon not yet visited
 STATE(6, uvec4, tally)        // photons summed; photons visited; index + 1 of the photon left out; 1: done
 
@@ -38,9 +38,9 @@ STATE(6, uvec4, tally)        // photons summed; photons visited; index + 1 of t
 
 uint chunk_id;
 vec4 chunk_power;
-void take_powers(uint nth, uint all)
+void gather_powers(uint nth, uint all)
 {
-    take_chunk(nth, all);
+    gather_chunk(nth, all);
     chunk_id = list(chunk_index);
     chunk_power = powers(chunk_index);
 }
@@ -116,7 +116,7 @@ void kernel(uint i)
         }                                                                                  \
     }
             if (photons > 0u)
-                EACH_PHOTON(photons, take_powers, VISIT)
+                EACH_PHOTON(photons, gather_powers, VISIT)
 #undef VISIT
         }
         if (mine) {

@@ -1,4 +1,4 @@
-// Density estimate from the gathered photons: irradiance = weighted flux / (pi r^2) x the filter's norm (Jensen 1996;
+// Density estimate from the gathered photons: irradiance = weighted power / (pi r^2) x the filter's norm (Jensen 1996;
 // the paper's section 2.3), and its standard error. r is the distance of the photon that set the radius, or the given
 // or maximum radius if none did. It is at least min_radius, so that coincident photons give a finite result.
 struct Params {

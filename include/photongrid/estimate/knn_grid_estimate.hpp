@@ -27,7 +27,7 @@ namespace photongrid {
 /// Estimates per query point, in buffers.
 template <backend B>
 struct knn_estimates {
-    buffer_of<B, glm::vec4> irradiance; ///< rgb, W/m^2: flux / (pi r^2), weighted; w: r^2, m^2
+    buffer_of<B, glm::vec4> irradiance; ///< rgb, W/m^2: power / (pi r^2), weighted; w: r^2, m^2
     buffer_of<B, glm::uvec2> used;      ///< x: photons within r, y: photons visited
     /// rgb: standard error of irradiance, W/m^2; w: of the sum of its channels. Empty unless requested. It assumes that
     /// photons are independent and does not include bias. 0 if no photon was found; meaningless for k < 3, for which

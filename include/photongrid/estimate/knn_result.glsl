@@ -1,4 +1,4 @@
-// Density estimate from the photons that a search has found so far: irradiance = flux / (pi r^2) (Jensen 1996; the
+// Density estimate from the photons that a search has found so far: irradiance = power / (pi r^2) (Jensen 1996; the
 // paper's section 2.3). With fewer than k photons, r is the maximum radius. It is at least min_radius, so that
 // coincident photons give a finite result.
 struct Params {
@@ -7,7 +7,7 @@ struct Params {
     float min_radius2; // m^2
 };
 PARAMS(Params)
-INPUT(0, vec4, searched) // rgb: flux, W; w: squared radius, m^2
+INPUT(0, vec4, searched) // rgb: power, W; w: squared radius, m^2
 INPUT(1, uvec4, counts)  // photons found, photons visited
 OUTPUT(0, vec4, irradiance) // rgb: W/m^2; w: squared radius of the photons used, m^2
 OUTPUT(1, uvec2, used)      // photons used, photons visited

@@ -22,7 +22,7 @@ struct Params {
 PARAMS(Params)
 #include <photongrid/estimate/search_inputs.glsl>
 INPUT(6, vec4, powers)         // rgb, W
-STATE(0, vec4, gathered)    // rgb: flux of the photons found, W; w: squared radius of the farthest, m^2
+STATE(0, vec4, gathered)    // rgb: power of the photons found, W; w: squared radius of the farthest, m^2
 STATE(1, uvec4, found)      // photons found; photons visited; next photon and end of the row being read
 STATE(2, uvec4, cursor)     // ring, z, y, x of the next cell to open; ring 0xFFFFFFFF: done
 

@@ -114,7 +114,7 @@ void kernel(uint i)
         beyond += counted(d2, far_pivots);                    \
     }
             if (photons > 0u)
-                EACH_PHOTON(photons, take_chunk, VISIT)
+                EACH_PHOTON(photons, gather_chunk, VISIT)
 #undef VISIT
         }
         while (walk_phase() != COUNTING && walks_on()) {
@@ -132,7 +132,7 @@ void kernel(uint i)
         }                                                                             \
     }
             if (photons > 0u)
-                EACH_PHOTON(photons, take_chunk, VISIT)
+                EACH_PHOTON(photons, gather_chunk, VISIT)
 #undef VISIT
         }
         if (mine)

@@ -26,9 +26,9 @@ STATE(3, uvec4, cursor)      // y, z of the next row; the first photon not yet v
 #include <photongrid/estimate/photon_walk.glsl>
 
 uint chunk_id;
-void take_ids(uint nth, uint all)
+void gather_ids(uint nth, uint all)
 {
-    take_chunk(nth, all);
+    gather_chunk(nth, all);
     chunk_id = list(chunk_index);
 }
 
@@ -67,7 +67,7 @@ void kernel(uint i)
         count += uvec4(key <= pivot.x ? 1u : 0u, key <= pivot.y ? 1u : 0u, key <= pivot.z ? 1u : 0u, key <= pivot.w ? 1u : 0u);    \
     }
             if (photons > 0u)
-                EACH_PHOTON(photons, take_ids, VISIT)
+                EACH_PHOTON(photons, gather_ids, VISIT)
 #undef VISIT
         }
         if (mine)

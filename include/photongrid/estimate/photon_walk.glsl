@@ -103,7 +103,7 @@ uint next_rows()
 
 // Loads photons nth, nth + 1, ... of the `all` photons in the current rows, one per lane. Lanes past the last photon
 // get one that is far from everything.
-void take_chunk(uint nth, uint all)
+void gather_chunk(uint nth, uint all)
 {
     uint mine = nth + group_lane();
     chunk_index = index_of(min(mine, all - 1u));
@@ -118,13 +118,13 @@ void take_chunk(uint nth, uint all)
         chunk_normal = photon_normals(chunk_index);
 }
 #define PHOTON_OF(LANE) from_lane(chunk_position, LANE), from_lane(chunk_direction, LANE), from_lane(chunk_normal, LANE)
-// VISIT(LANE) for each of the PHOTONS, at least one, in the current rows. TAKE is take_chunk or a function that loads
-// more.
-#define EACH_PHOTON(PHOTONS, TAKE, VISIT)    \
+// VISIT(LANE) for each of the PHOTONS, at least one, in the current rows. GATHER is gather_chunk or a function that
+// loads more.
+#define EACH_PHOTON(PHOTONS, GATHER, VISIT)  \
     {                                        \
         uint nth = 0u;                       \
         do {                                 \
-            TAKE(nth, PHOTONS);              \
+            GATHER(nth, PHOTONS);            \
             EACH_LANE(VISIT)                 \
             nth += GROUP_LANES;              \
         } while (nth < PHOTONS);             \

@@ -49,11 +49,11 @@ void kernel(uint i)
     if (event_end(last) != GOES_ON)
         return;
 
-    uint met = event_before(last);
-    if (event_kind(last) == SPECULAR_SURFACE && met == NOTHING_BEFORE)
-        met = SPECULAR_BEFORE;
+    uint hit_before = event_before(last);
+    if (event_kind(last) == SPECULAR_SURFACE && hit_before == NOTHING_BEFORE)
+        hit_before = SPECULAR_BEFORE;
     if (event_kind(last) == DIFFUSE_SURFACE)
-        met = DIFFUSE_BEFORE;
+        hit_before = DIFFUSE_BEFORE;
 
     // The photon that left the last surface: its power there times the colour of the material. Roulette accounts for
     // the absorbed part.
@@ -79,7 +79,7 @@ void kernel(uint i)
         position.w = event_code(NO_SURFACE, ESCAPED, NOTHING_BEFORE);
         return;
     }
-    position = vec4(hit.position.x, hit.position.y, hit.position.z, event_code(NO_SURFACE, ABSORBED, met));
+    position = vec4(hit.position.x, hit.position.y, hit.position.z, event_code(NO_SURFACE, ABSORBED, hit_before));
     if (!is_finite3(hit.position)) {
         position.w = event_code(NO_SURFACE, NOT_A_NUMBER, NOTHING_BEFORE);
         return;
@@ -96,10 +96,10 @@ void kernel(uint i)
     next_origin.w = facing.y;
     next_direction.w = facing.z;
     if (!(r.x < largest3(material.reflectance))) {
-        position.w = event_code(surface, ABSORBED, met);
+        position.w = event_code(surface, ABSORBED, hit_before);
         return;
     }
-    position.w = event_code(surface, frame < args.last_frame ? GOES_ON : CUT_OFF, met);
+    position.w = event_code(surface, frame < args.last_frame ? GOES_ON : CUT_OFF, hit_before);
     vec3 next = facing;
     if (material.kind == LAMBERTIAN_SURFACE)
         next = cosine_direction(facing, r.y, r.z);

@@ -41,8 +41,8 @@ float form_factor(vec3 corner, vec3 edge_u, vec3 edge_v, vec3 n)
 {
     float sum = 0.0f;
     bool cut = false;
-    vec3 sets = corner;
-    vec3 rises = corner;
+    vec3 exit_point = corner;  // where the outline goes below the horizon
+    vec3 entry_point = corner; // and where it comes back
     vec3 a = corner;
     for (uint e = 1u; e <= 4u; ++e) {
         precise vec3 b = corner + edge_u * (e == 1u || e == 2u ? 1.0f : 0.0f)
@@ -58,10 +58,10 @@ float form_factor(vec3 corner, vec3 edge_u, vec3 edge_v, vec3 n)
                 cut = true;
                 if (ha < 0.0f) {
                     from = horizon;
-                    rises = horizon;
+                    entry_point = horizon;
                 } else {
                     to = horizon;
-                    sets = horizon;
+                    exit_point = horizon;
                 }
             }
             precise float more = sum + edge_term(from, to, n);
@@ -70,7 +70,7 @@ float form_factor(vec3 corner, vec3 edge_u, vec3 edge_v, vec3 n)
         a = b;
     }
     if (cut) {
-        precise float closed = sum + edge_term(sets, rises, n);
+        precise float closed = sum + edge_term(exit_point, entry_point, n);
         sum = closed;
     }
     precise float factor = abs(sum) * 0.159154943f; // 1 / (2 pi)

@@ -38,9 +38,9 @@ void kernel(uint i)
 {
     vec3 d = vec3(direction);
     Hit hit = intersect_closest(vec3(point), d);
-    uint met = uint(direction.w);
+    uint hits = uint(direction.w);
     uint splits = uint(throughput.w);
-    // A ray that met fewer glass surfaces than there are splits is the same in several passes: count it in one of them,
+    // A ray that hit fewer glass surfaces than there are splits is the same in several passes: count it in one of them,
     // the one whose unused branch bits are 0.
     bool mine = args.branch >> splits == 0u;
     if (hit.t < 0.0f) {
@@ -76,20 +76,20 @@ void kernel(uint i)
             share = reflect_it ? f.reflected : 1.0f - f.reflected;
             ++splits;
         } else if (!reflect_it) {
-            vec4 r = random4(uvec4(i, args.sample_id * 4096u + args.branch, 2000u + met, args.seed));
+            vec4 r = random4(uvec4(i, args.sample_id * 4096u + args.branch, 2000u + hits, args.seed));
             reflect_it = r.x < f.reflected;
         }
         next = f.refracted;
         if (reflect_it)
             next = reflect_direction(d, hit.normal);
     }
-    ++met;
-    if (met > args.depth || !(share > 0.0f)) {
+    ++hits;
+    if (hits > args.depth || !(share > 0.0f)) {
         point.w = -1.0f;
         return;
     }
     vec3 start = ray_start(hit.position, hit.normal, next);
     point = vec4(start.x, start.y, start.z, 0.0f);
-    direction = vec4(next.x, next.y, next.z, float(met));
+    direction = vec4(next.x, next.y, next.z, float(hits));
     throughput = vec4(tinted.x * share, tinted.y * share, tinted.z * share, float(splits));
 }

@@ -11,7 +11,7 @@ INPUT(0, uint, sums) // storable photons of paths 0 to i
 INPUT(1, vec4, positions)
 INPUT(2, vec4, powers)
 INPUT(3, vec4, directions)
-OUTPUT(0, vec4, position) // w: 1 for a caustic photon, 0 for one that met a diffuse surface
+OUTPUT(0, vec4, position) // w: 1 for a caustic photon, 0 for one that hit a diffuse surface
 OUTPUT(1, vec4, power)
 OUTPUT(2, vec4, direction)
 

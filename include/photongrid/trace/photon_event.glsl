@@ -20,9 +20,9 @@ const uint NOTHING_BEFORE = 0u;
 const uint SPECULAR_BEFORE = 1u;
 const uint DIFFUSE_BEFORE = 2u;
 
-inline float event_code(uint kind, uint end, uint met)
+inline float event_code(uint kind, uint end, uint before)
 {
-    return float(kind + 4u * end + 32u * met);
+    return float(kind + 4u * end + 32u * before);
 }
 inline uint event_kind(vec4 position)
 {

@@ -10,7 +10,7 @@ struct Params {
 PARAMS(Params)
 INPUT(0, uint, ids)
 INPUT(1, float, distances2)
-INPUT(2, vec4, spectra) // flux of photon f in group g: element f * groups + g, W
+INPUT(2, vec4, spectra) // power of photon f in group g: element f * groups + g, W
 OUTPUT(0, vec4, irradiance)
 
 void kernel(uint i)
