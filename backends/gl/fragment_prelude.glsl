@@ -3,8 +3,8 @@
 #include "textures.glsl"
 // `precise`: so that results equal the serial backend's bit for bit, if the operations round correctly.
 #define OUTPUT(B, T, NAME) layout(location = B) precise out T NAME;
-// A state's texture is read and written in one pass: each fragment reads its own texel only, which glTextureBarrier makes
-// legal (OpenGL 4.5 core, 9.3.1).
+// A state's texture is read and written in one pass: each fragment reads its own texel only, which glTextureBarrier
+// makes legal (OpenGL 4.5 core, 9.3.1).
 #define STATE(B, T, NAME) \
     layout(location = B) precise out T NAME; \
     layout(binding = 8 + B) uniform SAMPLER_##T NAME##_texture_; \

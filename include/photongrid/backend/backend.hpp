@@ -217,8 +217,8 @@ namespace detail {
 // Not formatted: clang-format 14 breaks each of these lines in three.
 // clang-format off
 template <class B>
-concept backend = requires(B& b, const B& cb, typename B::template buffer<uint>& u, typename B::template buffer<glm::vec4>& v,
-    launch l, detail::concept_probe::Params p, std::span<const uint> host) {
+concept backend = requires(B& b, const B& cb, typename B::template buffer<uint>& u,
+    typename B::template buffer<glm::vec4>& v, launch l, detail::concept_probe::Params p, std::span<const uint> host) {
     { b.template make<uint>(std::size_t{}) } -> std::same_as<typename B::template buffer<uint>>;
     { b.upload(host) } -> std::same_as<typename B::template buffer<uint>>;
     { b.download(u) } -> std::same_as<std::vector<uint>>;

@@ -55,7 +55,8 @@ inline vec2 unit_circle(float u)
     precise float x = (turns - quadrant - 0.5f) * 1.57079633f;
     precise float x2 = x * x;
     precise float c = 1.0f + x2 * (-0.5f + x2 * (4.16666667e-2f + x2 * (-1.38888889e-3f + x2 * 2.48015873e-5f)));
-    precise float s = x * (1.0f + x2 * (-1.66666667e-1f + x2 * (8.33333333e-3f + x2 * (-1.98412698e-4f + x2 * 2.75573192e-6f))));
+    precise float s = x
+        * (1.0f + x2 * (-1.66666667e-1f + x2 * (8.33333333e-3f + x2 * (-1.98412698e-4f + x2 * 2.75573192e-6f))));
     // x is measured from the quadrant's middle: turn by 45 degrees.
     precise float cd = (c - s) * 0.70710678f;
     precise float sd = (c + s) * 0.70710678f;
@@ -76,8 +77,10 @@ inline float angle_of(float y, float x)
     float larger = y > ax ? y : ax;
     precise float t = (y > ax ? ax : y) / larger;
     precise float q = t * t;
-    precise float high = 0.10618370642f + q * (-0.07456854839f + q * (0.04213762375f + q * (-0.01573124922f + q * 0.00276628353f)));
-    precise float ratio = 0.99999998179f + q * (-0.33333036709f + q * (0.19991872029f + q * (-0.14197797795f + q * high)));
+    precise float high = 0.10618370642f
+        + q * (-0.07456854839f + q * (0.04213762375f + q * (-0.01573124922f + q * 0.00276628353f)));
+    precise float ratio = 0.99999998179f
+        + q * (-0.33333036709f + q * (0.19991872029f + q * (-0.14197797795f + q * high)));
     precise float angle = t * ratio;
     precise float acute = y > ax ? 1.57079633f - angle : angle;
     return x < 0.0f ? 3.14159265f - acute : acute;

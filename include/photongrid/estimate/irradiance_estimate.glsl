@@ -35,5 +35,6 @@ void kernel(uint i)
         spread = n.x > 2u ? terms / float(n.x - 2u) : 1.0f;
     }
     vec4 variance = vec4(q.x * spread, q.y * spread, q.z * spread, q.w * spread);
-    standard_error = vec4(sqrt(variance.x) * per_area, sqrt(variance.y) * per_area, sqrt(variance.z) * per_area, sqrt(variance.w) * per_area);
+    standard_error = vec4(sqrt(variance.x) * per_area, sqrt(variance.y) * per_area,
+        sqrt(variance.z) * per_area, sqrt(variance.w) * per_area);
 }

@@ -9,6 +9,7 @@
 // result so far, which can be displayed at any time (3.4).
 //
 // The kernel is one function, because it is one state machine over local copies of the states.
+#include <photongrid/backend/none.glsl>
 #include <photongrid/map/grid.glsl>
 
 struct Params {
@@ -24,13 +25,13 @@ PARAMS(Params)
 INPUT(6, vec4, powers)         // rgb, W
 STATE(0, vec4, gathered)    // rgb: power of the photons found, W; w: squared radius of the farthest, m^2
 STATE(1, uvec4, found)      // photons found; photons visited; next photon and end of the row being read
-STATE(2, uvec4, cursor)     // ring, z, y, x of the next cell to open; ring 0xFFFFFFFF: done
+STATE(2, uvec4, cursor)     // ring, z, y, x of the next cell to open; ring NONE: done
 
 #include <photongrid/estimate/photon_distance.glsl>
 
 bool done()
 {
-    return cursor.x == 0xFFFFFFFFu;
+    return cursor.x == NONE;
 }
 
 // The smaller of `so_far` and the gap to `cell`, if that cell exists.
@@ -70,7 +71,7 @@ void kernel(uint i)
     // A loop over rings around a loop over rows: where lanes run in lockstep, each iteration costs as much as its most
     // expensive branch. This way the rows of neighbouring points stay in step, and the end of a ring is outside that
     // loop.
-    while (steps > 0u && ring != 0xFFFFFFFFu) {
+    while (steps > 0u && ring != NONE) {
         // The box of cells that rings 0 to `ring` cover.
         uint low_x = c.x > ring ? c.x - ring : 0u;
         uint low_y = c.y > ring ? c.y - ring : 0u;
@@ -150,7 +151,7 @@ void kernel(uint i)
             bool everything = low_x == 0u && low_y == 0u && low_z == 0u && high_x == last_x && high_y == last_y
                 && high_z == last_z;
             if (everything || unexplored * unexplored > limit2) {
-                ring = 0xFFFFFFFFu;
+                ring = NONE;
             } else {
                 ++ring;
                 z = c.z > ring ? c.z - ring : 0u;

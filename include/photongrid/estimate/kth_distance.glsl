@@ -8,6 +8,7 @@
 // The result is the squared distance of a photon, independent of the pivots and therefore the same on every device.
 //
 // The kernel is one function, because it is one state machine over local copies of the states.
+#include <photongrid/backend/none.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/estimate/distance_key.glsl>
 #include <photongrid/estimate/kth_phases.glsl>
@@ -26,7 +27,7 @@ IN_GROUPS(3)
 STATE(0, vec4, pivots)   // m^2; COUNTING: the eight pivots are x + y times the factors in the kernel; CLOSING_IN: x
 STATE(1, uvec4, inner)   // COUNTING: photons within pivots 1 to 4; CLOSING_IN: the four largest keys up to the pivot
 STATE(2, uvec4, outer)   // COUNTING: photons within pivots 5 to 8; CLOSING_IN: the four smallest keys beyond the pivot
-STATE(3, uvec4, bracket) // x < key of the k-th <= y; z, w: photons up to x, y; w 0xFFFFFFFF: unknown
+STATE(3, uvec4, bracket) // x < key of the k-th <= y; z, w: photons up to x, y; w NONE: unknown
 STATE(4, uvec4, cursor)  // y, z of the next row; the first photon not yet visited
 STATE(5, uvec4, tally)   // photons within the pivot, if FOUND within the k-th distance; photons visited; scans; phase
 
@@ -51,7 +52,7 @@ uvec4 narrowed(uvec4 between, float pivot, uint count)
     uint key = key_of(pivot);
     if (count < args.k)
         return key > between.x ? uvec4(key, between.y, count, between.w) : between;
-    return between.w == 0xFFFFFFFFu || key < between.y ? uvec4(between.x, key, between.z, count) : between;
+    return between.w == NONE || key < between.y ? uvec4(between.x, key, between.z, count) : between;
 }
 
 float within_limit(float radius2)
@@ -62,17 +63,20 @@ float within_limit(float radius2)
 // 1 for each of four pivots that the photon lies within.
 uvec4 counted(float d2, vec4 limits)
 {
-    return uvec4(d2 <= limits.x ? 1u : 0u, d2 <= limits.y ? 1u : 0u, d2 <= limits.z ? 1u : 0u, d2 <= limits.w ? 1u : 0u);
+    return uvec4(d2 <= limits.x ? 1u : 0u, d2 <= limits.y ? 1u : 0u,
+        d2 <= limits.z ? 1u : 0u, d2 <= limits.w ? 1u : 0u);
 }
 
 // Inserts a key into the four largest so far, descending, or the four smallest so far, ascending.
 uvec4 largest(uvec4 so_far, uint key)
 {
-    return uvec4(max(so_far.x, key), max(so_far.y, min(so_far.x, key)), max(so_far.z, min(so_far.y, key)), max(so_far.w, min(so_far.z, key)));
+    return uvec4(max(so_far.x, key), max(so_far.y, min(so_far.x, key)),
+        max(so_far.z, min(so_far.y, key)), max(so_far.w, min(so_far.z, key)));
 }
 uvec4 smallest(uvec4 so_far, uint key)
 {
-    return uvec4(min(so_far.x, key), min(so_far.y, max(so_far.x, key)), min(so_far.z, max(so_far.y, key)), min(so_far.w, max(so_far.z, key)));
+    return uvec4(min(so_far.x, key), min(so_far.y, max(so_far.x, key)),
+        min(so_far.z, max(so_far.y, key)), min(so_far.w, max(so_far.z, key)));
 }
 
 void kernel(uint i)
@@ -94,10 +98,14 @@ void kernel(uint i)
     walk_steps = args.ranges;
     while (walk_steps > 0u && group_any(phase != FOUND)) {
         // The guess (kth_guess.glsl) is more often a little too low than too high.
-        precise vec4 near_pivots = vec4(pivot.x + 0.6f * pivot.y, pivot.x + 0.8f * pivot.y, pivot.x + 0.92f * pivot.y, pivot.x + 1.04f * pivot.y);
-        precise vec4 far_pivots = vec4(pivot.x + 1.16f * pivot.y, pivot.x + 1.3f * pivot.y, pivot.x + 1.48f * pivot.y, pivot.x + 1.7f * pivot.y);
-        near_pivots = vec4(within_limit(near_pivots.x), within_limit(near_pivots.y), within_limit(near_pivots.z), within_limit(near_pivots.w));
-        far_pivots = vec4(within_limit(far_pivots.x), within_limit(far_pivots.y), within_limit(far_pivots.z), within_limit(far_pivots.w));
+        precise vec4 near_pivots = vec4(pivot.x + 0.6f * pivot.y, pivot.x + 0.8f * pivot.y,
+            pivot.x + 0.92f * pivot.y, pivot.x + 1.04f * pivot.y);
+        precise vec4 far_pivots = vec4(pivot.x + 1.16f * pivot.y, pivot.x + 1.3f * pivot.y,
+            pivot.x + 1.48f * pivot.y, pivot.x + 1.7f * pivot.y);
+        near_pivots = vec4(within_limit(near_pivots.x), within_limit(near_pivots.y),
+            within_limit(near_pivots.z), within_limit(near_pivots.w));
+        far_pivots = vec4(within_limit(far_pivots.x), within_limit(far_pivots.y),
+            within_limit(far_pivots.z), within_limit(far_pivots.w));
         uint middle = key_of(pivot.x);
         float high = distance_of(between.y);
         float scan2 = phase == COUNTING ? far_pivots.w : high;
@@ -128,7 +136,7 @@ void kernel(uint i)
         if (GROUP_LANES > 1u || inside) {                                             \
             within += inside && key <= middle ? 1u : 0u;                              \
             below = largest(below, inside && key <= middle ? key : 0u);               \
-            beyond = smallest(beyond, inside && key > middle ? key : 0xFFFFFFFFu);    \
+            beyond = smallest(beyond, inside && key > middle ? key : NONE);           \
         }                                                                             \
     }
             if (photons > 0u)
@@ -150,7 +158,7 @@ void kernel(uint i)
                 between = narrowed(between, far_pivots.y, beyond.y);
                 between = narrowed(between, far_pivots.z, beyond.z);
                 between = narrowed(between, far_pivots.w, beyond.w);
-                if (between.w == 0xFFFFFFFFu) {
+                if (between.w == NONE) {
                     // Fewer than k so beyond. Wider, unless that was the widest: then these are all.
                     phase = far_pivots.w < args.max_radius2 ? COUNTING : FOUND;
                     within = beyond.w;
@@ -178,7 +186,8 @@ void kernel(uint i)
                 uint kth = component(beyond, min(before, 3u));
                 if (before < 3u || beyond.x == between.y) {
                     phase = FOUND;
-                    within = beyond.x == between.y ? between.w : args.k + (component(beyond, before + 1u) == kth ? 1u : 0u);
+                    within = beyond.x == between.y ? between.w
+                                                   : args.k + (component(beyond, before + 1u) == kth ? 1u : 0u);
                     between.y = kth;
                 } else {
                     // Other photons may have the same distance as the fourth of these.
@@ -201,7 +210,7 @@ void kernel(uint i)
                     pivot.x = distance_of(min(max(next, between.x), between.y - 1u));
                     within = between.z;
                     below = uvec4(0u, 0u, 0u, 0u);
-                    beyond = uvec4(0xFFFFFFFFu, 0xFFFFFFFFu, 0xFFFFFFFFu, 0xFFFFFFFFu);
+                    beyond = uvec4(NONE, NONE, NONE, NONE);
                 }
             } else {
                 below = uvec4(0u, 0u, 0u, 0u);

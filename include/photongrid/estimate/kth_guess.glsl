@@ -1,6 +1,7 @@
 // A first guess at the squared distance of the k-th nearest photon, from the cells' counts alone: boxes of cells around
 // the query point, each about twice as wide as the one before, until one holds k photons. A wrong guess costs time
 // only.
+#include <photongrid/backend/none.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/estimate/kth_phases.glsl>
 
@@ -60,7 +61,8 @@ float guessed(uvec4 c)
     bool looking = true;
     while (looking) {
         uvec4 low = uvec4(c.x - min(c.x, half_width), c.y - min(c.y, half_width), c.z - min(c.z, half_width), 0u);
-        uvec4 high = uvec4(min(c.x + half_width, largest.x), min(c.y + half_width, largest.y), min(c.z + half_width, largest.z), 0u);
+        uvec4 high = uvec4(min(c.x + half_width, largest.x), min(c.y + half_width, largest.y),
+            min(c.z + half_width, largest.z), 0u);
         uint rows = high.y - low.y + 1u;
         rows = rows > args.rows ? rows : rows * (high.z - low.z + 1u);
         looking = rows <= args.rows;
@@ -94,7 +96,7 @@ void kernel(uint i)
     pivots = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     inner = uvec4(0u, 0u, 0u, 0u);
     outer = uvec4(0u, 0u, 0u, 0u);
-    bracket = uvec4(0u, 0u, 0u, 0xFFFFFFFFu);
+    bracket = uvec4(0u, 0u, 0u, NONE);
     cursor = uvec4(0u, 0u, 0u, 0u);
     bool searches = args.searching != 0u && p.w > 0.0f && is_finite(p);
     tally = uvec4(0u, 0u, 0u, searches ? COUNTING : FOUND); // found: none

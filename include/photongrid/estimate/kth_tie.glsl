@@ -1,6 +1,7 @@
 // If several photons have the k-th distance, those with the smallest ids belong to the k nearest. This kernel finds the
 // last such id: scans count the ids up to four pivots, as kth_distance.glsl counts distances. The kernel is one
 // function, because it is one state machine over local copies of the states.
+#include <photongrid/backend/none.glsl>
 #include <photongrid/map/grid.glsl>
 
 struct Params {
@@ -58,13 +59,14 @@ void kernel(uint i)
         while (walks_on()) {
             uint photons = next_rows();
             visited += mine ? photons : 0u;
-#define VISIT(LANE)                                                                                                                \
-    {                                                                                                                              \
-        float d2 = distance2_of(PHOTON_OF(LANE), from, n);                                                                         \
-        between.z += d2 < radius2 ? 1u : 0u;                                                                                       \
-        uint id = from_lane(chunk_id, LANE);                                                                                       \
-        uint key = d2 == radius2 ? id + 1u : 0xFFFFFFFFu;                                                                          \
-        count += uvec4(key <= pivot.x ? 1u : 0u, key <= pivot.y ? 1u : 0u, key <= pivot.z ? 1u : 0u, key <= pivot.w ? 1u : 0u);    \
+#define VISIT(LANE)                                                           \
+    {                                                                         \
+        float d2 = distance2_of(PHOTON_OF(LANE), from, n);                    \
+        between.z += d2 < radius2 ? 1u : 0u;                                  \
+        uint id = from_lane(chunk_id, LANE);                                  \
+        uint key = d2 == radius2 ? id + 1u : NONE;                            \
+        count += uvec4(key <= pivot.x ? 1u : 0u, key <= pivot.y ? 1u : 0u,    \
+            key <= pivot.z ? 1u : 0u, key <= pivot.w ? 1u : 0u);              \
     }
             if (photons > 0u)
                 EACH_PHOTON(photons, gather_ids, VISIT)

@@ -1,5 +1,7 @@
 // A neighbour as a sortable pair: the bits of its squared distance, which have the order of the distances, and its id.
 // Entry e of the list of point p is pair e * points + p, so that consecutive elements read consecutive pairs.
+#include <photongrid/backend/none.glsl>
+
 struct Params {
     vec4 leaks;  // see photon_distance.glsl
     uint points;
@@ -25,7 +27,7 @@ void kernel(uint i)
 {
     uint entry = i / args.points;
     uint point = i - entry * args.points;
-    pair = uvec2(0x7F800000u, 0xFFFFFFFFu); // no photon, infinitely far
+    pair = uvec2(0x7F800000u, NONE); // no photon, infinitely far
     if (HELD) {
         if (entry % 16u < tallies(point).x) {
             uvec4 four = indices(point);

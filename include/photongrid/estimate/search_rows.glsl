@@ -6,7 +6,8 @@ uvec2 cells_within(float x, float radius, float origin, float inverse_cell, uint
 {
     precise float low = x - radius;
     precise float high = x + radius;
-    return uvec2(clamped_cell(in_cells(low, origin, inverse_cell), resolution), clamped_cell(in_cells(high, origin, inverse_cell), resolution));
+    return uvec2(clamped_cell(in_cells(low, origin, inverse_cell), resolution),
+        clamped_cell(in_cells(high, origin, inverse_cell), resolution));
 }
 
 // The square root of radius2, rounded up far enough that no photon at a squared distance of radius2 or less lies beyond

@@ -1,6 +1,7 @@
 // The destination of draw i in stencil routing (2.2.2, figure 5). Photons are drawn in a seeded random order: a cell
 // keeps those that arrive first, so the order of ids would discard later lights and bounces.
 #include <photongrid/map/grid.glsl>
+#include <photongrid/backend/none.glsl>
 #include <photongrid/backend/random.glsl>
 
 struct Params {
@@ -21,7 +22,7 @@ void kernel(uint i)
     uint photon = permuted(i, args.photons, args.seed);
     vec4 p = positions(photon);
     vec4 carried = powers(photon);
-    destination = 0xFFFFFFFFu;
+    destination = NONE;
     payload = photon;
     power = vec4(carried.x, carried.y, carried.z, 1.0f);
     if (!is_finite(p) || !is_finite(carried) || !is_of_parts(p, args.parts))
