@@ -103,7 +103,8 @@ public:
             throw std::invalid_argument("photon_map::irradiance: search: at_least_k is not available for a single "
                                         "point; use exact_k or fixed_radius, "
                                         "or search for many points at once");
-        auto q = query(s.leaks, policies(s.leaks) | detail::filter_switch(s.filter));
+        auto q
+            = query(s.leaks, detail::policy_switches<kernels::host_query>(s.leaks) | detail::filter_switch(s.filter));
         const std::size_t n = collect(q, glm::vec4(p, 1), glm::vec4(normal, 0), s, scratch);
         const bool by_photon = s.search == search_kind::exact_k && n >= s.k;
         auto& found = scratch.found_;
@@ -131,10 +132,6 @@ private:
     static float distance2_of(const query_scratch::candidate& c)
     {
         return std::bit_cast<float>(static_cast<uint>(c.key >> 32));
-    }
-    static uint policies(const leak_policy& l)
-    {
-        return (l.side ? 1u : 0u) | (l.needs_normals() ? 2u : 0u) | (l.flattening > 1 ? 4u : 0u);
     }
     kernels::host_query query(const leak_policy& l, uint switches) const
     {

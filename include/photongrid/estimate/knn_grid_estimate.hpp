@@ -113,7 +113,7 @@ private:
     uint gather_switches() const
     {
         const auto& s = in_.s;
-        return in_.policies() | detail::filter_switch(s.filter)
+        return in_.template policies<K>() | detail::filter_switch(s.filter)
             | (s.bias == bias_kind::unbiased ? K::LEAVE_OUT_switch : 0u) | (s.errors ? K::ERRORS_switch : 0u)
             | in_.template together<K>();
     }
@@ -229,7 +229,8 @@ progress knn_search_by_kernels<B>::run_stage(uint passes)
     const auto& s = in_.s;
     switch (stage_) {
     case stage::grow:
-        return b.template run_until_done<kernels::knn_visit>({in_.points->size(), 0u, in_.policies()},
+        return b.template run_until_done<kernels::knn_visit>(
+            {in_.points->size(), 0u, in_.template policies<kernels::knn_visit>()},
             {.grid = m.cells_of,
                 .leaks = in_.leaks(),
                 .k = s.k,

@@ -39,6 +39,13 @@ namespace detail {
                 + " entries that this device holds; ask for fewer points at a time");
     }
 
+    /// The SWITCHes of kernel K, which writes pairs: neighbours that a list holds, or empty ones.
+    template <class K, backend B>
+    uint pair_switches(const search_inputs<B>& in, bool held)
+    {
+        return in.template policies<K>() | (held ? K::HELD_switch : 0u);
+    }
+
     template <backend B>
     neighbour_lists<B> list_neighbours(const search_inputs<B>& in)
     {
@@ -52,7 +59,7 @@ namespace detail {
         auto pairs = b.template make<glm::uvec2>(std::size_t{n} * padded);
         const auto put = [&](uint entry, uint entries, bool held, const auto& indices, const auto& tally) {
             b.template run<kernels::neighbour_pair>(
-                {std::size_t{n} * entries, entry * n, in.policies() | (held ? 8u : 0u)},
+                {std::size_t{n} * entries, entry * n, pair_switches<kernels::neighbour_pair>(in, held)},
                 {.leaks = in.leaks(), .points = n},
                 reads(*in.points, in.point_normals(), m.photons.positions, in.directions(), in.photon_normals(), m.list,
                     indices, tally),
@@ -69,7 +76,8 @@ namespace detail {
                 b.template run<kernels::neighbours_start>({n, 0u, first > 0 ? 1u : 0u},
                     {.searching = in.searching() ? 1u : 0u}, reads(*in.points, radius_search.chosen),
                     writes(cursor, tally));
-                b.template run_until_done<kernels::list_neighbours>({n, 0u, in.policies()},
+                b.template run_until_done<kernels::list_neighbours>(
+                    {n, 0u, in.template policies<kernels::list_neighbours>()},
                     {.grid = m.cells_of,
                         .leaks = in.leaks(),
                         .visits = in.s.visits_per_pass,

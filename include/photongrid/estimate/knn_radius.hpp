@@ -123,7 +123,8 @@ progress knn_radius<B>::run_stage(uint passes)
     const auto& s = in_.s;
     if (stage_ == stage::distance)
         return b.template run_until_done<kernels::kth_distance>(
-            {in_.points->size(), 0u, in_.policies() | in_.template together<kernels::kth_distance>()},
+            {in_.points->size(), 0u,
+                in_.template policies<kernels::kth_distance>() | in_.template together<kernels::kth_distance>()},
             {.grid = m.cells_of,
                 .leaks = in_.leaks(),
                 .k = s.k,
@@ -134,7 +135,7 @@ progress knn_radius<B>::run_stage(uint passes)
                 *in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(), in_.photon_normals()),
             writes(pivots_, counts_, outer_, bracket_, cursor_, tally_), passes);
     return b.template run_until_done<kernels::kth_tie>(
-        {in_.points->size(), 0u, in_.policies() | in_.template together<kernels::kth_tie>()},
+        {in_.points->size(), 0u, in_.template policies<kernels::kth_tie>() | in_.template together<kernels::kth_tie>()},
         {.grid = m.cells_of,
             .leaks = in_.leaks(),
             .k = s.k,

@@ -91,6 +91,13 @@ namespace detail {
         return r > 0 ? std::min(r * r, 1e38f) : 0.0f;
     }
     inline float min_radius2(const knn_settings& s) { return std::max(s.min_radius * s.min_radius, 1e-36f); }
+    /// The SWITCHes of kernel K that photon_distance.glsl reads.
+    template <class K>
+    uint policy_switches(const leak_policy& l)
+    {
+        return (l.side ? K::SIDE_switch : 0u) | (l.needs_normals() ? K::NORMALS_switch : 0u)
+            | (l.flattening > 1 ? K::FLATTEN_switch : 0u);
+    }
     /// Whether the points are close enough for neighbours to search in a subgroup: if the expected radius is at least
     /// eight times the distance between points. Both are estimated as if points and photons were evenly distributed
     /// over the largest side of the grid's box.
@@ -141,10 +148,11 @@ namespace detail {
         {
             return {s.leaks.min_cosine, s.leaks.flattening * s.leaks.flattening - 1.0f, 0.0f, 0.0f};
         }
-        /// The SWITCHes of photon_distance.glsl.
+        /// The SWITCHes of kernel K for this search's policies.
+        template <class K>
         uint policies() const
         {
-            return (s.leaks.side ? 1u : 0u) | (s.leaks.needs_normals() ? 2u : 0u) | (s.leaks.flattening > 1 ? 4u : 0u);
+            return policy_switches<K>(s.leaks);
         }
         /// The SWITCH of kernel K that turns subgroup search on.
         template <class K>
