@@ -58,7 +58,7 @@ faults=(
   "NaN pixels shown|include/photongrid/render/film.hpp|finite(p) ? glm::vec3(p) : glm::vec3(0)|glm::vec3(p)"
   "samples to come are dark|include/photongrid/render/progressive_render.hpp|static_cast<float>(settings_.view.spp) / static_cast<float>(samples_shown_)|1.0f"
   "a preview keeps its rays for another|include/photongrid/render/view_pass.hpp|k->direct.size() != r.size()|k->direct.size() > r.size()"
-  "a ray is drawn twice|include/photongrid/render/render.hpp|steps.repeat(v.light().rays, v.rays(),|steps.repeat(v.light().rays > 0 ? v.light().rays - 1 : 0, v.rays(),"
+  "a ray is drawn twice|include/photongrid/render/render.hpp|steps.repeat(done, v.rays(),|steps.repeat(done > 0 ? done - 1 : 0, v.rays(),"
   "a moved lamp keeps its map|include/photongrid/scene/scene.hpp| && light_lists(a) == light_lists(b)|"
   "another seed keeps its map|include/photongrid/render/scene_map.hpp| && as.seed == bs.seed|"
   "a moved camera drops the map|include/photongrid/render/map_keeper.hpp|return built_ && of_.same(source);|return built_ && of_.scene.camera == source.scene.camera && of_.same(source);"

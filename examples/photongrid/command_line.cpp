@@ -33,9 +33,9 @@ namespace {
   1    compare: relMSE above --max-relmse; render, reference: the picture could not be made
   2    the command line is wrong
   3    the scene file is wrong
-  4    the backend or device cannot be had, or failed
+  4    the backend or device is not available, or it failed
   5    a picture or statistics file could not be read or written, or pictures of different sizes were compared
-  130  interrupted (Ctrl-C); the best picture so far is written, if there is one; nothing half-written is left
+  130  interrupted (Ctrl-C); the best picture so far is written, if there is one; no file is left half-written
 )";
 
     // What --help of a command ends with, or of the whole program if that is "".
@@ -70,7 +70,7 @@ namespace {
     }
 
     // The default that --help shows for a setting.
-    const char* without(in_scenes use) { return use == in_scenes::never ? "" : "; default: as the scene has it"; }
+    const char* without(in_scenes use) { return use == in_scenes::never ? "" : "; default: the scene's"; }
 
     /// An option for a row of the table of settings.
     template <class Row>
@@ -97,21 +97,22 @@ namespace {
     void add_picture(CLI::App& to, render_options& o)
     {
         to.add_option("scene", o.scene_path, "scene file")->required()->type_name("SCENE.json");
-        to.add_option("--backend", o.backend, "auto: a hardware Vulkan device, else cpu")
+        to.add_option("--backend", o.backend, "what draws; auto: a hardware Vulkan device, or else cpu")
             ->check(CLI::IsMember({"auto", "serial", "cpu", "gl", "gl-osmesa", "vulkan"}).description(""))
             ->type_name("auto|serial|cpu|gl|gl-osmesa|vulkan");
-        add_whole(to, "--threads", o.threads, "of the cpu backend; default: all; the picture does not depend on it");
+        add_whole(
+            to, "--threads", o.threads, "threads of the cpu backend; default: all; they do not change the picture");
         to.add_option("--device", o.device, "Vulkan device (with --backend vulkan); see `photongrid devices`")
             ->type_name("NAME|INDEX");
         for_each_setting([&](const auto& row) { add_setting(to, row, o); });
         to.add_flag("--as-paper", o.as_paper,
             "the paper's estimate: --search at_least_k --filter constant --bias paper --leaks none --edge-correction "
-            "none --passes 1; each gives way to the option itself");
+            "none --passes 1; any of these options that is given as well takes precedence");
         to.add_option("--shader-cache", o.shader_cache,
-              "folder where Vulkan's compiled kernels are kept for the next start; default: photongrid in "
+              "folder in which compiled Vulkan kernels are kept for later runs; default: photongrid in "
               "$XDG_CACHE_HOME or ~/.cache")
             ->type_name("DIR|none");
-        to.add_flag("--quiet", o.quiet, "no progress, no remarks");
+        to.add_flag("--quiet", o.quiet, "print neither progress nor notes");
     }
 
     void add_render(CLI::App& to, render_options& o)
@@ -121,14 +122,14 @@ namespace {
             ->allow_extra_args(false)
             ->type_name("OUT.png|.exr|.pfm");
         to.add_flag("--aov", o.aov,
-            "EXR: layers estimate.radius (m), estimate.count (photons), estimate.relative_error (standard error over "
-            "value) and, of several passes, noise (standard error of the pixel, W/(m^2 sr)) beside the picture");
+            "EXR: also write the layers estimate.radius (m), estimate.count (photons), estimate.relative_error "
+            "(standard error over value) and, with several passes, noise (standard error of the pixel, W/(m^2 sr))");
         to.add_option("--stats", o.stats, "statistics, as JSON")->type_name("OUT.json");
         to.add_flag("--time-passes", o.time_passes,
-            "with --backend vulkan, gl or gl-osmesa, and --stats: measure each pass by the device's clock");
+            "measure each pass with the device's clock, for --stats; needs --backend vulkan, gl or gl-osmesa");
         to.add_option("--progressive", o.progressive,
-              "folder for numbered pictures of the running estimate, and a table of when each was there and its relMSE "
-              "to the last")
+              "folder for numbered pictures of the running estimate, and a table with the time of each and its relMSE "
+              "to the last one")
             ->type_name("DIR");
         to.add_option_function<std::string>(
               "--every",
@@ -137,21 +138,22 @@ namespace {
                   if (o.every <= 0)
                       throw CLI::ValidationError("--every", "\"" + text + "\" given; expected a number of ms, above 0");
               },
-              "of --progressive and --strip: time between pictures; default: a tenth of the time so far")
+              "time between pictures of --progressive and --strip; default: a tenth of the time so far")
             ->type_name("MS");
         to.add_option(
-              "--strip", o.strip, "up to six stages of the running estimate side by side, as the paper's figure 8")
+              "--strip", o.strip, "up to six stages of the running estimate side by side, as in the paper's figure 8")
             ->type_name("OUT.png|.exr|.pfm");
         to.add_option_function<std::string>(
               "--crop", [&o](const std::string& text) { o.strip_crop = parsed_crop("--crop", text); },
-              "part of the picture that --strip shows: width, height and the pixels left of and above it")
+              "part of the picture that --strip shows: width, height, and how many pixels are to its left and above it")
             ->type_name("WxH+X+Y");
         to.add_option("--reference", o.reference,
-              "picture to measure the table's errors against too, such as `photongrid reference` makes")
+              "picture against which the table of --progressive also gives the error, such as one made by `photongrid "
+              "reference`")
             ->type_name("REF.exr|.pfm");
         to.add_option("--resume", o.resume,
-              "file for what there is when the render is interrupted; where it exists, goes on from it, and ends with "
-              "the same bytes as if never interrupted; removed at the end")
+              "file for the unfinished picture if the render is interrupted; if it exists, the render continues from "
+              "it, and the result has the same bytes as without the interruption; removed when the picture is done")
             ->type_name("FILE");
     }
 
@@ -159,10 +161,10 @@ namespace {
     {
         add_picture(to, o.picture);
         to.add_option("--reference", o.picture.reference,
-              "picture to measure the error against, such as `photongrid reference` makes")
+              "picture to measure the error against, such as one made by `photongrid reference`")
             ->type_name("REF.exr|.pfm");
         to.add_option("--journal", o.journal,
-              "file for what happens in the window: a line of JSON for each request, picture and error")
+              "log of what happens in the window: one line of JSON per request, picture and error")
             ->type_name("FILE");
     }
 
@@ -178,23 +180,23 @@ namespace {
         to.add_option_function<std::string>(
               "--paths",
               [&o](const std::string& text) { o.paths = parsed<std::uint64_t>("--paths", text, "a whole number"); },
-              "light paths, where caustics need bins")
+              "light paths traced for caustics that need bins")
             ->type_name("N");
-        add_number(to, "--bin", o.bin, "edge of the bins; default: from the diffuse area and the number of light paths",
-            "METRES");
+        add_number(to, "--bin", o.bin,
+            "edge length of the bins; default: computed from the diffuse area and the number of light paths", "METRES");
         to.add_option_function<std::string>(
               "--caustics",
               [&o](const std::string& text) { o.caustics = text == "bins" ? caustics_by::bins : caustics_by::paths; },
-              "how to find caustics of rectangle lights; those of point lights always need bins")
+              "how to compute caustics of rectangle lights; those of point lights always need bins")
             ->check(CLI::IsMember({"bins", "paths"}).description(""))
             ->type_name("bins|paths");
         to.add_option_function<std::string>(
               "--size", [&o](const std::string& text) { o.size = parsed_size("--size", text); }, "pixels")
             ->type_name("WxH");
-        add_whole(to, "--depth", o.depth, "mirrors and glass surfaces that an eye path passes before a diffuse one");
+        add_whole(to, "--depth", o.depth, "most mirror and glass surfaces that an eye path hits before a diffuse one");
         add_whole(to, "--photon-depth", o.photon_depth,
-            "surfaces that light hits at most up to the first diffuse one seen from the eye, that one included");
-        add_whole(to, "--threads", o.threads, "default: all; the picture does not depend on it");
+            "most surfaces that light hits, up to and including the first diffuse one seen from the eye");
+        add_whole(to, "--threads", o.threads, "threads; default: all; they do not change the picture");
         add_whole(to, "--seed", o.seed, "same seed, same picture");
         to.add_option_function<std::string>(
               "--exposure",
@@ -202,7 +204,7 @@ namespace {
               "PNG: pixel values times 2^EV")
             ->type_name("EV");
         to.add_option("--stats", o.stats, "statistics, as JSON")->type_name("OUT.json");
-        to.add_flag("--quiet", o.quiet, "no progress, no remarks");
+        to.add_flag("--quiet", o.quiet, "print neither progress nor notes");
     }
 
     void add_compare(CLI::App& to, compare_options& o)
@@ -212,7 +214,7 @@ namespace {
         to.add_option_function<std::string>(
               "--max-relmse",
               [&o](const std::string& text) { o.max_relmse = parsed_number("--max-relmse", text, "a number"); },
-              "exit with 1 above this")
+              "exit with code 1 if relMSE is above this")
             ->type_name("V");
     }
 
@@ -278,12 +280,13 @@ namespace {
     {
         if (o.time_passes && o.backend != "vulkan" && o.backend != "gl" && o.backend != "gl-osmesa")
             throw CLI::ValidationError("--time-passes",
-                "is for --backend vulkan, gl and gl-osmesa; cpu times its passes always, serial never");
+                "is for --backend vulkan, gl and gl-osmesa; cpu always times its passes, serial never does");
         if (o.strip_crop && o.strip.empty())
-            throw CLI::ValidationError("--crop", "is what --strip shows; expected --strip OUT.png with it");
+            throw CLI::ValidationError(
+                "--crop", "selects the part that --strip shows; expected --strip OUT.png with it");
         if (o.every > 0 && o.strip.empty() && o.progressive.empty())
             throw CLI::ValidationError(
-                "--every", "is between pictures of --progressive or --strip; expected one of them with it");
+                "--every", "is the time between pictures of --progressive or --strip; expected one of them with it");
         if (!o.reference.empty() && o.progressive.empty())
             throw CLI::ValidationError(
                 "--reference", "is for the table that --progressive writes; expected --progressive DIR with it");
@@ -307,7 +310,7 @@ command read_command_line(int argc, char** argv)
 
     view_options view;
     auto& view_command = *app.add_subcommand("view",
-        "Opens a window on a scene: move camera, objects and lights, change settings, watch the picture converge");
+        "Opens a window on a scene: move the camera, objects and lights, change settings, watch the picture converge");
     add_view(view_command, view);
 
     reference_options reference;
@@ -317,7 +320,8 @@ command read_command_line(int argc, char** argv)
 
     compare_options compare;
     auto& compare_command = *app.add_subcommand("compare",
-        "MSE, relMSE = mean of (A - B)^2 / (B + 0.01)^2 (pbrt's MRSE), largest difference of two linear pictures");
+        "Prints MSE, relMSE = mean of (A - B)^2 / (B + 0.01)^2 (pbrt's MRSE), and the largest difference of two "
+        "linear pictures");
     add_compare(compare_command, compare);
 
     check_options check_scene;
@@ -325,7 +329,7 @@ command read_command_line(int argc, char** argv)
     check_command.add_option("scene", check_scene.scene_path, "scene file")->required()->type_name("SCENE.json");
 
     auto& devices_command = *app.add_subcommand(
-        "devices", "Lists every backend and device that works here with its limits, and why others do not");
+        "devices", "Lists every backend and device that works here, with its limits, and why the others do not work");
 
     for (auto* each : app.get_subcommands([](const CLI::App*) { return true; }))
         each->footer(footer(each->get_name()));

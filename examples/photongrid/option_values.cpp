@@ -71,7 +71,7 @@ namespace {
                     ? parsed_from(option, value, 1, 1e6, "flattening=F, a ratio from 1 to 1e6")
                     : usual_flattening;
             else if (policy == "none")
-                throw CLI::ValidationError(option, "\"" + text + "\" given; expected none alone, or no none");
+                throw CLI::ValidationError(option, "\"" + text + "\" given; expected none alone, or a list without it");
             else
                 throw CLI::ValidationError(option,
                     "\"" + policy

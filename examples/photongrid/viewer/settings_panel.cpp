@@ -80,47 +80,46 @@ void settings_panel::draw()
     draw_backend();
     const auto& s = document_.now().settings;
     number(setting_table::photons, "photons", 256, 4000000,
-        "Photons stored (N, n). Speed: tracing and sorting them takes proportionally longer. Error: noise "
-        "falls with the square root.");
+        "Photons stored (N, n). Speed: tracing and sorting take time in proportion. Error: noise falls with the square "
+        "root of their number.");
     number(setting_table::k, "k", 1, 4000,
-        "Photons in an estimate (K, k). Speed: more take longer. Error: more are smoother, and blur shadows "
-        "and caustics more.");
+        "Photons per estimate (K, k). Speed: more take longer. Error: with more, estimates are smoother, but shadows "
+        "and caustics are more blurred.");
     measure(setting_table::max_radius, "radius, m", 1e-3f, 10.0f, "%.4f", true,
-        "Largest search radius (R, r). Speed: dark places search this far. Error: where fewer than k photons "
+        "Largest search radius (R, r). Speed: searches in dark regions go this far. Error: where fewer than k photons "
         "lie within it, estimates are noisier instead of more blurred.");
     choice(setting_table::search, "search",
-        "Which photons (s): the k nearest; at least k, as the paper has it, which uses more photons and is a "
+        "Which photons count (s): the k nearest; at least k, as in the paper, which uses more photons and is a "
         "little too bright; or all within the radius.");
     choice(setting_table::filter, "filter",
-        "Weight by distance (w). Speed: the same. Error: constant is the least noisy and shows discs; "
-        "silverman the smoothest.");
+        "Weight of a photon by its distance (w). Speed: the same. Error: constant is the least noisy, but shows discs; "
+        "silverman is the smoothest.");
     choice(setting_table::bias, "bias",
-        "The photon that sets the radius: paper counts it, k / (k - 1) too bright; unbiased leaves it out.");
+        "The photon that sets the radius: paper counts it, and is too bright by k / (k - 1); unbiased leaves it out.");
     draw_grid();
     choice(setting_table::map, "map",
-        "How the photon map is built (m). sort is exact; route takes fewer passes and, where cells overflow, "
-        "is approximate.");
+        "How the photon map is built (m). sort is exact; route takes fewer passes, but is approximate "
+        "where cells overflow.");
     if (s.map.builder == map_builder::route)
         number(setting_table::slots, "slots", 1, 16,
-            "Cells have slots x slots places. More lose fewer photons and take more memory.");
+            "Cells hold at most slots x slots photons. With more, fewer photons are lost and more memory is used.");
     ImGui::Separator();
     number(setting_table::spp, "eye rays", 1, 64,
-        "Eye rays per pixel. Speed: proportional. Error: smooth edges, less noise of glass and lamps.");
+        "Eye rays per pixel. Speed: time in proportion. Error: smoother edges, less noise from glass and lamps.");
     number(setting_table::passes, "passes", 1, 1024,
-        "The picture is the mean of so many, each with photons and rays of its own. Speed: proportional. "
-        "Error: "
-        "noise and blotches fade as they come.");
+        "The picture is the mean of this many passes, each with its own photons and rays. Speed: time in proportion. "
+        "Error: noise and blotches fade with every pass.");
     number(setting_table::light_samples, "light samples", 1, 256,
-        "Shadow rays per lamp and eye ray. Speed: proportional for direct light. Error: smoother half-shadows.");
+        "Shadow rays per lamp and eye ray. Speed: time in proportion, for direct light. Error: smoother penumbras.");
     choice(setting_table::only, "light",
         "Which part of the light is shown. Caustics or indirect light alone need a map of their own.");
     bool side = s.estimate.leaks.side;
     if (ImGui::Checkbox("side", &side))
         change("side", [&](render_settings& r) { r.estimate.leaks.side = side; });
-    tip("Reject photons that came from behind a surface. Speed: hardly any. Error: no light leaks through "
+    tip("Rejects photons that arrive from behind a surface. Speed: almost the same. Error: no light leaks through "
         "walls.");
     measure(setting_table::exposure, "exposure, EV", -10, 10, "%+.1f", false,
-        "Brightness of the screen and of saved PNGs (E, e). Draws nothing anew.");
+        "Brightness of the screen and of saved PNGs (E, e). Nothing is drawn again.");
 }
 
 void settings_panel::draw_backend()
@@ -134,7 +133,7 @@ void settings_panel::draw_backend()
             }
         ImGui::EndCombo();
     }
-    tip("What draws (b). The same photons give the same picture on all; speed differs. cpu is the fastest "
+    tip("What draws the picture (b). The same photons give the same picture on each; speed differs. cpu is the fastest "
         "without a GPU.");
 }
 
@@ -144,8 +143,8 @@ void settings_panel::draw_grid()
     bool fitted = cells == glm::ivec3(0);
     if (ImGui::Checkbox("fitted grid", &fitted))
         change("grid", [&](render_settings& r) { r.map.grid = fitted ? glm::uvec3(0) : grid_; });
-    tip("Cells of the photon map fitted to photons and k (g). Speed: a grid that is too coarse or too fine "
-        "searches longer. Error: none for the k nearest; `at_least_k` depends on its cells.");
+    tip("Fits the cells of the photon map to the photons and k (g). Speed: searches take longer in a grid that is too "
+        "coarse or too fine. Error: none for the k nearest; at_least_k depends on the cells.");
     if (!fitted) {
         const bool edited = ImGui::SliderInt3(
             "grid", &cells.x, 1, 256, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);

@@ -61,7 +61,7 @@ namespace {
                 draw();
                 if (glGetError() == context_lost)
                     throw backend_error("view: the window's OpenGL context was lost (driver reset); open it again, or "
-                                        "take --backend cpu if the GPU is the renderer's too");
+                                        "use --backend cpu if the renderer draws on the same GPU");
                 ++turns;
                 const double ms = 1000 * (glfwGetTime() - begin);
                 slowest_ms = std::max(slowest_ms, ms);
@@ -165,10 +165,9 @@ namespace {
                 ImGui::Text("selected: %s", document_.parts()[*part].name.c_str());
             else
                 ImGui::TextDisabled("click selects; drag turns");
-            tip("Left button: click selects, a drag moves what is selected (with Shift level with the floor), "
-                "elsewhere it turns the camera. Right or middle button, or Shift: pans. Wheel: zooms. A moving camera "
-                "keeps the photon map; "
-                "what moves in the scene needs a new one.");
+            tip("Left button: a click selects; a drag moves the selected object (with Shift, parallel to the floor) "
+                "or, elsewhere, turns the camera. Right or middle button, or Shift: pan. Wheel: zoom. A moving camera "
+                "keeps the photon map; a change of the scene needs a new one.");
             panel_.draw();
             ImGui::Separator();
             draw_buttons();
@@ -180,21 +179,21 @@ namespace {
         {
             if (ImGui::Button("undo"))
                 undo();
-            tip("Takes the last change back (Ctrl+Z).");
+            tip("Undoes the last change (Ctrl+Z).");
             ImGui::SameLine();
             if (ImGui::Button("redo"))
                 redo();
-            tip("Does it again (Ctrl+Y).");
+            tip("Redoes what was undone (Ctrl+Y).");
             ImGui::SameLine();
             if (ImGui::Button("save picture"))
                 save_picture();
-            tip("Writes the picture as it is, PNG and EXR, under a name that is free (p).");
+            tip("Saves the current picture as PNG and EXR under new names (p).");
             ImGui::SameLine();
             if (ImGui::Button("save scene"))
                 save_scene();
-            tip("Writes the scene with its changes and settings as a scene file, under a name that is free (Ctrl+S).");
+            tip("Saves the scene, with its changes and settings, as a scene file under a new name (Ctrl+S).");
             ImGui::Checkbox("numbers over the picture", &overlay_);
-            tip("What runs, for how long, and what is left to do (o).");
+            tip("Shows what runs, for how long, and what is left to do (o).");
             if (!message_.empty())
                 ImGui::TextWrapped("%s", message_.c_str());
         }
@@ -209,7 +208,7 @@ namespace {
                 tip(text);
             };
             plot("change", changes_,
-                "relMSE from picture to picture since the last change of yours, logarithmic: from 100 down to 1e-8.");
+                "relMSE from picture to picture since your last change, logarithmic: from 100 down to 1e-8.");
             if (options_.reference)
                 plot("error", errors_, "relMSE to the reference, logarithmic: from 100 down to 1e-8.");
         }
@@ -245,7 +244,7 @@ namespace {
         void redo()
         {
             const auto what = document_.redo();
-            message_ = what.empty() ? "nothing to redo" : "done again: " + what;
+            message_ = what.empty() ? "nothing to redo" : "redone: " + what;
         }
         void save_picture()
         {
