@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Looks at what each header, preprocessed alone, does to a user's file. No macro of photongrid's may survive it but the version's:
 # one that a file of photongrid's defines and none undefines. And a header that is not a backend's may read nothing of the
-# packages that only backends need.
+# packages that only backends need. Nor may any file undefine a macro that the user's file may have, unless it is saved first.
 #
 #   tests/headers.sh COMPILER HEADER... -- FLAG...
 set -euo pipefail
@@ -19,6 +19,20 @@ if ((${#headers[@]} == 0)); then
 fi
 
 status=0
+# Those of kernels are saved by begin.hpp and taken back by end.hpp; any other file saves its own.
+root=$(dirname "${BASH_SOURCE[0]}")/..
+find "$root"/include "$root"/backends -name '*.hpp' -o -name '*.glsl' | xargs awk '
+  FNR == 1 { delete saved; ++files; reads_begin = FILENAME ~ /\.glsl$|\/backend\/end\.hpp$/ }
+  /^#pragma push_macro/ { split($0, part, "\""); saved[part[2]]; if (files == 1) in_begin[part[2]] }
+  match($0, /^ *# *undef +/) {
+    name = substr($0, RLENGTH + 1)
+    sub(/[^A-Za-z0-9_].*/, "", name)
+    if (name !~ /^PHOTONGRID_/ && !(name in saved) && !(reads_begin && name in in_begin)) {
+      print FILENAME ":" FNR ": undefines " name ", which may be the macro of a user, and no push_macro has saved it"
+      failed = 1
+    }
+  }
+  END { exit failed }' "$root"/include/photongrid/backend/begin.hpp || status=1
 for header in "${headers[@]}"; do
   core=yes
   [[ $header != */backends/* && $header != */backend_texts/* ]] || core=no

@@ -78,12 +78,12 @@ struct counted {
 
 /// The functions, by their names without "gl". Valid for the context (or driver) for which they were loaded.
 struct functions {
-#define X(TYPE, NAME) PFNGL##TYPE##PROC NAME = nullptr;
-    PHOTONGRID_GL_CALLS(X)
-#undef X
-#define X(TYPE, NAME) counted<PFNGL##TYPE##PROC> NAME;
-    PHOTONGRID_GL_READS(X)
-#undef X
+#define PHOTONGRID_GL_ONE(TYPE, NAME) PFNGL##TYPE##PROC NAME = nullptr;
+    PHOTONGRID_GL_CALLS(PHOTONGRID_GL_ONE)
+#undef PHOTONGRID_GL_ONE
+#define PHOTONGRID_GL_ONE(TYPE, NAME) counted<PFNGL##TYPE##PROC> NAME;
+    PHOTONGRID_GL_READS(PHOTONGRID_GL_ONE)
+#undef PHOTONGRID_GL_ONE
 
     /// Loads the functions.
     /// \throws backend_error that names the missing functions.
@@ -96,12 +96,12 @@ struct functions {
                 missing += std::string(missing.empty() ? "" : ", ") + name;
             return f;
         };
-#define X(TYPE, NAME) NAME = reinterpret_cast<PFNGL##TYPE##PROC>(get("gl" #NAME));
-        PHOTONGRID_GL_CALLS(X)
-#undef X
-#define X(TYPE, NAME) NAME.function = reinterpret_cast<PFNGL##TYPE##PROC>(get("gl" #NAME));
-        PHOTONGRID_GL_READS(X)
-#undef X
+#define PHOTONGRID_GL_ONE(TYPE, NAME) NAME = reinterpret_cast<PFNGL##TYPE##PROC>(get("gl" #NAME));
+        PHOTONGRID_GL_CALLS(PHOTONGRID_GL_ONE)
+#undef PHOTONGRID_GL_ONE
+#define PHOTONGRID_GL_ONE(TYPE, NAME) NAME.function = reinterpret_cast<PFNGL##TYPE##PROC>(get("gl" #NAME));
+        PHOTONGRID_GL_READS(PHOTONGRID_GL_ONE)
+#undef PHOTONGRID_GL_ONE
         if (!missing.empty())
             throw backend_error("gl: the driver has no " + missing + "; OpenGL 4.5 core is needed");
     }
@@ -110,9 +110,9 @@ struct functions {
     std::uint64_t readbacks() const
     {
         std::uint64_t n = 0;
-#define X(TYPE, NAME) n += NAME.calls;
-        PHOTONGRID_GL_READS(X)
-#undef X
+#define PHOTONGRID_GL_ONE(TYPE, NAME) n += NAME.calls;
+        PHOTONGRID_GL_READS(PHOTONGRID_GL_ONE)
+#undef PHOTONGRID_GL_ONE
         return n;
     }
 };

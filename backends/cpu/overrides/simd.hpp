@@ -4,24 +4,24 @@
 
 // Highway 1.0.3 disables its newest instruction set for x86 by default, and then fails to compile if the compiler may
 // use that set everywhere (-march=sapphirerapids).
+#pragma push_macro("HWY_WANT_AVX3_DL")
 #if defined(__AVXVNNI__) && defined(__AVX512VPOPCNTDQ__) && !defined(HWY_WANT_AVX3_DL)
 #define HWY_WANT_AVX3_DL
-#define PHOTONGRID_WANTS_AVX3_DL
 #endif
 // Highway can process only one file per translation unit.
 #if defined(HIGHWAY_HWY_FOREACH_TARGET_H_)
 #error                                                                                                                 \
     "photongrid: this file has Highway code before <photongrid/backends/cpu/cpu.hpp>; link photongrid::cpu_compiled, or include cpu.hpp in another file"
 #endif
+#pragma push_macro("HWY_TARGET_INCLUDE")
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "photongrid/backends/cpu/overrides/for_each_target.hpp"
 #include <hwy/foreach_target.h>
-// Not needed any more, and must not affect the user's own SIMD code.
+// The user's own SIMD code has its own macros again.
 #undef HWY_TARGET_INCLUDE
-#if defined(PHOTONGRID_WANTS_AVX3_DL)
+#pragma pop_macro("HWY_TARGET_INCLUDE")
 #undef HWY_WANT_AVX3_DL
-#undef PHOTONGRID_WANTS_AVX3_DL
-#endif
+#pragma pop_macro("HWY_WANT_AVX3_DL")
 
 #include <photongrid/backends/cpu/overrides/for_each_target.hpp>
 

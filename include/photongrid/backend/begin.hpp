@@ -40,7 +40,8 @@
 #endif
 
 // NOLINTBEGIN
-// Saves macros of the same names that the including file may have; end.hpp restores them.
+// Saves macros of the same names that the including file may have; end.hpp restores them. The list has every macro that
+// a kernel file defines or undefines.
 #pragma push_macro("PARAMS")
 #undef PARAMS
 #pragma push_macro("INPUT")
@@ -57,6 +58,8 @@
 #undef EACH_LANE
 #pragma push_macro("IN_GROUPS")
 #undef IN_GROUPS
+#pragma push_macro("VISIT")
+#undef VISIT
 #pragma push_macro("PHOTON_OF")
 #undef PHOTON_OF
 #pragma push_macro("EACH_PHOTON")

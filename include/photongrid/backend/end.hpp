@@ -17,6 +17,8 @@
 #pragma pop_macro("EACH_LANE")
 #undef IN_GROUPS
 #pragma pop_macro("IN_GROUPS")
+#undef VISIT
+#pragma pop_macro("VISIT")
 #undef PHOTON_OF
 #pragma pop_macro("PHOTON_OF")
 #undef EACH_PHOTON
