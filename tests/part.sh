@@ -4,11 +4,24 @@
 # programs_in FOLDER: the test programs of a folder of tests/
 programs_in() { sed -n 's/^ *photongrid_test(\([a-z_]*\).*/\1/p' "tests/$1/CMakeLists.txt"; }
 
-# suites_in FOLDER: of the suites that run on every backend, those of a folder of tests/
-suites_in() { sed -n 's/^TYPED_TEST_SUITE_P(\([a-z_]*\));.*/\1/p' "tests/$1"/*.hpp 2>/dev/null || true; }
+# suites_in FOLDER: patterns of the suites of a folder of tests/ that on_serial runs: those for every backend, and plain
+# ones of headers that no program of the folder includes
+suites_in() {
+  local header
+  for header in "tests/$1"/*.hpp; do
+    [[ -e $header ]] || break
+    sed -n 's|^TYPED_TEST_SUITE_P(\([a-z0-9_]*\));.*|*/\1/*|p' "$header"
+    grep -qsF "\"${header##*/}\"" "tests/$1"/*.cpp || sed -n 's/^TEST(\([a-z0-9_]*\),.*/\1.*/p' "$header"
+  done | sort -u
+}
 
-# run_cases PROGRAM FILTER: of a program that is built
+# run_cases PROGRAM FILTER: of a program that is built; notes in `matched` that there are any
+matched=no
 run_cases() {
+  local cases
+  cases=$("build-tests/tests/$1" --gtest_list_tests --gtest_filter="$2")
+  grep -q '^  ' <<<"$cases" || return 0
+  matched=yes
   RC_PARAMS=seed=20031 XDG_CACHE_HOME=$PWD/build-tests/tests/cache "build-tests/tests/$1" --gtest_brief=1 --gtest_filter="$2"
 }
 
@@ -50,12 +63,17 @@ run_part() {
     filter=""
     for suite in "${suites[@]}"; do
       for word in "${@:-}"; do
-        filter+="${filter:+:}*/$suite/*$word*"
+        filter+="${filter:+:}$suite"
+        [[ $suite == *"$word"* ]] || filter+="$word*"
       done
     done
     (($# > 0)) || filter+=":-*long_*"
     echo "== on_serial: ${suites[*]}"
     run_cases on_serial "$filter"
+  fi
+  if (($# > 0)) && [[ $matched == no ]]; then
+    echo "--only $name: no case has $(printf '"%s", ' "$@" | sed 's/, $//; s/, / or /g') in its name" >&2
+    exit 2
   fi
   if [[ $name == consumers ]] && (($# == 0)); then
     run_tests build-tests --tests-regex "^(consumer|host_renderer)" --label-exclude "long|full"
