@@ -66,6 +66,7 @@ if [[ $write == yes ]]; then
     exit $status # something is broken: what was printed is not whole
   fi
   bench/write_measures.sh out/measured.md
+  [[ ! -e .git ]] || bench/write_measures.sh --mark
   if asked error; then
     cp out/error/cornell_box.svg docs/error_cornell_box.svg
   fi

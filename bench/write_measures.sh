@@ -3,10 +3,39 @@
 # with the machine, the day and the commit under it. Sections that were not measured stay as they are.
 #
 #   bench/write_measures.sh MEASURED [PAGE]      PAGE: docs/reference/measures.md
+#   bench/write_measures.sh --mark [PAGE]        measures nothing: marks sections whose commit is older than the code, and
+#                                                takes the mark off others
 set -euo pipefail
 measured=${1:?"give the output of bench/run.sh as the first argument"} page=${2:-$(dirname "${BASH_SOURCE[0]}")/../docs/reference/measures.md}
 written=$(mktemp)
 trap 'rm -f "$written"' EXIT
+if [[ $measured == --mark ]]; then
+  page=$(realpath "$page")
+  cd "$(dirname "${BASH_SOURCE[0]}")/.."
+  code=(include backends bench examples)
+  while IFS= read -r commit; do
+    changed=0
+    git diff --quiet "$commit" HEAD -- "${code[@]}" || changed=$?
+    if ((changed > 1)); then
+      echo "bench/write_measures.sh: $commit is not in this repository's history; its sections keep their marks" >&2
+      exit 2
+    elif ((changed == 1)); then
+      echo "$commit *Older than the code: $(git rev-list --count "$commit..HEAD" -- "${code[@]}") commits from $commit to $(git rev-parse --short HEAD) have changed include, backends, bench or examples.*"
+    fi
+  done < <(sed -n 's/^.*; photongrid \([0-9a-f]*\)\.$/\1/p' "$page" | sort -u) >"$written.marks"
+  trap 'rm -f "$written" "$written.marks"' EXIT
+  awk '
+    FILENAME == ARGV[1] { commit = $1; sub(/^[^ ]+ /, ""); mark[commit] = $0; next }
+    /^\*Older than the code: .*\*$/ { next }
+    { print }
+    match($0, /; photongrid [0-9a-f]+\.$/) {
+      commit = substr($0, RSTART + 13, RLENGTH - 14)
+      if (commit in mark)
+        print mark[commit]
+    }' "$written.marks" "$page" >"$written"
+  cat "$written" >"$page"
+  exit
+fi
 awk '
   function trimmed(text) { gsub(/^\n+|\n+$/, "", text); return text }
   FNR == NR && /^Machine: / {
