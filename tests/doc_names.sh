@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Checks README.md, CONTRIBUTING.md and docs/**/*.md: every name in backticks exists in the tree, and every relative link
-# resolves, its heading too.
+# resolves, its heading too. docs/README.md links every page of docs/.
 #
 #   tests/doc_names.sh
 #
@@ -162,4 +162,13 @@ xargs awk -v work="$work" '
   echo "tests/doc_names.sh: correct these pages, or explain the word in tests/doc_words.txt" >&2
   exit 1
 }
+# The index.
+while read -r page; do
+  name=${page#docs/}
+  if [[ $page == docs/*/*.md ]] && ! grep -qF "]($name)" docs/README.md; then
+    echo "docs/README.md: has no link to $name"
+    missing=yes
+  fi
+done <"$work/pages"
+[[ -z ${missing:-} ]] || exit 1
 echo "doc_names: $(wc -l <"$work/pages") pages"
