@@ -17,11 +17,12 @@
 # Without --pictures and --speed: both. Otherwise REV is checked out in build-against/tree; both trees are built in their build/
 # (the preset release) and, for --speed, their build-bench/.
 # Exit status: 1 where a picture differs or a row is too slow, 2 where something is broken.
+# It is one file because pictures and times are compared for the same two trees, programs and options.
 set -euo pipefail
 here=$PWD
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-usage() { sed -n '2,21s/^# \{0,1\}//p' bench/against.sh; }
+usage() { sed -n '2,19s/^# \{0,1\}//p' bench/against.sh; }
 die() {
   echo "bench/against.sh: $*" >&2
   exit 2

@@ -1,3 +1,5 @@
+// The options of every command. The file is long because it is the whole of `--help`, in its order, and commands share
+// options and checks.
 #include "command_line.hpp"
 
 #include "option_values.hpp"

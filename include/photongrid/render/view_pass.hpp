@@ -1,5 +1,5 @@
 // The stages of a pass over the pixels of a view, from a photon map (sections 2.4 and 2.3; figure 1, right). render.hpp
-// runs them in order.
+// runs them in order. The file is long because it is one class: the stages share its buffers.
 #pragma once
 
 #include <photongrid/backend/zero_vectors.kernel.hpp>
