@@ -29,11 +29,7 @@ private:
         eglBindAPI(EGL_OPENGL_API);
         if (const void* c = eglGetCurrentContext())
             return c;
-#ifdef PHOTONGRID_HAS_OSMESA
-        return OSMesaGetCurrentContext();
-#else
-        return nullptr;
-#endif
+        return current_by_osmesa();
     }
     const void* token_;
 };
@@ -47,11 +43,8 @@ inline std::shared_ptr<context> make_context(gl_context_kind kind, bool debug, l
         auto c = std::make_shared<callers_context>();
         c->use();
         if (find == nullptr) {
-            find = find_by_egl;
-#ifdef PHOTONGRID_HAS_OSMESA
-            if (OSMesaGetCurrentContext() != nullptr && eglGetCurrentContext() == EGL_NO_CONTEXT)
-                find = find_by_osmesa;
-#endif
+            const bool by_osmesa = current_by_osmesa() != nullptr && eglGetCurrentContext() == EGL_NO_CONTEXT;
+            find = by_osmesa ? find_by_osmesa : find_by_egl;
         }
         c->call.load(find);
         const auto* version = reinterpret_cast<const char*>(c->call.GetString(GL_VERSION));
@@ -71,20 +64,9 @@ inline std::shared_ptr<context> make_context(gl_context_kind kind, bool debug, l
             c->use();
             return c;
         }
-    if (kind != gl_context_kind::egl) {
-#ifdef PHOTONGRID_HAS_OSMESA
-        try {
-            auto c = std::make_shared<osmesa_context>();
-            c->use();
-            c->call.load(find_by_osmesa);
+    if (kind != gl_context_kind::egl)
+        if (auto c = make_osmesa_context(tried))
             return c;
-        } catch (const backend_error& e) {
-            tried += std::string("  OSMesa: ") + e.what() + " (Debian package libosmesa6)\n";
-        }
-#else
-        tried += "  OSMesa: this program was built without it (Debian package libosmesa6-dev, then configure again)\n";
-#endif
-    }
     throw backend_error("gl: no OpenGL 4.5 core context could be created. Tried:\n" + tried
         + "Install a driver: apt install libegl1 libgl1-mesa-dri (Mesa, also without a GPU), or libosmesa6");
 }

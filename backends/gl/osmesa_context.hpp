@@ -1,9 +1,13 @@
-// OpenGL 4.5 core contexts by OSMesa, where that is installed.
+// OpenGL 4.5 core contexts by OSMesa, where that is installed. Without it the functions below find nothing, so that no
+// other file asks whether it is.
 #pragma once
 
-#ifdef PHOTONGRID_HAS_OSMESA
-
 #include <photongrid/backends/gl/context.hpp>
+
+#include <memory>
+#include <string>
+
+#ifdef PHOTONGRID_HAS_OSMESA
 
 #include <GL/osmesa.h>
 
@@ -48,6 +52,37 @@ private:
 };
 
 inline void (*find_by_osmesa(const char* name))() { return OSMesaGetProcAddress(name); }
+
+/// The context that OSMesa made current in this thread; nullptr: none.
+inline const void* current_by_osmesa() { return OSMesaGetCurrentContext(); }
+
+/// Creates an OSMesa context. Without one it returns nullptr and adds the reason to `tried`.
+inline std::shared_ptr<context> make_osmesa_context(std::string& tried)
+{
+    try {
+        auto c = std::make_shared<osmesa_context>();
+        c->use();
+        c->call.load(find_by_osmesa);
+        return c;
+    } catch (const backend_error& e) {
+        tried += std::string("  OSMesa: ") + e.what() + " (Debian package libosmesa6)\n";
+        return nullptr;
+    }
+}
+
+} // namespace photongrid::gl
+
+#else
+
+namespace photongrid::gl {
+
+inline void (*find_by_osmesa(const char*))() { return nullptr; }
+inline const void* current_by_osmesa() { return nullptr; }
+inline std::shared_ptr<context> make_osmesa_context(std::string& tried)
+{
+    tried += "  OSMesa: this program was built without it (Debian package libosmesa6-dev, then configure again)\n";
+    return nullptr;
+}
 
 } // namespace photongrid::gl
 

@@ -15,11 +15,7 @@ namespace {
         auto after = b.template make<glm::uvec2>(4);
         EXPECT_EQ(b.take_debug_messages(), "");
         gl::functions call; // those of the context that the backend left current
-#ifdef PHOTONGRID_HAS_OSMESA
         call.load(TypeParam::kind == gl_context_kind::osmesa ? gl::find_by_osmesa : gl::find_by_egl);
-#else
-        call.load(gl::find_by_egl);
-#endif
         call.Enable(0xDEAD);
         EXPECT_NE(b.take_debug_messages().find("glEnable"), std::string::npos);
         call.Enable(0xDEAD);

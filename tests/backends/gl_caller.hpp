@@ -58,19 +58,10 @@ namespace {
     struct osmesa {
         static std::shared_ptr<gl::context> make()
         {
-#ifdef PHOTONGRID_HAS_OSMESA
-            try {
-                return std::make_shared<gl::osmesa_context>();
-            } catch (const backend_error&) {
-            }
-#endif
-            return nullptr;
+            std::string tried;
+            return gl::make_osmesa_context(tried);
         }
-#ifdef PHOTONGRID_HAS_OSMESA
         static constexpr auto find = gl::find_by_osmesa;
-#else
-        static constexpr auto find = gl::find_by_egl;
-#endif
     };
 
     template <class Kind>
