@@ -3,6 +3,8 @@
 
 #include "image_under_test.hpp"
 
+#include <photongrid/render/film.hpp>
+
 namespace photongrid {
 namespace {
 
@@ -88,6 +90,33 @@ namespace {
         EXPECT_EQ(std::memcmp(q.pixels.data(), p.pixels.data(), p.pixels.size() * sizeof(glm::vec3)), 0)
             << "layers do not disturb the picture";
         EXPECT_TRUE(q.layers.radius.empty() && q.layers.count.empty() && q.layers.relative_error.empty());
+    }
+
+    TEST_F(image_file, exr_holds_the_noise_of_several_passes)
+    {
+        film passes(7, 5, 1.0, true);
+        const auto add = [&](std::uint32_t pass, float brightness) {
+            pass_pixels p{{}, std::vector<glm::vec4>(35, glm::vec4(1)), std::vector<glm::vec4>(35)};
+            for (int i = 0; i < 35; ++i)
+                p.pixels.emplace_back(brightness * static_cast<float>(i));
+            passes.add(pass, std::move(p));
+        };
+        add(0, 1);
+        write_image(path("one.exr"), passes.picture().picture);
+        EXPECT_EQ(channels(path("one.exr")),
+            (std::vector<std::string>{"B", "G", "R", "estimate.count", "estimate.radius", "estimate.relative_error"}));
+
+        add(1, 3);
+        const auto two = passes.picture().picture;
+        write_image(path("two.exr"), two);
+        EXPECT_EQ(channels(path("two.exr")),
+            (std::vector<std::string>{
+                "B", "G", "R", "estimate.count", "estimate.radius", "estimate.relative_error", "noise"}));
+        const auto noise = channel(path("two.exr"), "noise");
+        EXPECT_EQ(noise, two.layers.noise);
+        for (std::size_t i = 0; i < noise.size(); ++i) // i and 3 i: a mean of 2 i with a standard error of i
+            EXPECT_FLOAT_EQ(noise[i], static_cast<float>(i));
+        EXPECT_EQ(channel(path("two.exr"), "G")[34], 68.0f);
     }
 
     TEST_F(image_file, layers_are_written_where_there_are_any)
