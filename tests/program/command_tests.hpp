@@ -111,6 +111,22 @@ namespace {
         EXPECT_EQ(run({"compare", "a.pfm", "other.pfm"}).code, 5);
     }
 
+    TEST_F(program, renders_several_passes)
+    {
+        const auto stats_of = [&](const char* picture, const char* passes) {
+            const auto e = run(small_with({"-o", picture, "--passes", passes, "--stats", "stats.json"}));
+            EXPECT_EQ(e.code, 0) << e.err;
+            return nlohmann::json::parse(contents(folder / "stats.json"));
+        };
+        const auto one = stats_of("one.pfm", "1"), two = stats_of("two.pfm", "2");
+        EXPECT_EQ(one.at("settings").at("passes"), 1);
+        EXPECT_EQ(two.at("settings").at("passes"), 2);
+        EXPECT_EQ(one.at("photons").at("stored"), 300);
+        EXPECT_EQ(two.at("photons").at("stored"), 600) << "each pass has photons of its own";
+        EXPECT_NE(contents(folder / "one.pfm"), contents(folder / "two.pfm"));
+        EXPECT_EQ(run({"compare", "one.pfm", "two.pfm", "--max-relmse", "1e-3"}).code, 1);
+    }
+
     TEST_F(program, names_the_picture_after_the_scene)
     {
         const auto e = run(small);
