@@ -90,6 +90,32 @@ namespace {
         EXPECT_TRUE(objects.empty()) << *objects.begin();
     }
 
+    // The schema has the kinds of materials and the ranges of their members.
+    TEST(scene_file, the_schema_has_the_materials)
+    {
+        const auto schema = nlohmann::json::parse(std::ifstream(scenes + "/photongrid-scene.schema.json"));
+        const auto& objects = schema["$defs"];
+        std::vector<std::string> kinds, names;
+        for (const auto& kind : objects["scene"]["properties"]["materials"]["additionalProperties"]["oneOf"])
+            kinds.push_back(kind["$ref"]);
+        for (const auto& m : material_kinds) {
+            names.push_back(std::string("#/$defs/") + m.name);
+            EXPECT_EQ(objects[m.name]["properties"]["type"]["const"], m.name);
+            for (const auto& f : m.fields) {
+                SCOPED_TRACE(std::string(m.name) + "." + f.key);
+                const auto& value = objects[m.name]["properties"][f.key];
+                if (std::holds_alternative<double material::*>(f.member)) {
+                    EXPECT_EQ(value["minimum"], f.range.least);
+                    EXPECT_EQ(value["maximum"], f.range.most);
+                } else {
+                    EXPECT_EQ(value["$ref"], "#/$defs/fraction");
+                    EXPECT_EQ(f.range.ends(), "0 to 1");
+                }
+            }
+        }
+        EXPECT_EQ(kinds, names);
+    }
+
     // A setting that is one of several words has the same words in the schema.
     TEST(scene_file, the_schema_has_the_choices)
     {

@@ -121,19 +121,24 @@ namespace {
 
         material read_material(const json_value& v) const
         {
-            const auto& type = type_of(v, "material", {"lambertian", "mirror", "metal", "glass"});
+            const auto& type = type_of(v, "material", material_names());
             open(v, type);
-            material made{.name = v.key};
-            made.kind = type == "lambertian" ? material_kind::lambertian
-                : type == "mirror"           ? material_kind::mirror
-                : type == "metal"            ? material_kind::metal
-                                             : material_kind::glass;
-            const auto* colour = v.find(type == "glass" ? "transmittance" : "reflectance");
-            made.reflectance = colour ? fraction(*colour) : dvec3(1);
-            if (const auto* ior = v.find("index_of_refraction"))
-                made.index_of_refraction = number(*ior, 1, 10, "an index of refraction from 1 to 10");
+            const auto& row = *std::find_if(
+                material_kinds.begin(), material_kinds.end(), [&](const material_entry& m) { return type == m.name; });
+            material made{.name = v.key, .kind = row.kind};
+            for (const auto& f : row.fields)
+                std::visit([&](auto member) { read_field(v.find(f.key), f, made.*member); }, f.member);
             checked(v, made);
             return made;
+        }
+
+        void read_field(const json_value* given, const material_field& f, dvec3& to) const
+        {
+            to = given ? rgb_in_range(*given, f.range) : dvec3(f.if_absent.value());
+        }
+        void read_field(const json_value* given, const material_field& f, double& to) const
+        {
+            to = given ? in_range(*given, f.range, f.what) : f.if_absent.value();
         }
 
         std::uint32_t material_of(const json_value& shape) const
@@ -263,10 +268,6 @@ namespace {
                 to.min_cosine = static_cast<float>(in_range(*cosine, p.min_cosine));
             if (const auto* flattening = v.find("flattening"))
                 to.flattening = static_cast<float>(in_range(*flattening, p.flattening));
-        }
-        double in_range(const json_value& v, const setting_table::real_range& r) const
-        {
-            return number(v, r.least, r.most, "a number from " + r.ends());
         }
 
         void read_render(const json_value& v)

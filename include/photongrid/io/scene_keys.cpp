@@ -11,11 +11,8 @@ namespace {
         {"camera", must}, {"materials", must}, {"shapes", must}, {"lights", must}, {"render", must}};
     constexpr scene_key units_keys[] = {{"length", must}, {"power", must}};
     constexpr scene_key camera_keys[] = {{"position", must}, {"look_at", must}, {"up", may}, {"vertical_fov", must}};
-    constexpr scene_key reflecting_keys[] = {{"type", must}, {"reflectance", must}};
-    constexpr scene_key mirror_keys[] = {{"type", must}, {"reflectance", may}};
-    constexpr scene_key glass_keys[] = {{"type", must}, {"index_of_refraction", must}, {"transmittance", may}};
     constexpr scene_key leaks_keys[] = {{"side", may}, {"min_cosine", may}, {"flattening", may}};
-    // The keys of shapes and lights come from the tables in scene/ (shape_kind, light_kind).
+    // The keys of materials, shapes and lights come from the tables in scene/ (material_kinds, shape_kind, light_kind).
     template <class Kind>
     std::vector<scene_key> keys_of(Kind kind, std::vector<scene_key> before, std::vector<scene_key> after)
     {
@@ -24,11 +21,24 @@ namespace {
         return before;
     }
 
-    /// The keys of each kind of shape, or of light, by the name of the kind.
+    /// The keys of each kind of material, of shape, or of light, by the name of the kind.
     struct kind_keys {
         const char* name;
         std::vector<scene_key> keys;
     };
+    const std::vector<kind_keys>& material_keys()
+    {
+        static const auto all = [] {
+            std::vector<kind_keys> kinds;
+            for (const auto& m : material_kinds) {
+                kinds.push_back({m.name, {{"type", must}}});
+                for (const auto& f : m.fields)
+                    kinds.back().keys.push_back({f.key, f.if_absent ? may : must});
+            }
+            return kinds;
+        }();
+        return all;
+    }
     const std::vector<kind_keys>& shape_keys()
     {
         static const auto all = [] {
@@ -77,6 +87,7 @@ namespace {
     }
 } // namespace
 
+std::vector<std::string> material_names() { return names_of(material_keys()); }
 std::vector<std::string> shape_names() { return names_of(shape_keys()); }
 std::vector<std::string> light_names() { return names_of(light_keys()); }
 
@@ -84,9 +95,8 @@ std::span<const object_keys> known_objects()
 {
     static const auto all = [] {
         std::vector<object_keys> objects{{"scene", scene_keys}, {"units", units_keys}, {"camera", camera_keys},
-            {"lambertian", reflecting_keys}, {"mirror", mirror_keys}, {"metal", reflecting_keys}, {"glass", glass_keys},
             {"render", render_keys()}, {"leaks", leaks_keys}};
-        for (const auto* kinds : {&shape_keys(), &light_keys()})
+        for (const auto* kinds : {&material_keys(), &shape_keys(), &light_keys()})
             for (const auto& k : *kinds)
                 objects.push_back({k.name, k.keys});
         return objects;

@@ -1,4 +1,4 @@
-// The keys of the objects in scene files, from the tables of shapes, lights and settings.
+// The keys of the objects in scene files, from the tables of materials, shapes, lights and settings.
 #pragma once
 
 #include <span>
@@ -26,7 +26,8 @@ inline constexpr const char* triangle_name = "triangle";
 /// Every kind of object.
 std::span<const object_keys> known_objects();
 
-/// The names of all kinds of shapes, and of all kinds of lights.
+/// The names of all kinds of materials, of shapes and of lights.
+std::vector<std::string> material_names();
 std::vector<std::string> shape_names();
 std::vector<std::string> light_names();
 

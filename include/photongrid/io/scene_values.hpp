@@ -93,6 +93,11 @@ public:
         return v.number;
     }
 
+    double in_range(const json_value& v, const real_range& r, const std::string& what = "a number") const
+    {
+        return number(v, r.least, r.most, what + " from " + r.ends());
+    }
+
     std::uint32_t whole(const json_value& v, std::uint32_t low, std::uint32_t high) const
     {
         const auto expected = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
@@ -150,10 +155,10 @@ public:
         return v.kind == json_kind::number ? dvec3(element(v)) : three(v, expected, element);
     }
 
-    dvec3 fraction(const json_value& v) const
+    dvec3 rgb_in_range(const json_value& v, const real_range& r) const
     {
-        return rgb(v, "[red, green, blue] or one number, each from 0 to 1",
-            [&](const json_value& c) { return number(c, 0, 1, "a number from 0 to 1"); });
+        return rgb(v, ("[red, green, blue] or one number, each from " + r.ends()).c_str(),
+            [&](const json_value& c) { return in_range(c, r); });
     }
 
     dvec3 power(const json_value& v) const

@@ -90,15 +90,12 @@ namespace {
 
     json material_json(const material& m)
     {
-        const auto colour = three(m.reflectance);
-        switch (m.kind) {
-        case material_kind::lambertian: return {{"type", "lambertian"}, {"reflectance", colour}};
-        case material_kind::mirror: return {{"type", "mirror"}, {"reflectance", colour}};
-        case material_kind::metal: return {{"type", "metal"}, {"reflectance", colour}};
-        case material_kind::glass:
-            return {{"type", "glass"}, {"index_of_refraction", m.index_of_refraction}, {"transmittance", colour}};
-        }
-        throw std::logic_error("a material without a kind");
+        const auto& row = detail::entry_of(m.kind);
+        json all = json::object();
+        all["type"] = row.name;
+        for (const auto& f : row.fields)
+            std::visit([&](auto member) { all[f.key] = written(m.*member); }, f.member);
+        return all;
     }
 } // namespace
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <photongrid/reference/intersect.hpp>
+#include <photongrid/reference/random_stream.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -31,7 +32,7 @@ inline double fresnel_reflectance(double cos_i, double n_i, double cos_t, double
     return 0.5 * (s * s + p * p);
 }
 
-/// A ray's continuation from a mirror, metal or glass.
+/// A ray's continuation from a specular surface.
 struct specular_bounce {
     dvec3 direction{0, 0, 1}; ///< unit
     /// The factor for radiance along a ray that is traced from the eye: (n of the side it comes from / n of the side it
@@ -40,12 +41,13 @@ struct specular_bounce {
     double radiance_scale = 1;
 };
 
-/// For glass, `u` in [0, 1) selects reflection with Fresnel's probability. The caller applies the material's colour.
+/// At a refracting surface, `u` in [0, 1) selects reflection with Fresnel's probability. The caller applies the
+/// material's colour.
 inline specular_bounce specular(const material& m, const dvec3& d, const dvec3& normal, double u)
 {
     const double d_dot_n = glm::dot(d, normal);
     const specular_bounce reflected{glm::normalize(d - 2 * d_dot_n * normal), 1};
-    if (m.kind != material_kind::glass)
+    if (!refracts(m))
         return reflected;
     const bool entering = d_dot_n < 0;
     const double n_i = entering ? 1 : m.index_of_refraction, n_t = entering ? m.index_of_refraction : 1;
@@ -59,6 +61,12 @@ inline specular_bounce specular(const material& m, const dvec3& d, const dvec3& 
     const dvec3 into = entering ? -normal : normal;
     const dvec3 sideways = d - cos_i * into; // of length sin_i
     return {glm::normalize(n_i / n_t * sideways + cos_t * into), n_i * n_i / (n_t * n_t)};
+}
+
+/// The same with a number from `random` where the surface needs one.
+inline specular_bounce specular(const material& m, const dvec3& d, const dvec3& normal, random_stream& random)
+{
+    return specular(m, d, normal, refracts(m) ? random() : 0);
 }
 
 } // namespace photongrid::reference

@@ -91,7 +91,7 @@ private:
         const auto each_shape = [&](auto visit) {
             for_each_shape(s, [&](const auto& list, auto) {
                 for (const auto& x : list)
-                    visit(x, s.materials[x.material].kind == material_kind::lambertian);
+                    visit(x, is_diffuse(s.materials[x.material]));
             });
         };
         double area = 0;
@@ -184,15 +184,14 @@ private:
             if (h.shape == nothing || h.light != nothing)
                 return 0;
             const auto& m = s.materials[h.material];
-            if (m.kind == material_kind::lambertian) {
+            if (is_diffuse(m)) {
                 if (surface == 1)
                     return 0; // direct light, which the path tracer computes
                 flux[bin_at(h, r.direction)] += power;
                 return 1;
             }
             power *= m.reflectance;
-            r = {h.position,
-                specular(m, r.direction, h.normal, m.kind == material_kind::glass ? random() : 0).direction, h.shape};
+            r = {h.position, specular(m, r.direction, h.normal, random).direction, h.shape};
         }
         return 0;
     }

@@ -42,7 +42,7 @@ public:
                 return sum + share * throughput * light.radiance();
             }
             const auto& m = scene_.materials[h.material];
-            if (m.kind == material_kind::lambertian) {
+            if (is_diffuse(m)) {
                 if (++surfaces > settings_.photon_depth)
                     return sum;
                 const dvec3 normal = glm::dot(h.normal, r.direction) > 0 ? -h.normal : h.normal;
@@ -63,7 +63,7 @@ public:
             } else {
                 if (surfaces == 0 ? ++specular_before > settings_.depth : ++surfaces > settings_.photon_depth)
                     return sum;
-                const auto bounce = specular(m, r.direction, h.normal, m.kind == material_kind::glass ? random() : 0);
+                const auto bounce = specular(m, r.direction, h.normal, random);
                 throughput *= m.reflectance;
                 if (surfaces > 0) // not before the first diffuse surface, as in the photon-map renderer
                     throughput *= bounce.radiance_scale;

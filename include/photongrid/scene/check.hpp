@@ -30,6 +30,22 @@ namespace detail {
     }
 } // namespace detail
 
+/// A range of numbers, both ends included. check() throws std::invalid_argument "name: must be from …".
+struct real_range {
+    double least, most;
+    const char* unit; ///< with a leading space
+    bool has(double v) const { return v >= least && v <= most; }
+    /// "-64 to 64 EV"
+    std::string ends() const
+    {
+        return std::to_string(std::lround(least)) + " to " + std::to_string(std::lround(most)) + unit;
+    }
+    void check(const char* name, double v) const
+    {
+        detail::require(has(v), std::string(name) + ": must be from " + ends());
+    }
+};
+
 } // namespace photongrid
 
 #include <photongrid/backend/exact_end.hpp>

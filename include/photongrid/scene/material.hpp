@@ -1,7 +1,15 @@
-// Materials.
+// Materials, and the table of their kinds. Scene files, checks, the device's records and the reference renderer take
+// names, keys, ranges and surfaces from the table. To add a kind: its enumerator and row here, and what a new kind of
+// surface does: trace/bounce_photon.glsl, trace/eye_bounce.glsl and reference/bsdf.hpp.
 #pragma once
 
 #include <photongrid/scene/check.hpp>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <variant>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -20,17 +28,96 @@ struct material {
     bool operator==(const material&) const = default;
 };
 
-/// \throws std::invalid_argument for a reflectance outside 0 to 1, or glass with an index of refraction outside 1
-/// to 10.
+/// What renderers do at a surface. Several kinds of material may have the same kind of surface. The values are those of
+/// Material::kind in kernels (trace/scene_layout.glsl).
+enum class surface_kind : std::uint32_t {
+    diffuse = 0,    ///< stores photons, and ends eye rays
+    reflecting = 1, ///< as a mirror
+    refracting = 2, ///< reflects or refracts; bodies must not overlap
+};
+
+/// A member of `material` that a kind has.
+struct material_field {
+    const char* key;                                            ///< in scene files
+    const char* name;                                           ///< of the member, in the messages of check()
+    const char* what;                                           ///< for people, with its article: "a reflectance"
+    std::variant<dvec3 material::*, double material::*> member; ///< rgb, or a number
+    real_range range;                                           ///< of the number, or of each channel
+    std::optional<double> if_absent;                            ///< its value where a file lacks it; none: it must not
+};
+
+/// A row of the table: a kind of material.
+struct material_entry {
+    material_kind kind;
+    const char* name;                       ///< in scene files
+    surface_kind surface;                   ///< what renderers do at it
+    std::uint32_t switches;                 ///< the SWITCH of its surface in kernels, as a bit of launch::switches
+    std::span<const material_field> fields; ///< in the order of scene files
+};
+
+namespace detail {
+    constexpr material_field reflectance(const char* key, std::optional<double> if_absent = std::nullopt)
+    {
+        return {key, "reflectance", "a reflectance", &material::reflectance, {0, 1, ""}, if_absent};
+    }
+    inline constexpr material_field lambertian_fields[] = {reflectance("reflectance")};
+    inline constexpr material_field mirror_fields[] = {reflectance("reflectance", 1)};
+    inline constexpr material_field metal_fields[] = {reflectance("reflectance")};
+    inline constexpr material_field glass_fields[]
+        = {{"index_of_refraction", "index_of_refraction", "an index of refraction", &material::index_of_refraction,
+               {1, 10, ""}, std::nullopt},
+            reflectance("transmittance", 1)};
+} // namespace detail
+
+/// All kinds of materials, in the order of material_kind.
+inline constexpr std::array material_kinds{
+    material_entry{material_kind::lambertian, "lambertian", surface_kind::diffuse, 0, detail::lambertian_fields},
+    material_entry{material_kind::mirror, "mirror", surface_kind::reflecting, 1u << 4, detail::mirror_fields},
+    material_entry{material_kind::metal, "metal", surface_kind::reflecting, 1u << 4, detail::metal_fields},
+    material_entry{material_kind::glass, "glass", surface_kind::refracting, 1u << 5, detail::glass_fields},
+};
+
+static_assert(
+    [] {
+        for (std::size_t i = 0; i < material_kinds.size(); ++i)
+            if (material_kinds[i].kind != static_cast<material_kind>(i))
+                return false;
+        return true;
+    }(),
+    "material_kinds: in the order of material_kind");
+
+namespace detail {
+    /// The row of a kind.
+    /// \throws std::invalid_argument if it is not an enumerator.
+    constexpr const material_entry& entry_of(material_kind k)
+    {
+        if (static_cast<std::size_t>(k) >= material_kinds.size())
+            throw std::invalid_argument("kind: must be one of the enumerators");
+        return material_kinds[static_cast<std::size_t>(k)];
+    }
+} // namespace detail
+
+/// Whether surfaces of this material store photons.
+inline bool is_diffuse(const material& m) { return detail::entry_of(m.kind).surface == surface_kind::diffuse; }
+
+/// Whether light enters bodies of this material.
+inline bool refracts(const material& m) { return detail::entry_of(m.kind).surface == surface_kind::refracting; }
+
+/// \throws std::invalid_argument for a member that the kind has and that is out of its range: a reflectance outside 0
+/// to 1, or glass with an index of refraction outside 1 to 10.
 inline void check(const material& m)
 {
-    const auto& r = m.reflectance;
-    detail::require(detail::finite(r) && r.x >= 0 && r.y >= 0 && r.z >= 0 && r.x <= 1 && r.y <= 1 && r.z <= 1,
-        "reflectance: each channel must be from 0 to 1");
-    if (m.kind == material_kind::glass)
-        detail::require(
-            detail::finite(m.index_of_refraction) && m.index_of_refraction >= 1 && m.index_of_refraction <= 10,
-            "index_of_refraction: must be from 1 to 10");
+    for (const auto& f : detail::entry_of(m.kind).fields)
+        std::visit(
+            [&](auto member) {
+                const auto& v = m.*member;
+                if constexpr (requires { v.x; })
+                    detail::require(f.range.has(v.x) && f.range.has(v.y) && f.range.has(v.z),
+                        std::string(f.name) + ": each channel must be from " + f.range.ends());
+                else
+                    f.range.check(f.name, v);
+            },
+            f.member);
 }
 
 } // namespace photongrid

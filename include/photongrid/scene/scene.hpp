@@ -157,7 +157,7 @@ namespace detail {
         for_each_shape(s, [&](const auto& list, auto kind) {
             if constexpr (requires { overlaps(list[0], list[0]); })
                 for (std::size_t i = 0; i < list.size(); ++i)
-                    if (s.materials[list[i].material].kind == material_kind::glass) {
+                    if (refracts(s.materials[list[i].material])) {
                         kind.add_bounds(bodies.emplace_back(body{{kind.list, i}, bodies.size()}).box, list[i]);
                         kind.add_bounds(all, list[i]);
                     }
@@ -181,7 +181,7 @@ namespace detail {
         bool has = false;
         for_each_shape(s, [&](const auto& list, auto) {
             for (const auto& x : list)
-                has = has || s.materials[x.material].kind == material_kind::lambertian;
+                has = has || is_diffuse(s.materials[x.material]);
         });
         return has;
     }

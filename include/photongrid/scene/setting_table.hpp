@@ -36,20 +36,7 @@ namespace setting_table {
                 std::string(name) + ": must be from " + std::to_string(least) + " to " + std::to_string(most));
         }
     };
-    /// A number, both ends included.
-    struct real_range {
-        double least, most;
-        const char* unit; ///< with a leading space
-        /// "-64 to 64 EV"
-        std::string ends() const
-        {
-            return std::to_string(std::lround(least)) + " to " + std::to_string(std::lround(most)) + unit;
-        }
-        void check(const char* name, double v) const
-        {
-            detail::require(v >= least && v <= most, std::string(name) + ": must be from " + ends());
-        }
-    };
+    using photongrid::real_range;
     /// A length, m.
     struct any_length {
         void check(const char* name, double v) const

@@ -13,17 +13,21 @@
 namespace photongrid {
 
 /// The features of a scene, as SWITCHes of the tracing kernels, which compile only the code that the scene needs. The
-/// bits of shapes are those of shape_kind::number.
+/// bits of shapes are those of shape_kind::number, those of materials material_entry::switches.
 enum scene_feature : uint {
     has_spheres = 1u << shape_kind<sphere>::number,
     has_quadrics = 1u << detail::quadric_number, ///< cylinders, cones and others
     has_disks = 1u << shape_kind<disk>::number,
     has_polygons = 1u << shape_kind<polygon>::number,
-    has_mirrors = 1u << 4, ///< and metals
-    has_glass = 1u << 5,
+    has_mirrors = detail::entry_of(material_kind::mirror).switches,
+    has_glass = detail::entry_of(material_kind::glass).switches,
     has_point_lights = 1u << 6,
     has_area_lights = 1u << 7,
 };
+
+static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SURFACE
+    && static_cast<uint>(surface_kind::reflecting) == kernels::MIRROR_SURFACE
+    && static_cast<uint>(surface_kind::refracting) == kernels::GLASS_SURFACE);
 
 /// The records of a scene, and their layout.
 struct scene_layout {
@@ -105,21 +109,20 @@ namespace detail {
         /// Computes the bounds, the centre and the features.
         void measure()
         {
-            bounds all, lambertian;
+            bounds all, diffuse;
             for_each_shape(s_, [&](const auto& list, auto kind) {
                 for (const auto& x : list) {
-                    const auto surface = s_.materials[x.material].kind;
+                    const auto& m = s_.materials[x.material];
                     kind.add_bounds(all, x);
-                    if (surface == material_kind::lambertian)
-                        kind.add_bounds(lambertian, x);
-                    else
-                        out_.features |= surface == material_kind::glass ? has_glass : has_mirrors;
+                    if (is_diffuse(m))
+                        kind.add_bounds(diffuse, x);
+                    out_.features |= entry_of(m.kind).switches;
                     round_size_ = std::max(round_size_, kind.round_size(x));
                 }
                 out_.features |= list.empty() ? 0u : 1u << kind.number;
                 out_.steps_per_ray += static_cast<uint>(list.size());
             });
-            require(!lambertian.empty(), no_matte_shape);
+            require(!diffuse.empty(), no_matte_shape);
             for_each_light(s_, [&](const auto& list, auto kind) {
                 for (const auto& l : list)
                     kind.add_bounds(all, l);
@@ -132,8 +135,8 @@ namespace detail {
             // The centre, rounded to few bits, so that adding it to the anchor is exact.
             const double step = std::exp2(std::floor(std::log2(scale_)) - 8);
             out_.center = glm::round(0.5 * (all.low + all.high) / step) * step;
-            out_.low = glm::vec3(lambertian.low - out_.center);
-            out_.high = glm::vec3(lambertian.high - out_.center);
+            out_.low = glm::vec3(diffuse.low - out_.center);
+            out_.high = glm::vec3(diffuse.high - out_.center);
         }
 
         /// Writes a table of `count` items from record `first` on; `stride` is 0 if their lengths differ.
@@ -170,10 +173,7 @@ namespace detail {
         {
             enter(kernels::MATERIAL_TABLE, w.next(), s_.materials.size(), kernels::MATERIAL_RECORDS);
             for (const auto& m : s_.materials) {
-                w.put(m.reflectance,
-                    m.kind == material_kind::lambertian  ? kernels::LAMBERTIAN_SURFACE
-                        : m.kind == material_kind::glass ? kernels::GLASS_SURFACE
-                                                         : kernels::MIRROR_SURFACE);
+                w.put(m.reflectance, static_cast<uint>(entry_of(m.kind).surface));
                 w.put(dvec3(m.index_of_refraction, 0, 0), 0);
             }
         }
