@@ -63,13 +63,13 @@ public:
     /// The irradiance at many points, in their order, computed on the device: one thread at a time.
     /// \throws backend_error if the device has no room.
     [[nodiscard]] std::vector<irradiance_at_point> irradiance(
-        const vector_view& points, const irradiance_options& options = {}) const
+        const vector_argument& points, const irradiance_options& options = {}) const
     {
         return searched(points, nullptr, options);
     }
     /// The same with the unit normal of the surface at each point, for leak policies. One thread at a time.
     [[nodiscard]] std::vector<irradiance_at_point> irradiance(
-        const vector_view& points, const vector_view& normals, const irradiance_options& options = {}) const
+        const vector_argument& points, const vector_argument& normals, const irradiance_options& options = {}) const
     {
         return searched(points, &normals, options);
     }

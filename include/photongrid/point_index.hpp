@@ -53,7 +53,7 @@ public:
     /// `k`: the number of neighbours that searches typically ask for. The grid is fitted to it; results do not depend
     /// on it.
     /// \throws backend_error where the device has no room.
-    point_index(B& device, const vector_view& points, uint k = 16)
+    point_index(B& device, const vector_argument& points, uint k = 16)
         : device_(&device), origin_(detail::origin_of(points)), map_(fitted_map(device, uploaded(device, points), k)),
           host_(device, map_, {.k = k}, false)
     {
@@ -66,7 +66,7 @@ public:
     /// has fewer points within max_radius, m.
     /// \throws std::invalid_argument for k = 0.
     [[nodiscard]] point_neighbours nearest(
-        const vector_view& queries, uint k, float max_radius = std::numeric_limits<float>::infinity()) const
+        const vector_argument& queries, uint k, float max_radius = std::numeric_limits<float>::infinity()) const
     {
         B& b = *device_;
         const auto lists = knn_neighbours(
@@ -82,7 +82,7 @@ public:
         return n;
     }
     /// All points within `radius`, m, of each query point, nearest first.
-    [[nodiscard]] point_neighbours within(const vector_view& queries, float radius) const
+    [[nodiscard]] point_neighbours within(const vector_argument& queries, float radius) const
     {
         point_neighbours n;
         for (std::size_t i = 0; i < queries.size(); ++i) {
@@ -98,7 +98,7 @@ public:
         return n;
     }
     /// How many points lie within `radius`, m, of each query point.
-    [[nodiscard]] std::vector<uint> count_within(const vector_view& queries, float radius) const
+    [[nodiscard]] std::vector<uint> count_within(const vector_argument& queries, float radius) const
     {
         B& b = *device_;
         const auto points = detail::upload_view(b, queries, origin_, 1.0f);

@@ -6,6 +6,7 @@
 
 #include <photongrid/photon_map.hpp>
 #include <photongrid/point_index.hpp>
+#include <photongrid/render/view_pass.hpp>
 
 #include <flann/flann.hpp>
 #include <gtest/gtest.h>
@@ -279,5 +280,26 @@ using buffers = map_buffers<device>;
 using vectors = buffer_of<device, glm::vec4>;
 static_assert(searches<knn_search<device>, buffers&, vectors&>);
 static_assert(!searches<knn_search<device>, buffers, vectors&> && !searches<knn_search<device>, buffers&, vectors>);
+using vec3_list = std::vector<glm::vec3>;
+template <class Vectors>
+concept attributes = requires(Vectors&& v)
+{
+    photon_attributes{.positions = std::forward<Vectors>(v)};
+};
+static_assert(attributes<vec3_list&> && attributes<const vec3_list&> && attributes<std::span<const glm::vec3>>);
+static_assert(!attributes<vec3_list> && !attributes<const vec3_list>);
+static_assert(
+    !std::is_constructible_v<vector_view, vec3_list> && !std::is_constructible_v<vector_view, const vec3_list>);
+static_assert(std::is_convertible_v<vec3_list, vector_argument>); // a parameter need not keep
+template <class Scene>
+constexpr bool traces
+    = std::is_constructible_v<photon_tracing<device>, device&, const scene&, Scene, const render_settings&>;
+static_assert(traces<device_scene<device>&> && traces<const device_scene<device>&>);
+static_assert(!traces<device_scene<device>> && !traces<const device_scene<device>>);
+template <class Map>
+constexpr bool views = std::is_constructible_v<view_pass<device>, device&, Map, const camera&, const render_settings&,
+    const view_options&, kept_samples<device>&, render_stats&>;
+static_assert(views<built_map<device>&> && views<const built_map<device>&>);
+static_assert(!views<built_map<device>> && !views<const built_map<device>>);
 
 } // namespace photongrid::testing

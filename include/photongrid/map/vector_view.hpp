@@ -30,16 +30,20 @@ namespace detail {
         else
             return sizeof(std::declval<const V&>()[0]) > sizeof(float);
     }
+
+    template <class Range>
+    concept vector_range = std::ranges::contiguous_range<Range> && std::ranges::sized_range<Range> && power_like<
+        std::ranges::range_value_t<Range>>;
 } // namespace detail
 
 /// A view of a host's vectors or numbers, which must outlive it. It can be made from any contiguous range of numbers or
-/// of vectors that photon_reader accepts. A number stands for three equal components.
+/// of vectors that photon_reader accepts, but not from a temporary that owns them. A number stands for three equal
+/// components.
 class vector_view {
 public:
     vector_view() = default;
-    template <std::ranges::contiguous_range Range>
-    requires std::ranges::sized_range<Range> && detail::power_like<std::ranges::range_value_t<Range>> &&(
-        !std::same_as<std::remove_cvref_t<Range>, vector_view>)vector_view(const Range& range)
+    template <class Range>
+    requires detail::vector_range<Range> && std::ranges::borrowed_range<Range> vector_view(Range&& range)
         : vector_view(
             std::ranges::data(range), static_cast<std::size_t>(std::ranges::size(range)),
             [](const std::ranges::range_value_t<Range>& v) -> const auto& { return v; })
@@ -66,6 +70,17 @@ private:
     std::size_t size_ = 0;
     bool has_doubles_ = false;
     glm::dvec3 (*read_)(const void*, std::size_t) = nullptr;
+};
+
+/// A vector_view as a parameter: it may also be made from a temporary range, which lives until the call returns. Not to
+/// be kept.
+class vector_argument : public vector_view {
+public:
+    vector_argument(const vector_view& view) : vector_view(view) {}
+    template <detail::vector_range Range>
+    vector_argument(const Range& range) : vector_view(range)
+    {
+    }
 };
 
 /// Photons whose attributes are in separate arrays, with one element per photon. Directions and normals may be left

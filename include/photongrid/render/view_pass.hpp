@@ -59,6 +59,9 @@ public:
             if (k && k->direct.size() != r.size())
                 k.reset();
     }
+    view_pass(B&, const built_map<B>&&, const camera&, const render_settings&, const view_options&, kept_samples<B>&,
+        render_stats&)
+        = delete; // it keeps a reference
     view_pass(const view_pass&) = delete;
     view_pass& operator=(const view_pass&) = delete;
 

@@ -123,6 +123,8 @@ public:
             t_.photons.normals = make();
     }
 
+    photon_tracing(B&, const scene&, const device_scene<B>&&, const render_settings&) = delete; // it keeps a reference
+
     /// Whether all photons are stored.
     bool finished() const { return stored_ == settings_.map.photons; }
     /// The fraction of the requested photons that are stored.
