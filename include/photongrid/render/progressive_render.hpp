@@ -234,8 +234,8 @@ private:
                 = std::max(1u, with.estimate.k / std::max(1u, with.map.photons / maps_.of().settings.map.photons));
         ms_before_ = ms_of_views();
         samples_shown_ = grown_shown_ = 0;
-        view_.emplace(
-            b_, maps_.map(), scene_.camera, with, view_options{p, step_size::small, previews_.enabled}, kept_, stats_);
+        view_.emplace(b_, maps_.map(), scene_.camera, with, view_pass_settings{p, step_size::small, previews_.enabled},
+            kept_, stats_);
         if (!p && film_.size() == 0)
             film_ = film_for(scene_, maps_.map().scene.layout, settings_.output);
         if (!p && unfinished_.rays > 0) {

@@ -27,7 +27,7 @@ enum class step_size {
 };
 
 /// How a view is drawn. The bytes of the picture do not depend on it.
-struct view_options {
+struct view_pass_settings {
     std::optional<photongrid::preview> preview{}; ///< the preview to draw; empty: draw the picture
     step_size size = step_size::largest;          ///< size of the steps
     bool watched = false;                         ///< provide running estimates, if the search can (3.4)
@@ -41,13 +41,13 @@ public:
     /// It draws nothing yet. It adds times to `stats`. `built`, `kept` and `stats` must outlive it.
     /// \throws std::invalid_argument for a camera or settings that check() rejects, backend_error.
     view_pass(B& b, const built_map<B>& built, const camera& view, const render_settings& settings,
-        const view_options& options, kept_samples<B>& kept, render_stats& stats)
-        : b_(b), built_(built), view_(view), settings_(settings), options_(options), kept_(kept), stats_(stats),
+        const view_pass_settings& how, kept_samples<B>& kept, render_stats& stats)
+        : b_(b), built_(built), view_(view), settings_(settings), how_(how), kept_(kept), stats_(stats),
           branches_(1u << detail::splits_of(built.scene.layout))
     {
         check(settings);
         check(view);
-        if (const auto& p = options_.preview; p && (p->divisor < 1 || p->k_divisor < 1))
+        if (const auto& p = how_.preview; p && (p->divisor < 1 || p->k_divisor < 1))
             throw std::invalid_argument("view_pass: preview: divisor and k_divisor must be at least 1");
         const auto r = detail::raster_of(settings_, divisor());
         detail::time_stage(b_, stats_.trace_rays, [&] {
@@ -59,7 +59,8 @@ public:
             if (k && k->direct.size() != r.size())
                 k.reset();
     }
-    view_pass(B&, const built_map<B>&&, const camera&, const render_settings&, const view_options&, kept_samples<B>&,
+    view_pass(B&, const built_map<B>&&, const camera&, const render_settings&, const view_pass_settings&,
+        kept_samples<B>&,
         render_stats&)
         = delete; // it keeps a reference
     view_pass(const view_pass&) = delete;
@@ -84,7 +85,7 @@ public:
                 unfinished_ = samples_->direct.size();
                 search_.emplace(b_, built_.map, samples_->hits.points, samples_->hits.surfaces, search_settings());
             }
-            const uint passes = options_.size == step_size::largest ? nowhere : grows() ? std::max(1u, grown_) : 8u;
+            const uint passes = how_.size == step_size::largest ? nowhere : grows() ? std::max(1u, grown_) : 8u;
             did = search_->advance(passes);
             if (grows()) // display it after 1, 2, 4, 8, ... passes
                 grown_ += passes;
@@ -100,8 +101,8 @@ public:
     bool shade(uint ray);
 
     /// The side of the pixels, in pixels of the picture.
-    uint divisor() const { return options_.preview ? options_.preview->divisor : 1u; }
-    bool is_preview() const { return options_.preview.has_value(); }
+    uint divisor() const { return how_.preview ? how_.preview->divisor : 1u; }
+    bool is_preview() const { return how_.preview.has_value(); }
     /// Approximate fraction of the work that is done, 0 to 1.
     double fraction() const
     {
@@ -161,15 +162,15 @@ private:
     /// Whether the search's partial sums can be displayed while it runs (3.4).
     bool grows() const
     {
-        return !is_preview() && options_.watched && knn_search<B>::shows_running_estimate(picture_search());
+        return !is_preview() && how_.watched && knn_search<B>::shows_running_estimate(picture_search());
     }
     /// The search of the picture itself, not of a preview.
     knn_settings picture_search() const { return detail::search_for(settings_, least_radius(built_.map.cells_of)); }
     knn_settings search_settings() const
     {
         knn_settings k = picture_search();
-        if (options_.preview) {
-            k = detail::search_for_preview(k, *options_.preview);
+        if (how_.preview) {
+            k = detail::search_for_preview(k, *how_.preview);
         } else if (grows()) {
             k.visits_per_pass = 256;
             k.ranges_per_pass = 64;
@@ -190,8 +191,7 @@ private:
     bool over_pixels(stage_stats& stats, const Stage& stage)
     {
         const auto n = canvas_.raster.size();
-        const std::size_t part
-            = options_.size == step_size::small ? std::min<std::size_t>(n - done_, 65536) : n - done_;
+        const std::size_t part = how_.size == step_size::small ? std::min<std::size_t>(n - done_, 65536) : n - done_;
         detail::time_stage(b_, stats, [&] { stage(launch(part, static_cast<uint>(done_))); });
         done_ = done_ + part == n ? 0 : done_ + part;
         return done_ == 0;
@@ -207,7 +207,7 @@ private:
     const built_map<B>& built_;
     camera view_;
     render_settings settings_;
-    view_options options_;
+    view_pass_settings how_;
     kept_samples<B>& kept_;
     render_stats& stats_;
     uint branches_; ///< combinations of Fresnel branches, a pass over the pixels each
