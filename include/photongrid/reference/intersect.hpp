@@ -38,18 +38,10 @@ public:
         });
         first_light_ = static_cast<std::uint32_t>(materials_.size());
         double total = 0;
-        for (const auto& l : s.rectangle_lights) {
-            light_source source{
-                .is_area = true, .corner = l.corner, .edge_u = l.edge_u, .edge_v = l.edge_v, .power = l.power};
-            const dvec3 area = glm::cross(l.edge_u, l.edge_v);
-            source.area = glm::length(area);
-            source.normal = area / source.area;
-            source.shape = static_cast<std::uint32_t>(materials_.size());
-            add(shape_of(surface_of(l)), nothing);
-            lights_.push_back(source);
-        }
-        for (const auto& l : s.point_lights)
-            lights_.push_back({.corner = l.position, .power = l.power});
+        for_each_light(s, [&](const auto& list, auto) {
+            for (const auto& l : list)
+                add(l);
+        });
         for (const auto& l : lights_)
             total += l.power.x + l.power.y + l.power.z;
         for (auto& l : lights_)
@@ -99,6 +91,18 @@ private:
         std::get<std::vector<Shape>>(shapes_).push_back(std::move(shape));
         materials_.push_back(material);
     }
+    void add(const rectangle_light& l)
+    {
+        light_source source{
+            .is_area = true, .corner = l.corner, .edge_u = l.edge_u, .edge_v = l.edge_v, .power = l.power};
+        const dvec3 area = glm::cross(l.edge_u, l.edge_v);
+        source.area = glm::length(area);
+        source.normal = area / source.area;
+        source.shape = static_cast<std::uint32_t>(materials_.size());
+        add(shape_of(surface_of(l)), nothing);
+        lights_.push_back(source);
+    }
+    void add(const point_light& l) { lights_.push_back({.corner = l.position, .power = l.power}); }
     /// Calls visit(shape, number) for each shape until it returns false.
     template <class Visit>
     void each(Visit visit) const

@@ -7,6 +7,7 @@
 #include <photongrid/trace/scene_layout.kernel.hpp>
 
 #include <algorithm>
+#include <optional>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -58,10 +59,18 @@ namespace detail {
         return s;
     }
 
-    /// A point that moves exactly with the scene: a point of one of its lights.
+    /// A point that moves exactly with the scene: the first point of its first light.
     inline dvec3 anchor(const scene& s)
     {
-        return s.rectangle_lights.empty() ? s.point_lights.at(0).position : s.rectangle_lights[0].corner;
+        std::optional<dvec3> first;
+        for_each_light(s, [&](const auto& list, auto kind) {
+            for_each_field(kind.fields, [&](const auto& f) {
+                if constexpr (requires { first = list[0].*f.member; })
+                    if (f.of == quantity::point && !first && !list.empty())
+                        first = list[0].*f.member;
+            });
+        });
+        return first.value();
     }
 
     /// \throws std::invalid_argument if a shape is so small, relative to the scene, that single precision cannot

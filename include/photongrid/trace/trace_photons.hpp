@@ -73,12 +73,10 @@ namespace detail {
     inline std::string light_names(const scene& s)
     {
         std::string names;
-        const auto add = [&](const auto& lights) {
-            for (const auto& l : lights)
+        for_each_light(s, [&](const auto& list, auto) {
+            for (const auto& l : list)
                 names += (names.empty() ? "'" : ", '") + l.name + "'";
-        };
-        add(s.rectangle_lights);
-        add(s.point_lights);
+        });
         return names;
     }
 } // namespace detail
