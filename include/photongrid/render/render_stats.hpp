@@ -19,7 +19,6 @@ struct map_stats {
     glm::uvec3 resolution{0};                ///< cells along each axis
     std::uint64_t overflowing_cells = 0;     ///< routed cells that received more photons than they have slots
     double redistributed_power = 0;          ///< W, rgb together: power of photons not kept, given to those kept
-    std::uint64_t sort_steps = 0;            ///< always 0; stage_stats::passes includes the passes of the sort
     std::uint64_t left_out = 0;              ///< photons stored that belong to another part of the light (light_part)
 };
 
