@@ -18,7 +18,6 @@ namespace photongrid {
 enum scene_feature : uint {
     has_spheres = 1u << shape_kind<sphere>::number,
     has_quadrics = 1u << detail::quadric_number, ///< cylinders, cones and others
-    has_disks = 1u << shape_kind<disk>::number,
     has_polygons = 1u << shape_kind<polygon>::number,
     has_mirrors = detail::entry_of(material_kind::mirror).switches,
     has_glass = detail::entry_of(material_kind::glass).switches,
