@@ -160,15 +160,7 @@ public:
         std::vector<uint> arrived(destinations);
         std::fill(slots.data_.begin(), slots.data_.end(), nowhere);
         std::fill(totals.data_.begin(), totals.data_.end(), glm::vec4(0));
-        for (uint i = l.first; i != l.first + l.elements; ++i) {
-            k.kernel(i);
-            const uint d = k.output(slot<0>{});
-            if (d >= destinations)
-                continue;
-            if (arrived[d] < capacity)
-                slots.data_[std::size_t{d} * capacity + arrived[d]++] = k.output(slot<1>{});
-            totals.data_[std::size_t{d} * sums + (i - l.first) / block] += k.output(slot<2>{});
-        }
+        route_all(std::move(k), l, arrived, capacity, slots.data_.data(), sums, block, totals.data_.data());
         ++costs_[std::string(kernel_name<K>())].passes;
     }
 
@@ -199,6 +191,21 @@ private:
             load(k, i, writes);
             k.kernel(i);
             store(k, i, writes);
+        }
+    }
+    /// Delivers each draw: `arrived` has an element per destination.
+    template <class K>
+    [[gnu::noinline, gnu::flatten]] static void route_all(K k, const launch& l, std::vector<uint>& arrived,
+        uint capacity, uint* slots, uint sums, uint block, glm::vec4* totals)
+    {
+        for (uint i = l.first; i != l.first + l.elements; ++i) {
+            k.kernel(i);
+            const uint d = k.output(slot<0>{});
+            if (d >= arrived.size())
+                continue;
+            if (arrived[d] < capacity)
+                slots[std::size_t{d} * capacity + arrived[d]++] = k.output(slot<1>{});
+            totals[std::size_t{d} * sums + (i - l.first) / block] += k.output(slot<2>{});
         }
     }
     template <class K, class Writes>
