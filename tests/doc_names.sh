@@ -74,7 +74,7 @@ xargs awk -v work="$work" '
           || token ~ /[A-Za-z_*]\.(hpp|cpp|glsl|md|cmake|sh|supp|txt|svg|dict)$/) {
         if (!is_path(token) && !(token in known))
           note(shown "no path ends in " token)
-        gsub(/[][.*+?(){}|^$\\]/, "\\\\&", token)
+        gsub(/[]^$.*+?(){}|[\\]/, "\\\\&", token)
         sub(token, " ", span)
       }
     }

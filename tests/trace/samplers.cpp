@@ -379,7 +379,7 @@ namespace {
     {
         const auto s = lamp_over_floor();
         const dvec3 point(-0.2, 0, 0.3);
-        for (const uint samples : {1u, 4u, 6u, 16u, 32u}) {
+        for (const uint samples : {4u, 6u, 16u, 32u}) {
             const auto known = expected_of(s.rectangle_lights[0], point, detail::strata_of(samples));
             const auto e = moments_of(estimates(s, point, samples));
             const double pixels = 16384;
