@@ -39,7 +39,7 @@ namespace photongrid::testing {
 TEST(no_allocation, in_queries_for_single_points)
 {
     const auto photons = some_photons(7, 2000, false);
-    const auto places = some_places(7, 200, false);
+    const auto points = some_query_points(7, 200, false);
     serial_backend device;
     for (const auto& settings : {knn_settings{.k = 50}, knn_settings{.k = 50, .bias = bias_kind::unbiased},
              knn_settings{.k = 50, .max_radius = 0.1f, .search = search_kind::fixed_radius},
@@ -49,7 +49,7 @@ TEST(no_allocation, in_queries_for_single_points)
         float sum = 0;
         const auto ask_everywhere = [&] {
             const auto before = allocations.load();
-            for (const auto& p : places) {
+            for (const auto& p : points) {
                 sum += map.irradiance(p, up, scratch).value.x;
                 map.for_each_nearest(p, 50, scratch, [&](photon_id, float d2) { sum += d2; });
                 map.for_each_within(p, 0.1f, [&](photon_id, float d2) { sum += d2; });

@@ -26,6 +26,25 @@ TYPED_TEST_P(pictures, every_photon_and_every_watt_is_accounted_for)
     }
 }
 
+TYPED_TEST_P(pictures, paths_that_overflow_are_counted_as_invalid)
+{
+    // A light's paths carry the power of all lights in its own colour. Here that is 2e38 W in each channel for the
+    // white lamp, and 6e38 W for the red bulb, more than a float holds.
+    auto s = small_cornell();
+    s.rectangle_lights[0].power = dvec3(2e38);
+    s.point_lights = {{"bulb", {0.5, 0.5, 0.2}, {1e37, 0, 0}}};
+    auto& b = this->b();
+    const auto device = upload_scene(b, s);
+    const auto t = trace_photons(b, s, device, s.render);
+    const auto stats = count_photons(b, t, t.photons.size());
+    EXPECT_EQ(stats.emitted, stats.absorbed + stats.escaped + stats.cut_off + stats.invalid);
+    EXPECT_EQ(stats.diffuse_hits, stats.stored + stats.direct + stats.dropped);
+    const double paths = static_cast<double>(stats.emitted), share = 1e37 / 6.1e38;
+    EXPECT_NEAR(static_cast<double>(stats.invalid), paths * share, 5 * std::sqrt(paths * share));
+    for (const auto& p : b.download(t.photons.powers))
+        ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+}
+
 TYPED_TEST_P(pictures, power_balances_per_channel)
 {
     // A light's power is absorbed at surfaces, escapes, or is cut off; per path and channel, on average.

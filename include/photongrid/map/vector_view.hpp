@@ -31,9 +31,14 @@ namespace detail {
             return sizeof(std::declval<const V&>()[0]) > sizeof(float);
     }
 
+    // clang-format off
     template <class Range>
-    concept vector_range = std::ranges::contiguous_range<Range> && std::ranges::sized_range<Range> && power_like<
-        std::ranges::range_value_t<Range>>;
+    concept vector_range = std::ranges::contiguous_range<Range> && std::ranges::sized_range<Range>
+        && power_like<std::ranges::range_value_t<Range>>;
+    /// A range whose elements outlive it, or an lvalue (Range is then a reference).
+    template <class Range>
+    concept lasting_vector_range = vector_range<Range> && std::ranges::borrowed_range<Range>;
+    // clang-format on
 } // namespace detail
 
 /// A view of a host's vectors or numbers, which must outlive it. It can be made from any contiguous range of numbers or
@@ -42,8 +47,8 @@ namespace detail {
 class vector_view {
 public:
     vector_view() = default;
-    template <class Range>
-    requires detail::vector_range<Range> && std::ranges::borrowed_range<Range> vector_view(Range&& range)
+    template <detail::lasting_vector_range Range>
+    vector_view(Range&& range)
         : vector_view(
             std::ranges::data(range), static_cast<std::size_t>(std::ranges::size(range)),
             [](const std::ranges::range_value_t<Range>& v) -> const auto& { return v; })
