@@ -8,7 +8,8 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# name | file | what to replace | by what (plain text, which must be there)
+# name | file | what to replace | by what (plain text, which must be there) | the test program that should see it, if not
+# that of tests_of below
 faults=(
   "sort loses ties|include/photongrid/map/bitonic_step.glsl|(mine.x == partner.x && mine.y < partner.y)|mine.x == partner.x"
   "sort ignores values|include/photongrid/map/bitonic_step.glsl| \|\| (mine.x == partner.x && mine.y < partner.y)|"
@@ -97,13 +98,34 @@ faults=(
   "vulkan: an element left off the list|backends/vulkan/iterate.glsl|keep = more;|keep = more && (i & 1023u) != 1023u;"
   "vulkan: a stride sorts one way|backends/vulkan/overrides/bitonic_strides.glsl|EXCHANGE(p6, p7, rising)|EXCHANGE(p6, p7, true)"
   "gl: tiles end with one element left|backends/gl/tiles.hpp|live_[t] = n != 0;|live_[t] = n > 1;"
+  "a lamp 5 % off its cosine|include/photongrid/trace/emit_photon.glsl|cosine_direction(light.normal, r.x, r.y)|cosine_direction(light.normal, 0.95f * r.x, r.y)|samplers"
+  "a lamp with a dark edge|include/photongrid/trace/emit_photon.glsl|light.edge_u, r.z)|light.edge_u, 0.99f * r.z)|samplers"
+  "a bulb dimmer below|include/photongrid/trace/emit_photon.glsl|d = uniform_direction(r.x, r.y)|d = uniform_direction(0.98f * r.x, r.y)|samplers"
+  "a bulb 1 % too bright|include/photongrid/trace/emit_photon.glsl|light.power.x / probability|light.power.x * (light.is_area ? 1.0f : 1.01f) / probability|samplers"
+  "a lamp chosen too often|include/photongrid/trace/device_scene.hpp|weight(l.power) / total, below / total|weight(l.power) / total, std::min(1.0, 1.01 * below / total)|samplers"
+  "a batch repeats 64 paths|include/photongrid/trace/trace_photons.hpp|static_cast<uint>(t_.emitted), settings_)|static_cast<uint>(t_.emitted) - (t_.emitted > 0 ? 64u : 0u), settings_)|samplers"
+  "eye rays through the corner|include/photongrid/trace/eye_ray.glsl|float dx = 0.5f;|float dx = 0.0f;|samplers"
+  "eye rays without the seed|include/photongrid/trace/eye_ray.glsl|1000u, args.seed|1000u, 1u|samplers"
+  "eye rays alike in all pixels|include/photongrid/trace/eye_ray.glsl|uvec4(i, args.sample_id|uvec4(0u, args.sample_id|samplers"
+  "one jitter for all strata of a lamp|include/photongrid/trace/direct_light.glsl|args.seed ^ (s * 0x9E3779B1u)|args.seed|samplers"
+  "one jitter for all lamps|include/photongrid/trace/direct_light.glsl|3000u + number|3000u|samplers"
+  "shadow rays without the seed|include/photongrid/trace/direct_light.glsl|args.seed ^ (s|1u ^ (s|samplers"
+  "shadow rays alike for all eye rays|include/photongrid/trace/direct_light.glsl|uvec4(i, args.ray_id,|uvec4(i, 0u,|samplers"
+  "a bulb's direct light 1 % too bright|include/photongrid/trace/direct_light.glsl|7.95774715e-2f|8.03732e-2f|samplers"
+  "tint of glass lost in reflection|include/photongrid/trace/eye_bounce.glsl|tinted.x * share|(dot3(next, hit.normal) * dot3(d, hit.normal) < 0.0f ? throughput.x : tinted.x) * share|scattering"
+  "metal keeps its colour to itself|include/photongrid/trace/bounce_photon.glsl|(colour.y / survival)|(1.0f)|scattering"
+  "Fresnel 1 % off|include/photongrid/trace/optics.glsl|float reflected = 0.5f|float reflected = 0.505f|scattering"
+  "glass chooses by another number|include/photongrid/trace/bounce_photon.glsl|r.w < f.reflected|r.x < f.reflected|scattering"
+  "a lamp's corner may be NaN|include/photongrid/scene/lights.hpp|detail::finite(l.corner) && ||bad_scenes"
+  "a setting is unchecked|include/photongrid/scene/setting_table.hpp|v >= least && v <= most|v <= most|bad_scenes"
+  "an index of refraction is unchecked|include/photongrid/scene/material.hpp|f.range.check(f.name, v);|(void)v;|bad_scenes"
 )
 
 # The separator is a bar, so bars inside are written \|.
-# parse FAULT: sets name, file, from and to
+# parse FAULT: sets name, file, from, to and program
 parse() {
   local rest=${1//\\|/$'\001'}
-  IFS='|' read -r name file from to <<<"$rest"
+  IFS='|' read -r name file from to program <<<"$rest"
   from=${from//$'\001'/|} to=${to//$'\001'/|}
 }
 if [[ ${1:-} == --check ]]; then
@@ -156,7 +178,7 @@ suite() { RC_PARAMS=seed=20031 NODEVICE_SELECT=1 timeout 900 "$1/$(folder_of "$2
 plant() { # worker's folder, fault
   local name file from to text program
   parse "$2"
-  program=$(tests_of "$file")
+  program=${program:-$(tests_of "$file")}
   text=$(cat "$1/tree/$file")
   if [[ $text != *"$from"* ]]; then
     echo "MISSED  $name: $file no longer holds: $from"
@@ -190,7 +212,7 @@ for ((w = 0; w < workers; ++w)); do
   tar -c --exclude='./build*' --exclude=./out --exclude=./.git . | tar -x -C "$work/$w/tree"
 done
 echo "== no fault"
-for program in $(for fault in "${chosen[@]}"; do file=${fault#*|}; tests_of "${file%%|*}"; done | sort -u); do
+for program in $(for fault in "${chosen[@]}"; do parse "$fault"; echo "${program:-$(tests_of "$file")}"; done | sort -u); do
   { built "$work/0" "$program" && suite "$work/0" "$program"; } || { tail -n 30 "$work/0/log"; echo "planted_faults: $program fails without any fault" >&2; exit 1; }
 done
 

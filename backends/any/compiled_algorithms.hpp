@@ -44,7 +44,8 @@
         const buffer_of<B, glm::vec4>&, const buffer_of<B, glm::vec4>&, filter_kind, float);                           \
     EXTERN template void correct_edges(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&,                     \
         const buffer_of<B, glm::vec4>&, knn_estimates<B>&, filter_kind, float);                                        \
-    EXTERN template built_map<B> build_map(B&, const scene&, const render_settings&, const render_observer&);          \
+    EXTERN template built_map<B> build_map(                                                                            \
+        B&, const scene&, const render_settings&, const render_observer&, if_none_stored);                             \
     EXTERN template rendered draw(                                                                                     \
         B&, const built_map<B>&, const camera&, const render_settings&, const render_observer&);                       \
     EXTERN template class view_pass<B>;                                                                                \

@@ -61,7 +61,8 @@ public:
     const glm::dvec3& origin() const { return origin_; }
 
     /// The irradiance at many points, in their order, computed on the device: one thread at a time.
-    /// \throws backend_error if the device has no room.
+    /// \throws std::invalid_argument if k exceeds the number of photons and max_radius is unbounded, since no disc then
+    ///         holds k photons; backend_error if the device has no room.
     [[nodiscard]] std::vector<irradiance_at_point> irradiance(
         const vector_argument& points, const irradiance_options& options = {}) const
     {
@@ -74,10 +75,11 @@ public:
         return searched(points, &normals, options);
     }
     /// The irradiance at one point, with its standard error. Any thread may call it; each needs its own scratch.
-    /// \throws std::invalid_argument if the search is at_least_k.
+    /// \throws std::invalid_argument if the search is at_least_k, and as for many points.
     template <detail::vector_like V, detail::vector_like N>
     [[nodiscard]] irradiance_at_point irradiance(const V& point, const N& normal, query_scratch& scratch) const
     {
+        require_a_disc();
         return host_.irradiance(local(point), detail::to_vec3(normal), scratch);
     }
 
@@ -127,9 +129,19 @@ private:
         return glm::vec3(detail::to_dvec3(point) - origin_);
     }
 
+    void require_a_disc() const
+    {
+        const auto& s = search();
+        if (s.search != search_kind::fixed_radius && s.k > size() && size() > 0 && std::isinf(s.max_radius))
+            throw std::invalid_argument("photon_map::irradiance: k: " + std::to_string(s.k)
+                + " photons are sought, and " + "the map has " + std::to_string(size())
+                + "; use a smaller k, or set max_radius");
+    }
+
     std::vector<irradiance_at_point> searched(
         const vector_view& points, const vector_view* normals, const irradiance_options& options) const
     {
+        require_a_disc();
         B& b = *device_;
         auto s = search();
         s.errors = options.standard_error;

@@ -63,22 +63,38 @@ TEST(specialisation, a_scene_without_glass_and_lamps_has_smaller_kernels)
     auto* b = shared_backend<vulkan_tag>(reason);
     if (b == nullptr)
         GTEST_SKIP() << reason;
-    const auto instructions = [&](uint features) {
+    const auto instructions = [&](const scene& s) {
         vulkan_backend fresh(vulkan_options{});
-        scene s = all_shapes();
         const auto device = upload_scene(fresh, s);
         detail::photon_frames<vulkan_backend> f(fresh, 64);
-        fresh.run<kernels::bounce_photon>({32, 32u, features},
+        fresh.run<kernels::bounce_photon>({32, 32u, device.layout.features},
             {.paths = 32, .first_path = 0, .last_frame = 1, .seed = 1},
             reads(device.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
         fresh.finish();
         return fresh.costs().at("bounce_photon").instructions;
     };
-    const uint ring = has_quadrics | has_polygons | has_mirrors | has_point_lights;
-    EXPECT_GT(instructions(ring), 100u);
-    EXPECT_LT(instructions(ring), instructions(ring | has_glass | has_area_lights));
-    EXPECT_LT(instructions(ring), instructions(ring | has_spheres));
+    auto plain = all_shapes(); // mirrors, quadrics and polygons under a bulb
+    plain.spheres.clear();
+    plain.boxes.clear();
+    plain.disks.clear();
+    plain.rectangle_lights.clear();
+    const auto least = instructions(plain);
+    EXPECT_GT(least, 100u);
+    auto other = plain;
+    other.materials.push_back({"clear", material_kind::glass, dvec3(1), 1.5});
+    EXPECT_EQ(instructions(other), least) << "no shape is of this material";
+    EXPECT_EQ(detail::splits_of(lay_out(other)), 0u);
+    other = plain;
+    other.spheres = all_shapes().spheres;
+    other.spheres[0].material = 0;
+    const auto with_spheres = instructions(other);
+    EXPECT_GT(with_spheres, least);
+    other.spheres[0].material = 2; // glass
+    EXPECT_GT(instructions(other), with_spheres);
+    other = plain;
+    other.rectangle_lights = all_shapes().rectangle_lights;
+    EXPECT_GT(instructions(other), least);
 }
 
 } // namespace photongrid::testing

@@ -240,6 +240,26 @@ TEST(host_map, nothing_is_found_in_nothing)
     EXPECT_TRUE(map.irradiance(std::vector<glm::vec3>{}).empty());
 }
 
+/// Without a bound no disc holds more photons than there are: an estimate would be black.
+TEST(host_map, more_photons_than_there_are_need_a_radius)
+{
+    serial_backend device;
+    const auto photons = some_photons(1, 100, false);
+    const std::vector<glm::vec3> points{{0.5f, 0.5f, 0}};
+    query_scratch scratch;
+    for (const auto search : {search_kind::exact_k, search_kind::at_least_k}) {
+        const photon_map map(device, photons, {.k = 101, .search = search});
+        EXPECT_THROW(static_cast<void>(map.irradiance(points)), std::invalid_argument);
+    }
+    const photon_map map(device, photons, {.k = 101});
+    EXPECT_THROW(static_cast<void>(map.irradiance(points[0], up, scratch)), std::invalid_argument);
+    int found = 0;
+    map.for_each_nearest(points[0], 101, [&](photon_id, float) { ++found; });
+    EXPECT_EQ(found, 100);
+    EXPECT_EQ(photon_map(device, photons, {.k = 100}).irradiance(points)[0].count, 100u);
+    EXPECT_EQ(photon_map(device, photons, {.k = 101, .max_radius = 100}).irradiance(points)[0].count, 100u);
+}
+
 TEST(host_map, the_growing_search_is_for_many_points)
 {
     serial_backend device;

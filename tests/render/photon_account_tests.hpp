@@ -115,7 +115,8 @@ TYPED_TEST_P(pictures, cut_off_paths_are_counted)
     EXPECT_NEAR(share, 0.9 * 0.9 * 0.9, 4 * std::sqrt(0.2 / static_cast<double>(stats.photons.emitted)));
 }
 
-TYPED_TEST_P(pictures, a_light_that_stores_no_photon_is_named)
+/// A bulb over a bare floor: no light reaches a second surface.
+inline scene bulb_over_a_floor()
 {
     scene s;
     s.materials = {{"floor", material_kind::lambertian, dvec3(0.5)}};
@@ -124,12 +125,59 @@ TYPED_TEST_P(pictures, a_light_that_stores_no_photon_is_named)
     s.camera = {{0, 1, -3}, {0, 0, 0}, {0, 1, 0}, 45};
     s.render.map.photons = 50000; // long batches
     s.render.map.photon_depth = 2;
+    s.render.output.width = s.render.output.height = 16;
+    return s;
+}
+
+TYPED_TEST_P(pictures, a_light_that_stores_no_photon_is_named)
+{
+    const auto s = bulb_over_a_floor();
     try {
-        (void)render(this->b(), s);
-        FAIL() << "a scene that stores no photon was rendered";
+        (void)build_map(this->b(), s, s.render, {}, if_none_stored::fail);
+        FAIL() << "a map without photons was built";
     } catch (const std::runtime_error& e) {
         EXPECT_NE(std::string(e.what()).find("'the bulb'"), std::string::npos) << e.what();
     }
+    // A picture needs no indirect light.
+    for (const auto builder : {map_builder::sort, map_builder::route}) {
+        auto settings = s.render;
+        settings.map.builder = builder;
+        render_stats stats;
+        const auto drawn = this->picture(s, settings, &stats);
+        EXPECT_EQ(stats.photons.stored, 0u);
+        EXPECT_EQ(stats.photons.emitted, stats.photons.absorbed + stats.photons.escaped + stats.photons.cut_off);
+        EXPECT_EQ(stats.photons.direct, stats.photons.diffuse_hits);
+        // The floor under the bulb: reflectance / pi times irradiance, 1 W / (4 pi m^2).
+        const auto middle = drawn.pixels[16 * 8 + 8];
+        EXPECT_GT(middle.x, 0.5 * 0.5 / M_PI / (4 * M_PI));
+        EXPECT_LT(middle.x, 0.5 / M_PI / (4 * M_PI) * 1.01);
+        settings.output.only = light_part::direct;
+        EXPECT_TRUE(same_bytes(this->picture(s, settings), drawn));
+    }
+}
+
+/// A picture of direct light traces no photon, and is the same as with a map.
+TYPED_TEST_P(pictures, direct_light_alone_traces_no_photon)
+{
+    auto s = small_cornell();
+    auto& b = this->b();
+    const auto whole = build_map(b, s, s.render);
+    s.render.output.only = light_part::direct;
+    const auto expected = draw(b, whole, s.camera, s.render).picture;
+    const auto emissions = [&] {
+        const auto& costs = b.costs();
+        const auto found = costs.find("emit_photon");
+        return found == costs.end() ? 0 : found->second.passes;
+    };
+    const auto before = emissions();
+    render_stats stats;
+    EXPECT_TRUE(same_bytes(this->picture(s, s.render, &stats), expected));
+    EXPECT_EQ(emissions(), before);
+    EXPECT_EQ(stats.photons.emitted, 0u);
+    auto all = s.render;
+    all.output.only = light_part::all;
+    EXPECT_FALSE(same_map(s, s.render, s, all)) << "a map without photons";
+    EXPECT_TRUE(same_map(s, all, s, s.render));
 }
 
 } // namespace photongrid::testing

@@ -153,7 +153,7 @@ private:
     step_list early_preview_steps()
     {
         auto fewer = pass(next_pass());
-        if (!previews_.enabled || maps_.serves(fewer))
+        if (!previews_.enabled || maps_.serves(fewer) || settings_.output.only == light_part::direct)
             return {};
         step_list steps;
         if (!maps_.serves_preview_of(fewer)) {
@@ -219,7 +219,8 @@ private:
         if (film_.passes() == 0)
             stats_.trace_photons = stats_.build_map = {};
         detail::add_map(stats_, made);
-        costs_.ms_per_photon = (made.trace_photons.ms + made.build_map.ms) / maps_.of().settings.map.photons;
+        if (const auto photons = maps_.map().map.photons.size(); photons > 0)
+            costs_.ms_per_photon = (made.trace_photons.ms + made.build_map.ms) / photons;
         return {};
     }
 

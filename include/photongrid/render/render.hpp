@@ -46,14 +46,16 @@ step_list view_steps(view_pass<B>& v)
     return steps;
 }
 
-/// Traces photons and builds the map for a pass.
+/// Traces photons and builds the map for a pass. A scene without indirect light has an empty map, unless that is an
+/// error for the caller.
 /// \throws std::invalid_argument for a scene or settings that check() rejects, std::runtime_error if too few
 ///         photons are stored, backend_error, render_cancelled.
 /// \snippet snippets.cpp build_map
 template <backend B>
-built_map<B> build_map(B& device, const scene& s, const render_settings& settings, const render_observer& observer = {})
+built_map<B> build_map(B& device, const scene& s, const render_settings& settings, const render_observer& observer = {},
+    if_none_stored none = if_none_stored::trace_none)
 {
-    map_building<B> map(device, s, settings);
+    map_building<B> map(device, s, settings, none);
     run(map_steps(map), observer, [&](std::string_view stage) {
         if (observer.progress)
             observer.progress(stage, map.fraction());

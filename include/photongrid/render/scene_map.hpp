@@ -36,21 +36,25 @@ inline bool same_map(const scene& a, const render_settings& as, const scene& b, 
     return same_light_paths(a, b) && as.seed == bs.seed && as.map.in_use() == bs.map.in_use()
         && (!fitted || as.estimate.k == bs.estimate.k) // fitting_grid depends on k
         && (as.estimate.leaks.needs_normals() || !bs.estimate.leaks.needs_normals())
-        && parts_of(as.output.only) == parts_of(bs.output.only);
+        && parts_of(as.output.only) == parts_of(bs.output.only)
+        && (as.output.only != light_part::direct || bs.output.only == light_part::direct); // it has no photons
 }
 
 /// Builds a photon map batch by batch, so that it can be interrupted.
 template <backend B>
 class map_building {
 public:
-    /// Uploads the scene. It traces nothing yet.
+    /// Uploads the scene. It traces nothing yet. In a scene that has no indirect light the map has no photons, unless
+    /// that is an error for the caller.
     /// \throws std::invalid_argument for a scene or settings that check() rejects, backend_error.
-    map_building(B& b, const scene& s, const render_settings& settings) : b_(b), settings_(settings)
+    map_building(
+        B& b, const scene& s, const render_settings& settings, if_none_stored none = if_none_stored::trace_none)
+        : b_(b), settings_(settings)
     {
         check(settings);
         built_.scene = upload_scene(b, s);
         detail::stage_clock<B> clock(b, built_.stats.trace_photons);
-        tracing_.emplace(b, s, built_.scene, settings);
+        tracing_.emplace(b, s, built_.scene, settings, none);
         clock.stop();
     }
     map_building(const map_building&) = delete;

@@ -111,6 +111,17 @@ inline bool same_light_paths(const scene& a, const scene& b)
 }
 
 namespace detail {
+    /// The names of a scene's lights, for messages: "'lamp', 'bulb'".
+    inline std::string names_of_lights(const scene& s)
+    {
+        std::string names;
+        for_each_light(s, [&](const auto& lights, auto) {
+            for (const auto& l : lights)
+                names += (names.empty() ? "'" : ", '") + l.name + "'";
+        });
+        return names;
+    }
+
     /// A shape by its list and its index there, as "spheres" and 1.
     struct shape_place {
         std::string_view list;

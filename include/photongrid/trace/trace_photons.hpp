@@ -69,16 +69,6 @@ namespace detail {
         } while (n > 1);
         return t;
     }
-
-    inline std::string light_names(const scene& s)
-    {
-        std::string names;
-        for_each_light(s, [&](const auto& list, auto) {
-            for (const auto& l : list)
-                names += (names.empty() ? "'" : ", '") + l.name + "'";
-        });
-        return names;
-    }
 } // namespace detail
 
 /// Traces `paths` paths from id `first` on, and returns the number of frames. Every 8 bounces it counts the paths that
@@ -103,30 +93,33 @@ uint trace_batch(B& b, const device_scene<B>& s, detail::photon_frames<B>& f, ui
     return frame;
 }
 
+/// What photon tracing does in a scene where no path stores a photon, as under a bulb over a bare floor.
+enum class if_none_stored { fail, trace_none };
+
 /// Photon tracing in batches, which can be interrupted between batches. It emits paths in id order until map.photons
-/// photons are stored, in the order of (path, bounce). The powers are divided by the number of emitted paths. Positions
-/// have w = 1 for caustic photons (light_part). Normals are stored only if the leak policy needs them.
+/// photons are stored, in the order of (path, bounce); for a picture of direct light alone it emits none. The powers
+/// are divided by the number of emitted paths. Positions have w = 1 for caustic photons (light_part). Normals are
+/// stored only if the leak policy needs them.
 template <backend B>
 class photon_tracing {
 public:
     /// It traces nothing yet. `b` and `device` must outlive it.
-    photon_tracing(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings)
-        : b_(b), device_(device), settings_(settings), lights_(detail::light_names(s)),
-          paths_(std::clamp(std::bit_ceil(settings.map.photons / 2 + 1), 1024u, 32768u)),
+    photon_tracing(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings,
+        if_none_stored none = if_none_stored::fail)
+        : b_(b), device_(device), settings_(settings), lights_(detail::names_of_lights(s)), none_(none),
+          wanted_(settings.output.only == light_part::direct ? 0u : settings.map.photons),
+          paths_(std::clamp(std::bit_ceil(wanted_ / 2 + 1), 1024u, 32768u)),
           frames_(b, std::size_t{paths_} * (settings.map.photon_depth + 1))
     {
-        const auto make = [&] { return b.template make<glm::vec4>(settings.map.photons); };
-        t_.photons = {make(), make(), make(), {}};
-        if (settings.estimate.leaks.needs_normals())
-            t_.photons.normals = make();
+        make_photons();
     }
 
     photon_tracing(B&, const scene&, const device_scene<B>&&, const render_settings&) = delete; // it keeps a reference
 
     /// Whether all photons are stored.
-    bool finished() const { return stored_ == settings_.map.photons; }
+    bool finished() const { return stored_ == wanted_; }
     /// The fraction of the requested photons that are stored.
-    double fraction() const { return static_cast<double>(stored_) / settings_.map.photons; }
+    double fraction() const { return wanted_ == 0 ? 1.0 : static_cast<double>(stored_) / wanted_; }
 
     /// Traces one more batch of paths.
     /// \throws std::runtime_error, with the names of the lights, if paths store so few photons that tracing would not
@@ -137,23 +130,37 @@ public:
     traced_photons<B> take() { return std::move(t_); }
 
 private:
-    void require_progress() const
+    void make_photons()
+    {
+        const auto make = [&] { return b_.template make<glm::vec4>(wanted_); };
+        t_.photons = {make(), make(), make(), {}};
+        if (settings_.estimate.leaks.needs_normals())
+            t_.photons.normals = make();
+    }
+    /// Ends tracing if so many paths have stored no photon that none will.
+    void stop_if_none_are_stored()
     {
         const std::uint64_t most_paths
-            = std::min<std::uint64_t>(std::uint64_t{settings_.map.photons} * 4096 + (1u << 20), 0xFFFF0000u);
-        if (t_.emitted >= most_paths || (stored_ == 0 && t_.emitted >= (1u << 22)))
+            = std::min<std::uint64_t>(std::uint64_t{wanted_} * 4096 + (1u << 20), 0xFFFF0000u);
+        const bool none = stored_ == 0 && t_.emitted >= (1u << 22);
+        if (none && none_ == if_none_stored::trace_none) {
+            wanted_ = 0;
+            make_photons();
+        } else if (none || t_.emitted >= most_paths) {
             throw std::runtime_error("trace_photons: " + std::to_string(t_.emitted) + " paths from " + lights_
-                + " stored " + std::to_string(stored_) + " of the " + std::to_string(settings_.map.photons)
+                + " stored " + std::to_string(stored_) + " of the " + std::to_string(wanted_)
                 + " photons requested. Only indirect light is stored: check that the lights reach a mirror, glass, or "
-                  "a "
-                  "second diffuse surface");
+                  "a second diffuse surface");
+        }
     }
 
     B& b_;
     const device_scene<B>& device_;
     render_settings settings_;
     std::string lights_;
-    uint paths_; // per batch
+    if_none_stored none_;
+    uint wanted_; // photons
+    uint paths_;  // per batch
     detail::photon_frames<B> frames_;
     traced_photons<B> t_;
     uint stored_ = 0;
@@ -165,10 +172,11 @@ private:
 template <backend B>
 void photon_tracing<B>::advance()
 {
+    if (!finished())
+        stop_if_none_are_stored();
     if (finished())
         return;
-    require_progress();
-    const uint missing = settings_.map.photons - stored_;
+    const uint missing = wanted_ - stored_;
     const uint frames = trace_batch(b_, device_, frames_, paths_, static_cast<uint>(t_.emitted), settings_);
 
     auto storable = b_.template make<uint>(paths_);
@@ -200,8 +208,8 @@ void photon_tracing<B>::advance()
     t_.emitted += emitted;
     stored_ += taken;
     if (finished())
-        b_.template run<kernels::divide_power>(settings_.map.photons, {.share = 1.0f / static_cast<float>(t_.emitted)},
-            reads(), writes(t_.photons.powers));
+        b_.template run<kernels::divide_power>(
+            wanted_, {.share = 1.0f / static_cast<float>(t_.emitted)}, reads(), writes(t_.photons.powers));
 }
 
 /// Traces all photons (photon_tracing).
