@@ -6,7 +6,8 @@
 #
 #   --full             adds the long runs, the manual, all benches, planted faults, clang-tidy, GPU-assisted validation,
 #                      the sanitizers over all tests on every backend, each header alone and users' projects with clang,
-#                      and those of users' projects that show what another does for another backend
+#                      and those of users' projects that show what another does for another backend; property tests
+#                      with a seed of its own, which it prints (PHOTONGRID_SEED=N chooses one)
 #   --device hardware  every backend on a real GPU; software devices are refused (no sanitizers, no clang)
 #   --no-install       only say which Debian packages are missing, do not install them
 #   --quick            after an edit: builds what it makes stale with g++ and runs the short tests of that; where the
@@ -69,6 +70,13 @@ export UBSAN_OPTIONS=print_stacktrace=1
 export MESA_SHADER_CACHE_DIR=$PWD/build-tests/mesa-shader-cache
 mkdir -p "$MESA_SHADER_CACHE_DIR"
 
+# Property tests: the same cases in each short run, others in each full one.
+seed=20031
+if [[ $full == yes ]]; then
+  seed=${PHOTONGRID_SEED:-$((RANDOM << 15 | RANDOM))}
+  echo "seed of the property tests: $seed (PHOTONGRID_SEED=$seed repeats them)"
+fi
+
 # configure PRESET [OPTION...]
 configure() {
   local preset=$1 launcher=()
@@ -76,7 +84,7 @@ configure() {
   if command -v ccache >/dev/null; then
     launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   fi
-  cmake --preset "$preset" --log-level=WARNING "${launcher[@]}" "$@"
+  cmake --preset "$preset" --log-level=WARNING "-DPHOTONGRID_RC_PARAMS=seed=$seed" "${launcher[@]}" "$@"
 }
 # run_tests FOLDER [OPTION...]
 run_tests() {

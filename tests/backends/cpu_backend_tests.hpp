@@ -99,7 +99,7 @@ TEST(cpu_backend, instruction_sets_do_not_change_a_byte)
                         EXPECT_TRUE(all[t] == all[0])
                             << hwy::TargetName(targets[t]) << " against " << hwy::TargetName(targets[0]) << ", "
                             << name_of(d) << " search " << static_cast<int>(search) << " filter "
-                            << static_cast<int>(filter);
+                            << filter.name;
                 }
     std::string names;
     for (const auto target : targets)

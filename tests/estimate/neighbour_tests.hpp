@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../backend/under_test.hpp"
+#include "../map/photon_generator.hpp"
 #include "../map/photon_sets.hpp"
 #include "known_answers.hpp"
 
@@ -122,6 +123,36 @@ TYPED_TEST_P(neighbours, equal_brute_force_for_any_photons)
     }));
 }
 
+/// Photons and points at places that RapidCheck draws and shrinks, NaN, infinity and denormals among them. Photons with
+/// a position or a power that is not finite are in no map.
+TYPED_TEST_P(neighbours, equal_brute_force_for_any_numbers)
+{
+    EXPECT_TRUE(rc::check("lists of neighbours equal brute force, whatever the numbers", [&] {
+        oriented_set s;
+        s.photons.positions = *rc::gen::resize(300, any_vectors(0));
+        const auto powers = *rc::gen::resize(20, any_vectors(0));
+        std::vector<uint> valid;
+        for (std::size_t i = 0; i < s.photons.positions.size(); ++i) {
+            s.photons.powers.push_back(powers.empty() ? glm::vec4(1.0f) : powers[i % powers.size()]);
+            if (is_finite(s.photons.positions[i]) && is_finite(s.photons.powers[i]))
+                valid.push_back(static_cast<uint>(i));
+        }
+        s.photons.g = make_grid(glm::vec3(-1), glm::vec3(1),
+            {*rc::gen::inRange(1u, 9u), *rc::gen::inRange(1u, 9u), *rc::gen::inRange(1u, 9u)});
+        s.directions = s.normals = std::vector<glm::vec4>(s.photons.positions.size(), glm::vec4(0, 0, 1, 0));
+        s.points = *rc::gen::resize(40, any_vectors(1));
+        s.point_normals = std::vector<glm::vec4>(s.points.size(), glm::vec4(0, 0, 1, 0));
+        auto in_map = this->ids_in(this->map_of(s));
+        std::sort(in_map.begin(), in_map.end());
+        RC_ASSERT(in_map == valid);
+        const knn_settings settings{.k = *rc::gen::inRange(1u, 40u),
+            .max_radius = *rc::gen::element(0.0f, 0.125f, 0.7f, 5.0f, 1e20f, std::numeric_limits<float>::infinity())};
+        const auto wrong = this->difference(s, settings);
+        if (!wrong.empty())
+            RC_FAIL(wrong);
+    }));
+}
+
 TYPED_TEST_P(neighbours, keep_every_leak_policy)
 {
     const auto s = make_oriented(distribution::box_faces, 900, {6, 6, 12}, 60, 3);
@@ -199,8 +230,9 @@ TYPED_TEST_P(neighbours, of_the_same_photons_are_the_same_with_small_passes)
         this->lists(map, s, {.k = 50, .max_radius = 2, .visits_per_pass = 37, .ranges_per_pass = 5}));
 }
 
-REGISTER_TYPED_TEST_SUITE_P(neighbours, equal_brute_force_for_any_photons, keep_every_leak_policy,
-    of_many_at_one_distance_have_the_smallest_ids, lists_as_long_as_there_are_photons_and_longer, distances_are_flanns,
-    of_no_point_and_of_none_wanted, say_what_is_wrong, of_the_same_photons_are_the_same_with_small_passes);
+REGISTER_TYPED_TEST_SUITE_P(neighbours, equal_brute_force_for_any_photons, equal_brute_force_for_any_numbers,
+    keep_every_leak_policy, of_many_at_one_distance_have_the_smallest_ids,
+    lists_as_long_as_there_are_photons_and_longer, distances_are_flanns, of_no_point_and_of_none_wanted,
+    say_what_is_wrong, of_the_same_photons_are_the_same_with_small_passes);
 
 } // namespace photongrid::testing

@@ -156,6 +156,25 @@ TYPED_TEST_P(pictures, a_light_that_stores_no_photon_is_named)
     }
 }
 
+/// Where a driver ends long loops silently, a scene with more shapes would lose hits: it is refused.
+TYPED_TEST_P(pictures, scenes_beyond_the_loop_limit_are_refused)
+{
+    auto s = bulb_over_a_floor();
+    const auto limit = this->b().caps().loop_limit;
+    const auto floor = s.polygons[0];
+    s.polygons.assign(15000, floor); // five steps each
+    if (limit == 0) {
+        EXPECT_NO_THROW((void)upload_scene(this->b(), s));
+    } else {
+        ASSERT_LT(limit, 75000u);
+        EXPECT_THROW((void)upload_scene(this->b(), s), std::invalid_argument);
+        s.polygons.assign(limit / 5 - 1, floor);
+        EXPECT_NO_THROW((void)upload_scene(this->b(), s));
+        s.point_lights.push_back(s.point_lights[0]);
+        EXPECT_THROW((void)upload_scene(this->b(), s), std::invalid_argument) << "twice as many shadow rays";
+    }
+}
+
 /// A picture of direct light traces no photon, and is the same as with a map.
 TYPED_TEST_P(pictures, direct_light_alone_traces_no_photon)
 {

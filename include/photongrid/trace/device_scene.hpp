@@ -234,14 +234,29 @@ struct device_scene {
     buffer_of<B, glm::vec4> records; ///< as trace/scene_layout.glsl describes them
 };
 
+namespace detail {
+    /// \throws std::invalid_argument if the device would end loops over all shapes too early, and lose hits.
+    inline void check_loops(const scene_layout& layout, const capabilities& caps)
+    {
+        // A pass intersects all shapes at least once per light, for one shadow ray to each.
+        const std::uint64_t steps = std::uint64_t{layout.steps_per_ray + 1} * layout.table(kernels::LIGHT_TABLE).count;
+        if (caps.loop_limit > 0 && steps > caps.loop_limit)
+            throw std::invalid_argument("scene: " + caps.backend + ": tracing takes about " + std::to_string(steps)
+                + " steps (shapes and their edges, times lights), and this driver silently ends loops after "
+                + std::to_string(caps.loop_limit) + "; use another backend, such as cpu, or fewer shapes");
+    }
+} // namespace detail
+
 /// Lays a scene out and uploads it.
-/// \throws std::invalid_argument as lay_out does, backend_error if the device has no room.
+/// \throws std::invalid_argument as lay_out does, or for more shapes than the device can loop over
+///         (capabilities::loop_limit); backend_error if the device has no room.
 /// \snippet snippets.cpp upload_scene
 template <backend B>
 device_scene<B> upload_scene(B& b, const scene& s)
 {
     device_scene<B> d;
     d.layout = lay_out(s);
+    detail::check_loops(d.layout, b.caps());
     d.records = b.upload(std::span<const glm::vec4>(d.layout.records));
     return d;
 }

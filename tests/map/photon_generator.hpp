@@ -1,0 +1,39 @@
+// Photons and query points by RapidCheck, number by number, so that a failing case shrinks to few photons at simple
+// places. Numbers that tie, denormal, huge and infinite ones and NaN are among them.
+#pragma once
+
+#include "photon_sets.hpp"
+
+#include <rapidcheck.h>
+
+#include <limits>
+#include <vector>
+
+namespace photongrid::testing {
+
+/// A number: a multiple of 1/8 up to 1, so that distances tie; any other up to 1; and rarely one that is hard to
+/// compute with, or none.
+inline rc::Gen<float> any_number()
+{
+    using limits = std::numeric_limits<float>;
+    const auto within = [](int steps) {
+        return rc::gen::map(rc::gen::inRange(-steps, steps + 1),
+            [steps](int i) { return static_cast<float>(i) / static_cast<float>(steps); });
+    };
+    return rc::gen::weightedOneOf<float>({{40, within(8)}, {40, within(1 << 20)},
+        {4,
+            rc::gen::element(-0.0f, limits::denorm_min(), -1e-40f, limits::min(), limits::epsilon(), 1e18f, -1e30f,
+                limits::max(), limits::lowest())},
+        {1, rc::gen::element(limits::quiet_NaN(), limits::infinity(), -limits::infinity())}});
+}
+
+/// Vectors of three such numbers, and `w`.
+inline rc::Gen<std::vector<glm::vec4>> any_vectors(float w)
+{
+    return rc::gen::container<std::vector<glm::vec4>>(rc::gen::apply(
+        [w](float x, float y, float z) { return glm::vec4(x, y, z, w); }, any_number(), any_number(), any_number()));
+}
+
+inline bool is_finite(const glm::vec4& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+} // namespace photongrid::testing
