@@ -1,4 +1,5 @@
 // The photongrid program: scene file in, picture and statistics out.
+#include "advice.hpp"
 #include "command_line.hpp"
 #include "reference_command.hpp"
 #include "render_command.hpp"
@@ -80,8 +81,9 @@ namespace {
     exit_code run(const check_options& o)
     {
         const auto s = read_scene(o.scene_path);
-        std::cout << o.scene_path << ": \"" << s.name << "\": " << count_shapes(s) << " shapes, " << s.materials.size()
-                  << " materials, " << count_lights(s) << " lights\n";
+        std::cout << o.scene_path << ": " << summary_of(s) << '\n';
+        for (const auto& odd : oddities(s))
+            std::cout << o.scene_path << ": note: " << odd << '\n';
         return success;
     }
 

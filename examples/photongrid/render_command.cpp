@@ -1,11 +1,13 @@
 #include "render_command.hpp"
 
+#include "advice.hpp"
 #include "picture_series.hpp"
 #include "progress_bar.hpp"
 #include "resume_file.hpp"
 #include "stats_file.hpp"
 #include <photongrid/io/scene_file.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -151,18 +153,6 @@ namespace {
         bar.clear();
     }
 
-    /// Says what may surprise in the picture.
-    void warn(const scene& s, const render_stats& stats)
-    {
-        if (stats.invalid_pixels > 0)
-            std::cerr << "photongrid: warning: " << stats.invalid_pixels
-                      << " pixels were NaN or infinite and are black\n";
-        if (stats.photons.emitted > 0 && stats.photons.stored == 0)
-            std::cerr << "photongrid: warning: none of " << stats.photons.emitted << " photon paths from "
-                      << detail::names_of_lights(s)
-                      << " hit a mirror, glass or a second diffuse surface; the picture has direct light alone\n";
-    }
-
     void print_strip(const render_options& o, const picture_series& series)
     {
         std::cout << o.strip << '\n';
@@ -206,7 +196,10 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
     const auto done = drawing->progress().fraction;
     const auto picture = drawing->picture();
     const double total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    warn(s, drawing->stats());
+    const bool is_png = std::any_of(plan.outputs.begin(), plan.outputs.end(),
+        [](const auto& path) { return std::filesystem::path(path).extension() == ".png"; });
+    for (const auto& warning : warnings(s, settings, drawing->stats(), picture, is_png))
+        std::cerr << "photongrid: warning: " << warning << '\n';
     series->finish(picture);
     for (const auto& path : plan.outputs) {
         write_image(path, picture, settings.output.exposure, picture_notes(s, settings, *drawing));

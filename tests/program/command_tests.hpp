@@ -78,6 +78,57 @@ namespace {
         EXPECT_EQ(run({"check", "none.json"}).code, 3);
     }
 
+    /// What would give a black or a white picture without a word: it is drawn, and stderr says what is odd.
+    TEST_F(program, warns_of_pictures_that_show_nothing)
+    {
+        const auto whole = nlohmann::json::parse(contents(ring));
+        const auto draw = [&](const nlohmann::json& scene, const std::vector<std::string>& more = {}) {
+            std::ofstream(folder / "s.json") << scene;
+            std::vector<std::string> all{"render", "s.json", "--backend", "serial", "--size", "32x24", "--photons",
+                "300", "--k", "16", "--grid", "32,1,32", "-o", "a.png"};
+            all.insert(all.end(), more.begin(), more.end());
+            const auto e = run(all);
+            EXPECT_EQ(e.code, 0) << e.err;
+            return e.err;
+        };
+        const auto expect = [](const std::string& said, std::initializer_list<const char*> words) {
+            for (const auto* word : words)
+                EXPECT_NE(said.find(word), std::string::npos) << said;
+        };
+        EXPECT_EQ(draw(whole), "");
+        expect(run({"check", "s.json"}).out, {"1 light of ", " W (red + green + blue), ", " m\n"});
+
+        const auto with_power = [&](double factor) {
+            auto scene = whole;
+            auto& power = scene["lights"][0]["power"];
+            if (power.is_number())
+                power = power.get<double>() * factor;
+            else
+                for (auto& channel : power)
+                    channel = channel.get<double>() * factor;
+            return scene;
+        };
+        const auto dark = draw(with_power(1e-4));
+        expect(dark, {"the PNG is almost black at exposure 0 EV", "--exposure ", " would fit"});
+        std::istringstream after(dark.substr(dark.find("--exposure ") + 11));
+        double fitting = 0;
+        after >> fitting;
+        EXPECT_EQ(draw(with_power(1e-4), {"--exposure", std::to_string(fitting)}), "");
+        expect(draw(with_power(1e5)), {"the PNG is almost white"});
+
+        auto away = whole; // straight up
+        away["camera"]["look_at"] = away["camera"]["position"];
+        away["camera"]["look_at"][1] = 1 + away["camera"]["look_at"][1].get<double>();
+        away["camera"]["up"] = {0, 0, 1};
+        expect(draw(away), {"every pixel is black", "sees nothing that is lit"});
+        expect(run({"check", "s.json"}).out, {"looks away from the whole scene"});
+
+        auto unused = whole;
+        unused["materials"]["spare"] = {{"type", "mirror"}};
+        draw(unused);
+        expect(run({"check", "s.json"}).out, {"no shape has the material \"spare\""});
+    }
+
     TEST_F(program, lists_devices)
     {
         const auto e = run({"devices"});

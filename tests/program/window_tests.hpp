@@ -67,11 +67,11 @@ TEST_F(window, follows_camera_lamp_and_keys)
             && fs::exists(folder / "ball-changed.json");
     }));
 
-    // Every cancelled drawing ended within a pass.
+    // Every cancelled drawing ended within a step.
     for (const auto& j : journal()) {
         EXPECT_NE(j["event"], "error") << j;
         if (j["event"] == "start" && j["moving"] == false) {
-            EXPECT_LE(j["passes_waited"], 1) << j;
+            EXPECT_LE(j["passes_waited"], 400) << j; // of the longest step: a sort of 2^16 photons takes 136
         }
     }
     program->signal(SIGINT);

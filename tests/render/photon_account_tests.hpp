@@ -86,21 +86,29 @@ TYPED_TEST_P(pictures, power_balances_per_channel)
     }
 }
 
-TYPED_TEST_P(pictures, a_photon_takes_at_most_64_bytes)
+/// The grid apart: 48 bytes while photons are traced, for positions, powers and directions; 52 in the map, with the
+/// list; and at the peak another 16, where an attribute is in memory twice while it is reordered.
+TYPED_TEST_P(pictures, a_photon_takes_at_most_68_bytes)
 {
-    // Positions, powers, directions, and the pairs twice while they are sorted; grid apart.
     auto& b = this->b();
+    constexpr std::uint64_t n = 65536, rest = 100000;
     auto s = integrating_sphere(dvec3(0.5));
-    s.render.map.photons = 65536;
+    s.render.map.photons = n;
     const auto device = upload_scene(b, s);
-    auto t = trace_photons(b, s, device, s.render);
+    const auto before = b.bytes();
+    const auto t = trace_photons(b, s, device, s.render);
     b.finish();
-    const auto traced = b.bytes();
-    EXPECT_LE(traced, 48u * 65536u + 100000u);
-    const auto g = make_grid(device.layout.low, device.layout.high, {8, 8, 8});
-    const auto map = sorted_map(b, std::move(t.photons), g);
-    b.finish();
-    EXPECT_LE(b.bytes(), 64u * 65536u + 100000u);
+    EXPECT_LE(b.bytes() - before, 48 * n + rest);
+
+    const auto fresh = TypeParam::make(); // its peak is that of the map alone
+    const auto copy
+        = [&](const auto& vectors) { return fresh->upload(std::span<const glm::vec4>(b.download(vectors))); };
+    photons<typename TestFixture::B> p{
+        copy(t.photons.positions), copy(t.photons.powers), copy(t.photons.directions), {}};
+    const auto map = sorted_map(*fresh, std::move(p), make_grid(device.layout.low, device.layout.high, {8, 8, 8}));
+    fresh->finish();
+    EXPECT_LE(fresh->bytes(), 52 * n + rest);
+    EXPECT_LE(fresh->peak_bytes(), 68 * n + rest);
 }
 
 TYPED_TEST_P(pictures, cut_off_paths_are_counted)

@@ -52,7 +52,7 @@ std::uint64_t render_thread::show(const version& v, bool moving)
         number = ++requests_;
         // Of several requests not yet taken, the last is drawn; one that has waited for a preview waits no longer.
         const bool waits = moving && (!requested_ || requested_->moving);
-        requested_ = request{v, waits, number, steps_, clock::now()};
+        requested_ = request{v, waits, number, passes_, clock::now()};
         if (!waits && cancellable_ != nullptr)
             cancellable_->cancel();
     }
@@ -102,6 +102,15 @@ void render_thread::work()
     renderer_.reset(); // in this thread: an OpenGL context belongs to it
 }
 
+/// Passes on the device so far.
+static std::uint64_t passes_of(const renderer& r)
+{
+    std::uint64_t n = 0;
+    for (const auto& [kernel, cost] : r.costs())
+        n += cost.passes;
+    return n;
+}
+
 /// Starts the requested drawing once it is due. Returns whether there is something to draw.
 bool render_thread::take()
 {
@@ -117,7 +126,7 @@ bool render_thread::take()
     seen_ = 0;
     last_.reset();
     current_ = std::move(next);
-    const auto passes_waited = steps_ - current_.passes_before;
+    const auto passes_waited = passes_ - std::min<std::uint64_t>(passes_, current_.passes_before); // a new backend: 0
     if (!renderer_ || opened_backend_ != current_.what.backend) {
         {
             const std::lock_guard lock(guard_);
@@ -147,8 +156,8 @@ bool render_thread::take()
 
 void render_thread::draw()
 {
-    ++steps_;
     const bool whole = renderer_->step(step_time);
+    passes_ = passes_of(*renderer_);
     const bool news = renderer_->pictures() > seen_;
     if (news) {
         seen_ = renderer_->pictures();
@@ -161,7 +170,7 @@ void render_thread::draw()
         report_.progress = renderer_->progress();
         report_.stats = renderer_->stats();
         report_.maps = renderer_->maps();
-        report_.passes = steps_;
+        report_.passes = passes_;
         report_.backend = opened_backend_;
         report_.device = renderer_->caps().device;
     }

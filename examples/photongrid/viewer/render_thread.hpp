@@ -29,7 +29,7 @@ struct render_report {
     render_progress progress{};
     render_stats stats{};
     std::uint64_t maps = 0;   ///< begun since the backend was opened
-    std::uint64_t passes = 0; ///< run since the window opened
+    std::uint64_t passes = 0; ///< on the device, since the backend was opened
     std::string backend{};    ///< as --backend takes it
     std::string device{};
     std::string error{}; ///< why the last request is not drawn; empty if it is
@@ -59,7 +59,7 @@ private:
         version what;
         bool moving = false;
         std::uint64_t number = 0;
-        std::uint64_t passes_before = 0; ///< steps begun when it was made
+        std::uint64_t passes_before = 0; ///< on the device, before the step during which it was made
         std::chrono::steady_clock::time_point made{};
     };
     void work();
@@ -81,8 +81,8 @@ private:
     std::uint64_t requests_ = 0;
     frame newest_;
     render_report report_;
-    renderer* cancellable_ = nullptr; ///< the renderer, while it may be cancelled
-    std::atomic<std::uint64_t> steps_ = 0;
+    renderer* cancellable_ = nullptr;       ///< the renderer, while it may be cancelled
+    std::atomic<std::uint64_t> passes_ = 0; ///< on the device, up to the last step
 
     // Used by the thread only.
     std::unique_ptr<renderer> renderer_;

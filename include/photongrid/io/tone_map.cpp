@@ -8,6 +8,20 @@
 
 namespace photongrid {
 
+std::optional<double> fitting_exposure(const image& picture)
+{
+    double sum = 0, lit = 0;
+    for (const auto& p : picture.pixels) {
+        const glm::dvec3 c(p);
+        const double luminance = 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; // of sRGB's primaries
+        if (luminance > 0 && std::isfinite(luminance)) {
+            sum += std::log2(luminance);
+            ++lit;
+        }
+    }
+    return lit > 0 ? std::optional(std::log2(0.18) - sum / lit) : std::nullopt;
+}
+
 unsigned char tone_mapped(float linear, double exposure)
 {
     const double v = static_cast<double>(linear) * std::exp2(exposure);

@@ -1,9 +1,16 @@
 // Tone mapping to 8 bits.
 #pragma once
 
+#include <photongrid/render/image.hpp>
+
 #include <array>
+#include <optional>
 
 namespace photongrid {
+
+/// The exposure, EV, at which the geometric mean of the luminance of all pixels that are not black becomes 0.18, middle
+/// grey (Reinhard et al. 2002, Photographic Tone Reproduction for Digital Images); none for a black picture.
+std::optional<double> fitting_exposure(const image& picture);
 
 /// Linear radiance to an 8-bit sRGB value: clamp(2^exposure * linear, 0, 1) through the sRGB transfer function
 /// (IEC 61966-2-1).

@@ -1,0 +1,116 @@
+#include "advice.hpp"
+
+#include <photongrid/io/tone_map.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+namespace photongrid {
+
+namespace {
+    template <class... Parts>
+    std::string text(const Parts&... parts)
+    {
+        std::ostringstream out;
+        out.precision(3);
+        (out << ... << parts);
+        return out.str();
+    }
+    std::string point(const dvec3& p) { return text('(', p.x, ", ", p.y, ", ", p.z, ')'); }
+
+    bounds bounds_of(const scene& s)
+    {
+        bounds b;
+        const auto add = [&](const auto& list, auto kind) {
+            for (const auto& x : list)
+                kind.add_bounds(b, x);
+        };
+        for_each_shape(s, add);
+        for_each_light(s, add);
+        return b;
+    }
+
+    double power_of(const scene& s)
+    {
+        double power = 0;
+        for_each_light(s, [&](const auto& list, auto) {
+            for (const auto& l : list)
+                power += l.power.x + l.power.y + l.power.z;
+        });
+        return power;
+    }
+
+    /// Whether everything is behind the camera.
+    bool looks_away(const camera& c, const bounds& b)
+    {
+        const dvec3 forward = c.look_at - c.position;
+        for (const double x : {b.low.x, b.high.x})
+            for (const double y : {b.low.y, b.high.y})
+                for (const double z : {b.low.z, b.high.z})
+                    if (glm::dot(dvec3(x, y, z) - c.position, forward) > 0)
+                        return false;
+        return true;
+    }
+
+    std::string size_of(const bounds& b)
+    {
+        const dvec3 size = b.high - b.low;
+        return text(size.x, " x ", size.y, " x ", size.z, " m");
+    }
+} // namespace
+
+std::string summary_of(const scene& s)
+{
+    const auto count = [](std::size_t n, const char* what) { return text(n, ' ', what, n == 1 ? "" : "s"); };
+    return text('"', s.name, "\": ", count(count_shapes(s), "shape"), ", ", count(s.materials.size(), "material"), ", ",
+        count(count_lights(s), "light"), " of ", power_of(s), " W (red + green + blue), ", size_of(bounds_of(s)));
+}
+
+std::vector<std::string> oddities(const scene& s)
+{
+    std::vector<std::string> odd;
+    const auto b = bounds_of(s);
+    const double size = glm::length(b.high - b.low);
+    if (size > 1000 || size < 0.01)
+        odd.push_back(text("the scene measures ", size_of(b), "; are its lengths in the unit that \"units\" names?"));
+    std::set<std::uint32_t> used;
+    for_each_shape(s, [&](const auto& list, auto) {
+        for (const auto& x : list)
+            used.insert(x.material);
+    });
+    for (std::uint32_t m = 0; m < s.materials.size(); ++m)
+        if (!used.contains(m))
+            odd.push_back(text("no shape has the material \"", s.materials[m].name, '"'));
+    if (looks_away(s.camera, b))
+        odd.push_back(text("the camera at ", point(s.camera.position),
+            " looks away from the whole scene, which extends from ", point(b.low), " to ", point(b.high)));
+    return odd;
+}
+
+std::vector<std::string> warnings(
+    const scene& s, const render_settings& settings, const render_stats& stats, const image& picture, bool is_png)
+{
+    std::vector<std::string> all;
+    if (stats.invalid_pixels > 0)
+        all.push_back(text(stats.invalid_pixels, " pixels were NaN or infinite and are black"));
+    if (stats.photons.emitted > 0 && stats.photons.stored == 0)
+        all.push_back(text("none of ", stats.photons.emitted, " photon paths from ", detail::names_of_lights(s),
+            " hit a mirror, glass or a second diffuse surface; the picture has direct light alone"));
+    const auto fitting = fitting_exposure(picture);
+    const auto b = bounds_of(s);
+    if (!fitting && settings.output.only == light_part::all)
+        all.push_back(text("every pixel is black: the camera at ", point(s.camera.position),
+            " sees nothing that is lit, "
+            "in a scene that extends from ",
+            point(b.low), " to ", point(b.high)));
+    // Six stops: less than 1.5 % or more than 60 times what fits.
+    else if (fitting && is_png && std::abs(*fitting - settings.output.exposure) > 6)
+        all.push_back(text("the PNG is almost ", *fitting > settings.output.exposure ? "black" : "white",
+            " at exposure ", settings.output.exposure, " EV; --exposure ", std::round(*fitting),
+            " would fit its radiance. The scene measures ", size_of(b), " and its lights emit ", power_of(s), " W"));
+    return all;
+}
+
+} // namespace photongrid
