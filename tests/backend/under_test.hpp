@@ -95,6 +95,15 @@ constexpr bool adds_as_serial()
     return true;
 }
 
+/// At the peak of building a map: photons and list, 52, and an attribute that is in memory twice while it is reordered.
+template <class Tag>
+constexpr unsigned peak_bytes_per_photon()
+{
+    if constexpr (requires { Tag::peak_bytes_per_photon; })
+        return Tag::peak_bytes_per_photon;
+    return 52 + 16;
+}
+
 struct tag_names {
     template <class Tag>
     static std::string GetName(int)

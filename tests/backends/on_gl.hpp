@@ -16,7 +16,8 @@ struct gl_tag {
         const char* context = std::getenv("PHOTONGRID_GL_CONTEXT");
         return context != nullptr && std::string_view(context) == "osmesa";
     }
-    static constexpr bool sorts_by_network = false; // up to three steps of it a pass
+    static constexpr bool sorts_by_network = false;               // up to three steps of it a pass
+    static constexpr unsigned peak_bytes_per_photon = 48 + 3 * 8; // pairs, and twice as texels of two
     static inline const char* const name = on_osmesa() ? "osmesa" : "egl";
     static bool never_hardware() { return on_osmesa(); }
     static std::unique_ptr<type> make()

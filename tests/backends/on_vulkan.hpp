@@ -10,6 +10,8 @@ struct vulkan_tag {
     using type = vulkan_backend;
     static constexpr const char* name = "vulkan";
     static constexpr bool sorts_by_network = false; // up to four steps of it a pass
+    // Buffers are given back when the passes that use them have run: each attribute twice, pairs and list.
+    static constexpr unsigned peak_bytes_per_photon = 2 * 48 + 8 + 4;
     /// PHOTONGRID_GPU_AV=1 has the layer watch inside the kernels too: tests/run.sh --full.
     static std::unique_ptr<type> make()
     {

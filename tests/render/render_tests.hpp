@@ -56,7 +56,7 @@ TYPED_TEST_P(pictures, running_estimates_are_shown_and_a_render_can_be_cancelled
 REGISTER_TYPED_TEST_SUITE_P(pictures, a_closed_diffuse_sphere_has_the_known_radiance,
     direct_light_of_a_rectangle_equals_the_form_factor, a_glass_ball_focuses_the_power_that_optics_predicts,
     every_photon_and_every_watt_is_accounted_for, paths_that_overflow_are_counted_as_invalid,
-    power_balances_per_channel, a_photon_takes_at_most_68_bytes, long_statistics_of_a_picture_equal_serials,
+    power_balances_per_channel, a_photon_takes_the_memory_that_is_stated, long_statistics_of_a_picture_equal_serials,
     cut_off_paths_are_counted, equal_the_serial_backends, sorting_and_routing_agree, a_moved_camera_runs_no_photon_pass,
     the_same_seed_gives_the_same_bytes, running_estimates_are_shown_and_a_render_can_be_cancelled,
     direct_light_alone_traces_no_photon, scenes_beyond_the_loop_limit_are_refused,
