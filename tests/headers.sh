@@ -3,8 +3,15 @@
 # one that a file of photongrid's defines and none undefines. And a header that is not a backend's may read nothing of the
 # packages that only backends need. Nor may any file undefine a macro that the user's file may have, unless it is saved first.
 #
-#   tests/headers.sh COMPILER HEADER... -- FLAG...
+#   tests/headers.sh [--together] COMPILER HEADER... -- FLAG...
+#
+#   --together  not each header alone, but all that are no backend's in one file, and all of backends in another: quicker
 set -euo pipefail
+together=no
+if [[ $1 == --together ]]; then
+  together=yes
+  shift
+fi
 compiler=$1
 shift
 headers=()
@@ -33,11 +40,23 @@ find "$root"/include "$root"/backends \( -name '*.hpp' -o -name '*.glsl' \) -pri
     }
   }
   END { exit failed }' "$root"/include/photongrid/backend/begin.hpp || status=1
-for header in "${headers[@]}"; do
-  core=yes
-  [[ $header != */backends/* && $header != */backend_texts/* ]] || core=no
+is_core() { [[ $1 != */backends/* && $1 != */backend_texts/* ]]; }
+include() { printf '#include "%s"\n' "$@"; }
+files=()
+if [[ $together == yes ]]; then
+  core_headers=() backend_headers=()
+  for header in "${headers[@]}"; do
+    if is_core "$header"; then core_headers+=("$header"); else backend_headers+=("$header"); fi
+  done
+  files=("$(include "${core_headers[@]}")" "$(include "${backend_headers[@]}")")
+else
+  for header in "${headers[@]}"; do files+=("$(include "$header")"); done
+fi
+for file in "${files[@]}"; do
+  core=no
+  if is_core "$file"; then core=yes; fi
   # -dD keeps #define and #undef, among lines `# number "file"`. The texts of kernels have lines that look the same.
-  complaints=$("$compiler" -std=c++20 -E -dD -x c++ "$@" - <<<"#include \"$header\"" | awk -v core=$core '
+  complaints=$("$compiler" -std=c++20 -E -dD -x c++ "$@" - <<<"$file" | awk -v core=$core '
     /R"glsl\(/ { in_text = 1 }
     /\)glsl"/ { in_text = 0 }
     in_text { next }
@@ -49,7 +68,7 @@ for header in "${headers[@]}"; do
     /^#undef / { delete left[$2] }
     END { for (name in left) if (name !~ /^PHOTONGRID_VERSION_(MAJOR|MINOR|PATCH)$/) print "leaves the macro " name " behind" }')
   if [[ -n $complaints ]]; then
-    printf '%s:\n%s\n' "$header" "$complaints"
+    printf '%s:\n%s\n' "$file" "$complaints"
     status=1
   fi
 done
