@@ -98,8 +98,7 @@ TEST(cpu_backend, instruction_sets_do_not_change_a_byte)
                     for (std::size_t t = 1; t < all.size(); ++t)
                         EXPECT_TRUE(all[t] == all[0])
                             << hwy::TargetName(targets[t]) << " against " << hwy::TargetName(targets[0]) << ", "
-                            << name_of(d) << " search " << static_cast<int>(search) << " filter "
-                            << filter.name;
+                            << name_of(d) << " search " << static_cast<int>(search) << " filter " << filter.name;
                 }
     std::string names;
     for (const auto target : targets)
