@@ -10,6 +10,7 @@
 namespace photongrid::gl {
 
 /// A routing pass. `payload` and `amount` are the two programs of a route kernel, whose inputs and Params are bound.
+/// costs() counts the draw of payloads as the kernel's pass, and the other draws under the names of their shaders.
 struct routing {
     device& on;
     programs& made;
@@ -57,6 +58,7 @@ struct routing {
         on.bind_texture(0, drawn.id);
         on.set_viewport(0, 0, static_cast<GLsizei>(slots.width), static_cast<GLsizei>((n + row_width - 1) / row_width));
         gl.DrawArrays(GL_TRIANGLES, 0, 3);
+        ++made.costs["route_gather"].passes;
         gl.DeleteFramebuffers(1, &framebuffer);
     }
 
@@ -79,6 +81,7 @@ struct routing {
         gl.BlendEquationi(0, GL_FUNC_ADD);
         gl.BlendFunci(0, GL_ONE, GL_ONE);
         gl.DrawArrays(GL_POINTS, static_cast<GLint>(draws.first), static_cast<GLsizei>(draws.elements));
+        ++made.costs["route_amount"].passes;
         gl.Disablei(GL_BLEND, 0);
     }
 
@@ -120,6 +123,7 @@ private:
             gl.StencilMask(1u << bit);
             gl.ProgramUniform4ui(pattern, 0, m, capacity, bit, 0);
             gl.DrawArrays(GL_TRIANGLES, 0, 3);
+            ++made.costs["route_pattern"].passes;
         }
         gl.StencilMask(0xFFu);
         gl.ColorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

@@ -48,9 +48,12 @@ public:
         std::array<uint, 8> params{};
         assert(args.size() <= params.size());
         std::copy(args.begin(), args.end(), params.begin());
-        if (elements > 0)
-            batches.dispatch(made.own(name, buffers.size(), more_defines), bound_buffers,
-                push(launch(elements), made.groups(elements), 0, params), made.groups(elements), made.costs[name].ms);
+        if (elements == 0)
+            return;
+        auto& cost = made.costs[name];
+        batches.dispatch(made.own(name, buffers.size(), more_defines), bound_buffers,
+            push(launch(elements), made.groups(elements), 0, params), made.groups(elements), cost.ms);
+        ++cost.passes;
     }
 
     /// The launch header, 16 bytes, followed by the parameters.

@@ -259,7 +259,6 @@ public:
         std::initializer_list<uint> args, Buffers&... buffers)
     {
         passes_.own(name, elements, args, {buffers.memory_...}, more_defines);
-        ++passes_.made.costs[name].passes;
     }
 
     /// run_until_done over frames: pass q of element i, from 0, computes element i + q * stride, for those elements

@@ -182,7 +182,7 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
     const auto start = std::chrono::steady_clock::now();
     progress_bar bar(o.quiet);
     const auto drawing = make_renderer(plan.backend);
-    drawing->start(s, settings, {.enabled = series->enabled()});
+    drawing->start(s, settings, {.enabled = series->enabled(), .running_estimates = true});
     resumable file(*drawing, o.resume, s, settings);
     draw_until_done(*drawing, *series, file, bar, stop_asked);
     const bool finished = drawing->finished();

@@ -41,6 +41,29 @@ namespace {
                 }
     }
 
+    /// A route draws the stencil pattern bit by bit, payloads, amounts, and the slots (2.2.2): all of them are counted.
+    TYPED_TEST(gl_backend_test, the_draws_of_a_route_are_counted)
+    {
+        auto& b = this->gpu();
+        const auto passes = [&] {
+            std::uint64_t n = 0;
+            for (const auto& [kernel, cost] : b.costs())
+                n += cost.passes;
+            return n;
+        };
+        const std::vector<glm::uvec2> pairs(100, glm::uvec2(3, 4));
+        const auto p = b.upload(view(pairs));
+        const auto a = b.upload(view(std::vector<glm::vec4>(100)));
+        // The pattern's largest value is m * m - 1, or 255 where 8 bits hold no more slots.
+        for (const auto& [m, bits] : {std::pair{1u, 0u}, {2u, 2u}, {4u, 4u}, {16u, 8u}}) {
+            auto slots = b.template make<uint>(10 * route_capacity(m));
+            auto totals = b.template make<glm::vec4>(10);
+            const auto before = passes();
+            b.template route<test_kernels::to_place>(launch{100}, {}, reads(p, a), 10, m, slots, totals);
+            EXPECT_EQ(passes() - before, bits + 3) << "m " << m;
+        }
+    }
+
     TYPED_TEST(gl_backend_test, sorts_and_indexes_as_serial_does)
     {
         for (std::size_t n : {0u, 1u, 2u, 3u, 5u, 1023u, 1024u, 1025u, 100000u})

@@ -250,6 +250,27 @@ TEST_F(vulkan, unfinished_elements_of_a_part_of_a_buffer)
     EXPECT_EQ(run(b()), run(serial));
 }
 
+/// A route sorts draws by destination and finds ranges, slots and totals: each dispatch is counted.
+TEST_F(vulkan, the_dispatches_of_a_route_are_counted)
+{
+    const auto passes = [&] {
+        std::uint64_t n = 0;
+        for (const auto& [kernel, cost] : b().costs())
+            n += cost.passes;
+        return n;
+    };
+    for (const auto& [destinations, digits] : {std::pair{10u, 1u}, {100u, 2u}, {5000u, 4u}}) {
+        auto slots = b().make<uint>(destinations * route_capacity(2));
+        auto totals = b().make<glm::vec4>(destinations);
+        const auto in = up(b(), numbers(100, destinations));
+        const auto before = passes();
+        b().route<test_kernels::sends>(
+            launch(100), {.destinations = destinations}, reads(in), destinations, 2, slots, totals);
+        // The kernel; keys; counting, scanning and scattering each digit of 4 bits; ranges, slots and totals.
+        EXPECT_EQ(passes() - before, 1 + 1 + 3 * digits + 3) << destinations;
+    }
+}
+
 TEST_F(vulkan, route_equals_serial_bit_for_bit)
 {
     for (const std::size_t n : {0u, 1u, 255u, 257u, 5000u, 100000u})

@@ -14,7 +14,8 @@ namespace {
     using glm::vec4;
 
     /// n photons of power 1/n on the unit square: the irradiance is 1 everywhere.
-    map_buffers<serial_backend> uniform_field(serial_backend& b, std::size_t n, uint cells, std::uint64_t seed)
+    map_buffers<serial_backend> uniform_field(
+        serial_backend& b, std::size_t n, uint cells, std::uint64_t seed, uint slots = 0)
     {
         random_source u(seed);
         photon_set s;
@@ -23,6 +24,8 @@ namespace {
             s.positions.emplace_back(u(), 0.0f, u(), 0.0f);
             s.powers.emplace_back(vec4(1.0f / static_cast<float>(n)));
         }
+        if (slots > 0) // routed
+            return routed_map(b, upload_photons(b, s), s.g, slots, static_cast<uint>(seed));
         return sorted_map(b, upload_photons(b, s), s.g);
     }
 
@@ -117,6 +120,35 @@ namespace {
                 detail::entry_of(r.filter).name, spread, reported);
             EXPECT_NEAR(reported / spread, 1, 0.1)
                 << "search " << int(r.search) << " bias " << int(r.bias) << " " << detail::entry_of(r.filter).name;
+        }
+    }
+
+    /// Cells receive 7.8 photons on average. Where all are kept, the error is right; where one stands for s, it is
+    /// right to sqrt(s) times too large, since what is known of the others is their number.
+    TEST(estimates, report_too_large_errors_where_routed_cells_overflow)
+    {
+        serial_backend b;
+        const auto points = b.upload(std::span<const vec4>(std::vector<vec4>(1, vec4(0.5f, 0.0f, 0.5f, 1.0f))));
+        for (const uint slots : {1u, 2u, 3u, 5u}) {
+            double sum = 0, squares = 0, errors = 0;
+            constexpr int maps = 1000;
+            for (int m = 0; m < maps; ++m) {
+                const auto map = uniform_field(b, 2000, 16, 9000 + static_cast<std::uint64_t>(m), slots);
+                const auto e = knn_grid_estimate(
+                    b, map, points, {.max_radius = 0.2f, .search = search_kind::fixed_radius, .errors = true});
+                const auto value = static_cast<double>(b.download(e.irradiance)[0].x);
+                sum += value;
+                squares += value * value;
+                errors += static_cast<double>(b.download(e.standard_error)[0].x);
+            }
+            const double mean = sum / maps, spread = std::sqrt((squares - maps * mean * mean) / (maps - 1)),
+                         ratio = errors / maps / spread;
+            const double stands_for = std::max(1.0, 2000.0 / (16 * 16) / (slots * slots));
+            std::printf(
+                "%u x %u slots: reported over spread %.2f, at most %.2f\n", slots, slots, ratio, std::sqrt(stands_for));
+            EXPECT_GE(ratio, 0.9) << slots;
+            EXPECT_LE(ratio, 1.1 * std::sqrt(stands_for)) << slots;
+            EXPECT_NEAR(mean, 1, 0.02) << slots;
         }
     }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "progressive.hpp"
+#include <photongrid/io/scene_file.hpp>
 
 namespace photongrid::testing {
 
@@ -91,6 +92,38 @@ TYPED_TEST_P(progressive, previews_are_as_bright_as_the_picture)
         for (std::size_t i = 2; i + 1 < shown.size(); ++i)
             EXPECT_LT(relative_mse(shown[i], shown.back()), 1.1 * relative_mse(shown[i - 2], shown.back()))
                 << "picture " << i;
+    }
+}
+
+/// The paper's running estimate (2.4, figure 8): in every scene each picture is nearer to the last one than the one
+/// before, on every backend, and the last one is the picture.
+TYPED_TEST_P(progressive, running_estimates_approach_the_picture)
+{
+    using ms = typename TestFixture::ms;
+    for (const auto* name : {"glass_ball", "ring", "cornell_box", "cornell_blocks"}) {
+        SCOPED_TRACE(name);
+        auto s = read_scene(std::string(PHOTONGRID_SCENES) + "/" + name + ".json");
+        s.render = as_paper(s.render);
+        s.render.output.width = 48;
+        s.render.output.height = 36;
+        s.render.map.photons = std::min(s.render.map.photons, 8000u);
+        s.render.estimate.k = std::min(s.render.estimate.k, 100u);
+        s.render.view.light_samples = 4;
+        typename TestFixture::loop drawing(this->b());
+        drawing.start(s, s.render, {.running_estimates = true});
+        std::vector<image> shown;
+        for (std::uint64_t seen = 0; !drawing.finished();) {
+            drawing.step(ms(0));
+            if (drawing.pictures() > seen)
+                shown.push_back(drawing.picture());
+            seen = drawing.pictures();
+        }
+        ASSERT_GE(shown.size(), 5u);
+        EXPECT_TRUE(same_bytes(shown.back(), this->whole(s, s.render)));
+        EXPECT_GT(relative_mse(shown.front(), shown.back()), 1e-4) << "there was something to see";
+        for (std::size_t i = 1; i < shown.size(); ++i)
+            EXPECT_LE(relative_mse(shown[i], shown.back()), relative_mse(shown[i - 1], shown.back()))
+                << "picture " << i << " of " << shown.size();
     }
 }
 

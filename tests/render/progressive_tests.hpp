@@ -70,7 +70,8 @@ TYPED_TEST_P(progressive, what_cannot_be_drawn_leaves_the_picture_alone)
 }
 
 REGISTER_TYPED_TEST_SUITE_P(progressive, ends_with_the_bytes_of_render, previews_are_as_bright_as_the_picture,
-    a_map_serves_until_the_light_changes, a_camera_that_moves_while_photons_are_traced_does_not_begin_them_anew,
+    running_estimates_approach_the_picture, a_map_serves_until_the_light_changes,
+    a_camera_that_moves_while_photons_are_traced_does_not_begin_them_anew,
     previews_that_are_no_longer_wanted_are_not_drawn, a_cancelled_step_ends_after_its_pass,
     a_picture_goes_on_from_its_state, passes_add_up_in_any_order, what_cannot_be_drawn_leaves_the_picture_alone);
 

@@ -210,7 +210,8 @@ namespace detail {
 ///   smaller rounding errors
 /// - `finish()`: waits until all passes are done
 /// - `caps()`, `bytes()`, `peak_bytes()`, `costs()`: the device's properties, the bytes in buffers now and at most, and
-///   the cost of each kernel: one pass for each run, count and route, and the passes of run_until_done
+///   the cost of each kernel: one pass for each run, count and route, and the passes of run_until_done; further
+///   draws or dispatches of a backend's own shaders count under their names
 ///
 /// A buffer can be moved but not copied; a moved-from buffer is empty. It may be destroyed as soon as the call that
 /// uses it has returned, and may outlive the backend.

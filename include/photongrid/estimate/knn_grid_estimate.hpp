@@ -31,7 +31,8 @@ struct knn_estimates {
     buffer_of<B, glm::uvec2> used;      ///< x: photons within r, y: photons visited
     /// rgb: standard error of irradiance, W/m^2; w: of the sum of its channels. Empty unless requested. It assumes that
     /// photons are independent and does not include bias. 0 if no photon was found; meaningless for k < 3, for which
-    /// the variance is infinite.
+    /// the variance is infinite. In a routed map a photon that stands for s photons of its cell counts as one of s
+    /// times the power: where cells overflow, the error is up to sqrt(s) times too large.
     buffer_of<B, glm::vec4> standard_error;
 };
 
@@ -68,11 +69,7 @@ public:
     knn_search_by_kernels(B&, const map_buffers<B>&, const vectors&, const vectors&&, const knn_settings&) = delete;
 
     /// Whether estimates() has usable values while a search with settings `s` is still running (3.4).
-    static bool shows_running_estimate(const knn_settings& s)
-    {
-        return s.search == search_kind::at_least_k && s.filter == filter_kind::constant && s.bias == bias_kind::paper
-            && !s.errors;
-    }
+    static bool shows_running_estimate(const knn_settings& s) { return detail::sums_while_growing(s); }
 
     /// Runs at most `passes` more passes over the points that are not done. Work per pass and point is bounded.
     progress advance(uint passes = nowhere)

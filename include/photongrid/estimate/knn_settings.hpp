@@ -47,6 +47,14 @@ inline knn_settings as_paper(knn_settings s)
 }
 
 namespace detail {
+    /// Whether a search by kernels with settings `s` sums the light while its radius grows, so that estimates can be
+    /// shown before it ends (2.4, 3.4): the paper's estimate.
+    inline bool sums_while_growing(const knn_settings& s)
+    {
+        return s.search == search_kind::at_least_k && s.filter == filter_kind::constant && s.bias == bias_kind::paper
+            && !s.errors;
+    }
+
     /// `s` with its default min_radius filled in. Throws if the settings do not suit this map and these points.
     template <backend B>
     knn_settings checked(knn_settings s, const map_buffers<B>& map, std::size_t points, std::size_t normals)

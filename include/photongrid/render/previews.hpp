@@ -24,6 +24,9 @@ struct preview {
 struct preview_settings {
     bool enabled = true;   ///< false: no previews
     double target_ms = 40; ///< time for the first map, and for the first preview drawn with it
+    /// In place of previews, where the search sums light while it grows (as the paper's does): running estimates (2.4),
+    /// each nearer to the picture than the one before. cpu then searches twice, first by kernels.
+    bool running_estimates = false;
 };
 
 /// Measured costs; initially a guess between those of a GPU and of one CPU thread.

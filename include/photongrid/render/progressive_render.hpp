@@ -139,6 +139,13 @@ private:
 
     // The order of work. Each list is created when it is reached.
 
+    /// Whether previews are drawn, and not running estimates in their place.
+    bool has_previews() const { return previews_.enabled && !shows_running_estimates(); }
+    bool shows_running_estimates() const
+    {
+        return previews_.running_estimates && detail::sums_while_growing(detail::search_for(settings_, 1));
+    }
+
     /// A preview with few photons, the map, previews with all photons, then the passes.
     step_list picture_steps()
     {
@@ -153,7 +160,7 @@ private:
     step_list early_preview_steps()
     {
         auto fewer = pass(next_pass());
-        if (!previews_.enabled || maps_.serves(fewer) || settings_.output.only == light_part::direct)
+        if (!has_previews() || maps_.serves(fewer) || settings_.output.only == light_part::direct)
             return {};
         step_list steps;
         if (!maps_.serves_preview_of(fewer)) {
@@ -171,7 +178,7 @@ private:
     step_list preview_steps()
     {
         step_list steps;
-        if (!previews_.enabled)
+        if (!has_previews())
             return steps;
         const uint photons = maps_.of().settings.map.photons;
         for (const auto& p : preview_schedule(settings_, photons, early_shown_, costs_, previews_.target_ms)) {
@@ -235,8 +242,8 @@ private:
                 = std::max(1u, with.estimate.k / std::max(1u, with.map.photons / maps_.of().settings.map.photons));
         ms_before_ = ms_of_views();
         samples_shown_ = grown_shown_ = 0;
-        view_.emplace(b_, maps_.map(), scene_.camera, with, view_pass_settings{p, step_size::small, previews_.enabled},
-            kept_, stats_);
+        view_.emplace(b_, maps_.map(), scene_.camera, with,
+            view_pass_settings{p, step_size::small, previews_.enabled, shows_running_estimates()}, kept_, stats_);
         if (!p && film_.size() == 0)
             film_ = film_for(scene_, maps_.map().scene.layout, settings_.output);
         if (!p && unfinished_.rays > 0) {

@@ -31,6 +31,7 @@ struct view_pass_settings {
     std::optional<photongrid::preview> preview{}; ///< the preview to draw; empty: draw the picture
     step_size size = step_size::largest;          ///< size of the steps
     bool watched = false;                         ///< provide running estimates, if the search can (3.4)
+    bool running = false; ///< if not, search by kernels before, which can (preview_settings::running_estimates)
 };
 
 /// One pass over the pixels of the picture or of a preview. Each stage does part of its work for eye ray `ray` (sample
@@ -80,15 +81,27 @@ public:
     {
         progress did;
         detail::time_stage(b_, stats_.radiance_estimate, [&] {
-            if (!search_) {
+            if (!search_ && !growing_) {
                 grown_ = 0;
                 unfinished_ = samples_->direct.size();
-                search_.emplace(b_, built_.map, samples_->hits.points, samples_->hits.surfaces, search_settings());
+                if (grows() && !knn_search<B>::shows_running_estimate(picture_search()))
+                    start(growing_);
+                else
+                    start(search_);
             }
-            const uint passes = how_.size == step_size::largest ? nowhere : grows() ? std::max(1u, grown_) : 8u;
-            did = search_->advance(passes);
-            if (grows()) // display it after 1, 2, 4, 8, ... passes
+            const bool growing = grows() && !(growing_ && search_);
+            const uint passes = how_.size == step_size::largest ? nowhere : growing ? std::max(1u, grown_) : 8u;
+            did = search_ ? search_->advance(passes) : growing_->advance(passes);
+            if (growing) { // display it after 1, 2, 4, 8, ... passes
                 grown_ += passes;
+                // Previews have the light of all branches; running estimates among them must, too.
+                if (how_.running || canvas_.rays + 1 == branches_)
+                    ++running_pictures_;
+            }
+            if (did.finished && !search_) {
+                start(search_);
+                did = {};
+            }
         });
         if (did.finished)
             unfinished_ = 0;
@@ -107,7 +120,7 @@ public:
     double fraction() const
     {
         const double pixels = static_cast<double>(canvas_.raster.size());
-        const double of_this_ray = search_ ? 1.0 - static_cast<double>(unfinished_) / pixels : 0.0;
+        const double of_this_ray = search_ || growing_ ? 1.0 - static_cast<double>(unfinished_) / pixels : 0.0;
         return (canvas_.rays + of_this_ray) / rays();
     }
     /// The number of pixels whose estimates for the current eye ray are not finished.
@@ -117,15 +130,20 @@ public:
     /// Whether all samples that were begun are complete.
     bool has_whole_samples() const { return canvas_.rays % branches_ == 0; }
 
-    /// How often running_estimate() has improved; 0: there is none yet.
-    uint grown() const { return search_ && grows() && canvas_.rays + 1 == branches_ ? grown_ : 0; }
-    /// The first sample so far, while its last search runs (3.4), as an image of the picture's size.
+    /// How often running_estimate() has improved; 0: there is none yet, or the first sample is complete.
+    uint grown() const { return canvas_.rays < branches_ ? running_pictures_ : 0; }
+    /// The first sample so far, while its searches run (3.4), as an image of the picture's size: the light of the
+    /// Fresnel branches that are done, and what the search for the next has found.
     /// \throws backend_error.
     image running_estimate(std::uint64_t& invalid)
     {
         auto running = copy(canvas_.pixels);
         auto ignored = b_.template make<glm::vec4>(running.size());
-        shade(search_->estimates(), 1.0f / static_cast<float>(settings_.view.spp), running, ignored);
+        const float share = 1.0f / static_cast<float>(settings_.view.spp);
+        if (growing_)
+            shade(growing_->estimates(), share, running, ignored);
+        else if (search_)
+            shade(search_->estimates(), share, running, ignored);
         return detail::to_image(
             b_.download(running), canvas_.raster, settings_, static_cast<float>(settings_.view.spp), invalid);
     }
@@ -162,7 +180,9 @@ private:
     /// Whether the search's partial sums can be displayed while it runs (3.4).
     bool grows() const
     {
-        return !is_preview() && how_.watched && knn_search<B>::shows_running_estimate(picture_search());
+        const auto s = picture_search();
+        return !is_preview() && how_.watched
+            && (knn_search<B>::shows_running_estimate(s) || (how_.running && detail::sums_while_growing(s)));
     }
     /// The search of the picture itself, not of a preview.
     knn_settings picture_search() const { return detail::search_for(settings_, least_radius(built_.map.cells_of)); }
@@ -197,6 +217,13 @@ private:
         return done_ == 0;
     }
 
+    /// Starts a search at the hits.
+    template <class Search>
+    void start(std::optional<Search>& search)
+    {
+        search.emplace(b_, built_.map, samples_->hits.points, samples_->hits.surfaces, search_settings());
+    }
+
     knn_estimates<B> shade(
         knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches);
 
@@ -217,7 +244,9 @@ private:
     bool lit_ = false;     ///< the samples already have their direct light
     std::size_t done_ = 0; ///< pixels that the stage has finished
     std::optional<knn_search<B>> search_;
-    uint grown_ = 0; ///< passes of the growing search
+    std::optional<knn_search_by_kernels<B>> growing_; ///< before search_, to be shown
+    uint grown_ = 0;                                  ///< passes of the search that is shown
+    uint running_pictures_ = 0;
     std::uint64_t unfinished_ = 0;
     canvas<B> canvas_;
 };
@@ -272,6 +301,7 @@ bool view_pass<B>::shade(uint ray)
                 reads(samples_->hits.points, found.irradiance, found.standard_error), writes(canvas_.errors));
     });
     search_.reset();
+    growing_.reset();
     if (is_preview())
         kept_[ray] = std::move(samples_); // the next pass may have the same pixels
     samples_.reset();

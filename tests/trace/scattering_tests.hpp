@@ -1,7 +1,8 @@
 // What a surface does to light, compared with Fresnel's equations in long double: how many photons it absorbs, reflects
-// and refracts, in which directions, what power they carry on, and the throughput of eye rays. The serial backend is
-// enough: the others equal it bit for bit.
-#include "../scene/test_scenes.hpp"
+// and refracts, in which directions, what power they carry on, and the throughput of eye rays.
+#pragma once
+
+#include "sampler_tests.hpp"
 
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/trace/eye_rays.hpp>
@@ -17,7 +18,6 @@
 namespace photongrid::testing {
 namespace {
 
-    constexpr double far_off = 5; // standard deviations; the seeds are fixed
     constexpr double index_of_glass = 1.5;
 
     /// A ball of radius 1 around the origin, of one of these materials, in a white ball of radius 10.

@@ -1,6 +1,7 @@
 // What is drawn at random has the distribution that it should have: lamps, light paths, eye rays and shadow rays. Bins
-// are compared with the exact probabilities by chi-square, and what must be independent by its correlation. The serial
-// backend is enough: the others equal it bit for bit.
+// are compared with the exact probabilities by chi-square, and what must be independent by its correlation.
+#pragma once
+
 #include "../scene/test_scenes.hpp"
 
 #include <photongrid/backends/serial/serial.hpp>

@@ -1,0 +1,5 @@
+// The physics of light paths on the serial backend: what is drawn at random, what surfaces do to light, and where they
+// are. The other backends equal it bit for bit.
+#include "sampler_tests.hpp"
+#include "scattering_tests.hpp"
+#include "surface_tests.hpp"

@@ -1,0 +1,170 @@
+// Where surfaces are, and where they end: rays at random against the reference renderer's intersections in double
+// precision, rays at each edge of polygons, and how far off a surface its rays start.
+#pragma once
+
+#include "hard_cases.hpp"
+
+#include <photongrid/reference/intersect.hpp>
+
+#include <numbers>
+
+namespace photongrid::testing {
+namespace {
+
+    /// Rays from all around at a box, and a little beside it.
+    struct aimed_rays {
+        rays single;
+        std::vector<reference::ray> exact;
+
+        aimed_rays(const bounds& box, const dvec3& center, std::size_t n, std::uint64_t seed)
+        {
+            random_source u(seed);
+            const dvec3 middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
+            for (std::size_t i = 0; i < n; ++i) {
+                const auto within = [&](double factor) {
+                    return middle
+                        + factor * half
+                        * dvec3(2 * static_cast<double>(u()) - 1, 2 * static_cast<double>(u()) - 1,
+                            2 * static_cast<double>(u()) - 1);
+                };
+                const dvec3 target = within(1.02);
+                const dvec3 from = middle + 3 * glm::length(half) * dvec3(random_direction(u));
+                // The ray in float, and the same one in double.
+                const glm::vec3 o(from - center), d(glm::normalize(target - from));
+                single.add(o, d);
+                exact.push_back({dvec3(o) + center, glm::normalize(dvec3(d))});
+            }
+        }
+    };
+
+    /// The reference's hit, and whether hits of rays slightly beside it differ: an edge or an outline is near.
+    struct expectation {
+        double t = 0; ///< infinite: a miss
+        bool near_edge = false;
+    };
+    expectation expected_of(const reference::geometry& g, const reference::ray& r, double size)
+    {
+        expectation e{g.nearest(r).t, false};
+        const dvec3 other = std::abs(r.direction.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+        const dvec3 u = glm::normalize(glm::cross(r.direction, other)), v = glm::cross(r.direction, u);
+        for (const dvec3& way : {u, -u, v, -v}) {
+            auto beside = r;
+            beside.origin += 1e-5 * size * way;
+            const double t = g.nearest(beside).t;
+            e.near_edge = e.near_edge || std::isinf(t) != std::isinf(e.t)
+                || (!std::isinf(t) && std::abs(t - e.t) > 1e-2 * size);
+        }
+        return e;
+    }
+
+    TEST(surfaces, are_where_the_reference_has_them)
+    {
+        const auto all = all_shapes();
+        serial_backend b;
+        int kinds = 0;
+        for_each_shape(all, [&](const auto& list, auto kind) {
+            for (std::size_t i = 0; i < list.size(); ++i) {
+                SCOPED_TRACE(std::string(kind.name) + " " + std::to_string(i));
+                ++kinds;
+                scene s;
+                s.name = "one shape";
+                s.materials = all.materials;
+                s.materials[list[i].material].kind = material_kind::lambertian;
+                std::get<std::remove_cvref_t<decltype(list)>&>(shape_lists(s)).push_back(list[i]);
+                bounds box;
+                kind.add_bounds(box, list[i]);
+                const double size = glm::length(box.high - box.low);
+                s.point_lights = {{"bulb", 0.5 * (box.low + box.high) + dvec3(0, size, 0), dvec3(1)}};
+                const auto layout = lay_out(s);
+                const aimed_rays r(box, layout.center, 40000, 17 + i);
+                const auto found = trace_rays(b, s, r.single);
+                const reference::geometry exact(s);
+                std::size_t hits = 0, edges = 0, wrong = 0;
+                for (std::size_t n = 0; n < r.exact.size(); ++n) {
+                    const auto e = expected_of(exact, r.exact[n], size);
+                    edges += e.near_edge ? 1 : 0;
+                    if (e.near_edge)
+                        continue;
+                    hits += std::isinf(e.t) ? 0 : 1;
+                    const double t = static_cast<double>(found.places[n].w);
+                    const bool same = std::isinf(e.t) ? !found.hit(n) : found.hit(n) && std::abs(t - e.t) < 1e-3 * size;
+                    wrong += same ? 0 : 1;
+                }
+                EXPECT_EQ(wrong, 0u) << "of " << r.exact.size();
+                EXPECT_GT(hits, 2000u);
+                EXPECT_LT(edges, r.exact.size() / 50);
+            }
+        });
+        EXPECT_GE(kinds, 10);
+    }
+
+    /// A polygon ends at each of its edges alike: rays 10^-6 of its size inside hit it, and those as far outside miss,
+    /// where the tests by half-spaces leave it open and every edge must be asked.
+    TEST(surfaces, polygons_end_at_each_of_their_edges)
+    {
+        random_source u(7);
+        serial_backend b;
+        for (int corners = 3; corners <= 8; ++corners)
+            for (int turn = 0; turn < 20; ++turn) {
+                auto s = empty_scene({0.2, 0.1, 3});
+                const dvec3 n(random_direction(u)), other = std::abs(n.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+                const dvec3 a = glm::normalize(glm::cross(n, other)), c = glm::cross(n, a);
+                polygon p{{}, 0};
+                const double first = 6 * static_cast<double>(u());
+                for (int i = 0; i < corners; ++i) {
+                    const double angle = first + 2 * std::numbers::pi * (i + 0.3 * static_cast<double>(u())) / corners;
+                    p.vertices.push_back(std::cos(angle) * a + std::sin(angle) * c);
+                }
+                s.polygons = {p};
+                const auto layout = lay_out(s);
+                for (int e = 0; e < corners; ++e) {
+                    const dvec3 from = p.vertices[static_cast<std::size_t>(e)],
+                                to = p.vertices[static_cast<std::size_t>((e + 1) % corners)],
+                                outward = glm::normalize(glm::cross(to - from, n));
+                    for (const double by : {-1e-6, 1e-6}) {
+                        rays r;
+                        for (int i = 0; i < 50; ++i) {
+                            const dvec3 target
+                                = glm::mix(from, to, 0.1 + 0.8 * static_cast<double>(u())) + by * outward;
+                            // The origin is rounded: aim along the exact normal from where it is.
+                            r.add(glm::vec3(target + n - layout.center), glm::vec3(-n));
+                        }
+                        const auto found = trace_rays(b, s, r);
+                        (void)found;
+                        EXPECT_LE(by < 0 ? found.misses() : r.size() - found.misses(), 5u)
+                            << corners << " corners, edge " << e << (by < 0 ? ", inside" : ", outside");
+                    }
+                }
+            }
+    }
+
+    /// Rays start off their surface by the error bound of trace/scene_layout.glsl, and by no more: 2^-19 of the sum of
+    /// the coordinates, and of the largest curved shape.
+    TEST(surfaces, rays_start_no_farther_off_than_rounding_asks)
+    {
+        auto s = all_shapes();
+        serial_backend b;
+        const auto layout = lay_out(s);
+        bounds box;
+        box.add({-2, 0, -2});
+        box.add({2, 1.5, 2});
+        const aimed_rays r(box, layout.center, 20000, 3);
+        const auto found = trace_rays(b, s, r.single);
+        const double curved = 0.35; // the cylinder's radius; spheres and others are smaller
+        double largest = 0;
+        std::size_t hits = 0;
+        for (std::size_t i = 0; i < r.exact.size(); ++i) {
+            if (!found.hit(i))
+                continue;
+            ++hits;
+            const dvec3 p(glm::vec3(found.places[i])), start(glm::vec3(found.starts[i]));
+            const double bound = 0x1p-19 * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z) + 2 * curved);
+            largest = std::max(largest, glm::length(start - p) / bound);
+        }
+        EXPECT_GT(hits, 5000u);
+        EXPECT_GT(largest, 0.3);
+        EXPECT_LE(largest, 1.1);
+    }
+
+} // namespace
+} // namespace photongrid::testing
