@@ -3,6 +3,8 @@
 
 #include "landed_photons.hpp"
 
+#include <photongrid/estimate/knn_neighbours.hpp>
+
 namespace photongrid::testing {
 namespace {
 
@@ -34,16 +36,17 @@ namespace {
         both_trees(const both_trees&) = delete;
         both_trees& operator=(const both_trees&) = delete;
 
-        /// The k + 1 nearest by nanoflann; the k-th squared distance by FLANN.
+        /// The k + 1 nearest by nanoflann; the k nearest by FLANN.
         struct nearest {
             std::vector<std::uint32_t> ids;
+            std::vector<std::uint32_t> ids_of_flann;
             std::vector<float> distances2;
             float kth_of_flann = 0;
         };
         nearest find(const vec4& point, uint k)
         {
             float query[3] = {point.x, point.y, point.z};
-            nearest n{std::vector<std::uint32_t>(k + 1), std::vector<float>(k + 1)};
+            nearest n{std::vector<std::uint32_t>(k + 1), {}, std::vector<float>(k + 1)};
             nanoflann::KNNResultSet<float, std::uint32_t> found(k + 1);
             found.init(n.ids.data(), n.distances2.data());
             nano_.findNeighbors(found, query, nano_search);
@@ -51,6 +54,7 @@ namespace {
             std::vector<std::vector<float>> distances;
             flann_.knnSearch(flann::Matrix<float>(query, 1, 3), ids, distances, k, flann_search);
             n.kth_of_flann = distances[0][k - 1];
+            n.ids_of_flann.assign(ids[0].begin(), ids[0].end());
             return n;
         }
 
@@ -96,6 +100,8 @@ namespace {
                 const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)),
                     {.k = k, .max_radius = 10, .bias = bias_kind::paper});
                 const auto irradiance = b.download(e.irradiance);
+                const auto lists = b.download(
+                    knn_neighbours(b, map, b.upload(std::span<const vec4>(points)), {.k = k, .max_radius = 10}).ids);
                 const auto used = b.download(e.used);
                 const float floor2
                     = std::pow(std::max({set.g.cell.x * 12, set.g.cell.y * 12, set.g.cell.z * 12}) * 0x1p-20f, 2.0f);
@@ -108,8 +114,18 @@ namespace {
                     ASSERT_EQ(irradiance[q].w, fth) << name_of(d) << ", k " << k << ", point " << q << ": FLANN";
                     ASSERT_EQ(used[q].x, k);
                     ++compared;
-                    if (flushed(n.distances2[k]) == nth || nth <= floor2 || k > 64)
+                    if (flushed(n.distances2[k]) == nth || nth <= floor2)
                         continue; // a tie at the k-th: nanoflann does not specify which one it returns
+                    const auto sorted = [&](auto first) {
+                        std::vector<std::uint32_t> ids(first, first + k);
+                        std::sort(ids.begin(), ids.end());
+                        return ids;
+                    };
+                    const auto found = sorted(lists.begin() + static_cast<std::ptrdiff_t>(q * k));
+                    ASSERT_EQ(found, sorted(n.ids.begin())) << name_of(d) << ", k " << k << ": nanoflann's photons";
+                    ASSERT_EQ(found, sorted(n.ids_of_flann.begin())) << name_of(d) << ", k " << k << ": FLANN's";
+                    if (k > 64)
+                        continue; // sums of more powers round
                     glm::dvec3 sum(0);
                     for (uint i = 0; i < k; ++i)
                         sum += glm::dvec3(set.powers[n.ids[i]]);
