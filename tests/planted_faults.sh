@@ -116,6 +116,8 @@ faults=(
   "metal keeps its colour to itself|include/photongrid/trace/bounce_photon.glsl|(colour.y / survival)|(1.0f)|optics"
   "Fresnel 1 % off|include/photongrid/trace/optics.glsl|float reflected = 0.5f|float reflected = 0.505f|optics"
   "glass chooses by another number|include/photongrid/trace/bounce_photon.glsl|r.w < f.reflected|r.x < f.reflected|optics"
+  "the last edge of a polygon is not asked|include/photongrid/trace/intersect/polygon.glsl|for (uint e = 0u; e <= edges; ++e) {|for (uint e = 0u; e < edges; ++e) {|optics"
+  "ray offsets 32 times too long|include/photongrid/trace/scene_layout.glsl|1.9073486328125e-6f|6.103515625e-5f|optics"
   "a lamp's corner may be NaN|include/photongrid/scene/lights.hpp|detail::finite(l.corner) && ||bad_scenes"
   "a setting is unchecked|include/photongrid/scene/setting_table.hpp|v >= least && v <= most|v <= most|bad_scenes"
   "an index of refraction is unchecked|include/photongrid/scene/material.hpp|f.range.check(f.name, v);|(void)v;|bad_scenes"
