@@ -10,7 +10,8 @@
 namespace photongrid::gl {
 
 /// A routing pass. `payload` and `amount` are the two programs of a route kernel, whose inputs and Params are bound.
-/// costs() counts the draw of payloads as the kernel's pass, and the other draws under the names of their shaders.
+/// costs() counts the draw of payloads as the kernel's pass, and the other draws under the names of their shaders;
+/// the time of all is the kernel's.
 struct routing {
     device& on;
     programs& made;

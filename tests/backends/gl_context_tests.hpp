@@ -52,7 +52,9 @@ namespace {
         const double all = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
         double sum = 0;
         for (const auto& [name, cost] : b.costs()) {
-            EXPECT_GT(cost.ms, 0) << name;
+            // The draws of a route are timed together, as its kernel's.
+            const bool of_a_route = name == "route_pattern" || name == "route_amount" || name == "route_gather";
+            EXPECT_EQ(cost.ms > 0, !of_a_route) << name;
             sum += cost.ms;
         }
         EXPECT_LT(sum, all);
