@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Builds photongrid with warnings as errors and runs all tests; this is what CI runs.
 #
-#   tests/run.sh [--full] [--device hardware] [--no-install]
+#   tests/run.sh [--full] [--stage NAME]... [--device hardware] [--no-install]
 #   tests/run.sh --quick | --only NAME [--filter WORD]... | --filter WORD...
 #
 #   --full             adds the long runs, the manual, all benches, planted faults, clang-tidy, GPU-assisted validation,
 #                      the sanitizers over all tests on every backend, each header alone and users' projects with clang,
 #                      and those of users' projects that show what another does for another backend; property tests
 #                      with a seed of its own, which it prints (PHOTONGRID_SEED=N chooses one)
+#   --stage NAME       only this stage, one of those named below; a full run takes hours
 #   --device hardware  every backend on a real GPU; software devices are refused (no sanitizers, no clang)
 #   --no-install       only say which Debian packages are missing, do not install them
 #   --quick            after an edit: builds what it makes stale with g++ and runs the short tests of that; where the
@@ -15,25 +16,37 @@
 #   --only NAME        a backend (serial, cpu, gl, vulkan), a folder of tests/, or one test program
 #   --filter WORD      only cases with WORD in their names, long ones too; on the serial backend without --only
 #
-# Without options: clang-format, the serial backend under the address and undefined behaviour sanitizers (build-asan/),
-# clang 14 (build-clang/) and its fuzzer on the scene reader for 20 s, in full 300 s (build-fuzz/), then everything with
-# g++, assertions on (build-tests/). It stops where something fails.
+# The stages, in turn; the run stops at the first that fails:
+#   texts       clang-format, and that each planted fault still finds its place
+#   sanitizers  the serial backend under the address and undefined behaviour sanitizers (build-asan/)
+#   clang       headers, kernels and a smoke test with clang 14 (build-clang/)
+#   fuzzing     clang's fuzzer on the scene reader for 20 s, in full 300 s (build-fuzz/)
+#   tests       everything with g++, assertions on (build-tests/)
+# and with --full:
+#   gpu_assisted  the Vulkan backend under GPU-assisted validation
+#   benches       each bench, briefly
+#   tidy          clang-tidy
+#   faults        tests/planted_faults.sh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
 
-install=yes full=no device=any quick=no only='' words=()
+install=yes full=no device=any quick=no only='' words=() stages=()
 while (($# > 0)); do
   case $1 in
     --full) full=yes ;;
     --no-install) install=no ;;
     --quick) quick=yes ;;
-    --only | --filter)
+    --only | --filter | --stage)
       if [[ -z ${2:-} ]]; then
         echo "$1: expected a name; see tests/run.sh --help" >&2
         exit 2
       fi
-      if [[ $1 == --only ]]; then only=$2; else words+=("$2"); fi
+      case $1 in
+        --only) only=$2 ;;
+        --filter) words+=("$2") ;;
+        --stage) stages+=("$2") ;;
+      esac
       shift
       ;;
     --device)
@@ -95,6 +108,10 @@ run_tests() {
 }
 skipped=
 source tests/part.sh
+if ((${#stages[@]} > 0)) && [[ $quick == yes || -n $only ]]; then
+  echo "--stage: not with --quick or --only" >&2
+  exit 2
+fi
 if [[ $quick == yes ]]; then
   run_stale
   exit
@@ -109,16 +126,28 @@ if [[ $full == yes ]]; then
   clang_targets+=(all_verify_interface_header_sets)
 fi
 
-echo "== formatting, texts of planted faults"
-find backends bench examples include tests -name '*.[hc]pp' -print0 | xargs -0 clang-format-14 --dry-run --Werror
-tests/planted_faults.sh --check
-
+all_stages=(texts sanitizers clang fuzzing tests)
 if [[ $device == hardware ]]; then
   export PHOTONGRID_DEVICE=hardware
-else
-  echo "== sanitizers"
+  all_stages=(texts tests)
+elif [[ $full == yes ]]; then
+  all_stages+=(gpu_assisted benches tidy faults)
+fi
+for stage in "${stages[@]}"; do
+  if [[ " ${all_stages[*]} " != *" $stage "* ]]; then
+    echo "--stage $stage: expected one of ${all_stages[*]}" >&2
+    exit 2
+  fi
+done
+
+stage_texts() {
+  find backends bench examples include tests -name '*.[hc]pp' -print0 | xargs -0 clang-format-14 --dry-run --Werror
+  tests/planted_faults.sh --check
+}
+stage_sanitizers() {
   if [[ $full == yes ]]; then
     # Mesa's drivers and the validation layer leak a little at exit, and are unloaded by then: see keep_loaded.cpp.
+    local asan lavapipe layer
     asan=$(readlink -f "$(g++ -print-file-name=libasan.so)")
     lavapipe=$(find /usr/lib -name 'libvulkan_lvp.so' -print -quit)
     layer=$(find /usr/lib -name 'libVkLayer_khronos_validation.so' -print -quit)
@@ -133,8 +162,8 @@ else
   skipped="|on_gl_osmesa"
   run_tests build-asan "${sanitized[@]}"
   skipped=
-
-  echo "== clang"
+}
+stage_clang() {
   configure clang
   cmake --build build-clang --target "${clang_targets[@]}"
   if [[ $full == yes ]]; then
@@ -142,32 +171,37 @@ else
   else
     run_tests build-clang --tests-regex smoke
   fi
-
-  echo "== fuzzing"
+}
+stage_fuzzing() {
   configure fuzz
   cmake --build build-fuzz --target fuzz_scene
   # New inputs go to the first folder, one that breaks the reader to build-fuzz/crash-….
   mkdir -p build-fuzz/corpus
   build-fuzz/tests/fuzz_scene -verbosity=0 -print_final_stats=1 -max_total_time=$fuzz_seconds -max_len=4096 -dict=tests/io/scene_corpus.dict -artifact_prefix=build-fuzz/ build-fuzz/corpus tests/io/scene_corpus
-fi
-
-echo "== g++, all tests"
-configure tests -DPHOTONGRID_FULL_TESTS=$everything
-cmake --build build-tests
-run_tests build-tests "${short[@]}"
-
-if [[ $full == yes && $device == any ]]; then
-  echo "== GPU-assisted validation"
+}
+stage_tests() {
+  configure tests -DPHOTONGRID_FULL_TESTS=$everything
+  cmake --build build-tests
+  run_tests build-tests "${short[@]}"
+}
+stage_gpu_assisted() {
+  configure tests -DPHOTONGRID_FULL_TESTS=$everything
+  cmake --build build-tests --target on_vulkan
   PHOTONGRID_GPU_AV=1 run_tests build-tests --tests-regex '^on_vulkan(_heavy)?$'
-
-  echo "== benches, briefly"
-  arguments=(--smoke)
+}
+stage_benches() {
+  local arguments=(--smoke)
   [[ $install == yes ]] || arguments+=(--no-install)
   bench/run.sh "${arguments[@]}"
+}
+stage_tidy() { tests/tidy.sh; }
+stage_faults() { tests/planted_faults.sh; }
 
-  echo "== clang-tidy"
-  tests/tidy.sh
-
-  echo "== planted faults"
-  tests/planted_faults.sh
-fi
+for stage in "${all_stages[@]}"; do
+  if ((${#stages[@]} == 0)) || [[ " ${stages[*]} " == *" $stage "* ]]; then
+    echo "== $stage"
+    started=$SECONDS
+    "stage_$stage"
+    echo "== $stage: $((SECONDS - started)) s"
+  fi
+done

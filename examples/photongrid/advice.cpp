@@ -32,16 +32,6 @@ namespace {
         return b;
     }
 
-    double power_of(const scene& s)
-    {
-        double power = 0;
-        for_each_light(s, [&](const auto& list, auto) {
-            for (const auto& l : list)
-                power += l.power.x + l.power.y + l.power.z;
-        });
-        return power;
-    }
-
     /// Whether everything is behind the camera.
     bool looks_away(const camera& c, const bounds& b)
     {
@@ -65,7 +55,8 @@ std::string summary_of(const scene& s)
 {
     const auto count = [](std::size_t n, const char* what) { return text(n, ' ', what, n == 1 ? "" : "s"); };
     return text('"', s.name, "\": ", count(count_shapes(s), "shape"), ", ", count(s.materials.size(), "material"), ", ",
-        count(count_lights(s), "light"), " of ", power_of(s), " W (red + green + blue), ", size_of(bounds_of(s)));
+        count(count_lights(s), "light"), " of ", detail::power_of_lights(s), " W (red + green + blue), ",
+        size_of(bounds_of(s)));
 }
 
 std::vector<std::string> oddities(const scene& s)
@@ -102,14 +93,13 @@ std::vector<std::string> warnings(
     const auto b = bounds_of(s);
     if (!fitting && settings.output.only == light_part::all)
         all.push_back(text("every pixel is black: the camera at ", point(s.camera.position),
-            " sees nothing that is lit, "
-            "in a scene that extends from ",
-            point(b.low), " to ", point(b.high)));
+            " sees nothing that is lit, in a scene that extends from ", point(b.low), " to ", point(b.high)));
     // Six stops: less than 1.5 % or more than 60 times what fits.
     else if (fitting && is_png && std::abs(*fitting - settings.output.exposure) > 6)
         all.push_back(text("the PNG is almost ", *fitting > settings.output.exposure ? "black" : "white",
             " at exposure ", settings.output.exposure, " EV; --exposure ", std::round(*fitting),
-            " would fit its radiance. The scene measures ", size_of(b), " and its lights emit ", power_of(s), " W"));
+            " would fit its radiance. The scene measures ", size_of(b), " and its lights emit ",
+            detail::power_of_lights(s), " W"));
     return all;
 }
 

@@ -45,12 +45,7 @@ namespace {
     TYPED_TEST(gl_backend_test, the_draws_of_a_route_are_counted)
     {
         auto& b = this->gpu();
-        const auto passes = [&] {
-            std::uint64_t n = 0;
-            for (const auto& [kernel, cost] : b.costs())
-                n += cost.passes;
-            return n;
-        };
+        const auto passes = [&] { return total_cost(b.costs()).passes; };
         const std::vector<glm::uvec2> pairs(100, glm::uvec2(3, 4));
         const auto p = b.upload(view(pairs));
         const auto a = b.upload(view(std::vector<glm::vec4>(100)));

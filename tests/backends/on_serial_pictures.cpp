@@ -6,7 +6,6 @@
 #include "../render/scene_picture_tests.hpp"
 #include "../trace/box_tests.hpp"
 #include "../trace/double_oracle_tests.hpp"
-#include "../trace/eye_ray_tests.hpp"
 #include "../trace/ray_tests.hpp"
 #include "on_serial.hpp"
 

@@ -253,12 +253,7 @@ TEST_F(vulkan, unfinished_elements_of_a_part_of_a_buffer)
 /// A route sorts draws by destination and finds ranges, slots and totals: each dispatch is counted.
 TEST_F(vulkan, the_dispatches_of_a_route_are_counted)
 {
-    const auto passes = [&] {
-        std::uint64_t n = 0;
-        for (const auto& [kernel, cost] : b().costs())
-            n += cost.passes;
-        return n;
-    };
+    const auto passes = [&] { return total_cost(b().costs()).passes; };
     for (const auto& [destinations, digits] : {std::pair{10u, 1u}, {100u, 2u}, {5000u, 4u}}) {
         auto slots = b().make<uint>(destinations * route_capacity(2));
         auto totals = b().make<glm::vec4>(destinations);

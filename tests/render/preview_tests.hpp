@@ -63,7 +63,6 @@ TYPED_TEST_P(progressive, ends_with_the_bytes_of_render)
 
 TYPED_TEST_P(progressive, previews_are_as_bright_as_the_picture)
 {
-    using ms = typename TestFixture::ms;
     auto s = this->small_scene();
     s.render.output.width = s.render.output.height = 128;
     s.render.estimate.k = 128;
@@ -73,13 +72,7 @@ TYPED_TEST_P(progressive, previews_are_as_bright_as_the_picture)
     for (const auto& settings : {s.render, as_paper(s.render), several}) {
         typename TestFixture::loop drawing(this->b());
         drawing.start(s, settings, {.target_ms = 1e-6});
-        std::vector<image> shown;
-        for (std::uint64_t seen = 0; !drawing.finished();) {
-            drawing.step(ms(0));
-            if (drawing.pictures() > seen)
-                shown.push_back(drawing.picture());
-            seen = drawing.pictures();
-        }
+        const auto shown = this->pictures_of(drawing);
         // The paper's search has previews of larger pixels only, and then shows its running estimate.
         const bool previews_only = settings.estimate.search == search_kind::at_least_k
             && !knn_search<typename TestFixture::B>::shows_running_estimate(as_paper(knn_settings{}));
@@ -99,7 +92,6 @@ TYPED_TEST_P(progressive, previews_are_as_bright_as_the_picture)
 /// before, on every backend, and the last one is the picture.
 TYPED_TEST_P(progressive, running_estimates_approach_the_picture)
 {
-    using ms = typename TestFixture::ms;
     for (const auto* name : {"glass_ball", "ring", "cornell_box", "cornell_blocks"}) {
         SCOPED_TRACE(name);
         auto s = read_scene(std::string(PHOTONGRID_SCENES) + "/" + name + ".json");
@@ -111,13 +103,7 @@ TYPED_TEST_P(progressive, running_estimates_approach_the_picture)
         s.render.view.light_samples = 4;
         typename TestFixture::loop drawing(this->b());
         drawing.start(s, s.render, {.running_estimates = true});
-        std::vector<image> shown;
-        for (std::uint64_t seen = 0; !drawing.finished();) {
-            drawing.step(ms(0));
-            if (drawing.pictures() > seen)
-                shown.push_back(drawing.picture());
-            seen = drawing.pictures();
-        }
+        const auto shown = this->pictures_of(drawing);
         ASSERT_GE(shown.size(), 4u);
         EXPECT_TRUE(same_bytes(shown.back(), this->whole(s, s.render)));
         EXPECT_GT(relative_mse(shown.front(), shown.back()), 1e-4) << "there was something to see";

@@ -23,6 +23,18 @@ protected:
         return s;
     }
     image whole(const scene& s, const render_settings& settings) { return render(this->b(), s, settings).picture; }
+    /// Draws to the end, step by step; every picture that was shown.
+    static std::vector<image> pictures_of(loop& drawing)
+    {
+        std::vector<image> shown;
+        for (std::uint64_t seen = 0; !drawing.finished();) {
+            drawing.step(ms(0));
+            if (drawing.pictures() > seen)
+                shown.push_back(drawing.picture());
+            seen = drawing.pictures();
+        }
+        return shown;
+    }
     /// Passes of a kernel so far.
     std::uint64_t passes(const char* kernel)
     {

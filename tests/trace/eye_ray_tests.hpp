@@ -10,20 +10,26 @@
 
 namespace photongrid::testing {
 
+/// The directions of the eye rays of one sample, pixel by pixel; a camera at `view`.
+inline std::vector<glm::vec4> eye_directions(const camera& view, const render_settings& settings, uint sample)
+{
+    const auto all = detail::raster_of(settings, 1);
+    serial_backend b;
+    detail::eye_hits<serial_backend> rays(b, all.size());
+    b.run<kernels::eye_ray>(all.size(), detail::eye_params(view, dvec3(0), settings, all, sample), reads(),
+        writes(rays.points, rays.directions, rays.throughputs, rays.surfaces, rays.emissions));
+    return b.download(rays.directions);
+}
+
 /// Where in a picture, in pixels from its top left, the rays of one sample go through.
 inline std::vector<glm::dvec2> ray_places(const render_settings& settings, uint sample)
 {
     const camera view{.position = dvec3(1, 2, 3), .look_at = dvec3(2, -1, 0), .up = dvec3(0, 1, 0), .vertical_fov = 50};
-    const auto all = detail::raster_of(settings, 1);
-    const auto params = detail::eye_params(view, dvec3(0), settings, all, sample);
-    serial_backend b;
-    detail::eye_hits<serial_backend> rays(b, all.size());
-    b.run<kernels::eye_ray>(static_cast<uint>(all.size()), params, reads(),
-        writes(rays.points, rays.directions, rays.throughputs, rays.surfaces, rays.emissions));
+    const auto params = detail::eye_params(view, dvec3(0), settings, detail::raster_of(settings, 1), sample);
     // A direction is a multiple of corner + x right + y down.
     const auto from_direction = glm::inverse(glm::dmat3(dvec3(params.right), dvec3(params.down), dvec3(params.corner)));
     std::vector<glm::dvec2> places;
-    for (const auto& d : b.download(rays.directions)) {
+    for (const auto& d : eye_directions(view, settings, sample)) {
         const auto p = from_direction * dvec3(d);
         places.emplace_back(p.x / p.z, p.y / p.z);
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../scene/test_scenes.hpp"
+#include "eye_ray_tests.hpp"
 
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/trace/eye_rays.hpp>
@@ -220,16 +221,11 @@ namespace {
     /// Where in the picture rays pass, in pixels from the top left corner.
     std::vector<glm::dvec2> eye_rays(const camera& c, const render_settings& settings, uint sample)
     {
-        serial_backend b;
-        const auto raster = detail::raster_of(settings, 1);
-        detail::eye_hits<serial_backend> hits(b, raster.size());
-        b.run<kernels::eye_ray>(raster.size(), detail::eye_params(c, dvec3(0), settings, raster, sample), reads(),
-            writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions));
         const dvec3 forward = glm::normalize(c.look_at - c.position), right = glm::normalize(glm::cross(forward, c.up)),
                     up = glm::cross(right, forward);
         const double pixel = 2 * std::tan(c.vertical_fov * pi / 360) / settings.output.height;
         std::vector<glm::dvec2> places;
-        for (const auto& way : b.download(hits.directions)) {
+        for (const auto& way : eye_directions(c, settings, sample)) {
             const dvec3 d{glm::vec3(way)};
             const double depth = glm::dot(d, forward);
             places.emplace_back(0.5 * settings.output.width + glm::dot(d, right) / depth / pixel,

@@ -102,15 +102,6 @@ void render_thread::work()
     renderer_.reset(); // in this thread: an OpenGL context belongs to it
 }
 
-/// Passes on the device so far.
-static std::uint64_t passes_of(const renderer& r)
-{
-    std::uint64_t n = 0;
-    for (const auto& [kernel, cost] : r.costs())
-        n += cost.passes;
-    return n;
-}
-
 /// Starts the requested drawing once it is due. Returns whether there is something to draw.
 bool render_thread::take()
 {
@@ -157,7 +148,7 @@ bool render_thread::take()
 void render_thread::draw()
 {
     const bool whole = renderer_->step(step_time);
-    passes_ = passes_of(*renderer_);
+    passes_ = total_cost(renderer_->costs()).passes;
     const bool news = renderer_->pictures() > seen_;
     if (news) {
         seen_ = renderer_->pictures();

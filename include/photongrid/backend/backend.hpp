@@ -69,6 +69,19 @@ struct kernel_cost {
     std::uint64_t passes = 0; ///< passes run so far
 };
 
+/// The cost of all kernels together; `costs` are a backend's.
+inline kernel_cost total_cost(const std::map<std::string, kernel_cost>& costs)
+{
+    kernel_cost all;
+    for (const auto& [kernel, cost] : costs) {
+        all.instructions += cost.instructions;
+        all.compile_ms += cost.compile_ms;
+        all.ms += cost.ms;
+        all.passes += cost.passes;
+    }
+    return all;
+}
+
 /// The properties of a device. They do not change after the backend's construction.
 struct capabilities {
     std::string backend;            ///< "serial", "cpu", "gl", "gl-osmesa", "vulkan", or a name of your own

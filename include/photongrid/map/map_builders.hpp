@@ -35,6 +35,17 @@ namespace detail {
             *attribute = std::move(taken);
         }
     }
+
+    /// Ends the building of a map: moves the photons into it in the order of its list, and counts those of other parts
+    /// of the light.
+    template <backend B>
+    void take_photons(B& b, map_buffers<B>& map, photons<B> p, uint parts)
+    {
+        if (parts != every_part)
+            map.left_out = checked_count<kernels::other_part>(b, p.size(), {.parts = parts}, reads(p.positions));
+        reorder(b, p, map.list);
+        map.photons = std::move(p);
+    }
 } // namespace detail
 
 /// Builds a photon map by sorting (2.2.1): exact, in L(L+1)/2 + 5 passes and one per attribute, with L = ceil(log2 n).
@@ -58,10 +69,7 @@ map_buffers<B> sorted_map(B& b, photons<B> p, const grid& g, uint parts = every_
         map.list = b.template make<uint>(n);
         b.template run<kernels::pair_value>(n, {}, reads(pairs), writes(map.list));
     }
-    if (parts != every_part)
-        map.left_out = detail::checked_count<kernels::other_part>(b, n, {.parts = parts}, reads(p.positions));
-    detail::reorder(b, p, map.list);
-    map.photons = std::move(p);
+    detail::take_photons(b, map, std::move(p), parts);
     return map;
 }
 
@@ -92,10 +100,7 @@ map_buffers<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed =
         b.template run<kernels::packed_photon>(
             n, {.cells = cells}, reads(sums, routed.cells, routed.list), writes(map.list));
     }
-    if (parts != every_part)
-        map.left_out = detail::checked_count<kernels::other_part>(b, n, {.parts = parts}, reads(p.positions));
-    detail::reorder(b, p, map.list);
-    map.photons = std::move(p);
+    detail::take_photons(b, map, std::move(p), parts);
     return map;
 }
 

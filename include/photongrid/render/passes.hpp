@@ -33,13 +33,8 @@ inline render_settings settings_of_pass(render_settings s, std::uint32_t pass)
 /// square of the extent of the diffuse surfaces.
 inline double typical_radiance(const scene& s, const scene_layout& layout)
 {
-    double power = 0;
-    for_each_light(s, [&](const auto& list, auto) {
-        for (const auto& l : list)
-            power += l.power.x + l.power.y + l.power.z;
-    });
     const double extent = static_cast<double>(glm::length(layout.high - layout.low));
-    const double radiance = power / (extent * extent);
+    const double radiance = detail::power_of_lights(s) / (extent * extent);
     return std::isfinite(radiance) && radiance > 0 ? std::exp2(std::round(std::log2(radiance))) : 1.0;
 }
 

@@ -18,7 +18,7 @@ public:
     stage_clock(B& b, stage_stats& out) : b_(b), out_(out)
     {
         b_.finish();
-        before_ = spent();
+        before_ = total_cost(b_.costs());
         start_ = std::chrono::steady_clock::now();
     }
     stage_clock(const stage_clock&) = delete;
@@ -28,7 +28,7 @@ public:
     {
         b_.finish();
         const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-        const auto now = spent();
+        const auto now = total_cost(b_.costs());
         out_.compile_ms += now.compile_ms - before_.compile_ms;
         out_.ms += ms - (now.compile_ms - before_.compile_ms);
         out_.passes += now.passes - before_.passes;
@@ -36,16 +36,6 @@ public:
     }
 
 private:
-    /// The cost of all kernels so far.
-    kernel_cost spent() const
-    {
-        kernel_cost all;
-        for (const auto& [name, cost] : b_.costs()) {
-            all.passes += cost.passes;
-            all.compile_ms += cost.compile_ms;
-        }
-        return all;
-    }
     B& b_;
     stage_stats& out_;
     kernel_cost before_;

@@ -111,6 +111,17 @@ inline bool same_light_paths(const scene& a, const scene& b)
 }
 
 namespace detail {
+    /// The power of all lights, the sum of the channels, W.
+    inline double power_of_lights(const scene& s)
+    {
+        double power = 0;
+        for_each_light(s, [&](const auto& lights, auto) {
+            for (const auto& l : lights)
+                power += l.power.x + l.power.y + l.power.z;
+        });
+        return power;
+    }
+
     /// The names of a scene's lights, for messages: "'lamp', 'bulb'".
     inline std::string names_of_lights(const scene& s)
     {

@@ -130,89 +130,78 @@ namespace setting_table {
         return all;
     }
 
-    // The member of a stage's settings: of_stage(&render_settings::map, &map_settings::photons) finds s.map.photons.
+    // The member of render_settings that holds the settings of a stage.
+    template <class Stage>
+    inline constexpr Stage render_settings::*stage_of = nullptr;
+    template <>
+    inline constexpr map_settings render_settings::*stage_of<map_settings> = &render_settings::map;
+    template <>
+    inline constexpr estimate_settings render_settings::*stage_of<estimate_settings> = &render_settings::estimate;
+    template <>
+    inline constexpr view_settings render_settings::*stage_of<view_settings> = &render_settings::view;
+    template <>
+    inline constexpr output_settings render_settings::*stage_of<output_settings> = &render_settings::output;
+
+    // of(&map_settings::photons) finds s.map.photons, of(&render_settings::seed) s.seed.
     template <class Stage, class Value>
-    constexpr auto of_stage(Stage render_settings::*stage, Value Stage::*value)
+    constexpr auto of(Value Stage::*value)
     {
-        return [=](auto& s) -> auto& { return s.*stage.*value; };
+        return [=](auto& s) -> auto& { return s.*stage_of<Stage>.*value; };
     }
-    // The same for a member of render_settings itself.
     template <class Value>
-    constexpr auto of_all(Value render_settings::*value)
+    constexpr auto of(Value render_settings::*value)
     {
         return [=](auto& s) -> auto& { return s.*value; };
     }
-    template <class Value>
-    constexpr auto of_map(Value map_settings::*value)
-    {
-        return of_stage(&render_settings::map, value);
-    }
-    template <class Value>
-    constexpr auto of_estimate(Value estimate_settings::*value)
-    {
-        return of_stage(&render_settings::estimate, value);
-    }
-    template <class Value>
-    constexpr auto of_view(Value view_settings::*value)
-    {
-        return of_stage(&render_settings::view, value);
-    }
-    template <class Value>
-    constexpr auto of_output(Value output_settings::*value)
-    {
-        return of_stage(&render_settings::output, value);
-    }
 
-    inline constexpr setting size{
-        "size", of_all(&render_settings::output), pixels{16384}, in_scenes::required, "pixels"};
+    inline constexpr setting size{"size", of(&render_settings::output), pixels{16384}, in_scenes::required, "pixels"};
     inline constexpr setting photons{
-        "photons", of_map(&map_settings::photons), whole_range{1, 1u << 27}, in_scenes::required, "photons stored"};
-    inline constexpr setting k{"k", of_estimate(&estimate_settings::k), whole_range{1, 1u << 24}, in_scenes::required,
+        "photons", of(&map_settings::photons), whole_range{1, 1u << 27}, in_scenes::required, "photons stored"};
+    inline constexpr setting k{"k", of(&estimate_settings::k), whole_range{1, 1u << 24}, in_scenes::required,
         "photons sought per estimate; not used by fixed_radius"};
-    inline constexpr setting grid{"grid", of_map(&map_settings::grid), cells{1u << 20, 0x1p31}, in_scenes::required,
+    inline constexpr setting grid{"grid", of(&map_settings::grid), cells{1u << 20, 0x1p31}, in_scenes::required,
         "cells of the photon map over the scene, or auto: fitted to the photons and k"};
-    inline constexpr setting max_radius{"max_radius", of_estimate(&estimate_settings::max_radius), any_length{},
+    inline constexpr setting max_radius{"max_radius", of(&estimate_settings::max_radius), any_length{},
         in_scenes::required, "largest search radius; of fixed_radius, the radius"};
-    inline constexpr setting light_samples{"light_samples", of_view(&view_settings::light_samples),
-        whole_range{1, 65536}, in_scenes::optional, "shadow rays per area light and eye ray"};
+    inline constexpr setting light_samples{"light_samples", of(&view_settings::light_samples), whole_range{1, 65536},
+        in_scenes::optional, "shadow rays per area light and eye ray"};
     inline constexpr setting spp{
-        "spp", of_view(&view_settings::spp), whole_range{1, 65536}, in_scenes::optional, "eye rays per pixel and pass"};
-    inline constexpr setting passes{"passes", of_output(&output_settings::passes), whole_range{1, 65536},
-        in_scenes::optional,
+        "spp", of(&view_settings::spp), whole_range{1, 65536}, in_scenes::optional, "eye rays per pixel and pass"};
+    inline constexpr setting passes{"passes", of(&output_settings::passes), whole_range{1, 65536}, in_scenes::optional,
         "the picture is the mean of so many passes, each with its own photons, eye rays and shadow rays"};
-    inline constexpr setting depth{"depth", of_view(&view_settings::depth), whole_range{0, 64}, in_scenes::optional,
+    inline constexpr setting depth{"depth", of(&view_settings::depth), whole_range{0, 64}, in_scenes::optional,
         "most reflections and refractions of an eye ray"};
-    inline constexpr setting photon_depth{"photon_depth", of_map(&map_settings::photon_depth), whole_range{1, 64},
+    inline constexpr setting photon_depth{"photon_depth", of(&map_settings::photon_depth), whole_range{1, 64},
         in_scenes::optional, "most surfaces that a photon path hits"};
-    inline constexpr setting seed{"seed", of_all(&render_settings::seed), whole_range{0, 0xFFFFFFFFu},
-        in_scenes::optional, "same seed, same picture"};
-    inline constexpr setting map{"map", of_map(&map_settings::builder),
+    inline constexpr setting seed{"seed", of(&render_settings::seed), whole_range{0, 0xFFFFFFFFu}, in_scenes::optional,
+        "same seed, same picture"};
+    inline constexpr setting map{"map", of(&map_settings::builder),
         one_of{{named{"sort", map_builder::sort}, {"route", map_builder::route}}}, in_scenes::optional,
         "build the photon map by bitonic sort or stencil routing"};
-    inline constexpr setting slots{"slots", of_map(&map_settings::slots), whole_range{1, 16}, in_scenes::optional,
-        "routed cells have N x N slots"};
-    inline constexpr setting exposure{"exposure", of_output(&output_settings::exposure), real_range{-64, 64, " EV"},
+    inline constexpr setting slots{
+        "slots", of(&map_settings::slots), whole_range{1, 16}, in_scenes::optional, "routed cells have N x N slots"};
+    inline constexpr setting exposure{"exposure", of(&output_settings::exposure), real_range{-64, 64, " EV"},
         in_scenes::optional, "PNG: pixel values times 2^EV"};
-    inline constexpr setting search{"search", of_estimate(&estimate_settings::search),
+    inline constexpr setting search{"search", of(&estimate_settings::search),
         one_of{{named{"at_least_k", search_kind::at_least_k}, {"exact_k", search_kind::exact_k},
             {"fixed_radius", search_kind::fixed_radius}}},
         in_scenes::optional, "photons used: at least k, as in the paper; the k nearest; all within --max-radius"};
-    inline constexpr setting filter{"filter", of_estimate(&estimate_settings::filter), names_of_filters(),
-        in_scenes::optional, "weight of a photon by its distance"};
-    inline constexpr setting bias{"bias", of_estimate(&estimate_settings::bias),
+    inline constexpr setting filter{"filter", of(&estimate_settings::filter), names_of_filters(), in_scenes::optional,
+        "weight of a photon by its distance"};
+    inline constexpr setting bias{"bias", of(&estimate_settings::bias),
         one_of{{named{"paper", bias_kind::paper}, {"unbiased", bias_kind::unbiased}}}, in_scenes::optional,
         "the photon that sets the radius counts (paper) or is left out of the sum (unbiased)"};
-    inline constexpr setting leaks{"leaks", of_estimate(&estimate_settings::leaks), policies{{-1, 1, ""}, {1, 1e6, ""}},
+    inline constexpr setting leaks{"leaks", of(&estimate_settings::leaks), policies{{-1, 1, ""}, {1, 1e6, ""}},
         in_scenes::optional,
         "photons rejected: none, or a list with commas of side (photons from behind the surface), min_cosine=COS "
         "(photons on surfaces whose normal has a smaller cosine; default 0.5), flattening=F (distances along the "
         "normal count F times; default 4)"};
-    inline constexpr setting edge_correction{"edge_correction", of_estimate(&estimate_settings::edges),
+    inline constexpr setting edge_correction{"edge_correction", of(&estimate_settings::edges),
         one_of{{named{"none", photongrid::edge_correction::none}, {"polygons", photongrid::edge_correction::polygons}}},
         in_scenes::optional,
         "polygons: divide estimates by the share of their disc that lies on the surface, so that polygons are not "
         "darker near their edges; needs min_cosine in --leaks"};
-    inline constexpr setting only{"only", of_output(&output_settings::only),
+    inline constexpr setting only{"only", of(&output_settings::only),
         one_of{{named{"all", light_part::all}, {"direct", light_part::direct}, {"caustic", light_part::caustic},
             {"indirect", light_part::indirect}}},
         in_scenes::never, "draw this part of the light alone"};

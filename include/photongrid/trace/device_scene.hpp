@@ -190,11 +190,8 @@ namespace detail {
         void write_lights(record_writer& w)
         {
             const auto weight = [](const dvec3& power) { return power.x + power.y + power.z; };
-            double total = 0, below = 0;
-            for_each_light(s_, [&](const auto& list, auto) {
-                for (const auto& l : list)
-                    total += weight(l.power);
-            });
+            const double total = power_of_lights(s_);
+            double below = 0;
             enter(kernels::LIGHT_TABLE, w.next(), count_lights(s_), 6);
             for_each_light(s_, [&](const auto& list, auto kind) {
                 for (const auto& l : list) {
