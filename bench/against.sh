@@ -117,6 +117,8 @@ for scene in "${scenes[@]}"; do
 done
 old_words=no # of November 2026
 [[ $("${program[base]}" render --help) == *--filter* ]] || old_words=yes
+base_routes_power=no # before --surplus, routed maps redistributed power alone
+[[ $("${program[base]}" render --help) == *--surplus* ]] || base_routes_power=yes
 echo "base: $(git log -1 --format='%h %s' "$rev")"
 echo "head: $(git log -1 --format='%h %s')$(git diff --quiet HEAD || echo ', and what is not committed')"
 if [[ $built == yes ]]; then
@@ -137,7 +139,11 @@ draw() {
     [[ " $* " == *' --photons '* ]] || options+=(--photons 2000)
   fi
   options+=(--size 64x48 --quiet -o "$folder/picture.pfm" -o "$folder/picture.png" -o "$folder/picture.exr")
-  [[ $side == head ]] || mapfile -t options < <(option_for_base "${options[@]}")
+  if [[ $side == base ]]; then
+    mapfile -t options < <(option_for_base "${options[@]}")
+  elif [[ $base_routes_power == yes && " $* " == *' --map route '* ]]; then
+    options+=(--surplus power)
+  fi
   rm -f "$folder"/picture.*
   "${program[$side]}" "${options[@]}" >"$folder/log" 2>&1 || status=$?
   echo $status >"$folder/status"

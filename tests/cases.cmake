@@ -5,7 +5,7 @@
 include(GoogleTest)
 
 # Whole scenes and the double oracle: a quick run under sanitizers leaves out what is labelled heavy (tests/run.sh).
-set(heavy_cases *scene_files*:double_oracle*)
+set(heavy_cases *scene_files*:double_oracle*:routed_pictures*)
 set(test_environment "RC_PARAMS=${PHOTONGRID_RC_PARAMS};XDG_CACHE_HOME=${PROJECT_BINARY_DIR}/tests/cache")
 
 # photongrid_cases(PROGRAM TEST FILTER LABEL...): those cases of the program that TEST runs, which FILTER chooses.

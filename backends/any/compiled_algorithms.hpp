@@ -19,7 +19,7 @@
     EXTERN template buffer_of<B, glm::uvec2> grid_index(B&, const buffer_of<B, glm::uvec2>&, uint);                    \
     EXTERN template map_buffers<B> sorted_map(B&, photons<B>, const grid&, uint);                                      \
     EXTERN template routed_cells<B> stencil_route(B&, const photons<B>&, const grid&, uint, uint, uint);               \
-    EXTERN template map_buffers<B> routed_map(B&, photons<B>, const grid&, uint, uint, uint);                          \
+    EXTERN template map_buffers<B> routed_map(B&, photons<B>, const grid&, uint, uint, uint, surplus_kind);            \
     EXTERN template grid fitting_grid(B&, const photons<B>&, uint, float);                                             \
     EXTERN template class knn_radius<B>;                                                                               \
     EXTERN template class knn_search_by_kernels<B>;                                                                    \

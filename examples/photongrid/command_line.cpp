@@ -130,8 +130,8 @@ namespace {
         to.add_flag("--time-passes", o.time_passes,
             "measure each pass with the device's clock, for --stats; needs --backend vulkan, gl or gl-osmesa");
         to.add_option("--progressive", o.progressive,
-              "folder for numbered pictures of the running estimate, and a table with the time of each and its relMSE "
-              "to the last one")
+              "folder for numbered pictures of the running estimate, and a table with the time of each, its relMSE to "
+              "the last one and its structural similarity (SSIM) to it")
             ->type_name("DIR");
         to.add_option_function<std::string>(
               "--every",
@@ -218,6 +218,11 @@ namespace {
               [&o](const std::string& text) { o.max_relmse = parsed_number("--max-relmse", text, "a number"); },
               "exit with code 1 if relMSE is above this")
             ->type_name("V");
+        to.add_option_function<std::string>(
+              "--exposure",
+              [&o](const std::string& text) { o.exposure = parsed_number("--exposure", text, "a number"); },
+              "compare the looks of pixel values times 2^EV")
+            ->type_name("EV");
     }
 
     /// The files of a command: what it reads and what it writes must differ.
@@ -322,8 +327,8 @@ command read_command_line(int argc, char** argv)
 
     compare_options compare;
     auto& compare_command = *app.add_subcommand("compare",
-        "Prints MSE, relMSE = mean of (A - B)^2 / (B + 0.01)^2 (pbrt's MRSE), and the largest difference of two "
-        "linear pictures");
+        "Prints MSE, relMSE = mean of (A - B)^2 / (B + 0.01)^2 (pbrt's MRSE), the largest difference of two linear "
+        "pictures, and their structural similarity (SSIM) as PNG files: 1 if they look the same");
     add_compare(compare_command, compare);
 
     check_options check_scene;

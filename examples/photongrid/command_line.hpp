@@ -63,6 +63,7 @@ struct reference_options {
 struct compare_options {
     std::string a, b;
     double max_relmse = std::numeric_limits<double>::infinity();
+    double exposure = 0; ///< EV, for structural similarity
 };
 
 struct check_options {

@@ -8,6 +8,7 @@
 #include <photongrid/io/image_difference.hpp>
 #include <photongrid/io/image_file.hpp>
 #include <photongrid/io/scene_file.hpp>
+#include <photongrid/io/structural_similarity.hpp>
 
 #include <cerrno>
 #include <csignal>
@@ -68,7 +69,8 @@ namespace {
             return file_failure;
         }
         std::cout << "MSE     " << d.mse << "\nrelMSE  " << d.relmse << "\nlargest " << d.largest << " at pixel " << d.x
-                  << "," << d.y << '\n';
+                  << "," << d.y << "\nSSIM    " << structural_similarity(a, b, o.exposure) << " at " << o.exposure
+                  << " EV\n";
         if (d.not_finite > 0)
             std::cout << "skipped " << d.not_finite << " pixels that are not finite\n";
         if (d.compared == 0) {

@@ -1,6 +1,7 @@
 #include "picture_series.hpp"
 
 #include <photongrid/io/image_difference.hpp>
+#include <photongrid/io/structural_similarity.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -109,17 +110,20 @@ std::string picture_series::path(std::size_t number) const
 
 void picture_series::write_table() const
 {
-    std::string table = std::string("picture,ms,relmse") + (reference_ ? ",relmse_to_reference" : "") + "\n";
+    std::string table
+        = std::string("picture,ms,relmse,ssim") + (reference_ ? ",relmse_to_reference,ssim_to_reference" : "") + "\n";
+    const auto likeness = [&](const image& a, const image& b) {
+        char text[64];
+        std::snprintf(text, sizeof text, ",%.6g,%.6g", compare_images(a, b).relmse,
+            structural_similarity(a, b, options_.exposure));
+        return std::string(text);
+    };
     for (std::size_t i = 0; i < steps_.size(); ++i) {
-        char line[96];
-        std::snprintf(line, sizeof line, ",%.3f,%.6g", steps_[i].ms,
-            compare_images(steps_[i].picture, steps_.back().picture).relmse);
-        table += std::filesystem::path(path(i + 1)).filename().string() + line;
-        if (reference_) {
-            std::snprintf(line, sizeof line, ",%.6g", compare_images(steps_[i].picture, *reference_).relmse);
-            table += line;
-        }
-        table += '\n';
+        char ms[32];
+        std::snprintf(ms, sizeof ms, ",%.3f", steps_[i].ms);
+        table += std::filesystem::path(path(i + 1)).filename().string() + ms
+            + likeness(steps_[i].picture, steps_.back().picture)
+            + (reference_ ? likeness(steps_[i].picture, *reference_) : "") + '\n';
     }
     write_file(options_.folder + "/" + options_.stem + ".csv", table);
 }

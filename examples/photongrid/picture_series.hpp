@@ -30,8 +30,8 @@ struct series_options {
 };
 
 /// Writes pictures STEM-0001.png, STEM-0002.png … as they are made and, at the end, STEM.csv with a line for each: its
-/// file, its time in ms since the series began without the time for writing, its relMSE to the last picture, and to the
-/// reference.
+/// file, its time in ms since the series began without the time for writing, its relMSE and structural similarity to
+/// the last picture, and to the reference.
 class picture_series {
 public:
     /// \throws file_error when the folder cannot be made or the reference cannot be read, std::invalid_argument when the

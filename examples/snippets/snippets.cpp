@@ -159,7 +159,7 @@ void routed_maps(device_type& device)
     const auto approximate
         = photongrid::routed_map(device, photongrid::upload_photons(device, mine), cells, 4); // 4 x 4 slots per cell
     //! [routed_map]
-    expect(approximate.overflowing_cells > 0 && device.download(approximate.cells)[0].y == 16, "routed_map");
+    expect(approximate.overflowing_cells > 0 && device.download(approximate.cells)[0].y > 16, "routed_map");
 
     //! [redistributed_power]
     const double moved = photongrid::redistributed_power(device, approximate); // W, of 3 W in three channels

@@ -3,6 +3,7 @@
 #include "../render/number_picture_tests.hpp"
 #include "../render/progressive_tests.hpp"
 #include "../render/render_tests.hpp"
+#include "../render/routed_picture_tests.hpp"
 #include "../render/scene_picture_tests.hpp"
 #include "../trace/box_tests.hpp"
 #include "../trace/double_oracle_tests.hpp"

@@ -16,7 +16,7 @@ namespace photongrid {
 PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> sorted_map(
     serial_backend&, photons<serial_backend>, const grid&, uint);
 PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> routed_map(
-    serial_backend&, photons<serial_backend>, const grid&, uint, uint, uint);
+    serial_backend&, photons<serial_backend>, const grid&, uint, uint, uint, surplus_kind);
 PHOTONGRID_COMPILED_HERE template routed_cells<serial_backend> stencil_route(
     serial_backend&, const photons<serial_backend>&, const grid&, uint, uint, uint);
 PHOTONGRID_COMPILED_HERE template grid fitting_grid(serial_backend&, const photons<serial_backend>&, uint, float);

@@ -3,6 +3,7 @@
 #include <flann/flann.hpp>
 
 #include <algorithm>
+#include <map>
 
 namespace photongrid::testing {
 
@@ -102,6 +103,9 @@ brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>&
     }
     const double min2 = static_cast<double>(k.min_radius) * static_cast<double>(k.min_radius);
     const double disc2 = std::max(e.radius2, min2);
+    std::map<uint, uint> entries; // routed maps hold a photon several times
+    for (const uint id : in_map)
+        ++entries[id];
     const bool leave_out = k.bias == bias_kind::unbiased && e.kth && e.radius2 >= min2;
     constexpr double norms[] = {1, 3, 2, 3};
     for (std::size_t i = 0; i < near.size(); ++i) {
@@ -113,7 +117,7 @@ brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>&
         const glm::dvec3 flux = w[static_cast<int>(k.filter)] * glm::dvec3(powers[near[i].second]);
         const double all = flux.x + flux.y + flux.z;
         e.irradiance += flux;
-        e.standard_error += glm::dvec4(flux * flux, all * all);
+        e.standard_error += static_cast<double>(entries[near[i].second]) * glm::dvec4(flux * flux, all * all);
     }
     const double per_area = norms[static_cast<int>(k.filter)] / (M_PI * disc2);
     e.irradiance *= per_area;

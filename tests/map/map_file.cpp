@@ -79,8 +79,8 @@ namespace {
         EXPECT_THROW((void)load_map(b, folder / "."), map_file_error);
         EXPECT_NE(complaint("PNG or whatever").find("is not a photon map"), std::string::npos);
         auto newer = whole;
-        newer[8] = 2;
-        EXPECT_NE(complaint(newer).find("version 2"), std::string::npos);
+        newer[8] = 3;
+        EXPECT_NE(complaint(newer).find("version 3"), std::string::npos);
         auto other = whole;
         std::swap(other[12], other[15]);
         std::swap(other[13], other[14]);

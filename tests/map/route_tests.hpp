@@ -213,6 +213,64 @@ TYPED_TEST_P(algorithms, a_map_of_one_part_of_the_light_holds_that_part)
         }
 }
 
+TYPED_TEST_P(algorithms, photons_of_a_routed_map_stand_for_those_without_a_slot)
+{
+    auto& b = this->b();
+    for (const uint m : {1u, 3u, 4u, 16u})
+        for (const auto d : {distribution::uniform, distribution::clustered, distribution::coincident})
+            for (const auto kind : {surplus_kind::photons, surplus_kind::power}) {
+                SCOPED_TRACE(
+                    std::string(name_of(d)) + " m " + std::to_string(m) + " kind " + std::to_string(int(kind)));
+                const uint n = 3000;
+                auto set = make_photons(d, n, {6, 5, 4}, m);
+                set.positions[n / 2].x = std::numeric_limits<float>::quiet_NaN(); // in no cell
+                const auto cell_of = [&](uint id) {
+                    return glm::uvec3(glm::clamp(glm::floor((glm::vec3(set.positions[id]) - glm::vec3(set.g.origin))
+                                                     * glm::vec3(set.g.inverse_cell)),
+                        glm::vec3(0), glm::vec3(5, 4, 3)));
+                };
+                std::vector<std::vector<uint>> destined(6 * 5 * 4);
+                for (uint i = 0; i < n; ++i)
+                    if (const uint id = kernels::permuted(i, n, 7); id != n / 2)
+                        destined[(cell_of(id).z * 5 + cell_of(id).y) * 6 + cell_of(id).x].push_back(id);
+
+                const auto map = routed_map(b, upload_photons(b, set), set.g, m, 7, every_part, kind);
+                const auto cells = b.download(map.cells);
+                const auto list = b.download(map.list);
+                const auto positions = b.download(map.photons.positions), powers = b.download(map.photons.powers);
+                uint next = 0;
+                for (std::size_t c = 0; c < cells.size(); ++c) {
+                    const auto arrived = static_cast<uint>(destined[c].size()),
+                               kept = std::min(arrived, route_capacity(m));
+                    const uint entries = kind == surplus_kind::photons ? arrived : kept;
+                    ASSERT_EQ(cells[c], uvec2(next, entries)) << "cell " << c;
+                    next += entries;
+                    std::map<uint, uint> found;
+                    glm::dvec3 before(0), after(0);
+                    for (uint at = cells[c].x; at < next; ++at) {
+                        ++found[list[at]];
+                        after += glm::dvec3(powers[at]);
+                        ASSERT_LT(list[at], n);
+                        ASSERT_EQ(positions[at], set.positions[list[at]]);
+                    }
+                    ASSERT_EQ(found.size(), kept);
+                    for (uint s = 0; s < kept; ++s) { // the first in draw order, in turn
+                        const uint expected = entries / kept + (s < entries % kept ? 1u : 0u);
+                        ASSERT_EQ(found[destined[c][s]], expected) << "slot " << s;
+                    }
+                    for (uint at = cells[c].x; at < next; ++at)
+                        ASSERT_EQ(powers[at].w, static_cast<float>(found[list[at]]));
+                    for (const uint id : destined[c])
+                        before += glm::dvec3(set.powers[id]);
+                    for (int channel = 0; channel < 3; ++channel)
+                        ASSERT_NEAR(after[channel], before[channel], 1e-5 * before[channel]) << "cell " << c;
+                }
+                for (uint at = next; at < n; ++at)
+                    ASSERT_EQ(list[at], nowhere);
+                EXPECT_EQ(map.invalid, 1u);
+            }
+}
+
 TYPED_TEST_P(algorithms, route_throws_for_wrong_arguments)
 {
     auto& b = this->b();

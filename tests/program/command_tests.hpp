@@ -15,9 +15,9 @@ namespace {
         const auto render = run({"render", "--help"});
         EXPECT_EQ(render.code, 0);
         for (const auto* option :
-            {"--backend", "--device", "--map", "--slots", "--photons", "--k", "--grid", "--max-radius", "--size",
-                "--spp", "--light-samples", "--depth", "--seed", "--exposure", "-o", "--search", "--filter", "--bias",
-                "--leaks", "--edge-correction", "--only", "--aov", "--as-paper", "--stats", "--shader-cache",
+            {"--backend", "--device", "--map", "--slots", "--surplus", "--photons", "--k", "--grid", "--max-radius",
+                "--size", "--spp", "--light-samples", "--depth", "--seed", "--exposure", "-o", "--search", "--filter",
+                "--bias", "--leaks", "--edge-correction", "--only", "--aov", "--as-paper", "--stats", "--shader-cache",
                 "--time-passes", "--progressive", "--every", "--strip", "--crop", "--reference", "--resume", "--quiet"})
             EXPECT_NE(render.out.find(option), std::string::npos) << option;
         EXPECT_EQ(render.out.find("photongrid check my_scene.json"), std::string::npos) << "another command's example";
@@ -44,10 +44,10 @@ namespace {
                  {"--size", "32x-4"}, {"--size", "0x4"}, {"--grid", "1,2"}, {"--grid", "1,2,3,4"}, {"--grid", "0,1,1"},
                  {"--photons", "15e-1"}, {"--photons", "1e10"}, {"--photons", "-1"}, {"--photons", "1e"},
                  {"--photons", "nan"}, {"--photons", "99999999999"}, {"--k", "0"}, {"--max-radius", "nan"},
-                 {"--max-radius", "-1"}, {"--exposure", "inf"}, {"--slots", "17"}, {"--map", "hash"}, {"--device", "0"},
-                 {"--time-passes"}, {"--spp", "0"}, {"--nonsense"}, {"--search", "exact"}, {"--filter", "gauss"},
-                 {"--bias", "none"}, {"--edge-correction", "disks"}, {"--edge-correction"}, {"--only", "caustics"},
-                 {"--as-paper", "--as-paper=maybe"}}) {
+                 {"--max-radius", "-1"}, {"--exposure", "inf"}, {"--slots", "17"}, {"--surplus", "all"},
+                 {"--map", "hash"}, {"--device", "0"}, {"--time-passes"}, {"--spp", "0"}, {"--nonsense"},
+                 {"--search", "exact"}, {"--filter", "gauss"}, {"--bias", "none"}, {"--edge-correction", "disks"},
+                 {"--edge-correction"}, {"--only", "caustics"}, {"--as-paper", "--as-paper=maybe"}}) {
             const auto e = run([&] {
                 auto all = small;
                 // An option given twice is an error of its own.

@@ -33,9 +33,9 @@ namespace {
 
     // Settings of the estimate, as the statistics have them.
     const json by_default = json::parse(
-        R"({"search": "exact_k", "filter": "silverman", "bias": "unbiased", "leaks": {"side": true}, "edge_correction": "none", "only": "all"})");
+        R"({"search": "exact_k", "filter": "silverman", "bias": "unbiased", "leaks": {"side": true}, "edge_correction": "none", "only": "all", "surplus": "photons"})");
     const json paper = json::parse(
-        R"({"search": "at_least_k", "filter": "constant", "bias": "paper", "leaks": {}, "edge_correction": "none", "only": "all"})");
+        R"({"search": "at_least_k", "filter": "constant", "bias": "paper", "leaks": {}, "edge_correction": "none", "only": "all", "surplus": "power"})");
     json but(json all, const char* more)
     {
         all.update(json::parse(more));
@@ -82,7 +82,9 @@ namespace {
             {{"--only", "direct"}, but(by_default, R"({"only": "direct"})")},
             {{"--only", "caustic"}, but(by_default, R"({"only": "caustic"})")},
             {{"--only", "indirect"}, but(by_default, R"({"only": "indirect"})")},
+            {{"--surplus", "power"}, but(by_default, R"({"surplus": "power"})")},
             {{"--as-paper"}, paper},
+            {{"--as-paper", "--surplus", "photons"}, but(paper, R"({"surplus": "photons"})")},
             {{"--filter", "cone", "--as-paper", "--leaks", "side"},
                 but(paper, R"({"filter": "cone", "leaks": {"side": true}})")},
             {{"--as-paper", "--search", "exact_k", "--bias", "unbiased", "--only", "caustic"},

@@ -25,20 +25,23 @@ namespace {
         std::istringstream table(contents(folder / "steps/ring.csv"));
         std::string line;
         std::getline(table, line);
-        EXPECT_EQ(line, "picture,ms,relmse");
-        std::vector<double> times, errors;
+        EXPECT_EQ(line, "picture,ms,relmse,ssim");
+        std::vector<double> times, errors, likeness;
         while (std::getline(table, line)) {
             char name[64];
-            double ms = 0, relmse = 0;
-            ASSERT_EQ(std::sscanf(line.c_str(), "%63[^,],%lf,%lf", name, &ms, &relmse), 3) << line;
+            double ms = 0, relmse = 0, ssim = 0;
+            ASSERT_EQ(std::sscanf(line.c_str(), "%63[^,],%lf,%lf,%lf", name, &ms, &relmse, &ssim), 4) << line;
             EXPECT_TRUE(fs::exists(folder / "steps" / name)) << line;
             times.push_back(ms);
             errors.push_back(relmse);
+            likeness.push_back(ssim);
         }
         ASSERT_EQ(times.size(), pictures);
         EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
         EXPECT_GT(errors.front(), 0);
         EXPECT_EQ(errors.back(), 0);
+        EXPECT_LT(likeness.front(), 1);
+        EXPECT_EQ(likeness.back(), 1);
     }
 
     TEST_F(program, never_replaces_a_backend_asked_for)
@@ -167,8 +170,8 @@ namespace {
                     << "the last stage is the picture";
         // The last picture is the reference.
         const auto table = contents(folder / "steps/ring.csv");
-        EXPECT_EQ(table.substr(0, table.find('\n')), "picture,ms,relmse,relmse_to_reference");
-        EXPECT_EQ(table.substr(table.size() - 5), ",0,0\n");
+        EXPECT_EQ(table.substr(0, table.find('\n')), "picture,ms,relmse,ssim,relmse_to_reference,ssim_to_reference");
+        EXPECT_EQ(table.substr(table.size() - 9), ",0,1,0,1\n");
 
         EXPECT_EQ(run(small_with({"--strip", "strip.pfm", "--crop", "10x8+60+2"})).code, 2);
         EXPECT_EQ(run(small_with({"--progressive", "steps", "--reference", "strip.pfm"})).code, 2);

@@ -90,13 +90,13 @@ TYPED_TEST_P(pictures, sorting_and_routing_agree)
     render_stats stats;
     const auto all_kept = this->picture(s, settings, &stats);
     EXPECT_EQ(stats.map.overflowing_cells, 0u);
-    EXPECT_LE(
-        relative_mse(all_kept, sorted), 1e-3); // at least k: which photon is the k-th depends on the order of visits
+    EXPECT_LE(relative_mse(all_kept, sorted), 1e-9); // the same photons are added in another order
     settings.map.slots = 3;
     const auto some_kept = this->picture(s, settings, &stats);
     EXPECT_GT(stats.map.overflowing_cells, 0u);
     EXPECT_GT(stats.map.redistributed_power, 0.0);
-    EXPECT_LE(relative_mse(some_kept, sorted), 0.03);
+    settings.map.surplus = surplus_kind::power;
+    EXPECT_LT(relative_mse(some_kept, sorted), relative_mse(this->picture(s, settings), sorted));
 }
 
 TYPED_TEST_P(pictures, the_same_seed_gives_the_same_bytes)

@@ -98,6 +98,14 @@ struct gathered {
     uint held = 0;
 };
 
+/// How often the map holds each photon of a register, from photon i of the packet on.
+HWY_INLINE vector entries_of(const search_job& j, const packet& near, std::size_t i)
+{
+    const floats d;
+    const ints di;
+    return hn::GatherIndex(d, j.powers.w, hn::LoadU(di, reinterpret_cast<const int*>(near.indices() + i)));
+}
+
 /// Sums the photons within the radius, as gather_photons.glsl does, from the packet's distances. It is one function,
 /// because all of it adds to the same sums, which the compiler keeps in registers.
 template <bool ERRORS>
@@ -130,10 +138,11 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
                 blue.add(group, b1);
                 if (ERRORS) {
                     const auto all = hn::Add(hn::Add(r1, g1), b1);
-                    red2.add(group, hn::Mul(r1, r1));
-                    green2.add(group, hn::Mul(g1, g1));
-                    blue2.add(group, hn::Mul(b1, b1));
-                    all2.add(group, hn::Mul(all, all));
+                    const auto entries = j.repeats ? entries_of(j, near, i) : one;
+                    red2.add(group, hn::Mul(hn::Mul(r1, r1), entries));
+                    green2.add(group, hn::Mul(hn::Mul(g1, g1), entries));
+                    blue2.add(group, hn::Mul(hn::Mul(b1, b1), entries));
+                    all2.add(group, hn::Mul(hn::Mul(all, all), entries));
                 }
             }
         red.flush();
@@ -167,11 +176,12 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
             const float f[3]
                 = {p_red[at_radius[i]] * at_rim, p_green[at_radius[i]] * at_rim, p_blue[at_radius[i]] * at_rim};
             const float all = f[0] + f[1] + f[2];
+            const float entries = j.repeats ? j.powers.w[near.index(at_radius[i])] : 1.0f;
             for (int c = 0; c < 3; ++c) {
                 extra[c] += static_cast<double>(f[c]);
-                extra2[c] += static_cast<double>(f[c] * f[c]);
+                extra2[c] += static_cast<double>(f[c] * f[c] * entries);
             }
-            extra2[3] += static_cast<double>(all * all);
+            extra2[3] += static_cast<double>(all * all * entries);
         }
     }
     gathered g;

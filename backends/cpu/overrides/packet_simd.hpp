@@ -36,6 +36,7 @@ public:
     float* of(component p) const { return memory_ + p * stride_; }
     /// The index of photon i in the map.
     uint index(std::size_t i) const { return indices_[i]; }
+    const uint* indices() const { return indices_; }
     photon_vectors photons() const
     {
         return {{of(x), of(y), of(z)}, {of(direction_x), of(direction_y), of(direction_z)},
@@ -94,6 +95,7 @@ public:
         for (std::size_t i = k; i < k + lanes; ++i) {
             of(x)[i] = of(y)[i] = of(z)[i] = std::numeric_limits<float>::infinity();
             of(red)[i] = of(green)[i] = of(blue)[i] = 0;
+            indices_[i] = 0;
         }
         size_ = k;
         return n;

@@ -34,6 +34,7 @@ struct search_job {
     float norm = 1; ///< of the filter
     bool leave_out = false;
     bool errors = false;
+    bool repeats = false; ///< the map may hold a photon several times, as often as the w of its power says
 
     glm::vec4* irradiance = nullptr;
     glm::uvec2* used = nullptr;

@@ -100,9 +100,13 @@ void settings_panel::draw()
     choice(setting_table::map, "map",
         "How the photon map is built (m). sort is exact; route takes fewer passes, but is approximate "
         "where cells overflow.");
-    if (s.map.builder == map_builder::route)
+    if (s.map.builder == map_builder::route) {
         number(setting_table::slots, "slots", 1, 16,
             "Cells hold at most slots x slots photons. With more, fewer photons are lost and more memory is used.");
+        choice(setting_table::surplus, "surplus",
+            "Photons for which a cell has no slot: those that it keeps stand for them (photons), or only take their "
+            "power (the paper), which blurs caustics.");
+    }
     ImGui::Separator();
     number(setting_table::spp, "eye rays", 1, 64,
         "Eye rays per pixel. Speed: time in proportion. Error: smoother edges, less noise from glass and lamps.");

@@ -6,6 +6,9 @@
 // largest distance, and with those the mean of the estimate is right for every filter (Garcia Hernandez et al. 2012;
 // docs/design/decisions.md).
 //
+// Where the map holds a photon several times, its power is divided among its entries, which are not independent: the
+// square of their sum is as many times the sum of their squares.
+//
 // The kernel is one function, because its innermost loop changes nearly all of its variables.
 #include <photongrid/map/grid.glsl>
 
@@ -21,11 +24,12 @@ PARAMS(Params)
 #include <photongrid/estimate/filter.glsl>
 SWITCH(3, LEAVE_OUT)
 SWITCH(4, ERRORS) // compute the squares too
+SWITCH(5, REPEATS) // the map may hold a photon several times
 IN_GROUPS(8)
 INPUT(6, uint, list)          // photon ids
-INPUT(7, vec4, powers)        // rgb, W
+INPUT(7, vec4, powers)        // rgb, W; w: REPEATS: how often the map holds the photon
 STATE(0, vec4, search_radius) // see kth_result.glsl
-STATE(1, uvec4, chosen)
+STATE(1, uvec4, chosen)       // w: how often the last id still counts
 STATE(2, vec4, sum)           // rgb: weighted power, W
 STATE(3, vec4, compensation)  // rgb: rounding error of the sum so far (Kahan)
 STATE(4, vec4, squares)       // rgb: squares of the weighted powers; w: of their sums over channels
@@ -59,6 +63,7 @@ void kernel(uint i)
     bool apart = LEAVE_OUT && search_radius.y > 0.0f && radius2 >= args.min_radius2;
     float inverse_disc2 = 1.0f / max(radius2, args.min_radius2);
     uint last_id = chosen.z;
+    uint last_left = chosen.w;
     vec4 total = sum;
     vec4 correction = compensation;
     vec4 square = squares;
@@ -91,6 +96,11 @@ void kernel(uint i)
             uint id = from_lane(chunk_id, LANE);                                           \
             vec4 power = from_lane(chunk_power, LANE);                                     \
             bool at_radius = d2 == radius2 && id <= last_id;                               \
+            if (REPEATS) {                                                                 \
+                bool is_last = at_radius && id == last_id;                                 \
+                at_radius = at_radius && !(is_last && last_left == 0u);                    \
+                last_left -= is_last && last_left > 0u ? 1u : 0u;                          \
+            }                                                                              \
             bool counts = d2 < radius2 || at_radius;                                       \
             held += counts ? 1u : 0u;                                                      \
             bool swaps = apart && at_radius && (left_out == 0u || id > left_id);           \
@@ -111,6 +121,8 @@ void kernel(uint i)
                 float all = weighted.x + weighted.y + weighted.z;                          \
                 vec4 weighted2 = vec4(weighted.x * weighted.x, weighted.y * weighted.y,    \
                     weighted.z * weighted.z, all * all);                                   \
+                if (REPEATS)                                                               \
+                    weighted2 = weighted2 * added.w;                                       \
                 square = counts ? square + weighted2 : square;                             \
             }                                                                              \
         }                                                                                  \
@@ -125,6 +137,7 @@ void kernel(uint i)
         }
     }
 
+    chosen = uvec4(chosen.x, chosen.y, chosen.z, last_left);
     sum = total;
     compensation = correction;
     squares = square;

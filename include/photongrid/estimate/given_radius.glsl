@@ -1,4 +1,6 @@
 // The inputs of gather_photons.glsl for a given radius. kth_result.glsl writes the same outputs after a search.
+#include <photongrid/backend/none.glsl>
+
 struct Params {
     float radius2; // m^2
 };
@@ -9,5 +11,5 @@ OUTPUT(1, uvec4, chosen)
 void kernel(uint i)
 {
     search_radius = vec4(args.radius2, 0.0f, 0.0f, 0.0f);
-    chosen = uvec4(0u, 0u, 0xFFFFFFFFu, 0u);
+    chosen = uvec4(0u, 0u, NONE, NONE);
 }

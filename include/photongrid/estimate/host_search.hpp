@@ -53,7 +53,7 @@ public:
     template <backend B>
     host_search(B& b, const map_buffers<B>& map, const knn_settings& settings, bool powers)
         : grid_(map.cells_of), cells_(b.download(map.cells)), list_(b.download(map.list)),
-          positions_(b.download(map.photons.positions))
+          positions_(b.download(map.photons.positions)), repeats_(map.surpluses.size() > 0)
     {
         const auto& leaks = settings.leaks;
         settings_ = detail::checked(settings, map, 1, leaks.needs_any() ? 1 : 0);
@@ -116,13 +116,15 @@ public:
         const float inverse = 1.0f / std::max(radius2, min2);
         glm::dvec4 sum(0), squares(0);
         for (std::size_t i = 0; i < n; ++i) {
-            if (left_out && by_photon && radius2 >= min2 && found[i].key == last->key)
+            if (left_out && by_photon && radius2 >= min2 && &found[i] == &*last)
                 continue;
             const float t = std::min(distance2_of(found[i]) * inverse, 1.0f);
             const glm::vec4 weighted = powers_[found[i].index] * q.filter_weight(t);
             const float all = weighted.x + weighted.y + weighted.z;
+            const double entries = repeats_ ? static_cast<double>(powers_[found[i].index].w) : 1.0;
             sum += glm::dvec4(weighted);
-            squares += glm::dvec4(weighted.x * weighted.x, weighted.y * weighted.y, weighted.z * weighted.z, all * all);
+            squares += entries
+                * glm::dvec4(weighted.x * weighted.x, weighted.y * weighted.y, weighted.z * weighted.z, all * all);
         }
         return made_of({radius2, by_photon ? 1.0f : 0.0f, 0, 0}, glm::vec4(sum), glm::vec4(squares),
             static_cast<uint>(n), left_out);
@@ -230,6 +232,7 @@ private:
     std::vector<glm::uvec2> cells_;
     std::vector<uint> list_;
     std::vector<glm::vec4> positions_, powers_, directions_, normals_;
+    bool repeats_ = false; ///< a routed map, which may hold a photon several times
     knn_settings settings_;
 };
 

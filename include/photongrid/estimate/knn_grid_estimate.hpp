@@ -110,7 +110,7 @@ private:
     uint gather_switches() const
     {
         const auto& s = in_.s;
-        return in_.template policies<K>() | detail::filter_switch(s.filter)
+        return in_.template policies<K>() | in_.template repeats<K>() | detail::filter_switch(s.filter)
             | (s.bias == bias_kind::unbiased ? K::LEAVE_OUT_switch : 0u) | (s.errors ? K::ERRORS_switch : 0u)
             | in_.template together<K>();
     }

@@ -77,7 +77,9 @@ namespace detail {
                     {.searching = in.searching() ? 1u : 0u}, reads(*in.points, radius_search.chosen),
                     writes(cursor, tally));
                 b.template run_until_done<kernels::list_neighbours>(
-                    {n, 0u, in.template policies<kernels::list_neighbours>()},
+                    {n, 0u,
+                        in.template policies<kernels::list_neighbours>()
+                            | in.template repeats<kernels::list_neighbours>()},
                     {.grid = m.cells_of,
                         .leaks = in.leaks(),
                         .visits = in.s.visits_per_pass,

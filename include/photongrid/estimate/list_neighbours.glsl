@@ -11,6 +11,7 @@ struct Params {
 };
 PARAMS(Params)
 #include <photongrid/estimate/search_inputs.glsl>
+SWITCH(3, REPEATS) // the map may hold a photon several times
 INPUT(6, uint, list)         // photon ids
 INPUT(7, vec4, search_radii) // x: squared radius, m^2
 STATE(0, uvec4, first_four)  // indices of photons, the last one found first
@@ -18,7 +19,8 @@ STATE(1, uvec4, second_four)
 STATE(2, uvec4, third_four)
 STATE(3, uvec4, fourth_four)
 STATE(4, uvec4, cursor)      // y, z of the next row, relative to the first row; the first photon not yet visited
-STATE(5, uvec4, tally)       // x: photons in this part; y: 1: no more photons; z: the last id that counts at the radius
+STATE(5, uvec4, tally)       // x: photons in this part; y: 1: no more photons; z: the last id that counts at the radius;
+                             // w: how often it still counts
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
@@ -46,6 +48,7 @@ void kernel(uint i)
     uint next = cursor.z;
     uint held = tally.x;
     uint last_id = tally.z;
+    uint last_left = tally.w;
 
     uint left = args.visits;
     uint steps = args.ranges;
@@ -58,7 +61,12 @@ void kernel(uint i)
         uint begun = at;
         for (; at < stop && held < 16u; ++at) {
             float d2 = photon_distance2(at, p, n);
-            if (d2 < radius2 || (d2 == radius2 && list(at) <= last_id)) {
+            bool counts = d2 < radius2 || (d2 == radius2 && list(at) <= last_id);
+            if (REPEATS && d2 == radius2 && list(at) == last_id) {
+                counts = last_left > 0u;
+                last_left -= counts ? 1u : 0u;
+            }
+            if (counts) {
                 e = uvec4(d.w, e.x, e.y, e.z);
                 d = uvec4(b.w, d.x, d.y, d.z);
                 b = uvec4(a.w, b.x, b.y, b.z);
@@ -84,5 +92,5 @@ void kernel(uint i)
     third_four = d;
     fourth_four = e;
     cursor = uvec4(y - rows_y.x, z - rows_z.x, next, 0u);
-    tally = uvec4(held, z > rows_z.y ? 1u : 0u, last_id, 0u);
+    tally = uvec4(held, z > rows_z.y ? 1u : 0u, last_id, last_left);
 }

@@ -19,6 +19,7 @@ void kernel(uint i)
         tally.x = 0u;
     } else {
         cursor = uvec4(0u, 0u, 0u, 0u);
-        tally = uvec4(0u, args.searching != 0u && p.w > 0.0f && is_finite(p) ? 0u : 1u, chosen(i).z, 0u);
+        bool searches = args.searching != 0u && p.w > 0.0f && is_finite(p);
+        tally = uvec4(0u, searches ? 0u : 1u, chosen(i).z, chosen(i).w);
     }
 }

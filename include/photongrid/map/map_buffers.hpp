@@ -18,7 +18,7 @@ namespace photongrid {
 template <backend B>
 struct photons {
     buffer_of<B, glm::vec4> positions;    ///< xyz, m; w: 1 for caustic photons, else 0
-    buffer_of<B, glm::vec4> powers;       ///< rgb, W
+    buffer_of<B, glm::vec4> powers;       ///< rgb, W; w: in a routed map, how often the photon is in it
     buffer_of<B, glm::vec4> directions{}; ///< xyz: unit vector; empty unless needed
     buffer_of<B, glm::vec4> normals{};    ///< xyz: unit normal of the surface they lie on; empty unless needed
 
@@ -74,10 +74,12 @@ struct map_buffers {
     grid cells_of{};                ///< the grid of the cells
     photongrid::photons<B> photons; ///< cell by cell
     buffer_of<B, glm::uvec2> cells; ///< x: first, y: count
-    buffer_of<B, uint> list;        ///< ids: indices into the photons that the map was made from; 0xFFFFFFFF: none
-    uint invalid = 0;               ///< photons in no cell: NaN or infinite
-    uint left_out = 0;              ///< photons in no cell: of another part of the light
-    uint overflowing_cells = 0;     ///< routed: cells that received more photons than they have slots
+    /// Ids: indices into the photons that the map was made from; 0xFFFFFFFF: none. In a routed map an id may occur
+    /// several times (surplus_kind::photons).
+    buffer_of<B, uint> list;
+    uint invalid = 0;           ///< photons in no cell: NaN or infinite
+    uint left_out = 0;          ///< photons in no cell: of another part of the light
+    uint overflowing_cells = 0; ///< routed: cells that received more photons than they have slots
     buffer_of<B, glm::vec4>
         surpluses; ///< routed: per cell, w: power of photons not kept, W, given to those kept; empty if sorted
 };

@@ -13,7 +13,9 @@
 #include <photongrid/map/pair_value.kernel.hpp>
 #include <photongrid/map/photon_cell.kernel.hpp>
 #include <photongrid/map/prefix_sums.hpp>
+#include <photongrid/map/share_power.kernel.hpp>
 #include <photongrid/map/stencil_route.hpp>
+#include <photongrid/map/surplus_kind.hpp>
 
 #include <bit>
 
@@ -75,32 +77,36 @@ map_buffers<B> sorted_map(B& b, photons<B> p, const grid& g, uint parts = every_
 
 /// Builds a photon map by stencil routing with m x m slots per cell (2.2.2): few passes, but approximate where cells
 /// overflow. The gaps that routing leaves between cells are removed. It consumes the photons. `seed` determines the
-/// order in which photons are drawn.
+/// order in which photons are drawn. `surplus` says what becomes of photons for which a cell has no slot.
 /// \throws std::invalid_argument for m outside 1 to 16, backend_error if cells x slots exceed the device's limit.
 /// \snippet snippets.cpp routed_map
 template <backend B>
-map_buffers<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 0, uint parts = every_part)
+map_buffers<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 0, uint parts = every_part,
+    surplus_kind surplus = surplus_kind::photons)
 {
     const uint n = p.size();
     const uint cells = cell_count(g);
     map_buffers<B> map;
     map.cells_of = g;
     map.invalid = detail::checked_count<kernels::invalid_photon>(b, n, {}, reads(p.positions, p.powers));
+    buffer_of<B, uint> entries; // of each entry's photon
     {
         auto routed = stencil_route(b, p, g, m, seed, parts);
         map.surpluses = std::move(routed.surpluses);
         map.overflowing_cells = static_cast<uint>(routed.overflowing_cells);
         p.powers = std::move(routed.powers);
-        auto kept = b.template make<uint>(cells);
-        b.template run<kernels::pair_value>(cells, {}, reads(routed.cells), writes(kept));
-        const auto sums = prefix_sums(b, kept);
+        if (surplus == surplus_kind::power)
+            b.template run<kernels::pair_value>(cells, {}, reads(routed.cells), writes(routed.arrived));
+        const auto sums = prefix_sums(b, routed.arrived);
         map.cells = b.template make<glm::uvec2>(cells);
-        b.template run<kernels::packed_cell>(cells, {}, reads(sums, routed.cells), writes(map.cells));
+        b.template run<kernels::packed_cell>(cells, {}, reads(sums, routed.arrived), writes(map.cells));
         map.list = b.template make<uint>(n);
+        entries = b.template make<uint>(n);
         b.template run<kernels::packed_photon>(
-            n, {.cells = cells}, reads(sums, routed.cells, routed.list), writes(map.list));
+            n, {.cells = cells}, reads(sums, routed.cells, routed.list), writes(map.list, entries));
     }
     detail::take_photons(b, map, std::move(p), parts);
+    b.template run<kernels::share_power>(n, {}, reads(entries), writes(map.photons.powers));
     return map;
 }
 

@@ -29,7 +29,7 @@ public:
 
 namespace detail {
     inline constexpr std::array<char, 8> map_file_magic{'p', 'h', 'g', 'r', 'i', 'd', 'm', '\n'};
-    inline constexpr std::uint32_t map_file_version = 1, map_file_byte_order = 0x01020304u;
+    inline constexpr std::uint32_t map_file_version = 2, map_file_byte_order = 0x01020304u;
 
     struct map_file_header {
         std::array<char, 8> magic = map_file_magic;

@@ -4,11 +4,11 @@ struct Params {
 };
 PARAMS(Params)
 INPUT(0, uint, sums)   // photons of cells 0 to i
-INPUT(1, uvec2, slots) // x: first slot, y: photons kept
+INPUT(1, uint, counts) // photons of cell i
 OUTPUT(0, uvec2, cell) // x: first, y: count
 
 void kernel(uint i)
 {
-    uint count = slots(i).y;
+    uint count = counts(i);
     cell = uvec2(sums(i) - count, count);
 }

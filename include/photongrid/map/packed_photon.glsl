@@ -1,18 +1,21 @@
-// Entry i of a routed list without gaps: a binary search in the prefix sums finds the cell, and thereby the slot.
+// Entry i of a routed list without gaps: a binary search in the prefix sums finds the cell, and thereby the slot. A cell
+// that has more entries than photons kept repeats them in turn, as often as its number of entries asks for.
 #include <photongrid/backend/none.glsl>
 
 struct Params {
     uint cells;
 };
 PARAMS(Params)
-INPUT(0, uint, sums)       // photons of cells 0 to i
+INPUT(0, uint, sums)       // entries of cells 0 to i
 INPUT(1, uvec2, slots)     // x: first slot, y: photons kept
 INPUT(2, uint, slot_list)  // photon ids by slot
-OUTPUT(0, uint, photon)    // NONE past the last photon kept
+OUTPUT(0, uint, photon)    // NONE past the last entry
+OUTPUT(1, uint, entries)   // of this photon
 
 void kernel(uint i)
 {
     photon = NONE;
+    entries = 1u;
     if (i >= sums(args.cells - 1u))
         return;
     uint low = 0u;
@@ -25,5 +28,9 @@ void kernel(uint i)
             low = middle + 1u;
     }
     uvec2 cell = slots(low);
-    photon = slot_list(cell.x + i - (sums(low) - cell.y));
+    uint before = low > 0u ? sums(low - 1u) : 0u;
+    uint all = sums(low) - before;
+    uint slot = (i - before) % cell.y;
+    photon = slot_list(cell.x + slot);
+    entries = all / cell.y + (slot < all % cell.y ? 1u : 0u);
 }

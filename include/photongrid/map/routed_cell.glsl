@@ -12,14 +12,18 @@ OUTPUT(0, uvec2, cell)  // x: first slot, y: photons kept
 OUTPUT(1, vec4, scale)  // the power of each kept photon is multiplied by this ...
 OUTPUT(2, vec4, surplus) // ... and this is added, W, in channels that no kept photon has; w: all power moved, W
 OUTPUT(3, vec4, total)  // rgb: power destined for the cell, W; w: number of photons
+OUTPUT(4, uint, arrived) // number of photons destined for the cell
 
 void kernel(uint i)
 {
     precise vec4 all = partial_sums(i * args.sums);
-    for (uint p = 1u; p < args.sums; ++p)
+    uint destined = uint(all.w); // a float holds each partial number exactly, but not always their sum
+    for (uint p = 1u; p < args.sums; ++p) {
         all += partial_sums(i * args.sums + p);
+        destined += uint(partial_sums(i * args.sums + p).w);
+    }
     total = all;
-    uint destined = uint(total.w);
+    arrived = destined;
     uint kept = min(destined, args.capacity);
     cell = uvec2(i * args.capacity, kept);
     scale = vec4(1.0f, 1.0f, 1.0f, 1.0f);

@@ -19,6 +19,7 @@ struct routed_cells {
     buffer_of<B, glm::uvec2> cells;      ///< x: first slot, y: photons kept
     buffer_of<B, glm::vec4> powers;      ///< per photon, W, after redistribution
     buffer_of<B, glm::vec4> totals;      ///< per cell: rgb: power destined for it, W; w: number of photons
+    buffer_of<B, uint> arrived;          ///< per cell: number of photons destined for it
     buffer_of<B, glm::vec4> surpluses;   ///< per cell: rgb: power added to each kept photon, W; w: power moved, W
     std::uint64_t overflowing_cells = 0; ///< cells that received more photons than they have slots
 };
@@ -54,9 +55,10 @@ routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, 
     r.cells = b.template make<glm::uvec2>(cells);
     r.surpluses = b.template make<glm::vec4>(cells);
     r.totals = b.template make<glm::vec4>(cells);
+    r.arrived = b.template make<uint>(cells);
     auto scales = b.template make<glm::vec4>(cells);
     b.template run<kernels::routed_cell>(cells, {.capacity = capacity, .sums = sums},
-        reads(partial_sums, r.list, p.powers), writes(r.cells, scales, r.surpluses, r.totals));
+        reads(partial_sums, r.list, p.powers), writes(r.cells, scales, r.surpluses, r.totals, r.arrived));
     r.powers = b.template make<glm::vec4>(n);
     b.template run<kernels::redistribute_power>(
         n, {.grid = g}, reads(p.positions, p.powers, scales, r.surpluses), writes(r.powers));

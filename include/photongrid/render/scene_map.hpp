@@ -100,7 +100,7 @@ private:
         const uint parts = parts_of(settings_.output.only);
         built_.map = settings_.map.builder == map_builder::sort
             ? sorted_map(b_, std::move(p), g, parts)
-            : routed_map(b_, std::move(p), g, settings_.map.slots, settings_.seed, parts);
+            : routed_map(b_, std::move(p), g, settings_.map.slots, settings_.seed, parts, settings_.map.surplus);
         auto& made = built_.stats.map;
         made.builder = settings_.map.builder;
         made.cells = cell_count(g);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <photongrid/estimate/estimate_settings.hpp>
+#include <photongrid/map/surplus_kind.hpp>
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -20,10 +21,11 @@ enum class light_part { all, direct, caustic, indirect };
 
 /// The photon map (2.1, 2.2).
 struct map_settings {
-    std::uint32_t photons = 65000;           ///< photons stored
-    std::uint32_t photon_depth = 32;         ///< the most surfaces that a photon path hits
-    map_builder builder = map_builder::sort; ///< sorted or routed
-    std::uint32_t slots = 4;                 ///< m: routed cells have m x m slots
+    std::uint32_t photons = 65000;                ///< photons stored
+    std::uint32_t photon_depth = 32;              ///< the most surfaces that a photon path hits
+    map_builder builder = map_builder::sort;      ///< sorted or routed
+    std::uint32_t slots = 4;                      ///< m: routed cells have m x m slots
+    surplus_kind surplus = surplus_kind::photons; ///< photons for which a routed cell has no slot
     /// Cells of the map over the scene; 0, 0, 0: fitted to the photons and k (fitting_grid.hpp).
     glm::uvec3 grid{25, 25, 50};
 
@@ -31,8 +33,10 @@ struct map_settings {
     map_settings in_use() const
     {
         map_settings s = *this;
-        if (builder == map_builder::sort)
+        if (builder == map_builder::sort) {
             s.slots = map_settings{}.slots;
+            s.surplus = map_settings{}.surplus;
+        }
         return s;
     }
     bool operator==(const map_settings&) const = default;
@@ -85,7 +89,7 @@ struct render_settings {
 };
 
 /// The settings that reproduce the paper's estimate (2.3): at least k, constant filter, no leak policy, no edge
-/// correction, one pass. Other settings are unchanged.
+/// correction, one pass; routed cells redistribute power alone (2.2.2). Other settings are unchanged.
 /// \snippet snippets.cpp as_paper
 inline render_settings as_paper(render_settings s)
 {
@@ -94,6 +98,7 @@ inline render_settings as_paper(render_settings s)
     s.estimate.bias = bias_kind::paper;
     s.estimate.leaks = {};
     s.estimate.edges = edge_correction::none;
+    s.map.surplus = surplus_kind::power;
     s.output.passes = 1;
     return s;
 }

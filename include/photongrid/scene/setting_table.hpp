@@ -180,6 +180,10 @@ namespace setting_table {
         "build the photon map by bitonic sort or stencil routing"};
     inline constexpr setting slots{
         "slots", of(&map_settings::slots), whole_range{1, 16}, in_scenes::optional, "routed cells have N x N slots"};
+    inline constexpr setting surplus{"surplus", of(&map_settings::surplus),
+        one_of{{named{"photons", surplus_kind::photons}, {"power", surplus_kind::power}}}, in_scenes::optional,
+        "photons for which a routed cell has no slot: those kept stand for them (photons), or only take their power, "
+        "as in the paper"};
     inline constexpr setting exposure{"exposure", of(&output_settings::exposure), real_range{-64, 64, " EV"},
         in_scenes::optional, "PNG: pixel values times 2^EV"};
     inline constexpr setting search{"search", of(&estimate_settings::search),
@@ -214,7 +218,7 @@ constexpr void for_each_setting(const Visit& visit)
     namespace t = setting_table;
     const auto all = [&](const auto&... row) { (visit(row), ...); };
     all(t::size, t::photons, t::k, t::grid, t::max_radius, t::light_samples, t::spp, t::passes, t::depth,
-        t::photon_depth, t::seed, t::map, t::slots, t::exposure, t::search, t::filter, t::bias, t::leaks,
+        t::photon_depth, t::seed, t::map, t::slots, t::surplus, t::exposure, t::search, t::filter, t::bias, t::leaks,
         t::edge_correction, t::only);
 }
 
