@@ -26,7 +26,7 @@ faults=(
   "photons that stand for others keep all power|include/photongrid/map/share_power.glsl|1.0f / number|1.0f"
   "routed maps count only what they keep|include/photongrid/map/map_builders.hpp|if (surplus == surplus_kind::power)|if (map.cells_of.resolution.w > 0)"
   "entries of one photon are independent|include/photongrid/estimate/gather_photons.glsl|weighted2 = weighted2 * added.w;|weighted2 = weighted2 * 1.0f;"
-  "the paper's routing counts surplus photons|include/photongrid/scene/render_settings.hpp|s.map.surplus = surplus_kind::power;|s.map.surplus = surplus_kind::photons;|program"
+  "the paper's routing counts surplus photons|include/photongrid/scene/render_settings.hpp|s.map.surplus = surplus_kind::power;|s.map.surplus = surplus_kind::photons;"
   "routing draws in order of id|include/photongrid/map/route_photon.glsl|permuted(i, args.photons, args.seed)|i"
   "search ends a ring early|include/photongrid/estimate/knn_visit.glsl|unexplored * unexplored > limit2)|unexplored * unexplored > 0.25f * limit2)"
   "search takes all within the maximum radius|include/photongrid/estimate/knn_visit.glsl|d2 <= (held < args.k ? args.max_radius2 : radius2)|d2 <= args.max_radius2"
@@ -104,6 +104,30 @@ faults=(
   "vulkan: groups hear another lane|backends/vulkan/compute_prelude.glsl|#define from_lane(V, LANE) subgroupShuffle(V, LANE)|#define from_lane(V, LANE) subgroupShuffle(V, (LANE) & 6u)"
   "vulkan: an element left off the list|backends/vulkan/iterate.glsl|keep = more;|keep = more && (i & 1023u) != 1023u;"
   "vulkan: a stride sorts one way|backends/vulkan/overrides/bitonic_strides.glsl|EXCHANGE(p6, p7, rising)|EXCHANGE(p6, p7, true)"
+  "vulkan: a pass does not see what the one before wrote|backends/vulkan/recorder.hpp|VK_ACCESS_SHADER_READ_BIT \| VK_ACCESS_SHADER_WRITE_BIT \| VK_ACCESS_TRANSFER_READ_BIT|VK_ACCESS_TRANSFER_READ_BIT"
+  "vulkan: a pass overtakes a copy|backends/vulkan/barriers.hpp|b.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT \| VK_ACCESS_TRANSFER_WRITE_BIT;|b.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;"
+  "vulkan: a copy overtakes a pass|backends/vulkan/recorder.hpp|VK_ACCESS_SHADER_WRITE_BIT \| VK_ACCESS_TRANSFER_READ_BIT|VK_ACCESS_SHADER_WRITE_BIT"
+  "vulkan: an indirect dispatch reads its size too early|backends/vulkan/recorder.hpp|VK_ACCESS_TRANSFER_WRITE_BIT \| VK_ACCESS_INDIRECT_COMMAND_READ_BIT|VK_ACCESS_TRANSFER_WRITE_BIT"
+  "vulkan: passes are not waited for|backends/vulkan/barriers.hpp|b.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT \| VK_ACCESS_TRANSFER_WRITE_BIT;|b.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;"
+  "vulkan: results are read before they are there|backends/vulkan/recorder.hpp|        finish();|        submit();"
+  "vulkan: a batch keeps no buffers|backends/vulkan/batch.hpp|b.kept.push_back(buffers[i]);|(void)buffers[i];"
+  "vulkan: a batch has a pass too many|backends/vulkan/recorder.hpp|++now_.passes >= passes_per_batch|++now_.passes > passes_per_batch"
+  "vulkan: routing forgets draws past the first block|backends/vulkan/routing.hpp|begin < std::min(longest, block)|begin < 0 * std::min(longest, block)"
+  "vulkan: routing sorts one digit less|backends/vulkan/routing.hpp|(destinations_ >> shift) != 0|(destinations_ >> shift) > 15"
+  "vulkan: the longest range is not cleared|backends/vulkan/routing.hpp|on_.batches.fill(most, 0, sizeof(uint), 0);|on_.batches.fill(most, 0, sizeof(uint), 7);"
+  "gl: a pass of tiles without a barrier|backends/gl/tiles.hpp|            gl.TextureBarrier(); // states|            // states|gl_callers_context"
+  "gl: a pass without a barrier|backends/gl/gl.hpp|device_->call.TextureBarrier();|(void)0;|gl_callers_context"
+  "gl: routing has a slot too many|backends/gl/routing.hpp|gl.StencilFunc(GL_EQUAL, static_cast<GLint>(capacity - 1), 0xFFu);|gl.StencilFunc(GL_EQUAL, static_cast<GLint>(capacity), 0xFFu);"
+  "gl: routing loses a bit plane|backends/gl/routing.hpp|bit < static_cast<uint>(std::bit_width(largest)); ++bit|bit + 1 < static_cast<uint>(std::bit_width(largest)); ++bit"
+  "gl: a full slot takes another|backends/gl/routing.hpp|gl.StencilOp(GL_INCR, GL_INCR, GL_INCR);|gl.StencilOp(GL_INCR, GL_INCR, GL_KEEP);"
+  "gl: the stencil is not cleared|backends/gl/routing.hpp|gl.ClearNamedFramebufferiv(framebuffer, GL_STENCIL, 0, &zero);|"
+  "gl: sums of routing replace|backends/gl/routing.hpp|gl.BlendFunci(0, GL_ONE, GL_ONE);|gl.BlendFunci(0, GL_ONE, GL_ZERO);"
+  "gl: sums of routing begin anywhere|backends/gl/routing.hpp|on.clear_targets(zero);|"
+  "gl: a query is read before it has ended|backends/gl/queries.hpp|GetQueryObjectui64v(query, GL_QUERY_RESULT, &n);|GetQueryObjectui64v(query, GL_QUERY_RESULT_NO_WAIT, &n);"
+  "gl: the scissor test stays on|backends/gl/tiles.hpp|gl.Disablei(GL_SCISSOR_TEST, 0);|"
+  "gl: the caller's stencil mask is lost|backends/gl/saved_state.hpp|gl.StencilMaskSeparate(s.face, s.write_mask);||gl_callers_context"
+  "gl: the caller's query buffer is lost|backends/gl/saved_state.hpp|gl.BindBuffer(GL_QUERY_BUFFER, results_);||gl_callers_context"
+  "gl: the caller's blending is lost|backends/gl/saved_state.hpp|gl.BlendFuncSeparatei(0, values_[2], values_[3], values_[4], values_[5]);||gl_callers_context"
   "gl: tiles end with one element left|backends/gl/tiles.hpp|live_[t] = n != 0;|live_[t] = n > 1;"
   "a lamp 5 % off its cosine|include/photongrid/trace/emit_photon.glsl|cosine_direction(light.normal, r.x, r.y)|cosine_direction(light.normal, 0.95f * r.x, r.y)|optics"
   "a lamp with a dark edge|include/photongrid/trace/emit_photon.glsl|light.edge_u, r.z)|light.edge_u, 0.99f * r.z)|optics"
@@ -171,6 +195,8 @@ tests_of() {
 folder_of() {
   case $1 in
     on_cpu | on_gl | on_vulkan) echo "build-${1#on_}" ;;
+    gl_*) echo build-gl ;;
+    vulkan_*) echo build-vulkan ;;
     *) echo build-serial ;;
   esac
 }

@@ -95,11 +95,10 @@ std::vector<std::string> warnings(
         all.push_back(text("every pixel is black: the camera at ", point(s.camera.position),
             " sees nothing that is lit, in a scene that extends from ", point(b.low), " to ", point(b.high)));
     // Six stops: less than 1.5 % or more than 60 times what fits.
-    else if (fitting && is_png && std::abs(*fitting - settings.output.exposure) > 6)
-        all.push_back(text("the PNG is almost ", *fitting > settings.output.exposure ? "black" : "white",
-            " at exposure ", settings.output.exposure, " EV; --exposure ", std::round(*fitting),
-            " would fit its radiance. The scene measures ", size_of(b), " and its lights emit ",
-            detail::power_of_lights(s), " W"));
+    else if (const auto set = settings.output.exposure; set && fitting && is_png && std::abs(*fitting - *set) > 6)
+        all.push_back(text("the PNG is almost ", *fitting > *set ? "black" : "white", " at exposure ", *set,
+            " EV; --exposure ", std::round(*fitting), " would fit its radiance. The scene measures ", size_of(b),
+            " and its lights emit ", detail::power_of_lights(s), " W"));
     return all;
 }
 

@@ -202,9 +202,11 @@ namespace {
         add_whole(to, "--seed", o.seed, "same seed, same picture");
         to.add_option_function<std::string>(
               "--exposure",
-              [&o](const std::string& text) { o.exposure = parsed_number("--exposure", text, "a number"); },
-              "PNG: pixel values times 2^EV")
-            ->type_name("EV");
+              [&o](const std::string& text) {
+                  o.exposure = parsed_setting("--exposure", text, setting_table::exposure.values);
+              },
+              "PNG: pixel values times 2^EV; default: the scene's")
+            ->type_name(type_of(setting_table::exposure.values));
         to.add_option("--stats", o.stats, "statistics, as JSON")->type_name("OUT.json");
         to.add_flag("--quiet", o.quiet, "print neither progress nor notes");
     }
@@ -220,9 +222,11 @@ namespace {
             ->type_name("V");
         to.add_option_function<std::string>(
               "--exposure",
-              [&o](const std::string& text) { o.exposure = parsed_number("--exposure", text, "a number"); },
-              "compare the looks of pixel values times 2^EV")
-            ->type_name("EV");
+              [&o](const std::string& text) {
+                  o.exposure = parsed_setting("--exposure", text, setting_table::exposure.values);
+              },
+              "compare the looks of pixel values times 2^EV; default: auto, fitted to B")
+            ->type_name(type_of(setting_table::exposure.values));
     }
 
     /// The files of a command: what it reads and what it writes must differ.

@@ -54,7 +54,8 @@ struct reference_options {
     std::optional<glm::uvec2> size;
     std::optional<double> bin;
     std::optional<caustics_by> caustics;
-    double exposure = 0; ///< EV, PNG only
+    /// EV, PNG only, or none: fitted to the picture. Not given: the scene's.
+    std::optional<std::optional<double>> exposure;
     std::vector<std::string> outputs;
     std::string error, stats;
     bool quiet = false;
@@ -63,7 +64,7 @@ struct reference_options {
 struct compare_options {
     std::string a, b;
     double max_relmse = std::numeric_limits<double>::infinity();
-    double exposure = 0; ///< EV, for structural similarity
+    std::optional<double> exposure; ///< EV, for structural similarity; none: fitted to the reference
 };
 
 struct check_options {

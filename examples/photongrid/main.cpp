@@ -9,6 +9,7 @@
 #include <photongrid/io/image_file.hpp>
 #include <photongrid/io/scene_file.hpp>
 #include <photongrid/io/structural_similarity.hpp>
+#include <photongrid/io/tone_map.hpp>
 
 #include <cerrno>
 #include <csignal>
@@ -62,6 +63,7 @@ namespace {
     {
         const auto a = read_image(o.a), b = read_image(o.b);
         image_difference d;
+        const double exposure = exposure_for(b, o.exposure);
         try {
             d = compare_images(a, b);
         } catch (const std::invalid_argument& e) {
@@ -69,7 +71,7 @@ namespace {
             return file_failure;
         }
         std::cout << "MSE     " << d.mse << "\nrelMSE  " << d.relmse << "\nlargest " << d.largest << " at pixel " << d.x
-                  << "," << d.y << "\nSSIM    " << structural_similarity(a, b, o.exposure) << " at " << o.exposure
+                  << "," << d.y << "\nSSIM    " << structural_similarity(a, b, exposure) << " at " << exposure
                   << " EV\n";
         if (d.not_finite > 0)
             std::cout << "skipped " << d.not_finite << " pixels that are not finite\n";

@@ -126,13 +126,14 @@ std::uint32_t parsed_setting(const std::string& option, const std::string& text,
 {
     return parsed<std::uint32_t>(option, text, "a whole number");
 }
-double parsed_setting(const std::string& option, const std::string& text, const setting_table::real_range&)
-{
-    return parsed_number(option, text, "a number");
-}
 double parsed_setting(const std::string& option, const std::string& text, const setting_table::any_length&)
 {
     return parsed_number(option, text, "a number");
+}
+std::optional<double> parsed_setting(
+    const std::string& option, const std::string& text, const setting_table::real_or_auto&)
+{
+    return text == "auto" ? std::nullopt : std::optional(parsed_number(option, text, "a number, or auto"));
 }
 glm::uvec2 parsed_setting(const std::string& option, const std::string& text, const setting_table::pixels&)
 {

@@ -56,8 +56,9 @@ void add_number(CLI::App& to, const std::string& option, std::optional<double>& 
 
 // A setting's value, and the type that --help shows for it.
 std::uint32_t parsed_setting(const std::string& option, const std::string& text, const setting_table::whole_range&);
-double parsed_setting(const std::string& option, const std::string& text, const setting_table::real_range&);
 double parsed_setting(const std::string& option, const std::string& text, const setting_table::any_length&);
+std::optional<double> parsed_setting(
+    const std::string& option, const std::string& text, const setting_table::real_or_auto&);
 /// Default settings with this width and height.
 glm::uvec2 parsed_setting(const std::string& option, const std::string& text, const setting_table::pixels&);
 glm::uvec3 parsed_setting(const std::string& option, const std::string& text, const setting_table::cells&);
@@ -71,7 +72,7 @@ Value parsed_setting(const std::string& option, const std::string& text, const s
 }
 
 inline std::string type_of(const setting_table::whole_range&) { return "N"; }
-inline std::string type_of(const setting_table::real_range& r) { return r.unit + 1; }
+inline std::string type_of(const setting_table::real_or_auto& r) { return std::string(r.range.unit + 1) + "|auto"; }
 inline std::string type_of(const setting_table::any_length&) { return "METRES"; }
 inline std::string type_of(const setting_table::pixels&) { return "WxH"; }
 inline std::string type_of(const setting_table::cells&) { return "X,Y,Z|auto"; }

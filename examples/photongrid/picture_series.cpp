@@ -2,6 +2,7 @@
 
 #include <photongrid/io/image_difference.hpp>
 #include <photongrid/io/structural_similarity.hpp>
+#include <photongrid/io/tone_map.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -86,7 +87,7 @@ void picture_series::add(const image& picture)
     const auto begin = clock::now();
     steps_.push_back({picture, elapsed_ms()});
     if (!options_.folder.empty())
-        write_image(path(steps_.size()), picture, options_.exposure);
+        write_image(path(steps_.size()), picture, exposure_for(picture, options_.exposure));
     spent_ms_ += std::chrono::duration<double, std::milli>(clock::now() - begin).count();
 }
 
@@ -115,7 +116,7 @@ void picture_series::write_table() const
     const auto likeness = [&](const image& a, const image& b) {
         char text[64];
         std::snprintf(text, sizeof text, ",%.6g,%.6g", compare_images(a, b).relmse,
-            structural_similarity(a, b, options_.exposure));
+            structural_similarity(a, b, exposure_for(b, options_.exposure)));
         return std::string(text);
     };
     for (std::size_t i = 0; i < steps_.size(); ++i) {
@@ -148,7 +149,7 @@ void picture_series::write_strip()
         stages.push_back(cut(p, options_.strip_crop.value_or(crop{0, 0, p.width, p.height})));
         strip_times_.push_back(steps_[i].ms);
     }
-    write_image(options_.strip, side_by_side(stages), options_.exposure);
+    write_image(options_.strip, side_by_side(stages), exposure_for(steps_.back().picture, options_.exposure));
 }
 
 } // namespace photongrid

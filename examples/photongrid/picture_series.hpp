@@ -25,7 +25,7 @@ struct series_options {
     std::optional<crop> strip_crop; ///< of each picture; empty: the whole picture
     std::string reference;          ///< a picture to compute errors against
     glm::uvec2 size{0};             ///< of all pictures
-    double exposure = 0;            ///< EV
+    std::optional<double> exposure; ///< EV; none: fitted to each picture
     double every_ms = 0; ///< between pictures; 0: every picture, but at least a tenth of the elapsed time apart
 };
 

@@ -3,6 +3,8 @@
 #include "progress_bar.hpp"
 #include <photongrid/io/image_file.hpp>
 #include <photongrid/io/scene_file.hpp>
+#include <photongrid/io/tone_map.hpp>
+#include <photongrid/scene/setting_table.hpp>
 
 #include <photongrid/reference/reference.hpp>
 
@@ -51,7 +53,8 @@ exit_code run_reference(const reference_options& o, const std::function<bool()>&
     reference_settings settings;
     try {
         settings = settings_for(s, o);
-        detail::require(std::isfinite(o.exposure) && std::abs(o.exposure) <= 64, "exposure: must be from -64 to 64 EV");
+        if (o.exposure)
+            setting_table::exposure.values.check("exposure", *o.exposure);
     } catch (const std::invalid_argument& e) {
         std::cerr << "photongrid: error: on the command line: " << e.what() << '\n';
         return usage_error;
@@ -80,12 +83,13 @@ exit_code run_reference(const reference_options& o, const std::function<bool()>&
         std::cerr << "photongrid: caustics from bins of " << stats.bin_size << " m, over which they are blurred\n";
     const image_notes notes{{"scene", s.name}, {"backend", "reference"}, {"seed", std::to_string(settings.seed)},
         {"settings", settings_json(settings).dump()}, {"version", std::string("photongrid ") + PHOTONGRID_VERSION}};
+    const double exposure = exposure_for(result.mean, o.exposure.value_or(s.render.output.exposure));
     for (const auto& path : o.outputs) {
-        write_image(path, result.mean, o.exposure, notes);
+        write_image(path, result.mean, exposure, notes);
         std::cout << path << '\n';
     }
     if (!o.error.empty()) {
-        write_image(o.error, result.standard_error, o.exposure, notes);
+        write_image(o.error, result.standard_error, exposure, notes);
         std::cout << o.error << '\n';
     }
     if (!o.stats.empty()) {

@@ -6,6 +6,7 @@
 #include "resume_file.hpp"
 #include "stats_file.hpp"
 #include <photongrid/io/scene_file.hpp>
+#include <photongrid/io/tone_map.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -201,8 +202,11 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
     for (const auto& warning : warnings(s, settings, drawing->stats(), picture, is_png))
         std::cerr << "photongrid: warning: " << warning << '\n';
     series->finish(picture);
+    const double exposure = exposure_for(picture, settings.output.exposure);
+    if (is_png && !settings.output.exposure && !o.quiet)
+        std::cerr << "photongrid: exposure: " << exposure << " EV, fitted to the picture; --exposure sets it\n";
     for (const auto& path : plan.outputs) {
-        write_image(path, picture, settings.output.exposure, picture_notes(s, settings, *drawing));
+        write_image(path, picture, exposure, picture_notes(s, settings, *drawing));
         std::cout << path << '\n';
     }
     if (!o.strip.empty())

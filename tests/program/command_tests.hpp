@@ -116,6 +116,21 @@ namespace {
         EXPECT_EQ(draw(with_power(1e-4), {"--exposure", std::to_string(fitting)}), "");
         expect(draw(with_power(1e5)), {"the PNG is almost white"});
 
+        // Where nothing sets the exposure it fits, and a scene looks the same however bright its lights are.
+        std::string looks;
+        for (const double factor : {1.0, 0x1p-13, 0x1p17}) {
+            auto scene = with_power(factor);
+            scene["render"].erase("exposure");
+            const auto said = draw(scene);
+            expect(said, {"exposure: ", " EV, fitted to the picture; --exposure sets it"});
+            EXPECT_EQ(said.find("warning"), std::string::npos) << said;
+            if (looks.empty())
+                looks = contents(folder / "a.png");
+            EXPECT_EQ(contents(folder / "a.png"), looks) << factor;
+            EXPECT_EQ(draw(scene, {"--exposure", "auto", "--quiet"}), "");
+            EXPECT_EQ(contents(folder / "a.png"), looks) << factor;
+        }
+
         auto away = whole; // straight up
         away["camera"]["look_at"] = away["camera"]["position"];
         away["camera"]["look_at"][1] = 1 + away["camera"]["look_at"][1].get<double>();

@@ -234,12 +234,14 @@ namespace {
                     is(row.values.least - 1, false);
                 if (row.values.most < 0xFFFFFFFFu)
                     is(row.values.most + 1, false);
-            } else if constexpr (std::is_same_v<values, t::real_range>) {
-                is(row.values.least, true);
-                is(row.values.most, true);
-                for (const double bad : {std::nextafter(row.values.least, -infinity),
-                         std::nextafter(row.values.most, infinity), nan, infinity, -infinity})
-                    is(bad, false);
+            } else if constexpr (std::is_same_v<values, t::real_or_auto>) {
+                const auto& range = row.values.range;
+                is(std::optional<double>(), true);
+                is(std::optional(range.least), true);
+                is(std::optional(range.most), true);
+                for (const double bad : {std::nextafter(range.least, -infinity), std::nextafter(range.most, infinity),
+                         nan, infinity, -infinity})
+                    is(std::optional(bad), false);
             } else if constexpr (std::is_same_v<values, t::any_length>) {
                 is(1e-9, true);
                 for (const double bad : {0.0, -1.0, nan, infinity, -infinity})

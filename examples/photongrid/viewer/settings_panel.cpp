@@ -75,7 +75,7 @@ void settings_panel::change(const std::string& name, Change apply)
     apply(document_.edit().settings);
 }
 
-void settings_panel::draw()
+void settings_panel::draw(double shown_exposure)
 {
     draw_backend();
     const auto& s = document_.now().settings;
@@ -122,8 +122,7 @@ void settings_panel::draw()
         change("side", [&](render_settings& r) { r.estimate.leaks.side = side; });
     tip("Rejects photons that arrive from behind a surface. Speed: almost the same. Error: no light leaks through "
         "walls.");
-    measure(setting_table::exposure, "exposure, EV", -10, 10, "%+.1f", false,
-        "Brightness of the screen and of saved PNGs (E, e). Nothing is drawn again.");
+    draw_exposure(shown_exposure);
 }
 
 void settings_panel::draw_backend()
@@ -139,6 +138,20 @@ void settings_panel::draw_backend()
     }
     tip("What draws the picture (b). The same photons give the same picture on each; speed differs. cpu is the fastest "
         "without a GPU.");
+}
+
+void settings_panel::draw_exposure(double shown)
+{
+    bool fitted = !document_.now().settings.output.exposure;
+    if (ImGui::Checkbox("fitted exposure", &fitted))
+        change(
+            "exposure", [&](render_settings& r) { r.output.exposure = fitted ? std::nullopt : std::optional(shown); });
+    tip("Fits the exposure to the picture: the geometric mean of the luminance becomes middle grey.");
+    auto value = static_cast<float>(shown);
+    const bool edited = ImGui::SliderFloat("exposure, EV", &value, -10, 10, "%+.1f", ImGuiSliderFlags_AlwaysClamp);
+    if (begun("exposure, EV") && edited)
+        document_.edit().settings.output.exposure = static_cast<double>(value);
+    tip("Brightness of the screen and of saved PNGs (E, e). Nothing is drawn again.");
 }
 
 void settings_panel::draw_grid()
@@ -158,7 +171,7 @@ void settings_panel::draw_grid()
     }
 }
 
-void settings_panel::keys()
+void settings_panel::keys(double shown_exposure)
 {
     const auto pressed = [](int key) { return ImGui::IsKeyPressed(key); };
     const bool up = ImGui::GetIO().KeyShift;
@@ -188,7 +201,7 @@ void settings_panel::keys()
         change("radius", [&](render_settings& s) { s.estimate.max_radius *= up ? 1.25 : 0.8; });
     if (pressed(GLFW_KEY_E))
         change("exposure", [&](render_settings& s) {
-            s.output.exposure = std::clamp(s.output.exposure + (up ? 0.5 : -0.5), -64.0, 64.0);
+            s.output.exposure = std::clamp(shown_exposure + (up ? 0.5 : -0.5), -64.0, 64.0);
         });
     if (pressed(GLFW_KEY_G))
         change("grid", [&](render_settings& s) { s.map.grid = s.map.grid == glm::uvec3(0) ? grid_ : glm::uvec3(0); });

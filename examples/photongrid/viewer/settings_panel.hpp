@@ -12,10 +12,10 @@ public:
     /// `d` must outlive it. Its grid, or one of 32 x 32 x 32 where it names none, is what "fitted grid" goes back to.
     explicit settings_panel(document& d);
 
-    /// Within an ImGui window.
-    void draw();
+    /// Within an ImGui window. `shown_exposure`: of the screen, EV.
+    void draw(double shown_exposure);
     /// Where no text is being typed and Ctrl is not held.
-    void keys();
+    void keys(double shown_exposure);
 
 private:
     template <class Row>
@@ -30,6 +30,7 @@ private:
     bool begun(const char* name);
     void draw_backend();
     void draw_grid();
+    void draw_exposure(double shown);
 
     document& document_;
     glm::uvec3 grid_;             ///< that is not fitted

@@ -7,6 +7,7 @@
 #include <photongrid/io/image_difference.hpp>
 #include <photongrid/io/image_file.hpp>
 #include <photongrid/io/scene_writer.hpp>
+#include <photongrid/io/tone_map.hpp>
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
@@ -118,7 +119,14 @@ namespace {
                     static_cast<float>(std::log10(std::max(1e-12, compare_images(shown_.picture, *r).relmse))));
             upload();
         }
-        void upload() { pane_.upload(shown_.picture, document_.now().settings.output.exposure); }
+        void upload()
+        {
+            // A fitted exposure follows the picture in steps, so that the screen does not flicker while it converges.
+            const auto set = document_.now().settings.output.exposure;
+            if (const double fits = exposure_for(shown_.picture, set); set || std::abs(fits - exposure_) > 0.25)
+                exposure_ = fits;
+            pane_.upload(shown_.picture, exposure_);
+        }
 
         // --- the screen ---
         void draw()
@@ -168,7 +176,7 @@ namespace {
             tip("Left button: a click selects; a drag moves the selected object (with Shift, parallel to the floor) "
                 "or, elsewhere, turns the camera. Right or middle button, or Shift: pan. Wheel: zoom. A moving camera "
                 "keeps the photon map; a change of the scene needs a new one.");
-            panel_.draw();
+            panel_.draw(exposure_);
             ImGui::Separator();
             draw_buttons();
             draw_curve();
@@ -227,7 +235,7 @@ namespace {
                     save_scene();
                 return;
             }
-            panel_.keys();
+            panel_.keys(exposure_);
             if (pressed(GLFW_KEY_P))
                 save_picture();
             if (pressed(GLFW_KEY_O))
@@ -254,7 +262,7 @@ namespace {
             }
             try {
                 const auto png = free_name(options_.stem, ".png"), exr = png.substr(0, png.size() - 4) + ".exr";
-                write_image(png, shown_.picture, document_.now().settings.output.exposure);
+                write_image(png, shown_.picture, exposure_);
                 write_image(exr, shown_.picture);
                 message_ = "saved " + png + " and " + exr;
             } catch (const file_error& e) {
@@ -286,6 +294,7 @@ namespace {
         frame shown_;
         render_report report_;
         version sent_;
+        double exposure_ = 0;                 ///< EV, of the screen
         std::vector<float> changes_, errors_; ///< log10, since the last request
         std::string message_;
         bool overlay_ = true;

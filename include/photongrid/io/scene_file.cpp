@@ -222,7 +222,13 @@ namespace {
         {
             to = whole(v, r.least, r.most);
         }
-        void set(const json_value& v, const setting_table::real_range& r, double& to) const { to = in_range(v, r); }
+        void set(const json_value& v, const setting_table::real_or_auto& r, std::optional<double>& to) const
+        {
+            if (v.kind == json_kind::string && v.text == "auto")
+                to = std::nullopt;
+            else
+                to = in_range(v, r.range);
+        }
         void set(const json_value& v, const setting_table::any_length&, double& to) const { to = radius(v); }
         template <class Value, std::size_t N>
         void set(const json_value& v, const setting_table::one_of<Value, N>& choice, Value& to) const

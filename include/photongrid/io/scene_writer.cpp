@@ -48,7 +48,10 @@ namespace {
     // Settings as in a scene file.
     json written(const setting_table::pixels&, const output_settings& s) { return {s.width, s.height}; }
     json written(const setting_table::whole_range&, std::uint32_t v) { return v; }
-    json written(const setting_table::real_range&, double v) { return v; }
+    json written(const setting_table::real_or_auto&, const std::optional<double>& v)
+    {
+        return v ? json(*v) : json("auto");
+    }
     json written(const setting_table::any_length&, double v) { return v; }
     template <class Value, std::size_t N>
     json written(const setting_table::one_of<Value, N>& choice, Value v)

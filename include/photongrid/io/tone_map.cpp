@@ -22,6 +22,11 @@ std::optional<double> fitting_exposure(const image& picture)
     return lit > 0 ? std::optional(std::log2(0.18) - sum / lit) : std::nullopt;
 }
 
+double exposure_for(const image& picture, std::optional<double> set)
+{
+    return set ? *set : std::clamp(fitting_exposure(picture).value_or(0.0), -64.0, 64.0);
+}
+
 unsigned char tone_mapped(float linear, double exposure)
 {
     const double v = static_cast<double>(linear) * std::exp2(exposure);

@@ -12,6 +12,9 @@ namespace photongrid {
 /// grey (Reinhard et al. 2002, Photographic Tone Reproduction for Digital Images); none for a black picture.
 std::optional<double> fitting_exposure(const image& picture);
 
+/// The exposure, EV, at which a picture is shown: the one that is set, or the fitting one; 0 for a black picture.
+double exposure_for(const image& picture, std::optional<double> set);
+
 /// Linear radiance to an 8-bit sRGB value: clamp(2^exposure * linear, 0, 1) through the sRGB transfer function
 /// (IEC 61966-2-1).
 unsigned char tone_mapped(float linear, double exposure);

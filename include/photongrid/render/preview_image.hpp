@@ -39,6 +39,16 @@ inline between_pixels between(uint pixel, uint divisor, uint count)
     return {low, std::min(low + 1, count - 1), at - static_cast<float>(low)};
 }
 
+/// One over the mean of pixels' largest channels; 1 for black ones.
+inline float scale_of(const std::vector<glm::vec3>& pixels)
+{
+    double sum = 0;
+    for (const auto& p : pixels)
+        sum += static_cast<double>(std::max({p.x, p.y, p.z}));
+    const auto scale = static_cast<float>(static_cast<double>(pixels.size()) / sum);
+    return std::isnormal(scale) ? scale : 1.0f;
+}
+
 /// Pixels as an image of the picture's size, multiplied by `scale`. Values are interpolated between the centres of
 /// larger pixels, as v / (1 + v) after exposure, so that a lamp does not brighten its neighbours.
 inline image to_image(const std::vector<glm::vec4>& pixels, const raster& r, const render_settings& s, float scale,
@@ -57,7 +67,7 @@ inline image to_image(const std::vector<glm::vec4>& pixels, const raster& r, con
     std::vector<between_pixels> columns;
     for (uint x = 0; x < s.output.width; ++x)
         columns.push_back(between(x, r.divisor, r.width));
-    const float exposure = static_cast<float>(std::exp2(s.output.exposure));
+    const float exposure = s.output.exposure ? static_cast<float>(std::exp2(*s.output.exposure)) : scale_of(good);
     for (auto& p : good)
         p = glm::min(p / (1.0f + p * exposure), 0.999999f / exposure);
     for (uint y = 0; y < s.output.height; ++y) {

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -71,8 +72,9 @@ struct output_settings {
     /// The picture is the mean of so many passes, each with its own photons, eye rays and shadow rays.
     std::uint32_t passes = 1;
     light_part only = light_part::all; ///< the part of the light to draw
-    double exposure = 0;               ///< EV for tone-mapped output: pixel values times 2^exposure
-    bool aov = false;                  ///< radius, count and relative standard error of the estimate per pixel
+    /// EV for tone-mapped output: pixel values times 2^exposure; none: fitted to the picture.
+    std::optional<double> exposure{};
+    bool aov = false; ///< radius, count and relative standard error of the estimate per pixel
 
     bool operator==(const output_settings&) const = default;
 };

@@ -71,6 +71,15 @@ namespace setting_table {
     };
     template <class Value, std::size_t N>
     one_of(const named<Value> (&)[N]) -> one_of<Value, N>;
+    /// A number, or none: found from what is drawn.
+    struct real_or_auto {
+        real_range range;
+        void check(const char* name, const std::optional<double>& v) const
+        {
+            if (v)
+                range.check(name, *v);
+        }
+    };
     /// Numbers of cells of the photon map along three axes, or 0, 0, 0.
     struct cells {
         std::uint32_t most_per_axis;
@@ -184,8 +193,9 @@ namespace setting_table {
         one_of{{named{"photons", surplus_kind::photons}, {"power", surplus_kind::power}}}, in_scenes::optional,
         "photons for which a routed cell has no slot: those kept stand for them (photons), or only take their power, "
         "as in the paper"};
-    inline constexpr setting exposure{"exposure", of(&output_settings::exposure), real_range{-64, 64, " EV"},
-        in_scenes::optional, "PNG: pixel values times 2^EV"};
+    inline constexpr setting exposure{"exposure", of(&output_settings::exposure), real_or_auto{{-64, 64, " EV"}},
+        in_scenes::optional,
+        "PNG: pixel values times 2^EV, or auto: so that the geometric mean of the luminance is middle grey"};
     inline constexpr setting search{"search", of(&estimate_settings::search),
         one_of{{named{"at_least_k", search_kind::at_least_k}, {"exact_k", search_kind::exact_k},
             {"fixed_radius", search_kind::fixed_radius}}},

@@ -80,7 +80,7 @@ namespace detail {
             if constexpr (requires { kind.size(list[0]); })
                 for (std::size_t i = 0; i < list.size(); ++i)
                     require(kind.size(list[i]) >= scale * 0x1p-18,
-                        kind.list + ("[" + std::to_string(i))
+                        std::string(kind.list) + '[' + std::to_string(i)
                             + "]: is smaller than 2^-18 of the scene, which single precision cannot resolve; leave it "
                               "out, or make the large shapes smaller");
         };
