@@ -22,7 +22,7 @@ faults=(
   "verbs: the last is not counted|backends/serial/serial.hpp|k.holds(i) ?|k.holds(i) && i + 1 != l.first + l.elements ?"
   "verbs: memory is never given back|backends/serial/serial.hpp|account_->now -= data_.size()|account_->now -= 0 * data_.size()"
   "routing drops surplus power|include/photongrid/map/routed_cell.glsl|scale.y = total.y / sum.y|scale.y = 1.0f"
-  "a photon stands for one too few|include/photongrid/map/packed_photon.glsl|(slot < all % cell.y ? 1u : 0u)|0u"
+  "a photon stands for one too few|include/photongrid/map/packed_photon.glsl|(slot < all % kept ? 1u : 0u)|0u"
   "photons that stand for others keep all power|include/photongrid/map/share_power.glsl|1.0f / number|1.0f"
   "routed maps count only what they keep|include/photongrid/map/map_builders.hpp|if (surplus == surplus_kind::power)|if (map.cells_of.resolution.w > 0)"
   "entries of one photon are independent|include/photongrid/estimate/gather_photons.glsl|weighted2 = weighted2 * added.w;|weighted2 = weighted2 * 1.0f;"

@@ -4,7 +4,6 @@
 #include <photongrid/backend/backend.hpp>
 
 #include <cstring>
-#include <functional>
 #include <limits>
 #include <random>
 
@@ -21,10 +20,6 @@ enum class fault {
     wrong_contents ///< the n-th `download` answers random bits
 };
 
-/// Which output slots of a pass may be overwritten whole; of others, only the first three floats of a vec4 are (see
-/// spoil).
-using spoils_whole = std::function<bool(std::string_view kernel)>;
-
 /// B with an optional fault. Its exceptions contain "injected".
 template <backend B>
 class faulty_backend {
@@ -35,12 +30,11 @@ public:
     explicit faulty_backend(B& inner) : inner_(&inner) {}
 
     /// From now on counts calls, and at the n-th (from 1) that `f` counts, fails as `f` says. n = 0: never.
-    void set(fault f, std::uint64_t n, std::uint64_t wrong = 0, spoils_whole whole = {})
+    void set(fault f, std::uint64_t n, std::uint64_t wrong = 0)
     {
         fault_ = f;
         at_ = n;
         wrong_ = wrong;
-        whole_ = std::move(whole);
         calls_ = 0;
         lost_ = false;
         random_.seed(static_cast<std::mt19937_64::result_type>(n));
@@ -76,7 +70,7 @@ public:
         work();
         inner_->template run<K>(l, args, reads, writes);
         if (due(fault::garbage))
-            spoil_all(kernel_name<K>(), writes);
+            spoil_all(writes);
     }
     template <iterative_kernel K, class Reads, class Writes>
     progress run_until_done(launch l, const typename K::Params& args, Reads reads, Writes writes, uint passes)
@@ -84,7 +78,7 @@ public:
         work();
         auto p = inner_->template run_until_done<K>(l, args, reads, writes, passes);
         if (due(fault::garbage)) {
-            spoil_all(kernel_name<K>(), writes);
+            spoil_all(writes);
             p = {.passes = 0xFFFFFFFFu, .finished = !p.finished, .active = {~std::uint64_t{0}}};
         }
         return p;
@@ -103,7 +97,7 @@ public:
         work();
         inner_->template route<K>(l, args, reads, destinations, m, slots, totals);
         if (due(fault::garbage))
-            spoil_all(kernel_name<K>(), writes(slots, totals));
+            spoil_all(writes(slots, totals));
     }
     void finish()
     {
@@ -155,29 +149,34 @@ private:
         const auto which = random_() % 16;
         return which < 8 ? odd[which] : random_bits<float>();
     }
-    template <class Writes>
-    void spoil_all(std::string_view kernel, const Writes& writes)
+    /// A whole number: as it may be, a little past what it may be, far past it, or NONE.
+    uint random_whole(std::size_t elements)
     {
-        const bool whole = whole_ && whole_(kernel);
-        std::apply([&](auto&... buffers) { (spoil(buffers, whole), ...); }, writes);
+        const auto which = random_() % 16;
+        return which == 0 ? 0xFFFFFFFFu : static_cast<uint>(random_() % (which < 4 ? 100000 : 2 * elements + 2));
     }
-    /// Overwrites a buffer's floats. Whole numbers, and the w of a vec4, say where kernels read (photon ids, cells,
-    /// materials, events); kernels trust them, as the contract in backend.hpp says, so they are kept unless `whole`.
+    template <class Writes>
+    void spoil_all(const Writes& writes)
+    {
+        std::apply([&](auto&... buffers) { (spoil(buffers), ...); }, writes);
+    }
+    /// Overwrites a buffer.
     template <class Buffer>
-    void spoil(Buffer& b, bool whole)
+    void spoil(Buffer& b)
     {
         using T = typename Buffer::value_type;
         auto data = inner_->download(b);
-        for (auto& x : data) {
-            if (whole)
-                x = random_bits<T>();
-            else if constexpr (std::same_as<T, glm::vec4>)
-                x = glm::vec4(random_float(), random_float(), random_float(), x.w);
-            else if constexpr (std::same_as<T, glm::vec2>)
-                x = glm::vec2(random_float(), random_float());
-            else if constexpr (std::same_as<T, float>)
+        for (auto& x : data)
+            if constexpr (std::same_as<T, float>)
                 x = random_float();
-        }
+            else if constexpr (std::same_as<T, uint>)
+                x = random_whole(data.size());
+            else
+                for (typename T::length_type c = 0; c < T::length(); ++c)
+                    if constexpr (std::same_as<typename T::value_type, float>)
+                        x[c] = random_float();
+                    else
+                        x[c] = random_whole(data.size());
         b = inner_->upload(std::span<const T>(data));
     }
 
@@ -185,7 +184,6 @@ private:
     fault fault_ = fault::none;
     std::uint64_t at_ = 0, wrong_ = 0, calls_ = 0;
     bool lost_ = false;
-    spoils_whole whole_;
     std::mt19937_64 random_;
 };
 

@@ -1,21 +1,28 @@
 // What a device that fails is asked to do: every algorithm, and the renderer.
 #pragma once
 
-#include "../backends/serial_pictures.hpp"
 #include "../map/photon_sets.hpp"
 #include "../scene/test_scenes.hpp"
 #include "faulty_backend.hpp"
 
+#include <photongrid/backends/serial/serial.hpp>
+#include <photongrid/estimate/knn_neighbours.hpp>
+#include <photongrid/map/map_file.hpp>
+#include <photongrid/render/progressive_render.hpp>
 #include <photongrid/render/render.hpp>
 
+#include <filesystem>
+
+#include <chrono>
 #include <ostream>
+
+#include <unistd.h>
 
 namespace photongrid {
 namespace {
 
     using testing::fault;
-    using faulty = testing::faulty_backend<serial_backend>;
-    static_assert(backend<faulty>);
+    static_assert(backend<testing::faulty_backend<serial_backend>>);
 
     template <class T>
     void append(std::string& bits, const std::vector<T>& data)
@@ -24,13 +31,19 @@ namespace {
     }
 
     /// Something to do on a backend; the bits of its answer.
+    template <class B>
     struct job {
         const char* name;
-        std::string (*run)(faulty&);
+        std::string (*run)(B&);
     };
-    std::ostream& operator<<(std::ostream& out, const job& j) { return out << j.name; }
+    template <class B>
+    std::ostream& operator<<(std::ostream& out, const job<B>& j)
+    {
+        return out << j.name;
+    }
 
-    std::string sort(faulty& b, std::uint32_t n)
+    template <class B>
+    std::string sort(B& b, std::uint32_t n)
     {
         testing::random_source u(n);
         std::vector<glm::uvec2> pairs(n);
@@ -45,7 +58,8 @@ namespace {
         return bits;
     }
 
-    std::string estimate(faulty& b, bool routed)
+    template <class B>
+    std::string estimate(B& b, bool routed)
     {
         const auto set = testing::make_photons(testing::distribution::clustered, 300, {5, 4, 3}, 7);
         auto p = testing::upload_photons(b, set);
@@ -59,7 +73,8 @@ namespace {
         return bits;
     }
 
-    std::string route(faulty& b)
+    template <class B>
+    std::string route(B& b)
     {
         const auto set = testing::make_photons(testing::distribution::clustered, 300, {5, 4, 3}, 7);
         const auto p = testing::upload_photons(b, set);
@@ -71,7 +86,8 @@ namespace {
         return bits;
     }
 
-    rendered picture(faulty& b, map_builder builder, const render_observer& observer = {})
+    template <class B>
+    rendered picture(B& b, map_builder builder, const render_observer& observer = {})
     {
         auto s = testing::small_cornell(); // glass, a mirror, a lamp
         s.render.output.width = 6;
@@ -84,7 +100,8 @@ namespace {
         return render(b, s, s.render, observer);
     }
 
-    std::string render_bits(faulty& b, map_builder builder, const render_observer& observer = {})
+    template <class B>
+    std::string render_bits(B& b, map_builder builder, const render_observer& observer = {})
     {
         const auto [p, stats] = picture(b, builder, observer);
         std::string bits;
@@ -95,20 +112,81 @@ namespace {
         return bits;
     }
 
-    const job jobs[] = {
-        {"sort", [](faulty& b) { return sort(b, 128); }},
-        {"sort_padded", [](faulty& b) { return sort(b, 100); }},
-        {"stencil_route", route},
-        {"sorted_map_and_estimate", [](faulty& b) { return estimate(b, false); }},
-        {"routed_map_and_estimate", [](faulty& b) { return estimate(b, true); }},
-        {"render_sorted", [](faulty& b) { return render_bits(b, map_builder::sort); }},
-        {"render_routed", [](faulty& b) { return render_bits(b, map_builder::route); }},
+    template <class B>
+    std::string lists(B& b)
+    {
+        const auto set = testing::make_photons(testing::distribution::clustered, 300, {5, 4, 3}, 7);
+        const auto map = sorted_map(b, testing::upload_photons(b, set), set.g);
+        const auto points = b.upload(std::span<const glm::vec4>(testing::make_points(set, 40, 8)));
+        const auto found = knn_neighbours(b, map, points, {.k = 20, .max_radius = 0.4f});
+        std::string bits;
+        append(bits, b.download(found.ids));
+        append(bits, b.download(found.distances2));
+        return bits;
+    }
+
+    /// Saves a map and loads it again.
+    template <class B>
+    std::string map_in_a_file(B& b)
+    {
+        namespace fs = std::filesystem;
+        const auto path = fs::temp_directory_path() / ("photongrid_faulty_map_" + std::to_string(::getpid()));
+        const struct removed {
+            const fs::path& path;
+            ~removed() { fs::remove(path); }
+        } at_the_end{path};
+        const auto set = testing::make_photons(testing::distribution::clustered, 300, {5, 4, 3}, 7);
+        save_map(b, sorted_map(b, testing::upload_photons(b, set), set.g), path);
+        const auto map = load_map(b, path);
+        std::string bits;
+        append(bits, b.download(map.cells));
+        append(bits, b.download(map.list));
+        append(bits, b.download(map.photons.positions));
+        return bits;
+    }
+
+    /// The program's and the window's loop: a drawing that is changed and begins again, with the previews in between.
+    template <class B>
+    std::string progressive(B& b)
+    {
+        auto s = testing::small_cornell();
+        s.render.output.width = 16;
+        s.render.output.height = 12;
+        s.render.map.photons = 300;
+        s.render.estimate.k = 8;
+        s.render.map.photon_depth = 5;
+        s.render.view.light_samples = 1;
+        progressive_render<B> loop(b);
+        std::string bits;
+        for (const double x : {0.0, 0.1}) {
+            s.camera.position.x += x;
+            loop.start(s, s.render, {.target_ms = 1e-6, .running_estimates = true}); // always out of time
+            while (!loop.step(std::chrono::milliseconds(0)))
+                if (loop.pictures() > 0)
+                    (void)loop.picture();
+            append(bits, loop.picture().pixels);
+        }
+        return bits;
+    }
+
+    template <class B>
+    constexpr job<B> jobs[] = {
+        {"sort", [](B& b) { return sort(b, 128); }},
+        {"sort_padded", [](B& b) { return sort(b, 100); }},
+        {"stencil_route", [](B& b) { return route(b); }},
+        {"sorted_map_and_estimate", [](B& b) { return estimate(b, false); }},
+        {"routed_map_and_estimate", [](B& b) { return estimate(b, true); }},
+        {"neighbour_lists", [](B& b) { return lists(b); }},
+        {"map_in_a_file", [](B& b) { return map_in_a_file(b); }},
+        {"render_sorted", [](B& b) { return render_bits(b, map_builder::sort); }},
+        {"render_routed", [](B& b) { return render_bits(b, map_builder::route); }},
         {"render_watched",
-            [](faulty& b) {
+            [](B& b) {
                 render_observer observer;
                 observer.intermediate = [](const image&) {};
                 return render_bits(b, map_builder::sort, observer);
             }},
+        {"progressive", [](B& b) { return progressive(b); }},
     };
 
 } // namespace

@@ -201,8 +201,9 @@ namespace detail {
 ///
 /// After a backend_error, destructors still free every buffer, the outputs of the failed verb are undefined, and the
 /// backend may be used again, unless the device was lost: then every verb throws. Algorithms pass exceptions on;
-/// buffers that they were given to consume or to sort are then undefined. Kernels trust ids that earlier passes wrote;
-/// host code throws backend_error for a count from the device that is impossible.
+/// buffers that they were given to consume or to sort are then undefined. Kernels trust ids that earlier passes wrote,
+/// unless they are compiled with PHOTONGRID_GUARD_READS (backend/begin.hpp); host code throws backend_error for a count
+/// from the device that is impossible.
 ///
 /// A verb sees the results of all verbs before it. A pass may read a buffer that it also writes, if it reads none of
 /// the elements that it writes (a STATE is its own element's old value). The outputs of one pass are different buffers.

@@ -75,13 +75,23 @@
     P args{};                                                                                                          \
     static constexpr std::string_view path = __FILE__;
 
+// Kernels read where ids of earlier passes point. With PHOTONGRID_GUARD_READS a read past the end of a buffer gives 0;
+// all files of a program must agree on it (the CMake option of that name sees to that). Without, it is asserted that
+// there is none.
+#pragma push_macro("PHOTONGRID_ELEMENT")
+#undef PHOTONGRID_ELEMENT
+#ifdef PHOTONGRID_GUARD_READS
+#define PHOTONGRID_ELEMENT(T, NAME)                                                                                    \
+    return i < NAME##_data.size() ? NAME##_data[i] : ::photongrid::detail::no_element<T>;
+#else
+#define PHOTONGRID_ELEMENT(T, NAME)                                                                                    \
+    assert(i < NAME##_data.size() && "kernel reads past the end of " #NAME);                                           \
+    return NAME##_data[i];
+#endif
+
 #define INPUT(B, T, NAME)                                                                                              \
     std::span<const T> NAME##_data{};                                                                                  \
-    const T& NAME(::photongrid::uint i) const                                                                          \
-    {                                                                                                                  \
-        assert(i < NAME##_data.size() && "kernel reads past the end of " #NAME);                                       \
-        return NAME##_data[i];                                                                                         \
-    }                                                                                                                  \
+    const T& NAME(::photongrid::uint i) const { PHOTONGRID_ELEMENT(T, NAME) }                                          \
     static T input_type(::photongrid::slot<B>);                                                                        \
     static constexpr std::string_view input_name(::photongrid::slot<B>) { return #NAME; }                              \
     void bind(::photongrid::slot<B>, std::span<const T> data) { NAME##_data = data; }

@@ -2,6 +2,8 @@
 #undef PHOTONGRID_SHARED_IS_READ
 #undef PARAMS
 #pragma pop_macro("PARAMS")
+#undef PHOTONGRID_ELEMENT
+#pragma pop_macro("PHOTONGRID_ELEMENT")
 #undef INPUT
 #pragma pop_macro("INPUT")
 #undef PHOTONGRID_VARIABLE

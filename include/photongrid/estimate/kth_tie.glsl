@@ -112,7 +112,7 @@ void kernel(uint i)
                 range = narrowed(range, pivot.z, count.z, missing);
                 range = narrowed(range, pivot.w, count.w, missing);
             }
-            bool one = range.y <= range.x + 1u;
+            bool one = range.y <= range.x || range.y - range.x == 1u;
             between = uvec4(range.x, range.y, 0u, one ? FOUND_ID : COUNTING_IDS);
             result = one ? uvec4(args.k, result.y, range.x, missing - range.z)
                          : uvec4(result.x, result.y, result.z, range.z);

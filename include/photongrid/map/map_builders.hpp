@@ -13,6 +13,7 @@
 #include <photongrid/map/pair_value.kernel.hpp>
 #include <photongrid/map/photon_cell.kernel.hpp>
 #include <photongrid/map/prefix_sums.hpp>
+#include <photongrid/map/range_past_end.kernel.hpp>
 #include <photongrid/map/share_power.kernel.hpp>
 #include <photongrid/map/stencil_route.hpp>
 #include <photongrid/map/surplus_kind.hpp>
@@ -43,6 +44,13 @@ namespace detail {
     template <backend B>
     void take_photons(B& b, map_buffers<B>& map, photons<B> p, uint parts)
     {
+#ifdef PHOTONGRID_GUARD_READS // searches would visit up to 2^32 photons that are not there
+        if (const auto wrong
+            = checked_count<kernels::range_past_end>(b, map.cells.size(), {.photons = p.size()}, reads(map.cells));
+            wrong > 0)
+            throw backend_error(b.caps().backend + ": the device put photons of " + std::to_string(wrong)
+                + " cells past the last of " + std::to_string(p.size()) + "; it computes wrong results");
+#endif
         if (parts != every_part)
             map.left_out = checked_count<kernels::other_part>(b, p.size(), {.parts = parts}, reads(p.positions));
         reorder(b, p, map.list);

@@ -30,7 +30,8 @@ void kernel(uint i)
     uvec2 cell = slots(low);
     uint before = low > 0u ? sums(low - 1u) : 0u;
     uint all = sums(low) - before;
-    uint slot = (i - before) % cell.y;
+    uint kept = max(cell.y, 1u);
+    uint slot = (i - before) % kept;
     photon = slot_list(cell.x + slot);
-    entries = all / cell.y + (slot < all % cell.y ? 1u : 0u);
+    entries = all / kept + (slot < all % kept ? 1u : 0u);
 }

@@ -1,0 +1,12 @@
+// True for a cell whose photons are not all in the map: a device that works makes none.
+struct Params {
+    uint photons;
+};
+PARAMS(Params)
+INPUT(0, uvec2, cells) // x: first photon, y: count
+
+bool holds(uint i)
+{
+    uvec2 cell = cells(i);
+    return cell.x > args.photons || cell.y > args.photons - cell.x;
+}
