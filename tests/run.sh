@@ -9,7 +9,7 @@
 #                      and those of users' projects that show what another does for another backend; property tests
 #                      with a seed of its own, which it prints (PHOTONGRID_SEED=N chooses one)
 #   --stage NAME       only this stage, one of those named below; a full run takes hours
-#   --device hardware  every backend on a real GPU; software devices are refused (no sanitizers, no clang)
+#   --device hardware  every backend on a real GPU, long runs too; software devices are refused (no sanitizers, no clang)
 #   --no-install       only say which Debian packages are missing, do not install them
 #   --quick            after an edit: builds what it makes stale with g++ and runs the short tests of that; where the
 #                      serial backend's are among them, not those of the other backends
@@ -130,6 +130,9 @@ all_stages=(texts sanitizers clang fuzzing tests)
 if [[ $device == hardware ]]; then
   export PHOTONGRID_DEVICE=hardware
   all_stages=(texts tests)
+  if [[ $full == no ]]; then
+    short=(--label-exclude full) # the long runs too: pictures by seeds, on devices that round loosely
+  fi
 elif [[ $full == yes ]]; then
   all_stages+=(gpu_assisted benches tidy faults)
 fi

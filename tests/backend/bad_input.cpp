@@ -1,6 +1,7 @@
 // Bad input at the interface: each line of the table is a call, the exception that it is documented to throw, and the
 // words that name the argument. On every backend, in every build type.
 #include "../map/photon_sets.hpp"
+#include "wanted_device_tests.hpp"
 
 #include <backends_under_test.hpp>
 
@@ -241,5 +242,7 @@ TYPED_TEST(bad_input, of_another_backends_buffers_is_refused_or_cannot_be)
         {"downloading another's buffer", thrown::invalid_argument, "download: b", [&] { (void)mine.download(theirs); }},
     });
 }
+
+INSTANTIATE_TYPED_TEST_SUITE_P(all, wanted_device, backends_under_test<::testing::Types>);
 
 } // namespace photongrid::testing

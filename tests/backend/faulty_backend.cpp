@@ -1,5 +1,6 @@
 // Every algorithm and the renderer on a device that fails at its first call, its second, … its last: they end in the
 // documented exception, hold no memory afterwards, and work again on a device that does.
+#include "faulty_device_tests.hpp"
 #include "faulty_jobs.hpp"
 #include <photongrid/io/image_file.hpp>
 

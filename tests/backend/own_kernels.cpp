@@ -5,6 +5,7 @@
 #include "../map/photon_sets.hpp"
 #include "spectral_kernels.hpp"
 #include "under_test.hpp"
+#include "wanted_device_tests.hpp"
 
 #include <backends_under_test.hpp>
 
@@ -132,5 +133,7 @@ TYPED_TEST(own_kernels, have_their_mistakes_reported_where_they_are)
         EXPECT_NE(text.find("auto twice = 2u * i;"), std::string::npos) << text;
     }
 }
+
+INSTANTIATE_TYPED_TEST_SUITE_P(all, wanted_device, backends_under_test<::testing::Types>);
 
 } // namespace photongrid::testing

@@ -1,6 +1,7 @@
 // One backend object to a thread, all kinds side by side in one process: nothing that they share behind the scenes may
 // be written unguarded. tests/run.sh --full runs this under the thread sanitizer.
 #include "../map/photon_sets.hpp"
+#include "wanted_device_tests.hpp"
 
 #include <backends_under_test.hpp>
 
@@ -89,5 +90,7 @@ TEST(threads, each_with_backends_of_its_own_find_what_one_alone_finds)
         }
     }
 }
+
+INSTANTIATE_TYPED_TEST_SUITE_P(all, wanted_device, backends_under_test<::testing::Types>);
 
 } // namespace photongrid::testing

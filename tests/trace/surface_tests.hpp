@@ -2,8 +2,9 @@
 // precision, rays at each edge of polygons, and how far off a surface its rays start.
 #pragma once
 
-#include "hard_cases.hpp"
+#include "probe_rays.hpp"
 
+#include <photongrid/io/scene_file.hpp>
 #include <photongrid/reference/intersect.hpp>
 
 #include <numbers>

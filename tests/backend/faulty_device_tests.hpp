@@ -1,8 +1,11 @@
-// The jobs of faulty_jobs.hpp on every backend, which fails at some of its calls: they end in the documented exception,
+// The jobs of faulty_jobs.hpp on each backend, which fails at some of its calls: they end in the documented exception,
 // free the device's memory, and work again. The algorithms are the generic ones: overrides are for the backend itself.
+// A short run has the serial backend alone, a full one all.
+#pragma once
+
 #include "faulty_jobs.hpp"
 
-#include <backends_under_test.hpp>
+#include <faulty_backends_under_test.hpp>
 
 #include <gtest/gtest.h>
 
@@ -40,7 +43,7 @@ protected:
     std::unique_ptr<faulty> b;
     std::uint64_t resting = 0; ///< bytes of the backend's own
 };
-TYPED_TEST_SUITE(faulty_devices, backends_under_test<::testing::Types>);
+TYPED_TEST_SUITE(faulty_devices, faulty_backends_under_test<::testing::Types>);
 
 TYPED_TEST(faulty_devices, fail_by_the_documented_exception_and_work_again)
 {
