@@ -95,6 +95,18 @@ namespace {
             ->type_name(type_of(row.values));
     }
 
+    /// --exposure of commands that take no other settings.
+    template <class Exposure>
+    void add_exposure(CLI::App& to, Exposure& target, const std::string& description)
+    {
+        const auto& values = setting_table::exposure.values;
+        to.add_option_function<std::string>(
+              "--exposure",
+              [&target, values](const std::string& text) { target = parsed_setting("--exposure", text, values); },
+              description)
+            ->type_name(type_of(values));
+    }
+
     /// Options for scene, backend and settings, common to `render` and `view`.
     void add_picture(CLI::App& to, render_options& o)
     {
@@ -200,13 +212,7 @@ namespace {
             "most surfaces that light hits, up to and including the first diffuse one seen from the eye");
         add_whole(to, "--threads", o.threads, "threads; default: all; they do not change the picture");
         add_whole(to, "--seed", o.seed, "same seed, same picture");
-        to.add_option_function<std::string>(
-              "--exposure",
-              [&o](const std::string& text) {
-                  o.exposure = parsed_setting("--exposure", text, setting_table::exposure.values);
-              },
-              "PNG: pixel values times 2^EV; default: the scene's")
-            ->type_name(type_of(setting_table::exposure.values));
+        add_exposure(to, o.exposure, "PNG: pixel values times 2^EV; default: the scene's");
         to.add_option("--stats", o.stats, "statistics, as JSON")->type_name("OUT.json");
         to.add_flag("--quiet", o.quiet, "print neither progress nor notes");
     }
@@ -220,13 +226,7 @@ namespace {
               [&o](const std::string& text) { o.max_relmse = parsed_number("--max-relmse", text, "a number"); },
               "exit with code 1 if relMSE is above this")
             ->type_name("V");
-        to.add_option_function<std::string>(
-              "--exposure",
-              [&o](const std::string& text) {
-                  o.exposure = parsed_setting("--exposure", text, setting_table::exposure.values);
-              },
-              "compare the looks of pixel values times 2^EV; default: auto, fitted to B")
-            ->type_name(type_of(setting_table::exposure.values));
+        add_exposure(to, o.exposure, "compare the looks of pixel values times 2^EV; default: auto, fitted to B");
     }
 
     /// The files of a command: what it reads and what it writes must differ.

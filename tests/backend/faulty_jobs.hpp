@@ -11,9 +11,8 @@
 #include <photongrid/render/progressive_render.hpp>
 #include <photongrid/render/render.hpp>
 
-#include <filesystem>
-
 #include <chrono>
+#include <filesystem>
 #include <ostream>
 
 #include <unistd.h>

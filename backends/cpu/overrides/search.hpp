@@ -82,7 +82,7 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
     j.norm = detail::entry_of(s.filter).norm;
     j.leave_out = s.bias == bias_kind::unbiased;
     j.errors = s.errors;
-    j.repeats = in.map->surpluses.size() > 0;
+    j.repeats = in.map->may_repeat();
     return j;
 }
 

@@ -158,6 +158,7 @@ void render_thread::draw()
     {
         const std::lock_guard lock(guard_);
         report_.request = current_.number;
+        report_.whole = whole;
         report_.progress = renderer_->progress();
         report_.stats = renderer_->stats();
         report_.maps = renderer_->maps();

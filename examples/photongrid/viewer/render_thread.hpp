@@ -26,6 +26,7 @@ struct frame {
 /// The renderer's progress.
 struct render_report {
     std::uint64_t request = 0; ///< being drawn
+    bool whole = false;        ///< it is drawn: no more pictures of it
     render_progress progress{};
     render_stats stats{};
     std::uint64_t maps = 0;   ///< begun since the backend was opened

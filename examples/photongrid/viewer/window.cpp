@@ -104,8 +104,11 @@ namespace {
         {
             report_ = renderer_.report();
             auto next = renderer_.newer_than(shown_.number);
-            if (!next)
+            if (!next) {
+                if (is_whole() && !fitted_to_whole_)
+                    upload();
                 return;
+            }
             if (next->request != shown_.request) {
                 changes_.clear();
                 errors_.clear();
@@ -119,11 +122,16 @@ namespace {
                     static_cast<float>(std::log10(std::max(1e-12, compare_images(shown_.picture, *r).relmse))));
             upload();
         }
+        /// Whether the picture shown is the last of its request.
+        bool is_whole() const { return report_.whole && report_.request == shown_.request; }
         void upload()
         {
-            // A fitted exposure follows the picture in steps, so that the screen does not flicker while it converges.
+            // A fitted exposure follows the picture in steps, so that the screen does not flicker while it converges,
+            // and fits the last picture, so that it does not depend on those before.
             const auto set = document_.now().settings.output.exposure;
-            if (const double fits = exposure_for(shown_.picture, set); set || std::abs(fits - exposure_) > 0.25)
+            fitted_to_whole_ = is_whole();
+            if (const double fits = exposure_for(shown_.picture, set);
+                set || fitted_to_whole_ || std::abs(fits - exposure_) > 0.25)
                 exposure_ = fits;
             pane_.upload(shown_.picture, exposure_);
         }
@@ -295,6 +303,7 @@ namespace {
         render_report report_;
         version sent_;
         double exposure_ = 0;                 ///< EV, of the screen
+        bool fitted_to_whole_ = false;        ///< exposure_ is fitted to the last picture of its request
         std::vector<float> changes_, errors_; ///< log10, since the last request
         std::string message_;
         bool overlay_ = true;

@@ -78,8 +78,6 @@
 // Kernels read where ids of earlier passes point. With PHOTONGRID_GUARD_READS a read past the end of a buffer gives 0;
 // all files of a program must agree on it (the CMake option of that name sees to that). Without, it is asserted that
 // there is none.
-#pragma push_macro("PHOTONGRID_ELEMENT")
-#undef PHOTONGRID_ELEMENT
 #ifdef PHOTONGRID_GUARD_READS
 #define PHOTONGRID_ELEMENT(T, NAME)                                                                                    \
     return i < NAME##_data.size() ? NAME##_data[i] : ::photongrid::detail::no_element<T>;

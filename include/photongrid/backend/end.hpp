@@ -3,7 +3,6 @@
 #undef PARAMS
 #pragma pop_macro("PARAMS")
 #undef PHOTONGRID_ELEMENT
-#pragma pop_macro("PHOTONGRID_ELEMENT")
 #undef INPUT
 #pragma pop_macro("INPUT")
 #undef PHOTONGRID_VARIABLE

@@ -52,9 +52,7 @@ namespace detail {
     /// What a guarded read past the end of a buffer gives (PHOTONGRID_GUARD_READS).
     template <element T>
     inline constexpr T no_element{};
-} // namespace detail
 
-namespace detail {
     template <class F, std::size_t... I>
     [[gnu::always_inline]] constexpr void for_each_slot(const F& f, std::index_sequence<I...>)
     {

@@ -53,7 +53,7 @@ public:
     template <backend B>
     host_search(B& b, const map_buffers<B>& map, const knn_settings& settings, bool powers)
         : grid_(map.cells_of), cells_(b.download(map.cells)), list_(b.download(map.list)),
-          positions_(b.download(map.photons.positions)), repeats_(map.surpluses.size() > 0)
+          positions_(b.download(map.photons.positions)), repeats_(map.may_repeat())
     {
         const auto& leaks = settings.leaks;
         settings_ = detail::checked(settings, map, 1, leaks.needs_any() ? 1 : 0);
@@ -232,7 +232,7 @@ private:
     std::vector<glm::uvec2> cells_;
     std::vector<uint> list_;
     std::vector<glm::vec4> positions_, powers_, directions_, normals_;
-    bool repeats_ = false; ///< a routed map, which may hold a photon several times
+    bool repeats_ = false; ///< the map may hold a photon several times
     knn_settings settings_;
 };
 

@@ -162,11 +162,11 @@ namespace detail {
         {
             return policy_switches<K>(s.leaks);
         }
-        /// The SWITCH of kernel K for maps that may hold a photon several times: routed ones.
+        /// The SWITCH of kernel K for maps that may hold a photon several times.
         template <class K>
         uint repeats() const
         {
-            return map->surpluses.size() > 0 ? K::REPEATS_switch : 0u;
+            return map->may_repeat() ? K::REPEATS_switch : 0u;
         }
         /// The SWITCH of kernel K that turns subgroup search on.
         template <class K>

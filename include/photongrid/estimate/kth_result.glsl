@@ -12,8 +12,8 @@ PARAMS(Params)
 INPUT(0, uvec4, brackets)
 INPUT(1, uvec4, tallies)
 OUTPUT(0, vec4, search_radius) // x: squared radius, m^2; y: 1 if a photon set it, 0 if it was given
-OUTPUT(1, uvec4, chosen)       // photons within; photons visited; the last id that counts at the radius itself; how often
-                               // that id counts there, since routed maps repeat photons
+OUTPUT(1, uvec4, chosen)       // photons within; photons visited; the last id that counts at the radius itself; how
+                               // often that id counts there, since routed maps repeat photons
 OUTPUT(2, uvec4, bracket)      // of ids, see kth_tie.glsl
 OUTPUT(3, uvec4, counts)
 OUTPUT(4, uvec4, cursor)

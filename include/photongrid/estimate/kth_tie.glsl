@@ -1,8 +1,8 @@
 // If several photons have the k-th distance, those with the smallest ids belong to the k nearest. This kernel finds the
 // last such id, and how often it counts, since a routed map may hold a photon several times. The first scan finds the
-// smallest and the largest id at the radius, which are the same if one photon is repeated. Further scans count the ids up
-// to four pivots between them, as kth_distance.glsl counts distances. The kernel is one function, because it is one state
-// machine over local copies of the states.
+// smallest and the largest id at the radius, which are the same if one photon is repeated. Further scans count the ids
+// below each of four pivots between them, as kth_distance.glsl counts distances. The kernel is one function, because it
+// is one state machine over local copies of the states.
 #include <photongrid/backend/none.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/estimate/tie_phases.glsl>
@@ -20,8 +20,8 @@ PARAMS(Params)
 IN_GROUPS(3)
 INPUT(6, uint, list)         // photon ids
 INPUT(7, vec4, search_radii) // x: squared distance of the k-th photon, m^2
-STATE(0, uvec4, chosen)      // see kth_result.glsl; z: the last id, once found; w: until then, how many ids at the radius
-                             // are below bracket.x
+STATE(0, uvec4, chosen)      // see kth_result.glsl; z: the last id, once found; w: until then, how many ids at the
+                             // radius are below bracket.x
 STATE(1, uvec4, bracket)     // x <= id < y; z: photons of this scan that are nearer than the radius; w: phase
 STATE(2, uvec4, counts)      // FIRST_AND_LAST: NONE - smallest id, largest id + 1; COUNTING_IDS: ids below each pivot
 STATE(3, uvec4, cursor)      // y, z of the next row; the first photon not yet visited
@@ -69,22 +69,7 @@ void kernel(uint i)
         bool mine = joins_walk(
             between.w != FOUND_ID, p, c, radius2, uvec4(resume_at.x, resume_at.y, resume_at.z, between.w));
         vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the other lanes count nothing
-        while (walk_phase() == FIRST_AND_LAST && walks_on()) {
-            uint photons = next_rows();
-            result.y += mine ? photons : 0u;
-#define VISIT(LANE)                                                           \
-    {                                                                         \
-        float d2 = distance2_of(PHOTON_OF(LANE), from, n);                    \
-        between.z += d2 < radius2 ? 1u : 0u;                                  \
-        uint id = from_lane(chunk_id, LANE);                                  \
-        count.x = max(count.x, d2 == radius2 ? NONE - id : 0u);               \
-        count.y = max(count.y, d2 == radius2 ? id + 1u : 0u);                 \
-    }
-            if (photons > 0u)
-                EACH_PHOTON(photons, gather_ids, VISIT)
-#undef VISIT
-        }
-        while (walk_phase() != FIRST_AND_LAST && walks_on()) {
+        while (walks_on()) {
             uint photons = next_rows();
             result.y += mine ? photons : 0u;
 #define VISIT(LANE)                                                           \
@@ -93,8 +78,11 @@ void kernel(uint i)
         between.z += d2 < radius2 ? 1u : 0u;                                  \
         uint id = from_lane(chunk_id, LANE);                                  \
         uint key = d2 == radius2 ? id : NONE;                                 \
-        count += uvec4(key < pivot.x ? 1u : 0u, key < pivot.y ? 1u : 0u,      \
-            key < pivot.z ? 1u : 0u, key < pivot.w ? 1u : 0u);                \
+        if (walk_phase() == FIRST_AND_LAST)                                   \
+            count = max(count, uvec4(NONE - key, key + 1u, 0u, 0u));          \
+        else                                                                  \
+            count += uvec4(key < pivot.x ? 1u : 0u, key < pivot.y ? 1u : 0u,  \
+                key < pivot.z ? 1u : 0u, key < pivot.w ? 1u : 0u);            \
     }
             if (photons > 0u)
                 EACH_PHOTON(photons, gather_ids, VISIT)

@@ -19,8 +19,8 @@ STATE(1, uvec4, second_four)
 STATE(2, uvec4, third_four)
 STATE(3, uvec4, fourth_four)
 STATE(4, uvec4, cursor)      // y, z of the next row, relative to the first row; the first photon not yet visited
-STATE(5, uvec4, tally)       // x: photons in this part; y: 1: no more photons; z: the last id that counts at the radius;
-                             // w: how often it still counts
+STATE(5, uvec4, tally)       // x: photons in this part; y: 1: no more photons; z: the last id that counts at the
+                             // radius; w: how often it still counts
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>

@@ -7,11 +7,16 @@
 
 namespace photongrid {
 
-image_difference compare_images(const image& a, const image& b)
+void detail::require_same_size(const image& a, const image& b)
 {
     if (a.width != b.width || a.height != b.height)
         throw std::invalid_argument("the sizes differ: " + std::to_string(a.width) + " x " + std::to_string(a.height)
             + " and " + std::to_string(b.width) + " x " + std::to_string(b.height));
+}
+
+image_difference compare_images(const image& a, const image& b)
+{
+    detail::require_same_size(a, b);
     image_difference d;
     d.largest = -1;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {

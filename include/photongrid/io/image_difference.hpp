@@ -17,6 +17,11 @@ struct image_difference {
     std::uint64_t not_finite = 0; ///< pixels skipped
 };
 
+namespace detail {
+    /// \throws std::invalid_argument if the sizes differ.
+    void require_same_size(const image& a, const image& b);
+} // namespace detail
+
 /// \throws std::invalid_argument if the sizes differ.
 image_difference compare_images(const image& a, const image& b);
 

@@ -1,3 +1,4 @@
+#include <photongrid/io/image_difference.hpp>
 #include <photongrid/io/structural_similarity.hpp>
 #include <photongrid/io/tone_map.hpp>
 
@@ -5,8 +6,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 namespace photongrid {
@@ -61,9 +60,7 @@ namespace {
 
 double structural_similarity(const image& a, const image& b, double exposure)
 {
-    if (a.width != b.width || a.height != b.height)
-        throw std::invalid_argument("the sizes differ: " + std::to_string(a.width) + " x " + std::to_string(a.height)
-            + " and " + std::to_string(b.width) + " x " + std::to_string(b.height));
+    detail::require_same_size(a, b);
     const tone_map shown(exposure);
     const auto x = luma_of(a, shown), y = luma_of(b, shown);
     const auto mean_x = averaged(x, a), mean_y = averaged(y, a);

@@ -82,6 +82,9 @@ struct map_buffers {
     uint overflowing_cells = 0; ///< routed: cells that received more photons than they have slots
     buffer_of<B, glm::vec4>
         surpluses; ///< routed: per cell, w: power of photons not kept, W, given to those kept; empty if sorted
+
+    /// Whether an id may occur several times in `list`: in routed maps.
+    bool may_repeat() const { return surpluses.size() > 0; }
 };
 
 /// The power, W, all channels together, that stencil routing moved from photons that it could not keep to the others of
