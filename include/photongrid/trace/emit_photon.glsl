@@ -34,6 +34,8 @@ void kernel(uint i)
         at += lights.stride;
     }
     Light light = light_at(at);
+    float probability = light_probability(at);
+    power = vec4(light.power.x / probability, light.power.y / probability, light.power.z / probability, 0.0f);
     vec3 origin = light.position;
     vec3 d = vec3(0.0f, 0.0f, 1.0f);
     if (POINT_LIGHTS && (!AREA_LIGHTS || !light.is_area))
@@ -45,9 +47,7 @@ void kernel(uint i)
         d = cosine_direction(light.normal, r.x, r.y);
         origin = ray_at(origin, light.normal, off);
     }
-    float probability = light_probability(at);
     position = vec4(origin.x, origin.y, origin.z, 0.0f);
-    power = vec4(light.power.x / probability, light.power.y / probability, light.power.z / probability, 0.0f);
     direction = vec4(d.x, d.y, d.z, 0.0f);
     next_origin = vec4(origin.x, origin.y, origin.z, 0.0f);
     next_direction = vec4(d.x, d.y, d.z, 0.0f);
