@@ -13,6 +13,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 faults=(
   "sort loses ties|include/photongrid/map/bitonic_step.glsl|(mine.x == partner.x && mine.y < partner.y)|mine.x == partner.x"
   "sort ignores values|include/photongrid/map/bitonic_step.glsl| \|\| (mine.x == partner.x && mine.y < partner.y)|"
+  "edited scenes forget the unit|include/photongrid/io/scene_edit.cpp|v * u.divide / u.multiply|v * u.multiply / u.multiply|scene_file"
+  "edited scenes lose a channel|include/photongrid/io/scene_edit.cpp|c < 3; ++c)|c < 2; ++c)|scene_file"
   "index off by one|include/photongrid/map/first_in_cell.glsl|keys_below(i + 1u) - first|keys_below(i + 1u) - first + (first > 3u ? 1u : 0u)"
   "index takes equal keys|include/photongrid/map/first_in_cell.glsl|.x < key|.x <= key"
   "routing keeps one less|backends/serial/serial.hpp|arrived[d] < capacity|arrived[d] + 1 < capacity"

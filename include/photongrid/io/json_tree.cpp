@@ -137,6 +137,7 @@ private:
     {
         token();
         json_value done = std::move(frames_.back().value);
+        done.end = cursor_;
         frames_.pop_back();
         return place_value(std::move(done));
     }
@@ -144,6 +145,7 @@ private:
     bool put(json_value v)
     {
         count(v.place);
+        v.end = cursor_;
         return place_value(std::move(v));
     }
 

@@ -14,10 +14,10 @@ namespace photongrid {
 
 enum class json_kind { null, boolean, number, string, array, object };
 
-/// A value. `place` is its offset in the text.
+/// A value. `place` is its offset in the text, `end` that of what follows it.
 struct json_value {
     json_kind kind = json_kind::null;
-    std::size_t place = 0;
+    std::size_t place = 0, end = 0;
     bool truth = false;
     double number = 0;
     std::string text{};              ///< of a string; of a number, its text in the file

@@ -182,9 +182,11 @@ public:
         return v.text;
     }
 
+protected:
+    unit length_, power_; ///< of the file
+
 private:
     json_tree tree_;
-    unit length_, power_;
 };
 
 } // namespace photongrid

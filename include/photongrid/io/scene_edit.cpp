@@ -1,0 +1,208 @@
+#include <photongrid/io/scene_edit.hpp>
+#include <photongrid/io/scene_file.hpp>
+#include <photongrid/io/scene_values.hpp>
+#include <photongrid/io/scene_writer.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace photongrid {
+
+namespace {
+    /// The shortest decimal number that reads as `v`.
+    std::string shortest(double v)
+    {
+        char text[32];
+        return {text, std::to_chars(text, text + sizeof text, v).ptr};
+    }
+
+    /// A number in the unit `u` that reads as `v`, in SI units, if there is one; else the nearest.
+    double in_unit(double v, const unit& u)
+    {
+        const double x = v * u.divide / u.multiply;
+        for (const double end : {x, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()})
+            if (const double near = std::nextafter(x, end); near * u.multiply / u.divide == v)
+                return near;
+        return x;
+    }
+
+    class editor : scene_values {
+    public:
+        editor(const std::string& file, const std::string& text)
+            : scene_values(file, text), text_(text), before_(parse_scene(file, text))
+        {
+            read_units(at(root(), "units"));
+        }
+
+        std::string edited(const scene& s, const render_settings& settings)
+        {
+            if (s.name != before_.name || s.materials != before_.materials)
+                throw_other("name or materials");
+            edit_camera(s.camera);
+            edit_parts(at(root(), "shapes"), s, [](auto& of, const auto& f) { for_each_shape(of, f); });
+            edit_parts(at(root(), "lights"), s, [](auto& of, const auto& f) { for_each_light(of, f); });
+            edit_settings(settings);
+            return replaced();
+        }
+
+    private:
+        /// Text in place of the bytes begin to end - 1 of the file.
+        struct replacement {
+            std::size_t begin, end;
+            std::string text;
+        };
+
+        [[noreturn]] static void throw_other(const std::string& what)
+        {
+            throw std::invalid_argument(
+                "edited_scene_text: the scene has another " + what + " than the text; use scene_text()");
+        }
+
+        // --- values: as they were and as they are, in SI units ---
+        void edit(const json_value& v, const unit& u, double was, double is)
+        {
+            if (was != is)
+                replacements_.push_back({v.place, v.end, shortest(in_unit(is, u))});
+        }
+        void edit(const json_value& v, const unit& u, const dvec3& was, const dvec3& is)
+        {
+            if (v.kind == json_kind::array) {
+                for (int c = 0; c < 3; ++c)
+                    edit(v.items[static_cast<std::size_t>(c)], u, was[c], is[c]);
+            } else if (is == dvec3(is.x)) { // one number for three channels
+                edit(v, u, was.x, is.x);
+            } else {
+                replacements_.push_back({v.place, v.end, three_text(is, u)});
+            }
+        }
+        void edit(const json_value& v, const unit& u, const std::vector<dvec3>& was, const std::vector<dvec3>& is)
+        {
+            if (was.size() != is.size())
+                throw_other("number of corners");
+            for (std::size_t i = 0; i < is.size(); ++i)
+                edit(v.items[i], u, was[i], is[i]);
+        }
+        static std::string three_text(const dvec3& v, const unit& u)
+        {
+            return "[" + shortest(in_unit(v.x, u)) + ", " + shortest(in_unit(v.y, u)) + ", " + shortest(in_unit(v.z, u))
+                + "]";
+        }
+        /// Adds a member to an object that has some, laid out as its last one.
+        void add_member(const json_value& object, const std::string& key, const std::string& value)
+        {
+            const auto& last = object.items.back();
+            const auto line = text_.find_last_not_of(" \t\r\n", last.key_place - 1) + 1;
+            auto blanks = text_.substr(line, last.key_place - line);
+            if (object.items.size() == 1 && blanks.empty())
+                blanks = " ";
+            replacements_.push_back({last.end, last.end, "," + blanks + "\"" + key + "\": " + value});
+        }
+
+        // --- parts ---
+        void edit_camera(const camera& c)
+        {
+            const auto& v = at(root(), "camera");
+            const auto& was = before_.camera;
+            edit(at(v, "position"), length_, was.position, c.position);
+            edit(at(v, "look_at"), length_, was.look_at, c.look_at);
+            edit(at(v, "vertical_fov"), {}, was.vertical_fov, c.vertical_fov);
+            if (const auto* up = v.find("up"))
+                edit(*up, {}, was.up, c.up);
+            else if (was.up != c.up)
+                add_member(v, "up", three_text(c.up, {}));
+        }
+
+        /// Shapes or lights; for_each(scene, f) calls f(list, kind) for each list of them.
+        template <class ForEach>
+        void edit_parts(const json_value& all, const scene& s, const ForEach& for_each)
+        {
+            for_each(s, [&](const auto& list, auto kind) {
+                using part = typename std::decay_t<decltype(list)>::value_type;
+                for_each(before_, [&](const auto& were, auto) {
+                    if constexpr (std::is_same_v<std::decay_t<decltype(were)>, std::decay_t<decltype(list)>>)
+                        edit_list<part>(items_of(all, kind.name, std::is_same_v<part, polygon>), kind, were, list);
+                });
+            });
+        }
+        template <class Part, class Kind>
+        void edit_list(const std::vector<const json_value*>& items, Kind kind, const std::vector<Part>& were,
+            const std::vector<Part>& are)
+        {
+            if (were.size() != are.size())
+                throw_other(std::string("number of parts of the kind ") + kind.name);
+            for (std::size_t i = 0; i < are.size(); ++i) {
+                if (!same_but_for_fields(were[i], are[i], kind))
+                    throw_other(std::string("name or material of a ") + kind.name);
+                for_each_field(kind.fields, [&](const auto& f) {
+                    const unit& u = f.of == quantity::direction ? none_ : f.of == quantity::power ? power_ : length_;
+                    edit(at(*items[i], f.name), u, were[i].*f.member, are[i].*f.member);
+                });
+            }
+        }
+        template <class Part, class Kind>
+        static bool same_but_for_fields(Part was, const Part& is, Kind kind)
+        {
+            for_each_field(kind.fields, [&](const auto& f) { was.*f.member = is.*f.member; });
+            return was == is;
+        }
+        /// The parts of a kind, in the order of its list.
+        static std::vector<const json_value*> items_of(const json_value& all, std::string_view kind, bool triangles_too)
+        {
+            std::vector<const json_value*> items;
+            for (const auto& v : all.items)
+                if (const auto& type = at(v, "type").text; type == kind || (triangles_too && type == triangle_name))
+                    items.push_back(&v);
+            return items;
+        }
+
+        // --- settings ---
+        void edit_settings(const render_settings& settings)
+        {
+            const auto were = nlohmann::json::parse(settings_text(before_.render)),
+                       are = nlohmann::json::parse(settings_text(settings));
+            const auto& v = at(root(), "render");
+            for_each_setting([&](const auto& row) {
+                if (row.use == in_scenes::never || were[row.name] == are[row.name])
+                    return;
+                auto value = are[row.name].dump();
+                if constexpr (std::is_same_v<std::decay_t<decltype(row.values)>, setting_table::any_length>)
+                    value = shortest(in_unit(row.of(settings), length_));
+                if (const auto* given = v.find(row.name))
+                    replacements_.push_back({given->place, given->end, value});
+                else
+                    add_member(v, row.name, value);
+            });
+        }
+
+        std::string replaced()
+        {
+            std::stable_sort(replacements_.begin(), replacements_.end(),
+                [](const replacement& a, const replacement& b) { return a.begin < b.begin; });
+            std::string all;
+            std::size_t at = 0;
+            for (const auto& r : replacements_) {
+                all.append(text_, at, r.begin - at).append(r.text);
+                at = r.end;
+            }
+            return all.append(text_, at);
+        }
+
+        const std::string text_;
+        const scene before_;
+        const unit none_{};
+        std::vector<replacement> replacements_;
+    };
+} // namespace
+
+std::string edited_scene_text(
+    const std::string& file, const std::string& text, const scene& s, const render_settings& settings)
+{
+    return editor(file, text).edited(s, settings);
+}
+
+} // namespace photongrid
