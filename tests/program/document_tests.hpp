@@ -3,9 +3,14 @@
 
 #include "../scene/test_scenes.hpp"
 #include "viewer/document.hpp"
+#include "viewer/saved_files.hpp"
 #include <photongrid/io/scene_file.hpp>
 
 #include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include <unistd.h>
 
 namespace photongrid::viewer {
 namespace {
@@ -22,6 +27,44 @@ namespace {
     }
 
     version begun(const scene& s) { return {s, s.render, "serial"}; }
+
+    TEST(saved_files, refuse_a_scene_that_cannot_be_rendered)
+    {
+        const std::string text = R"({"photongrid": 1, "units": {"length": "m", "power": "W"},
+ "camera": {"position": [0, 1, 5], "look_at": [0, 0, 0], "vertical_fov": 40},
+ "materials": {"clear": {"type": "glass", "index_of_refraction": 1.5}, "white": {"type": "lambertian", "reflectance": 0.7}},
+ "shapes": [{"type": "sphere", "center": [0, 1, 0], "radius": 0.5, "material": "clear"},
+  {"type": "sphere", "center": [2, 1, 0], "radius": 0.5, "material": "clear"},
+  {"type": "disk", "center": [0, 0, 0], "normal": [0, 1, 0], "radius": 3, "material": "white"}],
+ "lights": [{"type": "point", "position": [0, 3, 0], "power": 10}],
+ "render": {"size": [64, 48], "photons": 1000, "k": 20, "grid": [4, 1, 4], "max_radius": 0.25}}
+)";
+        namespace fs = std::filesystem;
+        const auto folder = fs::temp_directory_path() / ("photongrid_saved_" + std::to_string(::getpid()));
+        fs::create_directories(folder);
+        const auto s = parse_scene("glass.json", text);
+        window_options o;
+        o.begin = begun(s);
+        o.scene_path = "glass.json";
+        o.scene_text = text;
+        o.stem = (folder / "glass").string();
+        saved_files files(o);
+        auto v = begun(s);
+        EXPECT_FALSE(files.lacks(v));
+        v.scene.spheres[1].center.x = 0.5;
+        EXPECT_TRUE(files.lacks(v));
+        const auto refusal = files.save(v);
+        EXPECT_NE(refusal.find("not saved"), std::string::npos) << refusal;
+        EXPECT_NE(refusal.find("overlaps"), std::string::npos) << refusal;
+        EXPECT_TRUE(files.lacks(v));
+        EXPECT_TRUE(fs::is_empty(folder));
+        v.scene.spheres[1].center.x = 1.5;
+        EXPECT_EQ(files.save(v), "saved " + (folder / "glass-changed.json").string());
+        EXPECT_FALSE(files.lacks(v));
+        EXPECT_EQ(read_scene((folder / "glass-changed.json").string()).spheres[1].center.x, 1.5);
+        EXPECT_EQ(files.save(v), "saved " + (folder / "glass-changed-2.json").string());
+        fs::remove_all(folder);
+    }
 
     TEST(scene_parts, blocks_move_whole)
     {

@@ -146,10 +146,10 @@ protected:
         ASSERT_TRUE(XTestQueryExtension(x, &event, &error, &major, &minor));
     }
 
-    void open_window(const std::vector<std::string>& more = {})
+    void open_window(const std::vector<std::string>& more = {}, const std::string& backend = "serial")
     {
         std::vector<std::string> command{PHOTONGRID_PROGRAM, "view", (folder / "ball.json").string(), "--backend",
-            "serial", "--journal", (folder / "journal").string()};
+            backend, "--journal", (folder / "journal").string()};
         command.insert(command.end(), more.begin(), more.end());
         fs::current_path(folder);
         program = std::make_unique<process>(command, folder / "program.log",
@@ -182,16 +182,74 @@ protected:
                 n = j["maps"];
         return n;
     }
-    /// The last request is drawn, on the screen, and no other follows.
+    /// The last request is drawn, and no other follows.
+    bool is_drawn(std::size_t more_than = 0)
+    {
+        return wait_until([&] {
+            std::string last;
+            for (const auto& j : journal())
+                if (j["event"] != "controls")
+                    last = j["event"];
+            return requests() > more_than && last == "whole";
+        });
+    }
+    /// As is_drawn(), and it is on the screen.
     bool rests(std::size_t more_than = 0)
     {
-        if (!wait_until([&] {
-                const auto lines = journal();
-                return requests() > more_than && lines.back()["event"] == "whole";
-            }))
-            return false;
-        std::this_thread::sleep_for(std::chrono::milliseconds(300)); // till it is on the screen
-        return true;
+        const bool drawn = is_drawn(more_than);
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        return drawn;
+    }
+
+    // --- controls: of the panel and of questions, by label ---
+    struct place {
+        double x = 0, y = 0, width = 0, height = 0;
+    };
+    place control(const std::string& label) const
+    {
+        json places;
+        for (const auto& j : journal())
+            if (j["event"] == "controls")
+                places = j["places"];
+        EXPECT_TRUE(places.contains(label)) << label;
+        if (!places.contains(label))
+            return {};
+        const auto& p = places[label];
+        return {p[0], p[1], p[2], p[3]};
+    }
+    /// Clicks on a control, at a part of the width that a slider or box has without its label.
+    void use(const std::string& label, double part = 0.1)
+    {
+        const auto c = control(label);
+        click(static_cast<int>(c.x + part * std::min(c.width, 170.0)), static_cast<int>(c.y + c.height / 2));
+    }
+    /// Chooses a word of a box of words.
+    void choose(const std::string& label, const std::string& word)
+    {
+        use(label);
+        // Its words are where they stay from the second frame on, and frames follow events.
+        const auto c = control(label);
+        for (int i = 0; i < 3; ++i)
+            mouse_to(static_cast<int>(c.x) + 10 + i, static_cast<int>(c.y) + 5);
+        use(label + ": " + word);
+    }
+
+    /// As a window manager does when its button is pressed.
+    void ask_to_close()
+    {
+        Window root = 0, parent = 0, *children = nullptr;
+        unsigned count = 0;
+        ASSERT_NE(XQueryTree(x, DefaultRootWindow(x), &root, &parent, &children, &count), 0);
+        ASSERT_GE(count, 1u);
+        XEvent e{};
+        e.xclient.type = ClientMessage;
+        e.xclient.window = children[count - 1];
+        e.xclient.message_type = XInternAtom(x, "WM_PROTOCOLS", 0);
+        e.xclient.format = 32;
+        e.xclient.data.l[0] = static_cast<long>(XInternAtom(x, "WM_DELETE_WINDOW", 0));
+        XSendEvent(x, e.xclient.window, 0, NoEventMask, &e);
+        XFree(children);
+        pause();
     }
 
     // --- mouse and keys ---
@@ -205,11 +263,16 @@ protected:
         XTestFakeButtonEvent(x, number, down ? 1 : 0, 0);
         pause();
     }
-    void click(int px, int py) const
+    void click(int px, int py, unsigned number = 1) const
     {
         mouse_to(px, py);
-        button(1, true);
-        button(1, false);
+        button(number, true);
+        button(number, false);
+    }
+    void hold(KeySym symbol, bool down) const
+    {
+        XTestFakeKeyEvent(x, XKeysymToKeycode(x, symbol), down ? 1 : 0, 0);
+        pause();
     }
     void drag(int from_x, int from_y, int to_x, int to_y, unsigned number = 1) const
     {

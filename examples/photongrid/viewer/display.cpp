@@ -42,6 +42,7 @@ interface::interface(GLFWwindow* w)
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr; // nothing of ours is written where nobody asked for it
+    ImGui::GetIO().UserData = &controls_;
     ImGui::StyleColorsDark();
     ImGui_ImplGlfw_InitForOpenGL(w, true);
     if (!ImGui_ImplOpenGL3_Init("#version 130"))
@@ -56,14 +57,20 @@ interface::~interface()
     ImGui::DestroyContext();
 }
 
-/// What the last item does, where the mouse rests on it.
-void tip(const char* text)
+void placed(const std::string& label)
 {
+    const auto low = ImGui::GetItemRectMin(), size = ImGui::GetItemRectSize();
+    (*static_cast<control_places*>(ImGui::GetIO().UserData))[label] = {low.x, low.y, size.x, size.y};
+}
+
+void tip(const char* label, const char* help)
+{
+    placed(label);
     if (!ImGui::IsItemHovered())
         return;
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
-    ImGui::TextUnformatted(text);
+    ImGui::TextUnformatted(help);
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
 }

@@ -36,12 +36,14 @@ void settings_panel::choice(const Row& row, const char* label, const char* help)
 {
     const auto value = row.of(document_.now().settings);
     if (ImGui::BeginCombo(label, row.values.word_for(value))) {
-        for (const auto& n : row.values.values)
+        for (const auto& n : row.values.values) {
             if (ImGui::Selectable(n.name, n.value == value))
                 change(label, [&](render_settings& s) { row.of(s) = n.value; });
+            placed(std::string(label) + ": " + n.name);
+        }
         ImGui::EndCombo();
     }
-    tip(help);
+    tip(label, help);
 }
 
 /// A whole number, by a slider whose steps are even in its logarithm.
@@ -53,7 +55,7 @@ void settings_panel::number(const Row& row, const char* label, int low, int high
         = ImGui::SliderInt(label, &value, low, high, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     if (begun(label) && edited)
         row.of(document_.edit().settings) = static_cast<std::uint32_t>(value);
-    tip(help);
+    tip(label, help);
 }
 
 template <class Row>
@@ -65,7 +67,7 @@ void settings_panel::measure(
         (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp);
     if (begun(label) && edited)
         row.of(document_.edit().settings) = static_cast<double>(value);
-    tip(help);
+    tip(label, help);
 }
 
 template <class Change>
@@ -120,7 +122,8 @@ void settings_panel::draw(double shown_exposure)
     bool side = s.estimate.leaks.side;
     if (ImGui::Checkbox("side", &side))
         change("side", [&](render_settings& r) { r.estimate.leaks.side = side; });
-    tip("Rejects photons that arrive from behind a surface. Speed: almost the same. Error: no light leaks through "
+    tip("side",
+        "Rejects photons that arrive from behind a surface. Speed: almost the same. Error: no light leaks through "
         "walls.");
     draw_exposure(shown_exposure);
 }
@@ -129,14 +132,17 @@ void settings_panel::draw_backend()
 {
     const auto& now = document_.now().backend;
     if (ImGui::BeginCombo("backend", now.c_str())) {
-        for (const auto* name : {"serial", "cpu", "gl", "gl-osmesa", "vulkan"})
+        for (const auto* name : {"serial", "cpu", "gl", "gl-osmesa", "vulkan"}) {
             if (ImGui::Selectable(name, now == name)) {
                 document_.begin("backend");
                 document_.edit().backend = name;
             }
+            placed(std::string("backend: ") + name);
+        }
         ImGui::EndCombo();
     }
-    tip("What draws the picture (b). The same photons give the same picture on each; speed differs. cpu is the fastest "
+    tip("backend",
+        "What draws the picture (b). The same photons give the same picture on each; speed differs. cpu is the fastest "
         "without a GPU.");
 }
 
@@ -146,12 +152,13 @@ void settings_panel::draw_exposure(double shown)
     if (ImGui::Checkbox("fitted exposure", &fitted))
         change(
             "exposure", [&](render_settings& r) { r.output.exposure = fitted ? std::nullopt : std::optional(shown); });
-    tip("Fits the exposure to the picture: the geometric mean of the luminance becomes middle grey.");
+    tip("fitted exposure",
+        "Fits the exposure to the picture: the geometric mean of the luminance becomes middle grey.");
     auto value = static_cast<float>(shown);
     const bool edited = ImGui::SliderFloat("exposure, EV", &value, -10, 10, "%+.1f", ImGuiSliderFlags_AlwaysClamp);
     if (begun("exposure, EV") && edited)
         document_.edit().settings.output.exposure = static_cast<double>(value);
-    tip("Brightness of the screen and of saved PNGs (E, e). Nothing is drawn again.");
+    tip("exposure, EV", "Brightness of the screen and of saved PNGs (E, e). Nothing is drawn again.");
 }
 
 void settings_panel::draw_grid()
@@ -160,55 +167,63 @@ void settings_panel::draw_grid()
     bool fitted = cells == glm::ivec3(0);
     if (ImGui::Checkbox("fitted grid", &fitted))
         change("grid", [&](render_settings& r) { r.map.grid = fitted ? glm::uvec3(0) : grid_; });
-    tip("Fits the cells of the photon map to the photons and k (g). Speed: searches take longer in a grid that is too "
+    tip("fitted grid",
+        "Fits the cells of the photon map to the photons and k (g). Speed: searches take longer in a grid that is too "
         "coarse or too fine. Error: none for the k nearest; at_least_k depends on the cells.");
     if (!fitted) {
         const bool edited = ImGui::SliderInt3(
             "grid", &cells.x, 1, 256, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
         if (begun("grid") && edited)
             document_.edit().settings.map.grid = glm::uvec3(cells);
-        tip("Cells along x, y and z.");
+        tip("grid", "Cells along x, y and z.");
     }
 }
 
-void settings_panel::keys(double shown_exposure)
+void settings_panel::key(const key_press& p, double shown_exposure)
 {
-    const auto pressed = [](int key) { return ImGui::IsKeyPressed(key); };
-    const bool up = ImGui::GetIO().KeyShift;
-    const auto doubled = [&](int key, const auto& row) {
-        if (pressed(key))
-            change(row.name, [&](render_settings& s) {
-                auto& value = row.of(s);
-                value = std::clamp(up ? value * 2 : value / 2, row.values.least, row.values.most / 2);
-            });
-    };
-    const auto next = [&](int key, const auto& row) {
-        if (pressed(key))
-            change(row.name, [&](render_settings& s) {
-                const auto& all = row.values.values;
-                std::size_t i = 0;
-                while (all[i].value != row.of(s))
-                    ++i;
-                row.of(s) = all[(i + 1) % std::size(all)].value;
-            });
-    };
-    doubled(GLFW_KEY_K, setting_table::k);
-    doubled(GLFW_KEY_N, setting_table::photons);
-    next(GLFW_KEY_M, setting_table::map);
-    next(GLFW_KEY_S, setting_table::search);
-    next(GLFW_KEY_W, setting_table::filter);
-    if (pressed(GLFW_KEY_R))
-        change("radius", [&](render_settings& s) { s.estimate.max_radius *= up ? 1.25 : 0.8; });
-    if (pressed(GLFW_KEY_E))
-        change("exposure", [&](render_settings& s) {
-            s.output.exposure = std::clamp(shown_exposure + (up ? 0.5 : -0.5), -64.0, 64.0);
+    const bool up = p.shift;
+    const auto doubled = [&](const auto& row) {
+        change(row.name, [&](render_settings& s) {
+            auto& value = row.of(s);
+            value = std::clamp(up ? value * 2 : value / 2, row.values.least, row.values.most / 2);
         });
-    if (pressed(GLFW_KEY_G))
+    };
+    const auto next = [&](const auto& row) {
+        change(row.name, [&](render_settings& s) {
+            const auto& all = row.values.values;
+            std::size_t i = 0;
+            while (all[i].value != row.of(s))
+                ++i;
+            row.of(s) = all[(i + 1) % std::size(all)].value;
+        });
+    };
+    switch (p.key) {
+    case 'k': doubled(setting_table::k); return;
+    case 'n': doubled(setting_table::photons); return;
+    case 'r': change("radius", [&](render_settings& s) { s.estimate.max_radius *= up ? 1.25 : 0.8; }); return;
+    case 'e':
+        change("exposure", [&](render_settings& s) {
+            s.output.exposure = std::clamp(s.output.exposure.value_or(shown_exposure) + (up ? 0.5 : -0.5), -64.0, 64.0);
+        });
+        return;
+    default: break;
+    }
+    if (p.repeated)
+        return; // choices do not change while a key is held
+    switch (p.key) {
+    case 'm': next(setting_table::map); return;
+    case 's': next(setting_table::search); return;
+    case 'w': next(setting_table::filter); return;
+    case 'g':
         change("grid", [&](render_settings& s) { s.map.grid = s.map.grid == glm::uvec3(0) ? grid_ : glm::uvec3(0); });
-    if (pressed(GLFW_KEY_B)) {
+        return;
+    case 'b': {
         document_.begin("backend");
         auto& b = document_.edit().backend;
         b = b == "serial" ? "cpu" : b == "cpu" ? "gl" : b == "gl" ? "vulkan" : "serial";
+        return;
+    }
+    default: return;
     }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "document.hpp"
+#include "keyboard.hpp"
 
 #include <optional>
 
@@ -14,8 +15,8 @@ public:
 
     /// Within an ImGui window. `shown_exposure`: of the screen, EV.
     void draw(double shown_exposure);
-    /// Where no text is being typed and Ctrl is not held.
-    void keys(double shown_exposure);
+    /// A key without Ctrl, while no text is being typed.
+    void key(const key_press& p, double shown_exposure);
 
 private:
     template <class Row>

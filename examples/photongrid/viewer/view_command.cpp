@@ -2,6 +2,7 @@
 
 #include "../render_command.hpp"
 #include "window.hpp"
+#include <photongrid/io/json_tree.hpp>
 #include <photongrid/io/scene_file.hpp>
 
 #include <iostream>
@@ -10,8 +11,10 @@ namespace photongrid {
 
 exit_code run_view(const view_options& o, bool (*stop_asked)())
 {
-    const auto s = read_scene(o.picture.scene_path);
     viewer::window_options w;
+    w.scene_path = o.picture.scene_path;
+    w.scene_text = read_scene_text(w.scene_path);
+    const auto s = parse_scene(w.scene_path, w.scene_text);
     try {
         w.renderer = renderer_asked(o.picture);
         w.begin = {s, settings_for(s, o.picture), w.renderer.backend};

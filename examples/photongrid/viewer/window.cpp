@@ -1,22 +1,19 @@
 #include "window.hpp"
 
 #include "display.hpp"
+#include "keyboard.hpp"
+#include "newest_picture.hpp"
 #include "picture_pane.hpp"
-#include "render_thread.hpp"
+#include "saved_files.hpp"
 #include "settings_panel.hpp"
-#include <photongrid/io/image_difference.hpp>
-#include <photongrid/io/image_file.hpp>
-#include <photongrid/io/scene_writer.hpp>
-#include <photongrid/io/tone_map.hpp>
+#include <photongrid/io/files.hpp>
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <filesystem>
 #include <fstream>
+#include <utility>
 
 namespace photongrid::viewer {
 
@@ -24,27 +21,18 @@ namespace {
     constexpr float panel_width = 330;
     constexpr GLenum context_lost = 0x0507; // GL_CONTEXT_LOST
 
-    /// A file's name that is not taken: STEM.png, STEM-2.png, …
-    std::string free_name(const std::string& stem, const std::string& ending)
-    {
-        auto name = stem + ending;
-        for (int n = 2; std::filesystem::exists(name); ++n)
-            name = stem + '-' + std::to_string(n) + ending;
-        return name;
-    }
-
     class window {
     public:
         window(const window_options& o, bool (*stop_asked)())
             : options_(o), stop_asked_(stop_asked), handle_(open_window(o.begin.settings, panel_width)),
-              interface_(handle_.get()), document_(o.begin), panel_(document_), pane_(document_), journal_(o.journal),
+              keyboard_(handle_.get()), interface_(handle_.get()), document_(o.begin), panel_(document_),
+              pane_(document_), picture_(renderer_, pane_, o.reference), saved_(o), journal_(o.journal),
               renderer_(
                   o.renderer, [] { glfwPostEmptyEvent(); },
                   o.journal.empty() ? journal() : [this](const std::string& line) { note(line); })
         {
             if (!o.journal.empty() && !journal_.is_open())
                 throw file_error(o.journal + ": cannot be written");
-            glfwSetWindowUserPointer(handle_.get(), this);
             send(false);
         }
         window(const window&) = delete;
@@ -54,11 +42,17 @@ namespace {
         {
             std::uint64_t turns = 0, slow_turns = 0;
             double slowest_ms = 0;
-            while (glfwWindowShouldClose(handle_.get()) == GLFW_FALSE && !stop_asked_()) {
-                // Events and new pictures wake it at once.
-                glfwWaitEventsTimeout(report_.progress.stage == "finished" ? 0.5 : 0.1);
+            bool settles = true;
+            while (!closes() && !stop_asked_()) {
+                // Events and new pictures wake it at once. A frame more follows, since ImGui places what is new in two.
+                const double asleep = glfwGetTime(),
+                             longest = settles                       ? 0.02
+                    : picture_.report().progress.stage == "finished" ? 0.5
+                                                                     : 0.1;
+                glfwWaitEventsTimeout(longest);
                 const double begin = glfwGetTime();
-                take_news();
+                settles = begin - asleep < longest;
+                picture_.take_news(document_.now().settings.output.exposure);
                 draw();
                 if (glGetError() == context_lost)
                     throw backend_error("view: the window's OpenGL context was lost (driver reset); open it again, or "
@@ -80,6 +74,24 @@ namespace {
             journal_ << line << std::endl; // whole lines, at once: a test reads along
         }
 
+        /// Whether the window closes. If that would lose changes, its user is asked first.
+        bool closes()
+        {
+            if (glfwWindowShouldClose(handle_.get()) == GLFW_FALSE)
+                return false;
+            if (closes_anyway_ || !saved_.lacks(document_.now()))
+                return true;
+            glfwSetWindowShouldClose(handle_.get(), GLFW_FALSE);
+            asks_to_close_ = true;
+            glfwPostEmptyEvent();
+            return false;
+        }
+        void close_anyway()
+        {
+            closes_anyway_ = true;
+            glfwSetWindowShouldClose(handle_.get(), GLFW_TRUE);
+        }
+
         // --- what is drawn ---
         void send(bool moving)
         {
@@ -89,51 +101,14 @@ namespace {
         void send_changes(bool moving)
         {
             auto now = document_.now();
-            const bool other_exposure = now.settings.output.exposure != sent_.settings.output.exposure;
-            if (other_exposure)
-                upload();
+            if (now.settings.output.exposure != sent_.settings.output.exposure)
+                picture_.show(now.settings.output.exposure);
             auto before = sent_;
             before.settings.output.exposure = now.settings.output.exposure; // changes the screen, not the picture
             if (now == before)
                 sent_ = now;
             else
                 send(moving);
-        }
-
-        void take_news()
-        {
-            report_ = renderer_.report();
-            auto next = renderer_.newer_than(shown_.number);
-            if (!next) {
-                if (is_whole() && !fitted_to_whole_)
-                    upload();
-                return;
-            }
-            if (next->request != shown_.request) {
-                changes_.clear();
-                errors_.clear();
-            }
-            shown_ = std::move(*next);
-            if (shown_.change > 0)
-                changes_.push_back(static_cast<float>(std::log10(shown_.change)));
-            if (const auto& r = options_.reference;
-                r && r->width == shown_.picture.width && r->height == shown_.picture.height)
-                errors_.push_back(
-                    static_cast<float>(std::log10(std::max(1e-12, compare_images(shown_.picture, *r).relmse))));
-            upload();
-        }
-        /// Whether the picture shown is the last of its request.
-        bool is_whole() const { return report_.whole && report_.request == shown_.request; }
-        void upload()
-        {
-            // A fitted exposure follows the picture in steps, so that the screen does not flicker while it converges,
-            // and fits the last picture, so that it does not depend on those before.
-            const auto set = document_.now().settings.output.exposure;
-            fitted_to_whole_ = is_whole();
-            if (const double fits = exposure_for(shown_.picture, set);
-                set || fitted_to_whole_ || std::abs(fits - exposure_) > 0.25)
-                exposure_ = fits;
-            pane_.upload(shown_.picture, exposure_);
         }
 
         // --- the screen ---
@@ -151,16 +126,16 @@ namespace {
             ImGui::Begin(
                 "picture", nullptr, fixed | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground);
             ImGui::PopStyleVar();
-            pane_.draw(shown_.number > 0);
-            draw_report(report_, shown_, overlay_);
+            pane_.draw(picture_.shown().number > 0);
+            draw_report(picture_.report(), picture_.shown(), overlay_);
             ImGui::End();
             ImGui::SetNextWindowPos({size.x - panel_width, 0});
             ImGui::SetNextWindowSize({panel_width, size.y});
             ImGui::Begin("settings", nullptr, fixed & ~ImGuiWindowFlags_NoScrollbar);
             draw_panel();
             ImGui::End();
-            if (!ImGui::GetIO().WantTextInput)
-                keys();
+            keys(draw_question());
+            note_controls();
             send_changes(ImGui::IsAnyMouseDown());
 
             ImGui::Render();
@@ -181,13 +156,14 @@ namespace {
                 ImGui::Text("selected: %s", document_.parts()[*part].name.c_str());
             else
                 ImGui::TextDisabled("click selects; drag turns");
-            tip("Left button: a click selects; a drag moves the selected object (with Shift, parallel to the floor) "
+            tip("click selects",
+                "Left button: a click selects; a drag moves the selected object (with Shift, parallel to the floor) "
                 "or, elsewhere, turns the camera. Right or middle button, or Shift: pan. Wheel: zoom. A moving camera "
                 "keeps the photon map; a change of the scene needs a new one.");
-            panel_.draw(exposure_);
+            panel_.draw(picture_.exposure());
             ImGui::Separator();
             draw_buttons();
-            draw_curve();
+            picture_.draw_curves();
             ImGui::PopItemWidth();
         }
 
@@ -195,61 +171,80 @@ namespace {
         {
             if (ImGui::Button("undo"))
                 undo();
-            tip("Undoes the last change (Ctrl+Z).");
+            tip("undo", "Undoes the last change (Ctrl+Z).");
             ImGui::SameLine();
             if (ImGui::Button("redo"))
                 redo();
-            tip("Redoes what was undone (Ctrl+Y).");
+            tip("redo", "Redoes what was undone (Ctrl+Y).");
             ImGui::SameLine();
             if (ImGui::Button("save picture"))
                 save_picture();
-            tip("Saves the current picture as PNG and EXR under new names (p).");
+            tip("save picture", "Saves the current picture as PNG and EXR under new names (p).");
             ImGui::SameLine();
             if (ImGui::Button("save scene"))
                 save_scene();
-            tip("Saves the scene, with its changes and settings, as a scene file under a new name (Ctrl+S).");
+            tip("save scene",
+                "Saves the scene, with its changes and settings, as a scene file under a new name (Ctrl+S).");
             ImGui::Checkbox("numbers over the picture", &overlay_);
-            tip("Shows what runs, for how long, and what is left to do (o).");
+            tip("numbers over the picture", "Shows what runs, for how long, and what is left to do (o).");
             if (!message_.empty())
                 ImGui::TextWrapped("%s", message_.c_str());
         }
 
-        void draw_curve()
+        /// Asks before changes are lost. Returns whether it waits for the answer.
+        bool draw_question()
         {
-            const auto plot = [](const char* label, const std::vector<float>& values, const char* text) {
-                char last[48] = "";
-                if (!values.empty())
-                    std::snprintf(last, sizeof last, "%.2g", std::pow(10.0, static_cast<double>(values.back())));
-                ImGui::PlotLines(label, values.data(), static_cast<int>(values.size()), 0, last, -8, 2, {170, 60});
-                tip(text);
+            constexpr const char* title = "The scene has changes that are not saved";
+            if (std::exchange(asks_to_close_, false))
+                ImGui::OpenPopup(title);
+            if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove))
+                return false;
+            const auto answer = [](const char* label) {
+                const bool chosen = ImGui::Button(label);
+                placed(label);
+                ImGui::SameLine();
+                return chosen;
             };
-            plot("change", changes_,
-                "relMSE from picture to picture since your last change, logarithmic: from 100 down to 1e-8.");
-            if (options_.reference)
-                plot("error", errors_, "relMSE to the reference, logarithmic: from 100 down to 1e-8.");
+            if (answer("save scene and close")) {
+                save_scene();
+                if (!saved_.lacks(document_.now()))
+                    close_anyway();
+                ImGui::CloseCurrentPopup();
+            }
+            if (answer("close without saving"))
+                close_anyway();
+            if (answer("stay"))
+                ImGui::CloseCurrentPopup();
+            ImGui::EndPopup();
+            return true;
         }
 
         // --- keys ---
-        void keys()
+        void keys(bool asking)
         {
-            const auto& io = ImGui::GetIO();
-            const auto pressed = [](int key) { return ImGui::IsKeyPressed(key); };
-            if (io.KeyCtrl) {
-                if (pressed(GLFW_KEY_Z))
-                    io.KeyShift ? redo() : undo();
-                if (pressed(GLFW_KEY_Y))
-                    redo();
-                if (pressed(GLFW_KEY_S))
-                    save_scene();
+            const auto presses = keyboard_.take();
+            if (asking || ImGui::GetIO().WantTextInput)
                 return;
-            }
-            panel_.keys(exposure_);
-            if (pressed(GLFW_KEY_P))
-                save_picture();
-            if (pressed(GLFW_KEY_O))
-                overlay_ = !overlay_;
-            if (pressed(GLFW_KEY_ESCAPE))
-                document_.select(std::nullopt);
+            for (const auto& p : presses)
+                if (p.control)
+                    command(p);
+                else if (p.key == 'p' && !p.repeated)
+                    save_picture();
+                else if (p.key == 'o' && !p.repeated)
+                    overlay_ = !overlay_;
+                else if (p.key == keyboard::escape)
+                    document_.select(std::nullopt);
+                else
+                    panel_.key(p, picture_.exposure());
+        }
+        void command(const key_press& p)
+        {
+            if (p.key == 'z')
+                p.shift ? redo() : undo();
+            else if (p.key == 'y')
+                redo();
+            else if (p.key == 's' && !p.repeated)
+                save_scene();
         }
 
         void undo()
@@ -264,49 +259,43 @@ namespace {
         }
         void save_picture()
         {
-            if (shown_.number == 0) {
-                message_ = "there is no picture yet";
-                return;
-            }
-            try {
-                const auto png = free_name(options_.stem, ".png"), exr = png.substr(0, png.size() - 4) + ".exr";
-                write_image(png, shown_.picture, exposure_);
-                write_image(exr, shown_.picture);
-                message_ = "saved " + png + " and " + exr;
-            } catch (const file_error& e) {
-                message_ = e.what();
-            }
+            message_ = picture_.shown().number == 0 ? "there is no picture yet"
+                                                    : saved_.save(picture_.shown().picture, picture_.exposure());
         }
-        void save_scene()
+        void save_scene() { message_ = saved_.save(document_.now()); }
+
+        /// For --journal: where the controls are, when that has changed.
+        void note_controls()
         {
-            try {
-                const auto name = free_name(options_.stem + "-changed", ".json");
-                write_file(name, scene_text(document_.now().scene, document_.now().settings));
-                message_ = "saved " + name;
-            } catch (const file_error& e) {
-                message_ = e.what();
-            }
+            if (!journal_.is_open() || interface_.controls() == noted_controls_)
+                return;
+            noted_controls_ = interface_.controls();
+            std::string places;
+            for (const auto& [label, c] : noted_controls_)
+                places += (places.empty() ? "\"" : ", \"") + label + "\": [" + std::to_string(c.x) + ", "
+                    + std::to_string(c.y) + ", " + std::to_string(c.width) + ", " + std::to_string(c.height) + "]";
+            note("{\"event\": \"controls\", \"places\": {" + places + "}}");
         }
 
         window_options options_;
         bool (*stop_asked_)();
         glfw glfw_;
         window_handle handle_;
+        keyboard keyboard_;
         interface interface_;
         document document_;
         settings_panel panel_;
         picture_pane pane_;
+        newest_picture picture_;
+        saved_files saved_;
         std::mutex journal_guard_;
         std::ofstream journal_;
 
-        frame shown_;
-        render_report report_;
         version sent_;
-        double exposure_ = 0;                 ///< EV, of the screen
-        bool fitted_to_whole_ = false;        ///< exposure_ is fitted to the last picture of its request
-        std::vector<float> changes_, errors_; ///< log10, since the last request
         std::string message_;
         bool overlay_ = true;
+        bool asks_to_close_ = false, closes_anyway_ = false;
+        control_places noted_controls_;
         render_thread renderer_; ///< last: its thread ends first
     };
 } // namespace

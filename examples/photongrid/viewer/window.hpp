@@ -11,8 +11,10 @@ namespace photongrid::viewer {
 
 struct window_options {
     version begin;                    ///< the first version to draw
+    std::string scene_path{};         ///< the scene's file ...
+    std::string scene_text{};         ///< ... and its text, of which saved scenes keep all that is not changed
     renderer_options renderer;        ///< the renderer's options; its backend is in `begin`
-    std::string stem;                 ///< files that the window saves are called STEM.png, STEM-2.png, …
+    std::string stem{};               ///< files that the window saves are called STEM.png, STEM-2.png, …
     std::optional<image> reference{}; ///< to compute errors against
     std::string journal{};            ///< a file for events, one line of JSON each; empty: none
 };
