@@ -14,6 +14,7 @@
 namespace photongrid {
 
 /// The backend and its options.
+/// \headerfile backends/any/any.hpp <photongrid/backends/any/any.hpp>
 struct renderer_options {
     std::string backend = "auto"; ///< serial, cpu, gl, gl-osmesa, vulkan; auto: see chosen()
     unsigned threads = 0;         ///< of cpu; 0: as many as the machine has
@@ -32,6 +33,7 @@ renderer_options chosen(renderer_options o);
 std::unique_ptr<renderer> make_renderer(const renderer_options& o = {});
 
 /// A device of a backend, or the reason why it has none.
+/// \headerfile backends/any/any.hpp <photongrid/backends/any/any.hpp>
 struct device_report {
     std::string backend{}; ///< as in renderer_options
     std::string device{};  ///< its name; empty if there is none

@@ -14,6 +14,7 @@ struct backend_holder {
     B held;
 };
 
+/// A renderer and its backend, made from the backend's arguments.
 template <class B>
 struct owning_renderer final : private backend_holder<B>, public progressive_render<B> {
     template <class... Arguments>

@@ -32,11 +32,17 @@ inline namespace header_only {
 
 static_assert(backend<cpu_backend>);
 
+/// \name Algorithms by code for this backend
+/// @{
+
+/// The algorithm of that name, with the same results.
 sort_report bitonic_sort(cpu_backend& b, cpu_backend::buffer<glm::uvec2>& pairs);
 cpu_backend::buffer<glm::uvec2> grid_index(cpu_backend& b, const cpu_backend::buffer<glm::uvec2>& pairs, uint cells);
 map_buffers<cpu_backend> sorted_map(cpu_backend& b, photons<cpu_backend> p, const grid& g, uint parts = every_part);
+/// @}
 /// The search on the cpu backend. It finds the same photons as the kernels. Sums differ by at most 10^-6, because the
 /// order of summation differs. A pass completes the searches of some of the points.
+/// \headerfile backends/cpu/cpu.hpp <photongrid/backends/cpu/cpu.hpp>
 template <>
 class knn_search<cpu_backend> {
 public:
@@ -81,10 +87,15 @@ private:
     std::size_t done_ = 0; // points done, in that order
 };
 
+/// \name Lists of neighbours by code for this backend
+/// @{
+
+/// The algorithm of that name, with the same results.
 neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& b, const map_buffers<cpu_backend>& map,
     const cpu::buffer<glm::vec4>& points, const knn_settings& settings);
 neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& b, const map_buffers<cpu_backend>& map,
     const cpu::buffer<glm::vec4>& points, const cpu::buffer<glm::vec4>& normals, const knn_settings& settings);
+/// @}
 
 } // namespace photongrid
 

@@ -1,11 +1,21 @@
 # Makes the manual of ROOT in the folder WORK. Fails where doxygen says anything, and where a page of it links to a file or shows
-# a picture that is not there, or tells a reader to include what no compiler finds.
+# a picture that is not there, or tells a reader to include what no compiler finds. Each class and each function needs a comment;
+# a member whose name says all does not, nor a guide for class template arguments, nor a row of the table of settings, which
+# describes itself.
+cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
 file(READ ${ROOT}/docs/Doxyfile settings)
 file(WRITE ${WORK}/Doxyfile "${settings}\nOUTPUT_DIRECTORY = ${WORK}\n")
 execute_process(COMMAND doxygen ${WORK}/Doxyfile WORKING_DIRECTORY ${ROOT} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
-if(NOT status STREQUAL 0 OR NOT output STREQUAL "")
+string(REPLACE ";" "," output "${output}")
+string(REPLACE "\n" ";" lines "${output}")
+list(FILTER lines EXCLUDE REGEX ": error: Member .* of (struct|class) .* is not documented\\.$")
+list(FILTER lines EXCLUDE REGEX ": error: Member .* of namespace photongrid::setting_table is not documented\\.$")
+list(FILTER lines EXCLUDE REGEX ": error: Member .* -> .* is not documented\\.$")
+list(FILTER lines EXCLUDE REGEX "^$")
+if(NOT status MATCHES "^[01]$" OR lines)
+  list(JOIN lines "\n" output)
   message(FATAL_ERROR "doxygen (${status}):\n${output}")
 endif()
 

@@ -12,6 +12,7 @@
 
 namespace photongrid {
 
+/// The kind of a value.
 enum class json_kind { null, boolean, number, string, array, object };
 
 /// A value. `place` is its offset in the text, `end` that of what follows it.

@@ -26,9 +26,8 @@ inline constexpr const char* triangle_name = "triangle";
 /// Every kind of object.
 std::span<const object_keys> known_objects();
 
-/// The names of all kinds of materials, of shapes and of lights.
-std::vector<std::string> material_names();
-std::vector<std::string> shape_names();
-std::vector<std::string> light_names();
+std::vector<std::string> material_names(); ///< of all kinds of materials
+std::vector<std::string> shape_names();    ///< of all kinds of shapes
+std::vector<std::string> light_names();    ///< of all kinds of lights
 
 } // namespace photongrid

@@ -215,6 +215,8 @@ private:
 
 /// \name Conversion of a scene's shape
 /// @{
+
+/// The reference's form of the shape.
 inline ball_shape shape_of(const sphere& x) { return {x.center, x.radius}; }
 inline turned_shape shape_of(const cylinder& x) { return {turned_shape::profile::cylinder, x.base, x.top, x.radius}; }
 inline turned_shape shape_of(const cone& x) { return {turned_shape::profile::cone, x.base, x.apex, x.radius}; }
@@ -249,7 +251,8 @@ double surface_area(const Round& x)
 {
     return ring_bins(x, infinity).area_of_all();
 }
-inline double surface_area(const box& b) ///< the same
+/// The same.
+inline double surface_area(const box& b)
 {
     double sum = 0;
     for (const auto& face : faces_of(b))
