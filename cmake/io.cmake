@@ -12,8 +12,8 @@ add_library(photongrid::io ALIAS photongrid_io)
 set_target_properties(photongrid_io PROPERTIES EXPORT_NAME io POSITION_INDEPENDENT_CODE ON)
 set(folder ${PROJECT_SOURCE_DIR}/include/photongrid/io)
 target_sources(photongrid_io PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include
-  FILES ${folder}/files.hpp ${folder}/image_difference.hpp ${folder}/image_file.hpp ${folder}/scene_edit.hpp ${folder}/scene_error.hpp
-  ${folder}/scene_file.hpp ${folder}/scene_writer.hpp ${folder}/structural_similarity.hpp ${folder}/tone_map.hpp)
+  FILES ${folder}/files.hpp ${folder}/image_difference.hpp ${folder}/image_file.hpp ${folder}/scene_edit.hpp
+  ${folder}/scene_error.hpp ${folder}/scene_file.hpp ${folder}/scene_writer.hpp ${folder}/structural_similarity.hpp ${folder}/tone_map.hpp)
 target_link_libraries(photongrid_io PUBLIC photongrid PRIVATE $<BUILD_INTERFACE:photongrid_warnings>
   $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> OpenEXR::OpenEXR PNG::PNG)
 if(NOT PROJECT_IS_TOP_LEVEL)

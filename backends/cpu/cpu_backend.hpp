@@ -40,6 +40,7 @@ sort_report bitonic_sort(cpu_backend& b, cpu_backend::buffer<glm::uvec2>& pairs)
 cpu_backend::buffer<glm::uvec2> grid_index(cpu_backend& b, const cpu_backend::buffer<glm::uvec2>& pairs, uint cells);
 map_buffers<cpu_backend> sorted_map(cpu_backend& b, photons<cpu_backend> p, const grid& g, uint parts = every_part);
 /// @}
+
 /// The search on the cpu backend. It finds the same photons as the kernels. Sums differ by at most 10^-6, because the
 /// order of summation differs. A pass completes the searches of some of the points.
 /// \headerfile backends/cpu/cpu.hpp <photongrid/backends/cpu/cpu.hpp>
