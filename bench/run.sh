@@ -2,7 +2,7 @@
 # Speed and error, measured. Prints Markdown; fails where a row misses what it must reach.
 #
 #   bench/run.sh [--algorithms] [--peers] [--paper] [--interactive] [--error] [--inclusion] [--write] [--no-install]     some of it, or all
-#   bench/run.sh --gpu [--no-install]               all of it on a hardware Vulkan device; refuses software
+#   bench/run.sh --gpu [--no-install]               each part that a device runs, on the hardware devices of vulkan and gl; refuses software
 #   bench/run.sh --smoke [--no-install]             all of it on little data, to see that it runs
 #
 #   --algorithms  each algorithm on each backend by number of photons and entropy of keys: JSON and plots in out/algorithms/
@@ -95,25 +95,51 @@ loses_a_quarter_at_most() {
 
 machine
 if [[ $gpu == yes ]]; then
-  device=$($build/photongrid devices | grep '^vulkan' | grep -v '(cpu' | head -n 1 || true)
-  if [[ -z $device ]]; then
-    echo "bench/run.sh --gpu: no hardware Vulkan device here; \`photongrid devices\` lists what there is" >&2
+  # `photongrid devices` prints each device of a backend, then, indented, whether it is hardware and its limits.
+  mapfile -t backends < <($build/photongrid devices | awk '/^[a-z]/ { name = $1 } /^ +hardware,/ && !seen[name]++ && name ~ /^(vulkan|gl)$/ { print name }')
+  if ((${#backends[@]} == 0)); then
+    echo "bench/run.sh --gpu: no hardware device of vulkan or gl here; \`photongrid devices\` lists what there is" >&2
     exit 2
   fi
-  title "On $device"
-  must bench/algorithms.sh --benchmark_filter=/vulkan/ --benchmark_min_time=0.1
-  must $build/bench/knn_peers --backend vulkan
-  must $build/bench/sort_passes
-  must $build/bench/kernel_costs
-  must $build/bench/unfinished
-  must bench/convergence.sh vulkan
-  must $build/bench/interactive examples/scenes/cornell_box.json 9 vulkan
-  for scene in cornell_box ring glass_ball; do
-    for run in first second third; do
-      $build/photongrid render "examples/scenes/$scene.json" --backend vulkan --time-passes --stats $build/stats.json -o $build/picture.pfm --quiet >/dev/null
-      echo "$scene, $run run: $(sed -n 's/^ *"device": *//p' $build/stats.json | head -n 1) $(awk '/"(trace_photons|build_map|trace_rays|radiance_estimate)":/ { name = $1 } $1 == "\"ms\":" && name != "" { gsub(",", "", $2); printf "%s %.2f ms; ", name, $2; name = "" }' $build/stats.json)"
+  echo
+  $build/photongrid devices
+  for backend in "${backends[@]}"; do
+    title "Algorithms on $backend"
+    must bench/algorithms.sh "--benchmark_filter=/$backend/" --benchmark_min_time=0.1
+    title "Nearest neighbours on $backend"
+    must $build/bench/knn_peers --backend "$backend"
+    title "Exact k against at least k on $backend"
+    must $build/bench/search_times 3 "$backend"
+    title "Waiting on $backend (3.4)"
+    must $build/bench/interactive examples/scenes/cornell_box.json 9 "$backend"
+  done
+  if ((${#backends[@]} == 2)); then # these measure both
+    title "Sorting passes on vulkan and gl"
+    must $build/bench/sort_passes
+    title "Finished elements (3.3, 4.3)"
+    must $build/bench/unfinished
+  fi
+  if [[ " ${backends[*]} " == *" vulkan "* ]]; then
+    title "Table 2"
+    must $build/bench/kernel_costs
+  fi
+  title "Table 1"
+  must bench/table1.sh "${backends[@]}"
+  title "Whole pictures, by stage, as the device's clock has them"
+  for backend in "${backends[@]}"; do
+    for scene in cornell_box ring glass_ball; do
+      for run in first second third; do
+        $build/photongrid render "examples/scenes/$scene.json" --backend "$backend" --time-passes --stats $build/stats.json -o $build/picture.pfm --quiet >/dev/null
+        echo "$scene, $backend, $run run: $(awk '/"(trace_photons|build_map|trace_rays|radiance_estimate)":/ { name = $1 } $1 == "\"ms\":" && name != "" { gsub(",", "", $2); printf "%s %.2f ms; ", name, $2; name = "" }' $build/stats.json)"
+      done
     done
   done
+  title "Time to visual convergence (3.1)"
+  must bench/convergence.sh "${backends[@]}"
+  title "The window (3.4)"
+  must bench/window.sh "${backends[@]}"
+  title "Time against error"
+  must bench/error.sh
   exit $failed
 fi
 if [[ $smoke == yes ]]; then

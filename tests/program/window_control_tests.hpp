@@ -142,6 +142,45 @@ TEST_F(window, the_mouse_moves_camera_and_objects_on_cpu)
     EXPECT_EQ(program->code(), 0) << contents(folder / "program.log");
 }
 
+TEST_F(window, the_picture_and_the_mouse_follow_its_size)
+{
+    ASSERT_NO_FATAL_FAILURE(open_display());
+    ASSERT_NO_FATAL_FAILURE(open_window());
+    key(XK_o);
+    mouse_to(px(0.1), py(0.2));
+    const auto first = take_screenshot();
+    for (const auto& [new_width, new_height] : {std::pair{970, 540}, {960, 790}, {640, 300}}) {
+        SCOPED_TRACE(std::to_string(new_width) + " x " + std::to_string(new_height));
+        const auto before = requests();
+        resize(new_width, new_height);
+        mouse_to(px(0.1), py(0.2));
+        const auto s = take_screenshot();
+        for (const double part : {0.05, 0.35, 0.65, 0.95}) // the same picture, larger or smaller
+            for (const double down : {0.3, 0.6, 0.8})
+                EXPECT_NEAR(s.brightness(part - 0.04, part + 0.04, down - 0.04, down + 0.04),
+                    first.brightness(part - 0.04, part + 0.04, down - 0.04, down + 0.04), 4)
+                    << part << ", " << down;
+        EXPECT_EQ(requests(), before) << "the window's size changes the screen alone";
+        click(px(0.27), py(0.285)); // selects the lamp, where it is now
+        const auto maps_before = maps();
+        drag(px(0.27), py(0.285), px(0.73), py(0.285));
+        ASSERT_TRUE(rests(before));
+        EXPECT_GT(maps(), maps_before) << "the lamp was not where the picture shows it";
+        const auto moved = take_screenshot();
+        EXPECT_GT(moved.brightness(0.6, 0.75, 0.66, 0.74), moved.brightness(0.28, 0.4, 0.66, 0.74) + 10);
+        const auto after = requests();
+        key(XK_z, true);
+        ASSERT_TRUE(rests(after));
+        key(XK_Escape);
+    }
+    resize(200, 40); // narrower than the panel
+    resize(810, 720);
+    mouse_to(px(0.1), py(0.2));
+    EXPECT_LT(difference(take_screenshot(), first), 0.001);
+    program->signal(SIGINT);
+    EXPECT_EQ(program->code(), 0) << contents(folder / "program.log");
+}
+
 TEST_F(window, keys_are_what_is_printed_on_them)
 {
     // On a German keyboard, y and z have changed places.

@@ -9,6 +9,7 @@
 #include <X11/extensions/XTest.h>
 #include <X11/keysym.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -234,21 +235,27 @@ protected:
         use(label + ": " + word);
     }
 
-    /// As a window manager does when its button is pressed.
-    void ask_to_close()
+    /// The program's, which was opened last.
+    Window top_window() const
     {
         Window root = 0, parent = 0, *children = nullptr;
         unsigned count = 0;
-        ASSERT_NE(XQueryTree(x, DefaultRootWindow(x), &root, &parent, &children, &count), 0);
-        ASSERT_GE(count, 1u);
+        EXPECT_NE(XQueryTree(x, DefaultRootWindow(x), &root, &parent, &children, &count), 0);
+        EXPECT_GE(count, 1u);
+        const Window last = count > 0 ? children[count - 1] : 0;
+        XFree(children);
+        return last;
+    }
+    /// As a window manager does when its button is pressed.
+    void ask_to_close()
+    {
         XEvent e{};
         e.xclient.type = ClientMessage;
-        e.xclient.window = children[count - 1];
+        e.xclient.window = top_window();
         e.xclient.message_type = XInternAtom(x, "WM_PROTOCOLS", 0);
         e.xclient.format = 32;
         e.xclient.data.l[0] = static_cast<long>(XInternAtom(x, "WM_DELETE_WINDOW", 0));
         XSendEvent(x, e.xclient.window, 0, NoEventMask, &e);
-        XFree(children);
         pause();
     }
 
@@ -345,10 +352,22 @@ protected:
 
     // The window is 810 x 720, at the screen's corner, since no window manager puts it elsewhere; its picture, 480 x
     // 360, has the panel's 330 pixels to its right.
-    static constexpr int picture_width = 480, picture_height = 360, picture_left = 0, picture_top = 180;
+    int picture_width = 480, picture_height = 360, picture_left = 0, picture_top = 180;
     /// From parts of the picture to pixels of the screen.
-    static int px(double part) { return picture_left + static_cast<int>(part * picture_width); }
-    static int py(double part) { return picture_top + static_cast<int>(part * picture_height); }
+    int px(double part) const { return picture_left + static_cast<int>(part * picture_width); }
+    int py(double part) const { return picture_top + static_cast<int>(part * picture_height); }
+
+    /// As its user does by its border. The picture stays 4 : 3, in the middle of what the panel leaves.
+    void resize(int new_width, int new_height)
+    {
+        XResizeWindow(x, top_window(), static_cast<unsigned>(new_width), static_cast<unsigned>(new_height));
+        const double room_x = std::max(1, new_width - 330), room_y = new_height,
+                     scale = std::min(room_x / 4, room_y / 3);
+        picture_width = static_cast<int>(4 * scale), picture_height = static_cast<int>(3 * scale);
+        picture_left = static_cast<int>((room_x - picture_width) / 2);
+        picture_top = static_cast<int>((room_y - picture_height) / 2);
+        pause();
+    }
 
     fs::path folder;
     std::string display;
