@@ -1,50 +1,116 @@
-# photongrid::renderer: the renderer, compiled once for each backend that is built, which is chosen at run time.
+# photongrid::renderer: the renderer, compiled once for each backend that is built, which is chosen at run time. The
+# program has the same, with backends in modules, which need not be there and whose libraries may be broken.
 
-# photongrid_built_backends(FILE NAME...): the source file that lists these backends to backends/any.
+# photongrid_built_backends(FILE [LINKED name...] [MODULES name...]): the source file that lists these backends to
+# backends/any.
 function(photongrid_built_backends file)
-  set(entries ${ARGN})
-  list(TRANSFORM entries APPEND "_entry()")
-  list(JOIN entries ", " entries)
+  cmake_parse_arguments(arg "" "" "LINKED;MODULES" ${ARGN})
+  set(include backend_entry)
+  set(entries "")
+  foreach(name IN LISTS arg_LINKED)
+    string(APPEND entries "        {\"${name}\", ${name}_entry},\n")
+  endforeach()
+  foreach(name IN LISTS arg_MODULES)
+    string(APPEND entries "        {\"${name}\", [] { return entry_of_module(\"${name}\"); }},\n")
+    set(include module)
+  endforeach()
   file(CONFIGURE OUTPUT ${file} CONTENT [[
-// The backends that are built in: cmake/renderer.cmake.
-#include <photongrid/backends/any/backend_entry.hpp>
+// The backends of this build: cmake/renderer.cmake.
+#include <photongrid/backends/any/@include@.hpp>
 
-std::span<const photongrid::any::backend_entry> photongrid::any::built_backends()
+std::span<const photongrid::any::built_backend> photongrid::any::built_backends()
 {
-    static const backend_entry all[] = {@entries@};
+    static constexpr built_backend all[] = {
+@entries@    };
     return all;
 }
 ]] @ONLY)
 endfunction()
 
-set(root ${PROJECT_BINARY_DIR}/backends/any)
-file(MAKE_DIRECTORY ${root}/photongrid/backends)
-file(CREATE_LINK ${PROJECT_SOURCE_DIR}/backends/any ${root}/photongrid/backends/any SYMBOLIC)
-set(sources "")
-set(names "")
+set(photongrid_any_root ${PROJECT_BINARY_DIR}/backends/any)
+file(MAKE_DIRECTORY ${photongrid_any_root}/photongrid/backends)
+set(any ${photongrid_any_root}/photongrid/backends/any)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/backends/any ${any} SYMBOLIC)
+
+# What all of its files are compiled with.
+add_library(photongrid_any INTERFACE)
+target_include_directories(photongrid_any INTERFACE ${photongrid_any_root})
+target_link_libraries(photongrid_any INTERFACE photongrid photongrid_warnings)
+target_compile_options(photongrid_any INTERFACE -ffp-contract=off) # exact_begin.hpp
+target_compile_definitions(photongrid_any INTERFACE PHOTONGRID_CONTRACTION_IS_OFF
+  $<$<BOOL:${PHOTONGRID_TESTS}>:PHOTONGRID_COMPILES_ALGORITHMS>) # tests take its algorithms from it
+
+# photongrid_renderer_on_NAME: the renderer on a backend, for the library and for the program's module alike.
+set(photongrid_renderer_backends "")
+set(objects "")
 set(libraries "")
 foreach(name IN ITEMS serial cpu gl vulkan)
   if(TARGET photongrid::${name})
-    list(APPEND sources ${PROJECT_SOURCE_DIR}/backends/any/${name}.cpp)
-    list(APPEND names ${name})
+    set(library photongrid_${name})
     if(TARGET photongrid_${name}_compiled)
-      list(APPEND libraries photongrid_${name}_compiled)
-    else()
-      list(APPEND libraries photongrid_${name})
+      set(library photongrid_${name}_compiled)
     endif()
+    add_library(photongrid_renderer_on_${name} OBJECT EXCLUDE_FROM_ALL ${any}/${name}.cpp)
+    set_target_properties(photongrid_renderer_on_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_link_libraries(photongrid_renderer_on_${name} PRIVATE photongrid_any PUBLIC ${library})
+    list(APPEND photongrid_renderer_backends ${name})
+    list(APPEND objects $<TARGET_OBJECTS:photongrid_renderer_on_${name}>)
+    list(APPEND libraries ${library})
   endif()
 endforeach()
-photongrid_built_backends(${root}/built_backends.cpp ${names})
 
-add_library(photongrid_renderer STATIC ${PROJECT_SOURCE_DIR}/backends/any/any.cpp ${root}/built_backends.cpp ${sources})
+photongrid_built_backends(${photongrid_any_root}/built_backends.cpp LINKED ${photongrid_renderer_backends})
+add_library(photongrid_renderer STATIC ${any}/any.cpp ${any}/limits.cpp ${photongrid_any_root}/built_backends.cpp ${objects})
 add_library(photongrid::renderer ALIAS photongrid_renderer)
 set_target_properties(photongrid_renderer PROPERTIES EXPORT_NAME renderer POSITION_INDEPENDENT_CODE ON)
-set(folder ${root}/photongrid/backends/any)
-target_sources(photongrid_renderer PUBLIC FILE_SET HEADERS BASE_DIRS ${root} FILES ${folder}/any.hpp)
-target_link_libraries(photongrid_renderer PUBLIC photongrid PRIVATE $<BUILD_INTERFACE:photongrid_warnings> ${libraries})
-target_compile_options(photongrid_renderer PRIVATE -ffp-contract=off) # exact_begin.hpp
-target_compile_definitions(photongrid_renderer PRIVATE PHOTONGRID_CONTRACTION_IS_OFF
-  $<$<BOOL:${PHOTONGRID_TESTS}>:PHOTONGRID_COMPILES_ALGORITHMS>) # tests take its algorithms from it
+target_sources(photongrid_renderer PUBLIC FILE_SET HEADERS BASE_DIRS ${photongrid_any_root} FILES ${any}/any.hpp)
+target_link_libraries(photongrid_renderer PUBLIC photongrid PRIVATE $<BUILD_INTERFACE:photongrid_any> ${libraries})
 if(NOT PROJECT_IS_TOP_LEVEL)
   set_target_properties(photongrid_renderer PROPERTIES EXCLUDE_FROM_ALL TRUE)
 endif()
+
+# photongrid_module(NAME SOURCE...): the target photongrid_module_NAME, which the program loads as NAME.so from its
+# folder of modules (backends/any/module.hpp).
+function(photongrid_module name)
+  add_library(photongrid_module_${name} MODULE ${ARGN})
+  set_target_properties(photongrid_module_${name} PROPERTIES OUTPUT_NAME ${name} PREFIX ""
+    LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/photongrid-modules)
+  target_link_libraries(photongrid_module_${name} PRIVATE photongrid_any)
+  set_property(GLOBAL APPEND PROPERTY photongrid_modules photongrid_module_${name})
+endfunction()
+
+# photongrid_program_renderer(): the target of that name, with serial and cpu linked and the other backends in modules.
+# PHOTONGRID_MODULES: the folder of installed modules, relative to the program's.
+function(photongrid_program_renderer)
+  set(root ${photongrid_any_root})
+  set(any ${root}/photongrid/backends/any)
+  set(linked ${photongrid_renderer_backends})
+  list(FILTER linked INCLUDE REGEX "^(serial|cpu)$")
+  set(modules ${photongrid_renderer_backends})
+  list(FILTER modules EXCLUDE REGEX "^(serial|cpu)$")
+  photongrid_built_backends(${root}/program_backends.cpp LINKED ${linked} MODULES ${modules})
+  add_library(photongrid_program_renderer STATIC ${any}/any.cpp ${any}/limits.cpp ${any}/module.cpp ${root}/program_backends.cpp)
+  target_include_directories(photongrid_program_renderer PUBLIC ${root})
+  target_compile_definitions(photongrid_program_renderer PRIVATE PHOTONGRID_MODULES="${PHOTONGRID_MODULES}")
+  target_link_libraries(photongrid_program_renderer PUBLIC photongrid PRIVATE photongrid_any ${CMAKE_DL_LIBS})
+  foreach(name IN LISTS linked)
+    target_link_libraries(photongrid_program_renderer PRIVATE photongrid_renderer_on_${name})
+  endforeach()
+  foreach(name IN LISTS modules)
+    file(CONFIGURE OUTPUT ${root}/module_${name}.cpp CONTENT [[
+// The module of a backend: cmake/renderer.cmake.
+#include <photongrid/backends/any/module.hpp>
+
+PHOTONGRID_MODULE
+
+extern "C" const photongrid::any::backend_entry* photongrid_backend_entry()
+{
+    static const auto entry = photongrid::any::@name@_entry();
+    return &entry;
+}
+]] @ONLY)
+    photongrid_module(${name} ${root}/module_${name}.cpp ${any}/limits.cpp)
+    target_link_libraries(photongrid_module_${name} PRIVATE photongrid_renderer_on_${name})
+    add_dependencies(photongrid_program_renderer photongrid_module_${name})
+  endforeach()
+endfunction()

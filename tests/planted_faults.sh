@@ -151,6 +151,7 @@ faults=(
   "glass chooses by another number|include/photongrid/trace/bounce_photon.glsl|r.w < f.reflected|r.x < f.reflected|optics"
   "the last edge of a polygon is not asked|include/photongrid/trace/intersect/polygon.glsl|for (uint e = 0u; e <= edges; ++e) {|for (uint e = 0u; e < edges; ++e) {|optics"
   "ray offsets 32 times too long|include/photongrid/trace/scene_layout.glsl|1.9073486328125e-6f|6.103515625e-5f|optics"
+  "a broken library ends the choice of a backend|backends/any/any.cpp|return std::nullopt; // its module cannot be loaded|throw;|program"
   "a lamp's corner may be NaN|include/photongrid/scene/lights.hpp|detail::finite(l.corner) && ||bad_scenes"
   "a setting is unchecked|include/photongrid/scene/setting_table.hpp|v >= least && v <= most|v <= most|bad_scenes"
   "an index of refraction is unchecked|include/photongrid/scene/material.hpp|f.range.check(f.name, v);|(void)v;|bad_scenes"
@@ -198,7 +199,7 @@ folder_of() {
   case $1 in
     on_cpu | on_gl | on_vulkan) echo "build-${1#on_}" ;;
     gl_*) echo build-gl ;;
-    vulkan_*) echo build-vulkan ;;
+    vulkan_* | program) echo build-vulkan ;; # the program with a module
     *) echo build-serial ;;
   esac
 }

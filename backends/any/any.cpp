@@ -6,55 +6,54 @@ namespace photongrid {
 
 namespace any {
     namespace {
-        /// All backends, and the packages and options that a build without them lacks.
+        /// A name that renderer_options can have, the entry that it belongs to, and the packages and options that a
+        /// build without it lacks.
         struct known_backend {
             const char* name;
+            const char* entry;
             const char* lacks;
         };
-        constexpr known_backend known[]
-            = {{"serial", ""}, {"cpu", "libtbb-dev and libhwy-dev, then configure with -DPHOTONGRID_CPU=ON"},
-                {"gl", "libegl-dev, libopengl-dev and libgl-dev, then configure with -DPHOTONGRID_GL=ON"},
-                {"gl-osmesa",
-                    "libegl-dev, libopengl-dev, libgl-dev and libosmesa6-dev, then configure with -DPHOTONGRID_GL=ON"},
-                {"vulkan",
-                    "libvulkan-dev, glslang-dev, glslang-tools and spirv-tools, then configure with "
-                    "-DPHOTONGRID_VULKAN=ON"}};
+        constexpr known_backend known[] = {{"serial", "serial", ""},
+            {"cpu", "cpu", "libtbb-dev and libhwy-dev, then configure with -DPHOTONGRID_CPU=ON"},
+            {"gl", "gl", "libegl-dev, libopengl-dev and libgl-dev, then configure with -DPHOTONGRID_GL=ON"},
+            {"gl-osmesa", "gl",
+                "libegl-dev, libopengl-dev, libgl-dev and libosmesa6-dev, then configure with -DPHOTONGRID_GL=ON"},
+            {"vulkan", "vulkan",
+                "libvulkan-dev, glslang-dev, glslang-tools and spirv-tools, then configure with "
+                "-DPHOTONGRID_VULKAN=ON"}};
 
-        const backend_entry* find(const std::string& name)
+        const built_backend* find(const std::string& entry)
         {
-            for (const auto& e : built_backends())
-                if (std::find(e.names.begin(), e.names.end(), name) != e.names.end())
-                    return &e;
-            return nullptr;
+            const auto all = built_backends();
+            const auto at = std::find_if(all.begin(), all.end(), [&](const auto& b) { return b.name == entry; });
+            return at != all.end() ? &*at : nullptr;
         }
         std::string not_built(const known_backend& b)
         {
             return std::string(b.name) + ": photongrid was built without it; install " + b.lacks;
         }
+        std::optional<std::string> hardware_of(const built_backend& b)
+        {
+            try {
+                const auto e = b.entry();
+                return e.hardware ? e.hardware() : std::nullopt;
+            } catch (const backend_error&) {
+                return std::nullopt; // its module cannot be loaded
+            }
+        }
     } // namespace
-
-    std::string limits(const capabilities& c)
-    {
-        const auto yes_no = [](bool b) { return b ? "yes" : "no"; };
-        return std::string(c.software ? "software" : "hardware") + ", buffers of up to "
-            + std::to_string(c.max_elements) + " elements, routing with up to " + std::to_string(c.max_route_slots)
-            + " x " + std::to_string(c.max_route_slots) + " slots, division rounds correctly: "
-            + yes_no(c.exact_division) + ", square root: " + yes_no(c.exact_sqrt)
-            + (c.loop_limit > 0 ? ", loops end after " + std::to_string(c.loop_limit) + " iterations" : "");
-    }
 } // namespace any
 
 renderer_options chosen(renderer_options o)
 {
     if (o.backend != "auto")
         return o;
-    for (const auto& e : any::built_backends())
-        if (e.hardware)
-            if (const auto device = e.hardware()) {
-                o.backend = e.names.front();
-                o.device = *device;
-                return o;
-            }
+    for (const auto& b : any::built_backends())
+        if (const auto device = any::hardware_of(b)) {
+            o.backend = b.name;
+            o.device = *device;
+            return o;
+        }
     o.backend = any::find("cpu") ? "cpu" : "serial";
     return o;
 }
@@ -62,13 +61,14 @@ renderer_options chosen(renderer_options o)
 std::unique_ptr<renderer> make_renderer(const renderer_options& asked)
 {
     const auto o = chosen(asked);
-    if (const auto* e = any::find(o.backend))
-        return e->make(o);
     std::string names = "auto";
-    for (const auto& b : any::known) {
-        if (o.backend == b.name)
-            throw backend_error(any::not_built(b));
-        names += std::string(", ") + b.name;
+    for (const auto& k : any::known) {
+        if (o.backend == k.name) {
+            if (const auto* b = any::find(k.entry))
+                return b->entry().make(o);
+            throw backend_error(any::not_built(k));
+        }
+        names += std::string(", ") + k.name;
     }
     throw std::invalid_argument("make_renderer: backend: there is no backend \"" + o.backend + "\"; use " + names);
 }
@@ -76,13 +76,18 @@ std::unique_ptr<renderer> make_renderer(const renderer_options& asked)
 std::vector<device_report> find_devices()
 {
     std::vector<device_report> all;
-    for (const auto& b : any::known) {
-        const auto* e = any::find(b.name);
-        if (!e)
-            all.push_back({.backend = b.name, .description = any::not_built(b)});
-        else if (e->names.front() == b.name) // an entry with several names reports on all of them
-            for (auto& d : e->devices())
-                all.push_back(std::move(d));
+    for (const auto& k : any::known) {
+        const auto* b = any::find(k.entry);
+        try {
+            if (!b)
+                throw backend_error(any::not_built(k));
+            const auto e = b->entry();
+            if (k.name == std::string(k.entry)) // an entry with several names reports on all of them
+                for (auto& d : e.devices())
+                    all.push_back(std::move(d));
+        } catch (const backend_error& e) {
+            all.push_back({.backend = k.name, .description = e.what()});
+        }
     }
     return all;
 }

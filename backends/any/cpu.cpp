@@ -17,7 +17,7 @@ namespace {
     }
 } // namespace
 
-backend_entry cpu_entry() { return {{"cpu"}, make, devices, nullptr}; }
+backend_entry cpu_entry() { return {make, devices, nullptr}; }
 
 } // namespace photongrid::any
 

@@ -30,7 +30,7 @@ namespace {
     }
 } // namespace
 
-backend_entry gl_entry() { return {{"gl", "gl-osmesa"}, make, devices, nullptr}; }
+backend_entry gl_entry() { return {make, devices, nullptr}; }
 
 } // namespace photongrid::any
 

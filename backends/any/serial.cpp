@@ -16,7 +16,7 @@ namespace {
     }
 } // namespace
 
-backend_entry serial_entry() { return {{"serial"}, make, devices, nullptr}; }
+backend_entry serial_entry() { return {make, devices, nullptr}; }
 
 } // namespace photongrid::any
 

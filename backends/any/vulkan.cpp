@@ -58,7 +58,7 @@ namespace {
     }
 } // namespace
 
-backend_entry vulkan_entry() { return {{"vulkan"}, make, devices, hardware}; }
+backend_entry vulkan_entry() { return {make, devices, hardware}; }
 
 } // namespace photongrid::any
 

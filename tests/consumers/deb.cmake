@@ -35,3 +35,8 @@ if(others)
 endif()
 run(dpkg-deb --extract ${program} ${WORK}/root)
 run(${WORK}/root/usr/bin/photongrid check ${WORK}/root/usr/share/photongrid/scenes/ring.json)
+# Its modules are found where they are installed.
+run(${WORK}/root/usr/bin/photongrid devices)
+if(output MATCHES "there is neither")
+  message(FATAL_ERROR "the installed program does not find its modules: ${output}")
+endif()

@@ -2,3 +2,4 @@
 #include "command_tests.hpp"
 #include "estimate_option_tests.hpp"
 #include "interrupt_tests.hpp"
+#include "module_tests.hpp"

@@ -17,7 +17,7 @@ namespace {
     protected:
         drawn()
             : thread(
-                {.backend = "serial"}, [this] { notify(); },
+                make_renderer, {.backend = "serial"}, [this] { notify(); },
                 [this](const std::string& line) {
                     const std::lock_guard lock(guard);
                     lines.push_back(line);

@@ -27,8 +27,9 @@ namespace {
     }
 } // namespace
 
-render_thread::render_thread(renderer_options options, std::function<void()> wake, journal log)
-    : options_(std::move(options)), wake_(std::move(wake)), log_(std::move(log)), thread_([this] { work(); })
+render_thread::render_thread(renderer_maker make, renderer_options options, std::function<void()> wake, journal log)
+    : make_(make), options_(std::move(options)), wake_(std::move(wake)), log_(std::move(log)),
+      thread_([this] { work(); })
 {
 }
 
@@ -126,7 +127,7 @@ bool render_thread::take()
         renderer_.reset();
         auto o = options_;
         o.backend = current_.what.backend;
-        renderer_ = make_renderer(o);
+        renderer_ = make_(o);
         opened_backend_ = o.backend;
         const std::lock_guard lock(guard_);
         cancellable_ = renderer_.get();

@@ -39,10 +39,13 @@ struct render_report {
 /// An event for --journal: one line of JSON without the line break.
 using journal = std::function<void(const std::string& line)>;
 
+/// make_renderer(), or what takes its place: the window is a module, and the backends are the program's.
+using renderer_maker = std::unique_ptr<renderer> (*)(const renderer_options&);
+
 class render_thread {
 public:
     /// `wake` is called in this object's thread when there is a new picture or state; `log` may be empty.
-    render_thread(renderer_options options, std::function<void()> wake, journal log);
+    render_thread(renderer_maker make, renderer_options options, std::function<void()> wake, journal log);
     ~render_thread();
     render_thread(const render_thread&) = delete;
     render_thread& operator=(const render_thread&) = delete;
@@ -70,6 +73,7 @@ private:
     void fail(const std::string& what);
     void tell(const std::string& event, const std::string& more = "") const;
 
+    renderer_maker make_;
     renderer_options options_;
     std::function<void()> wake_;
     journal log_;

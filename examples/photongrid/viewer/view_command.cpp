@@ -2,6 +2,7 @@
 
 #include "../render_command.hpp"
 #include "window.hpp"
+#include <photongrid/backends/any/module.hpp>
 #include <photongrid/io/json_tree.hpp>
 #include <photongrid/io/scene_file.hpp>
 
@@ -12,6 +13,7 @@ namespace photongrid {
 exit_code run_view(const view_options& o, bool (*stop_asked)())
 {
     viewer::window_options w;
+    w.make = make_renderer;
     w.scene_path = o.picture.scene_path;
     w.scene_text = read_scene_text(w.scene_path);
     const auto s = parse_scene(w.scene_path, w.scene_text);
@@ -26,7 +28,10 @@ exit_code run_view(const view_options& o, bool (*stop_asked)())
     w.journal = o.journal;
     if (!o.picture.reference.empty())
         w.reference = read_image(o.picture.reference);
-    viewer::show_window(w, stop_asked);
+    // The window's libraries may be missing where nobody opens one.
+    const auto show = reinterpret_cast<decltype(&viewer::photongrid_show_window)>(
+        any::function_of_module("window", "photongrid_show_window"));
+    show(w, stop_asked);
     return success;
 }
 

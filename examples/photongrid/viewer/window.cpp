@@ -6,6 +6,7 @@
 #include "picture_pane.hpp"
 #include "saved_files.hpp"
 #include "settings_panel.hpp"
+#include <photongrid/backends/any/module.hpp>
 #include <photongrid/io/files.hpp>
 
 #include <backends/imgui_impl_glfw.h>
@@ -14,6 +15,8 @@
 #include <algorithm>
 #include <fstream>
 #include <utility>
+
+PHOTONGRID_MODULE
 
 namespace photongrid::viewer {
 
@@ -28,7 +31,7 @@ namespace {
               keyboard_(handle_.get()), interface_(handle_.get()), document_(o.begin), panel_(document_),
               pane_(document_), picture_(renderer_, pane_, o.reference), saved_(o), journal_(o.journal),
               renderer_(
-                  o.renderer, [] { glfwPostEmptyEvent(); },
+                  o.make, o.renderer, [] { glfwPostEmptyEvent(); },
                   o.journal.empty() ? journal() : [this](const std::string& line) { note(line); })
         {
             if (!o.journal.empty() && !journal_.is_open())
@@ -300,6 +303,6 @@ namespace {
     };
 } // namespace
 
-void show_window(const window_options& o, bool (*stop_asked)()) { window(o, stop_asked).run(); }
+void photongrid_show_window(const window_options& o, bool (*stop_asked)()) { window(o, stop_asked).run(); }
 
 } // namespace photongrid::viewer

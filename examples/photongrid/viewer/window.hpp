@@ -1,8 +1,7 @@
 // The window: a picture that is redrawn as its scene is edited (section 3.4), and a panel of settings.
 #pragma once
 
-#include "document.hpp"
-#include <photongrid/backends/any/any.hpp>
+#include "render_thread.hpp"
 
 #include <optional>
 #include <string>
@@ -13,14 +12,15 @@ struct window_options {
     version begin;                    ///< the first version to draw
     std::string scene_path{};         ///< the scene's file ...
     std::string scene_text{};         ///< ... and its text, of which saved scenes keep all that is not changed
-    renderer_options renderer;        ///< the renderer's options; its backend is in `begin`
+    renderer_maker make;              ///< makes the renderer ...
+    renderer_options renderer;        ///< ... with these options; its backend is in `begin`
     std::string stem{};               ///< files that the window saves are called STEM.png, STEM-2.png, …
     std::optional<image> reference{}; ///< to compute errors against
     std::string journal{};            ///< a file for events, one line of JSON each; empty: none
 };
 
 /// Opens the window and returns when it is closed, or when `stop_asked` is set. Throws backend_error if there is no
-/// display, or no OpenGL on it.
-void show_window(const window_options& o, bool (*stop_asked)());
+/// display, or no OpenGL on it. It lies in the module `window`.
+extern "C" void photongrid_show_window(const window_options& o, bool (*stop_asked)());
 
 } // namespace photongrid::viewer
