@@ -5,7 +5,7 @@
 #include "cpu_algorithms.hpp"
 #include <photongrid/backends/cpu/overrides/radix_sort.hpp>
 
-#include "../map/photon_sets.hpp"
+#include "../map/photon_generator.hpp"
 #include "serial_algorithms.hpp"
 
 #include <gtest/gtest.h>
@@ -147,14 +147,18 @@ TEST(cpu_backend, radix_sort_equals_std_sort)
 {
     cpu::pool one(1), three(3);
     EXPECT_TRUE(rc::check("any keys and values", [&] {
-        const auto n = *rc::gen::element<std::size_t>(0, 1, 2, 3, 1000, 20000, 50001);
+        const auto blocks = *photon_numbers(400); // of 125 pairs, and some more
+        const auto n = 125 * blocks.size() + *rc::gen::inRange<std::size_t>(0, 125);
         const auto keys = *rc::gen::element(1u, 3u, 2000u, 70000u, 0xFFFFFFFFu),
                    values = *rc::gen::element(0u, 1u, 5000u, 0xFFFFFFFFu);
-        random_source u(*rc::gen::arbitrary<std::uint64_t>());
+        random_source u(0);
         std::vector<uvec2> pairs(n);
-        for (std::size_t i = 0; i < n; ++i) // values 0: ascending, as ids are
+        for (std::size_t i = 0; i < n; ++i) { // values 0: ascending, as ids are
+            if (i % 125 == 0)
+                u = random_source(i / 125 < blocks.size() ? blocks[i / 125] : 0);
             pairs[i] = {
                 u.below(50) == 0 ? 0xFFFFFFFFu : u.below(keys), values == 0 ? static_cast<uint>(i) : u.below(values)};
+        }
         auto expected = pairs;
         std::sort(
             expected.begin(), expected.end(), [](uvec2 a, uvec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
@@ -200,17 +204,15 @@ TEST(cpu_backend, the_growing_search_visits_and_holds_what_serials_does)
     cpu_backend b(2);
     serial_backend serial;
     EXPECT_TRUE(rc::check("held, visited, radius: the same bits", [&] {
-        const auto d = *rc::gen::elementOf(
-            std::vector<distribution>(std::begin(all_distributions), std::end(all_distributions)));
+        const auto d = *any_distribution();
         const auto resolution = *rc::gen::element(
             uvec3(1, 1, 1), uvec3(20, 1, 20), uvec3(5, 5, 10), uvec3(1, 1, 40), uvec3(3, 50, 2), uvec3(17, 33, 18));
-        const auto n = *rc::gen::element<std::size_t>(0, 1, 2, 17, 700, 5000);
+        const auto numbers = *photon_numbers(5000);
         const auto k = *rc::gen::element(1u, 2u, 15u, 16u, 17u, 50u, 333u, 5000u);
         const auto radius = *rc::gen::element(1e-4f, 0.03f, 0.2f, 0.7f, 10.0f);
         const auto leaks = *rc::gen::element(leak_policy{}, leak_policy{.side = true},
             leak_policy{.side = true, .min_cosine = -0.5f, .flattening = 1.5f});
-        const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1000000);
-        const auto s = make_oriented(d, n, resolution, 40, seed);
+        const auto s = make_oriented(d, numbers, resolution, 40);
         for (const auto& kind : {bias_kind::paper, bias_kind::unbiased}) {
             auto settings = as_paper(knn_settings{.k = k, .max_radius = radius});
             settings.leaks = leaks;

@@ -1,10 +1,12 @@
 // See on_serial.cpp.
 #include "../estimate/edge_tests.hpp"
+#include "../render/material_statistics_tests.hpp"
 #include "../render/number_picture_tests.hpp"
 #include "../render/progressive_tests.hpp"
 #include "../render/render_tests.hpp"
 #include "../render/routed_picture_tests.hpp"
 #include "../render/scene_picture_tests.hpp"
+#include "../render/standard_error_tests.hpp"
 #include "../trace/box_tests.hpp"
 #include "../trace/double_oracle_tests.hpp"
 #include "../trace/ray_tests.hpp"

@@ -1,6 +1,7 @@
 // Every kind of search finds the photons that brute force and FLANN find, on any backend.
 #pragma once
 
+#include "../map/photon_generator.hpp"
 #include "estimators.hpp"
 
 #include <set>
@@ -51,16 +52,14 @@ TYPED_TEST_P(estimators, exact_k_finds_flanns_photons_on_every_distribution)
 {
     auto& b = this->b();
     EXPECT_TRUE(rc::check("k-th squared distance = FLANN's bit for bit, set = brute force, ties by id", [&] {
-        const auto d = *rc::gen::elementOf(
-            std::vector<distribution>(std::begin(all_distributions), std::end(all_distributions)));
+        const auto d = *any_distribution();
         const auto resolution
             = *rc::gen::element(uvec3(1, 1, 1), uvec3(20, 1, 20), uvec3(5, 5, 10), uvec3(1, 1, 40), uvec3(7, 3, 2));
-        const auto n = *rc::gen::element(0, 1, 2, 7, 40, 700);
+        const auto numbers = *photon_numbers(700);
         const auto k = *rc::gen::element(1u, 2u, 3u, 8u, 50u, 333u, 5000u);
         const auto radius = *rc::gen::element(1e-4f, 0.03f, 0.2f, 0.7f, 10.0f);
-        const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1000000);
         const auto visits = *rc::gen::element(1u, 64u, 3072u);
-        const auto s = make_oriented(d, static_cast<std::size_t>(n), resolution, 30, seed);
+        const auto s = make_oriented(d, numbers, resolution, 30);
         knn_settings settings{.k = k, .max_radius = radius, .min_radius = 1e-9f};
         settings.bias = bias_kind::paper;
         settings.visits_per_pass = visits;
@@ -69,7 +68,7 @@ TYPED_TEST_P(estimators, exact_k_finds_flanns_photons_on_every_distribution)
         if (!what.empty())
             RC_FAIL(what);
 
-        if (static_cast<uint>(n) >= k) {
+        if (numbers.size() >= k) {
             const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
             const auto irradiance
                 = b.download(knn_grid_estimate(b, map, b.upload(std::span<const vec4>(s.points)), settings).irradiance);

@@ -63,6 +63,21 @@ oriented_set make_oriented(distribution d, std::size_t n, uvec3 resolution, std:
     return s;
 }
 
+oriented_set make_oriented(
+    distribution d, const std::vector<std::uint64_t>& numbers, uvec3 resolution, std::size_t points)
+{
+    oriented_set s;
+    s.photons = make_photons(d, numbers, resolution);
+    for (const auto number : numbers) {
+        s.directions.push_back(random_units(1, number + 1).front());
+        s.normals.push_back(random_units(1, number + 2).front());
+    }
+    const auto seed = numbers.empty() ? 0 : numbers.front();
+    s.points = make_points(s.photons, points, seed);
+    s.point_normals = random_units(points, seed + 3);
+    return s;
+}
+
 std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std::size_t id, const leak_policy& leaks)
 {
     const vec4 a = s.photons.positions[id], p = s.points[q], n = s.point_normals[q];

@@ -19,6 +19,9 @@ struct oriented_set {
 
 oriented_set make_oriented(
     distribution d, std::size_t n, glm::uvec3 resolution, std::size_t points, std::uint64_t seed);
+/// A photon for each number, with its direction and normal: see make_photons().
+oriented_set make_oriented(
+    distribution d, const std::vector<std::uint64_t>& numbers, glm::uvec3 resolution, std::size_t points);
 
 /// One estimate by brute force.
 struct brute_estimate {

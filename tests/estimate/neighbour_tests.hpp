@@ -111,10 +111,10 @@ TYPED_TEST_SUITE_P(neighbours);
 TYPED_TEST_P(neighbours, equal_brute_force_for_any_photons)
 {
     EXPECT_TRUE(rc::check("lists of neighbours equal brute force", [&] {
-        const auto d = all_distributions[*rc::gen::inRange(0, 7)];
-        const auto n = *rc::gen::inRange<std::size_t>(0, 700);
+        const auto d = *any_distribution();
+        const auto numbers = *photon_numbers(700);
         const glm::uvec3 resolution(*rc::gen::inRange(1u, 12u), *rc::gen::inRange(1u, 12u), *rc::gen::inRange(1u, 12u));
-        const auto s = make_oriented(d, n, resolution, 40, *rc::gen::arbitrary<std::uint64_t>());
+        const auto s = make_oriented(d, numbers, resolution, 40);
         const knn_settings settings{
             .k = *rc::gen::inRange(1u, 70u), .max_radius = static_cast<float>(*rc::gen::inRange(0, 20)) * 0.1f};
         const auto wrong = this->difference(s, settings);

@@ -4,7 +4,7 @@
 #include "../backend/under_test.hpp"
 #include "../backends/serial_algorithms.hpp"
 #include "../estimate/known_answers.hpp"
-#include "photon_sets.hpp"
+#include "photon_generator.hpp"
 
 #include <photongrid/backend/random.kernel.hpp>
 #include <photongrid/backend/self_test.hpp>

@@ -34,6 +34,33 @@ inline rc::Gen<std::vector<glm::vec4>> any_vectors(float w)
         [w](float x, float y, float z) { return glm::vec4(x, y, z, w); }, any_number(), any_number(), any_number()));
 }
 
+/// Up to `most` elements, more of them as RapidCheck's size grows. The elements do not grow with it.
+template <class T>
+rc::Gen<std::vector<T>> up_to(double most, const rc::Gen<T>& element)
+{
+    return rc::gen::scale(
+        most / rc::kNominalSize, rc::gen::container<std::vector<T>>(rc::gen::resize(rc::kNominalSize, element)));
+}
+
+/// Keys to sort: below `distinct`, one in eight that of an invalid photon.
+inline rc::Gen<std::vector<uint>> any_keys(uint distinct, double most)
+{
+    return up_to(
+        most, rc::gen::weightedOneOf<uint>({{7, rc::gen::inRange(0u, distinct)}, {1, rc::gen::just(0xFFFFFFFFu)}}));
+}
+
+/// A number for each photon of a set: see make_photons() and make_oriented().
+inline rc::Gen<std::vector<std::uint64_t>> photon_numbers(double most)
+{
+    return up_to(most, rc::gen::arbitrary<std::uint64_t>());
+}
+
+/// Any of the distributions on which searches break.
+inline rc::Gen<distribution> any_distribution()
+{
+    return rc::gen::elementOf(std::vector<distribution>(std::begin(all_distributions), std::end(all_distributions)));
+}
+
 inline bool is_finite(const glm::vec4& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 } // namespace photongrid::testing

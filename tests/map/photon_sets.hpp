@@ -39,40 +39,59 @@ private:
     std::mt19937_64 engine_;
 };
 
+/// The grid that covers the photons of a distribution.
+inline grid grid_of(distribution d, glm::uvec3 resolution)
+{
+    const glm::vec3 low(d == distribution::far_from_origin ? 1000.0f : 0.0f);
+    return make_grid(low, low + glm::vec3(1, d == distribution::planar ? 0 : 1, 1), resolution);
+}
+
+/// Adds a photon to a set with the grid of distribution `d`.
+inline void add_photon(photon_set& s, distribution d, random_source& u)
+{
+    const glm::vec3 centers[3] = {{0.2f, 0.3f, 0.5f}, {0.8f, 0.1f, 0.9f}, {0.5f, 0.5f, 0.5f}};
+    glm::vec3 p(u(), u(), u());
+    switch (d) {
+    case distribution::clustered: { // density like 1/r^2 about three points
+        const glm::vec3 c = centers[u.below(3)];
+        const float r = 0.2f * u() * u() * u();
+        p = c + r * (2.0f * p - 1.0f);
+        break;
+    }
+    case distribution::planar: p.y = 0; break;
+    case distribution::coincident: p = centers[u.below(2)]; break;
+    case distribution::far_from_origin: p = glm::vec3(s.g.origin) + p; break;
+    case distribution::cell_faces:
+        for (int a = 0; a < 3; ++a) {
+            const uint cells = glm::uvec4(s.g.resolution)[a];
+            p[a] = static_cast<float>(u.below(cells + 1)) / static_cast<float>(cells);
+        }
+        break;
+    case distribution::box_faces: p[static_cast<int>(u.below(3))] = u() < 0.5f ? 0.0f : 1.0f; break;
+    case distribution::uniform: break;
+    }
+    s.positions.emplace_back(p, 0.0f);
+    s.powers.emplace_back(u(), u(), u(), 0.0f);
+}
+
 inline photon_set make_photons(distribution d, std::size_t n, glm::uvec3 resolution, std::uint64_t seed)
 {
     random_source u(seed);
     photon_set s;
-    glm::vec3 low(0), high(1);
-    if (d == distribution::far_from_origin) {
-        low = glm::vec3(1000);
-        high = glm::vec3(1001);
-    }
-    if (d == distribution::planar)
-        high.y = 0;
-    s.g = make_grid(low, high, resolution);
-    const glm::vec3 centers[3] = {{0.2f, 0.3f, 0.5f}, {0.8f, 0.1f, 0.9f}, {0.5f, 0.5f, 0.5f}};
-    for (std::size_t i = 0; i < n; ++i) {
-        glm::vec3 p(u(), u(), u());
-        switch (d) {
-        case distribution::clustered: { // density like 1/r^2 about three points
-            const glm::vec3 c = centers[u.below(3)];
-            const float r = 0.2f * u() * u() * u();
-            p = c + r * (2.0f * p - 1.0f);
-            break;
-        }
-        case distribution::planar: p.y = 0; break;
-        case distribution::coincident: p = centers[u.below(2)]; break;
-        case distribution::far_from_origin: p = low + p; break;
-        case distribution::cell_faces:
-            for (int a = 0; a < 3; ++a)
-                p[a] = static_cast<float>(u.below(resolution[a] + 1)) / static_cast<float>(resolution[a]);
-            break;
-        case distribution::box_faces: p[static_cast<int>(u.below(3))] = u() < 0.5f ? 0.0f : 1.0f; break;
-        case distribution::uniform: break;
-        }
-        s.positions.emplace_back(p, 0.0f);
-        s.powers.emplace_back(u(), u(), u(), 0.0f);
+    s.g = grid_of(d, resolution);
+    while (s.positions.size() < n)
+        add_photon(s, d, u);
+    return s;
+}
+
+/// A photon for each number, which decides on nothing but its own: a property that fails shrinks to few photons.
+inline photon_set make_photons(distribution d, const std::vector<std::uint64_t>& numbers, glm::uvec3 resolution)
+{
+    photon_set s;
+    s.g = grid_of(d, resolution);
+    for (const auto number : numbers) {
+        random_source u(number);
+        add_photon(s, d, u);
     }
     return s;
 }

@@ -9,17 +9,15 @@ TYPED_TEST_P(algorithms, estimate_uses_exactly_the_photons_within_its_radius)
 {
     auto& b = this->b();
     EXPECT_TRUE(rc::check("set = brute force, at least k, FLANN's k nearest are in it", [&] {
-        const auto d = *rc::gen::elementOf(
-            std::vector<distribution>(std::begin(all_distributions), std::end(all_distributions)));
+        const auto d = *any_distribution();
         const auto resolution
             = *rc::gen::element(uvec3(1, 1, 1), uvec3(20, 1, 20), uvec3(5, 5, 10), uvec3(1, 1, 40), uvec3(7, 3, 2));
-        const auto n = *rc::gen::element(0, 1, 2, 7, 40, 700);
+        const auto numbers = *photon_numbers(700);
         const auto k = *rc::gen::element(1u, 2u, 8u, 50u, 5000u);
         const auto radius = *rc::gen::element(1e-4f, 0.03f, 0.2f, 0.7f, 10.0f);
         const bool routed = *rc::gen::arbitrary<bool>();
-        const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1000000);
-        const auto set = make_photons(d, static_cast<std::size_t>(n), resolution, seed);
-        const auto points = make_points(set, 40, seed);
+        const auto set = make_photons(d, numbers, resolution);
+        const auto points = make_points(set, 40, numbers.empty() ? 0 : numbers.front());
         const auto map = routed ? routed_map(b, upload_photons(b, set), set.g, 16, 3)
                                 : sorted_map(b, upload_photons(b, set), set.g);
         const auto estimates = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)),
@@ -32,7 +30,7 @@ TYPED_TEST_P(algorithms, estimate_uses_exactly_the_photons_within_its_radius)
         for (const auto& c : b.download(map.cells))
             ids.insert(ids.end(), list.begin() + c.x, list.begin() + c.x + c.y);
         if (!routed) {
-            RC_ASSERT(ids.size() == static_cast<std::size_t>(n));
+            RC_ASSERT(ids.size() == numbers.size());
         }
         for (std::size_t q = 0; q < points.size(); ++q) {
             uint inside = 0, within_reach = 0;

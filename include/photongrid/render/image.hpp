@@ -11,9 +11,11 @@ namespace photongrid {
 /// Properties of the estimates of a picture: means over each pixel's eye rays, row by row from the top left. 0 in
 /// pixels without estimates.
 struct estimate_layers {
-    std::vector<float> radius;         ///< m
-    std::vector<float> count;          ///< photons within the radius
-    std::vector<float> relative_error; ///< standard error of the irradiance, over the irradiance (sums over channels)
+    std::vector<float> radius; ///< m
+    std::vector<float> count;  ///< photons within the radius
+    /// Standard error of the irradiance, over the irradiance (sums over channels). It is the noise of the photons; that
+    /// of eye rays and shadow rays is in `noise` only.
+    std::vector<float> relative_error;
     std::vector<float> noise; ///< standard error of the mean of the passes, mean of the channels; empty for one pass
 };
 
