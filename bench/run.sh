@@ -147,7 +147,7 @@ if [[ $smoke == yes ]]; then
   must $build/bench/sort_passes 4096
   must bench/pictures.sh --quick
   must $build/bench/kernel_costs
-  must $build/bench/unfinished 1 1000
+  must $build/bench/unfinished --quick
   must bench/convergence.sh --quick cpu
   must bench/inclusion.sh --smoke
   must $build/bench/interactive examples/scenes/cornell_box.json 1 cpu
