@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -16,14 +17,14 @@ namespace photongrid {
 
 namespace {
     using json = nlohmann::ordered_json;
-    constexpr const char* first_line = "photongrid unfinished picture 3";
+    constexpr const char* first_line = "photongrid unfinished picture 4";
 
-    std::string bytes_of(const pass_pixels& light)
+    /// The vectors of an unfinished pass, in the file's order.
+    template <class Pass>
+    auto parts_of(Pass& p)
     {
-        std::string bytes;
-        for (const auto* part : {&light.pixels, &light.searches, &light.errors})
-            bytes.append(reinterpret_cast<const char*>(part->data()), part->size() * sizeof(glm::vec4));
-        return bytes;
+        return std::array{
+            &p.light.pixels, &p.light.searches, &p.light.errors, &p.band.pixels, &p.band.searches, &p.band.errors};
     }
 } // namespace
 
@@ -37,10 +38,16 @@ std::string picture_identity(const scene& s, const render_settings& settings, co
 
 void write_resume_file(const std::string& path, const std::string& identity, const render_state& state)
 {
-    const auto film = state.film.bytes(), bytes = bytes_of(state.pass.light) + film;
-    const json head = {{"pass", state.pass.number}, {"rays", state.pass.rays},
-        {"pixels", state.pass.light.pixels.size()}, {"layers", !state.pass.light.errors.empty()}, {"film", film.size()},
-        {"hash", detail::fnv1a(identity + bytes)}};
+    const auto film = state.film.bytes();
+    std::string bytes;
+    json sizes = json::array();
+    for (const auto* part : parts_of(state.pass)) {
+        sizes.push_back(part->size());
+        bytes.append(reinterpret_cast<const char*>(part->data()), part->size() * sizeof(glm::vec4));
+    }
+    bytes += film;
+    const json head = {{"pass", state.pass.number}, {"rows", state.pass.rows}, {"rays", state.pass.rays},
+        {"sizes", sizes}, {"film", film.size()}, {"hash", detail::fnv1a(identity + bytes)}};
     write_file(path, std::string(first_line) + "\n" + identity + "\n" + head.dump() + "\n" + bytes);
 }
 
@@ -70,11 +77,19 @@ std::optional<render_state> read_resume_file(const std::string& path, const std:
         return head.is_object() && head.contains(key) && head[key].is_number_unsigned() ? head[key].get<std::uint64_t>()
                                                                                         : 0;
     };
-    const std::size_t pixels = number("pixels"), film_size = number("film");
-    const bool layers = head.is_object() && head.contains("layers") && head["layers"] == true;
-    if (pixels > bytes.size() || film_size > bytes.size()
-        || bytes.size() - film_size != pixels * sizeof(glm::vec4) * (layers ? 3u : 2u)
-        || detail::fnv1a(theirs + bytes) != number("hash"))
+    render_state s;
+    const std::size_t film_size = number("film");
+    std::size_t size = film_size; // of all parts, in bytes
+    for (std::size_t i = 0; auto* part : parts_of(s.pass)) {
+        const auto place = json::json_pointer("/sizes/" + std::to_string(i++));
+        const bool there = head.is_object() && head.contains(place) && head[place].is_number_unsigned();
+        const std::size_t n = there ? head[place].get<std::size_t>() : bytes.size();
+        if (film_size > bytes.size() || n > bytes.size() / sizeof(glm::vec4))
+            fail("is damaged");
+        part->resize(n);
+        size += n * sizeof(glm::vec4);
+    }
+    if (bytes.size() != size || detail::fnv1a(theirs + bytes) != number("hash"))
         fail("is damaged");
     if (theirs != identity) {
         const auto a = json::parse(theirs, nullptr, false), b = json::parse(identity);
@@ -86,13 +101,11 @@ std::optional<render_state> read_resume_file(const std::string& path, const std:
                             : ""));
         fail("was begun by another program");
     }
-    render_state s;
     s.pass.number = static_cast<std::uint32_t>(number("pass"));
+    s.pass.rows = static_cast<std::uint32_t>(number("rows"));
     s.pass.rays = static_cast<std::uint32_t>(number("rays"));
-    auto& light = s.pass.light;
     const char* from = bytes.data();
-    for (auto* part : {&light.pixels, &light.searches, &light.errors}) {
-        part->resize(part == &light.errors && !layers ? 0 : pixels);
+    for (auto* part : parts_of(s.pass)) {
         if (!part->empty())
             std::memcpy(part->data(), from, part->size() * sizeof(glm::vec4));
         from += part->size() * sizeof(glm::vec4);

@@ -26,7 +26,9 @@ pass_pixels random_pass(std::uint32_t seed, std::size_t n, bool layers)
     pass_pixels p;
     for (std::size_t i = 0; i < n; ++i) {
         p.pixels.emplace_back(light(random), light(random), light(random), 0);
-        p.searches.emplace_back(light(random), light(random), light(random), 2);
+        const glm::vec4 searches(light(random), light(random), light(random), 2);
+        if (layers)
+            p.searches.push_back(searches);
         if (layers)
             p.errors.emplace_back(light(random), 0, 0, 0);
     }

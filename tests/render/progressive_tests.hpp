@@ -62,7 +62,7 @@ TYPED_TEST_P(progressive, what_cannot_be_drawn_leaves_the_picture_alone)
     // What fails in a step does not stay.
     drawing.start(s, s.render);
     const std::vector<glm::vec4> some(before.pixels.size());
-    drawing.resume({{}, {0, 1000, {some, some, {}}}}); // more rays than there are
+    drawing.resume({{}, {0, 0, 1000, {}, {some, some, {}}}}); // more rays than there are
     EXPECT_THROW(drawing.step(), std::invalid_argument);
     drawing.start(s, s.render);
     drawing.step();
@@ -73,6 +73,7 @@ REGISTER_TYPED_TEST_SUITE_P(progressive, ends_with_the_bytes_of_render, previews
     running_estimates_approach_the_picture, a_map_serves_until_the_light_changes,
     a_camera_that_moves_while_photons_are_traced_does_not_begin_them_anew,
     previews_that_are_no_longer_wanted_are_not_drawn, a_cancelled_step_ends_after_its_pass,
-    a_picture_goes_on_from_its_state, passes_add_up_in_any_order, what_cannot_be_drawn_leaves_the_picture_alone);
+    a_picture_goes_on_from_its_state, passes_add_up_in_any_order, bands_of_rows_make_the_same_picture,
+    what_cannot_be_drawn_leaves_the_picture_alone);
 
 } // namespace photongrid::testing

@@ -40,14 +40,81 @@ TYPED_TEST_P(progressive, a_picture_goes_on_from_its_state)
     for (const auto& settings : {larger, without_layers}) {
         other.start(s, settings);
         EXPECT_THROW(other.resume(state), std::invalid_argument);
-        EXPECT_THROW(other.resume({{}, {0, 1, {}}}), std::invalid_argument);
+        EXPECT_THROW(other.resume({{}, {0, 0, 1, {}, {}}}), std::invalid_argument);
         EXPECT_FALSE(other.finished());
     }
     other.start(s, s.render);
     const auto n = expected.pixels.size();
     const std::vector<glm::vec4> some(n);
-    other.resume({{}, {0, 17, {some, some, some}}}); // more rays than there are
+    other.resume({{}, {0, 0, 17, {}, {some, some, some}}}); // more rays than there are
     EXPECT_THROW(other.step(), std::invalid_argument);
+}
+
+TYPED_TEST_P(progressive, bands_of_rows_make_the_same_picture)
+{
+    using ms = typename TestFixture::ms;
+    auto s = this->small_scene();
+    s.render.view.spp = 2;
+    s.render.output.passes = 2;
+    s.render.output.aov = true;
+    const auto expected = render(this->b(), s, s.render);
+    auto in_bands = s.render;
+    in_bands.output.band = 48 * 9 + 5;            // of 40 rows: 9, 9, 9, 9, 4
+    const auto same = [&](const image& picture) { // cpu adds up in another order
+        EXPECT_LE(relative_mse(picture, expected.picture), 1e-12);
+        EXPECT_EQ(picture.layers.count, expected.picture.layers.count);
+    };
+    const auto drawn = render(this->b(), s, in_bands);
+    same(drawn.picture);
+    EXPECT_EQ(drawn.stats.estimate.points, expected.stats.estimate.points);
+    EXPECT_NEAR(drawn.stats.estimate.mean_radius, expected.stats.estimate.mean_radius, 1e-9);
+    EXPECT_EQ(drawn.stats.photons.emitted, expected.stats.photons.emitted);
+
+    // Shown band by band, black or a preview below.
+    typename TestFixture::loop drawing(this->b());
+    drawing.start(s, in_bands, {.enabled = false});
+    for (uint band = 1; band < 5; ++band) {
+        while (drawing.pictures() < band)
+            drawing.step(ms(0));
+        const auto part = drawing.picture();
+        EXPECT_GT(part.pixels[48 * (9 * band - 5) + 20].x, 0.0f) << band;
+        EXPECT_EQ(part.pixels[48 * 9 * band + 20].x, 0.0f) << band;
+        EXPECT_GE(drawing.progress().fraction, 9 * band / 40.0);
+        EXPECT_LE(drawing.progress().unfinished, 48u * (40 - 9 * band));
+    }
+    drawing.step();
+    same(drawing.picture());
+    drawing.start(s, in_bands); // with previews
+    drawing.step();
+    same(drawing.picture());
+
+    // From states in the middle, in another process as it were.
+    render_state state;
+    int lives = 0;
+    for (bool finished = false; !finished; ++lives) {
+        ASSERT_LT(lives, 100);
+        typename TestFixture::loop next(this->b());
+        next.start(s, in_bands);
+        if (!state.empty())
+            next.resume(state);
+        const auto goal = state;
+        while (!next.finished()) {
+            next.step(ms(0));
+            state = next.state();
+            if (state.film.passes() != goal.film.passes() || state.pass.rows != goal.pass.rows
+                || state.pass.rays > goal.pass.rays + 2)
+                break;
+        }
+        finished = next.finished();
+        if (finished)
+            same(next.picture());
+    }
+    EXPECT_GE(lives, 10);
+    auto other_bands = in_bands;
+    other_bands.output.band = 48 * 7;
+    typename TestFixture::loop other(this->b());
+    other.start(s, other_bands);
+    EXPECT_THROW(other.resume({{}, {0, 9, 0, {std::vector<glm::vec4>(48 * 9), {}, {}}, {}}}), std::invalid_argument);
 }
 
 TYPED_TEST_P(progressive, passes_add_up_in_any_order)

@@ -22,9 +22,10 @@ namespace photongrid {
 
 /// The result of one pass, row by row from the top left.
 struct pass_pixels {
-    std::vector<glm::vec4> pixels;   ///< rgb: radiance, W/(m^2 sr)
+    std::vector<glm::vec4> pixels; ///< rgb: radiance, W/(m^2 sr)
+    // Empty unless output_settings::aov.
     std::vector<glm::vec4> searches; ///< sums over a pixel's searches: photons used, radius, photons visited, searches
-    std::vector<glm::vec4> errors;   ///< x: sum of relative standard errors; empty unless output_settings::aov
+    std::vector<glm::vec4> errors;   ///< x: sum of relative standard errors
 };
 
 /// A picture, and the number of pixels that were NaN or infinite in some pass. Those count as black in that pass.
@@ -50,8 +51,8 @@ public:
     /// \throws std::invalid_argument for a pass that was added before, or one of another size.
     void add(std::uint32_t pass, pass_pixels p)
     {
-        const std::size_t n = size();
-        if (p.pixels.size() != n || p.searches.size() != n || p.errors.size() != (layers_ ? n : 0))
+        const std::size_t n = size(), layer = layers_ ? n : 0;
+        if (p.pixels.size() != n || p.searches.size() != layer || p.errors.size() != layer)
             throw std::invalid_argument("film::add: pass " + std::to_string(pass) + ": has "
                 + std::to_string(p.pixels.size()) + " pixels; the film has " + std::to_string(n));
         if (!passes_.insert(pass).second)
@@ -147,9 +148,10 @@ public:
         }
         if (head[3] == 1) {
             const std::size_t layer = f.layers_ ? n : 0;
-            if (in.size() != (2 * n + layer) * sizeof(glm::vec4))
+            if (in.size() != (n + 2 * layer) * sizeof(glm::vec4))
                 throw std::invalid_argument("film: the data have the wrong length");
-            f.only_ = pass_pixels{std::vector<glm::vec4>(n), std::vector<glm::vec4>(n), std::vector<glm::vec4>(layer)};
+            f.only_
+                = pass_pixels{std::vector<glm::vec4>(n), std::vector<glm::vec4>(layer), std::vector<glm::vec4>(layer)};
             for (auto* part : {&f.only_->pixels, &f.only_->searches, &f.only_->errors})
                 take(part->data(), part->size() * sizeof(glm::vec4));
         } else if (head[3] > 1) {

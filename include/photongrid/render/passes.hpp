@@ -85,27 +85,42 @@ namespace detail {
     }
 } // namespace detail
 
-/// Reads the pixels of a finished pass back and adds its counts to `stats`.
+/// Reads the pixels of a finished band of a pass back, adds them to those above, and its searches to `stats`.
 /// \throws backend_error if the device fails, or reports more searches than there were.
 template <backend B>
-pass_pixels finish_pass(B& b, const built_map<B>& built, const view_pass<B>& view, render_stats& stats)
+void finish_band(B& b, const view_pass<B>& view, pass_pixels& light, render_stats& stats)
 {
-    const auto& light = view.light();
-    pass_pixels p{b.download(light.pixels), b.download(light.searches), b.download(light.errors)};
-    const double searched = static_cast<double>(p.pixels.size()) * view.rays();
+    const auto append = [&](std::vector<glm::vec4>& all, const std::vector<glm::vec4>& more) {
+        all.reserve(view.picture_size()); // which growing would double
+        all.insert(all.end(), more.begin(), more.end());
+    };
+    const auto& band = view.light();
+    const auto searches = b.download(band.searches);
+    const double searched = static_cast<double>(searches.size()) * view.rays();
     glm::dvec4 sum(0);
-    for (const auto& s : p.searches)
+    for (const auto& s : searches)
         sum += glm::dvec4(s);
     if (!(sum.w >= 0) || !(sum.w <= searched))
         throw backend_error(b.caps().backend + ": shade: the device returned " + std::to_string(sum.w)
             + " as the number of searches; there are at most " + std::to_string(searched));
     detail::add(stats.estimate, sum);
+    append(light.pixels, b.download(band.pixels));
+    if (band.errors.size() > 0) {
+        append(light.searches, searches);
+        append(light.errors, b.download(band.errors));
+    }
+}
+
+/// Adds the counts of a finished pass to `stats`.
+/// \throws backend_error if the device fails.
+template <backend B>
+void finish_pass(B& b, const built_map<B>& built, render_stats& stats)
+{
     detail::add(stats.photons, count_photons(b, built.trace, built.map.photons.size()));
     stats.map = built.stats.map;
     if (built.stats.map.builder == map_builder::route)
         stats.map.redistributed_power = redistributed_power(b, built.map);
     stats.peak_device_bytes = b.peak_bytes();
-    return p;
 }
 
 /// Moves the picture of a film, and its number of invalid pixels, to `out`.

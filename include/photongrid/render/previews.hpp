@@ -63,11 +63,17 @@ inline std::vector<preview> preview_schedule(const render_settings& s, std::uint
     while (std::min(s.output.width, s.output.height) / divisor >= 64 // smaller previews show too little
         && pixels(divisor) * costs.ms_per_preview_pixel > target_ms)
         divisor *= 2;
+    std::uint32_t least = 1; // a preview is drawn at a time
+    while (pixels(least) > s.output.band)
+        least *= 2;
+    divisor = std::max(divisor, least);
     if (early)
         return {{divisor, std::max(1u, 16 / std::max(1u, s.map.photons / map_photons))}};
     std::vector<preview> all;
-    for (divisor = after_early_one ? std::max(1u, divisor / 2) : divisor; divisor > 1; divisor /= 2)
+    for (divisor = after_early_one ? std::max(1u, divisor / 2) : divisor; divisor > 1 && divisor >= least; divisor /= 2)
         all.push_back({divisor, 16});
+    if (least > 1)
+        return all;
     // In dark regions the growing search visits everything within the maximum radius, whatever k is, so a preview with
     // the picture's pixel size would take as long as the picture (3.1).
     const bool grows = s.estimate.search == search_kind::at_least_k;

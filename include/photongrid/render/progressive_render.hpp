@@ -13,8 +13,10 @@
 #include <photongrid/render/render.hpp>
 #include <photongrid/render/renderer.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
+#include <utility>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -40,29 +42,37 @@ public:
     }
     void resume(render_state s) override
     {
-        const std::size_t n = std::size_t{settings_.output.width} * settings_.output.height;
-        const auto& light = s.pass.light;
-        if ((s.film.passes() > 0
-                && !s.film.is_for(settings_.output.width, settings_.output.height, settings_.output.aov))
-            || (s.pass.rays > 0
-                && (light.pixels.size() != n || light.searches.size() != n
-                    || light.errors.size() != (settings_.output.aov ? n : 0))))
+        const bool aov = settings_.output.aov;
+        const auto has = [&](const pass_pixels& p, std::size_t n, bool searches) {
+            return p.pixels.size() == n && p.searches.size() == (searches ? n : 0) && p.errors.size() == (aov ? n : 0);
+        };
+        const auto bands = bands_of(settings_.output);
+        const auto next = std::find_if(bands.begin(), bands.end(), [&](auto b) { return b.first == s.pass.rows; });
+        const std::size_t width = settings_.output.width;
+        const bool drawn = s.pass.rows == settings_.output.height && s.pass.rays == 0;
+        if ((s.film.passes() > 0 && !s.film.is_for(settings_.output.width, settings_.output.height, aov))
+            || (!s.pass.empty() && ((next == bands.end() && !drawn) || !has(s.pass.light, s.pass.rows * width, aov)))
+            || (s.pass.rays > 0 && !has(s.pass.band, next->rows * width, true)))
             throw std::invalid_argument("progressive_render::resume: state: does not match a picture of "
                 + std::to_string(settings_.output.width) + " x " + std::to_string(settings_.output.height) + " pixels"
                 + (settings_.output.aov ? " with layers" : ""));
         film_ = std::move(s.film);
         unfinished_ = std::move(s.pass);
+        light_ = std::move(unfinished_.light);
         previews_.enabled = false;
         steps_ = picture_steps();
     }
     render_state state() override
     {
         render_state s{film_, unfinished_};
+        if (unfinished_.empty()) // else it was not taken up yet
+            s.pass = {pass_, rows_done()};
         if (view_ && !view_->is_preview()) {
-            const auto& light = view_->light();
-            s.pass = {
-                pass_, light.rays, {b_.download(light.pixels), b_.download(light.searches), b_.download(light.errors)}};
+            const auto& band = view_->light();
+            s.pass.rays = band.rays;
+            s.pass.band = {b_.download(band.pixels), b_.download(band.searches), b_.download(band.errors)};
         }
+        s.pass.light = light_;
         return s;
     }
 
@@ -98,9 +108,15 @@ public:
             return std::move(developed.picture);
         }
         std::uint64_t invalid = 0;
-        if (view_ && view_->grown() > 0)
+        if (view_ && view_->grown() > 0 && !has_bands())
             return view_->running_estimate(invalid);
-        return detail::to_image(b_.download(shown_->pixels), shown_->raster, settings_, shown_scale_, invalid);
+        auto shown = shown_
+            ? detail::to_image(b_.download(shown_->pixels), shown_->raster, settings_, shown_scale_, invalid)
+            : image{settings_.output.width, settings_.output.height, std::vector<glm::vec3>(picture_size())};
+        std::uint64_t invalid_above = 0;
+        const auto above = detail::finite_pixels(light_.pixels, 1, invalid_above);
+        std::copy(above.begin(), above.end(), shown.pixels.begin());
+        return shown;
     }
 
     render_progress progress() const override
@@ -108,11 +124,17 @@ public:
         const std::uint64_t pixels = std::uint64_t{settings_.output.width} * settings_.output.height;
         if (finished())
             return {"finished", 1, 0, 1, settings_.map.photons, film_.passes()};
-        if (const auto photons = maps_.making_photons(); photons || !view_)
+        if (const auto photons = maps_.making_photons(); photons || (!view_ && rows_done() == 0))
             return {maps_.fraction() < 1 ? "trace_photons" : "build_map", maps_.fraction(), pixels, 1,
                 photons.value_or(settings_.map.photons), film_.passes()};
-        return {view_->is_preview() ? "preview" : "radiance_estimate", view_->fraction(), view_->unfinished(),
-            view_->divisor(), maps_.of().settings.map.photons, film_.passes()};
+        if (view_ && view_->is_preview())
+            return {"preview", view_->fraction(), view_->unfinished(), view_->divisor(),
+                maps_.of().settings.map.photons, film_.passes()};
+        const std::uint64_t above = light_.pixels.size(), band = view_ ? view_->light().raster.size() : 0;
+        const double drawn = static_cast<double>(above) + (view_ ? view_->fraction() * static_cast<double>(band) : 0);
+        return {"radiance_estimate", drawn / static_cast<double>(pixels),
+            pixels - above - band + (view_ ? view_->unfinished() : 0), 1, maps_.of().settings.map.photons,
+            film_.passes()};
     }
     std::uint64_t maps() const override { return maps_.begun(); }
     const capabilities& caps() const override { return b_.caps(); }
@@ -126,6 +148,7 @@ private:
         shown_.reset();
         film_ = {};
         unfinished_ = {};
+        light_ = {};
         pictures_ = 0;
         early_shown_ = false;
         if (!maps_.serves(pass(next_pass())))
@@ -143,7 +166,8 @@ private:
     bool has_previews() const { return previews_.enabled && !shows_running_estimates(); }
     bool shows_running_estimates() const
     {
-        return previews_.running_estimates && detail::sums_while_growing(detail::search_for(settings_, 1));
+        return previews_.running_estimates && !has_bands()
+            && detail::sums_while_growing(detail::search_for(settings_, 1));
     }
 
     /// A preview with few photons, the map, previews with all photons, then the passes.
@@ -191,15 +215,29 @@ private:
     {
         step_list steps;
         steps.expand([this, number] { return steps_to_map(pass(number)); });
-        steps.expand([this, number] { return steps_of_view(number, {}); });
-        steps.expand([this] { return end_pass(); });
+        const auto bands = bands_of(settings_.output);
+        uint done = 0; // above 0 in a picture that was resumed
+        while (done < bands.size() && bands[done].first < rows_done())
+            ++done;
+        steps.repeat(done, static_cast<uint>(bands.size()), [this, number, bands](uint i) {
+            step_list band;
+            band.expand([this, number, b = bands[i]] { return steps_of_view(number, {}, b); });
+            band.expand([this] { return end_band(); });
+            return band;
+        });
+        steps.expand([this, number] { return end_pass(number); });
         return steps;
     }
+
+    std::size_t picture_size() const { return std::size_t{settings_.output.width} * settings_.output.height; }
+    bool has_bands() const { return bands_of(settings_.output).size() > 1; }
+    /// Of the pass that is drawn.
+    uint rows_done() const { return static_cast<uint>(light_.pixels.size() / settings_.output.width); }
 
     /// The pass to draw next: first one that was begun, then one for the map in use, then one that needs another map.
     uint next_pass() const
     {
-        if (unfinished_.rays > 0)
+        if (!unfinished_.empty())
             return unfinished_.number;
         const uint kept = maps_.of().pass;
         if (kept < settings_.output.passes && !film_.holds(kept) && maps_.serves(pass(kept)))
@@ -233,7 +271,7 @@ private:
 
     // Views.
 
-    step_list steps_of_view(uint number, std::optional<preview> p)
+    step_list steps_of_view(uint number, std::optional<preview> p, std::optional<row_band> band = {})
     {
         pass_ = number;
         auto with = settings_of_pass(settings_, number);
@@ -243,13 +281,13 @@ private:
         ms_before_ = ms_of_views();
         samples_shown_ = grown_shown_ = 0;
         view_.emplace(b_, maps_.map(), scene_.camera, with,
-            view_pass_settings{p, step_size::small, previews_.enabled, shows_running_estimates()}, kept_, stats_);
-        if (!p && film_.size() == 0)
-            film_ = film_for(scene_, maps_.map().scene.layout, settings_.output);
-        if (!p && unfinished_.rays > 0) {
-            const auto& light = unfinished_.light;
-            view_->resume(
-                {{}, unfinished_.rays, upload(b_, light.pixels), upload(b_, light.searches), upload(b_, light.errors)});
+            view_pass_settings{p, step_size::small, previews_.enabled && !has_bands(), shows_running_estimates(), band},
+            kept_, stats_);
+        if (!p && !unfinished_.empty()) {
+            const auto& light = unfinished_.band;
+            if (unfinished_.rays > 0)
+                view_->resume({{}, unfinished_.rays, upload(b_, light.pixels), upload(b_, light.searches),
+                    upload(b_, light.errors)});
             unfinished_ = {};
         }
         return view_steps(*view_);
@@ -268,11 +306,22 @@ private:
         view_.reset();
         return {};
     }
-    step_list end_pass()
+    step_list end_band()
     {
         costs_.ms_per_pixel = ms_per_pixel_of_view();
-        film_.add(pass_, finish_pass(b_, maps_.map(), *view_, stats_));
+        finish_band(b_, *view_, light_, stats_);
         view_.reset();
+        if (light_.pixels.size() < picture_size() && film_.passes() == 0)
+            ++pictures_;
+        return {};
+    }
+    step_list end_pass(uint number)
+    {
+        finish_pass(b_, maps_.map(), stats_);
+        if (film_.size() == 0)
+            film_ = film_for(scene_, maps_.map().scene.layout, settings_.output);
+        film_.add(number, std::exchange(light_, {}));
+        unfinished_ = {};
         shown_.reset();
         ++pictures_;
         return {};
@@ -286,7 +335,7 @@ private:
     /// During the first pass the picture improves after each sample, and while a growing search runs (3.4).
     void note_new_picture()
     {
-        if (!view_ || view_->is_preview() || film_.passes() > 0)
+        if (!view_ || view_->is_preview() || film_.passes() > 0 || has_bands())
             return;
         if (view_->grown() > grown_shown_) {
             grown_shown_ = view_->grown();
@@ -308,6 +357,7 @@ private:
 
     // Pictures.
     unfinished_pass unfinished_; ///< to resume from
+    pass_pixels light_;          ///< the finished bands of the pass that is drawn
     std::optional<view_pass<B>> view_;
     uint pass_ = 0; ///< of view_
     kept_samples<B> kept_;

@@ -73,6 +73,7 @@ pass_pixels draw_pass(B& device, const built_map<B>& built, const camera& view, 
     const bool shows_previews = static_cast<bool>(observer.intermediate);
     const auto size = shows_previews || observer.cancelled ? step_size::small : step_size::largest;
     std::uint64_t invalid = 0;
+    const auto bands = bands_of(settings.output);
     if (shows_previews)
         for (const auto& p :
             preview_schedule(settings, settings.map.photons, false, {}, preview_settings{}.target_ms)) {
@@ -80,16 +81,24 @@ pass_pixels draw_pass(B& device, const built_map<B>& built, const camera& view, 
             run(view_steps(preview), observer, [](std::string_view) {});
             observer.intermediate(preview.mean_of_samples(invalid));
         }
-    view_pass<B> pass(device, built, view, settings, {{}, size, shows_previews}, reusable, stats);
-    uint shown = 0; // running estimates (2.4)
-    run(view_steps(pass), observer, [&](std::string_view) {
-        if (observer.progress)
-            observer.progress("radiance_estimate", pass.fraction());
-        if (shows_previews && pass.grown() > shown)
-            observer.intermediate(pass.running_estimate(invalid));
-        shown = pass.grown();
-    });
-    return finish_pass(device, built, pass, stats);
+    pass_pixels light;
+    for (std::size_t i = 0; i < bands.size(); ++i) {
+        const bool whole = bands.size() == 1; // else a running estimate is of some rows only
+        view_pass<B> pass(
+            device, built, view, settings, {{}, size, shows_previews && whole, false, bands[i]}, reusable, stats);
+        uint shown = 0; // running estimates (2.4)
+        run(view_steps(pass), observer, [&](std::string_view) {
+            if (observer.progress)
+                observer.progress("radiance_estimate",
+                    (static_cast<double>(i) + pass.fraction()) / static_cast<double>(bands.size()));
+            if (shows_previews && whole && pass.grown() > shown)
+                observer.intermediate(pass.running_estimate(invalid));
+            shown = pass.grown();
+        });
+        finish_band(device, pass, light, stats);
+    }
+    finish_pass(device, built, stats);
+    return light;
 }
 
 /// Draws one pass over a view, from an existing map: no photons are traced. Pixels that are NaN or infinite are set to

@@ -20,11 +20,16 @@ struct render_progress {
     std::uint32_t passes = 0;     ///< passes in the picture
 };
 
-/// An unfinished pass: the light of its first rays.
+/// An unfinished pass: its finished rows, and the light of the first rays of the band of rows after them.
 struct unfinished_pass {
     std::uint32_t number = 0; ///< which pass
-    std::uint32_t rays = 0;   ///< eye rays per pixel in `light`, counting each combination of Fresnel branches; 0: none
-    pass_pixels light;        ///< so far
+    std::uint32_t rows = 0;   ///< finished
+    std::uint32_t rays = 0; ///< eye rays per pixel of the band, counting each combination of Fresnel branches; 0: none
+    pass_pixels light{};    ///< of the finished rows
+    pass_pixels band{};     ///< of the band; its searches are there without layers too
+
+    /// Whether nothing of it is drawn.
+    bool empty() const { return rows == 0 && rays == 0; }
 };
 
 /// The state of an unfinished picture, from which progressive_render::resume continues.
@@ -33,7 +38,7 @@ struct render_state {
     unfinished_pass pass;
 
     /// Whether there is nothing to resume.
-    bool empty() const { return film.passes() == 0 && pass.rays == 0; }
+    bool empty() const { return film.passes() == 0 && pass.empty(); }
 };
 
 } // namespace photongrid

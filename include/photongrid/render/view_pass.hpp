@@ -32,10 +32,11 @@ struct view_pass_settings {
     step_size size = step_size::largest;          ///< size of the steps
     bool watched = false;                         ///< provide running estimates, if the search can (3.4)
     bool running = false; ///< if not, search by kernels before, which can (preview_settings::running_estimates)
+    std::optional<row_band> band{}; ///< the rows to draw, of a picture; empty: all
 };
 
-/// One pass over the pixels of the picture or of a preview. Each stage does part of its work for eye ray `ray` (sample
-/// x branches + branch) and returns whether it has finished that ray.
+/// One pass over a band of the picture's rows, or over a preview. Each stage does part of its work for eye ray `ray`
+/// (sample x branches + branch) and returns whether it has finished that ray.
 template <backend B>
 class view_pass {
 public:
@@ -50,7 +51,12 @@ public:
         check(view);
         if (const auto& p = how_.preview; p && (p->divisor < 1 || p->k_divisor < 1))
             throw std::invalid_argument("view_pass: preview: divisor and k_divisor must be at least 1");
-        const auto r = detail::raster_of(settings_, divisor());
+        auto r = detail::raster_of(settings_, divisor());
+        if (how_.band && *how_.band != row_band{0, r.height}) {
+            r.first_row = how_.band->first;
+            r.height = how_.band->rows;
+            kept_.clear(); // of the whole
+        }
         detail::time_stage(b_, stats_.trace_rays, [&] {
             const std::size_t layers = !is_preview() && settings_.output.aov ? r.size() : 0;
             canvas_ = {r, 0, dark(r.size()), dark(r.size()), dark(layers)};
@@ -113,6 +119,8 @@ public:
     /// Adds the radiance of direct and indirect light to the pixels (2.4).
     bool shade(uint ray);
 
+    /// The number of pixels of the whole picture.
+    std::size_t picture_size() const { return std::size_t{settings_.output.width} * settings_.output.height; }
     /// The side of the pixels, in pixels of the picture.
     uint divisor() const { return how_.preview ? how_.preview->divisor : 1u; }
     bool is_preview() const { return how_.preview.has_value(); }
@@ -265,7 +273,8 @@ bool view_pass<B>::trace_eye(uint ray)
     }
     if (!samples_) {
         const auto n = canvas_.raster.size();
-        samples_.emplace(eye_samples<B>{detail::eye_hits<B>(b_, n), b_.template make<glm::vec4>(n)});
+        samples_.emplace(
+            eye_samples<B>{detail::eye_hits<B>(b_, n, canvas_.raster.first_pixel()), b_.template make<glm::vec4>(n)});
         done_ = 0;
         lit_ = false;
     }

@@ -75,6 +75,9 @@ struct output_settings {
     /// EV for tone-mapped output: pixel values times 2^exposure; none: fitted to the picture.
     std::optional<double> exposure{};
     bool aov = false; ///< radius, count and relative standard error of the estimate per pixel
+    /// Pixels drawn at a time, in whole rows: the device's memory grows with them and not with the picture. The light
+    /// does not depend on it, but on cpu for rounding. It is in no file.
+    std::uint32_t band = 1u << 20;
 
     bool operator==(const output_settings&) const = default;
 };

@@ -12,6 +12,7 @@ struct Params {
     uint past;        // ... to past - 1
     uint ray_id;      // which eye ray of the pixel
     uint seed;
+    uint first_pixel; // that of element 0
 };
 PARAMS(Params)
 SWITCH(6, POINT_LIGHTS)
@@ -119,7 +120,7 @@ void kernel(uint i)
             vec3 stratum = corner;
             bool close = false;
             if (area) {
-                vec4 r = random4(uvec4(i, args.ray_id, 3000u + number, args.seed ^ (s * 0x9E3779B1u)));
+                vec4 r = random4(uvec4(i + args.first_pixel, args.ray_id, 3000u + number, args.seed ^ (s * 0x9E3779B1u)));
                 uint row = s / args.strata.x;
                 precise float u = float(s - row * args.strata.x);
                 precise float v = float(row);

@@ -12,6 +12,7 @@ struct Params {
     uint depth;      // surfaces a ray passes at most
     uint sample_id;  // which eye ray of the pixel
     uint seed;
+    uint first_pixel; // that of element 0
 };
 PARAMS(Params)
 SWITCH(4, MIRRORS)
@@ -76,7 +77,7 @@ void kernel(uint i)
             share = reflect_it ? f.reflected : 1.0f - f.reflected;
             ++splits;
         } else if (!reflect_it) {
-            vec4 r = random4(uvec4(i, args.sample_id * 4096u + args.branch, 2000u + hits, args.seed));
+            vec4 r = random4(uvec4(i + args.first_pixel, args.sample_id * 4096u + args.branch, 2000u + hits, args.seed));
             reflect_it = r.x < f.reflected;
         }
         next = f.refracted;

@@ -1,4 +1,4 @@
-// The ray from the camera through pixel i (2.4): through the pixel's centre if it is the only one, else through a
+// The ray from the camera through a pixel (2.4): through the pixel's centre if it is the only one, else through a
 // random point of the ray's own stratum of the pixel.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
@@ -12,6 +12,7 @@ struct Params {
     uint sample_id; // which eye ray of the pixel
     uvec2 strata;   // columns and rows of a pixel, one eye ray in each; 0, 0: one ray through its middle
     uint seed;
+    uint first_pixel; // that of element 0
 };
 PARAMS(Params)
 OUTPUT(0, vec4, point)      // xyz: origin, m; w: 0 in flight
@@ -22,12 +23,13 @@ OUTPUT(4, vec4, emitted)    // rgb: radiance of the light that the ray ended on,
 
 void kernel(uint i)
 {
-    uint y = i / args.width;
-    uint x = i - y * args.width;
+    uint pixel = i + args.first_pixel;
+    uint y = pixel / args.width;
+    uint x = pixel - y * args.width;
     float dx = 0.5f;
     float dy = 0.5f;
     if (args.strata.x > 0u) {
-        vec4 r = random4(uvec4(i, args.sample_id, 1000u, args.seed));
+        vec4 r = random4(uvec4(pixel, args.sample_id, 1000u, args.seed));
         uint row = args.sample_id / args.strata.x;
         uint column = args.sample_id - row * args.strata.x;
         precise float across = (float(column) + r.x) / float(args.strata.x);

@@ -11,25 +11,28 @@
 
 namespace photongrid::detail {
 
+/// The pixels of a picture, of some of its rows, or of a preview, whose pixels are squares of several.
+struct raster {
+    uint width = 0, height = 0;
+    uint divisor = 1;   ///< side of a pixel, in pixels of the picture
+    uint first_row = 0; ///< of the picture
+
+    std::size_t size() const { return std::size_t{width} * height; }
+    uint first_pixel() const { return first_row * width; }
+};
+
 /// Eye rays and their hits, one element per pixel.
 template <backend B>
 struct eye_hits {
     buffer_of<B, glm::vec4> points, directions, throughputs, surfaces, emissions;
+    uint first_pixel = 0; ///< that of element 0: the random numbers of a pixel depend on its number
 
-    eye_hits(B& b, std::size_t n)
+    eye_hits(B& b, std::size_t n, uint first = 0)
         : points(b.template make<glm::vec4>(n)), directions(b.template make<glm::vec4>(n)),
           throughputs(b.template make<glm::vec4>(n)), surfaces(b.template make<glm::vec4>(n)),
-          emissions(b.template make<glm::vec4>(n))
+          emissions(b.template make<glm::vec4>(n)), first_pixel(first)
     {
     }
-};
-
-/// The pixels of a picture, or of a preview, whose pixels are squares of several.
-struct raster {
-    uint width = 0, height = 0;
-    uint divisor = 1; ///< side of a pixel, in pixels of the picture
-
-    std::size_t size() const { return std::size_t{width} * height; }
 };
 
 /// The picture of `s` in squares of divisor x divisor pixels. Those at the right and lower edges may extend beyond it.
@@ -64,7 +67,8 @@ inline kernels::eye_ray::Params eye_params(
         .width = r.width,
         .sample_id = sample,
         .strata = s.view.spp > 1 || s.output.passes > 1 ? strata_of(s.view.spp) : glm::uvec2(0),
-        .seed = s.seed};
+        .seed = s.seed,
+        .first_pixel = r.first_pixel()};
 }
 
 /// How many glass surfaces split an eye ray into its two Fresnel branches. Each combination of branches is a pass over
@@ -85,7 +89,8 @@ void trace_eye_rays(B& b, const device_scene<B>& s, const camera& view, const re
             .splits = splits,
             .depth = settings.view.depth,
             .sample_id = sample,
-            .seed = settings.seed},
+            .seed = settings.seed,
+            .first_pixel = hits.first_pixel},
         reads(s.records), writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions),
         nowhere);
 }
@@ -107,7 +112,8 @@ void direct_light(B& b, const device_scene<B>& s, const eye_hits<B>& hits, const
                 .first = first,
                 .past = std::min(samples, first + per_pass),
                 .ray_id = ray,
-                .seed = settings.seed},
+                .seed = settings.seed,
+                .first_pixel = hits.first_pixel},
             reads(s.records, hits.points, hits.surfaces), writes(light));
 }
 
