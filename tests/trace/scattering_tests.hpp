@@ -158,7 +158,8 @@ namespace {
         hits.throughputs
             = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(n, glm::vec4(1.0f, 1.0f, 1.0f, 0.0f))));
         b.run<kernels::eye_bounce>({n, 0u, device.layout.features},
-            {.branch = branch, .splits = splits, .depth = 8, .sample_id = 0, .seed = 1}, reads(device.records),
+            {.branch = branch, .splits = splits, .depth = 8, .sample_id = 0, .seed = 1, .first_pixel = 0},
+            reads(device.records),
             writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions));
         return {b.download(hits.points), b.download(hits.directions), b.download(hits.throughputs)};
     }
