@@ -11,7 +11,7 @@
 // repeated without the band; if the packet's radius is too small, a new packet is made. The file is long because the
 // steps of this search are of use to no other.
 #include <photongrid/backends/cpu/overrides/grow_simd.hpp>
-#include <photongrid/estimate/kth_guess.kernel.hpp>
+#include <photongrid/estimate/host_guess.hpp>
 
 #include <bit>
 
@@ -137,12 +137,7 @@ HWY_NOINLINE inline void list(
 /// A first guess at the k-th squared distance, from cell counts.
 inline float guess(const search_job& j, uint point)
 {
-    kernels::kth_guess k;
-    k.args = {.grid = j.cells_of, .k = j.k, .max_radius2 = j.max_radius2, .rows = 1023u, .searching = 1u};
-    k.bind(slot<0>{}, std::span<const glm::vec4>(j.points + point, 1));
-    k.bind(slot<1>{}, j.cells);
-    k.kernel(0);
-    return k.pivots.y;
+    return detail::guessed_radius2(j.cells_of, j.cells, glm::vec3(j.points[point]), j.k, j.max_radius2);
 }
 
 inline float distance_between(const glm::vec3& a, const glm::vec3& b)

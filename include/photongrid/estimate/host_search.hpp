@@ -3,6 +3,7 @@
 // (host_query.glsl).
 #pragma once
 
+#include <photongrid/estimate/host_guess.hpp>
 #include <photongrid/estimate/host_query.kernel.hpp>
 #include <photongrid/estimate/irradiance_estimate.kernel.hpp>
 #include <photongrid/estimate/knn_settings.hpp>
@@ -10,8 +11,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-
-#include <glm/gtc/constants.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -178,7 +177,7 @@ private:
             return 0;
         const float max2 = detail::max_radius2(s);
         const bool exact = s.search == search_kind::exact_k;
-        float radius2 = exact ? std::min(1.3f * guess(p, s.k, max2), max2) : max2;
+        float radius2 = exact ? std::min(1.3f * detail::guessed_radius2(grid_, cells_, p, s.k, max2), max2) : max2;
         const auto extent = glm::vec3(grid_.cell) * glm::vec3(grid_.resolution);
         const float far2 = 16 * (extent.x * extent.x + extent.y * extent.y + extent.z * extent.z);
         for (;;) {
@@ -199,47 +198,6 @@ private:
             radius2
                 = radius2 > far2 ? max2 : std::min(max2, std::max(radius2, 1e-30f) * std::clamp(missing, 1.5f, 8.0f));
         }
-    }
-
-    /// A first guess at the squared distance of the k-th nearest photon, m^2: boxes of cells around p, each about twice
-    /// as wide as the one before, until one holds enough photons. Photons lie on surfaces, so their number is taken as
-    /// proportional to the box's largest face. A wrong guess costs time only, so the host needs not guess as
-    /// kth_guess.glsl does; with its own arithmetic, an edit of that kernel leaves hosts' files as they are.
-    float guess(const glm::vec3& p, uint k, float max2) const
-    {
-        const float wanted = 4 / glm::pi<float>() * static_cast<float>(k); // the square around a disc of k photons
-        const glm::uvec3 c(kernels::cell_coordinates(grid_, glm::vec4(p, 1))), last(glm::uvec3(grid_.resolution) - 1u);
-        float inside = 0, inside_area = 0; // photons and area of the box before
-        for (uint half_width = 1;; half_width *= 2) {
-            const auto low = c - glm::min(c, glm::uvec3(half_width)), high = glm::min(c + half_width, last);
-            const auto cells = high - low + 1u;
-            if (cells.y > 1023 || cells.y * cells.z > 1023)
-                return max2;
-            const auto held = static_cast<float>(photons_inside(low, high));
-            const auto side = glm::vec3(cells) * glm::vec3(grid_.cell);
-            const float area = std::max({side.x * side.y, side.y * side.z, side.z * side.x});
-            const bool everything = low == glm::uvec3(0) && high == last;
-            if (held > inside && (held >= wanted || everything)) {
-                const float square = inside_area + (area - inside_area) * (wanted - inside) / (held - inside);
-                return std::clamp(0.25f * square, 0.0f, max2);
-            }
-            if (everything)
-                return max2;
-            inside = held;
-            inside_area = area;
-        }
-    }
-
-    /// The number of photons in a box of cells.
-    uint photons_inside(const glm::uvec3& low, const glm::uvec3& high) const
-    {
-        uint held = 0;
-        for (uint z = low.z; z <= high.z; ++z)
-            for (uint y = low.y; y <= high.y; ++y) {
-                const uint row = kernels::cell_number(grid_, 0, y, z);
-                held += cells_[row + high.x].x + cells_[row + high.x].y - cells_[row + low.x].x;
-            }
-        return held;
     }
 
     irradiance_at_point made_of(
