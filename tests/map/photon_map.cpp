@@ -1,5 +1,6 @@
 // photon_map and point_index, as hosts use them: against brute force, FLANN, searches for many points on serial, from
-// many threads, with doubles far from 0, and what must not compile.
+// many threads, with doubles far from 0, and what must not compile. The file is long because each promise of the two
+// headers has its case.
 #include "host_map_devices.hpp"
 #include "host_photons.hpp"
 #include "photon_sets.hpp"

@@ -1,4 +1,4 @@
-// The program's commands: results and errors.
+// The program's commands: results and errors. The file is long because commands are many, and each case is short.
 #pragma once
 
 #include "program_under_test.hpp"

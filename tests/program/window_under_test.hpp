@@ -1,4 +1,5 @@
-// The program's window under test: its process, mouse, keys and pixels.
+// The program's window under test: its process, mouse, keys and pixels. The file is long because all
+// tests of the window need all of them.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Every number of a scene, made bad one at a time: the scene is refused, and the message names the part. And every
-// setting just outside of its range.
+// setting just outside of its range. The file is long because it lists all of them.
 #include "test_scenes.hpp"
 
 #include <photongrid/scene/setting_table.hpp>

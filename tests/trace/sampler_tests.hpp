@@ -1,5 +1,6 @@
 // What is drawn at random has the distribution that it should have: lamps, light paths, eye rays and shadow rays. Bins
-// are compared with the exact probabilities by chi-square, and what must be independent by its correlation.
+// are compared with the exact probabilities by chi-square, and what must be independent by its correlation. The file is
+// long because each sampler has its case.
 #pragma once
 
 #include "../scene/test_scenes.hpp"

@@ -1,3 +1,5 @@
+// The reader of scene files. The file is long because each part of a scene has a function here, and they share the
+// readers of values and their messages.
 #include <photongrid/io/scene_file.hpp>
 #include <photongrid/io/scene_values.hpp>
 
