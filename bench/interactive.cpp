@@ -103,7 +103,7 @@ bool report(B&& b, const scene& s, uint repetitions, bool wanted)
     for (const uint size : {160u, 512u})
         for (const bool paper : {true, false}) {
             auto settings = paper ? as_paper(s.render) : s.render;
-            settings.width = settings.height = size;
+            settings.output.width = settings.output.height = size;
             const auto w = measure(b, s, settings, repetitions);
             const bool fast = size == 160
                 ? w.first_picture <= 150 && w.camera_picture <= 1000.0 / 15 && w.light_converged <= 700
