@@ -35,9 +35,9 @@ for scene in glass_ball ring cornell_box; do
         NR == 1 { next }
         { ms[NR] = $2 - compile; error[NR] = $3; likeness[NR] = $4 }
         END {
-          for (close = NR; close > 2 && error[close - 1] < 1e-3; --close) {}
+          for (near = NR; near > 2 && error[near - 1] < 1e-3; --near) {}
           for (alike = NR; alike > 2 && likeness[alike - 1] > 0.98; --alike) {}
-          printf "| %s | %s | `%s` | %d | %.2f | %.2f | %.2f | %.0f %% |\n", scene, backend, search, NR - 1, ms[close] / 1000, ms[alike] / 1000, ms[NR] / 1000, 100 * ms[alike] / ms[NR]
+          printf "| %s | %s | `%s` | %d | %.2f | %.2f | %.2f | %.0f %% |\n", scene, backend, search, NR - 1, ms[near] / 1000, ms[alike] / 1000, ms[NR] / 1000, 100 * ms[alike] / ms[NR]
         }' "$work"/steps/*.csv
     done
   done

@@ -88,7 +88,11 @@ int main(int argc, char** argv)
             worst = std::max(worst, !right ? 3 : good ? 0 : 1);
             std::printf("| %zu | %s | %.2f | %.2f | %.2f | %.2f | %.1f | %s | %s |\n", n,
                 keys == 0 ? "32 bits" : std::to_string(keys).c_str(), median(ours), median(by_std), median(by_vqsort),
-                median(by_tbb), ratio, counts ? "8" : "", good ? "PASS" : "FAIL");
+                median(by_tbb), ratio, counts ? "8" : "",
+                !right        ? "WRONG"
+                    : !counts ? ""
+                    : good    ? "PASS"
+                              : "FAIL");
             std::fflush(stdout);
         }
     return worst;
