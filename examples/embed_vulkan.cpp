@@ -2,6 +2,7 @@
 // same queue read the result, without waiting in between.
 #include <photongrid/backends/vulkan/vulkan.hpp>
 
+#include <cstddef>
 #include <cstring>
 #include <iostream>
 #include <stdexcept>
@@ -143,7 +144,7 @@ try {
         vkQueueWaitIdle(app.handles.queue);
     }
     const auto* sorted = static_cast<const std::uint32_t*>(result.seen);
-    for (int i = 0; i < 4; ++i)
+    for (std::size_t i = 0; i < 4; ++i)
         std::cout << sorted[2 * i] << " -> " << sorted[2 * i + 1] << '\n'; // 10 -> 1, 10 -> 3, 20 -> 2, 30 -> 0
 } catch (const std::exception& e) {
     std::cerr << e.what() << '\n';

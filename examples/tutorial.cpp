@@ -20,6 +20,7 @@ int main()
     std::mt19937 random(2003);
     std::uniform_real_distribution<double> unit(0, 1);
     std::vector<my_photon> photons;
+    photons.reserve(100000);
     for (int i = 0; i < 100000; ++i)
         photons.push_back({{2 * unit(random), 2 * unit(random), 0}, {12e-5, 12e-5, 12e-5}});
 

@@ -14,6 +14,8 @@
 #include <photongrid/map/map_builders.hpp>
 #include <photongrid/render/progressive_render.hpp>
 
+// Types and `extern` cannot stand in parentheses.
+// NOLINTBEGIN(bugprone-macro-parentheses)
 #define PHOTONGRID_ALGORITHMS(EXTERN, B)                                                                               \
     EXTERN template sort_report bitonic_sort(B&, buffer_of<B, glm::uvec2>&);                                           \
     EXTERN template buffer_of<B, glm::uvec2> grid_index(B&, const buffer_of<B, glm::uvec2>&, uint);                    \
@@ -23,7 +25,6 @@
     EXTERN template grid fitting_grid(B&, const photons<B>&, uint, float);                                             \
     EXTERN template class knn_radius<B>;                                                                               \
     EXTERN template class knn_search_by_kernels<B>;                                                                    \
-    EXTERN template class knn_search<B>;                                                                               \
     EXTERN template neighbour_lists<B> knn_neighbours(                                                                 \
         B&, const map_buffers<B>&, const buffer_of<B, glm::vec4>&, const knn_settings&);                               \
     EXTERN template neighbour_lists<B> knn_neighbours(B&, const map_buffers<B>&, const buffer_of<B, glm::vec4>&,       \
@@ -53,3 +54,4 @@
         B&, const built_map<B>&, const camera&, const render_settings&, const render_observer&, render_stats&);        \
     EXTERN template rendered render(B&, const scene&, const render_settings&, const render_observer&);                 \
     EXTERN template class progressive_render<B>;
+// NOLINTEND(bugprone-macro-parentheses)

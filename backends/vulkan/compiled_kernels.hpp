@@ -63,7 +63,7 @@ public:
             ++found_;
             return words;
         }
-        const auto words = compile_spirv(source, name, optimized_);
+        auto words = compile_spirv(source, name, optimized_);
         cache_.keep(
             key, std::string_view(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(std::uint32_t)));
         return words;

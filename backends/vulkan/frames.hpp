@@ -20,7 +20,7 @@ progress run_frames(passes& on, const launch& l, uint stride, const typename K::
 {
     progress p;
     constexpr uint together = 8; // passes per reading of the slots by the host
-    constexpr uint slot_bytes = sizeof(pass_slot);
+    constexpr VkDeviceSize slot_bytes = sizeof(pass_slot);
     const auto control = on.allocate((together + 1) * slot_bytes);
     const auto list_bytes = on.made.groups(l.elements) * on.made.group() * sizeof(uint);
     std::array<memory, 2> lists{on.allocate(list_bytes), on.allocate(list_bytes)};

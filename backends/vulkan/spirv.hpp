@@ -113,7 +113,7 @@ inline spirv_words compile_spirv(const spliced_source& source, const std::string
 
     // Before optimization, so that the optimizer does not fold constants through float arithmetic, and after it, for
     // new instructions.
-    const auto decorated = forbid_contraction(plain);
+    auto decorated = forbid_contraction(plain);
     if (!optimized)
         return decorated; // the instrumentation breaks loops of one block, which the optimizer creates
     spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_1);

@@ -47,7 +47,7 @@ irradiance_source caustics_of(const scene& s, int photons, std::uint64_t seed)
     return [map](vec3 position, vec3 normal) -> vec3 {
         thread_local photongrid::query_scratch scratch;
         const auto e = map->irradiance(position, normal, scratch).value;
-        return {e.r, e.g, e.b};
+        return {static_cast<double>(e.r), static_cast<double>(e.g), static_cast<double>(e.b)};
     };
 }
 } // namespace host

@@ -16,7 +16,8 @@ namespace {
 unsigned char tone_mapped(double radiance)
 {
     const double v = std::clamp(radiance, 0.0, 1.0);
-    return static_cast<unsigned char>(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055) + 0.5);
+    return static_cast<unsigned char>(
+        std::lround(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055)));
 }
 
 /// Throws std::runtime_error if the file cannot be written.

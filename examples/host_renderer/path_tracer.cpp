@@ -61,6 +61,7 @@ void in_parallel(int n, int threads, const std::function<void(int)>& f)
 {
     std::atomic<int> next = 0;
     std::vector<std::jthread> workers;
+    workers.reserve(static_cast<std::size_t>(threads));
     for (int t = 0; t < threads; ++t)
         workers.emplace_back([&] {
             for (int i = next++; i < n; i = next++)

@@ -83,13 +83,13 @@ namespace {
               option,
               [option, row, &o](const std::string& text) {
                   const auto value = parsed_setting(option, text, row.values);
-                  o.settings.push_back([row, value](render_settings& s) {
-                      if constexpr (std::is_same_v<std::decay_t<decltype(row.values)>, setting_table::pixels>) {
+                  if constexpr (std::is_same_v<std::decay_t<decltype(row.values)>, setting_table::pixels>)
+                      o.settings.push_back([value](render_settings& s) {
                           s.output.width = value.x;
                           s.output.height = value.y;
-                      } else
-                          row.of(s) = value;
-                  });
+                      });
+                  else
+                      o.settings.push_back([row, value](render_settings& s) { row.of(s) = value; });
               },
               std::string(row.description) + without(row.use))
             ->type_name(type_of(row.values));
@@ -99,12 +99,13 @@ namespace {
     template <class Exposure>
     void add_exposure(CLI::App& to, Exposure& target, const std::string& description)
     {
-        const auto& values = setting_table::exposure.values;
         to.add_option_function<std::string>(
               "--exposure",
-              [&target, values](const std::string& text) { target = parsed_setting("--exposure", text, values); },
+              [&target](const std::string& text) {
+                  target = parsed_setting("--exposure", text, setting_table::exposure.values);
+              },
               description)
-            ->type_name(type_of(values));
+            ->type_name(type_of(setting_table::exposure.values));
     }
 
     /// Options for scene, backend and settings, common to `render` and `view`.

@@ -58,7 +58,7 @@ namespace {
             const auto value = with_value ? policy.substr(name.size() + 1) : "";
             if (std::find(given.begin(), given.end(), name) != given.end())
                 throw CLI::ValidationError(
-                    option, "\"" + text + "\" has " + name + " twice; expected each policy once");
+                    option, ('"' + text).append("\" has ").append(name).append(" twice; expected each policy once"));
             given.push_back(name);
             if (policy == "side")
                 leaks.side = true;

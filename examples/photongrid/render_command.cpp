@@ -94,7 +94,7 @@ renderer_options renderer_asked(const render_options& o)
 {
     if (o.threads.value_or(0) > 4096)
         throw std::invalid_argument("--threads " + std::to_string(*o.threads) + ": at most 4,096; 0: all");
-    const auto r = chosen({.backend = o.backend,
+    auto r = chosen({.backend = o.backend,
         .threads = o.threads.value_or(0),
         .device = o.device,
         .shader_cache = shader_cache_folder(o),

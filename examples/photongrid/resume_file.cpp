@@ -62,7 +62,7 @@ std::optional<render_state> read_resume_file(const std::string& path, const std:
     std::size_t at = 0;
     const auto line = [&] {
         const auto end = std::min(text.find('\n', at), text.size());
-        const auto l = text.substr(at, end - at);
+        auto l = text.substr(at, end - at);
         at = std::min(end + 1, text.size());
         return l;
     };

@@ -50,6 +50,7 @@ std::vector<survey> survey_forest(
 
     // A value that the library does not compute: their mean height, by a kernel of our own.
     std::vector<float> heights;
+    heights.reserve(trees.size());
     for (const auto& t : trees)
         heights.push_back(t.height);
     const auto all_heights = photongrid::upload(device, heights);

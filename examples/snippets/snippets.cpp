@@ -325,7 +325,7 @@ void pictures(device_type& device)
     const auto [above, stats] = photongrid::draw(device, built, from_above, settings); // no photon is traced
     const glm::vec3 radiance = above.pixels[6 * 16 + 8];                               // W/(m^2 sr)
     //! [draw]
-    expect(radiance.x > 0 && stats.invalid_pixels == 0 && above.pixels.size() == 16 * 12, "draw");
+    expect(radiance.x > 0 && stats.invalid_pixels == 0 && above.pixels.size() == std::size_t{16} * 12, "draw");
 
     //! [render]
     const photongrid::image picture = photongrid::render(device, room, settings).picture; // by the scene's own camera

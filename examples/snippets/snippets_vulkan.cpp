@@ -91,6 +91,7 @@ void snippets(const photongrid::vulkan_handles& handles)
         mine = device.release(
             std::move(sums)); // to be ended by vkDestroyBuffer(mine.buffer) and vkFreeMemory(mine.memory)
         //! [release]
+        // NOLINTNEXTLINE(bugprone-use-after-move): a released buffer is empty
         expect(mine.buffer == buffer && mine.memory != VK_NULL_HANDLE && sums.size() == 0, "release");
 
         //! [adopt]

@@ -46,8 +46,10 @@ void picture_pane::draw(bool has_picture)
     const ImVec2 size(scale * static_cast<float>(s.output.width), scale * static_cast<float>(s.output.height));
     const ImVec2 corner(std::max(0.0f, 0.5f * (room.x - size.x)), std::max(0.0f, 0.5f * (room.y - size.y)));
     if (has_picture)
-        ImGui::GetWindowDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)),
-            corner, {corner.x + size.x, corner.y + size.y});
+        ImGui::GetWindowDrawList()->AddImage(
+            // NOLINTNEXTLINE(performance-no-int-to-ptr): Dear ImGui's texture identifiers are pointers
+            reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)), corner,
+            {corner.x + size.x, corner.y + size.y});
     ImGui::SetCursorPos(corner);
     ImGui::InvisibleButton("mouse", size,
         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle | ImGuiButtonFlags_MouseButtonRight);

@@ -15,7 +15,7 @@ namespace {
     {
         auto name = stem + ending;
         for (int n = 2; std::filesystem::exists(name); ++n)
-            name = stem + '-' + std::to_string(n) + ending;
+            name = std::string(stem).append(1, '-').append(std::to_string(n)).append(ending);
         return name;
     }
 } // namespace

@@ -124,7 +124,7 @@ template <kernel_struct K>
 constexpr uint known_switches()
 {
     uint known = 0;
-    detail::for_each_slot<32>([&](auto s) {
+    detail::for_each_slot<32>([&]([[maybe_unused]] auto s) {
         if constexpr (requires(K & k) { k.turn(s, true); })
             known |= 1u << s.index;
     });

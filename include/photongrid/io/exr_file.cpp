@@ -37,7 +37,7 @@ namespace {
     /// The channels of an RGB float picture whose first pixel has the box's smallest coordinates.
     Imf::FrameBuffer rgb_frame(glm::vec3* pixels, const Imath::Box2i& box)
     {
-        const auto width = static_cast<std::size_t>(box.max.x - box.min.x + 1);
+        const auto width = static_cast<std::size_t>(box.max.x - box.min.x) + 1;
         Imf::FrameBuffer frame;
         for (int c = 0; c < 3; ++c)
             frame.insert(std::string(1, "RGB"[c]),

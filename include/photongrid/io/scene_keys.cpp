@@ -81,6 +81,7 @@ namespace {
     std::vector<std::string> names_of(const std::vector<kind_keys>& kinds)
     {
         std::vector<std::string> names;
+        names.reserve(kinds.size());
         for (const auto& k : kinds)
             names.emplace_back(k.name);
         return names;

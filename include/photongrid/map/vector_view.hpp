@@ -48,6 +48,7 @@ class vector_view {
 public:
     vector_view() = default;
     template <detail::lasting_vector_range Range>
+    // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): a vector_view is no range, so copies are not hidden
     vector_view(Range&& range)
         : vector_view(
             std::ranges::data(range), static_cast<std::size_t>(std::ranges::size(range)),
