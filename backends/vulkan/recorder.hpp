@@ -105,7 +105,7 @@ public:
             seen = std::make_shared<allocation>(context_, bytes, memory_kind::host);
             copy(from, 0, seen, 0, bytes);
         }
-        finish();
+        finish(); // the copy, too
         std::memcpy(data, seen->mapped(), bytes);
     }
 

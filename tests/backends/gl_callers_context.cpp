@@ -4,6 +4,7 @@
 #include "gl_barrier_tests.hpp"
 #include "gl_caller_state_tests.hpp"
 #include "gl_caller_texture_tests.hpp"
+#include "gl_garbage_tests.hpp"
 
 namespace photongrid::testing {
 

@@ -250,6 +250,20 @@ TEST_F(vulkan, unfinished_elements_of_a_part_of_a_buffer)
     EXPECT_EQ(run(b()), run(serial));
 }
 
+/// Batches have descriptor sets and timestamps for so many passes: the validation layer reports a pass too many.
+TEST_F(vulkan, batches_have_room_for_their_passes)
+{
+    vulkan_backend timed({.validation = true, .time_passes = true});
+    timed.add_texts(test_kernels::texts);
+    constexpr uint passes = 3 * vulkan_detail::passes_per_batch + 1;
+    auto values = up(timed, std::vector<uint>(64, 0u));
+    for (uint p = 0; p < passes; ++p)
+        timed.run<test_kernels::next_frame>(64, {.frame = 0}, reads(values), writes(values));
+    EXPECT_EQ(timed.download(values), std::vector<uint>(64, 0xFFFFFFFFu));
+    EXPECT_EQ(timed.costs().at("next_frame").passes, passes);
+    EXPECT_EQ(timed.validation_messages(), std::vector<std::string>{});
+}
+
 /// A route sorts draws by destination and finds ranges, slots and totals: each dispatch is counted.
 TEST_F(vulkan, the_dispatches_of_a_route_are_counted)
 {
