@@ -1,5 +1,5 @@
-// Whether results depend on what memory held before. Drivers clear new textures or leave what was there, so a clear that
-// is forgotten may never show: here every new texture is filled with a pattern of bits.
+// Whether results depend on what memory held before. Drivers clear new textures or leave what was there, so a clear
+// that is forgotten may never show: here every new texture is filled with a pattern of bits.
 #pragma once
 
 #include "gl_caller.hpp"
@@ -27,12 +27,12 @@ namespace {
             storage_(texture, levels, internal, width, height);
             constexpr GLuint pattern = 0x4B5A5A5Au; // as a float 1.4e7
             constexpr std::array<GLuint, 4> texel{pattern, pattern, pattern, pattern};
-            constexpr std::array<std::array<GLenum, 3>, 8> formats{{{GL_R32F, GL_RED, GL_FLOAT},
-                {GL_RG32F, GL_RG, GL_FLOAT}, {GL_RGBA32F, GL_RGBA, GL_FLOAT},
-                {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT}, {GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT},
-                {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT},
-                {GL_STENCIL_INDEX8, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE},
-                {GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8}}};
+            constexpr std::array<std::array<GLenum, 3>, 8> formats{
+                {{GL_R32F, GL_RED, GL_FLOAT}, {GL_RG32F, GL_RG, GL_FLOAT}, {GL_RGBA32F, GL_RGBA, GL_FLOAT},
+                    {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT}, {GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT},
+                    {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT},
+                    {GL_STENCIL_INDEX8, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE},
+                    {GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8}}};
             const auto* const f
                 = std::find_if(formats.begin(), formats.end(), [&](const auto& of) { return of[0] == internal; });
             if (f == formats.end()) {
