@@ -12,9 +12,9 @@
 #               twice more. Stages of less than 5 ms get no verdict, the whole picture does
 #   --quick     fewer pictures (under two minutes), little to measure (to see that it runs)
 #   --built     builds nothing and takes these programs; sorts and searches where they are built too, in bench/ beside a program
-#               or in build-bench/ beside its folder. The base's scenes are REV's
+#               or in build-bench/ beside its folder
 #
-# Without --pictures and --speed: both. Otherwise REV is checked out in build-against/tree; both trees are built in their build/
+# Both draw the scenes as they are in REV. Without --pictures and --speed: both. Unless --built is given, REV is checked out in build-against/tree; both trees are built in their build/
 # (the preset release) and, for --speed, their build-bench/.
 # Exit status: 1 where a picture differs or a row is too slow, 2 where something is broken.
 # It is one file because pictures and times are compared for the same two trees, programs and options.
@@ -22,7 +22,7 @@ set -euo pipefail
 here=$PWD
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-usage() { sed -n '2,19s/^# \{0,1\}//p' bench/against.sh; }
+usage() { sed -n '2,20s/^# \{0,1\}//p' bench/against.sh; }
 die() {
   echo "bench/against.sh: $*" >&2
   exit 2
@@ -113,7 +113,7 @@ for side in base head; do
 done
 for scene in "${scenes[@]}"; do
   git show "$rev:examples/scenes/$scene.json" >"$work/base/$scene.json"
-  cp "examples/scenes/$scene.json" "$work/head/$scene.json"
+  cp "$work/base/$scene.json" "$work/head/$scene.json"
 done
 old_words=no # of November 2026
 [[ $("${program[base]}" render --help) == *--filter* ]] || old_words=yes

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What edge correction (--edge-correction polygons) does to the error of a picture, and what it costs: relMSE against `photongrid
-# reference` and CPU seconds of the whole render on the serial backend, at the scenes' own photons and k. For docs/reference/measures.md.
+# reference` and CPU seconds of the whole render on the serial backend, at Table 1's photons and k. For docs/reference/measures.md.
 # Needs ./examples/run.sh first and /usr/bin/time (Debian: time).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Time against error of every way to estimate: searches, filters, k, numbers of photons, map builders, backends; on the three
-# scenes (against `photongrid reference`) and on fields of light with a known answer. Writes scenes.csv, fields.csv and plots
-# (SVG and PNG, gnuplot) to out/error/. The last column says whether a row is on its scene's Pareto front: none is both
-# faster and more exact.
+# scenes with the paper's eye rays and shadow rays (against `photongrid reference`) and on fields of light with a known answer.
+# Writes scenes.csv, fields.csv and plots (SVG and PNG, gnuplot) to out/error/. The last column says whether a row is on its
+# scene's Pareto front: none is both faster and more exact.
 #
 #   bench/error.sh [--quick]       --quick: a few rows, to see that it runs
 #
@@ -43,8 +43,11 @@ figure() { awk -v key="\"$1\":" '$1 == key { gsub(",", "", $2); print $2; exit }
 # row SCENE BACKEND MAP SEARCH FILTER K PHOTONS [OPTION...]: renders, and prints a line of CSV; seconds are the four stages', kernels compiled apart
 row() {
   local scene=$1 backend=$2 map=$3 search=$4 filter=$5 k=$6 photons=$7
+  local samples
+  samples=$(paper_count "$scene" light_samples)
   shift 7
-  "$program" render "examples/scenes/$scene.json" --backend "$backend" --size $size --map "$map" --search "$search" --filter "$filter" --k "$k" --photons "$photons" --grid auto --stats "$work/stats.json" -o "$work/picture.exr" --quiet "$@" >/dev/null
+  # shellcheck disable=SC2086
+  "$program" render "examples/scenes/$scene.json" --backend "$backend" --size $size --map "$map" --search "$search" --filter "$filter" --k "$k" --photons "$photons" --grid auto --spp 1 ${samples:+--light-samples $samples} $plain_estimate --stats "$work/stats.json" -o "$work/picture.exr" --quiet "$@" >/dev/null
   local seconds relmse
   seconds=$(awk '$1 == "\"ms\":" && inside { gsub(",", "", $2); sum += $2 } $1 == "\"stages\":" { inside = 1 } $1 == "\"estimate\":" { inside = 0 } END { printf "%.5f", sum / 1000 }' "$work/stats.json")
   relmse=$("$program" compare "$work/picture.exr" "$out/$scene-reference.exr" | awk '$1 == "relMSE" { print $2 }')
@@ -58,9 +61,9 @@ scene_rows() {
     if [[ ! -e $out/$scene-reference.exr ]]; then
       "$program" reference "examples/scenes/$scene.json" --size $size --spp $([[ $quick == yes ]] && echo 16 || echo 512) --paths $([[ $quick == yes ]] && echo 100000 || echo 10000000) -o "$out/$scene-reference.exr" --quiet >/dev/null
     fi
-    # The scene's own.
+    # The paper's.
     photons=$(sed -n 's/.*"photons": *\([0-9]*\).*/\1/p' "examples/scenes/$scene.json" | head -n 1)
-    k=$(sed -n 's/.*"k": *\([0-9]*\).*/\1/p' "examples/scenes/$scene.json" | head -n 1)
+    k=$(paper_count "$scene" k)
     for factor in 1 4 16; do
       for divisor in 16 4 1; do
         [[ $quick == no || $factor$divisor == 116 ]] || continue

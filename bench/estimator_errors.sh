@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # How wrong a picture is, and what it costs, for each kind of estimate: relMSE against `photongrid reference` and CPU seconds of
-# the whole render on the serial backend, at the scenes' own photons and k. For docs/reference/measures.md. Needs ./examples/run.sh first
+# the whole render on the serial backend, at Table 1's photons and k. For docs/reference/measures.md. Needs ./examples/run.sh first
 # and /usr/bin/time (Debian: time).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

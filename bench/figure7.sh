@@ -4,7 +4,7 @@
 #
 #   bench/figure7.sh [OPTION of "photongrid render"...]
 #
-# 256 pixels wide with 4 eye rays each: as many eye rays as the paper's size. PHOTONGRID names another program than build/photongrid.
+# 256 pixels wide with the scenes' 4 eye rays each: as many eye rays as the paper's size. PHOTONGRID names another program than build/photongrid.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 program=${PHOTONGRID:-build/photongrid}
@@ -29,8 +29,8 @@ for line in "${scenes[@]}"; do
   "${reference[@]}" --seed 2 -o "$work/again.exr" >/dev/null
   row="| $scene |"
   for map in sort route; do
-    "$program" render "examples/scenes/$scene.json" --backend serial --map "$map" --size "$size" --spp 4 "$@" --quiet -o "$work/$map.exr" -o "docs/figure7/$scene-$map.png" >/dev/null
-    row+=" ![$scene, $map](figure7/$scene-$map.png) relMSE $(relmse "$map") |"
+    "$program" render "examples/scenes/$scene.json" --backend serial --map "$map" --size "$size" "$@" --quiet -o "$work/$map.exr" -o "docs/figure7/$scene-$map.png" >/dev/null
+    row+=" ![$scene, $map](../figure7/$scene-$map.png) relMSE $(relmse "$map") |"
   done
-  echo "$row ![$scene, reference](figure7/$scene-reference.png) another seed: relMSE $(relmse again) |"
+  echo "$row ![$scene, reference](../figure7/$scene-reference.png) another seed: relMSE $(relmse again) |"
 done

@@ -102,7 +102,7 @@ bool report(B&& b, const scene& s, uint repetitions, bool wanted)
     bool all = true;
     for (const uint size : {160u, 512u})
         for (const bool paper : {true, false}) {
-            auto settings = paper ? as_paper(s.render) : s.render;
+            auto settings = paper ? as_paper(s) : s.render;
             settings.output.width = settings.output.height = size;
             const auto w = measure(b, s, settings, repetitions);
             const bool fast = size == 160

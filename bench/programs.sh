@@ -1,4 +1,6 @@
-# Sourced by scripts of this folder: where the programs are that bench/run.sh builds, and what to say when they are not there.
+# Sourced by scripts of this folder: where the programs are that bench/run.sh builds, and what to say when they are not there;
+# and the paper's settings of a scene as options.
+# shellcheck shell=bash
 
 # PHOTONGRID_BUILD: a build folder with -DPHOTONGRID_BENCH=ON
 build=${PHOTONGRID_BUILD:-build-bench}
@@ -10,6 +12,16 @@ need() {
     [[ -x $build/$name ]] || { echo "$0: $build/$name is not there; bench/run.sh builds it (PHOTONGRID_BUILD names another folder)" >&2; exit 2; }
   done
 }
+# paper_count SCENE KEY: the number at KEY in the scene's "as_paper", Table 1
+paper_count() { sed -n "s/^ *\"as_paper\":.*\"$2\": *\([0-9]*\).*/\1/p" "examples/scenes/$1.json"; }
+# paper_counts SCENE: options for Table 1's k and shadow rays; the scene's own differ (bench/defaults.sh compares them)
+paper_counts() {
+  local samples
+  samples=$(paper_count "$1" light_samples)
+  echo "--k $(paper_count "$1" k)${samples:+ --light-samples $samples}"
+}
+# plain_estimate: options for the library's default estimate, where a scene has another
+plain_estimate="--leaks side --edge-correction none"
 # need_povray: the same for POV-Ray
 need_povray() {
   command -v povray >/dev/null || { echo "$0: no povray; apt-get install povray" >&2; exit 2; }

@@ -8,7 +8,7 @@
 #   --algorithms  each algorithm on each backend by number of photons and entropy of keys: JSON and plots in out/algorithms/
 #   --peers       neighbour searches and sorts against CGAL, FLANN, nanoflann, std::sort, Highway's vqsort, TBB; sorting passes
 #                 on vulkan and gl against plain ones; whole pictures, the ring and the ball against POV-Ray
-#   --paper       the paper's Tables 1 and 2, what leaving out finished elements gains
+#   --paper       the paper's Tables 1 and 2, what leaving out finished elements gains, our defaults beside the paper's method
 #   --interactive how soon a change is seen, and when a picture looks converged
 #   --error       time against relMSE of every kind of estimate: CSV and plots in out/error/
 #   --inclusion   what including the headers costs a user's compiler, and the size of the smallest programs
@@ -149,6 +149,7 @@ if [[ $smoke == yes ]]; then
   must $build/bench/kernel_costs
   must $build/bench/unfinished --quick
   must bench/convergence.sh --quick cpu
+  must bench/defaults.sh --quick
   must bench/inclusion.sh --smoke
   must $build/bench/interactive examples/scenes/cornell_box.json 1 cpu
   must bench/window.sh cpu
@@ -206,6 +207,8 @@ if asked paper; then
   must $build/bench/kernel_costs
   title "Finished elements (3.3, 4.3)"
   must $build/bench/unfinished
+  title "Defaults beside the paper's method"
+  must bench/defaults.sh
 fi
 if asked interactive; then
   title "Time to visual convergence (3.1)"

@@ -70,7 +70,7 @@ struct task {
 task task_of(const std::string& scene, bool paper, uint visits, uint divisor)
 {
     auto s = read_scene("examples/scenes/" + scene + ".json");
-    auto settings = paper ? as_paper(s.render) : s.render;
+    auto settings = paper ? as_paper(s) : s.render;
     settings.output.width /= divisor;
     settings.output.height /= divisor;
     cpu_backend b;
@@ -85,7 +85,8 @@ task task_of(const std::string& scene, bool paper, uint visits, uint divisor)
         .cells = built.map.cells_of};
     const auto raster = detail::raster_of(settings, 1);
     detail::eye_hits<cpu_backend> hits(b, raster.size());
-    detail::trace_eye_rays(b, built.scene, s.camera, settings, raster, 0, launch(raster.size(), 0), hits);
+    auto branches = b.make<uint>(raster.size());
+    detail::trace_eye_rays(b, built.scene, s.camera, settings, raster, 0, launch(raster.size(), 0), hits, branches);
     t.points = b.download(hits.points);
     t.normals = b.download(hits.surfaces);
     t.search = detail::search_for(settings, least_radius(t.cells));

@@ -37,7 +37,7 @@
     EXTERN template uint trace_batch(                                                                                  \
         B&, const device_scene<B>&, detail::photon_frames<B>&, uint, uint, const render_settings&);                    \
     EXTERN template void detail::trace_eye_rays(B&, const device_scene<B>&, const camera&, const render_settings&,     \
-        const detail::raster&, uint, launch, detail::eye_hits<B>&);                                                    \
+        const detail::raster&, uint, launch, detail::eye_hits<B>&, buffer_of<B, uint>&);                               \
     EXTERN template void detail::direct_light(B&, const device_scene<B>&, const detail::eye_hits<B>&,                  \
         const render_settings&, uint, launch, buffer_of<B, glm::vec4>&);                                               \
     EXTERN template class photon_tracing<B>;                                                                           \

@@ -121,8 +121,10 @@ namespace {
             ->type_name("NAME|INDEX");
         for_each_setting([&](const auto& row) { add_setting(to, row, o); });
         to.add_flag("--as-paper", o.as_paper,
-            "the paper's estimate: --search at_least_k --filter constant --bias paper --leaks none --edge-correction "
-            "none --passes 1; any of these options that is given as well takes precedence");
+            "the paper's method: --search at_least_k --filter constant --bias paper --leaks none --edge-correction "
+            "none "
+            "--surplus power --passes 1 --spp 1 with the shadow rays of all eye rays, and what the scene has under "
+            "\"as_paper\"; any option that is given as well takes precedence");
         to.add_option("--shader-cache", o.shader_cache,
               "folder in which compiled Vulkan kernels are kept for later runs; default: photongrid in "
               "$XDG_CACHE_HOME or ~/.cache")
@@ -373,7 +375,7 @@ command read_command_line(int argc, char** argv)
 
 render_settings settings_for(const scene& s, const render_options& o)
 {
-    auto settings = o.as_paper ? as_paper(s.render) : s.render;
+    auto settings = o.as_paper ? as_paper(s) : s.render;
     for (const auto& give : o.settings)
         give(settings);
     settings.output.aov = o.aov;

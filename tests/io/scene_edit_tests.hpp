@@ -76,13 +76,13 @@ namespace {
         s.render.estimate.k = 40;
         s.render.estimate.max_radius = 0.5;
         s.render.map.grid = glm::uvec3(0);
-        s.render.view.spp = 4;
+        s.render.view.spp = 9;
         s.render.output.exposure = -1.5;
         s.render.output.only = light_part::direct; // not of files
         auto expected = with(by_hand, "\"k\": 20, \"max_radius\": 250, \"grid\": [4, 1, 4]",
             "\"k\": 40, \"max_radius\": 500, \"grid\": \"auto\"");
         expected = with(
-            expected, "\"comment\": \"quick\"}", "\"comment\": \"quick\",\n\t\"spp\": 4,\n\t\"exposure\": -1.5}");
+            expected, "\"comment\": \"quick\"}", "\"comment\": \"quick\",\n\t\"spp\": 9,\n\t\"exposure\": -1.5}");
         EXPECT_EQ(edited(s), expected);
         s.camera.up = {0, 0, 1};
         EXPECT_EQ(edited(s), with(expected, "5000]}", "5000], \"up\": [0, 0, 1]}"));

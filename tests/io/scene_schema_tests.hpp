@@ -40,17 +40,22 @@ namespace {
             const auto s = read_scene(scenes + "/" + r.name + ".json");
             EXPECT_NO_THROW(check(s));
             EXPECT_EQ(s.name, r.name);
-            EXPECT_EQ(glm::uvec2(s.render.output.width, s.render.output.height), r.size);
-            EXPECT_EQ(s.render.view.light_samples, r.light_samples);
-            EXPECT_EQ(s.render.view.spp, 1u);
+            const auto paper = as_paper(s);
+            EXPECT_EQ(glm::uvec2(paper.output.width, paper.output.height), r.size);
+            EXPECT_EQ(paper.view.light_samples, r.light_samples);
+            EXPECT_EQ(paper.view.spp, 1u);
+            EXPECT_EQ(paper.map.photons, r.photons);
+            EXPECT_EQ(paper.map.grid, r.grid);
+            EXPECT_EQ(paper.estimate, as_paper(paper).estimate);
+            EXPECT_EQ(paper.estimate.k, r.k);
             EXPECT_EQ(s.render.map.photons, r.photons);
-            EXPECT_EQ(s.render.estimate.k, r.k);
             EXPECT_EQ(s.render.map.grid, r.grid);
             EXPECT_EQ(s.render.estimate.search, render_settings().estimate.search)
                 << "they leave the kind of estimate to the library";
             EXPECT_EQ(s.render.estimate.bias, render_settings().estimate.bias);
-            EXPECT_EQ(s.render.estimate.edges, render_settings().estimate.edges);
+            EXPECT_EQ(s.render.estimate.filter, render_settings().estimate.filter);
             EXPECT_EQ(s.render.estimate.leaks.side, render_settings().estimate.leaks.side);
+            EXPECT_EQ(s.render.view.spp, render_settings().view.spp);
         }
         EXPECT_EQ(read_scene(scenes + "/ring.json").point_lights.size(), 1u);
         const auto box = read_scene(scenes + "/cornell_box.json");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "equal_picture_tests.hpp"
+#include "known_energy_tests.hpp"
 #include "known_picture_tests.hpp"
 #include "photon_account_tests.hpp"
 
@@ -59,7 +60,8 @@ REGISTER_TYPED_TEST_SUITE_P(pictures, a_closed_diffuse_sphere_has_the_known_radi
     power_balances_per_channel, a_photon_takes_the_memory_that_is_stated, long_statistics_of_a_picture_equal_serials,
     cut_off_paths_are_counted, equal_the_serial_backends, sorting_and_routing_agree, a_moved_camera_runs_no_photon_pass,
     the_same_seed_gives_the_same_bytes, running_estimates_are_shown_and_a_render_can_be_cancelled,
-    direct_light_alone_traces_no_photon, scenes_beyond_the_loop_limit_are_refused,
-    a_light_that_stores_no_photon_is_named);
+    a_ball_of_each_material_amid_lamps_has_the_known_radiance, a_floor_under_a_bulb_has_the_known_radiance,
+    photons_have_the_power_that_their_surfaces_left_them, direct_light_alone_traces_no_photon,
+    scenes_beyond_the_loop_limit_are_refused, a_light_that_stores_no_photon_is_named);
 
 } // namespace photongrid::testing

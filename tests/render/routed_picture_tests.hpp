@@ -52,24 +52,27 @@ namespace {
     TEST(routed_pictures, are_as_bright_as_sorted_ones)
     {
         const auto s = read_scene(std::string(PHOTONGRID_SCENES) + "/cornell_box.json");
-        auto settings = s.render;
-        settings.output.width = 64;
-        settings.output.height = 48;
-        settings.view.light_samples = 1;
+        const auto small = [](render_settings r) {
+            r.output.width = 64;
+            r.output.height = 48;
+            r.view.spp = r.view.light_samples = 1;
+            return r;
+        };
+        auto settings = small(s.render), paper = small(as_paper(s));
         ratio peak, mean, papers_peak;
         double stands_for = 1;
         for (std::uint32_t seed = 1; seed <= 6; ++seed) {
             serial_backend b;
-            settings.seed = seed;
-            auto direct_alone = settings, routing = settings;
+            settings.seed = paper.seed = seed;
+            auto direct_alone = settings, routing = settings, papers_routing = paper;
             direct_alone.output.only = light_part::direct;
-            routing.map.builder = map_builder::route;
+            routing.map.builder = papers_routing.map.builder = map_builder::route;
             const auto direct = render(b, s, direct_alone).picture;
             const auto light = [&](const auto& each) { return indirect_light_of(render(b, s, each).picture, direct); };
             const auto sorted = light(settings), routed = light(routing);
             peak.values.push_back(routed.peak / sorted.peak);
             mean.values.push_back(routed.mean / sorted.mean);
-            papers_peak.values.push_back(light(as_paper(routing)).peak / light(as_paper(settings)).peak);
+            papers_peak.values.push_back(light(papers_routing).peak / light(paper).peak);
             const auto slots = static_cast<double>(route_capacity(settings.map.slots));
             for (const auto& c : b.download(build_map(b, s, routing).map.cells))
                 stands_for = std::max(stands_for, c.y / slots);

@@ -43,7 +43,7 @@ inline scene small_cornell()
     s.camera = {{0.5, 0.5, -1.4}, {0.5, 0.5, 0}, {0, 1, 0}, 39};
     s.render = {.map = {.photons = 8000, .grid = {12, 12, 12}},
         .estimate = {.k = 80, .max_radius = 0.25},
-        .view = {.light_samples = 4},
+        .view = {.spp = 1, .light_samples = 4},
         .output = {.width = 64, .height = 64}};
     return s;
 }
@@ -69,7 +69,7 @@ inline scene all_shapes()
     s.camera = {{0, 1.4, -3.2}, {0, 0.3, 0}, {0, 1, 0}, 45};
     s.render = {.map = {.photons = 6000, .grid = {30, 10, 30}},
         .estimate = {.k = 40, .max_radius = 0.3},
-        .view = {.light_samples = 4},
+        .view = {.spp = 1, .light_samples = 4},
         .output = {.width = 96, .height = 64}};
     return s;
 }

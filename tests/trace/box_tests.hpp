@@ -190,7 +190,7 @@ inline scene room_of_boxes()
     s.camera = {{1.9, 0.5, 1.4}, {0.8, 0.4, 0.5}, {0, 1, 0}, 60};
     s.render = {.map = {.photons = 30000, .photon_depth = 64, .grid = {20, 10, 15}},
         .estimate = {.k = 100, .max_radius = 0.3},
-        .view = {.light_samples = 4},
+        .view = {.spp = 1, .light_samples = 4},
         .output = {.width = 40, .height = 30}};
     return s;
 }

@@ -16,8 +16,9 @@ inline std::vector<glm::vec4> eye_directions(const camera& view, const render_se
     const auto all = detail::raster_of(settings, 1);
     serial_backend b;
     detail::eye_hits<serial_backend> rays(b, all.size());
+    auto branches = b.make<uint>(all.size());
     b.run<kernels::eye_ray>(all.size(), detail::eye_params(view, dvec3(0), settings, all, sample), reads(),
-        writes(rays.points, rays.directions, rays.throughputs, rays.surfaces, rays.emissions));
+        writes(rays.points, rays.directions, rays.throughputs, rays.surfaces, rays.emissions, branches));
     return b.download(rays.directions);
 }
 

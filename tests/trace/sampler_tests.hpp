@@ -238,7 +238,7 @@ namespace {
 
     TEST(samplers, the_only_eye_ray_passes_through_the_middle_of_its_pixel)
     {
-        const render_settings settings{.output = {.width = 60, .height = 40}};
+        const render_settings settings{.view = {.spp = 1}, .output = {.width = 60, .height = 40}};
         const auto rays = eye_rays(oblique, settings, 0);
         for (std::size_t i = 0; i < rays.size(); ++i) {
             EXPECT_NEAR(rays[i].x, static_cast<double>(i % 60) + 0.5, 1e-4);

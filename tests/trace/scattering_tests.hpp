@@ -141,8 +141,8 @@ namespace {
     struct eye_step {
         std::vector<glm::vec4> points, directions, throughputs;
     };
-    eye_step step(
-        const scene& s, const std::vector<dvec3>& origins, const std::vector<dvec3>& ways, uint branch, uint splits)
+    eye_step step(const scene& s, const std::vector<dvec3>& origins, const std::vector<dvec3>& ways, uint branch,
+        uint splits, float throughput = 1, float stratum = 0)
     {
         serial_backend b;
         const auto device = upload_scene(b, s);
@@ -156,11 +156,12 @@ namespace {
         hits.points = b.upload(std::span<const glm::vec4>(points));
         hits.directions = b.upload(std::span<const glm::vec4>(directions));
         hits.throughputs
-            = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(n, glm::vec4(1.0f, 1.0f, 1.0f, 0.0f))));
+            = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(n, glm::vec4(glm::vec3(throughput), 0.0f))));
+        auto branches = b.make<uint>(n);
         b.run<kernels::eye_bounce>({n, 0u, device.layout.features},
-            {.branch = branch, .splits = splits, .depth = 8, .sample_id = 0, .seed = 1, .first_pixel = 0},
+            {.branch = branch, .splits = splits, .depth = 8, .stratum = stratum, .seed = 1, .first_pixel = 0},
             reads(device.records),
-            writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions));
+            writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
         return {b.download(hits.points), b.download(hits.directions), b.download(hits.throughputs)};
     }
 
@@ -238,6 +239,56 @@ namespace {
                 ASSERT_TRUE(close(dvec3(glm::vec3(e.throughputs[i])), m.reflectance, 1e-6)) << i;
             }
             EXPECT_LE(std::abs(reflections - expected), far_off * std::sqrt(variance)) << distance;
+        }
+    }
+
+    /// The rarer choice of a faint ray is less rare, and counts for less: the mean throughput of each is Fresnel's
+    /// share, and none is over four times its share.
+    TEST(scattering, faint_eye_rays_choose_rare_branches_more_often)
+    {
+        const auto& m = materials[2];
+        constexpr float faint = 0.04f;
+        constexpr double least = 0.25 * (1 - double{faint});
+        for (const double distance : {3.0, 0.7}) {
+            std::vector<dvec3> origins, ways, outwards;
+            aim(origins, ways, outwards, distance);
+            const auto e = step(ball_of(m, {1.5, 0.5, 1}), origins, ways, 0, 0, faint);
+            double reflections = 0, expected = 0, variance = 0;
+            for (std::size_t i = 0; i < origins.size(); ++i) {
+                const incidence in(ways[i], outwards[i], m);
+                const double share = in.reflectance();
+                const double p = share < 1 ? std::clamp(share, least, 1 - least) : 1;
+                const bool reflected = glm::dot(dvec3(glm::vec3(e.directions[i])), in.normal) > 0;
+                reflections += reflected ? 1 : 0;
+                expected += p;
+                variance += p * (1 - p);
+                const double counts = reflected ? share / p : (1 - share) / (1 - p);
+                ASSERT_TRUE(close(
+                    dvec3(glm::vec3(e.throughputs[i])), double{faint} * counts * m.reflectance, 2e-3 * double{faint}))
+                    << i;
+            }
+            EXPECT_LE(std::abs(reflections - expected), far_off * std::sqrt(variance)) << distance;
+        }
+    }
+
+    /// The eye rays of a pixel share out the branches: of n rays, n p or a ray more or less are reflected.
+    TEST(scattering, eye_rays_of_a_pixel_choose_branches_by_strata)
+    {
+        const auto& m = materials[2];
+        constexpr uint n = 4;
+        std::vector<dvec3> origins, ways, outwards;
+        aim(origins, ways, outwards, 0.7);
+        std::vector<double> reflections(origins.size());
+        for (uint sample = 0; sample < n; ++sample) {
+            const auto e = step(ball_of(m, {1.5, 0.5, 1}), origins, ways, 0, 0, 1, float(sample) / float(n));
+            for (std::size_t i = 0; i < origins.size(); ++i)
+                reflections[i]
+                    += glm::dot(dvec3(glm::vec3(e.directions[i])), incidence(ways[i], outwards[i], m).normal) > 0;
+        }
+        for (std::size_t i = 0; i < origins.size(); ++i) {
+            const double p = incidence(ways[i], outwards[i], m).reflectance();
+            ASSERT_GE(reflections[i], std::floor(n * p - 1e-3)) << i << ": " << p;
+            ASSERT_LE(reflections[i], std::ceil(n * p + 1e-3)) << i << ": " << p;
         }
     }
 

@@ -50,7 +50,9 @@ namespace {
             if (count_lights(scene_) == 0)
                 fail(at(root(), "lights").place, "lights: the scene has none; expected at least one");
             check_shapes();
-            read_render(at(root(), "render"));
+            read_settings(at(root(), "render"), "render", scene_.render);
+            if (const auto* paper = root().find("as_paper"))
+                read_settings(*paper, "as_paper", scene_.paper.emplace(as_paper(scene_.render)));
             return std::move(scene_);
         }
 
@@ -278,14 +280,14 @@ namespace {
                 to.flattening = static_cast<float>(in_range(*flattening, p.flattening));
         }
 
-        void read_render(const json_value& v)
+        void read_settings(const json_value& v, const char* kind, render_settings& to)
         {
-            open(v, "render");
+            open(v, kind);
             for_each_setting([&](const auto& row) {
                 if (const auto* given = row.use == in_scenes::never ? nullptr : v.find(row.name))
-                    set(*given, row.values, row.of(scene_.render));
+                    set(*given, row.values, row.of(to));
             });
-            checked(v, scene_.render);
+            checked(v, to);
         }
 
         scene scene_;

@@ -8,7 +8,7 @@ namespace photongrid {
 namespace {
     constexpr bool must = true, may = false;
     constexpr scene_key scene_keys[] = {{"$schema", may}, {"photongrid", must}, {"name", may}, {"units", must},
-        {"camera", must}, {"materials", must}, {"shapes", must}, {"lights", must}, {"render", must}};
+        {"camera", must}, {"materials", must}, {"shapes", must}, {"lights", must}, {"render", must}, {"as_paper", may}};
     constexpr scene_key units_keys[] = {{"length", must}, {"power", must}};
     constexpr scene_key camera_keys[] = {{"position", must}, {"look_at", must}, {"up", may}, {"vertical_fov", must}};
     constexpr scene_key leaks_keys[] = {{"side", may}, {"min_cosine", may}, {"flattening", may}};
@@ -78,6 +78,16 @@ namespace {
         }();
         return all;
     }
+    const std::vector<scene_key>& as_paper_keys()
+    {
+        static const auto all = [] {
+            auto keys = render_keys();
+            for (auto& k : keys)
+                k.required = may;
+            return keys;
+        }();
+        return all;
+    }
     std::vector<std::string> names_of(const std::vector<kind_keys>& kinds)
     {
         std::vector<std::string> names;
@@ -96,7 +106,7 @@ std::span<const object_keys> known_objects()
 {
     static const auto all = [] {
         std::vector<object_keys> objects{{"scene", scene_keys}, {"units", units_keys}, {"camera", camera_keys},
-            {"render", render_keys()}, {"leaks", leaks_keys}};
+            {"render", render_keys()}, {"as_paper", as_paper_keys()}, {"leaks", leaks_keys}};
         for (const auto* kinds : {&material_keys(), &shape_keys(), &light_keys()})
             for (const auto& k : *kinds)
                 objects.push_back({k.name, k.keys});

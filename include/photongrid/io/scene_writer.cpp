@@ -130,12 +130,16 @@ std::string scene_text(const scene& s, const render_settings& settings)
             light.erase("name");
     auto render = settings_json(settings);
     render.erase("only");
-    const json all
+    json all
         = {{"photongrid", 1}, {"name", s.name.empty() ? "scene" : s.name}, {"units", {{"length", "m"}, {"power", "W"}}},
             {"camera",
                 {{"position", three(s.camera.position)}, {"look_at", three(s.camera.look_at)},
                     {"up", three(s.camera.up)}, {"vertical_fov", s.camera.vertical_fov}}},
             {"materials", materials}, {"shapes", shapes}, {"lights", lights}, {"render", render}};
+    if (s.paper) {
+        all["as_paper"] = settings_json(*s.paper);
+        all["as_paper"].erase("only");
+    }
     return all.dump(2) + "\n";
 }
 

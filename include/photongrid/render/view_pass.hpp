@@ -249,8 +249,9 @@ private:
 
     // Data passed from stage to stage.
     std::optional<eye_samples<B>> samples_;
-    bool lit_ = false;     ///< the samples already have their direct light
-    std::size_t done_ = 0; ///< pixels that the stage has finished
+    buffer_of<B, uint> own_branches_; ///< which branches of an eye ray have light of their own (eye_rays.hpp)
+    bool lit_ = false;                ///< the samples already have their direct light
+    std::size_t done_ = 0;            ///< pixels that the stage has finished
     std::optional<knn_search<B>> search_;
     std::optional<knn_search_by_kernels<B>> growing_; ///< before search_, to be shown
     uint grown_ = 0;                                  ///< passes of the search that is shown
@@ -275,12 +276,19 @@ bool view_pass<B>::trace_eye(uint ray)
         const auto n = canvas_.raster.size();
         samples_.emplace(
             eye_samples<B>{detail::eye_hits<B>(b_, n, canvas_.raster.first_pixel()), b_.template make<glm::vec4>(n)});
-        done_ = 0;
-        lit_ = false;
     }
-    return over_pixels(stats_.trace_rays, [&](launch pixels) {
-        detail::trace_eye_rays(b_, built_.scene, view_, settings_, canvas_.raster, ray, pixels, samples_->hits);
-    });
+    const auto trace = [&](uint r, launch pixels) {
+        detail::trace_eye_rays(
+            b_, built_.scene, view_, settings_, canvas_.raster, r, pixels, samples_->hits, own_branches_);
+    };
+    if (own_branches_.size() == 0) {
+        own_branches_ = b_.template make<uint>(canvas_.raster.size());
+        // A pass that goes on within a sample: its earlier branches know which of the others have light.
+        for (uint earlier = ray - ray % branches_; earlier < ray; ++earlier)
+            trace(earlier, launch(canvas_.raster.size(), 0));
+    }
+    lit_ = false;
+    return over_pixels(stats_.trace_rays, [&](launch pixels) { trace(ray, pixels); });
 }
 
 template <backend B>
@@ -311,9 +319,10 @@ bool view_pass<B>::shade(uint ray)
     });
     search_.reset();
     growing_.reset();
-    if (is_preview())
+    if (is_preview()) {
         kept_[ray] = std::move(samples_); // the next pass may have the same pixels
-    samples_.reset();
+        samples_.reset();
+    }
     ++canvas_.rays;
     return true;
 }

@@ -5,6 +5,7 @@
 #include <photongrid/estimate/estimate_settings.hpp>
 #include <photongrid/map/surplus_kind.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
@@ -58,9 +59,9 @@ struct estimate_settings {
 
 /// The eye rays (2.4).
 struct view_settings {
-    std::uint32_t spp = 1;            ///< eye rays per pixel and pass
-    std::uint32_t light_samples = 32; ///< shadow rays per light and eye ray; a point light needs one
-    std::uint32_t depth = 8;          ///< the most reflections and refractions of an eye ray
+    std::uint32_t spp = 4;           ///< eye rays per pixel and pass
+    std::uint32_t light_samples = 8; ///< shadow rays per light and eye ray; a point light needs one
+    std::uint32_t depth = 8;         ///< the most reflections and refractions of an eye ray
 
     bool operator==(const view_settings&) const = default;
 };
@@ -93,8 +94,9 @@ struct render_settings {
     bool operator==(const render_settings&) const = default;
 };
 
-/// The settings that reproduce the paper's estimate (2.3): at least k, constant filter, no leak policy, no edge
-/// correction, one pass; routed cells redistribute power alone (2.2.2). Other settings are unchanged.
+/// The settings that reproduce the paper's method: its estimate (2.3: at least k, constant filter, no leak policy, no
+/// edge correction), one pass with one eye ray per pixel, which has the shadow rays of all; routed cells redistribute
+/// power alone (2.2.2). Other settings are unchanged.
 /// \snippet snippets.cpp as_paper
 inline render_settings as_paper(render_settings s)
 {
@@ -105,6 +107,8 @@ inline render_settings as_paper(render_settings s)
     s.estimate.edges = edge_correction::none;
     s.map.surplus = surplus_kind::power;
     s.output.passes = 1;
+    s.view.light_samples = std::min(s.view.light_samples * std::max(s.view.spp, 1u), 65536u);
+    s.view.spp = 1;
     return s;
 }
 

@@ -40,9 +40,13 @@ struct scene {
     std::vector<point_light> point_lights;         ///< a scene has at least one light of either kind
     std::vector<rectangle_light> rectangle_lights; ///< visible to the camera
     render_settings render;                        ///< the settings of the scene's file
+    std::optional<render_settings> paper;          ///< those for the paper's method, where as_paper(render) has others
 
     bool operator==(const scene&) const = default;
 };
+
+/// The settings that draw a scene by the paper's method: as_paper(render), unless the scene has its own.
+inline render_settings as_paper(const scene& s) { return s.paper ? *s.paper : as_paper(s.render); }
 
 /// The lists of shapes of a scene, one per kind (shape_kind). Lists with the same `number` are consecutive. Polygons
 /// come last, because the surfaces of rectangle lights follow them.

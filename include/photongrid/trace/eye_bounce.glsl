@@ -1,7 +1,7 @@
 // Traces an eye ray to the next surface (2.4), through mirrors and glass until it ends on a diffuse surface, on a
 // light, or in empty space. At the first `splits` glass surfaces a ray splits into its two Fresnel branches: the bits
-// of `branch` select the one that this pass follows at each. At later ones a random number selects it, with Fresnel's
-// probability.
+// of `branch` select the one that this pass follows at each. At later ones a random number selects it, stratified over
+// the eye rays of a pixel.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
@@ -10,7 +10,7 @@ struct Params {
     uint branch;     // bit n: reflected (1) or refracted (0) at the n-th glass surface
     uint splits;     // how many glass surfaces split a ray
     uint depth;      // surfaces a ray passes at most
-    uint sample_id;  // which eye ray of the pixel
+    float stratum;   // where this eye ray's random numbers begin in those of the pixel: its number / eye rays per pixel
     uint seed;
     uint first_pixel; // that of element 0
 };
@@ -24,6 +24,7 @@ STATE(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
 STATE(2, vec4, throughput) // rgb: factor between radiance here and at the eye; w: splits so far
 STATE(3, vec4, surface)    // xyz: normal towards the eye; w: material
 STATE(4, vec4, emitted)    // rgb: radiance of the light that the ray ended on, times throughput
+STATE(5, uint, branches)   // bit b: branch b has light of its own
 
 #include <photongrid/trace/intersect.glsl>
 #include <photongrid/trace/lights.glsl>
@@ -73,12 +74,21 @@ void kernel(uint i)
         Fresnel f = fresnel(d, hit.normal, material.index_of_refraction);
         bool reflect_it = f.reflected >= 1.0f;
         if (splits < args.splits) {
+            if (mine)
+                branches = branches | 1u << min(args.branch | 1u << splits, 31u);
             reflect_it = ((args.branch >> splits) & 1u) != 0u;
             share = reflect_it ? f.reflected : 1.0f - f.reflected;
             ++splits;
         } else if (!reflect_it) {
-            vec4 r = random4(uvec4(i + args.first_pixel, args.sample_id * 4096u + args.branch, 2000u + hits, args.seed));
-            reflect_it = r.x < f.reflected;
+            // A rare choice counts for much: with Fresnel's probability, a lamp that a faint ray sees by a reflection
+            // of 4 % is a bright speck. The fainter the ray, the less rare is the rarer choice: up to 1 of 4.
+            precise float least = 0.25f - 0.25f * max(max(throughput.x, throughput.y), throughput.z);
+            float probability = min(max(f.reflected, least), 1.0f - least);
+            vec4 r = random4(uvec4(i + args.first_pixel, args.branch, 2000u + hits, args.seed));
+            precise float u = r.x + args.stratum;
+            reflect_it = (u < 1.0f ? u : u - 1.0f) < probability;
+            precise float corrected = reflect_it ? f.reflected / probability : (1.0f - f.reflected) / (1.0f - probability);
+            share = corrected;
         }
         next = f.refracted;
         if (reflect_it)

@@ -11,11 +11,13 @@ struct Params {
     uint width;     // pixels in a row
     uint sample_id; // which eye ray of the pixel
     uvec2 strata;   // columns and rows of a pixel, one eye ray in each; 0, 0: one ray through its middle
+    uint branch;    // which way through glass the ray takes (eye_bounce.glsl)
     uint seed;
     uint first_pixel; // that of element 0
 };
 PARAMS(Params)
-OUTPUT(0, vec4, point)      // xyz: origin, m; w: 0 in flight
+STATE(5, uint, branches)    // bit b: branch b has light of its own; that of branch 0 comes first and finds the others
+OUTPUT(0, vec4, point)      // xyz: origin, m; w: 0 in flight, -1 no light of its own
 OUTPUT(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
 OUTPUT(2, vec4, throughput) // rgb: factor between radiance here and at the eye; w: splits so far
 OUTPUT(3, vec4, surface)    // xyz: normal towards the eye; w: material
@@ -23,6 +25,8 @@ OUTPUT(4, vec4, emitted)    // rgb: radiance of the light that the ray ended on,
 
 void kernel(uint i)
 {
+    if (args.branch == 0u)
+        branches = 1u;
     uint pixel = i + args.first_pixel;
     uint y = pixel / args.width;
     uint x = pixel - y * args.width;
@@ -39,7 +43,7 @@ void kernel(uint i)
     }
     precise vec3 d = vec3(args.corner) + vec3(args.right) * (float(x) + dx) + vec3(args.down) * (float(y) + dy);
     vec3 n = normalized3(d);
-    point = vec4(args.position.x, args.position.y, args.position.z, 0.0f);
+    point = vec4(args.position.x, args.position.y, args.position.z, (branches >> args.branch & 1u) != 0u ? 0.0f : -1.0f);
     direction = vec4(n.x, n.y, n.z, 0.0f);
     throughput = vec4(1.0f, 1.0f, 1.0f, 0.0f);
     surface = vec4(0.0f, 0.0f, 1.0f, 0.0f);

@@ -51,9 +51,13 @@ inline glm::uvec2 strata_of(uint samples)
     return {samples / rows, rows};
 }
 
-/// The camera as eye_ray.glsl reads it.
+/// How many glass surfaces split an eye ray into its two Fresnel branches. Each combination of branches is a pass over
+/// the picture.
+inline uint splits_of(const scene_layout& layout) { return (layout.features & has_glass) != 0 ? 2u : 0u; }
+
+/// The camera as eye_ray.glsl reads it. `ray` is sample x branches + branch.
 inline kernels::eye_ray::Params eye_params(
-    const camera& c, const dvec3& center, const render_settings& s, const raster& r, uint sample)
+    const camera& c, const dvec3& center, const render_settings& s, const raster& r, uint ray, uint splits = 0)
 {
     check(c);
     const auto [forward, right, up] = camera_axes(c);
@@ -65,34 +69,33 @@ inline kernels::eye_ray::Params eye_params(
         .right = narrow(right * (width / s.output.width * r.divisor)),
         .down = narrow(-up * (height / s.output.height * r.divisor)),
         .width = r.width,
-        .sample_id = sample,
+        .sample_id = ray >> splits,
         .strata = s.view.spp > 1 || s.output.passes > 1 ? strata_of(s.view.spp) : glm::uvec2(0),
+        .branch = ray & ((1u << splits) - 1u),
         .seed = s.seed,
         .first_pixel = r.first_pixel()};
 }
 
-/// How many glass surfaces split an eye ray into its two Fresnel branches. Each combination of branches is a pass over
-/// the picture.
-inline uint splits_of(const scene_layout& layout) { return (layout.features & has_glass) != 0 ? 2u : 0u; }
-
-/// Traces eye rays to their ends, for the pixels of `pixels`: `ray` is sample x branches + branch.
+/// Traces eye rays to their ends, for the pixels of `pixels`: `ray` is sample x branches + branch. Bit b of `branches`
+/// is set for the pixels whose branch b has light of its own; rays of others end at once. Branch 0 sets it, and the
+/// rays that split their other bits, so the branches of a sample must be traced in order.
 template <backend B>
 void trace_eye_rays(B& b, const device_scene<B>& s, const camera& view, const render_settings& settings,
-    const raster& r, uint ray, launch pixels, eye_hits<B>& hits)
+    const raster& r, uint ray, launch pixels, eye_hits<B>& hits, buffer_of<B, uint>& branches)
 {
     const auto& layout = s.layout;
     const uint splits = splits_of(layout), sample = ray >> splits;
-    b.template run<kernels::eye_ray>(pixels, eye_params(view, layout.center, settings, r, sample), reads(),
-        writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions));
+    b.template run<kernels::eye_ray>(pixels, eye_params(view, layout.center, settings, r, ray, splits), reads(),
+        writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
     b.template run_until_done<kernels::eye_bounce>({pixels.elements, pixels.first, layout.features},
         {.branch = ray & ((1u << splits) - 1u),
             .splits = splits,
             .depth = settings.view.depth,
-            .sample_id = sample,
+            .stratum = static_cast<float>(sample) / static_cast<float>(settings.view.spp),
             .seed = settings.seed,
             .first_pixel = hits.first_pixel},
-        reads(s.records), writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions),
-        nowhere);
+        reads(s.records),
+        writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches), nowhere);
 }
 
 /// Computes the irradiance of direct light at the hits of `pixels` into `light`, with a bounded number of shadow rays
