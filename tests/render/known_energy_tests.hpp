@@ -107,6 +107,35 @@ TYPED_TEST_P(pictures, a_ball_of_each_material_amid_lamps_has_the_known_radiance
     }
 }
 
+/// Of four eye rays per pixel that chose between reflection and refraction independently, the mean would have a quarter
+/// of the variance of one; they share the choices out, so it has less.
+TYPED_TEST_P(pictures, eye_rays_of_a_pixel_share_out_the_choices_in_glass)
+{
+    auto s = ball_amid_lamps({"dark glass", material_kind::glass, dvec3(0.5), 2.5});
+    const auto cosines = cosines_at_the_ball(s);
+    const auto variance = [&](std::uint32_t spp) {
+        constexpr std::uint32_t seeds = 6;
+        s.render.view.spp = spp;
+        std::vector<double> sums(cosines.size()), squares(cosines.size());
+        for (s.render.seed = 1; s.render.seed <= seeds; ++s.render.seed) {
+            const auto drawn = this->picture(s);
+            for (std::size_t i = 0; i < cosines.size(); ++i) {
+                const auto v = static_cast<double>(drawn.pixels[i].x);
+                sums[i] += v;
+                squares[i] += v * v;
+            }
+        }
+        double of_all = 0;
+        for (std::size_t i = 0; i < cosines.size(); ++i)
+            if (cosines[i] > 0.5 && cosines[i] <= 1) // away from the rim, where rays of one pixel meet different light
+                of_all += (squares[i] - sums[i] * sums[i] / seeds) / (seeds - 1);
+        return of_all;
+    };
+    const double of_one = variance(1), of_four = variance(4);
+    EXPECT_GT(of_one, 0);
+    EXPECT_LT(of_four, of_one / 4);
+}
+
 TYPED_TEST_P(pictures, a_floor_under_a_bulb_has_the_known_radiance)
 {
     const dvec3 reflectance(0.8, 0.5, 0.3), power(10, 20, 40), bulb(0.3, 1.2, -0.4);

@@ -61,7 +61,8 @@ REGISTER_TYPED_TEST_SUITE_P(pictures, a_closed_diffuse_sphere_has_the_known_radi
     cut_off_paths_are_counted, equal_the_serial_backends, sorting_and_routing_agree, a_moved_camera_runs_no_photon_pass,
     the_same_seed_gives_the_same_bytes, running_estimates_are_shown_and_a_render_can_be_cancelled,
     a_ball_of_each_material_amid_lamps_has_the_known_radiance, a_floor_under_a_bulb_has_the_known_radiance,
-    photons_have_the_power_that_their_surfaces_left_them, direct_light_alone_traces_no_photon,
-    scenes_beyond_the_loop_limit_are_refused, a_light_that_stores_no_photon_is_named);
+    photons_have_the_power_that_their_surfaces_left_them, eye_rays_of_a_pixel_share_out_the_choices_in_glass,
+    direct_light_alone_traces_no_photon, scenes_beyond_the_loop_limit_are_refused,
+    a_light_that_stores_no_photon_is_named);
 
 } // namespace photongrid::testing

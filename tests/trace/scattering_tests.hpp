@@ -135,6 +135,8 @@ namespace {
             if (m.kind == material_kind::glass)
                 check_photons(m, {0.5, 0.3, 0.6}); // from inside, with total reflection
         }
+        // Most photons end here: what a survivor does next must not depend on why it survived.
+        check_photons({"dark glass", material_kind::glass, {0.2, 0.4, 0.1}, index_of_glass}, {1.5, 0.5, 1});
     }
 
     /// One step of eye rays.
