@@ -81,7 +81,9 @@ faults=(
   "a pass is forgotten|include/photongrid/render/film.hpp|add_up(*std::exchange(only_, std::nullopt));|only_.reset();"
   "passes are rounded in turn|include/photongrid/render/exact_sum.hpp|high_ += high + (low_ < low ? 1u : 0u);|high_ += high;"
   "noise of one pass|include/photongrid/render/film.hpp|std::sqrt(std::max(variance, 0.0) / n)|std::sqrt(std::max(variance, 0.0))"
-  "samples share a stratum|include/photongrid/trace/eye_ray.glsl|(float(column) + r.x)|(0.0f * float(column) + r.x)|optics"
+  "samples share a stratum|include/photongrid/trace/eye_ray.glsl|uint nth_x = column * args.strata.y|uint nth_x = 0u * args.strata.y|optics"
+  "samples share out a pixel's width in no order|include/photongrid/trace/eye_ray.glsl|(row + first_x) % args.strata.y|first_x|optics"
+  "samples share out a pixel's height in one order|include/photongrid/trace/eye_ray.glsl|(column + first_y)|(column + 0u * first_y)|optics"
   "edges of estimates not corrected|include/photongrid/render/view_pass.hpp|settings_.estimate.edges != edge_correction::none|settings_.estimate.edges == edge_correction::none"
   "lamp twice as bright|include/photongrid/trace/direct_light.glsl|3.18309886e-1f * share|6.36619772e-1f * share"
   'shafts forget the margin of the light|include/photongrid/trace/intersect/sphere.glsl|precise float both = (s.w + radius) * 1.00001f;|precise float both = s.w * 1.00001f;'

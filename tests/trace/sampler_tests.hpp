@@ -253,7 +253,7 @@ namespace {
             render_settings settings{.view = {.spp = spp}, .output = {.width = 128, .height = 128}};
             even_bins<2> in_pixel(32), in_stratum(16);
             const auto strata = detail::strata_of(spp);
-            std::vector<std::set<std::size_t>> hit(128 * 128);
+            std::vector<std::set<std::size_t>> hit(128 * 128), columns(128 * 128), rows(128 * 128);
             for (uint sample = 0; sample < spp; ++sample) {
                 const auto rays = eye_rays(oblique, settings, sample);
                 for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -267,6 +267,14 @@ namespace {
                         const auto stratum = static_cast<std::size_t>(std::floor(row) * 100 + std::floor(column));
                         EXPECT_TRUE(hit[i].insert(stratum).second) << "a second ray in a stratum of pixel " << i;
                     }
+                    const auto once = [&](std::set<std::size_t>& taken, double at) {
+                        if (std::abs(at - std::round(at)) > 1e-3 * spp) {
+                            EXPECT_TRUE(taken.insert(static_cast<std::size_t>(at)).second)
+                                << "a second ray in an n-th of the width or height of pixel " << i;
+                        }
+                    };
+                    once(columns[i], x * spp);
+                    once(rows[i], y * spp);
                 }
             }
             EXPECT_LE(std::abs(in_stratum.deviate()), far_off) << spp;
@@ -292,7 +300,8 @@ namespace {
         EXPECT_LE(std::abs(correlation(first, shifted)), limit) << "neighbouring pixels";
         std::rotate(shifted.begin(), shifted.begin() + 255, shifted.end());
         EXPECT_LE(std::abs(correlation(first, shifted)), limit) << "pixels of neighbouring rows";
-        EXPECT_LE(std::abs(correlation(first, offsets(1, 1))), limit) << "samples";
+        EXPECT_LE(std::abs(correlation(first, offsets(1, 1))), limit) << "samples of another column";
+        EXPECT_LE(std::abs(correlation(first, offsets(1, 3))), limit) << "samples of another column and row";
         EXPECT_LE(std::abs(correlation(first, offsets(2, 0))), limit) << "seeds";
     }
 

@@ -1,5 +1,6 @@
 // The ray from the camera through a pixel (2.4): through the pixel's centre if it is the only one, else through a
-// random point of the ray's own stratum of the pixel.
+// random point of the ray's own stratum of the pixel. Of n eye rays no two are in the same n-th of the pixel's width,
+// nor of its height (Chiu, Shirley and Wang, Multi-Jittered Sampling, 1994): edges along rows and columns are smooth.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 
@@ -25,8 +26,15 @@ OUTPUT(4, vec4, emitted)    // rgb: radiance of the light that the ray ended on,
 
 void kernel(uint i)
 {
+    point = vec4(0.0f, 0.0f, 0.0f, -1.0f);
+    direction = vec4(0.0f, 0.0f, 1.0f, 0.0f);
+    throughput = vec4(1.0f, 1.0f, 1.0f, 0.0f);
+    surface = vec4(0.0f, 0.0f, 1.0f, 0.0f);
+    emitted = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     if (args.branch == 0u)
         branches = 1u;
+    if ((branches >> args.branch & 1u) == 0u)
+        return;
     uint pixel = i + args.first_pixel;
     uint y = pixel / args.width;
     uint x = pixel - y * args.width;
@@ -36,16 +44,18 @@ void kernel(uint i)
         vec4 r = random4(uvec4(pixel, args.sample_id, 1000u, args.seed));
         uint row = args.sample_id / args.strata.x;
         uint column = args.sample_id - row * args.strata.x;
-        precise float across = (float(column) + r.x) / float(args.strata.x);
-        precise float along_column = (float(row) + r.y) / float(args.strata.y);
+        // The strata of a column share out its width, in an order that begins at random; those of a row its height.
+        uint first_x = uint(random4(uvec4(pixel, column, 1001u, args.seed)).x * float(args.strata.y));
+        uint first_y = uint(random4(uvec4(pixel, row, 1002u, args.seed)).x * float(args.strata.x));
+        uint nth_x = column * args.strata.y + (row + first_x) % args.strata.y;
+        uint nth_y = row * args.strata.x + (column + first_y) % args.strata.x;
+        precise float across = (float(nth_x) + r.x) / float(args.strata.x * args.strata.y);
+        precise float along_column = (float(nth_y) + r.y) / float(args.strata.x * args.strata.y);
         dx = across;
         dy = along_column;
     }
     precise vec3 d = vec3(args.corner) + vec3(args.right) * (float(x) + dx) + vec3(args.down) * (float(y) + dy);
     vec3 n = normalized3(d);
-    point = vec4(args.position.x, args.position.y, args.position.z, (branches >> args.branch & 1u) != 0u ? 0.0f : -1.0f);
+    point = vec4(args.position.x, args.position.y, args.position.z, 0.0f);
     direction = vec4(n.x, n.y, n.z, 0.0f);
-    throughput = vec4(1.0f, 1.0f, 1.0f, 0.0f);
-    surface = vec4(0.0f, 0.0f, 1.0f, 0.0f);
-    emitted = vec4(0.0f, 0.0f, 0.0f, 0.0f);
 }
