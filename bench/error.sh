@@ -4,13 +4,18 @@
 # Writes scenes.csv, fields.csv and plots (SVG and PNG, gnuplot) to out/error/. The last column says whether a row is on its
 # scene's Pareto front: none is both faster and more exact.
 #
-#   bench/error.sh [--quick]       --quick: a few rows, to see that it runs
+#   bench/error.sh [--quick] [BACKEND...]       --quick: a few rows, to see that it runs; BACKEND: those beside cpu, default serial gl vulkan
 #
 # bench/run.sh --error installs what is missing, builds and calls this.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 quick=no
-[[ ${1:-} == --quick ]] && quick=yes
+if [[ ${1:-} == --quick ]]; then
+  quick=yes
+  shift
+fi
+backends=("$@")
+((${#backends[@]})) || backends=(serial gl vulkan)
 source bench/programs.sh
 need photongrid bench/field_errors
 program=$build/photongrid
@@ -81,7 +86,7 @@ scene_rows() {
         done
         row $scene cpu route exact_k silverman $m $n
         ((factor < 16)) || continue # software GPUs take their time
-        for backend in serial gl vulkan; do
+        for backend in "${backends[@]}"; do
           row $scene $backend sort exact_k silverman $m $n
         done
       done
@@ -91,7 +96,7 @@ scene_rows() {
 
 [[ $quick == yes ]] && rm -f $out/*-reference.exr
 scene_rows | with_front >$out/scenes.csv
-$fields $([[ $quick == yes ]] && echo --quick) | awk -F, -v OFS=, 'NR == 1 { print $1, $2, $3, $4, $5, $6, $7, "seconds", $10; next } { print $1, $2, $3, $4, $5, $6, $7, $8 + $9, $10 }' | with_front >$out/fields.csv
+"$fields" $([[ $quick == yes ]] && echo --quick) "${backends[@]}" | awk -F, -v OFS=, 'NR == 1 { print $1, $2, $3, $4, $5, $6, $7, "seconds", $10; next } { print $1, $2, $3, $4, $5, $6, $7, $8 + $9, $10 }' | with_front >$out/fields.csv
 [[ $quick == yes ]] && rm -f $out/*-reference.exr # drawn with few samples
 
 # plot CSV PLACE TITLE: one picture, backends by colour, the front as a line
@@ -113,8 +118,8 @@ set title "$title"
 set key outside right top
 set grid
 plot "< grep ',serial,' $work/plot.csv" using 8:9 with points pt 4 lc rgb "#888888" title "serial", \
-  "< grep ',gl,' $work/plot.csv" using 8:9 with points pt 6 lc rgb "#2a7fff" title "gl (llvmpipe)", \
-  "< grep ',vulkan,' $work/plot.csv" using 8:9 with points pt 8 lc rgb "#c03030" title "vulkan (lavapipe)", \
+  "< grep ',gl,' $work/plot.csv" using 8:9 with points pt 6 lc rgb "#2a7fff" title "gl", \
+  "< grep ',vulkan,' $work/plot.csv" using 8:9 with points pt 8 lc rgb "#c03030" title "vulkan", \
   "< grep ',cpu,sort,at_least_k,' $work/plot.csv" using 8:9 with points pt 1 lc rgb "#d08020" title "cpu, at\\\\_least\\\\_k", \
   "< grep ',cpu,sort,fixed_radius,' $work/plot.csv" using 8:9 with points pt 2 lc rgb "#309030" title "cpu, fixed\\\\_radius", \
   "< grep ',cpu,.*,exact_k,' $work/plot.csv" using 8:9 with points pt 7 ps 0.8 lc rgb "#000000" title "cpu, exact\\\\_k", \

@@ -1,7 +1,7 @@
 // How wrong density estimates are and how long they take, on fields of light with a known answer: every search, filter,
 // k and number of photons, on every backend. Prints CSV; bench/error.sh draws it.
 //
-//   field_errors [--quick]
+//   field_errors [--quick] [BACKEND...]      BACKEND: serial, gl, vulkan, beside cpu; default: all three
 #include <photongrid/backends/cpu/cpu.hpp>
 #include <photongrid/backends/gl/gl.hpp>
 #include <photongrid/backends/serial/serial.hpp>
@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstring>
 #include <functional>
+#include <optional>
 #include <random>
 
 namespace {
@@ -135,23 +136,33 @@ void measure(B& b, const std::string& name, const field& f, const sample& s, con
 int main(int argc, char** argv)
 {
     const bool quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
+    const std::vector<std::string> asked(argv + std::min(argc, quick ? 2 : 1), argv + argc);
+    const auto wanted
+        = [&](const char* name) { return asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end(); };
     const std::vector<uint> numbers = quick ? std::vector<uint>{4096} : std::vector<uint>{4096, 16384, 65536, 262144};
     const std::vector<uint> ks = quick ? std::vector<uint>{16} : std::vector<uint>{16, 64, 256};
-    cpu_backend cpu;
-    serial_backend serial;
     std::printf("field,backend,map,search,filter,k,photons,build_seconds,seconds,relmse\n");
     try {
-        gl_backend gl;
-        vulkan_backend vulkan;
+        cpu_backend cpu;
+        std::optional<serial_backend> serial;
+        std::optional<gl_backend> gl;
+        std::optional<vulkan_backend> vulkan;
+        if (wanted("serial"))
+            serial.emplace();
+        if (wanted("gl"))
+            gl.emplace();
+        if (wanted("vulkan"))
+            vulkan.emplace();
         for (const auto& f : fields())
             for (const uint n : numbers) {
                 const auto s = sampled(f, n);
                 measure(cpu, "cpu", f, s, ks);
-                measure(serial, "serial", f, s, ks);
-                if (n <= 65536 || !gl.caps().software)
-                    measure(gl, "gl", f, s, ks);
-                if (n <= 65536 || !vulkan.caps().software)
-                    measure(vulkan, "vulkan", f, s, ks);
+                if (serial)
+                    measure(*serial, "serial", f, s, ks);
+                if (gl && (n <= 65536 || !gl->caps().software))
+                    measure(*gl, "gl", f, s, ks);
+                if (vulkan && (n <= 65536 || !vulkan->caps().software))
+                    measure(*vulkan, "vulkan", f, s, ks);
             }
     } catch (const backend_error& e) {
         std::fprintf(stderr, "field_errors: %s\n", e.what());

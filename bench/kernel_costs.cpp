@@ -49,9 +49,9 @@ tally count(const std::vector<std::uint32_t>& words)
                             op_image_fetch = 95, op_bitcast = 124;
     constexpr std::uint32_t uniform = 2, storage_buffer = 12;
     tally t;
-    t.all = vulkan_detail::count_instructions(words);
+    t.all = vulkan::count_instructions(words);
     std::set<std::uint32_t> in_buffers; // pointers
-    vulkan_detail::for_each_instruction(words, [&](std::uint32_t op, std::size_t at, std::size_t) {
+    vulkan::for_each_instruction(words, [&](std::uint32_t op, std::size_t at, std::size_t) {
         if (op == op_variable && (words[at + 3] == storage_buffer || words[at + 3] == uniform))
             in_buffers.insert(words[at + 2]);
         if ((op == op_access_chain || op == op_in_bounds_access_chain) && in_buffers.count(words[at + 3]) != 0)

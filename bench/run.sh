@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Speed and error, measured. Prints Markdown; fails where a row misses what it must reach.
 #
-#   bench/run.sh [--algorithms] [--peers] [--paper] [--interactive] [--error] [--inclusion] [--write] [--no-install]     some of it, or all
+#   bench/run.sh [--algorithms] [--peers] [--paper] [--interactive] [--estimates] [--error] [--inclusion] [--write] [--no-install]     some of it, or all
 #   bench/run.sh --gpu [--no-install]               each part that a device runs, on the hardware devices of vulkan and gl; refuses software
 #   bench/run.sh --smoke [--no-install]             all of it on little data, to see that it runs
 #
@@ -10,6 +10,7 @@
 #                 on vulkan and gl against plain ones; whole pictures, the ring and the ball against POV-Ray
 #   --paper       the paper's Tables 1 and 2, what leaving out finished elements gains, our defaults beside the paper's method
 #   --interactive how soon a change is seen, and when a picture looks converged
+#   --estimates   error and cost of searches, filters, leak policies and edge correction, on whole pictures
 #   --error       time against relMSE of every kind of estimate: CSV and plots in out/error/
 #   --inclusion   what including the headers costs a user's compiler, and the size of the smallest programs
 #   --write       puts what is printed, and the Cornell box's plot, into docs/ too (bench/write_measures.sh)
@@ -20,14 +21,14 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
 
 usage() {
-  sed -n '2,18s/^# \{0,1\}//p' bench/run.sh >&2
+  sed -n '2,19s/^# \{0,1\}//p' bench/run.sh >&2
   exit 2
 }
 build=build-bench
 install=yes gpu=no smoke=no write=no parts=()
 for argument in "$@"; do
   case $argument in
-    --algorithms | --peers | --paper | --interactive | --error | --inclusion) parts+=("${argument#--}") ;;
+    --algorithms | --peers | --paper | --interactive | --estimates | --error | --inclusion) parts+=("${argument#--}") ;;
     --gpu) gpu=yes ;;
     --smoke) smoke=yes ;;
     --write) write=yes ;;
@@ -35,7 +36,7 @@ for argument in "$@"; do
     *) usage ;;
   esac
 done
-((${#parts[@]})) || parts=(algorithms peers paper interactive error inclusion)
+((${#parts[@]})) || parts=(algorithms peers paper interactive estimates error inclusion)
 asked() { [[ " ${parts[*]} " == *" $1 "* ]]; }
 packages=("${program_packages[@]}" "${smoke_packages[@]}" "${bench_packages[@]}")
 [[ $smoke == yes ]] || ! asked peers || packages+=(povray)
@@ -139,7 +140,7 @@ if [[ $gpu == yes ]]; then
   title "The window (3.4)"
   must bench/window.sh "${backends[@]}"
   title "Time against error"
-  must bench/error.sh
+  must bench/error.sh "${backends[@]}"
   exit $failed
 fi
 if [[ $smoke == yes ]]; then
@@ -157,6 +158,8 @@ if [[ $smoke == yes ]]; then
   must $build/bench/knn_peers --sets 1 --seconds 0.05
   must $build/bench/knn_peers_portable --sets 1 --seconds 0.05
   must $build/bench/sort_peers 1 65536
+  must bench/estimator_errors.sh --quick
+  must bench/edge_correction.sh --quick
   must bench/error.sh --quick
   exit $failed
 fi
@@ -217,6 +220,12 @@ if asked interactive; then
   must $build/bench/interactive examples/scenes/cornell_box.json 9 cpu vulkan
   title "The window (3.4)"
   must bench/window.sh
+fi
+if asked estimates; then
+  title "Error and cost of each kind of estimate"
+  must bench/estimator_errors.sh
+  title "Edge correction"
+  must bench/edge_correction.sh
 fi
 if asked error; then
   title "Time against error"

@@ -17,7 +17,7 @@
 #   --filter WORD      only cases with WORD in their names, long ones too; on the serial backend without --only
 #
 # The stages, in turn; the run stops at the first that fails:
-#   texts       clang-format, and that each planted fault still finds its place
+#   texts       clang-format, that each planted fault still finds its place, and the length of commits' subjects
 #   sanitizers  the serial backend under the address and undefined behaviour sanitizers (build-asan/)
 #   clang       headers, kernels and a smoke test with clang 14 (build-clang/)
 #   fuzzing     clang's fuzzer on the scene reader for 20 s, in full 300 s (build-fuzz/)
@@ -146,6 +146,22 @@ done
 stage_texts() {
   find backends bench examples include tests -name '*.[hc]pp' -print0 | xargs -0 clang-format-14 --dry-run --Werror
   tests/planted_faults.sh --check
+  check_subjects
+}
+# Subjects have at most 72 characters, which git log shows whole on 80 columns; the rule is younger than the repository.
+# Not checked without git, nor in a clone without its history.
+check_subjects() {
+  local commit subject first=bb1f426 long=0
+  if [[ ! -e .git ]] || ! command -v git >/dev/null || ! git merge-base --is-ancestor $first HEAD 2>/dev/null; then
+    return 0
+  fi
+  while read -r commit subject; do
+    if ((${#subject} > 72)); then
+      echo "$commit: its subject has ${#subject} characters, at most 72 expected: $subject" >&2
+      long=1
+    fi
+  done < <(git log --format='%h %s' $first..HEAD)
+  return $long
 }
 stage_sanitizers() {
   if [[ $full == yes ]]; then
