@@ -57,7 +57,7 @@ namespace photongrid::kernel_texts {
 inline constexpr text_file ${name} = ${entry};
 } // namespace photongrid::kernel_texts
 ")
-      if(text MATCHES "#ifndef PHOTONGRID_SHARED_IS_READ")
+      if(text MATCHES "#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT")
         string(APPEND content "
 #include <glm/glm.hpp>
 #include <glm/integer.hpp>

@@ -10,12 +10,10 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 status=0
 # What to look for, whatever its case: words that nothing else is called. Glass has a surface of its own, which kernels
-# name; metal has that of mirrors, so that nothing but its row need name it. A disk has an intersection of its own, as a
-# box has, and the reference renderer's bins for surfaces of revolution.
+# name; metal has that of mirrors, so that nothing but its row need name it.
 for words in paraboloid 'scene/box|<box>|const box&|(hit|closest)_box' 'scene/disk|<disk>|const disk&|(hit|closest)_disk' \
   epanechnikov material_kind::glass glass_surface metal; do
   most=5
-  [[ $words != *disk* ]] || most=6
   files=$(grep -rliE "$words" --include='*.hpp' --include='*.cpp' --include='*.glsl' --include='*.json' --include='*.cmake' \
     --include='*.sh' --include='CMakeLists.txt' include backends bench cmake examples CMakeLists.txt | grep -vE '\.schema\.json$|^bench/.*\.sh$' | sort)
   count=$(grep -c . <<<"$files" || true)

@@ -49,6 +49,7 @@
         B&, const scene&, const render_settings&, const render_observer&, if_none_stored);                             \
     EXTERN template rendered draw(                                                                                     \
         B&, const built_map<B>&, const camera&, const render_settings&, const render_observer&);                       \
+    EXTERN template class running_search<B>;                                                                           \
     EXTERN template class view_pass<B>;                                                                                \
     EXTERN template pass_pixels draw_pass(                                                                             \
         B&, const built_map<B>&, const camera&, const render_settings&, const render_observer&, render_stats&);        \

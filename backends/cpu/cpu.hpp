@@ -4,7 +4,7 @@
 #pragma once
 
 #include <photongrid/backends/cpu/cpu_backend.hpp>
-#if !defined(PHOTONGRID_CPU_COMPILED) // otherwise they are in the library
+#if !defined(PHOTONGRID_CPU_COMPILED) // else the library photongrid::cpu_compiled defines the overrides
 #include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>
 #include <photongrid/backends/cpu/overrides/grid_index.hpp>
 #include <photongrid/backends/cpu/overrides/knn_grid_estimate.hpp>

@@ -92,7 +92,7 @@ public:
         const auto out = elements_of<K>(writes);
         std::mutex adding;
         std::atomic<bool> finished = true;
-        std::vector<std::uint64_t> ended; // ended[q]: elements that took q passes
+        std::vector<std::uint64_t> ended; // ended[q]: elements that ran q passes
         pool_.for_blocks(l.elements, iterative_block, [&](std::size_t first, std::size_t past) {
             K k = prepared;
             std::vector<std::uint64_t> mine;
@@ -103,7 +103,7 @@ public:
                     k.kernel(i);
                 if (!k.done())
                     finished = false;
-                if (q > 0) // else the outputs still belong to the previous element
+                if (q > 0) // else the outputs are still those of the element before
                     store(k, i, out);
                 if (q >= mine.size())
                     mine.resize(q + std::size_t{1});
@@ -284,7 +284,7 @@ private:
     {
         return std::apply([&](auto&... b) { return std::tuple{elements_to_write(b).data()...}; }, writes);
     }
-    // g++ leaves the larger kernels out of line if it may, which costs a sixth of tracing.
+    // Without these attributes g++ does not inline the larger kernels, and tracing takes a sixth longer.
     template <class K, class Elements>
     [[gnu::noinline, gnu::flatten]] static void run_all(K k, uint first, uint past, const Elements& out)
     {

@@ -129,7 +129,7 @@ public:
     std::map<std::string, kernel_cost> costs;
 
 private:
-    const text_file& text(std::string_view name) const { return find_kernel_text(name, library_); }
+    static const text_file& text(std::string_view name) { return find_kernel_text(name, gl_texts); }
     GLuint compile_own(GLenum stage, const char* file)
     {
         photongrid::detail::splicer s(library_);

@@ -84,14 +84,13 @@ public:
     template <element T>
     buffer<T> make(std::size_t n)
     {
-        if (n > caps_.max_elements)
-            throw backend_error("serial: a buffer of " + std::to_string(n) + " elements was asked for; the limit is "
-                + std::to_string(caps_.max_elements));
+        check_size(n);
         return buffer<T>(account_, std::vector<T>(n));
     }
     template <element T, std::size_t E>
     buffer<T> upload(std::span<const T, E> data)
     {
+        check_size(data.size());
         return buffer<T>(account_, std::vector<T>(data.begin(), data.end()));
     }
     template <element T>
@@ -172,6 +171,12 @@ public:
     /// @}
 
 private:
+    void check_size(std::size_t elements) const
+    {
+        if (elements > caps_.max_elements)
+            throw backend_error("serial: a buffer of " + std::to_string(elements)
+                + " elements was asked for; the limit is " + std::to_string(caps_.max_elements));
+    }
     template <class K, class Reads>
     static K prepare(const launch& l, const typename K::Params& args, [[maybe_unused]] const Reads& reads)
     {

@@ -3,7 +3,7 @@
 
 #include <photongrid/backends/vulkan/errors.hpp>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 /// Later commands of these stages see what our passes and transfers have written.
 inline void barrier(VkCommandBuffer commands, VkPipelineStageFlags stages, VkAccessFlags reads)
@@ -28,4 +28,4 @@ inline void full_barrier(VkCommandBuffer commands)
         nullptr, 0, nullptr);
 }
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 /// A batch has room for so many passes of so many buffers.
 inline constexpr std::uint32_t passes_per_batch = 64;
@@ -101,7 +101,7 @@ public:
         return b;
     }
 
-    /// Takes a batch back, of which nothing is in flight.
+    /// Returns an idle batch to the pool.
     void give_back(batch&& b)
     {
         b.timed.clear();
@@ -157,4 +157,4 @@ private:
     std::deque<batch> idle_;
 };
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

@@ -8,7 +8,7 @@
 #include <glslang/build_info.h>
 #include <spirv-tools/libspirv.h>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 class compiled_kernels {
 public:
@@ -83,4 +83,4 @@ private:
     std::uint64_t found_ = 0;
 };
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

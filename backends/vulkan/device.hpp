@@ -4,7 +4,7 @@
 
 #include <photongrid/backends/vulkan/physical_device.hpp>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 /// A logical device of the backend, or a caller's.
 class logical_device {
@@ -50,4 +50,4 @@ private:
     bool owned_ = false;
 };
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

@@ -3,7 +3,7 @@
 
 #include <photongrid/backends/vulkan/memory.hpp>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 /// The format of elements that are read as texels.
 template <element T>
@@ -27,4 +27,4 @@ memory make_memory(const std::shared_ptr<context>& c, std::size_t n)
     return std::make_shared<allocation>(c, n * sizeof(T), memory_kind::device, format_of<T>);
 }
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

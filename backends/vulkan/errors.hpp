@@ -7,7 +7,7 @@
 #include <string>
 #include <vulkan/vulkan.h>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 /// The name of a result code, such as "VK_ERROR_DEVICE_LOST".
 inline std::string result_name(VkResult r)
@@ -66,4 +66,4 @@ inline std::string driver_search_paths()
 inline constexpr const char* install_hint
     = "Install a driver (Debian: apt install mesa-vulkan-drivers), or use another backend";
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 /// Stores byte strings in files, with texts as keys. Files that are damaged, unreadable or of other origin count as
 /// missing, failed writes are ignored, and nothing is reported as an error. Several programs may use a folder at the
@@ -108,4 +108,4 @@ private:
     bool looked_ = false;
 };
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

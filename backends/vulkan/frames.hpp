@@ -1,10 +1,9 @@
-// The passes of run_until_done, whose numbers of elements the device writes and reads: the host submits several at a
-// time.
+// Indirect passes: the device writes each pass's element count, so the host submits several without waiting.
 #pragma once
 
 #include <photongrid/backends/vulkan/passes.hpp>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 /// Eight words per pass: the workgroups of its dispatch, the length of its list, and the number of elements that are
 /// not done.
@@ -60,4 +59,4 @@ progress run_frames(passes& on, const launch& l, uint stride, const typename K::
     return p;
 }
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

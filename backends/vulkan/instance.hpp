@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 /// Messages of the validation layer.
 struct message_log {
@@ -166,4 +166,4 @@ private:
     bool owned_ = false;
 };
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

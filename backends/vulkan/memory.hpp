@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <map>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 enum class memory_kind { device, host };
 
@@ -285,4 +285,4 @@ private:
 
 using memory = std::shared_ptr<allocation>;
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

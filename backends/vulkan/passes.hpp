@@ -6,7 +6,7 @@
 
 #include <cassert>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 class passes {
 public:
@@ -82,4 +82,4 @@ private:
     memory empty_;
 };
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

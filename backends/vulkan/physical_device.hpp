@@ -13,7 +13,7 @@
 
 namespace photongrid {
 
-namespace vulkan_detail {
+namespace vulkan {
     inline bool device_has_extension(VkPhysicalDevice d, const char* name)
     {
         std::uint32_t n = 0;
@@ -168,16 +168,16 @@ namespace vulkan_detail {
                                          : ". Select one of these by its index or part of its name"));
         return devices[*best];
     }
-} // namespace vulkan_detail
+} // namespace vulkan
 
 /// All Vulkan devices, usable or not.
 /// \throws backend_error, which says what to install, if there is no driver.
 inline std::vector<vulkan_device_info> vulkan_devices()
 {
-    const vulkan_detail::instance in(false);
+    const vulkan::instance in(false);
     std::vector<vulkan_device_info> all;
     for (const auto d : in.physical_devices())
-        all.push_back(vulkan_detail::describe(d, static_cast<std::uint32_t>(all.size())));
+        all.push_back(vulkan::describe(d, static_cast<std::uint32_t>(all.size())));
     return all;
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 /// A binding of a buffer, and its type.
 struct binding {
@@ -110,4 +110,4 @@ private:
     VkPipeline pipeline_ = VK_NULL_HANDLE;
 };
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

@@ -8,7 +8,7 @@
 
 #include <chrono>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 /// What a kernel's pipeline does: run, begin run_until_done's list of elements, one pass over that list, or count.
 enum class verb { run, list, iterate, count };
@@ -143,4 +143,4 @@ private:
     std::map<std::string, std::unique_ptr<pipeline>> own_pipelines_;
 };
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

@@ -9,7 +9,7 @@
 #include <deque>
 #include <span>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 /// Records operations and submits them in batches. Every operation sees the results of all earlier ones.
 class recorder {
@@ -271,4 +271,4 @@ private:
     std::deque<batch> flying_;
 };
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

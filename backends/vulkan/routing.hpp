@@ -4,7 +4,7 @@
 
 #include <photongrid/backends/vulkan/passes.hpp>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 /// Memory that is no longer counted when this object is destroyed, although passes may still use it.
 struct scratch {
@@ -78,4 +78,4 @@ private:
     scratch destination_, payload_, amount_;
 };
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

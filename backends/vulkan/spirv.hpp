@@ -14,7 +14,7 @@
 #include <unordered_set>
 #include <vector>
 
-namespace photongrid::vulkan_detail {
+namespace photongrid::vulkan {
 
 using spirv_words = std::vector<std::uint32_t>;
 
@@ -131,4 +131,4 @@ inline spirv_words compile_spirv(const spliced_source& source, const std::string
     return forbid_contraction(better);
 }
 
-} // namespace photongrid::vulkan_detail
+} // namespace photongrid::vulkan

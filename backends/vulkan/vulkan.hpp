@@ -24,7 +24,7 @@ namespace photongrid {
 /// \headerfile backends/vulkan/vulkan.hpp <photongrid/backends/vulkan/vulkan.hpp>
 /// \snippet snippets_vulkan.cpp vulkan_backend
 class vulkan_backend {
-    using memory = vulkan_detail::memory;
+    using memory = vulkan::memory;
 
 public:
     /// Elements in device memory.
@@ -83,7 +83,7 @@ public:
     /// Opens a device.
     /// \throws backend_error if there is no driver, no such device, or no validation layer although it was requested.
     explicit vulkan_backend(const vulkan_options& options = {})
-        : vulkan_backend(std::make_shared<vulkan_detail::context>(options), options)
+        : vulkan_backend(std::make_shared<vulkan::context>(options), options)
     {
     }
 
@@ -93,7 +93,7 @@ public:
     /// \throws backend_error for a device without the required features, std::invalid_argument for a null handle.
     /// \snippet snippets_vulkan.cpp callers_device
     explicit vulkan_backend(const vulkan_handles& handles, const vulkan_options& options = {})
-        : vulkan_backend(std::make_shared<vulkan_detail::context>(handles), options)
+        : vulkan_backend(std::make_shared<vulkan::context>(handles), options)
     {
     }
 
@@ -161,8 +161,7 @@ public:
                 + std::to_string(limit) + " of " + std::to_string(sizeof(T)) + " bytes");
         passes_.batches.take_turns();
         return buffer<T>(
-            std::make_shared<vulkan_detail::allocation>(context_, callers, n * sizeof(T), vulkan_detail::format_of<T>),
-            n);
+            std::make_shared<vulkan::allocation>(context_, callers, n * sizeof(T), vulkan::format_of<T>), n);
     }
 
     /// A buffer that the caller must destroy, and its memory, which no other buffer uses.
@@ -234,7 +233,7 @@ public:
         check_owner("route: slots", slots);
         check_owner("route: totals", totals);
         ++passes_.made.cost<K>().passes;
-        vulkan_detail::routing routing(passes_, l.elements, destinations);
+        vulkan::routing routing(passes_, l.elements, destinations);
         auto buffers = bound(reads, std::tuple<>{});
         for (const auto& output : routing.outputs())
             buffers.push_back(output);
@@ -272,7 +271,7 @@ public:
         p.finished = true;
         if (l.elements == 0)
             return p;
-        return vulkan_detail::run_frames<K>(passes_, l, stride, args, bound(reads, writes), max_passes);
+        return vulkan::run_frames<K>(passes_, l, stride, args, bound(reads, writes), max_passes);
     }
 
     /// Fills n elements from `first` on with a word.
@@ -304,12 +303,12 @@ public:
     }
 
 private:
-    using verb = vulkan_detail::verb;
+    using verb = vulkan::verb;
 
-    vulkan_backend(std::shared_ptr<vulkan_detail::context> c, const vulkan_options& options)
+    vulkan_backend(std::shared_ptr<vulkan::context> c, const vulkan_options& options)
         : context_(std::move(c)), passes_(context_, options)
     {
-        const auto info = vulkan_detail::describe(context_->physical(), 0);
+        const auto info = vulkan::describe(context_->physical(), 0);
         if (!info.unusable.empty())
             throw backend_error("vulkan: " + info.name + " cannot be used: " + info.unusable);
         caps_.backend = "vulkan";
@@ -337,9 +336,9 @@ private:
         return all;
     }
 
-    std::shared_ptr<vulkan_detail::context> context_;
+    std::shared_ptr<vulkan::context> context_;
     capabilities caps_;
-    vulkan_detail::passes passes_;
+    vulkan::passes passes_;
 };
 
 static_assert(backend<vulkan_backend>);

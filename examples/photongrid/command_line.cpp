@@ -112,11 +112,11 @@ namespace {
     void add_picture(CLI::App& to, render_options& o)
     {
         to.add_option("scene", o.scene_path, "scene file")->required()->type_name("SCENE.json");
-        to.add_option("--backend", o.backend, "what draws; auto: a hardware Vulkan device, or else cpu")
+        to.add_option("--backend", o.backend,
+              "backend; auto: a hardware Vulkan device, else cpu, or serial in a build without cpu")
             ->check(CLI::IsMember({"auto", "serial", "cpu", "gl", "gl-osmesa", "vulkan"}).description(""))
             ->type_name("auto|serial|cpu|gl|gl-osmesa|vulkan");
-        add_whole(
-            to, "--threads", o.threads, "threads of the cpu backend; default: all; they do not change the picture");
+        add_whole(to, "--threads", o.threads, "threads of the cpu backend; default: all; does not affect the picture");
         to.add_option("--device", o.device, "Vulkan device (with --backend vulkan); see `photongrid devices`")
             ->type_name("NAME|INDEX");
         for_each_setting([&](const auto& row) { add_setting(to, row, o); });
@@ -213,7 +213,7 @@ namespace {
         add_whole(to, "--depth", o.depth, "most mirror and glass surfaces that an eye path hits before a diffuse one");
         add_whole(to, "--photon-depth", o.photon_depth,
             "most surfaces that light hits, up to and including the first diffuse one seen from the eye");
-        add_whole(to, "--threads", o.threads, "threads; default: all; they do not change the picture");
+        add_whole(to, "--threads", o.threads, "threads; default: all; does not affect the picture");
         add_whole(to, "--seed", o.seed, "same seed, same picture");
         add_exposure(to, o.exposure, "PNG: pixel values times 2^EV; default: the scene's");
         to.add_option("--stats", o.stats, "statistics, as JSON")->type_name("OUT.json");

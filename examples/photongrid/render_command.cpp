@@ -45,7 +45,11 @@ namespace {
             check_file_path(path_);
             identity_ = picture_identity(s, settings, drawing_.caps());
             if (auto state = read_resume_file(path_, identity_))
-                drawing_.resume(std::move(*state));
+                try {
+                    drawing_.resume(std::move(*state));
+                } catch (const std::invalid_argument& e) {
+                    throw file_error(path_ + ": is damaged: " + e.what() + "; remove it to begin the picture anew");
+                }
         }
         /// Saves the state if any work is done. Returns whether there is a file.
         bool keep()
@@ -101,7 +105,10 @@ renderer_options renderer_asked(const render_options& o)
         .time_passes = o.time_passes});
     if (o.backend == "auto" && !o.quiet)
         std::cerr << "photongrid: --backend auto: " << r.backend
-                  << (r.backend == "vulkan" ? ", device " + r.device : " (no hardware Vulkan device)") << '\n';
+                  << (r.backend == "vulkan"       ? ", device " + r.device
+                             : r.backend == "cpu" ? " (no hardware Vulkan device)"
+                                                  : " (no hardware Vulkan device, built without cpu)")
+                  << '\n';
     return r;
 }
 
@@ -188,7 +195,7 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
     draw_until_done(*drawing, *series, file, bar, stop_asked);
     const bool finished = drawing->finished();
     const bool kept = !finished && file.keep();
-    const auto go_on = kept ? "; the same command goes on from " + o.resume : "";
+    const auto go_on = kept ? "; run the same command again to resume from " + o.resume : "";
     if (drawing->pictures() == 0) {
         std::cerr << "photongrid: interrupted; there is no picture yet" << go_on << '\n';
         return interrupted;
@@ -212,7 +219,7 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
     if (!o.strip.empty())
         print_strip(o, *series);
     if (!finished) {
-        std::cerr << "photongrid: interrupted at " << percent(done) << "; the picture is the best there was" << go_on
+        std::cerr << "photongrid: interrupted at " << percent(done) << "; wrote the best picture so far" << go_on
                   << '\n';
         return interrupted;
     }

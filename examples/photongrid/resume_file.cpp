@@ -26,6 +26,48 @@ namespace {
         return std::array{
             &p.light.pixels, &p.light.searches, &p.light.errors, &p.band.pixels, &p.band.searches, &p.band.errors};
     }
+
+    /// The file's three lines of text, and what follows.
+    struct resume_text {
+        std::string first_line, identity, head, bytes;
+    };
+    resume_text split(const std::string& text)
+    {
+        std::size_t at = 0;
+        const auto line = [&] {
+            const auto end = std::min(text.find('\n', at), text.size());
+            auto l = text.substr(at, end - at);
+            at = std::min(end + 1, text.size());
+            return l;
+        };
+        resume_text t;
+        for (auto* l : {&t.first_line, &t.identity, &t.head})
+            *l = line();
+        t.bytes = text.substr(at);
+        return t;
+    }
+
+    std::string whole_text(const std::string& path)
+    {
+        std::ifstream file(path, std::ios::binary);
+        std::string text{std::istreambuf_iterator<char>(file), {}};
+        if (!file.is_open() || file.bad())
+            throw file_error(path + ": cannot be read: " + std::strerror(errno));
+        return text;
+    }
+
+    /// How a file's picture differs from the one that is asked for.
+    std::string difference(const std::string& of_file, const std::string& asked)
+    {
+        const auto a = json::parse(of_file, nullptr, false), b = json::parse(asked);
+        for (const auto& [key, value] : b.items()) {
+            const bool there = a.is_object() && a.contains(key);
+            if (!there || a[key] != value)
+                return "was begun with a different " + key
+                    + (value.is_string() && there ? " (" + a[key].dump() + ", not " + value.dump() + ")" : "");
+        }
+        return "was begun by another program";
+    }
 } // namespace
 
 std::string picture_identity(const scene& s, const render_settings& settings, const capabilities& caps)
@@ -55,29 +97,19 @@ std::optional<render_state> read_resume_file(const std::string& path, const std:
 {
     if (!std::filesystem::exists(path))
         return std::nullopt;
-    std::ifstream file(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (!file.is_open() || file.bad())
-        throw file_error(path + ": cannot be read: " + std::strerror(errno));
-    std::size_t at = 0;
-    const auto line = [&] {
-        const auto end = std::min(text.find('\n', at), text.size());
-        auto l = text.substr(at, end - at);
-        at = std::min(end + 1, text.size());
-        return l;
-    };
-    const auto first = line(), theirs = line(), head_line = line(), bytes = text.substr(at);
+    const auto file = split(whole_text(path));
     const auto fail = [&](const std::string& why) -> void {
         throw file_error(path + ": " + why + "; remove it to begin the picture anew");
     };
-    if (first != first_line)
+    if (file.first_line != first_line)
         fail("is no unfinished picture of this program");
-    const auto head = json::parse(head_line, nullptr, false);
+    const auto head = json::parse(file.head, nullptr, false);
     const auto number = [&](const char* key) {
         return head.is_object() && head.contains(key) && head[key].is_number_unsigned() ? head[key].get<std::uint64_t>()
                                                                                         : 0;
     };
     render_state s;
+    const auto& bytes = file.bytes;
     const std::size_t film_size = number("film");
     std::size_t size = film_size; // of all parts, in bytes
     for (std::size_t i = 0; auto* part : parts_of(s.pass)) {
@@ -89,18 +121,10 @@ std::optional<render_state> read_resume_file(const std::string& path, const std:
         part->resize(n);
         size += n * sizeof(glm::vec4);
     }
-    if (bytes.size() != size || detail::fnv1a(theirs + bytes) != number("hash"))
+    if (bytes.size() != size || detail::fnv1a(file.identity + bytes) != number("hash"))
         fail("is damaged");
-    if (theirs != identity) {
-        const auto a = json::parse(theirs, nullptr, false), b = json::parse(identity);
-        for (const auto& [key, value] : b.items())
-            if (!a.is_object() || !a.contains(key) || a[key] != value)
-                fail("was begun with a different " + key
-                    + (value.is_string() && a.is_object() && a.contains(key)
-                            ? " (" + a[key].dump() + ", not " + value.dump() + ")"
-                            : ""));
-        fail("was begun by another program");
-    }
+    if (file.identity != identity)
+        fail(difference(file.identity, identity));
     s.pass.number = static_cast<std::uint32_t>(number("pass"));
     s.pass.rows = static_cast<std::uint32_t>(number("rows"));
     s.pass.rays = static_cast<std::uint32_t>(number("rays"));

@@ -6,7 +6,7 @@
 
 namespace photongrid {
 
-/// The JSON of --stats. docs/guide/scenes.md lists its fields.
+/// The JSON of --stats. docs/reference/statistics.md lists its fields.
 std::string stats_json(const scene& s, const render_settings& settings, const renderer& result, double total_ms);
 
 /// Attributes for an EXR: seed, backend, device, settings, version.

@@ -23,19 +23,22 @@ struct irradiance_options {
 
 /// A photon map with its search settings.
 ///
-/// Searches for many points run on the device, which must outlive the map; one thread at a time may use it. Searches
-/// for one point run in the calling thread, on a copy of the map in the host's memory (see host_search); any number of
-/// threads may run them at the same time.
+/// Searches for many points run on the device. It must outlive these calls, and one thread at a time may use it.
+/// Searches for one point run in the calling thread, on a copy of the map in the host's memory (see host_search); any
+/// number of threads may run them at the same time, also after the device is gone.
 ///
-/// Positions in double precision are stored relative to the centre of the photons, so that points 0.1 m apart are
-/// distinct even 10^6 m from the origin. Distances are in single precision.
+/// Positions in double precision are stored relative to the photons' median, so that points 0.1 m apart are distinct
+/// even 10^6 m from 0; a few strays do not matter. They are rounded to single precision there: a coordinate that is d
+/// from the median moves by up to 2^-24 d, 0.06 m at 10^6 m. Photons that differ by less may coincide. This is not
+/// reported, since only the caller knows which differences matter. Distances are in single precision.
 /// \snippet snippets.cpp photon_map
 template <backend B>
-class photon_map {
+class photon_map : public host_queries {
 public:
     /// Builds a map of any contiguous range that photon_reader accepts, in a grid that is fitted to the photons and to
     /// `search`.
-    /// \throws std::invalid_argument for invalid settings, backend_error if the device has no room.
+    /// \throws std::invalid_argument for invalid settings, among them search.errors, since irradiance_options asks for
+    ///         standard errors; backend_error if the device has no room.
     template <std::ranges::contiguous_range Range>
     requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_t<Range>> photon_map(
         B& device, const Range& photons, const knn_settings& search = {})
@@ -44,10 +47,10 @@ public:
     }
     /// The same for photons with attributes in separate arrays: {.positions = p, .powers = w}.
     photon_map(B& device, const photon_attributes& photons, const knn_settings& search = {})
-        : device_(&device), origin_(detail::origin_of(photons.positions)),
-          map_(fitted_map(device, uploaded(device, photons, origin_), std::max(search.k, 1u))),
-          host_(device, map_, search, true)
+        : host_queries(detail::origin_of(checked(photons, search).positions)), device_(&device),
+          map_(fitted_map(device, uploaded(device, photons, origin_), std::max(search.k, 1u)))
     {
+        host_ = host_search(device, map_, search, true);
     }
 
     /// The number of photons.
@@ -57,10 +60,9 @@ public:
     /// The map on the device.
     const map_buffers<B>& buffers() const& { return map_; }
     const map_buffers<B>& buffers() const&& = delete;
-    /// The origin of positions on the device.
-    const glm::dvec3& origin() const { return origin_; }
 
-    /// The irradiance at many points, in their order, computed on the device: one thread at a time.
+    /// The irradiance at many points, in their order, computed on the device: one thread at a time. Where fewer than k
+    /// photons count and max_radius is unbounded there is no estimate (irradiance_at_point::is_estimate).
     /// \throws std::invalid_argument if k exceeds the number of photons and max_radius is unbounded, since no disc then
     ///         holds k photons; backend_error if the device has no room.
     [[nodiscard]] std::vector<irradiance_at_point> irradiance(
@@ -80,32 +82,11 @@ public:
     [[nodiscard]] irradiance_at_point irradiance(const V& point, const N& normal, query_scratch& scratch) const
     {
         require_a_disc();
-        return host_.irradiance(local(point), detail::to_vec3(normal), scratch);
-    }
-
-    /// Calls f(photon_id, float distance2) for every photon within `radius`, m, in no particular order. Any thread may
-    /// call it.
-    template <detail::vector_like V, class F>
-    void for_each_within(const V& point, float radius, const F& f) const
-    {
-        host_.for_each_within(local(point), radius, f);
-    }
-    /// The same for the k nearest photons, nearest first; equal distances are ordered by id. Any thread may call it.
-    template <detail::vector_like V, class F>
-    void for_each_nearest(const V& point, uint k, query_scratch& scratch, const F& f) const
-    {
-        host_.for_each_nearest(local(point), k, std::numeric_limits<float>::infinity(), scratch, f);
-    }
-    /// The same with a scratch that each thread keeps.
-    template <detail::vector_like V, class F>
-    void for_each_nearest(const V& point, uint k, const F& f) const
-    {
-        thread_local query_scratch scratch;
-        for_each_nearest(point, k, scratch, f);
+        return host_.irradiance(local(point), detail::to_vec<float>(normal), scratch);
     }
 
 private:
-    static photons<B> uploaded(B& b, const photon_attributes& a, const glm::dvec3& origin)
+    static const photon_attributes& checked(const photon_attributes& a, const knn_settings& search)
     {
         const auto check = [&](const char* name, std::size_t n, bool may_lack) {
             if (n != a.positions.size() && !(may_lack && n == 0))
@@ -115,26 +96,27 @@ private:
         check("powers", a.powers.size(), false);
         check("directions", a.directions.size(), true);
         check("normals", a.normals.size(), true);
-        if (a.positions.size() > std::numeric_limits<uint>::max())
-            throw std::invalid_argument("photon_map: photons: " + std::to_string(a.positions.size())
-                + " are more than the 2^32 - 1 that a map can hold");
+        detail::check_map_size("photon_map: photons", a.positions.size());
+        if (search.errors)
+            throw std::invalid_argument(
+                "photon_map: search.errors: ask for standard errors by irradiance_options::standard_error instead");
+        return a;
+    }
+
+    static photons<B> uploaded(B& b, const photon_attributes& a, const glm::dvec3& origin)
+    {
         const glm::dvec3 zero(0);
         return {detail::upload_view(b, a.positions, origin, 0.0f), detail::upload_view(b, a.powers, zero, 0.0f),
             detail::upload_view(b, a.directions, zero, 0.0f), detail::upload_view(b, a.normals, zero, 0.0f)};
     }
 
-    template <class V>
-    glm::vec3 local(const V& point) const
-    {
-        return glm::vec3(detail::to_dvec3(point) - origin_);
-    }
-
     void require_a_disc() const
     {
         const auto& s = search();
-        if (s.search != search_kind::fixed_radius && s.k > size() && size() > 0 && std::isinf(s.max_radius))
+        if (s.search != search_kind::fixed_radius && s.k > size() && size() > 0
+            && s.max_radius == std::numeric_limits<float>::infinity())
             throw std::invalid_argument("photon_map::irradiance: k: " + std::to_string(s.k)
-                + " photons are sought, and " + "the map has " + std::to_string(size())
+                + " photons are sought, and the map has " + std::to_string(size())
                 + "; use a smaller k, or set max_radius");
     }
 
@@ -156,19 +138,18 @@ private:
         const auto used = b.download(estimates.used);
         std::vector<irradiance_at_point> all(values.size());
         for (std::size_t i = 0; i < all.size(); ++i) {
-            all[i] = {.value = glm::vec3(values[i]), .radius = std::sqrt(values[i].w), .count = used[i].x};
+            irradiance_at_point e{.value = glm::vec3(values[i]), .radius = std::sqrt(values[i].w), .count = used[i].x};
             if (options.standard_error) {
-                all[i].error = glm::vec3(errors[i]);
-                all[i].error_of_sum = errors[i].w;
+                e.error = glm::vec3(errors[i]);
+                e.error_of_sum = errors[i].w;
             }
+            all[i] = detail::estimate_or_none(e, s, local(points[i]));
         }
         return all;
     }
 
     B* device_;
-    glm::dvec3 origin_;
     map_buffers<B> map_;
-    host_search host_;
 };
 
 template <backend B, class Range>

@@ -43,20 +43,26 @@ private:
     std::vector<std::size_t> begin_{0};
 };
 
-/// A host's points in a grid that is fitted to them. Searches for many query points run on the device. Searches for one
-/// query point run in the calling thread, on a copy in the host's memory. Positions in double precision are treated as
-/// in photon_map.
+/// A host's points in a grid that is fitted to them.
+///
+/// nearest() and count_within() run on the device. It must outlive these calls, and one thread at a time may use it.
+/// within() and the searches for one point run in the calling thread, on a copy in the host's memory; any number of
+/// threads may run them at the same time. Positions in double precision are treated as in photon_map.
+///
+/// In all searches a radius of 0 or less finds nothing, infinity sets no limit, and NaN throws std::invalid_argument. A
+/// query point that is not finite has no neighbours. No search finds points at distances above 10^19 m.
 /// \snippet snippets.cpp point_index
 template <backend B>
-class point_index {
+class point_index : public host_queries {
 public:
     /// `k`: the number of neighbours that searches typically ask for. The grid is fitted to it; results do not depend
     /// on it.
-    /// \throws backend_error where the device has no room.
+    /// \throws std::invalid_argument for k = 0 or more than 2^32 - 1 points, backend_error where the device has no room.
     point_index(B& device, const vector_argument& points, uint k = 16)
-        : device_(&device), origin_(detail::origin_of(points)), map_(fitted_map(device, uploaded(device, points), k)),
-          host_(device, map_, {.k = k}, false)
+        : host_queries(detail::origin_of(checked(points))), device_(&device),
+          map_(fitted_map(device, uploaded(device, points), k))
     {
+        host_ = host_search(device, map_, {.k = k}, false);
     }
 
     /// How many points the index was made from.
@@ -64,7 +70,7 @@ public:
 
     /// The k nearest points of each query point, nearest first; equal distances are ordered by id. Fewer if the index
     /// has fewer points within max_radius, m.
-    /// \throws std::invalid_argument for k = 0.
+    /// \throws std::invalid_argument for k = 0 and a radius of NaN; backend_error if the device has no room.
     [[nodiscard]] point_neighbours nearest(
         const vector_argument& queries, uint k, float max_radius = std::numeric_limits<float>::infinity()) const
     {
@@ -81,13 +87,16 @@ public:
         }
         return n;
     }
-    /// All points within `radius`, m, of each query point, nearest first.
+    /// All points within `radius`, m, of each query point, nearest first. Lists of unknown length do not suit a kernel,
+    /// so this runs in the calling thread, query point by query point; threads may divide the query points.
+    /// \throws std::invalid_argument for a radius of NaN.
     [[nodiscard]] point_neighbours within(const vector_argument& queries, float radius) const
     {
+        detail::check_radius(radius);
         point_neighbours n;
         for (std::size_t i = 0; i < queries.size(); ++i) {
             const auto first = static_cast<std::ptrdiff_t>(n.all_.size());
-            host_.for_each_within(glm::vec3(queries[i] - origin_), radius, [&](photon_id id, float distance2) {
+            host_.for_each_within(local(queries[i]), radius, [&](photon_id id, float distance2) {
                 n.all_.push_back({id, distance2});
             });
             std::sort(n.all_.begin() + first, n.all_.end(), [](const point_neighbour& a, const point_neighbour& c) {
@@ -98,34 +107,27 @@ public:
         return n;
     }
     /// How many points lie within `radius`, m, of each query point.
+    /// \throws std::invalid_argument for a radius of NaN; backend_error if the device has no room.
     [[nodiscard]] std::vector<uint> count_within(const vector_argument& queries, float radius) const
     {
         B& b = *device_;
         const auto points = detail::upload_view(b, queries, origin_, 1.0f);
+        const float bounded = std::min(radius, std::numeric_limits<float>::max()); // NaN remains, and is refused
         const auto e = knn_grid_estimate(
-            b, map_, points, {.max_radius = radius, .search = search_kind::fixed_radius, .bias = bias_kind::paper});
+            b, map_, points, {.max_radius = bounded, .search = search_kind::fixed_radius, .bias = bias_kind::paper});
         std::vector<uint> counts;
         for (const auto& used : b.download(e.used))
             counts.push_back(used.x);
         return counts;
     }
 
-    /// Calls f(photon_id, float distance2) for every point within `radius`, m, of one query point, in no particular
-    /// order. Any thread may call it.
-    template <detail::vector_like V, class F>
-    void for_each_within(const V& query, float radius, const F& f) const
+private:
+    static const vector_view& checked(const vector_view& points)
     {
-        host_.for_each_within(glm::vec3(detail::to_dvec3(query) - origin_), radius, f);
-    }
-    /// The same for the k nearest points, nearest first. Any thread may call it; each needs its own scratch.
-    template <detail::vector_like V, class F>
-    void for_each_nearest(const V& query, uint k, query_scratch& scratch, const F& f) const
-    {
-        host_.for_each_nearest(
-            glm::vec3(detail::to_dvec3(query) - origin_), k, std::numeric_limits<float>::infinity(), scratch, f);
+        detail::check_map_size("point_index: points", points.size());
+        return points;
     }
 
-private:
     photons<B> uploaded(B& b, const vector_view& points) const
     {
         // A map needs powers, though these searches read none.
@@ -134,9 +136,7 @@ private:
     }
 
     B* device_;
-    glm::dvec3 origin_;
     map_buffers<B> map_;
-    host_search host_;
 };
 
 } // namespace photongrid

@@ -63,6 +63,50 @@ TEST(splice, names_the_place_of_a_missing_file)
     }
 }
 
+/// The texts of a user who has files of the same name as one of the library's.
+constexpr text_file same_names[]
+    = {{"mine/vector.glsl", "int mine;\n"}, {"../../include/photongrid/backend/vector.glsl", "int librarys;\n"},
+        {"vector.glsl", "int outer;\n"}, {"mine/deep/vector.glsl", "#include \"../vector.glsl\"\nint deep;\n"},
+        {"mine/other.glsl", "#include <photongrid/backend/vector.glsl>\n"}};
+
+TEST(splice, finds_the_file_that_cpp_finds)
+{
+    const auto spliced = [](const char* name, const char* text) {
+        std::vector<text_file> library(std::begin(same_names), std::end(same_names));
+        const auto forth = splice(prelude, "", {name, text}, epilogue, library);
+        std::reverse(library.begin(), library.end());
+        const auto back = splice(prelude, "", {name, text}, epilogue, library);
+        EXPECT_EQ(forth.text, back.text);
+        return std::vector<std::string>(forth.files.begin() + 2, forth.files.end() - 1);
+    };
+    using names = std::vector<std::string>;
+    const names librarys{"../../include/photongrid/backend/vector.glsl"};
+    EXPECT_EQ(spliced("mine/k.glsl", "#include <photongrid/backend/vector.glsl>\n"), librarys);
+    EXPECT_EQ(spliced("mine/k.glsl", "#include \"vector.glsl\"\n"), names{"mine/vector.glsl"});
+    EXPECT_EQ(spliced("k.glsl", "#include \"vector.glsl\"\n"), names{"vector.glsl"});
+    EXPECT_EQ(spliced("k.glsl", "#include \"mine/deep/vector.glsl\"\n"),
+        (names{"mine/deep/vector.glsl", "mine/vector.glsl"}));
+    EXPECT_EQ(spliced("mine/deep/k.glsl", "#include \"../other.glsl\"\n"), (names{"mine/other.glsl", librarys[0]}));
+    // Both, under one basename.
+    EXPECT_EQ(spliced("mine/k.glsl", "#include <photongrid/backend/vector.glsl>\n#include \"vector.glsl\"\n"),
+        (names{librarys[0], "mine/vector.glsl"}));
+    // "tor.glsl" is no component of a path.
+    EXPECT_THROW(spliced("k.glsl", "#include \"tor.glsl\"\n"), std::runtime_error);
+}
+
+TEST(splice, says_which_files_an_include_may_mean)
+{
+    const text_file elsewhere{"far/k.glsl", "\n#include \"vector.glsl\"\n"};
+    try {
+        splice(prelude, "", elsewhere, epilogue, std::span(same_names).first(2));
+        FAIL();
+    } catch (const std::runtime_error& e) {
+        EXPECT_STREQ(e.what(),
+            "far/k.glsl:2: error: \"vector.glsl\" may be mine/vector.glsl or ../../include/photongrid/backend/"
+            "vector.glsl");
+    }
+}
+
 TEST(translate_log, understands_three_drivers)
 {
     const auto s = splice(prelude, "", kernel, epilogue, library);
@@ -86,6 +130,19 @@ TEST(kernel_texts, a_kernel_carries_its_text_and_those_that_it_includes)
     const auto step = texts_of<kernels::bitonic_step>({});
     EXPECT_NE(
         find_kernel_text(kernels::bitonic_step::path, step).text.find("void kernel(uint i)"), std::string_view::npos);
+}
+
+TEST(kernel_texts, folders_tell_files_of_one_name_apart)
+{
+    const auto name = [](std::string_view path) { return find_kernel_text(path, same_names).name; };
+    EXPECT_EQ(name("/home/user/project/vector.glsl"), "vector.glsl");
+    EXPECT_EQ(name("/home/user/project/mine/vector.glsl"), "mine/vector.glsl");
+    EXPECT_EQ(name("C:\\project\\mine\\deep\\vector.glsl"), "mine/deep/vector.glsl");
+    EXPECT_EQ(name("/usr/include/photongrid/backend/vector.glsl"), same_names[1].name);
+    EXPECT_EQ(name("/opt/headers/photongrid/backend/vector.glsl"), same_names[1].name);
+    EXPECT_EQ(name("../mine/vector.glsl"), "mine/vector.glsl");
+    EXPECT_EQ(name("elsewhere/other.glsl"), "mine/other.glsl"); // its file's name is enough
+    EXPECT_THROW(name("mine/another.glsl"), std::runtime_error);
 }
 
 // Hard cases G4, G7: what is fused, cut at NaN, or approximated differently from device to device is not in the

@@ -34,10 +34,10 @@ TYPED_TEST_P(hard_cases_of_numbers, g2_a_million_photons_add_up)
         powers.emplace_back(1.0f / 3, decades.back(), 0.0f, 0.0f);
     }
     std::sort(decades.rbegin(), decades.rend());
-    glm::dvec3 flux(0), squares(0);
+    glm::dvec3 power(0), squares(0);
     for (uint i = 0; i < n; ++i) {
         powers[i].z = decades[i];
-        flux += glm::dvec3(powers[i]);
+        power += glm::dvec3(powers[i]);
         squares += glm::dvec3(powers[i]) * glm::dvec3(powers[i]);
     }
     // A map of one cell, made here: sorting a million photons is another test.
@@ -63,11 +63,11 @@ TYPED_TEST_P(hard_cases_of_numbers, g2_a_million_photons_add_up)
     const double area = M_PI * 0.25;
     double largest = 0, largest_of_errors = 0, largest_of_the_papers = 0;
     for (int c = 0; c < 3; ++c) {
-        largest = std::max(largest, std::abs(static_cast<double>(irradiance[c]) * area / flux[c] - 1));
+        largest = std::max(largest, std::abs(static_cast<double>(irradiance[c]) * area / power[c] - 1));
         largest_of_errors = std::max(
             largest_of_errors, std::abs(static_cast<double>(standard_error[c]) * area / std::sqrt(squares[c]) - 1));
         largest_of_the_papers
-            = std::max(largest_of_the_papers, std::abs(static_cast<double>(paper[c]) * area / flux[c] - 1));
+            = std::max(largest_of_the_papers, std::abs(static_cast<double>(paper[c]) * area / power[c] - 1));
     }
     this->report("G2", "compensated sum of 1,000,000 photons, relative error:", largest);
     this->report("G2_standard_error", "its standard error, plainly added:", largest_of_errors);

@@ -14,14 +14,14 @@ namespace {
         return v;
     }
     template <class T>
-    testing::AssertionResult same_bits(const std::vector<T>& a, const std::vector<T>& b)
+    ::testing::AssertionResult same_bits(const std::vector<T>& a, const std::vector<T>& b)
     {
         if (a.size() != b.size())
-            return testing::AssertionFailure() << a.size() << " elements against " << b.size();
+            return ::testing::AssertionFailure() << a.size() << " elements against " << b.size();
         for (std::size_t i = 0; i < a.size(); ++i)
             if (std::memcmp(&a[i], &b[i], sizeof(T)) != 0)
-                return testing::AssertionFailure() << "first difference at element " << i << " of " << a.size();
-        return testing::AssertionSuccess();
+                return ::testing::AssertionFailure() << "first difference at element " << i << " of " << a.size();
+        return ::testing::AssertionSuccess();
     }
     template <element T>
     std::vector<T> noise(std::size_t n, std::uint32_t seed)
@@ -88,7 +88,7 @@ namespace {
     };
 
     template <class Kind>
-    class gl_backend_test : public testing::Test {
+    class gl_backend_test : public ::testing::Test {
     protected:
         // One context for all tests of a kind; debug: every error that OpenGL notes is an exception.
         static void SetUpTestSuite()
@@ -125,7 +125,7 @@ namespace {
         gl_backend& gpu() { return *shared(); }
         serial_backend cpu;
     };
-    using kinds = testing::Types<egl, osmesa>;
+    using kinds = ::testing::Types<egl, osmesa>;
     TYPED_TEST_SUITE(gl_backend_test, kinds);
 
     template <class T>

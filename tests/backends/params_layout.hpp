@@ -94,7 +94,7 @@ std::vector<std::size_t> offsets_in_cpp(const T& t)
 
 /// The same of the Params in a module's push constant block, whose first member is the backend's own. Empty when the
 /// kernel reads none of them.
-inline std::vector<std::size_t> offsets_in_spirv(const vulkan_detail::spirv_words& words)
+inline std::vector<std::size_t> offsets_in_spirv(const photongrid::vulkan::spirv_words& words)
 {
     constexpr std::uint32_t type_struct = 30, type_pointer = 32, variable = 59, member_decorate = 72, push_constant = 9,
                             offset = 35;
@@ -102,7 +102,7 @@ inline std::vector<std::size_t> offsets_in_spirv(const vulkan_detail::spirv_word
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> places; // (struct, member)
     std::map<std::uint32_t, std::uint32_t> pointees;
     std::uint32_t block = 0;
-    vulkan_detail::for_each_instruction(words, [&](std::uint32_t op, std::size_t at, std::size_t length) {
+    photongrid::vulkan::for_each_instruction(words, [&](std::uint32_t op, std::size_t at, std::size_t length) {
         if (op == type_struct)
             members[words[at + 1]].assign(words.begin() + static_cast<std::ptrdiff_t>(at + 2),
                 words.begin() + static_cast<std::ptrdiff_t>(at + length));

@@ -4,4 +4,5 @@
 #include "vulkan_buffer_tests.hpp"
 #include "vulkan_compile_tests.hpp"
 #include "vulkan_device_tests.hpp"
+#include "vulkan_group_tests.hpp"
 #include "vulkan_pass_tests.hpp"

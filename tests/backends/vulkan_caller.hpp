@@ -69,7 +69,7 @@ public:
         std::uint32_t one = 1;
         if (vkEnumeratePhysicalDevices(handles.instance, &one, &handles.physical_device) < VK_SUCCESS || one == 0)
             throw std::runtime_error("no Vulkan device");
-        handles.queue_family = vulkan_detail::compute_family(handles.physical_device).value();
+        handles.queue_family = photongrid::vulkan::compute_family(handles.physical_device).value();
         const float priority = 1;
         VkDeviceQueueCreateInfo queue{};
         queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;

@@ -35,15 +35,16 @@ TEST_F(vulkan, parameters_stand_where_cpp_has_them)
 
 TEST_F(vulkan, a_switch_that_is_off_leaves_no_code)
 {
-    const auto size
-        = [&](uint switches) { return vulkan_detail::count_instructions(b().spirv<test_kernels::switched>(switches)); };
+    const auto size = [&](uint switches) {
+        return photongrid::vulkan::count_instructions(b().spirv<test_kernels::switched>(switches));
+    };
     const auto neither = size(0);
     EXPECT_LT(neither, size(1));
     EXPECT_LT(neither, size(1u << 5));
     EXPECT_LT(size(1), size(~0u));
     const auto loops = [&](uint switches) {
         std::size_t n = 0;
-        vulkan_detail::for_each_instruction(b().spirv<test_kernels::switched>(switches),
+        photongrid::vulkan::for_each_instruction(b().spirv<test_kernels::switched>(switches),
             [&](std::uint32_t op, std::size_t, std::size_t) { n += op == 246 ? 1u : 0u; }); // OpLoopMerge
         return n;
     };

@@ -64,14 +64,15 @@ TEST_F(vulkan, the_validation_layer_is_listening)
 {
     vulkan_options o;
     o.validation = true;
-    std::shared_ptr<vulkan_detail::context> c;
+    std::shared_ptr<photongrid::vulkan::context> c;
     try {
-        c = std::make_shared<vulkan_detail::context>(o);
+        c = std::make_shared<photongrid::vulkan::context>(o);
     } catch (const backend_error& e) {
         GTEST_SKIP() << e.what();
     }
-    const auto make
-        = [&] { return std::make_shared<vulkan_detail::allocation>(c, 64, vulkan_detail::memory_kind::device); };
+    const auto make = [&] {
+        return std::make_shared<photongrid::vulkan::allocation>(c, 64, photongrid::vulkan::memory_kind::device);
+    };
     // Synchronization: a fill and a copy of the same bytes with no barrier between them.
     const auto from = make(), to = make();
     VkCommandPoolCreateInfo pool_info{};
@@ -168,7 +169,7 @@ struct own_folder {
 TEST(file_cache, finds_what_it_kept_and_nothing_else)
 {
     const own_folder folder;
-    vulkan_detail::file_cache cache(folder.path.string()), none("");
+    photongrid::vulkan::file_cache cache(folder.path.string()), none("");
     EXPECT_FALSE(cache.find("a"));
     const std::string binary("\0\1\xFF\n", 4);
     cache.keep("a", binary);
@@ -178,11 +179,11 @@ TEST(file_cache, finds_what_it_kept_and_nothing_else)
     EXPECT_FALSE(none.find("a"));
     const auto text
         = [](const auto& found) { return found ? std::string(found->begin(), found->end()) : std::string("none"); };
-    EXPECT_EQ(text(vulkan_detail::file_cache(folder.path.string()).find("a")), binary);
+    EXPECT_EQ(text(photongrid::vulkan::file_cache(folder.path.string()).find("a")), binary);
     EXPECT_EQ(text(cache.find("b")), "newer");
     EXPECT_FALSE(cache.find("c"));
     // A folder that cannot be made: nothing kept, no error.
-    vulkan_detail::file_cache nowhere_to_go((folder.path / "0").string());
+    photongrid::vulkan::file_cache nowhere_to_go((folder.path / "0").string());
     std::ofstream(folder.path / "0") << "a file";
     nowhere_to_go.keep("a", "x");
     EXPECT_FALSE(nowhere_to_go.find("a"));
@@ -191,7 +192,7 @@ TEST(file_cache, finds_what_it_kept_and_nothing_else)
 TEST(file_cache, a_damaged_file_counts_as_not_there)
 {
     const own_folder folder;
-    vulkan_detail::file_cache cache(folder.path.string());
+    photongrid::vulkan::file_cache cache(folder.path.string());
     cache.keep("key", "some value");
     const auto file = std::filesystem::directory_iterator(folder.path)->path();
     std::ifstream in(file, std::ios::binary);
@@ -221,7 +222,7 @@ TEST(file_cache, too_many_files_lose_the_oldest)
         std::ofstream(folder.path / name) << "old";
     }
     std::ofstream(folder.path / "another's file") << "stays";
-    vulkan_detail::file_cache cache(folder.path.string());
+    photongrid::vulkan::file_cache cache(folder.path.string());
     cache.keep("key", "value");
     std::size_t files = 0;
     for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path))

@@ -21,7 +21,7 @@ inline std::size_t free_to_contract(const std::vector<std::uint32_t>& words)
 {
     std::set<std::uint32_t> decorated;
     std::size_t n = 0;
-    vulkan_detail::for_each_instruction(words, [&](std::uint32_t op, std::size_t at, std::size_t) {
+    photongrid::vulkan::for_each_instruction(words, [&](std::uint32_t op, std::size_t at, std::size_t) {
         if (op == 71 && words[at + 2] == 42)
             decorated.insert(words[at + 1]);
         if (op == 127 || op == 129 || op == 131 || op == 133 || op == 136 || op == 142)
@@ -42,7 +42,7 @@ void expect_valid(vulkan_backend& b, kernel_list<K...>)
         complaints.clear();
         EXPECT_TRUE(tools.Validate(words)) << name << ": " << complaints;
         EXPECT_EQ(free_to_contract(words), 0u) << name;
-        EXPECT_GT(vulkan_detail::count_instructions(words), 0u) << name;
+        EXPECT_GT(photongrid::vulkan::count_instructions(words), 0u) << name;
     };
     const auto one = [&]<class Kernel>(std::type_identity<Kernel>) {
         for (const uint switches : {~0u, 0u})

@@ -102,6 +102,57 @@ protected:
         return {};
     }
 
+    /// Which point has another radius, other photons or another sum of their powers, which are whole numbers, than
+    /// brute force finds for exact_k and at_least_k, or nothing.
+    std::string other_photons(
+        const photon_set& s, const map_buffers<B>& map, const std::vector<vec4>& points, const knn_settings& k)
+    {
+        auto& b = this->b();
+        const auto list = b.download(map.list);
+        std::vector<std::vector<uint>> in_cells;
+        for (const auto& c : b.download(map.cells))
+            in_cells.emplace_back(list.begin() + c.x, list.begin() + c.x + c.y);
+        const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), k);
+        const auto irradiance = b.download(e.irradiance);
+        const auto used = b.download(e.used);
+        const float max2 = std::min(k.max_radius * k.max_radius, 1e38f);
+        for (std::size_t q = 0; q < points.size(); ++q) {
+            std::vector<std::pair<float, uint>> near;
+            if (k.max_radius > 0 && std::isfinite(points[q].x) && std::isfinite(points[q].y)
+                && std::isfinite(points[q].z))
+                for (uint id = 0; id < s.positions.size(); ++id)
+                    if (const float d2 = distance2(s.positions[id], points[q]);
+                        d2 <= max2 && std::isfinite(d2) && std::isfinite(s.powers[id].z))
+                        near.emplace_back(d2, id);
+            std::sort(near.begin(), near.end());
+            float radius2 = max2;
+            const bool is_by_photon = near.size() >= k.k;
+            if (is_by_photon) {
+                radius2 = k.search == search_kind::exact_k ? near[k.k - 1].first
+                                                           : grown_by_force(s.positions, s.g, in_cells, points[q], k);
+                std::erase_if(near, [&](const auto& n) { return n.first > radius2; });
+                if (k.search == search_kind::exact_k)
+                    near.resize(k.k);
+            }
+            const auto where = " at point " + std::to_string(q);
+            if (irradiance[q].w != radius2)
+                return "squared radius " + std::to_string(irradiance[q].w) + ", not " + std::to_string(radius2) + where;
+            if (used[q].x != near.size())
+                return "used " + std::to_string(used[q].x) + ", not " + std::to_string(near.size()) + where;
+            const double min2 = static_cast<double>(k.min_radius) * static_cast<double>(k.min_radius),
+                         disc = M_PI * std::max(static_cast<double>(radius2), min2);
+            if (is_by_photon && k.bias == bias_kind::unbiased && radius2 >= k.min_radius * k.min_radius)
+                near.pop_back();
+            glm::dvec3 sum(0);
+            for (const auto& n : near)
+                sum += glm::dvec3(s.powers[n.second]);
+            for (int c = 0; c < 3 && disc < 1e30; ++c) // beyond, some devices round the irradiance to 0
+                if (const double found = static_cast<double>(irradiance[q][c]) * disc; std::abs(found - sum[c]) > 0.25)
+                    return "powers add up to " + std::to_string(found) + ", not " + std::to_string(sum[c]) + where;
+        }
+        return {};
+    }
+
     double largest_error_ = 0; ///< of irradiance, relative, so far
 };
 TYPED_TEST_SUITE_P(estimators);

@@ -4,6 +4,7 @@
 #include "../map/photon_generator.hpp"
 #include "estimators.hpp"
 
+#include <limits>
 #include <set>
 
 namespace photongrid::testing {
@@ -100,19 +101,19 @@ TYPED_TEST_P(estimators, ties_at_the_kth_distance_go_by_id)
     const auto map = sorted_map(b, upload_photons(b, set), set.g);
     const std::vector<vec4> points(1, vec4(0.5f, 0.5f, 0.5f, 1.0f));
     const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), settings);
-    glm::dvec3 flux(0);
+    glm::dvec3 power(0);
     uint tied = 0;
     for (uint i = 0; i < 70020; ++i) {
         const bool nearer = i % 3501 == 17;
         if (nearer || tied++ < 500)
-            flux += glm::dvec3(set.powers[i]);
+            power += glm::dvec3(set.powers[i]);
     }
     EXPECT_EQ(b.download(e.used)[0].x, 520u);
     const auto irradiance = b.download(e.irradiance)[0];
     EXPECT_EQ(irradiance.w, 0.0625f);
     double largest = 0;
     for (int c = 0; c < 3; ++c) {
-        const double expected = flux[c] / (M_PI * 0.0625);
+        const double expected = power[c] / (M_PI * 0.0625);
         largest = std::max(largest, std::abs(static_cast<double>(irradiance[c]) / expected - 1));
         EXPECT_NEAR(irradiance[c], expected, 2e-6 * expected);
     }
@@ -192,6 +193,61 @@ TYPED_TEST_P(estimators, squared_distances_too_small_for_a_float_count_as_zero)
         settings.bias = bias_kind::paper;
         EXPECT_EQ(this->difference(s, map, settings), "") << "k " << k;
     }
+}
+
+TYPED_TEST_P(estimators, photons_within_the_least_radius_are_all_summed)
+{
+    // Some points have their k-th photon at their own place or within min_radius of it: it counts, also unbiased, and
+    // is a term of the standard error. For other points it is excluded.
+    oriented_set s;
+    s.photons.g = make_grid(glm::vec3(0), glm::vec3(1), {2, 2, 2});
+    random_source u(21);
+    for (int i = 0; i < 12; ++i) {
+        const float x = i < 6 ? 0.25f : i < 9 ? 0.25f + 0.01f * u() : 0.75f;
+        s.photons.positions.emplace_back(x, 0.25f, 0.25f, 0.0f);
+        s.photons.powers.emplace_back(1 + u(), 1 + u(), 1 + u(), 0.0f);
+    }
+    s.points = {{0.25f, 0.25f, 0.25f, 1.0f}, {0.255f, 0.25f, 0.25f, 1.0f}, {0.5f, 0.25f, 0.25f, 1.0f}};
+    s.directions.assign(12, vec4(0, -1, 0, 0));
+    s.normals.assign(12, vec4(0, 1, 0, 0));
+    s.point_normals.assign(3, vec4(0, 1, 0, 0));
+    const auto map = this->known(s, false);
+    for (const auto search : {search_kind::exact_k, search_kind::at_least_k})
+        for (const auto& f : filters)
+            for (const uint k : {1u, 2u, 3u, 4u, 5u, 10u, 12u}) {
+                const knn_settings settings{
+                    .k = k, .max_radius = 2, .min_radius = 0.0625f, .search = search, .filter = f.kind};
+                EXPECT_EQ(this->difference(s, map, settings), "")
+                    << "k " << k << " filter " << f.name << " search " << int(search);
+            }
+}
+
+/// Photons and points at places that RapidCheck draws and shrinks, NaN, infinity and denormals among them. Photons that
+/// are not finite are in no map. Whole numbers as powers tell by their sums which photons an estimate has.
+TYPED_TEST_P(estimators, find_the_photons_of_brute_force_for_any_numbers)
+{
+    auto& b = this->b();
+    EXPECT_TRUE(rc::check("k-th distance, number and sum of photons equal brute force, whatever the numbers", [&] {
+        photon_set s;
+        s.positions = *rc::gen::resize(200, any_vectors(0));
+        const auto invalid = *rc::gen::element(std::numeric_limits<float>::quiet_NaN(),
+            std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity());
+        for (uint id = 0; id < s.positions.size(); ++id)
+            s.powers.emplace_back(
+                1.0f, static_cast<float>(id), id % 11 == 10 ? invalid : static_cast<float>(id * 37 % 101), 0.0f);
+        s.g = make_grid(glm::vec3(-1), glm::vec3(1),
+            {*rc::gen::inRange(1u, 9u), *rc::gen::inRange(1u, 9u), *rc::gen::inRange(1u, 9u)});
+        const auto points = *rc::gen::resize(20, any_vectors(1));
+        knn_settings settings{.k = *rc::gen::inRange(1u, 40u),
+            .max_radius = *rc::gen::element(0.0f, 0.125f, 0.7f, 5.0f, 1e20f, std::numeric_limits<float>::infinity()),
+            .min_radius = 1e-3f};
+        settings.search = *rc::gen::element(search_kind::exact_k, search_kind::at_least_k);
+        settings.bias = *rc::gen::element(bias_kind::paper, bias_kind::unbiased);
+        const auto map = sorted_map(b, upload_photons(b, s), s.g);
+        const auto wrong = this->other_photons(s, map, points, settings);
+        if (!wrong.empty())
+            RC_FAIL(wrong);
+    }));
 }
 
 TYPED_TEST_P(estimators, distances_next_to_each_other_are_told_apart)

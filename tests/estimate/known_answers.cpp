@@ -90,7 +90,7 @@ std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std:
     const auto dot = [](const vec4& x, const vec4& y) { return x.x * y.x + x.y * y.y + x.z * y.z; };
     if (leaks.side && !(dot(s.directions[id], n) < 0))
         return {};
-    if (leaks.needs_normals() && !(dot(s.normals[id], n) >= leaks.min_cosine))
+    if (leaks.needs_photon_normals() && !(dot(s.normals[id], n) >= leaks.min_cosine))
         return {};
     return d2 < std::numeric_limits<float>::min() ? 0.0f : d2;
 }
@@ -121,27 +121,59 @@ brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>&
     std::map<uint, uint> entries; // routed maps hold a photon several times
     for (const uint id : in_map)
         ++entries[id];
-    const bool leave_out = k.bias == bias_kind::unbiased && e.kth && e.radius2 >= min2;
+    const bool excludes = k.bias == bias_kind::unbiased && e.kth && e.radius2 >= min2;
+    double terms = 0;
     constexpr double norms[] = {1, 3, 2, 3};
     for (std::size_t i = 0; i < near.size(); ++i) {
         e.ids.push_back(near[i].second);
-        if (leave_out && i + 1 == near.size())
+        if (excludes && i + 1 == near.size())
             continue;
+        ++terms;
         const double t = static_cast<double>(near[i].first) / disc2;
         const double w[] = {1, 1 - std::sqrt(t), 1 - t, (1 - t) * (1 - t)};
-        const glm::dvec3 flux = w[static_cast<int>(k.filter)] * glm::dvec3(powers[near[i].second]);
-        const double all = flux.x + flux.y + flux.z;
-        e.irradiance += flux;
-        e.standard_error += static_cast<double>(entries[near[i].second]) * glm::dvec4(flux * flux, all * all);
+        const glm::dvec3 power = w[static_cast<int>(k.filter)] * glm::dvec3(powers[near[i].second]);
+        const double all = power.x + power.y + power.z;
+        e.irradiance += power;
+        e.standard_error += static_cast<double>(entries[near[i].second]) * glm::dvec4(power * power, all * all);
     }
     const double per_area = norms[static_cast<int>(k.filter)] / (M_PI * disc2);
     e.irradiance *= per_area;
-    // Of n photons of which the n-th set the radius, n / (pi r^2) varies by 1 / (n - 2) of itself, squared, when all
-    // have one power.
+    // If the n-th photon sets the radius and all have one power, n / (pi r^2) has the relative variance 1 / (n - 2).
+    // The sum of their squares gives 1 / (the number summed) in its place.
     const double n = static_cast<double>(near.size());
-    const double spread = e.kth && n > 2 ? (k.bias == bias_kind::unbiased ? n - 1 : n) / (n - 2) : 1;
+    const double spread = e.kth && n > 2 ? terms / (n - 2) : 1;
     e.standard_error = per_area * glm::sqrt(spread * e.standard_error);
     return e;
+}
+
+float grown_by_force(const std::vector<vec4>& positions, const grid& g, const std::vector<std::vector<uint>>& in_cells,
+    const vec4& point, const knn_settings& k)
+{
+    const auto cell_of = [&](float x, int axis) {
+        const float u = std::floor((x - g.origin[axis]) * g.inverse_cell[axis]);
+        const auto last = static_cast<int>(g.resolution[axis]) - 1;
+        return u > 0 ? static_cast<int>(std::min(u, static_cast<float>(last))) : 0;
+    };
+    const int c[] = {cell_of(point.x, 0), cell_of(point.y, 1), cell_of(point.z, 2)};
+    std::vector<std::pair<int, uint>> order; // ring, cell: cells are numbered x first, z last
+    for (uint cell = 0; cell < in_cells.size(); ++cell) {
+        const int x = static_cast<int>(cell % g.resolution.x),
+                  y = static_cast<int>(cell / g.resolution.x % g.resolution.y),
+                  z = static_cast<int>(cell / g.resolution.x / g.resolution.y);
+        order.emplace_back(std::max({std::abs(x - c[0]), std::abs(y - c[1]), std::abs(z - c[2])}), cell);
+    }
+    std::sort(order.begin(), order.end());
+    const float max2 = std::min(k.max_radius * k.max_radius, 1e38f);
+    float farthest2 = 0;
+    uint found = 0;
+    for (const auto& [ring, cell] : order)
+        for (const uint id : in_cells[cell])
+            if (const float d2 = distance2(positions[id], point); d2 <= max2) {
+                farthest2 = std::max(farthest2, d2);
+                if (++found == k.k)
+                    return farthest2;
+            }
+    return max2;
 }
 
 std::vector<std::optional<float>> kth_by_flann(

@@ -36,9 +36,15 @@ struct brute_estimate {
 /// precision, in the order that photon_distance.glsl promises.
 std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std::size_t id, const leak_policy& leaks);
 
-/// `at_least_radius2`: the radius that the at-least-k search reports, since that depends on the order of cells.
+/// `at_least_radius2`: the squared radius of at_least_k, which depends on the order of cells.
 brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>& in_map,
     const std::vector<glm::vec4>& powers, std::size_t q, const knn_settings& k, float at_least_radius2);
+
+/// The squared radius of at_least_k, m^2, by figure 6 of the paper: the largest squared distance of the first k photons
+/// within the maximum radius, or that radius if there are fewer. Cells are visited ring by ring, and within a ring by
+/// ascending z, y, x. `in_cells`: the ids of each cell's photons, in the map's order.
+float grown_by_force(const std::vector<glm::vec4>& positions, const grid& g,
+    const std::vector<std::vector<uint>>& in_cells, const glm::vec4& point, const knn_settings& k);
 
 /// Squared distance of each point's k-th nearest photon by FLANN's tree, m^2; none where there are fewer than k.
 std::vector<std::optional<float>> kth_by_flann(

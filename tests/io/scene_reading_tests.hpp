@@ -105,8 +105,8 @@ namespace {
         EXPECT_EQ(with(R"(, "edge_correction": "none")").estimate.edges, edge_correction::none);
         EXPECT_EQ(with(R"(, "edge_correction": "polygons", "leaks": {"min_cosine": 0.5})").estimate.edges,
             edge_correction::polygons);
-        EXPECT_FALSE(with(R"(, "leaks": {})").estimate.leaks.needs_any());
-        EXPECT_FALSE(with(R"(, "leaks": {"comment": 1, "side": false})").estimate.leaks.needs_any());
+        EXPECT_FALSE(with(R"(, "leaks": {})").estimate.leaks.needs_point_normals());
+        EXPECT_FALSE(with(R"(, "leaks": {"comment": 1, "side": false})").estimate.leaks.needs_point_normals());
         const auto all = with(R"(, "leaks": {"side": true, "min_cosine": 0.25, "flattening": 4})").estimate.leaks;
         EXPECT_TRUE(all.side);
         EXPECT_EQ(all.min_cosine, 0.25f);

@@ -96,7 +96,7 @@ namespace {
         expect_refusal(refusal(12, "[10, 20, 30]", "[0, 0, 0]"), "12:69", {"a light needs a channel above 0"});
         expect_refusal(refusal(9, R"({"type": "sphere", "center": [0, 1, 0], "radius": 0.5,)",
                            R"({"type": "cone", "base": [0, 1, 0], "apex": [0, 1, 0], "radius": 0.5,)"),
-            "9:28", {"base and apex", "no axis"});
+            "9:28", {"base and apex", "must be different points"});
         expect_refusal(refusal(12, R"("point", "name": "lamp", "position": [0, 3, 0])",
                            R"("rectangle", "corner": [0,0,0], "edge_u": [1,0,0], "edge_v": [1,1,0])"),
             "12:54", {"right angles"});
@@ -203,22 +203,23 @@ namespace {
     {
         expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)",
                            R"("cylinder", "base": [0, 0, 0], "top": [0, 1e-160, 0], "radius": 0.5)"),
-            "9:3", {"less than 1e-9 m apart"});
+            "9:3", {"is smaller than 1e-9 m; check \"units\""});
         expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)",
                            R"("cone", "base": [0, 0, 0], "apex": [0, 9e-10, 0], "radius": 0.5)"),
-            "9:3", {"less than 1e-9 m apart"});
+            "9:3", {"is smaller than 1e-9 m; check \"units\""});
         expect_refusal(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)",
                            R"("paraboloid", "vertex": [0, 0, 0], "rim": [0, 9e-10, 0], "radius": 0.5)"),
-            "9:3", {"less than 1e-9 m apart"});
+            "9:3", {"is smaller than 1e-9 m; check \"units\""});
         EXPECT_EQ(refusal(9, R"("sphere", "center": [0, 1, 0], "radius": 0.5)",
                       R"("cone", "base": [0, 0, 0], "apex": [0, 1.1e-9, 0], "radius": 0.5)"),
             "");
         expect_refusal(refusal(10, "[1, 0, 0], [1, 0, 1], [0, 0, 1]", "[1e-80, 0, 0], [0, 1e-80, 0]"), "10:3",
-            {"less than 1e-9 m apart"});
+            {"is smaller than 1e-9 m; check \"units\""});
         expect_refusal(refusal(12, R"("point", "name": "lamp", "position": [0, 3, 0])",
                            R"("rectangle", "corner": [0,0,0], "edge_u": [1,0,0], "edge_v": [0,1e-70,0])"),
-            "12:3", {"less than 1e-9 m apart"});
-        expect_refusal(refusal(4, "[0, 0, 0]", "[0, 1, 5.0000000000001]"), "4:12", {"less than 1e-9 m apart"});
+            "12:3", {"is smaller than 1e-9 m; check \"units\""});
+        expect_refusal(refusal(4, "[0, 0, 0]", "[0, 1, 5.0000000000001]"), "4:12",
+            {"position and look_at are less than 1e-9 m apart; check \"units\""});
         expect_refusal(refusal(4, "\"vertical_fov\"", "\"up\": [0, 1e-160, 0], \"vertical_fov\""), "4:64",
             {"a direction shorter than 1e-9"});
         expect_refusal(

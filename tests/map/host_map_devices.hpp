@@ -21,4 +21,11 @@ B make_device()
 
 using map_devices = host_backends<::testing::Types>;
 
+template <class B>
+class host_maps : public ::testing::Test {
+protected:
+    B device_ = make_device<B>();
+};
+TYPED_TEST_SUITE(host_maps, map_devices);
+
 } // namespace photongrid::testing

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <utility>
 #include <vector>
@@ -42,15 +43,21 @@ inline std::vector<glm::vec3> some_query_points(uint seed, std::size_t n, bool t
 }
 
 using neighbours_of_point = std::vector<std::pair<float, photon_id>>;
-/// Every photon by distance and id, the specification's distances.
+/// No photon at a larger squared distance, m^2, is found.
+inline constexpr float largest_distance2 = 1e38f;
+
+/// Every photon that a map holds and that is not too far away, by distance and id, the specification's distances.
 inline neighbours_of_point by_brute_force(const std::vector<host_photon>& photons, glm::vec3 p)
 {
+    const auto finite = [](glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
     neighbours_of_point all;
-    for (uint i = 0; i < photons.size(); ++i) {
+    for (uint i = 0; finite(p) && i < photons.size(); ++i) {
         const float dx = photons[i].position.x - p.x, dy = photons[i].position.y - p.y,
                     dz = photons[i].position.z - p.z;
         const float xx = dx * dx, yy = dy * dy, zz = dz * dz, xy = xx + yy;
-        all.emplace_back(xy + zz, i);
+        const float d2 = xy + zz < std::numeric_limits<float>::min() ? 0.0f : xy + zz; // denormal: 0
+        if (finite(photons[i].position) && finite(photons[i].power) && d2 <= largest_distance2)
+            all.emplace_back(d2, i);
     }
     std::sort(all.begin(), all.end());
     return all;

@@ -3,7 +3,15 @@
 #include "../backends/on_serial.hpp"
 #include "map_file_tests.hpp"
 
+#include <atomic>
+#include <barrier>
+#include <csignal>
+#include <set>
+#include <thread>
+
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 namespace photongrid::testing {
 namespace {
@@ -42,6 +50,15 @@ namespace {
             return bytes;
         }
 
+        /// The files in the folder.
+        std::set<std::string> names() const
+        {
+            std::set<std::string> all;
+            for (const auto& entry : std::filesystem::directory_iterator(folder / ""))
+                all.insert(entry.path().filename().string());
+            return all;
+        }
+
         serial_backend b;
         temporary_folder folder;
         std::string whole;
@@ -50,12 +67,20 @@ namespace {
     TEST_F(damaged_map_files, are_detected_whichever_byte_changed)
     {
         ASSERT_EQ(complaint(whole), "");
+        // One byte of the file at a time, since writing all of it each time is slow.
+        std::fstream file(folder / "changed", std::ios::binary | std::ios::in | std::ios::out);
+        const auto put = [&](std::size_t at, char byte) {
+            file.seekp(static_cast<std::streamoff>(at));
+            file.put(byte).flush();
+        };
         for (std::size_t at = 0; at < whole.size(); ++at)
             for (const int bit : {0, 7}) {
-                auto changed = whole;
-                changed[at] = static_cast<char>(changed[at] ^ (1 << bit));
-                EXPECT_NE(complaint(changed), "") << "bit " << bit << " of byte " << at;
+                put(at, static_cast<char>(whole[at] ^ (1 << bit)));
+                EXPECT_THROW((void)load_map(b, folder / "changed"), map_file_error)
+                    << "bit " << bit << " of byte " << at;
+                put(at, whole[at]);
             }
+        EXPECT_EQ(bytes_of(folder / "changed"), whole);
     }
 
     TEST_F(damaged_map_files, keep_the_callers_note)
@@ -147,10 +172,82 @@ namespace {
         std::filesystem::create_directory(folder / "occupied");
         write_bytes(folder / "occupied/file", "x");
         EXPECT_THROW(save_map(b, map, folder / "occupied"), map_file_error);
-        EXPECT_FALSE(std::filesystem::exists(folder / "occupied.part"));
+        EXPECT_EQ(names(), (std::set<std::string>{"map", "occupied"}));
         save_map(b, map, folder / "map"); // over an older one
         EXPECT_EQ(load_map(b, folder / "map").photons.size(), 10u);
-        EXPECT_FALSE(std::filesystem::exists(folder / "map.part"));
+        EXPECT_EQ(names(), (std::set<std::string>{"map", "occupied"}));
+    }
+
+    // A file-size limit simulates a full disk.
+    TEST_F(damaged_map_files, are_not_what_a_full_disk_leaves)
+    {
+        const auto set = make_photons(distribution::uniform, 3000, {2, 2, 2}, 1);
+        const auto map = sorted_map(b, upload_photons(b, set), set.g);
+        rlimit old{};
+        ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
+        const rlimit small{.rlim_cur = 4096, .rlim_max = old.rlim_max};
+        const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+        ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+        std::string said;
+        try {
+            save_map(b, map, folder / "map");
+        } catch (const map_file_error& e) {
+            said = e.what();
+        }
+        setrlimit(RLIMIT_FSIZE, &old);
+        std::signal(SIGXFSZ, handler);
+        EXPECT_NE(said.find("cannot be written: File too large"), std::string::npos) << said;
+        EXPECT_EQ(bytes_of(folder / "map"), whole);
+        EXPECT_EQ(names(), std::set<std::string>{"map"});
+    }
+
+    /// Two threads save to one file, each its own map on its own device, while this one loads it.
+    TEST_F(damaged_map_files, are_not_what_two_writers_leave)
+    {
+        std::atomic<int> failed = 0, saving = 2;
+        std::barrier together(2);
+        std::set<std::string> expected{whole};
+        for (const std::size_t n : {3000u, 5000u}) {
+            const auto set = make_photons(distribution::uniform, n, {4, 4, 4}, 1);
+            save_map(b, sorted_map(b, upload_photons(b, set), set.g), folder / "other");
+            expected.insert(bytes_of(folder / "other"));
+        }
+        {
+            std::vector<std::jthread> threads;
+            for (const std::size_t n : {3000u, 5000u})
+                threads.emplace_back([&, n] {
+                    try {
+                        serial_backend mine;
+                        const auto set = make_photons(distribution::uniform, n, {4, 4, 4}, 1);
+                        const auto map = sorted_map(mine, upload_photons(mine, set), set.g);
+                        together.arrive_and_wait();
+                        for (int i = 0; i < 40; ++i)
+                            save_map(mine, map, folder / "map");
+                    } catch (const std::exception& e) {
+                        ADD_FAILURE() << e.what();
+                        ++failed;
+                    }
+                    --saving;
+                });
+            while (saving > 0)
+                EXPECT_EQ(expected.count(bytes_of(folder / "map")), 1u);
+        }
+        EXPECT_EQ(failed, 0);
+        EXPECT_EQ(expected.count(bytes_of(folder / "map")), 1u);
+        EXPECT_EQ(names(), (std::set<std::string>{"map", "other"}));
+    }
+
+    /// Links by the names that a save may choose lead nowhere.
+    TEST_F(damaged_map_files, are_not_written_through_links_to_come)
+    {
+        for (int i = 0; i < 500; ++i)
+            std::filesystem::create_symlink(
+                "victim", folder / ("map." + std::to_string(::getpid()) + "-" + std::to_string(i) + ".part"));
+        const auto set = make_photons(distribution::uniform, 10, {2, 2, 2}, 1);
+        save_map(b, sorted_map(b, upload_photons(b, set), set.g), folder / "map");
+        EXPECT_EQ(load_map(b, folder / "map").photons.size(), 10u);
+        EXPECT_FALSE(std::filesystem::exists(folder / "victim"));
+        EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(folder / "map")));
     }
 
 } // namespace

@@ -90,4 +90,63 @@ TEST(own_photons, come_back_by_their_places_in_the_callers_range)
     EXPECT_NEAR(b.download(e.irradiance)[0].y, mass / (M_PI * 0.025 * 0.025), 1e-5 * mass / (M_PI * 0.025 * 0.025));
 }
 
+/// The throw's message, or "".
+template <class F>
+std::string refusal(const F& f)
+{
+    try {
+        f();
+        return {};
+    } catch (const std::invalid_argument& e) {
+        return e.what();
+    }
+}
+
+/// 100 x 100 photons on a square, `apart` m from each other.
+template <class V>
+std::vector<V> square_at(glm::dvec3 corner, double apart)
+{
+    using number = std::remove_cvref_t<decltype(std::declval<V&>().x)>;
+    std::vector<V> all;
+    for (int i = 0; i < 10000; ++i)
+        all.push_back({static_cast<number>(corner.x + apart * (i % 100)),
+            static_cast<number>(corner.y + apart * (i / 100)), static_cast<number>(corner.z)});
+    return all;
+}
+
+/// Single precision rounds 5,400,000.1 to the next half.
+TEST(own_photons, doubles_that_single_precision_would_merge_are_refused)
+{
+    serial_backend b;
+    const glm::dvec3 utm(5e5, 5.4e6, 310);
+    const auto photons_of = [](const std::vector<foreign::vector>& places) {
+        std::vector<foreign::hit> all;
+        for (const auto& p : places)
+            all.push_back({0, p, {1, 1, 1}, {0, 0, -1}, {0, 0, 1}, false});
+        return all;
+    };
+    const auto places = square_at<foreign::vector>(utm, 0.1);
+    const auto said = refusal([&] { upload_photons(b, photons_of(places)); });
+    EXPECT_EQ(said.find("upload_photons: positions: single precision moves coordinates by up to 0.2"), 0u) << said;
+    EXPECT_NE(said.find("subtract an origin"), std::string::npos) << said;
+    EXPECT_EQ(refusal([&] { upload_points(b, places); }).find("upload_points: points: "), 0u);
+
+    // What loses nothing, or little, is accepted.
+    EXPECT_EQ(refusal([&] { upload_points(b, square_at<foreign::vector>(glm::dvec3(0), 0.1)); }), "");
+    EXPECT_EQ(refusal([&] { upload_points(b, square_at<foreign::vector>(utm, 0.5)); }), "") << "exact in floats";
+    EXPECT_EQ(refusal([&] { upload_points(b, square_at<foreign::vector>(utm, 5.1)); }), "") << "coarse enough";
+    EXPECT_EQ(refusal([&] { upload_points(b, square_at<glm::vec3>(utm, 0.1)); }), "") << "floats already";
+    EXPECT_EQ(refusal([&] { upload_points(b, square_at<foreign::vector>({3, 4, 5}, 1e-5)); }), "") << "a small thing";
+    EXPECT_EQ(refusal([&] { upload_points(b, std::vector<foreign::vector>(100, places[1])); }), "") << "one place";
+    EXPECT_EQ(refusal([&] { upload_normals(b, places); }), "") << "no positions";
+    auto with_strays = square_at<foreign::vector>(glm::dvec3(0), 0.1);
+    with_strays[5000] = {1e12 + 0.1, 1e300, std::numeric_limits<double>::quiet_NaN()};
+    with_strays[7000] = {1e12 + 0.1, 1e300, 0};
+    EXPECT_EQ(refusal([&] { upload_points(b, with_strays); }), "") << "strays decide nothing";
+    with_strays = places;
+    for (std::size_t i = 0; i < with_strays.size(); i += 100)
+        with_strays[i] = {0, 0, 0};
+    EXPECT_NE(refusal([&] { upload_points(b, with_strays); }), "") << "strays decide nothing";
+}
+
 } // namespace photongrid::testing

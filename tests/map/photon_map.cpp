@@ -1,9 +1,11 @@
 // photon_map and point_index, as hosts use them: against brute force, FLANN, searches for many points on serial, from
-// many threads, with doubles far from 0, and what must not compile. The file is long because each promise of the two
-// headers has its case.
+// many threads, and what must not compile.
 #include "host_map_devices.hpp"
 #include "host_photons.hpp"
-#include "photon_sets.hpp"
+#include "no_estimate_tests.hpp"
+#include "photon_generator.hpp"
+#include "single_point_tests.hpp"
+#include "vector_view_tests.hpp"
 
 #include <photongrid/photon_map.hpp>
 #include <photongrid/point_index.hpp>
@@ -18,36 +20,85 @@
 
 namespace photongrid::testing {
 
-template <class B>
-class host_maps : public ::testing::Test {
-protected:
-    B device_ = make_device<B>();
-};
-TYPED_TEST_SUITE(host_maps, map_devices);
-
-RC_GTEST_PROP(host_map_properties, nearest_are_those_of_brute_force, ())
+/// All searches of a photon_map and a point_index of these photons equal brute force.
+inline void equal_brute_force(
+    const std::vector<host_photon>& photons, const std::vector<glm::vec3>& points, uint k, float radius)
 {
-    const auto seed = *rc::gen::inRange(0u, 1000000u);
-    const auto n = *rc::gen::inRange(0u, 600u), k = *rc::gen::inRange(1u, 70u);
-    const bool ties = *rc::gen::arbitrary<bool>();
-    const auto photons = some_photons(seed, n, ties);
     serial_backend device;
     const photon_map map(device, photons, {.k = k});
-    query_scratch scratch;
-    for (const auto& p : some_query_points(seed, 20, ties)) {
-        auto expected = by_brute_force(photons, p);
-        neighbours_of_point within, nearest;
-        const float radius = 0.3f;
-        map.for_each_within(p, radius, [&](photon_id id, float d2) { within.emplace_back(d2, id); });
-        std::sort(within.begin(), within.end());
-        neighbours_of_point expected_within;
-        std::copy_if(expected.begin(), expected.end(), std::back_inserter(expected_within),
-            [&](const auto& e) { return e.first <= radius * radius; });
-        RC_ASSERT(within == expected_within);
-        expected.resize(std::min<std::size_t>(k, n));
-        map.for_each_nearest(p, k, scratch, [&](photon_id id, float d2) { nearest.emplace_back(d2, id); });
-        RC_ASSERT(nearest == expected);
+    std::vector<glm::vec3> positions;
+    auto without_power = photons; // what a point_index holds
+    for (auto& p : without_power) {
+        positions.push_back(p.position);
+        p.power = glm::vec3(1);
     }
+    const point_index index(device, positions, k);
+    const auto nearest = index.nearest(points, k, radius), within = index.within(points, radius);
+    const auto counts = index.count_within(points, radius);
+    const auto of_list = [](std::span<const point_neighbour> list) {
+        neighbours_of_point all;
+        for (const auto& n : list)
+            all.emplace_back(n.distance2, n.id);
+        return all;
+    };
+    const auto are_within = [&](neighbours_of_point all) {
+        std::erase_if(all, [&](const auto& n) { return !(radius > 0) || !(n.first <= radius * radius); });
+        return all;
+    };
+    const auto first = [&](neighbours_of_point all) {
+        all.resize(std::min<std::size_t>(k, all.size()));
+        return all;
+    };
+    query_scratch scratch;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto& p = points[i];
+        neighbours_of_point found;
+        const auto find = [&](photon_id id, float d2) { found.emplace_back(d2, id); };
+        const auto expected = by_brute_force(photons, p);
+        map.for_each_within(p, radius, find);
+        std::sort(found.begin(), found.end());
+        RC_ASSERT(found == are_within(expected));
+        found.clear();
+        map.for_each_nearest(p, k, scratch, find);
+        RC_ASSERT(found == first(expected));
+        found.clear();
+        map.for_each_nearest(p, k, radius, scratch, find);
+        RC_ASSERT(found == first(are_within(expected)));
+
+        const auto expected_points = are_within(by_brute_force(without_power, p));
+        RC_ASSERT(of_list(within[i]) == expected_points);
+        RC_ASSERT(of_list(nearest[i]) == first(expected_points));
+        RC_ASSERT(counts[i] == expected_points.size());
+    }
+}
+
+/// Photons that lose each other as RapidCheck shrinks them.
+RC_GTEST_PROP(host_map_properties, searches_equal_brute_force_for_any_distribution, ())
+{
+    const auto set = make_photons(*any_distribution(), *photon_numbers(500), {5, 5, 5});
+    std::vector<host_photon> photons;
+    for (std::size_t i = 0; i < set.positions.size(); ++i)
+        photons.push_back({glm::vec3(set.positions[i]), glm::vec3(set.powers[i]), -up, up});
+    std::vector<glm::vec3> points;
+    for (const auto& p : make_points(set, 20, 1))
+        points.emplace_back(p);
+    equal_brute_force(photons, points, *rc::gen::inRange(1u, 70u), *rc::gen::element(0.03f, 0.3f, 3.0f));
+}
+
+/// Photons and points at places that RapidCheck draws and shrinks, NaN, infinity and denormals among them.
+RC_GTEST_PROP(host_map_properties, searches_equal_brute_force_for_any_numbers, ())
+{
+    const auto positions = *rc::gen::resize(200, any_vectors(0)), powers = *rc::gen::resize(10, any_vectors(0)),
+               points = *rc::gen::resize(20, any_vectors(1));
+    std::vector<host_photon> photons;
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        photons.push_back(
+            {glm::vec3(positions[i]), powers.empty() ? glm::vec3(1) : glm::vec3(powers[i % powers.size()]), -up, up});
+    std::vector<glm::vec3> query_points;
+    for (const auto& p : points)
+        query_points.emplace_back(p);
+    equal_brute_force(photons, query_points, *rc::gen::inRange(1u, 40u),
+        *rc::gen::element(-1.0f, 0.0f, 1e-30f, 0.125f, 0.7f, 5.0f, 1e20f, std::numeric_limits<float>::infinity()));
 }
 
 /// Every filter, bias and policy: the single query has the radius and the photons of the search for many points, to the
@@ -166,31 +217,6 @@ TYPED_TEST(host_maps, any_thread_may_ask)
             EXPECT_EQ(map.irradiance(query_points).size(), query_points.size());
     }
     EXPECT_EQ(wrong, 0);
-}
-
-/// Points every 0.1 m along a line, as far from 0 as UTM's coordinates are.
-TYPED_TEST(host_maps, doubles_far_from_zero_are_told_apart)
-{
-    struct surveyed {
-        double x, y, z;
-    };
-    std::vector<surveyed> points;
-    for (int i = 0; i < 1000; ++i)
-        points.push_back({500000 + 0.1 * i, 5400000.0, 310});
-    const point_index index(this->device_, points, 5);
-    const std::vector<surveyed> query_points{points[436], points[3]};
-    const auto nearest = index.nearest(query_points, 5);
-    ASSERT_EQ(nearest.size(), 2u);
-    EXPECT_EQ(nearest[0][0], (point_neighbour{436, 0}));
-    for (std::size_t i = 1; i < 5; ++i) {
-        EXPECT_NEAR(std::sqrt(nearest[0][i].distance2), 0.1 * static_cast<double>((i + 1) / 2), 1e-4);
-        EXPECT_LE(std::abs(static_cast<int>(nearest[0][i].id) - 436), 2);
-    }
-    query_scratch scratch;
-    std::vector<photon_id> ids;
-    index.for_each_nearest(query_points[1], 3, scratch, [&](photon_id id, float) { ids.push_back(id); });
-    std::sort(ids.begin(), ids.end());
-    EXPECT_EQ(ids, (std::vector<photon_id>{2, 3, 4}));
 }
 
 TYPED_TEST(host_maps, points_that_are_not_light_agree_with_flann)

@@ -69,7 +69,7 @@ TYPED_TEST_P(algorithms, route_keeps_the_first_in_draw_order_and_all_power)
             }
             EXPECT_EQ(routed.overflowing_cells, overflowing);
         }
-    this->report("A1", "relative error of a cell's flux:", largest);
+    this->report("A1", "relative error of a cell's power:", largest);
 }
 
 TYPED_TEST_P(algorithms, route_conserves_unequal_powers_and_absent_channels)
@@ -101,7 +101,7 @@ TYPED_TEST_P(algorithms, route_conserves_unequal_powers_and_absent_channels)
         EXPECT_NEAR(after[channel], before[channel], 1e-5 * before[channel]);
         largest = std::max(largest, std::abs(after[channel] / before[channel] - 1));
     }
-    this->report("A3", "relative error of flux over 12 decades:", largest);
+    this->report("A3", "relative error of power over 12 decades:", largest);
 }
 
 TYPED_TEST_P(algorithms, route_takes_a_hundred_thousand_photons_to_one_cell)
@@ -131,7 +131,7 @@ TYPED_TEST_P(algorithms, route_takes_a_hundred_thousand_photons_to_one_cell)
         EXPECT_NEAR(after.x, n * 0x1p-20, n * 0x1p-20 * 1e-6);
         largest = std::max(largest, std::abs(after.x / (n * 0x1p-20) - 1));
     }
-    this->report("A2", "relative error of flux, 100,000 photons of a power of two in a cell:", largest);
+    this->report("A2", "relative error of power, 100,000 photons of a power of two in a cell:", largest);
 }
 
 TYPED_TEST_P(algorithms, route_conserves_power_in_crowded_cells)
@@ -159,7 +159,7 @@ TYPED_TEST_P(algorithms, route_conserves_power_in_crowded_cells)
         for (int c = 0; c < 3; ++c)
             largest = std::max(largest, std::abs(after[c] / (n * static_cast<double>(set.powers[0][c])) - 1));
         this->report("A2_" + std::to_string(n),
-            "relative error of flux, " + std::to_string(n) + " equal photons in a cell:", largest);
+            "relative error of power, " + std::to_string(n) + " equal photons in a cell:", largest);
     }
 }
 
@@ -284,6 +284,16 @@ TYPED_TEST_P(algorithms, route_throws_for_wrong_arguments)
     } catch (const backend_error& e) {
         EXPECT_NE(std::string(e.what()).find("1000000000"), std::string::npos) << e.what();
     }
+}
+
+/// A float counts to 2^24, so eight partial sums count to 2^27.
+TEST(routing, refuses_more_photons_than_it_can_count)
+{
+    ASSERT_EQ(0x1p24f + 1.0f, 0x1p24f);
+    ASSERT_NE(0x1p24f - 1.0f, 0x1p24f);
+    EXPECT_NO_THROW(detail::check_route_count(1u << 27, 8));
+    EXPECT_THROW(detail::check_route_count((1u << 27) + 1, 8), std::invalid_argument);
+    EXPECT_THROW(detail::check_route_count(nowhere, 8), std::invalid_argument);
 }
 
 // --- knn_grid_estimate

@@ -73,15 +73,15 @@ TYPED_TEST_P(algorithms, estimate_adds_up_the_power_of_its_photons)
     const auto used = b.download(estimates.used);
     double largest = 0;
     for (std::size_t q = 0; q < points.size(); ++q) {
-        glm::dvec3 flux(0);
+        glm::dvec3 power(0);
         for (std::size_t i = 0; i < set.positions.size(); ++i)
             if (distance2(points[q], set.positions[i]) <= irradiance[q].w)
-                flux += glm::dvec3(set.powers[i]);
+                power += glm::dvec3(set.powers[i]);
         const double area = M_PI * static_cast<double>(irradiance[q].w);
         for (int c = 0; c < 3; ++c) {
-            ASSERT_NEAR(irradiance[q][c], used[q].x == 0 ? 0 : flux[c] / area, 1e-5 * flux[c] / area);
-            if (flux[c] > 0)
-                largest = std::max(largest, std::abs(static_cast<double>(irradiance[q][c]) * area / flux[c] - 1));
+            ASSERT_NEAR(irradiance[q][c], used[q].x == 0 ? 0 : power[c] / area, 1e-5 * power[c] / area);
+            if (power[c] > 0)
+                largest = std::max(largest, std::abs(static_cast<double>(irradiance[q][c]) * area / power[c] - 1));
         }
         if (used[q].x < 60) {
             ASSERT_EQ(irradiance[q].w, 0.3f * 0.3f);

@@ -1,6 +1,7 @@
 // The program's commands: results and errors. The file is long because commands are many, and each case is short.
 #pragma once
 
+#include "../backend/under_test.hpp"
 #include "program_under_test.hpp"
 
 namespace photongrid {
@@ -78,11 +79,13 @@ namespace {
         EXPECT_EQ(run({"check", "none.json"}).code, 3);
     }
 
-    /// What would give a black or a white picture without a word: it is drawn, and stderr says what is odd.
-    TEST_F(program, warns_of_pictures_that_show_nothing)
-    {
-        const auto whole = nlohmann::json::parse(contents(ring));
-        const auto draw = [&](const nlohmann::json& scene, const std::vector<std::string>& more = {}) {
+    /// Variants of the ring's scene that would give a black or a white picture without a word: they are drawn, and
+    /// stderr says what is odd.
+    class program_on_odd_scenes : public program {
+    protected:
+        /// What the program says of `scene`, which it draws to a.png.
+        std::string draw(const nlohmann::json& scene, const std::vector<std::string>& more = {}) const
+        {
             std::ofstream(folder / "s.json") << scene;
             std::vector<std::string> all{"render", "s.json", "--backend", "serial", "--size", "32x24", "--photons",
                 "300", "--k", "16", "--grid", "32,1,32", "-o", "a.png"};
@@ -90,15 +93,14 @@ namespace {
             const auto e = run(all);
             EXPECT_EQ(e.code, 0) << e.err;
             return e.err;
-        };
-        const auto expect = [](const std::string& said, std::initializer_list<const char*> words) {
+        }
+        static void expect(const std::string& said, std::initializer_list<const char*> words)
+        {
             for (const auto* word : words)
                 EXPECT_NE(said.find(word), std::string::npos) << said;
-        };
-        EXPECT_EQ(draw(whole), "");
-        expect(run({"check", "s.json"}).out, {"1 light of ", " W (red + green + blue), ", " m\n"});
-
-        const auto with_power = [&](double factor) {
+        }
+        nlohmann::json with_power(double factor) const
+        {
             auto scene = whole;
             auto& power = scene["lights"][0]["power"];
             if (power.is_number())
@@ -107,7 +109,15 @@ namespace {
                 for (auto& channel : power)
                     channel = channel.get<double>() * factor;
             return scene;
-        };
+        }
+
+        const nlohmann::json whole = nlohmann::json::parse(contents(ring));
+    };
+
+    TEST_F(program_on_odd_scenes, says_which_exposure_would_fit)
+    {
+        EXPECT_EQ(draw(whole), "");
+        expect(run({"check", "s.json"}).out, {"1 light of ", " W (red + green + blue), ", " m\n"});
         const auto dark = draw(with_power(1e-4));
         expect(dark, {"the PNG is almost black at exposure 0 EV", "--exposure ", " would fit"});
         std::istringstream after(dark.substr(dark.find("--exposure ") + 11));
@@ -115,8 +125,11 @@ namespace {
         after >> fitting;
         EXPECT_EQ(draw(with_power(1e-4), {"--exposure", std::to_string(fitting)}), "");
         expect(draw(with_power(1e5)), {"the PNG is almost white"});
+    }
 
-        // Where nothing sets the exposure it fits, and a scene looks the same however bright its lights are.
+    TEST_F(program_on_odd_scenes, fits_the_exposure_where_nothing_sets_it)
+    {
+        // A scene looks the same however bright its lights are.
         std::string looks;
         for (const double factor : {1.0, 0x1p-13, 0x1p17}) {
             auto scene = with_power(factor);
@@ -130,14 +143,20 @@ namespace {
             EXPECT_EQ(draw(scene, {"--exposure", "auto", "--quiet"}), "");
             EXPECT_EQ(contents(folder / "a.png"), looks) << factor;
         }
+    }
 
+    TEST_F(program_on_odd_scenes, says_what_the_camera_misses)
+    {
         auto away = whole; // straight up
         away["camera"]["look_at"] = away["camera"]["position"];
         away["camera"]["look_at"][1] = 1 + away["camera"]["look_at"][1].get<double>();
         away["camera"]["up"] = {0, 0, 1};
         expect(draw(away), {"every pixel is black", "sees nothing that is lit"});
         expect(run({"check", "s.json"}).out, {"looks away from the whole scene"});
+    }
 
+    TEST_F(program_on_odd_scenes, names_materials_that_no_shape_has)
+    {
         auto unused = whole;
         unused["materials"]["spare"] = {{"type", "mirror"}};
         draw(unused);
@@ -150,6 +169,17 @@ namespace {
         EXPECT_EQ(e.code, 0);
         for (const auto* name : {"serial  ", "gl  ", "gl-osmesa  ", "vulkan  "})
             EXPECT_NE(("\n" + e.out).find(std::string("\n") + name), std::string::npos) << e.out;
+    }
+
+    /// Other tests of the program take whatever driver comes, so this one fails where hardware was asked for
+    /// (tests/run.sh --device hardware) and only software devices are there.
+    TEST_F(program, lists_a_hardware_device_if_asked_for)
+    {
+        if (!testing::hardware_wanted())
+            return;
+        const auto e = run({"devices"});
+        EXPECT_EQ(e.code, 0) << e.err;
+        EXPECT_NE(e.out.find("    hardware, buffers of up to "), std::string::npos) << e.out;
     }
 
     TEST_F(program, same_seed_same_bytes)

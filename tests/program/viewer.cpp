@@ -15,18 +15,17 @@ namespace {
     /// A thread that draws, and its messages.
     class drawn : public ::testing::Test {
     protected:
-        drawn()
+        explicit drawn(renderer::milliseconds step_time = render_thread::usual_step_time)
             : thread(
                 make_renderer, {.backend = "serial"}, [this] { notify(); },
-                [this](const std::string& line) {
-                    const std::lock_guard lock(guard);
-                    lines.push_back(line);
-                })
+                [this](const std::string& line) { notify(line); }, step_time)
         {
         }
-        void notify()
+        void notify(const std::string& line = {})
         {
             const std::lock_guard lock(guard);
+            if (!line.empty())
+                lines.push_back(line);
             ++news;
             came.notify_all();
         }
@@ -34,13 +33,23 @@ namespace {
         template <class Good>
         bool wait(Good good)
         {
-            std::unique_lock lock(guard);
-            return came.wait_for(lock, std::chrono::minutes(1), [&] {
-                lock.unlock();
-                const bool yes = good(thread.report());
-                lock.lock();
-                return yes;
-            });
+            const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+            for (int known = -1;;) {
+                {
+                    std::unique_lock lock(guard);
+                    if (!came.wait_until(lock, end, [&] { return news != known; }))
+                        return false;
+                    known = news;
+                }
+                if (good(thread.report()))
+                    return true;
+            }
+        }
+        /// Waits until the drawing has begun.
+        bool begun_to_draw(std::uint64_t request)
+        {
+            const auto line = "\"event\": \"start\", \"request\": " + std::to_string(request) + ",";
+            return wait([&](const render_report&) { return count(line) > 0; });
         }
         bool whole(std::uint64_t request)
         {
@@ -60,6 +69,16 @@ namespace {
         std::vector<std::string> lines;
         int news = 0;
         render_thread thread; // last: its thread ends first
+    };
+    /// A step ends with the picture, unless it is cancelled.
+    class drawn_without_time_limit : public drawn {
+    protected:
+        drawn_without_time_limit() : drawn(renderer::no_limit) {}
+    };
+    /// Every picture is shown.
+    class drawn_step_by_step : public drawn {
+    protected:
+        drawn_step_by_step() : drawn(renderer::milliseconds(0)) {}
     };
 
     image rendered(const version& v) { return serial_picture(v.scene, v.settings); }
@@ -109,6 +128,52 @@ namespace {
             }
         EXPECT_EQ(starts, 9);
         EXPECT_LE(largest, 200);
+    }
+
+    /// A change cancels a step that would go on for seconds.
+    TEST_F(drawn_without_time_limit, a_change_ends_the_step)
+    {
+        auto v = begun(small_cornell());
+        v.settings.view.spp = 100;
+        for (int i = 0; i < 4; ++i) {
+            v.settings.seed = static_cast<std::uint32_t>(i);
+            ASSERT_TRUE(begun_to_draw(thread.show(v, false)));
+            ASSERT_EQ(count("\"whole\""), 0u) << "a picture was drawn to its end after a change";
+        }
+        v.settings.view.spp = 1;
+        ASSERT_TRUE(whole(thread.show(v, false)));
+        EXPECT_EQ(thread.newer_than(0)->picture.pixels, rendered(v).pixels);
+        EXPECT_EQ(count("\"whole\""), 1u);
+        EXPECT_EQ(count("\"waited_ms\": "), 5u);
+    }
+
+    /// The paper's running estimate (2.4, figure 8), on a backend whose own search shows it and on one whose does not.
+    TEST_F(drawn_step_by_step, the_papers_search_is_shown_while_it_runs)
+    {
+        auto v = begun(small_cornell());
+        v.settings = as_paper(v.settings);
+        v.settings.output.width = v.settings.output.height = 24;
+        for (const auto* backend : {"serial", "cpu"}) {
+            v.backend = backend;
+            const auto request = thread.show(v, false);
+            ASSERT_TRUE(whole(request));
+            if (thread.report().error.find("built without it") != std::string::npos)
+                continue;
+            ASSERT_EQ(thread.report().error, "");
+            const auto shown = "\"event\": \"picture\", \"request\": " + std::to_string(request) + ",";
+            const auto stage = [&](const std::string& name) {
+                const std::lock_guard lock(guard);
+                return std::count_if(lines.begin(), lines.end(), [&](const std::string& l) {
+                    return l.find(shown) != std::string::npos
+                        && l.find("\"stage\": \"" + name + "\"") != std::string::npos;
+                });
+            };
+            EXPECT_EQ(stage("preview"), 0) << backend;
+            EXPECT_GE(stage("radiance_estimate"), 3) << backend << " shows its only sample while it is searched for";
+            EXPECT_EQ(stage("finished"), 1) << backend;
+            EXPECT_EQ(thread.newer_than(0)->picture.pixels,
+                render(*make_renderer({.backend = backend}), v.scene, v.settings).picture.pixels);
+        }
     }
 
     TEST_F(drawn, while_things_move_every_request_that_is_begun_is_seen)

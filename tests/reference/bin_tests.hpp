@@ -16,18 +16,23 @@ namespace {
         return sum;
     }
 
+    template <class Round>
+    reference::ring_bins rings(const Round& x, double size)
+    {
+        return reference::ring_bins(reference::profile_of(x), size);
+    }
+
     TEST(reference, bins_cover_surfaces_exactly)
     {
         using reference::plane_bins;
-        using reference::ring_bins;
         const dvec3 from(0.1, 0.2, 0.3), to(0.5, -0.4, 1.2);
         const double h = glm::length(to - from), r = 0.7;
         for (const double size : {3.0, 0.2, 0.013}) {
-            EXPECT_NEAR(whole_area(ring_bins(sphere{from, r, 0}, size)), 4 * M_PI * r * r, 1e-11);
-            EXPECT_NEAR(whole_area(ring_bins(disk{from, to, r, 0}, size)), M_PI * r * r, 1e-11);
-            EXPECT_NEAR(whole_area(ring_bins(cylinder{from, to, r, 0}, size)), 2 * M_PI * r * h, 1e-11);
-            EXPECT_NEAR(whole_area(ring_bins(cone{from, to, r, 0}, size)), M_PI * r * std::hypot(r, h), 1e-11);
-            EXPECT_NEAR(whole_area(ring_bins(paraboloid{from, to, r, 0}, size)),
+            EXPECT_NEAR(whole_area(rings(sphere{from, r, 0}, size)), 4 * M_PI * r * r, 1e-11);
+            EXPECT_NEAR(whole_area(rings(disk{from, to, r, 0}, size)), M_PI * r * r, 1e-11);
+            EXPECT_NEAR(whole_area(rings(cylinder{from, to, r, 0}, size)), 2 * M_PI * r * h, 1e-11);
+            EXPECT_NEAR(whole_area(rings(cone{from, to, r, 0}, size)), M_PI * r * std::hypot(r, h), 1e-11);
+            EXPECT_NEAR(whole_area(rings(paraboloid{from, to, r, 0}, size)),
                 M_PI * r / (6 * h * h) * (std::pow(r * r + 4 * h * h, 1.5) - r * r * r), 1e-11);
             for (std::size_t corners = 3; corners < 9; ++corners) {
                 polygon p;
@@ -40,7 +45,7 @@ namespace {
                 EXPECT_NEAR(whole_area(plane_bins(p, size)), glm::length(area_vector(p)), 1e-11);
             }
         }
-        EXPECT_NEAR(whole_area(ring_bins(paraboloid{from, from + dvec3(0, 1e-9, 0), r, 0}, 0.1)), M_PI * r * r,
+        EXPECT_NEAR(whole_area(rings(paraboloid{from, from + dvec3(0, 1e-9, 0), r, 0}, 0.1)), M_PI * r * r,
             1e-11); // nearly flat
     }
 
@@ -73,19 +78,19 @@ namespace {
             const double phi = 2 * M_PI * unit(random);
             return dvec3(radius * std::cos(phi), radius * std::sin(phi), z);
         };
-        expect_even("sphere", reference::ring_bins(sphere{{0, 0, 0}, 1, 0}, 0.2), [&] {
+        expect_even("sphere", rings(sphere{{0, 0, 0}, 1, 0}, 0.2), [&] {
             const double z = 2 * unit(random) - 1;
             return round_z(std::sqrt(1 - z * z), z);
         });
-        expect_even("disk", reference::ring_bins(disk{{0, 0, 0}, {0, 0, 1}, 1, 0}, 0.1),
-            [&] { return round_z(std::sqrt(unit(random)), 0); });
-        expect_even("cylinder", reference::ring_bins(cylinder{{0, 0, 0}, {0, 0, 2}, 1, 0}, 0.2),
-            [&] { return round_z(1, 2 * unit(random)); });
-        expect_even("cone", reference::ring_bins(cone{{0, 0, 0}, {0, 0, 2}, 1, 0}, 0.1), [&] {
+        expect_even(
+            "disk", rings(disk{{0, 0, 0}, {0, 0, 1}, 1, 0}, 0.1), [&] { return round_z(std::sqrt(unit(random)), 0); });
+        expect_even(
+            "cylinder", rings(cylinder{{0, 0, 0}, {0, 0, 2}, 1, 0}, 0.2), [&] { return round_z(1, 2 * unit(random)); });
+        expect_even("cone", rings(cone{{0, 0, 0}, {0, 0, 2}, 1, 0}, 0.1), [&] {
             const double x = std::sqrt(unit(random));
             return round_z(x, 2 * (1 - x));
         });
-        expect_even("paraboloid", reference::ring_bins(paraboloid{{0, 0, 0}, {0, 0, 2}, 1, 0}, 0.1), [&] {
+        expect_even("paraboloid", rings(paraboloid{{0, 0, 0}, {0, 0, 2}, 1, 0}, 0.1), [&] {
             for (;;) { // rejection by the area element rho sqrt(1 + 16 rho^2)
                 const double rho = unit(random);
                 if (unit(random) * std::sqrt(17.0) < rho * std::sqrt(1 + 16 * rho * rho))
@@ -105,8 +110,8 @@ namespace {
 
     TEST(reference, bins_that_are_too_many_are_refused)
     {
-        EXPECT_THROW(reference::ring_bins(sphere{{0, 0, 0}, 1, 0}, 1e-9), std::invalid_argument);
-        EXPECT_THROW(reference::ring_bins(paraboloid{{0, 0, 0}, {0, 0, 1e6}, 1, 0}, 1e-3), std::invalid_argument);
+        EXPECT_THROW(rings(sphere{{0, 0, 0}, 1, 0}, 1e-9), std::invalid_argument);
+        EXPECT_THROW(rings(paraboloid{{0, 0, 0}, {0, 0, 1e6}, 1, 0}, 1e-3), std::invalid_argument);
         EXPECT_THROW(
             reference::plane_bins(rectangle({0, 0, 0}, {1e9, 0, 0}, {0, 1e9, 0}, 0), 1e-3), std::invalid_argument);
     }

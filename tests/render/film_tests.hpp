@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -120,6 +121,54 @@ TEST(film, pixels_that_are_not_finite_are_black_in_their_pass_and_counted)
     }
 }
 
+/// Light of both signs may cancel in the sum of a pixel's channels, each far too bright to be added.
+TEST(film, channels_that_are_too_bright_make_a_pixel_invalid)
+{
+    film f(2, 1, 1, false);
+    auto p = random_pass(1, 2, false);
+    p.pixels[0] = {3e38f, -3e38f, 1, 0};
+    f.add(0, p);
+    const auto q = random_pass(2, 2, false);
+    f.add(1, q);
+    const auto developed = f.picture();
+    EXPECT_EQ(developed.invalid_pixels, 1u);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_EQ(developed.picture.pixels[0][c], q.pixels[0][c] / 2);
+        EXPECT_NEAR(developed.picture.pixels[1][c], (p.pixels[1][c] + q.pixels[1][c]) / 2, 1e-6f * q.pixels[1][c]);
+    }
+}
+
+/// A pass whose counts or radii are NaN, infinite or huge has not searched there; an error that is, is left out.
+TEST(film, layers_that_are_not_finite_are_left_out_of_their_pass)
+{
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (const float bad : {std::nanf(""), infinity, -infinity, 3e38f})
+        for (int member = 0; member < 4; ++member)
+            for (std::uint32_t of = 0; of < 3; ++of) { // the pass; the first two become sums in another way
+                film f(2, 1, 1, true);
+                double searches = 0, count = 0, radius = 0, error = 0; // of pixel 1
+                for (std::uint32_t pass = 0; pass < 3; ++pass) {
+                    auto p = random_pass(pass, 2, true);
+                    if (pass == of)
+                        (member == 2 ? p.errors[1].x : p.searches[1][member]) = bad; // searches.z is not a layer
+                    if (pass != of || member == 2) {
+                        searches += static_cast<double>(p.searches[1].w);
+                        count += static_cast<double>(p.searches[1].x);
+                        radius += static_cast<double>(p.searches[1].y);
+                    }
+                    if (pass != of)
+                        error += static_cast<double>(p.errors[1].x);
+                    f.add(pass, p);
+                }
+                SCOPED_TRACE(testing::Message() << bad << " in member " << member << " of pass " << of);
+                const auto& layers = f.picture().picture.layers;
+                const auto near = [](float value, double expected) { EXPECT_NEAR(value, expected, 1e-6 * expected); };
+                near(layers.count[1], count / searches);
+                near(layers.radius[1], radius / searches);
+                near(layers.relative_error[1], error / searches / std::sqrt(3.0));
+            }
+}
+
 // Threads with a film each: whatever their shares, the films add up to the bytes of one that has all passes.
 TEST(film, films_of_threads_add_up_to_the_same_bytes)
 {
@@ -203,6 +252,20 @@ TEST(film, goes_through_bytes)
             EXPECT_THROW(film::from_bytes(std::string_view(bytes).substr(0, size)), std::invalid_argument) << size;
         EXPECT_THROW(film::from_bytes(bytes + "x"), std::invalid_argument);
     }
+}
+
+TEST(film, refuses_a_header_that_no_film_has)
+{
+    film f(4, 3, 0.5, false);
+    const auto with = [&](std::size_t at, auto value) {
+        auto bytes = f.bytes();
+        std::memcpy(bytes.data() + at, &value, sizeof value);
+        return bytes;
+    };
+    EXPECT_NO_THROW(film::from_bytes(with(0, 16384u)));
+    for (const auto& bytes : {with(0, 16385u), with(4, ~0u), with(8, 2u), with(12, 65537u), with(16, 0.0),
+             with(16, std::nan("")), with(16, std::numeric_limits<double>::infinity())})
+        EXPECT_THROW(film::from_bytes(bytes), std::invalid_argument);
 }
 
 } // namespace

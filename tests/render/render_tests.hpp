@@ -29,6 +29,23 @@ TYPED_TEST_P(pictures, a_moved_camera_runs_no_photon_pass)
     EXPECT_GT(relative_mse(first, second), 1e-3);
 }
 
+TYPED_TEST_P(pictures, a_view_without_pixels_or_direction_is_refused)
+{
+    auto& b = this->b();
+    auto s = small_cornell();
+    s.render.map.photons = 100;
+    const auto built = build_map(b, s, s.render);
+    auto narrow = s.render, flat = s.render;
+    narrow.output.width = 0;
+    flat.output.height = 0;
+    auto blind = s.camera;
+    blind.look_at = blind.position;
+    EXPECT_THROW((void)draw(b, built, s.camera, narrow), std::invalid_argument);
+    EXPECT_THROW((void)draw(b, built, s.camera, flat), std::invalid_argument);
+    EXPECT_THROW((void)draw(b, built, blind, s.render), std::invalid_argument);
+    EXPECT_EQ(draw(b, built, s.camera, s.render).picture.pixels.size(), 64u * 64u);
+}
+
 TYPED_TEST_P(pictures, running_estimates_are_shown_and_a_render_can_be_cancelled)
 {
     auto& b = this->b();
@@ -59,7 +76,8 @@ REGISTER_TYPED_TEST_SUITE_P(pictures, a_closed_diffuse_sphere_has_the_known_radi
     every_photon_and_every_watt_is_accounted_for, paths_that_overflow_are_counted_as_invalid,
     power_balances_per_channel, a_photon_takes_the_memory_that_is_stated, long_statistics_of_a_picture_equal_serials,
     cut_off_paths_are_counted, equal_the_serial_backends, sorting_and_routing_agree, a_moved_camera_runs_no_photon_pass,
-    the_same_seed_gives_the_same_bytes, running_estimates_are_shown_and_a_render_can_be_cancelled,
+    a_view_without_pixels_or_direction_is_refused, the_same_seed_gives_the_same_bytes,
+    running_estimates_are_shown_and_a_render_can_be_cancelled,
     a_ball_of_each_material_amid_lamps_has_the_known_radiance, a_floor_under_a_bulb_has_the_known_radiance,
     photons_have_the_power_that_their_surfaces_left_them, eye_rays_of_a_pixel_share_out_the_choices_in_glass,
     direct_light_alone_traces_no_photon, scenes_beyond_the_loop_limit_are_refused,

@@ -50,29 +50,45 @@ TYPED_TEST_P(progressive, a_picture_goes_on_from_its_state)
     EXPECT_THROW(other.step(), std::invalid_argument);
 }
 
-TYPED_TEST_P(progressive, bands_of_rows_make_the_same_picture)
+/// A scene of 48 x 40 pixels in bands of 9, 9, 9, 9 and 4 rows.
+inline scene in_bands(scene s)
 {
-    using ms = typename TestFixture::ms;
-    auto s = this->small_scene();
     s.render.view.spp = 2;
     s.render.output.passes = 2;
     s.render.output.aov = true;
-    const auto expected = render(this->b(), s, s.render);
-    auto in_bands = s.render;
-    in_bands.output.band = 48 * 9 + 5;            // of 40 rows: 9, 9, 9, 9, 4
-    const auto same = [&](const image& picture) { // cpu adds up in another order
-        EXPECT_LE(relative_mse(picture, expected.picture), 1e-12);
-        EXPECT_EQ(picture.layers.count, expected.picture.layers.count);
-    };
-    const auto drawn = render(this->b(), s, in_bands);
-    same(drawn.picture);
+    s.render.output.band = 48 * 9 + 5;
+    return s;
+}
+/// The same picture, but for the order in which cpu adds up.
+inline void expect_same_light(const image& picture, const image& expected)
+{
+    EXPECT_LE(relative_mse(picture, expected), 1e-12);
+    EXPECT_EQ(picture.layers.count, expected.layers.count);
+}
+
+TYPED_TEST_P(progressive, bands_of_rows_make_the_same_picture)
+{
+    const auto s = in_bands(this->small_scene());
+    auto at_once = s.render;
+    at_once.output.band = 48 * 40;
+    const auto expected = render(this->b(), s, at_once);
+    const auto drawn = render(this->b(), s, s.render);
+    expect_same_light(drawn.picture, expected.picture);
     EXPECT_EQ(drawn.stats.estimate.points, expected.stats.estimate.points);
     EXPECT_NEAR(drawn.stats.estimate.mean_radius, expected.stats.estimate.mean_radius, 1e-9);
     EXPECT_EQ(drawn.stats.photons.emitted, expected.stats.photons.emitted);
-
-    // Shown band by band, black or a preview below.
     typename TestFixture::loop drawing(this->b());
-    drawing.start(s, in_bands, {.enabled = false});
+    drawing.start(s, s.render); // with previews
+    drawing.step();
+    expect_same_light(drawing.picture(), expected.picture);
+}
+
+TYPED_TEST_P(progressive, bands_of_rows_are_shown_from_the_top)
+{
+    using ms = typename TestFixture::ms;
+    const auto s = in_bands(this->small_scene());
+    typename TestFixture::loop drawing(this->b());
+    drawing.start(s, s.render, {.enabled = false}); // black below
     for (uint band = 1; band < 5; ++band) {
         while (drawing.pictures() < band)
             drawing.step(ms(0));
@@ -83,18 +99,19 @@ TYPED_TEST_P(progressive, bands_of_rows_make_the_same_picture)
         EXPECT_LE(drawing.progress().unfinished, 48u * (40 - 9 * band));
     }
     drawing.step();
-    same(drawing.picture());
-    drawing.start(s, in_bands); // with previews
-    drawing.step();
-    same(drawing.picture());
+    expect_same_light(drawing.picture(), this->whole(s, s.render));
+}
 
-    // From states in the middle, in another process as it were.
+TYPED_TEST_P(progressive, bands_of_rows_go_on_from_their_states)
+{
+    using ms = typename TestFixture::ms;
+    const auto s = in_bands(this->small_scene());
     render_state state;
     int lives = 0;
     for (bool finished = false; !finished; ++lives) {
         ASSERT_LT(lives, 100);
         typename TestFixture::loop next(this->b());
-        next.start(s, in_bands);
+        next.start(s, s.render);
         if (!state.empty())
             next.resume(state);
         const auto goal = state;
@@ -107,14 +124,40 @@ TYPED_TEST_P(progressive, bands_of_rows_make_the_same_picture)
         }
         finished = next.finished();
         if (finished)
-            same(next.picture());
+            expect_same_light(next.picture(), this->whole(s, s.render));
     }
     EXPECT_GE(lives, 10);
-    auto other_bands = in_bands;
+    auto other_bands = s.render;
+    other_bands.output.aov = false;
     other_bands.output.band = 48 * 7;
     typename TestFixture::loop other(this->b());
     other.start(s, other_bands);
     EXPECT_THROW(other.resume({{}, {0, 9, 0, {std::vector<glm::vec4>(48 * 9), {}, {}}, {}}}), std::invalid_argument);
+}
+
+/// A finished picture is shown; one with passes that the picture does not have, or with more, would never end.
+TYPED_TEST_P(progressive, a_state_of_more_passes_is_refused)
+{
+    auto s = this->small_scene();
+    s.render.output.passes = 3;
+    typename TestFixture::loop drawing(this->b());
+    EXPECT_THROW(drawing.resume({}), std::logic_error) << "nothing was started";
+    drawing.start(s, s.render, {.enabled = false});
+    drawing.step();
+    const auto three = drawing.state();
+    auto fewer = s.render;
+    fewer.output.passes = 2;
+    typename TestFixture::loop other(this->b());
+    other.start(s, fewer);
+    EXPECT_THROW(other.resume(three), std::invalid_argument);
+    EXPECT_FALSE(other.finished());
+    EXPECT_TRUE(other.step()) << "the refused state left no trace";
+    EXPECT_TRUE(same_bytes(other.picture(), this->whole(s, fewer)));
+    other.start(s, s.render);
+    other.resume(three);
+    EXPECT_TRUE(other.finished());
+    EXPECT_EQ(other.pictures(), 1u);
+    EXPECT_TRUE(same_bytes(other.picture(), drawing.picture()));
 }
 
 TYPED_TEST_P(progressive, passes_add_up_in_any_order)

@@ -43,16 +43,34 @@ inline double reported_over_spread(scene s, const render_settings& settings, int
     return ratios / white;
 }
 
-TEST(standard_errors, long_are_the_spread_of_traced_maps)
+/// A close view of a floor that is lit indirectly: the photons and eye rays of a pixel see the same light.
+inline scene close_floor()
 {
     auto s = small_cornell();
-    s.spheres.clear();                                         // their caustics are few photons of much power
-    s.camera = {{0.5, 0.9, 0.5}, {0.4, 0, 0.6}, {0, 0, 1}, 5}; // close, so that eye rays of a pixel see the same light
+    s.spheres.clear(); // their caustics are few photons of much power
+    s.camera = {{0.5, 0.9, 0.5}, {0.4, 0, 0.6}, {0, 0, 1}, 5};
+    s.render.map.photons = 3000;
+    s.render.estimate.k = 50;
+    s.render.estimate.max_radius = 1;
+    s.render.output.width = s.render.output.height = 12;
+    return s;
+}
+
+TEST(standard_errors, are_about_the_spread_of_traced_maps)
+{
+    // The spread of n pictures is known to 1 / sqrt(2 n) of itself. The pixels' estimates share photons, so that their
+    // mean is hardly better known than one of them.
+    constexpr int seeds = 60;
+    const auto s = close_floor();
+    const double ratio = reported_over_spread(s, s.render, seeds);
+    std::printf("sorted, %d seeds: reported over spread %.3f\n", seeds, ratio);
+    EXPECT_NEAR(ratio, 1, 4 / std::sqrt(2.0 * seeds));
+}
+
+TEST(standard_errors, long_are_the_spread_of_traced_maps)
+{
+    const auto s = close_floor();
     auto settings = s.render;
-    settings.map.photons = 3000;
-    settings.estimate.k = 50;
-    settings.estimate.max_radius = 1;
-    settings.output.width = settings.output.height = 12;
     const auto check = [&](const char* what) {
         const double ratio = reported_over_spread(s, settings, 200);
         std::printf("%s: reported over spread %.3f\n", what, ratio);

@@ -1,5 +1,6 @@
-// Every number of a scene, made bad one at a time: the scene is refused, and the message names the part. And every
-// setting just outside of its range. The file is long because it lists all of them.
+// Every number of a scene, made bad one at a time: the scene is refused, and the message names the part. Every check of
+// the headers is provoked. And every setting just outside of its range. The file is long because it lists all of them.
+#include "limit_tests.hpp"
 #include "test_scenes.hpp"
 
 #include <photongrid/scene/setting_table.hpp>
@@ -7,8 +8,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -120,50 +126,155 @@ namespace {
         EXPECT_EQ(powers, 6);
     }
 
-    TEST(bad_scenes, directions_and_edges_have_a_length)
+    /// A change that makes a scene bad, and what the message says.
+    struct spoiled {
+        const char* what;
+        std::function<void(scene&)> spoil;
+        const char* part; ///< which the message begins with
+    };
+    std::vector<spoiled> spoiled_scenes()
     {
-        auto s = all_shapes();
-        const auto expect = [&](const char* what, const std::function<void(scene&)>& spoil, const char* part) {
-            auto bad = s;
-            spoil(bad);
-            const auto said = refusal_of(bad);
-            EXPECT_NE(said.find(part), std::string::npos) << what << ": " << said;
+        return {
+            {"lamp without area", [](scene& x) { x.rectangle_lights[0].edge_u = dvec3(0); }, "rectangle_lights[0]"},
+            {"lamp with one direction", [](scene& x) { x.rectangle_lights[0].edge_v = x.rectangle_lights[0].edge_u; },
+                "rectangle_lights[0]"},
+            {"skew lamp", [](scene& x) { x.rectangle_lights[0].edge_v.x += 0.01; }, "rectangle_lights[0]"},
+            {"dark lamp", [](scene& x) { x.rectangle_lights[0].power = dvec3(0); }, "rectangle_lights[0]"},
+            {"dark bulb", [](scene& x) { x.point_lights[0].power = dvec3(0); }, "point_lights[0]"},
+            {"no light",
+                [](scene& x) {
+                    x.point_lights.clear();
+                    x.rectangle_lights.clear();
+                },
+                "lights:"},
+            {"disk without a normal", [](scene& x) { x.disks[0].normal = dvec3(0); }, "disks[0]"},
+            {"polygon of two corners", [](scene& x) { x.polygons[1].vertices.pop_back(); }, "polygons[1]"},
+            {"polygon that is not flat", [](scene& x) { x.polygons[0].vertices[2].y += 0.5; }, "polygons[0]"},
+            {"polygon without area",
+                [](scene& x) {
+                    x.polygons[1].vertices = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}};
+                },
+                "polygons[1]"},
+            {"polygon with a dent",
+                [](scene& x) {
+                    x.polygons[0].vertices[2] = {-1, 0, -1};
+                },
+                "polygons[0]"},
+            {"five-pointed star",
+                [](scene& x) {
+                    x.polygons[1].vertices.clear();
+                    for (int i = 0; i < 5; ++i)
+                        x.polygons[1].vertices.emplace_back(std::cos(0.8 * M_PI * i), 0, std::sin(0.8 * M_PI * i));
+                },
+                "polygons[1].vertices"},
+            {"material that is not there", [](scene& x) { x.cones[0].material = 99; }, "cones[0].material"},
+            {"material of no kind", [](scene& x) { x.materials[1].kind = static_cast<material_kind>(4); },
+                "materials[1].kind"},
+            {"material of a negative kind", [](scene& x) { x.materials[1].kind = static_cast<material_kind>(-1); },
+                "materials[1].kind"},
+            {"reflectance", [](scene& x) { x.materials[1].reflectance.y = 2; }, "materials[1].reflectance"},
+            {"index of refraction", [](scene& x) { x.materials[2].index_of_refraction = 0.5; },
+                "materials[2].index_of_refraction"},
+            {"no axis", [](scene& x) { x.cylinders[0].top = x.cylinders[0].base; }, "cylinders[0].base and top"},
+            {"no axis", [](scene& x) { x.cones[0].apex = x.cones[0].base; }, "cones[0].base and apex"},
+            {"no axis", [](scene& x) { x.paraboloids[0].rim = x.paraboloids[0].vertex; },
+                "paraboloids[0].vertex and rim"},
+            {"flat box", [](scene& x) { x.boxes[0].edge_w = dvec3(0); }, "boxes[0]"},
+            {"skew box", [](scene& x) { x.boxes[0].edge_w = x.boxes[0].edge_u; }, "boxes[0]"},
+            {"glass in glass",
+                [](scene& x) {
+                    x.spheres[1] = x.spheres[0];
+                    x.spheres[1].center.x += 0.1;
+                },
+                "spheres[1]"},
+            {"camera nowhere", [](scene& x) { x.camera.position.x = nan; }, "position"},
+            {"camera at its target", [](scene& x) { x.camera.look_at = x.camera.position; }, "position and look_at"},
+            {"camera without an up", [](scene& x) { x.camera.up = dvec3(0); }, "up"},
+            {"up along the view", [](scene& x) { x.camera.up = x.camera.look_at - x.camera.position; }, "up"},
+            {"up against the view", [](scene& x) { x.camera.up = 3.0 * (x.camera.position - x.camera.look_at); }, "up"},
+            {"field of view", [](scene& x) { x.camera.vertical_fov = 179; }, "vertical_fov"},
+            {"no photons", [](scene& x) { x.render.map.photons = 0; }, "photons"},
+            {"no radius", [](scene& x) { x.render.estimate.max_radius = 0; }, "max_radius"},
+            {"builder", [](scene& x) { x.render.map.builder = static_cast<map_builder>(9); }, "map"},
+            {"one axis without cells",
+                [](scene& x) {
+                    x.render.map.grid = {0, 1, 1};
+                },
+                "grid"},
+            {"axis of too many cells",
+                [](scene& x) {
+                    x.render.map.grid = {(1u << 20) + 1, 1, 1};
+                },
+                "grid"},
+            {"too many cells",
+                [](scene& x) {
+                    x.render.map.grid = {1u << 20, 1u << 20, 1};
+                },
+                "grid"},
+            {"no pixels", [](scene& x) { x.render.output.width = 0; }, "size"},
+            {"exposure", [](scene& x) { x.render.output.exposure = 65; }, "exposure"},
+            {"edge correction alone", [](scene& x) { x.render.estimate.edges = edge_correction::polygons; },
+                "edge_correction"},
+            {"settings for the paper's method", [](scene& x) { x.paper.emplace().view.spp = 0; }, "spp"},
         };
-        expect(
-            "lamp without area", [](scene& x) { x.rectangle_lights[0].edge_u = dvec3(0); }, "rectangle_lights[0]");
-        expect(
-            "lamp with one direction", [](scene& x) { x.rectangle_lights[0].edge_v = x.rectangle_lights[0].edge_u; },
-            "rectangle_lights[0]");
-        expect(
-            "skew lamp", [](scene& x) { x.rectangle_lights[0].edge_v.x += 0.01; }, "rectangle_lights[0]");
-        expect(
-            "dark lamp", [](scene& x) { x.rectangle_lights[0].power = dvec3(0); }, "rectangle_lights[0]");
-        expect(
-            "dark bulb", [](scene& x) { x.point_lights[0].power = dvec3(0); }, "point_lights[0]");
-        expect(
-            "disk without a normal", [](scene& x) { x.disks[0].normal = dvec3(0); }, "disks[0]");
-        expect(
-            "polygon of two corners", [](scene& x) { x.polygons[1].vertices.pop_back(); }, "polygons[1]");
-        expect(
-            "material that is not there", [](scene& x) { x.cones[0].material = 99; }, "cones[0].material");
-        expect(
-            "no axis", [](scene& x) { x.cylinders[0].top = x.cylinders[0].base; }, "cylinders[0]");
-        expect(
-            "no axis", [](scene& x) { x.cones[0].apex = x.cones[0].base; }, "cones[0]");
-        expect(
-            "no axis", [](scene& x) { x.paraboloids[0].rim = x.paraboloids[0].vertex; }, "paraboloids[0]");
-        expect(
-            "flat box", [](scene& x) { x.boxes[0].edge_w = dvec3(0); }, "boxes[0]");
-        expect(
-            "skew box", [](scene& x) { x.boxes[0].edge_w = x.boxes[0].edge_u; }, "boxes[0]");
-        expect(
-            "polygon that is not flat", [](scene& x) { x.polygons[0].vertices[2].y += 0.5; }, "polygons[0]");
-        expect(
-            "polygon without area",
-            [](scene& x) {
-                x.polygons[1].vertices = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}};
-            },
-            "polygons[1]");
+    }
+
+    TEST(bad_scenes, spoiled_ones_are_refused)
+    {
+        const auto good = all_shapes();
+        for (const auto& each : spoiled_scenes()) {
+            auto bad = good;
+            each.spoil(bad);
+            const auto said = refusal_of(bad);
+            EXPECT_EQ(said.find(each.part), 0u) << each.what << ": " << said;
+        }
+    }
+
+    /// The text of each check in a header: the longest literal of each call of require, and of each throw.
+    std::vector<std::string> checks_in(const std::string& header)
+    {
+        static const std::regex check(R"x((\brequire\(|throw std::invalid_argument\()("[^"]*"|[^";])*;)x"),
+            literal(R"x("([^"]*)")x");
+        std::vector<std::string> all;
+        for (std::sregex_iterator i(header.begin(), header.end(), check), none; i != none; ++i) {
+            const std::string call = i->str();
+            std::string longest;
+            for (std::sregex_iterator l(call.begin(), call.end(), literal); l != none; ++l)
+                if (const auto text = (*l)[1].str(); text.size() > longest.size())
+                    longest = text;
+            if (longest.size() > 2) // else it passes a message on
+                all.push_back(longest);
+        }
+        return all;
+    }
+
+    TEST(bad_scenes, every_check_of_the_headers_refuses_one)
+    {
+        const auto good = all_shapes();
+        std::string said;
+        for (const auto& each : spoiled_scenes()) {
+            auto bad = good;
+            each.spoil(bad);
+            said += refusal_of(bad) + '\n';
+        }
+        auto numbered = good;
+        for (const auto& n : numbers_of(numbered))
+            for (const double bad : {nan, -1.0}) {
+                auto s = good;
+                n.in(s) = bad;
+                said += refusal_of(s) + '\n';
+            }
+        std::size_t checks = 0;
+        for (const auto& file :
+            std::filesystem::directory_iterator(PHOTONGRID_SCENES "/../../include/photongrid/scene")) {
+            std::ifstream in(file.path());
+            for (const auto& text : checks_in({std::istreambuf_iterator<char>(in), {}})) {
+                ++checks;
+                EXPECT_NE(said.find(text), std::string::npos)
+                    << file.path().filename() << ": no scene is refused with \"" << text << "\"";
+            }
+        }
+        EXPECT_GE(checks, 35u);
     }
 
     TEST(bad_scenes, materials_and_cameras_are_checked)

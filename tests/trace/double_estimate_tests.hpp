@@ -108,7 +108,7 @@ public:
         double_kernels::irradiance_estimate result;
         result.args.norm = norm;
         result.args.min_radius2 = min_radius2_;
-        result.args.left_out = 1;
+        result.args.leave_out = 1;
         result.search_radii_data = radius;
         result.sums_data = sums;
         result.squares_data = squares;

@@ -30,14 +30,18 @@ inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintB
 #define float double
 
 // What kernels share, too.
-#undef PHOTONGRID_SHARED_IS_READ
+#undef PHOTONGRID_INSIDE_KERNEL_STRUCT
 #include <photongrid/backend/natural_log.glsl>
 #include <photongrid/backend/random.glsl>
 #include <photongrid/backend/vector.glsl>
+#include <photongrid/estimate/gather_tally.glsl>
+#include <photongrid/estimate/row_cursor.glsl>
+#include <photongrid/estimate/search_radius.glsl>
+#include <photongrid/estimate/search_tally.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/trace/photon_event.glsl>
 #include <photongrid/trace/scene_layout.glsl>
-#define PHOTONGRID_SHARED_IS_READ
+#define PHOTONGRID_INSIDE_KERNEL_STRUCT
 
 struct ray_probe {
 #include "probes/ray_probe.glsl"

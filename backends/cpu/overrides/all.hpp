@@ -1,4 +1,4 @@
-// For programs that include this file; cpu.hpp suffices.
+// For programs that still include this file, which earlier versions needed; cpu.hpp suffices.
 #pragma once
 
 #include <photongrid/backends/cpu/cpu.hpp>

@@ -89,7 +89,7 @@ HWY_INLINE vector squared_distances(
     d2 = hn::IfThenZeroElse(hn::Lt(d2, smallest), d2);
     if (POLICIES == 1 || (POLICIES == 2 && j.side))
         d2 = hn::IfThenElse(hn::Lt(along_normal(photons.directions), hn::Zero(d)), d2, rejected);
-    if (POLICIES == 2 && j.needs_normals)
+    if (POLICIES == 2 && j.needs_photon_normals)
         d2 = hn::IfThenElse(hn::Ge(along_normal(photons.normals), hn::Set(d, j.min_cosine)), d2, rejected);
     return d2;
 }

@@ -4,6 +4,8 @@
 // Sums have 16 lanes on every machine, whatever the width of its registers, so that results are the same bit for bit.
 #include <photongrid/backends/cpu/overrides/packet_simd.hpp>
 #include <photongrid/estimate/irradiance_estimate.kernel.hpp>
+#include <photongrid/estimate/search_radius.kernel.hpp>
+#include <photongrid/estimate/search_tally.kernel.hpp>
 #include <photongrid/map/grid.kernel.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -86,10 +88,14 @@ HWY_INLINE vector weight_of(filter_kind filter, vector t)
     }
     return one;
 }
+
 /// The radius of a search.
 struct chosen_radius {
     float radius2 = 0;
     bool by_photon = false; ///< true: a photon set it; false: it was given
+
+    /// As kernels have it (search_radius.glsl).
+    glm::vec4 packed() const { return kernels::search_radius_of(radius2, by_photon); }
 };
 
 /// The sums over the photons within the radius.
@@ -98,7 +104,7 @@ struct gathered {
     uint held = 0;
 };
 
-/// How often the map holds each photon of a register, from photon i of the packet on.
+/// How often the map holds each photon of a register, which begins at photon i of the packet.
 HWY_INLINE vector entries_of(const search_job& j, const packet& near, std::size_t i)
 {
     const floats d;
@@ -156,14 +162,14 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
         }
     }
 
-    // Photons at the radius: all, or, for the k nearest, as many as are missing, by ascending id. The last of them set
-    // the radius and may be left out.
+    // Photons at the radius: all, or, for the k nearest, as many as are missing, by ascending id. The last of them sets
+    // the radius and may be excluded.
     std::size_t counted = at_most - within;
     if (j.search == search_kind::exact_k && r.by_photon && at_most > j.k)
         counted = j.k - within;
-    const bool apart = j.leave_out && r.by_photon && r.radius2 >= j.min_radius2;
+    const bool excludes = j.leave_out && kernels::excludes_photon(r.packed(), j.min_radius2);
     double extra[3] = {}, extra2[4] = {};
-    if (counted > (apart ? 1u : 0u)) {
+    if (counted > (excludes ? 1u : 0u)) {
         const auto by_id = [&](uint a, uint b) { return j.list[near.index(a)] < j.list[near.index(b)]; };
         at_radius.clear();
         for (std::size_t i = 0; i < near.size(); ++i)
@@ -172,7 +178,7 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
         std::partial_sort(
             at_radius.begin(), at_radius.begin() + static_cast<std::ptrdiff_t>(counted), at_radius.end(), by_id);
         const float at_rim = hn::GetLane(weight_of(filter, hn::Set(d, std::min(r.radius2 * inverse_disc2, 1.0f))));
-        for (std::size_t i = 0; i + (apart ? 1 : 0) < counted; ++i) {
+        for (std::size_t i = 0; i + (excludes ? 1 : 0) < counted; ++i) {
             const float f[3]
                 = {p_red[at_radius[i]] * at_rim, p_green[at_radius[i]] * at_rim, p_blue[at_radius[i]] * at_rim};
             const float all = f[0] + f[1] + f[2];
@@ -201,10 +207,10 @@ inline bool needs_estimate(const search_job& j, uint point)
 /// Computes and stores the estimate from the sums.
 inline void finish(const search_job& j, uint point, chosen_radius r, const gathered& g, uint visited)
 {
-    const glm::vec4 search_radius(r.radius2, r.by_photon ? 1.0f : 0.0f, 0, 0);
-    const glm::uvec4 tally(g.held, visited, 0, 0);
+    const glm::vec4 search_radius = r.packed();
+    const glm::uvec4 tally = kernels::search_tally(g.held, visited);
     kernels::irradiance_estimate e;
-    e.args = {.norm = j.norm, .min_radius2 = j.min_radius2, .left_out = j.leave_out ? 1u : 0u};
+    e.args = {.norm = j.norm, .min_radius2 = j.min_radius2, .leave_out = j.leave_out ? 1u : 0u};
     e.bind(slot<0>{}, std::span(&search_radius, 1));
     e.bind(slot<1>{}, std::span(&g.sum, 1));
     e.bind(slot<2>{}, std::span(&g.squares, 1));

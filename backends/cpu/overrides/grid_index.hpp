@@ -20,7 +20,8 @@ inline
     const auto from = b.elements(pairs);
     const auto to = b.elements_to_write(index);
     const std::size_t n = from.size();
-    // Where the key changes, the cells after the last key and up to this one begin.
+    // If pair i has another key than the pair before, all cells after that pair's key, up to the key of pair i, begin
+    // at i.
     const auto cell_after = [&](std::size_t i) {
         return i == 0 ? 0u : i > n ? cells : std::min(cells, from[i - 1].x == nowhere ? cells : from[i - 1].x + 1u);
     };

@@ -149,13 +149,13 @@ HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& 
     const bool has_low = r.c.x >= r.ring, has_high = r.c.x + r.ring == r.high.x;
     const auto low_gap_x2 = hn::Set(d, gap2(r.u.x, r.c.x, r.low.x, g.cell.x)),
                high_gap_x2 = hn::Set(d, gap2(r.u.x, r.c.x, r.high.x, g.cell.x));
-    // Gather indices are below 2^31 words, and a cell has two words: rows of several layers are processed together if
-    // fifteen layers are within that range.
+    // A register of rows spans up to 16 layers. Rows of several layers are processed together if gather indices, which
+    // count 32-bit words and must be below 2^31, can address so many layers; a cell has two words.
     const std::size_t layer = std::size_t{g.resolution.y} * g.resolution.x;
     const bool together = layer < 1u << 26;
     const uint across = r.high.y - r.low.y + 1;
     const auto of_across = hn::Set(d, 1.0f / static_cast<float>(across));
-    struct ends { // the end cells of the box's rows: ranges of photons, and squared distances
+    struct ends { // one end cell of each row, or the whole row: its range of photons, and its squared distance
         int first[lanes], past[lanes];
         float away2[lanes];
         std::uint8_t some[8] = {};

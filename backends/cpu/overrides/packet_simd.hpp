@@ -28,7 +28,7 @@ public:
         normal_y,
         normal_z,
         squared_distance,
-        kept,
+        kept, ///< scratch: the distances that scan() keeps, or the photons that list() finds
         count
     };
 
@@ -73,7 +73,8 @@ public:
                 store_some(d, pz, near, of(z) + k);
                 const auto take = [&](component p, const float* from)
                                       HWY_ATTR { store_some(d, hn::LoadU(d, from + i), near, of(p) + k); };
-                take(red, j.powers.x); // for lists too: testing for that would cost estimates more than it saves
+                // Lists do not use the powers, but a test here would slow estimates more than it would speed up lists.
+                take(red, j.powers.x);
                 take(green, j.powers.y);
                 take(blue, j.powers.z);
                 if (j.side) {
@@ -81,7 +82,7 @@ public:
                     take(direction_y, j.directions.y);
                     take(direction_z, j.directions.z);
                 }
-                if (j.needs_normals) {
+                if (j.needs_photon_normals) {
                     take(normal_x, j.normals.x);
                     take(normal_y, j.normals.y);
                     take(normal_z, j.normals.z);
@@ -109,7 +110,7 @@ public:
         if (size_ + n + slack > stride_)
             grow(size_ + n);
     }
-    /// Adds the photons of `some` in the register that begins at `index`.
+    /// Adds those photons of a register for which `some` is true. The register begins at photon `index` of the map.
     HWY_INLINE void add(vector distances2, hn::Mask<floats> some, std::size_t index)
     {
         const uints du;
@@ -118,7 +119,7 @@ public:
             indices_ + size_);
         size_ += added;
     }
-    /// Loads the powers of all photons that were added.
+    /// Loads the powers of all photons that add() has added.
     HWY_INLINE void fetch_powers(const search_job& j)
     {
         const floats d;

@@ -87,8 +87,8 @@ inline std::vector<uint> scatter_counted(pool& threads, const digit& by, const g
     return begin;
 }
 
-/// Which bits differ in a range of pairs, and whether the values ascend, as ids do. If they do, a stable sort by key
-/// suffices.
+/// Which bits differ in a range of pairs, and whether the values ascend, as ids do. If the values ascend, a stable sort
+/// by key suffices.
 struct key_summary {
     glm::uvec2 any{0u}, all{~0u};
     uint descents = 0;
@@ -154,7 +154,7 @@ inline radix_report radix_sort(pool& threads, glm::uvec2* pairs, glm::uvec2* scr
     counters counts((n + part - 1) / part);
     std::vector<key_summary> seen(counts.size());
 
-    // While it summarises all pairs, it also counts the digit that a sample suggests as the first.
+    // The pass over all pairs that summarises them also counts the digit that a sample suggests as the first.
     const digit probable = first_digit(bit_range(sample(pairs, n).varying().x));
     constexpr std::size_t block = 2048; // so small that it stays in the cache for the second loop
     threads.for_blocks(n, part, [&](std::size_t first, std::size_t past) {

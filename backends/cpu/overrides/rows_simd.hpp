@@ -19,7 +19,7 @@ struct rows_found {
     std::size_t rows = 0;
 };
 
-/// kernels::clamped_cell; for numbers that are not negative, truncation rounds down.
+/// The same as kernels::clamped_cell: for numbers that are not negative, truncation rounds down.
 inline uint cell_at(float u, uint resolution)
 {
     const float last = static_cast<float>(resolution - 1u);

@@ -21,7 +21,7 @@ HWY_INLINE void scatter(digit by, const glm::uvec2* from, std::size_t first, std
 {
     const hn::CappedTag<uint, 2 * pairs_per_line> d;
     const std::size_t width = hn::Lanes(d);
-    uint begin[digit::most]; // this range's first pair per digit; the beginning of its line may belong to others
+    uint begin[digit::most]; // this range's first pair per digit; its line may begin with pairs of other ranges
     std::copy(next, next + by.mask + 1, begin);
     for (std::size_t i = first; i < past; ++i) {
         const glm::uvec2 pair = from[i];

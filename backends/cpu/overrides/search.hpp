@@ -14,8 +14,8 @@ namespace photongrid::cpu {
 /// the queries of a block share work.
 inline constexpr std::size_t search_block_size = 256;
 
-/// Orders points along a Morton curve (Morton 1966), which keeps neighbours together, with 1,024 steps along each axis
-/// of the grid.
+/// The order of the points along a Morton curve (Morton 1966), which keeps neighbours together. The curve has 1,024
+/// steps along each axis of the grid.
 inline buffer<uint> order_along_curve(cpu_backend& b, const grid& g, const buffer<glm::vec4>& points_of)
 {
     const std::size_t n = points_of.size();
@@ -61,16 +61,16 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
     j.positions = b.components(photons.positions);
     j.powers = b.components(photons.powers);
     j.side = s.leaks.side;
-    j.needs_normals = s.leaks.needs_normals();
+    j.needs_photon_normals = s.leaks.needs_photon_normals();
     j.min_cosine = s.leaks.min_cosine;
     j.flattening = s.leaks.flattening > 1 ? s.leaks.flattening * s.leaks.flattening - 1.0f : 0.0f;
     if (j.side)
         j.directions = b.components(photons.directions);
-    if (j.needs_normals)
+    if (j.needs_photon_normals)
         j.normals = b.components(photons.normals);
     j.list = b.elements(in.map->list).data();
     j.points = b.elements(*in.points).data();
-    if (s.leaks.needs_any())
+    if (s.leaks.needs_point_normals())
         j.point_normals = b.elements(*in.normals).data();
     j.order = b.elements(order).data();
     j.search = s.search;

@@ -26,13 +26,13 @@ struct search_job {
     uint k = 0;            ///< photons sought
     float max_radius2 = 0; ///< m^2
     float min_radius2 = 0; ///< m^2
-    bool side = false;     ///< leak policies
-    bool needs_normals = false;
+    bool side = false;     ///< leak policies, see photon_distance.glsl
+    bool needs_photon_normals = false;
     float min_cosine = -1;
-    float flattening = 0; ///< c^2 - 1, see photon_distance.glsl
+    float flattening = 0; ///< c^2 - 1
     filter_kind filter = filter_kind::constant;
-    float norm = 1; ///< of the filter
-    bool leave_out = false;
+    float norm = 1;         ///< of the filter
+    bool leave_out = false; ///< exclude the photon that sets the radius
     bool errors = false;
     bool repeats = false; ///< the map may hold a photon several times, as often as the w of its power says
 
@@ -40,7 +40,7 @@ struct search_job {
     glm::uvec2* used = nullptr;
     glm::vec4* standard_error = nullptr; ///< only with errors
 
-    uint* ids = nullptr;         ///< lists instead of estimates: k entries per point here ...
+    uint* ids = nullptr;         ///< if not null, lists are made instead of estimates: k entries per point here ...
     float* distances2 = nullptr; ///< ... and here
 };
 

@@ -54,7 +54,7 @@ HWY_INLINE float nth_smallest(float* values, std::size_t count, std::size_t n, f
     for (std::size_t more = 0; more < 4; ++more)
         hn::StoreU(hn::Set(d, std::numeric_limits<float>::infinity()), d, values + count + more * width);
     std::size_t below = 0, up_to = count; // how many are at most low, at most high
-    auto beyond = hn::Set(d, -1.0f);      // low, if it was set; squared distances are not negative
+    auto beyond = hn::Set(d, -1.0f);      // the pivot at low; -1, below all squared distances, until there is one
     for (int rounds = 0; below + 1 < n && n < up_to; ++rounds) {
         const float pivot
             = low + (high - low) * (static_cast<float>(n - below) / static_cast<float>(up_to - below + 1));
@@ -157,7 +157,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
     std::vector<std::uint64_t> keys;
     query last;
     float last_radius = -1; // distance of the last query's k-th photon; none: -1
-    float expected = -1;    // this query's, if there is a better guess than the last one
+    float expected = -1;    // the distance to expect for the next query; -1: derive it from last_radius
     const bool exact = j.search == search_kind::exact_k;
     const float max_radius = std::sqrt(j.max_radius2);
     float step = 0; // mean distance between consecutive points
@@ -218,7 +218,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             query q{glm::vec3(j.points[point]), glm::vec3(0)};
             if (POLICIES != 0)
                 q.normal = glm::vec3(j.point_normals[point]);
-            // The packet contains all photons within this distance.
+            // The packet contains all photons within this distance of the point.
             const float sure = std::max((packet_radius - distance_between(q.at, center) * 1.000001f) * 0.999998f, 0.0f);
             const float sure2 = std::min(begun_with >= max_radius ? j.max_radius2 : sure * sure, j.max_radius2);
             chosen_radius r{j.max_radius2, false};
@@ -287,7 +287,7 @@ HWY_INLINE void search_or_grow(const search_job& j, std::size_t begin, std::size
 /// Searches for the points order[begin] to order[end - 1].
 inline void search_block(const search_job& j, std::size_t begin, std::size_t end)
 {
-    if (j.flattening > 0 || j.needs_normals)
+    if (j.flattening > 0 || j.needs_photon_normals)
         search_or_grow<2>(j, begin, end);
     else if (j.side)
         search_or_grow<1>(j, begin, end);

@@ -17,7 +17,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "photongrid/backends/cpu/overrides/for_each_target.hpp"
 #include <hwy/foreach_target.h>
-// The user's own SIMD code has its own macros again.
+// Restores the macros of the user's own SIMD code.
 #undef HWY_TARGET_INCLUDE
 #pragma pop_macro("HWY_TARGET_INCLUDE")
 #undef HWY_WANT_AVX3_DL

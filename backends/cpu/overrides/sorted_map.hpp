@@ -21,7 +21,7 @@ namespace cpu {
         auto taken = b.make<glm::vec4>(n);
         const auto to = b.components_to_write(taken);
         b.threads().for_blocks(n, 4096, [&](std::size_t first, std::size_t past) {
-            constexpr std::size_t ahead = 16; // reads have random addresses
+            constexpr std::size_t ahead = 16; // prefetch so far ahead, since reads have random addresses
             for (std::size_t i = first; i < past; ++i) {
                 if (i + ahead < n)
                     __builtin_prefetch(&from[list[i + ahead]]);
@@ -51,7 +51,7 @@ inline
     j.cells = cell_count(g);
     j.parts = parts;
     j.large = n > 131072;
-    // Buckets have about 1,000 photons or more, and at most as many cells as counters fit a cache.
+    // A bucket has about 1,000 photons or more, and at most 2^most_shift cells, so that their counters fit a cache.
     const uint buckets = std::clamp(n / 1024u, 1u, cpu::map_job::most_buckets);
     while (j.shift < cpu::map_job::most_shift && j.buckets() > buckets)
         ++j.shift;

@@ -15,9 +15,6 @@ namespace {
     using clock = std::chrono::steady_clock;
     double ms_since(clock::time_point t) { return std::chrono::duration<double, std::milli>(clock::now() - t).count(); }
 
-    /// Time that a step may take before the thread checks for new requests.
-    constexpr renderer::milliseconds step_time{8};
-
     /// Gives this thread, and threads that the backend creates in it, a lower priority than the window's, so that the
     /// window reacts when every core renders.
     void give_way()
@@ -27,8 +24,9 @@ namespace {
     }
 } // namespace
 
-render_thread::render_thread(renderer_maker make, renderer_options options, std::function<void()> wake, journal log)
-    : make_(make), options_(std::move(options)), wake_(std::move(wake)), log_(std::move(log)),
+render_thread::render_thread(renderer_maker make, renderer_options options, std::function<void()> wake, journal log,
+    renderer::milliseconds step_time)
+    : make_(make), options_(std::move(options)), wake_(std::move(wake)), log_(std::move(log)), step_time_(step_time),
       thread_([this] { work(); })
 {
 }
@@ -133,11 +131,14 @@ bool render_thread::take()
         cancellable_ = renderer_.get();
     }
     begun_ = clock::now();
-    renderer_->start(current_.what.scene, current_.what.settings, {});
+    // Running estimates need the whole map; while things move, previews with fewer photons come sooner.
+    renderer_->start(current_.what.scene, current_.what.settings, {.running_estimates = !current_.moving});
     drawing_ = true;
     {
         const std::lock_guard lock(guard_);
         report_.error.clear();
+        if (ends_ || (requested_ && !requested_->moving))
+            renderer_->cancel(); // start() has undone what was asked for before it
     }
     tell("start",
         ", \"request\": " + std::to_string(current_.number) + ", \"passes_waited\": " + std::to_string(passes_waited)
@@ -148,7 +149,7 @@ bool render_thread::take()
 
 void render_thread::draw()
 {
-    const bool whole = renderer_->step(step_time);
+    const bool whole = renderer_->step(step_time_);
     passes_ = total_cost(renderer_->costs()).passes;
     const bool news = renderer_->pictures() > seen_;
     if (news) {

@@ -44,8 +44,12 @@ using renderer_maker = std::unique_ptr<renderer> (*)(const renderer_options&);
 
 class render_thread {
 public:
+    /// Time after which a step ends, so that the thread reports its progress.
+    static constexpr renderer::milliseconds usual_step_time{8};
+
     /// `wake` is called in this object's thread when there is a new picture or state; `log` may be empty.
-    render_thread(renderer_maker make, renderer_options options, std::function<void()> wake, journal log);
+    render_thread(renderer_maker make, renderer_options options, std::function<void()> wake, journal log,
+        renderer::milliseconds step_time = usual_step_time);
     ~render_thread();
     render_thread(const render_thread&) = delete;
     render_thread& operator=(const render_thread&) = delete;
@@ -77,6 +81,7 @@ private:
     renderer_options options_;
     std::function<void()> wake_;
     journal log_;
+    const renderer::milliseconds step_time_;
     const std::chrono::steady_clock::time_point opened_ = std::chrono::steady_clock::now();
 
     mutable std::mutex guard_;

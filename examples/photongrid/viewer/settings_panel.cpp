@@ -14,7 +14,7 @@ settings_panel::settings_panel(document& d)
 {
 }
 
-/// After an item that changes settings: one step of undo for as long as it is held.
+/// After an item that changes settings: one drag is one undo step.
 bool settings_panel::begun(const char* name)
 {
     if (ImGui::IsItemActivated())

@@ -49,7 +49,7 @@ namespace {
             double slowest_ms = 0;
             bool settles = true;
             while (!closes() && !stop_asked_()) {
-                // Events and new pictures wake it at once. A frame more follows, since ImGui places what is new in two.
+                // Events and new pictures wake it at once. Draw one more frame: ImGui lays out new widgets over two.
                 const double asleep = glfwGetTime(),
                              longest = settles                       ? 0.02
                     : picture_.report().progress.stage == "finished" ? 0.5

@@ -10,7 +10,7 @@ OUTPUT(0, vec4, result) // dividend, divisor, quotient, square root of the divid
 void kernel(uint i)
 {
     vec4 u = random4(uvec4(i, 0u, 0u, args.seed));
-    // Mantissas over the whole interval, magnitudes over thirty binades.
+    // Mantissas over the whole interval; magnitudes of the operands over fifteen binades, of the quotients over thirty.
     precise float a = (1.0f + u.x) * float(1u << uint(u.y * 15.0f)) * 0.0078125f;
     precise float b = (1.0f + u.z) * float(1u << uint(u.w * 15.0f)) * 0.0078125f;
     precise float quotient = a / b;

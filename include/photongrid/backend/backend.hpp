@@ -26,7 +26,7 @@ struct backend_error : std::runtime_error {
 };
 
 /// Which elements a pass computes: `first`, `first + 1`, … `first + elements - 1`. Bit B of `switches` is the kernel's
-/// SWITCH B. A launch converts from a plain count.
+/// SWITCH B. Implicitly constructible from an element count.
 struct launch {
     uint elements = 0;   ///< how many; 0: the pass does nothing
     uint first = 0;      ///< index of the first

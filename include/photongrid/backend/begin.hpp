@@ -11,7 +11,8 @@
 //                         free. In C++, NAME_switch is its bit of launch::switches.
 //   IN_GROUPS(B)          the kernel may use subgroup operations. If the device has them and switch B is on,
 //                         GROUP_LANES elements run together in a subgroup; otherwise, and always in C++ and on GL,
-//                         GROUP_LANES is 1. Two lanes may compute the same element.
+//                         GROUP_LANES is 1. Incomplete groups repeat their last element; the duplicate result is
+//                         discarded.
 //     group_lane()        index of this lane
 //     group_any(b)        true if b is true in any lane
 //     group_min(v)        smallest v of all lanes; group_max(v): largest
@@ -67,9 +68,9 @@
 #pragma push_macro("precise")
 #undef precise
 
-// Files that kernels share are spliced into GLSL once (kernel_source.hpp). C++ includes them at namespace scope, by
-// headers of their own (cmake/kernel_headers.cmake); inside a kernel's struct they are then empty.
-#define PHOTONGRID_SHARED_IS_READ
+// Defined while a kernel file is included inside its struct. Shared files then expand to nothing, because C++ has
+// already included them at namespace scope (cmake/kernel_headers.cmake); GLSL splices each in once (kernel_source.hpp).
+#define PHOTONGRID_INSIDE_KERNEL_STRUCT
 
 #define PARAMS(P)                                                                                                      \
     P args{};                                                                                                          \

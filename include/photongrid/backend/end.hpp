@@ -1,5 +1,5 @@
-// Takes the dialect of backend/begin.hpp back, so that no word of it reaches a user's code.
-#undef PHOTONGRID_SHARED_IS_READ
+// Undefines the macros of the kernel dialect (backend/begin.hpp) and restores the caller's.
+#undef PHOTONGRID_INSIDE_KERNEL_STRUCT
 #undef PARAMS
 #pragma pop_macro("PARAMS")
 #undef PHOTONGRID_ELEMENT

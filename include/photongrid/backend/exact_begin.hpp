@@ -8,8 +8,12 @@
 // No include guard: every header with arithmetic includes this file after its other headers. g++ inlines a function
 // with this option only into functions with the same option, so code that calls kernels belongs between the two files
 // too.
-#if defined(__FAST_MATH__)
-#error "photongrid: -ffast-math changes results; compile this file without it, or link photongrid::cpu_compiled"
+//
+// -ffast-math and its parts are refused: g++ has a macro for each. clang has only those of -ffast-math and
+// -ffinite-math-only; -funsafe-math-optimizations and its parts, of which it says nothing, must not be given to it.
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0)                              \
+    || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
+#error "photongrid: -ffast-math and its parts change results; compile without, or link photongrid::cpu_compiled"
 #endif
 #if defined(PHOTONGRID_CONTRACTION_IS_OFF)
 #elif defined(__clang__)

@@ -1,4 +1,4 @@
-// The hash by which files recognize themselves: cached programs and unfinished pictures.
+// 64-bit FNV-1a: checksum of cached GPU programs, --resume files and (on 8-byte words) map files.
 #pragma once
 
 #include <cstdint>

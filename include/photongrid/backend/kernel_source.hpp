@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <span>
@@ -54,8 +55,8 @@ namespace detail {
                     out_.text += std::string(row) + "\n" + std::string(defines);
                     line_directive(line);
                 } else if (row.starts_with("#include \"") || row.starts_with("#include <")) {
-                    const std::string_view path = row.substr(10, row.find_first_of("\">", 10) - 10);
-                    include(path.substr(path.rfind('/') + 1), name, line - 1); // npos + 1 is 0
+                    const std::string path(row.substr(10, row.find_first_of("\">", 10) - 10));
+                    include(path, row[9] == '"', name, line - 1);
                     line_directive(line);
                 } else {
                     out_.text += std::string(row) + "\n";
@@ -65,17 +66,35 @@ namespace detail {
         spliced_source take() { return std::move(out_); }
 
     private:
-        void include(std::string_view file, std::string_view from, std::size_t line)
+        /// Finds the file that C++ finds too: for "path" first the one beside the including file, then, as for <path>,
+        /// one whose name ends with the whole path.
+        void include(const std::string& path, bool quoted, std::string_view from, std::size_t line)
         {
-            for (const auto& f : library_) {
-                if (f.name.substr(f.name.rfind('/') + 1) != file)
-                    continue;
-                if (once_.insert(f.name).second)
-                    append(f);
-                return;
+            const auto error = [&](const std::string& what) {
+                return std::runtime_error(std::string(from) + ":" + std::to_string(line) + ": error: " + what);
+            };
+            if (quoted) {
+                const auto beside = (std::filesystem::path(from).parent_path() / path).lexically_normal();
+                const auto at = std::ranges::find(library_, beside.generic_string(), &text_file::name);
+                if (at != library_.end())
+                    return append_once(*at);
             }
-            throw std::runtime_error(std::string(from) + ":" + std::to_string(line) + ": error: no kernel file named \""
-                + std::string(file) + "\"");
+            const text_file* found = nullptr;
+            for (const auto& f : library_) {
+                if (f.name != path && !f.name.ends_with("/" + path))
+                    continue;
+                if (found && found->text != f.text)
+                    throw error("\"" + path + "\" may be " + std::string(found->name) + " or " + std::string(f.name));
+                found = found ? found : &f;
+            }
+            if (!found)
+                throw error("no kernel file named \"" + path + "\"");
+            append_once(*found);
+        }
+        void append_once(const text_file& f)
+        {
+            if (once_.insert(f.name).second)
+                append(f);
         }
         std::span<const text_file> library_;
         std::set<std::string_view> once_;
@@ -85,7 +104,7 @@ namespace detail {
 
 /// Joins `prelude`, `kernel` and `epilogue` (which has main), and replaces each `#include` of an x.glsl by that file of
 /// `library`, once per file. `defines` are inserted unchanged after the prelude's `#version` line.
-/// \throws std::runtime_error, with file and line, if an included file is not in `library`.
+/// \throws std::runtime_error, with file and line, if an included file is not in `library`, or if its path may mean two.
 inline spliced_source splice(const text_file& prelude, std::string_view defines, const text_file& kernel,
     const text_file& epilogue, std::span<const text_file> library)
 {
@@ -96,16 +115,43 @@ inline spliced_source splice(const text_file& prelude, std::string_view defines,
     return s.take();
 }
 
-/// Finds the embedded text of a kernel by the `path` of its C++ struct.
+namespace detail {
+    /// Removes the last component from `path` and returns it. Compilers give paths with either separator.
+    inline std::string_view take_last_component(std::string_view& path)
+    {
+        const auto at = path.find_last_of("/\\");
+        const auto last = path.substr(at + 1); // npos + 1 is 0
+        path = path.substr(0, at == path.npos ? 0 : at);
+        return last;
+    }
+
+    /// How well `name`, relative to some folder, fits a file's `path`: 0 if the files' own names differ, else more for
+    /// each folder that agrees, and for a name that agrees as a whole.
+    inline unsigned fit(std::string_view name, std::string_view path)
+    {
+        unsigned agree = 0;
+        while (name.starts_with("../"))
+            name.remove_prefix(3);
+        while (!name.empty() && !path.empty()) {
+            if (take_last_component(name) != take_last_component(path))
+                return 2 * agree;
+            ++agree;
+        }
+        return 2 * agree + (name.empty() ? 1 : 0);
+    }
+} // namespace detail
+
+/// Finds the embedded text of a kernel by the `path` of its C++ struct. Several may have its file's name: the best is
+/// the one whose folders agree too, and among equals the first.
 /// \throws std::runtime_error if no such text was embedded.
 inline const text_file& find_kernel_text(std::string_view path, std::span<const text_file> library)
 {
-    const auto base = path.substr(path.find_last_of("/\\") + 1);
-    for (const auto& f : library)
-        if (f.name.substr(f.name.rfind('/') + 1) == base)
-            return f;
-    throw std::runtime_error(
-        "kernel text '" + std::string(path) + "' was not embedded; give it to photongrid_add_kernels() in CMake");
+    const auto fits = [&](const text_file& f) { return detail::fit(f.name, path); };
+    const auto best = std::ranges::max_element(library, {}, fits);
+    if (best == library.end() || fits(*best) == 0)
+        throw std::runtime_error(
+            "kernel text '" + std::string(path) + "' was not embedded; give it to photongrid_add_kernels() in CMake");
+    return *best;
 }
 
 /// The texts that kernel K may include: its own texts first, then `library`, which is the backend's.

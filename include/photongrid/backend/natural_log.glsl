@@ -1,7 +1,7 @@
 // The natural logarithm of a finite x >= 1 without `log`, whose results differ between devices: the exponent from the
 // bits, the rest by the series of 2 artanh((m - 1) / (m + 1)), m from 1/sqrt(2) to sqrt(2). The series is cut at 7e-10;
 // with float's rounding the error is below 2e-7 or one part in 2^22, whichever is larger.
-#ifndef PHOTONGRID_SHARED_IS_READ // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
 
 inline float natural_log(float x)
 {

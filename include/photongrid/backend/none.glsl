@@ -1,5 +1,5 @@
 // The index or count that stands for none: no photon, no cell, not known yet.
-#ifndef PHOTONGRID_SHARED_IS_READ // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
 
 const uint NONE = 0xFFFFFFFFu;
 

@@ -1,6 +1,6 @@
 // Counter-based random numbers: a hash of a key and a seed, so that results depend neither on the backend nor on the
 // order or the number of threads. Jarzynski and Olano, Hash Functions for GPU Rendering, JCGT 9(3), 2020 (pcg4d).
-#ifndef PHOTONGRID_SHARED_IS_READ // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
 
 inline uvec4 hash4(uvec4 key)
 {

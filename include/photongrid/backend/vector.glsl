@@ -1,6 +1,6 @@
 // Vector arithmetic, written out. GLSL's dot, length and normalize round differently on different devices; these
 // functions do not.
-#ifndef PHOTONGRID_SHARED_IS_READ // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
 
 inline float dot3(vec3 a, vec3 b)
 {

@@ -11,7 +11,8 @@ namespace photongrid {
 
 /// Which photons an estimate uses: of those that no leak policy rejects, within the maximum radius.
 enum class search_kind : std::uint8_t {
-    at_least_k,   ///< section 2.3: k, or more if the radius grew too far; depends on the order of cells
+    at_least_k,   ///< at least k (2.3): the radius grows cell by cell and may overshoot, so the result depends on the
+                  ///< grid
     exact_k,      ///< the k nearest; of several photons at the k-th distance, those with the smallest ids
     fixed_radius, ///< all photons within the maximum radius
 };
@@ -19,8 +20,9 @@ enum class search_kind : std::uint8_t {
 /// Whether the photon that sets the radius counts.
 enum class bias_kind : std::uint8_t {
     paper,    ///< it counts: k / (pi r_k^2), which is too high by k / (k - 1) for a constant filter
-    unbiased, ///< it does not count; the mean is right for every filter. No photon is left out if the radius was given
-              ///< or the maximum radius was reached. With at_least_k some bias remains, up to +1.7 % at k = 32
+    unbiased, ///< it does not count; the mean is right for every filter. No photon is excluded if the radius was given,
+              ///< the maximum radius was reached, or the photon lies within the minimum radius. With at_least_k some
+              ///< bias remains, up to +1.7 % at k = 32
 };
 
 /// The correction of estimates near the edge of a surface, beyond which there are no photons.
@@ -40,8 +42,8 @@ struct leak_policy {
     float flattening = 1;  ///< factor for distances along the normal, so that the search ball becomes a flat ellipsoid;
                            ///< needs points' normals; 1: off
 
-    bool needs_normals() const { return min_cosine > -1; }                       ///< needs photons' normals
-    bool needs_any() const { return side || needs_normals() || flattening > 1; } ///< needs points' normals
+    bool needs_photon_normals() const { return min_cosine > -1; }
+    bool needs_point_normals() const { return side || min_cosine > -1 || flattening > 1; }
 
     bool operator==(const leak_policy&) const = default;
 };

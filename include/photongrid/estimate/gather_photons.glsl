@@ -6,10 +6,14 @@
 // largest distance, and with those the mean of the estimate is right for every filter (Garcia Hernandez et al. 2012;
 // docs/design/decisions.md).
 //
-// Where the map holds a photon several times, its power is divided among its entries, which are not independent: the
-// square of their sum is as many times the sum of their squares.
+// Where the map holds a photon s times, each entry has 1 / s of its power. The photon appears as s fully correlated
+// entries, so its variance is s times the sum of their squares.
 //
 // The kernel is one function, because its innermost loop changes nearly all of its variables.
+#include <photongrid/estimate/gather_tally.glsl>
+#include <photongrid/estimate/row_cursor.glsl>
+#include <photongrid/estimate/search_radius.glsl>
+#include <photongrid/estimate/search_tally.glsl>
 #include <photongrid/map/grid.glsl>
 
 struct Params {
@@ -28,13 +32,13 @@ SWITCH(5, REPEATS) // the map may hold a photon several times
 IN_GROUPS(8)
 INPUT(6, uint, list)          // photon ids
 INPUT(7, vec4, powers)        // rgb, W; w: REPEATS: how often the map holds the photon
-STATE(0, vec4, search_radius) // see kth_result.glsl
-STATE(1, uvec4, chosen)       // w: how often the last id still counts
+STATE(0, vec4, search_radius) // see search_radius.glsl
+STATE(1, uvec4, chosen)       // the same; w: how often the last id still counts
 STATE(2, vec4, sum)           // rgb: weighted power, W
 STATE(3, vec4, compensation)  // rgb: rounding error of the sum so far (Kahan)
 STATE(4, vec4, squares)       // rgb: squares of the weighted powers; w: of their sums over channels
-STATE(5, uvec4, cursor)       // y, z of the next row; the first photon not yet visited
-STATE(6, uvec4, tally)        // photons summed; photons visited; index + 1 of the photon left out; 1: done
+STATE(5, uvec4, cursor)       // see row_cursor.glsl
+STATE(6, uvec4, tally)        // see gather_tally.glsl
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
@@ -51,7 +55,7 @@ void gather_powers(uint nth, uint all)
 
 bool done()
 {
-    return tally.w != 0u;
+    return is_gathered(tally);
 }
 
 void kernel(uint i)
@@ -59,25 +63,25 @@ void kernel(uint i)
     vec4 p = points(i);
     vec4 n = normals(i);
     uvec4 c = cell_coordinates(args.grid, p);
-    float radius2 = search_radius.x;
-    bool apart = LEAVE_OUT && search_radius.y > 0.0f && radius2 >= args.min_radius2;
+    float radius2 = radius2_of(search_radius);
+    bool excludes = LEAVE_OUT && excludes_photon(search_radius, args.min_radius2);
     float inverse_disc2 = 1.0f / max(radius2, args.min_radius2);
-    uint last_id = chosen.z;
-    uint last_left = chosen.w;
+    uint last_id = last_id_of(chosen);
+    uint last_left = last_id_count(chosen);
     vec4 total = sum;
     vec4 correction = compensation;
     vec4 square = squares;
     uvec4 resume_at = cursor;
-    uint held = tally.x;
-    uint visited = tally.y;
-    uint left_out = tally.z;
-    uint left_id = 0u;
-    vec4 left_power = vec4(0.0f, 0.0f, 0.0f, 0.0f);
-    if (left_out != 0u) {
-        left_id = list(left_out - 1u);
-        left_power = powers(left_out - 1u);
+    uint held = photons_found(tally);
+    uint visited = photons_visited(tally);
+    uint past_excluded = past_excluded_of(tally);
+    uint excluded_id = 0u;
+    vec4 excluded_power = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    if (past_excluded != 0u) {
+        excluded_id = list(past_excluded - 1u);
+        excluded_power = powers(past_excluded - 1u);
     }
-    bool finished = tally.w != 0u;
+    bool finished = is_gathered(tally);
 
     walk_visits = args.visits;
     walk_steps = args.ranges;
@@ -87,7 +91,7 @@ void kernel(uint i)
         while (walks_on()) {
             uint photons = next_rows();
             visited += mine ? photons : 0u;
-            // If several photons lie at the radius, the one with the largest id is left out.
+            // If several photons lie at the radius, the one with the largest id is excluded.
 #define VISIT(LANE)                                                                        \
     {                                                                                      \
         float d2 = distance2_of(PHOTON_OF(LANE), from, n);                                 \
@@ -103,12 +107,13 @@ void kernel(uint i)
             }                                                                              \
             bool counts = d2 < radius2 || at_radius;                                       \
             held += counts ? 1u : 0u;                                                      \
-            bool swaps = apart && at_radius && (left_out == 0u || id > left_id);           \
-            counts = counts && !(swaps && left_out == 0u);                                 \
-            vec4 added = swaps ? left_power : power;                                       \
-            left_out = swaps ? at + 1u : left_out;                                         \
-            left_id = swaps ? id : left_id;                                                \
-            left_power = swaps ? power : left_power;                                       \
+            bool is_first = past_excluded == 0u;                                           \
+            bool swaps = excludes && at_radius && (is_first || id > excluded_id);          \
+            counts = counts && !(swaps && is_first);                                       \
+            vec4 added = swaps ? excluded_power : power;                                   \
+            past_excluded = swaps ? at + 1u : past_excluded;                               \
+            excluded_id = swaps ? id : excluded_id;                                        \
+            excluded_power = swaps ? power : excluded_power;                               \
             float t = d2 * inverse_disc2;                                                  \
             t = t < 1.0f ? t : 1.0f;                                                       \
             precise vec4 weighted = added * filter_weight(t);                              \
@@ -132,15 +137,15 @@ void kernel(uint i)
 #undef VISIT
         }
         if (mine) {
-            resume_at = uvec4(walk.x, walk.y, walk.z, 0u);
+            resume_at = walk_cursor();
             finished = has_walked();
         }
     }
 
-    chosen = uvec4(chosen.x, chosen.y, chosen.z, last_left);
+    chosen = chosen_of(photons_found(chosen), photons_visited(chosen), last_id, last_left);
     sum = total;
     compensation = correction;
     squares = square;
     cursor = resume_at;
-    tally = uvec4(held, visited, left_out, finished ? 1u : 0u);
+    tally = gather_tally(held, visited, past_excluded, finished);
 }

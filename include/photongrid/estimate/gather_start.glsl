@@ -1,4 +1,7 @@
 // Initialises gather_photons.glsl. Points with w <= 0 and points that are not finite are done at once.
+#include <photongrid/estimate/gather_tally.glsl>
+#include <photongrid/estimate/row_cursor.glsl>
+#include <photongrid/estimate/search_tally.glsl>
 #include <photongrid/map/grid.glsl>
 
 struct Params {
@@ -6,7 +9,7 @@ struct Params {
 };
 PARAMS(Params)
 INPUT(0, vec4, points) // xyz: query point, m; w > 0: estimate here
-INPUT(1, uvec4, chosen)
+INPUT(1, uvec4, chosen) // see search_radius.glsl
 OUTPUT(0, vec4, sum)
 OUTPUT(1, vec4, compensation)
 OUTPUT(2, vec4, squares)
@@ -19,7 +22,7 @@ void kernel(uint i)
     sum = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     compensation = sum;
     squares = sum;
-    cursor = uvec4(0u, 0u, 0u, 0u);
+    cursor = at_first_row();
     bool searches = args.searching != 0u && p.w > 0.0f && is_finite(p);
-    tally = uvec4(0u, chosen(i).y, 0u, searches ? 0u : 1u);
+    tally = gather_tally(0u, photons_visited(chosen(i)), 0u, !searches);
 }

@@ -1,5 +1,6 @@
 // The inputs of gather_photons.glsl for a given radius. kth_result.glsl writes the same outputs after a search.
 #include <photongrid/backend/none.glsl>
+#include <photongrid/estimate/search_radius.glsl>
 
 struct Params {
     float radius2; // m^2
@@ -10,6 +11,6 @@ OUTPUT(1, uvec4, chosen)
 
 void kernel(uint i)
 {
-    search_radius = vec4(args.radius2, 0.0f, 0.0f, 0.0f);
-    chosen = uvec4(0u, 0u, NONE, NONE);
+    search_radius = search_radius_of(args.radius2, false);
+    chosen = chosen_of(0u, 0u, NONE, NONE);
 }

@@ -1,6 +1,5 @@
-// A first guess at the distance of the k-th nearest photon, for searches on the host. kth_guess.glsl is its like for
-// kernels. A wrong guess costs time only, so the two need not be one text, and an edit of the kernel leaves hosts'
-// files as they are.
+// Host counterpart of kth_guess.glsl. Not shared: a wrong guess only costs time, and editing the kernel then does not
+// recompile host code.
 #pragma once
 
 #include <photongrid/map/grid.kernel.hpp>
@@ -33,7 +32,7 @@ inline uint photons_inside(
 inline float guessed_radius2(
     const kernels::Grid& g, std::span<const glm::uvec2> cells, const glm::vec3& p, uint k, float max_radius2)
 {
-    const float wanted = 4 / glm::pi<float>() * static_cast<float>(k); // in the square around a disc of k photons
+    const float sought = 4 / glm::pi<float>() * static_cast<float>(k); // in the square around a disc of k photons
     const glm::uvec3 c(kernels::cell_coordinates(g, glm::vec4(p, 1))), last(glm::uvec3(g.resolution) - 1u);
     float inside = 0, inside_area = 0; // photons and area of the box before
     for (uint half_width = 1;; half_width *= 2) {
@@ -45,8 +44,8 @@ inline float guessed_radius2(
         const auto side = glm::vec3(size) * glm::vec3(g.cell);
         const float area = std::max({side.x * side.y, side.y * side.z, side.z * side.x});
         const bool everything = low == glm::uvec3(0) && high == last;
-        if (held > inside && (held >= wanted || everything)) {
-            const float square = inside_area + (area - inside_area) * (wanted - inside) / (held - inside);
+        if (held > inside && (held >= sought || everything)) {
+            const float square = inside_area + (area - inside_area) * (sought - inside) / (held - inside);
             return std::clamp(0.25f * square, 0.0f, max_radius2);
         }
         if (everything)

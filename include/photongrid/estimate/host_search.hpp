@@ -7,10 +7,13 @@
 #include <photongrid/estimate/host_query.kernel.hpp>
 #include <photongrid/estimate/irradiance_estimate.kernel.hpp>
 #include <photongrid/estimate/knn_settings.hpp>
+#include <photongrid/map/own_photons.hpp>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -20,13 +23,37 @@ namespace photongrid {
 using photon_id = uint;
 
 /// The irradiance at a point.
+///
+/// Where there is no disc with k photons there is no estimate: radius is infinity, and value and errors are 0. That is
+/// so if max_radius is unbounded and fewer than k photons count, as when leak policies reject most of them, and if the
+/// point is not finite. With a bounded max_radius, fewer than k photons give an estimate over the whole disc.
 struct irradiance_at_point {
     glm::vec3 value{0};     ///< W/m^2
     glm::vec3 error{0};     ///< standard error of value, W/m^2; 0 unless requested
     float error_of_sum = 0; ///< standard error of the channels' sum, W/m^2; 0 unless requested
-    float radius = 0;       ///< radius of the photons' disc, m
-    uint count = 0;         ///< photons in the disc
+    float radius = 0;       ///< radius of the photons' disc, m; infinity: no estimate
+    uint count = 0;         ///< photons in the disc, or found in vain
+
+    /// Whether `value` is an estimate.
+    bool is_estimate() const { return std::isfinite(radius); }
 };
+
+namespace detail {
+    /// What a search with settings `s` at p returns: `e`, or no estimate.
+    inline irradiance_at_point estimate_or_none(irradiance_at_point e, const knn_settings& s, const glm::vec3& p)
+    {
+        constexpr float unbounded = std::numeric_limits<float>::infinity();
+        const bool too_few = s.search != search_kind::fixed_radius && s.max_radius == unbounded && e.count < s.k;
+        if (too_few || !kernels::is_finite(glm::vec4(p, 1)))
+            return {.radius = unbounded, .count = e.count};
+        return e;
+    }
+    inline void check_radius(float radius)
+    {
+        if (std::isnan(radius))
+            throw std::invalid_argument("radius: NaN; expected a number, or infinity for no limit");
+    }
+} // namespace detail
 
 /// Scratch memory for searches for one point. Each thread needs its own. Once it has grown to the largest search,
 /// searches no longer allocate.
@@ -56,12 +83,12 @@ public:
           positions_(b.download(map.photons.positions)), repeats_(map.may_repeat())
     {
         const auto& leaks = settings.leaks;
-        settings_ = detail::checked(settings, map, 1, leaks.needs_any() ? 1 : 0);
+        settings_ = detail::checked(settings, map, 1, leaks.needs_point_normals() ? 1 : 0);
         if (powers)
             powers_ = b.download(map.photons.powers);
         if (leaks.side)
             directions_ = b.download(map.photons.directions);
-        if (leaks.needs_normals())
+        if (leaks.needs_photon_normals())
             normals_ = b.download(map.photons.normals);
     }
 
@@ -69,18 +96,25 @@ public:
 
     /// Calls f(id, squared distance) for every photon within `radius` of p, in no particular order, without leak
     /// policies.
+    /// \throws std::invalid_argument for a radius of NaN.
     template <class F>
     void for_each_within(const glm::vec3& p, float radius, const F& f) const
     {
+        detail::check_radius(radius);
         const auto q = query({}, 0);
         const float radius2 = radius > 0 ? std::min(radius * radius, 1e38f) : -1.0f;
         visit(q, glm::vec4(p, 1), glm::vec4(0), radius2, [&](uint index, float d2) { f(photon_id{list_[index]}, d2); });
     }
 
-    /// Calls f(id, squared distance) for the k nearest photons, nearest first; equal distances are ordered by id.
+    /// Calls f(id, squared distance) for the k nearest photons, nearest first; equal distances are ordered by id. f
+    /// must not use `scratch`.
+    /// \throws std::invalid_argument for k = 0 and a radius of NaN.
     template <class F>
     void for_each_nearest(const glm::vec3& p, uint k, float max_radius, query_scratch& scratch, const F& f) const
     {
+        detail::check_radius(max_radius);
+        if (k == 0)
+            throw std::invalid_argument("for_each_nearest: k: 0; expected at least 1");
         auto s = settings_;
         s.k = k;
         s.max_radius = max_radius;
@@ -96,6 +130,7 @@ public:
 
     /// The estimate at p. It uses the same photons and radius as a search for many points; sums differ by at most
     /// 10^-6. `normal`: of the surface, if a leak policy needs it.
+    /// \throws std::invalid_argument if the search is at_least_k.
     irradiance_at_point irradiance(const glm::vec3& p, const glm::vec3& normal, query_scratch& scratch) const
     {
         const auto& s = settings_;
@@ -126,8 +161,9 @@ public:
             squares += entries
                 * glm::dvec4(weighted.x * weighted.x, weighted.y * weighted.y, weighted.z * weighted.z, all * all);
         }
-        return made_of({radius2, by_photon ? 1.0f : 0.0f, 0, 0}, glm::vec4(sum), glm::vec4(squares),
-            static_cast<uint>(n), left_out);
+        return detail::estimate_or_none(made_of({radius2, by_photon ? 1.0f : 0.0f, 0, 0}, glm::vec4(sum),
+                                            glm::vec4(squares), static_cast<uint>(n), left_out),
+            s, p);
     }
 
 private:
@@ -207,7 +243,7 @@ private:
         kernels::irradiance_estimate e;
         e.args = {.norm = detail::entry_of(settings_.filter).norm,
             .min_radius2 = detail::min_radius2(settings_),
-            .left_out = left_out ? 1u : 0u};
+            .leave_out = left_out ? 1u : 0u};
         e.bind(slot<0>{}, std::span(&search_radius, 1));
         e.bind(slot<1>{}, std::span(&sum, 1));
         e.bind(slot<2>{}, std::span(&squares, 1));
@@ -223,6 +259,76 @@ private:
     std::vector<glm::vec4> positions_, powers_, directions_, normals_;
     bool repeats_ = false; ///< the map may hold a photon several times
     knn_settings settings_;
+};
+
+/// The searches for one point that photon_map and point_index have in common. They run in the calling thread, on a copy
+/// in the host's memory; any number of threads may run them at the same time.
+///
+/// A point that is not finite has no neighbours.
+class host_queries {
+public:
+    /// The origin of positions on the device.
+    const glm::dvec3& origin() const { return origin_; }
+
+    /// Calls f(photon_id, float distance2) for everything within `radius`, m, in no particular order. 0 or less:
+    /// nothing; infinity: everything.
+    /// \throws std::invalid_argument for a radius of NaN.
+    template <detail::vector_like V, class F>
+    void for_each_within(const V& point, float radius, const F& f) const
+    {
+        host_.for_each_within(local(point), radius, f);
+    }
+
+    /// The same for the k nearest, nearest first; equal distances are ordered by id. Each thread needs its own scratch,
+    /// which f must not use.
+    /// \throws std::invalid_argument for k = 0.
+    template <detail::vector_like V, class F>
+    void for_each_nearest(const V& point, uint k, query_scratch& scratch, const F& f) const
+    {
+        for_each_nearest(point, k, std::numeric_limits<float>::infinity(), scratch, f);
+    }
+    /// The same for those within `max_radius`, m, which may be fewer than k.
+    /// \throws std::invalid_argument for k = 0 and a radius of NaN.
+    template <detail::vector_like V, class F>
+    void for_each_nearest(const V& point, uint k, float max_radius, query_scratch& scratch, const F& f) const
+    {
+        host_.for_each_nearest(local(point), k, max_radius, scratch, f);
+    }
+    /// The same with a scratch that each thread keeps. f may search as well.
+    template <detail::vector_like V, class F>
+    void for_each_nearest(const V& point, uint k, float max_radius, const F& f) const
+    {
+        query_scratch scratch = std::move(kept_scratch()); // so that a search by f has another
+        for_each_nearest(point, k, max_radius, scratch, f);
+        kept_scratch() = std::move(scratch);
+    }
+    /// The same without a largest radius.
+    template <detail::vector_like V, class F>
+    void for_each_nearest(const V& point, uint k, const F& f) const
+    {
+        for_each_nearest(point, k, std::numeric_limits<float>::infinity(), f);
+    }
+
+protected:
+    explicit host_queries(const glm::dvec3& origin) : origin_(origin) {}
+
+    /// A point as it is on the device.
+    template <class V>
+    glm::vec3 local(const V& point) const
+    {
+        return glm::vec3(detail::to_vec<double>(point) - origin_);
+    }
+
+    glm::dvec3 origin_;
+    host_search host_;
+
+private:
+    /// The scratch of this thread, whatever f is.
+    static query_scratch& kept_scratch()
+    {
+        thread_local query_scratch kept;
+        return kept;
+    }
 };
 
 } // namespace photongrid

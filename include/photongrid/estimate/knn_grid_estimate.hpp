@@ -1,5 +1,6 @@
-// The kNN-grid radiance estimate (section 2.3, figure 6) and its extensions: a search for at least k photons, for the k
-// nearest, or for all within a radius, followed by a density estimate with a standard error. Work per pass is bounded.
+// The kNN-grid irradiance estimate (the paper's radiance estimate, section 2.3 and figure 6) and its extensions: a
+// search for at least k photons, for the k nearest, or for all within a radius, followed by a density estimate with a
+// standard error. Work per pass is bounded.
 //
 //     at_least_k:   knn_visit ----------------> knn_result          (the paper's: constant filter, no standard error)
 //                             \-> grown_radius -> gather_photons -> irradiance_estimate
@@ -125,8 +126,8 @@ private:
     buffer_of<B, glm::uvec4> found_, chosen_, cursor_, tally_;
 };
 
-// What runs kernels is defined outside of the class: inside, `extern template` would not spare a file its
-// instantiation.
+// Defined outside the class: functions defined inside are implicitly inline, and `extern template` does not suppress
+// them.
 
 template <backend B>
 knn_estimates<B> knn_search_by_kernels<B>::estimates()
@@ -154,7 +155,7 @@ knn_estimates<B> knn_search_by_kernels<B>::estimates()
     b.template run<kernels::irradiance_estimate>(n,
         {.norm = detail::entry_of(s.filter).norm,
             .min_radius2 = in_.min_radius2(),
-            .left_out = s.bias == bias_kind::unbiased ? 1u : 0u},
+            .leave_out = s.bias == bias_kind::unbiased ? 1u : 0u},
         reads(radius_, sum_, squares_, tally_), writes(e.irradiance, e.used, errors));
     if (s.errors)
         e.standard_error = std::move(errors);

@@ -64,8 +64,8 @@ private:
     buffer_of<B, glm::uvec4> counts_, outer_, bracket_, cursor_, tally_;
 };
 
-// What runs kernels is defined outside of the class: inside, `extern template` would not spare a file its
-// instantiation.
+// Defined outside the class: functions defined inside are implicitly inline, and `extern template` does not suppress
+// them.
 
 template <backend B>
 knn_radius<B>::knn_radius(const detail::search_inputs<B>& in) : in_(in)

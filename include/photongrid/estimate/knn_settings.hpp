@@ -22,8 +22,9 @@ struct knn_settings {
     leak_policy leaks{};                        ///< leak rejection; none by default
     bool errors = false;                        ///< compute standard errors
     /// The most photons that one query examines in a pass, at least 1. Results depend neither on this nor on
-    /// ranges_per_pass. 16 lanes x (visits + ranges) must stay well below 65,535, after which llvmpipe and lavapipe end
-    /// loops silently.
+    /// ranges_per_pass. llvmpipe and lavapipe silently end loops after 65,535 iterations, counted over all 16 lanes of
+    /// a subgroup: there, visits_per_pass + ranges_per_pass must be at most 3,968, which is 4,095 per lane less 127 for
+    /// the loops around those over photons and rows.
     uint visits_per_pass = 3072;
     uint ranges_per_pass = 896; ///< the most rows of cells that one query reads in a pass, at least 2
 };
@@ -75,12 +76,12 @@ namespace detail {
             || !(s.leaks.min_cosine <= 1))
             throw std::invalid_argument(
                 "knn_search: leaks: flattening must be from 1 to 10^6, min_cosine from -1 to 1");
-        if (s.leaks.needs_any() && normals < points)
+        if (s.leaks.needs_point_normals() && normals < points)
             throw std::invalid_argument("knn_search: leaks: a policy needs the surface normal of every query point");
         if (s.leaks.side && map.photons.size() > 0 && map.photons.directions.size() == 0)
             throw std::invalid_argument(
                 "knn_search: leaks: side needs the photons' directions, which this map does not keep");
-        if (s.leaks.needs_normals() && map.photons.size() > 0 && map.photons.normals.size() == 0)
+        if (s.leaks.needs_photon_normals() && map.photons.size() > 0 && map.photons.normals.size() == 0)
             throw std::invalid_argument(
                 "knn_search: leaks: min_cosine needs the photons' surface normals, which this map does not keep");
         if (!(s.min_radius > 0))
@@ -103,7 +104,7 @@ namespace detail {
     template <class K>
     uint policy_switches(const leak_policy& l)
     {
-        return (l.side ? K::SIDE_switch : 0u) | (l.needs_normals() ? K::NORMALS_switch : 0u)
+        return (l.side ? K::SIDE_switch : 0u) | (l.needs_photon_normals() ? K::NORMALS_switch : 0u)
             | (l.flattening > 1 ? K::FLATTEN_switch : 0u);
     }
     /// Whether the points are close enough for neighbours to search in a subgroup: if the expected radius is at least
@@ -149,7 +150,7 @@ namespace detail {
         const vectors& directions() const { return s.leaks.side ? map->photons.directions : map->photons.positions; }
         const vectors& photon_normals() const
         {
-            return s.leaks.needs_normals() ? map->photons.normals : map->photons.positions;
+            return s.leaks.needs_photon_normals() ? map->photons.normals : map->photons.positions;
         }
         /// Params::leaks of photon_distance.glsl.
         glm::vec4 leaks() const

@@ -1,6 +1,7 @@
 // Initialises a kNN-grid search (2.3): no photons found, and ring 0, the query point's own cell, is next. Points with
 // w <= 0 and points that are not finite are done at once.
 #include <photongrid/backend/none.glsl>
+#include <photongrid/estimate/growing_state.glsl>
 #include <photongrid/map/grid.glsl>
 
 struct Params {
@@ -18,7 +19,7 @@ void kernel(uint i)
     vec4 p = points(i);
     uvec4 c = cell_coordinates(args.grid, p);
     gathered = vec4(0.0f, 0.0f, 0.0f, 0.0f);
-    found = uvec4(0u, 0u, 0u, 0u);
+    found = growing_tally(0u, 0u, 0u, 0u);
     bool searches = args.searching != 0u && p.w > 0.0f && is_finite(p);
-    cursor = uvec4(searches ? 0u : NONE, c.z, c.y, c.x);
+    cursor = ring_cursor(searches ? 0u : NONE, c.z, c.y, c.x);
 }

@@ -10,6 +10,8 @@
 //
 // The kernel is one function, because it is one state machine over local copies of the states.
 #include <photongrid/backend/none.glsl>
+#include <photongrid/estimate/growing_state.glsl>
+#include <photongrid/estimate/search_tally.glsl>
 #include <photongrid/map/grid.glsl>
 
 struct Params {
@@ -22,16 +24,16 @@ struct Params {
 };
 PARAMS(Params)
 #include <photongrid/estimate/search_inputs.glsl>
-INPUT(6, vec4, powers)         // rgb, W
-STATE(0, vec4, gathered)    // rgb: power of the photons found, W; w: squared radius of the farthest, m^2
-STATE(1, uvec4, found)      // photons found; photons visited; next photon and end of the row being read
-STATE(2, uvec4, cursor)     // ring, z, y, x of the next cell to open; ring NONE: done
+INPUT(6, vec4, powers)   // rgb, W
+STATE(0, vec4, gathered) // see growing_state.glsl
+STATE(1, uvec4, found)
+STATE(2, uvec4, cursor)
 
 #include <photongrid/estimate/photon_distance.glsl>
 
 bool done()
 {
-    return cursor.x == NONE;
+    return ring_of(cursor) == NONE;
 }
 
 // The smaller of `so_far` and the gap to `cell`, if that cell exists.
@@ -56,15 +58,15 @@ void kernel(uint i)
     uint last_z = args.grid.resolution.z - 1u;
 
     vec4 sum = gathered;
-    float radius2 = gathered.w;
-    uint held = found.x;
-    uint at = found.z;
-    uint end = found.w;
-    uint visited = found.y;
-    uint ring = cursor.x;
-    uint z = cursor.y;
-    uint y = cursor.z;
-    uint x = cursor.w;
+    float radius2 = grown_radius2(gathered);
+    uint held = photons_found(found);
+    uint at = next_in_row(found);
+    uint end = end_of_row(found);
+    uint visited = photons_visited(found);
+    uint ring = ring_of(cursor);
+    uint z = cell_z(cursor);
+    uint y = cell_y(cursor);
+    uint x = cell_x(cursor);
 
     uint left = args.visits;
     uint steps = args.ranges;
@@ -162,6 +164,6 @@ void kernel(uint i)
     }
 
     gathered = vec4(sum.x, sum.y, sum.z, radius2);
-    found = uvec4(held, visited, at, end);
-    cursor = uvec4(ring, z, y, x);
+    found = growing_tally(held, visited, at, end);
+    cursor = ring_cursor(ring, z, y, x);
 }

@@ -11,7 +11,9 @@
 #include <photongrid/backend/none.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/estimate/distance_key.glsl>
-#include <photongrid/estimate/kth_phases.glsl>
+#include <photongrid/estimate/kth_state.glsl>
+#include <photongrid/estimate/row_cursor.glsl>
+#include <photongrid/estimate/search_tally.glsl>
 
 struct Params {
     Grid grid;
@@ -24,12 +26,12 @@ struct Params {
 PARAMS(Params)
 #include <photongrid/estimate/search_inputs.glsl>
 IN_GROUPS(3)
-STATE(0, vec4, pivots)   // m^2; COUNTING: the eight pivots are x + y times the factors in the kernel; CLOSING_IN: x
+STATE(0, vec4, pivots)   // see kth_state.glsl, also for bracket and tally
 STATE(1, uvec4, inner)   // COUNTING: photons within pivots 1 to 4; CLOSING_IN: the four largest keys up to the pivot
 STATE(2, uvec4, outer)   // COUNTING: photons within pivots 5 to 8; CLOSING_IN: the four smallest keys beyond the pivot
-STATE(3, uvec4, bracket) // x < key of the k-th <= y; z, w: photons up to x, y; w NONE: unknown
-STATE(4, uvec4, cursor)  // y, z of the next row; the first photon not yet visited
-STATE(5, uvec4, tally)   // photons within the pivot, if FOUND within the k-th distance; photons visited; scans; phase
+STATE(3, uvec4, bracket)
+STATE(4, uvec4, cursor)  // see row_cursor.glsl
+STATE(5, uvec4, tally)
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
@@ -37,7 +39,7 @@ STATE(5, uvec4, tally)   // photons within the pivot, if FOUND within the k-th d
 
 bool done()
 {
-    return tally.w == FOUND;
+    return kth_phase(tally) == FOUND;
 }
 
 // The n-th component, from 0.
@@ -51,8 +53,10 @@ uvec4 narrowed(uvec4 between, float pivot, uint count)
 {
     uint key = key_of(pivot);
     if (count < args.k)
-        return key > between.x ? uvec4(key, between.y, count, between.w) : between;
-    return between.w == NONE || key < between.y ? uvec4(between.x, key, between.z, count) : between;
+        return key > low_key(between) ? kth_bracket(key, high_key(between), count, up_to_high(between)) : between;
+    return up_to_high(between) == NONE || key < high_key(between)
+        ? kth_bracket(low_key(between), key, up_to_low(between), count)
+        : between;
 }
 
 float within_limit(float radius2)
@@ -84,34 +88,36 @@ void kernel(uint i)
     vec4 p = points(i);
     vec4 n = normals(i);
     uvec4 c = cell_coordinates(args.grid, p);
-    vec4 pivot = pivots;
+    float pivot = pivot_base(pivots);
+    float span = pivot_span(pivots);
     uvec4 below = inner;
     uvec4 beyond = outer;
     uvec4 between = bracket;
     uvec4 resume_at = cursor;
-    uint within = tally.x;
-    uint visited = tally.y;
-    uint scans = tally.z;
-    uint phase = tally.w <= CLOSING_IN ? tally.w : FOUND;
+    uint within = photons_found(tally);
+    uint visited = photons_visited(tally);
+    uint scans = scans_of(tally);
+    uint phase = min(kth_phase(tally), FOUND);
 
     walk_visits = args.visits;
     walk_steps = args.ranges;
     while (walk_steps > 0u && group_any(phase != FOUND)) {
         // The guess (kth_guess.glsl) is more often a little too low than too high.
-        precise vec4 near_pivots = vec4(pivot.x + 0.6f * pivot.y, pivot.x + 0.8f * pivot.y,
-            pivot.x + 0.92f * pivot.y, pivot.x + 1.04f * pivot.y);
-        precise vec4 far_pivots = vec4(pivot.x + 1.16f * pivot.y, pivot.x + 1.3f * pivot.y,
-            pivot.x + 1.48f * pivot.y, pivot.x + 1.7f * pivot.y);
+        precise vec4 near_pivots
+            = vec4(pivot + 0.6f * span, pivot + 0.8f * span, pivot + 0.92f * span, pivot + 1.04f * span);
+        precise vec4 far_pivots
+            = vec4(pivot + 1.16f * span, pivot + 1.3f * span, pivot + 1.48f * span, pivot + 1.7f * span);
         near_pivots = vec4(within_limit(near_pivots.x), within_limit(near_pivots.y),
             within_limit(near_pivots.z), within_limit(near_pivots.w));
         far_pivots = vec4(within_limit(far_pivots.x), within_limit(far_pivots.y),
             within_limit(far_pivots.z), within_limit(far_pivots.w));
-        uint middle = key_of(pivot.x);
-        float high = distance_of(between.y);
-        float scan2 = phase == COUNTING ? far_pivots.w : high;
-        bool mine = joins_walk(phase != FOUND, p, c, scan2, uvec4(resume_at.x, resume_at.y, resume_at.z, phase));
+        uint middle = key_of(pivot);
+        uint low = low_key(between);
+        float high2 = distance_of(high_key(between));
+        float scan2 = phase == COUNTING ? far_pivots.w : high2;
+        bool mine = joins_walk(phase != FOUND, p, c, scan2, in_phase(resume_at, phase));
         vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the other lanes count nothing
-        while (walk_phase() == COUNTING && walks_on()) {
+        while (walk_phase == COUNTING && walks_on()) {
             uint photons = next_rows();
             visited += mine ? photons : 0u;
             // No branches: they are mispredicted on a CPU and diverge on a GPU.
@@ -125,14 +131,14 @@ void kernel(uint i)
                 EACH_PHOTON(photons, gather_chunk, VISIT)
 #undef VISIT
         }
-        while (walk_phase() != COUNTING && walks_on()) {
+        while (walk_phase != COUNTING && walks_on()) {
             uint photons = next_rows();
             visited += mine ? photons : 0u;
 #define VISIT(LANE)                                                                   \
     {                                                                                 \
         float d2 = distance2_of(PHOTON_OF(LANE), from, n);                            \
         uint key = key_of(d2);                                                        \
-        bool inside = d2 <= high && key > between.x;                                  \
+        bool inside = d2 <= high2 && key > low;                                       \
         if (GROUP_LANES > 1u || inside) {                                             \
             within += inside && key <= middle ? 1u : 0u;                              \
             below = largest(below, inside && key <= middle ? key : 0u);               \
@@ -144,7 +150,7 @@ void kernel(uint i)
 #undef VISIT
         }
         if (mine)
-            resume_at = uvec4(walk.x, walk.y, walk.z, 0u);
+            resume_at = walk_cursor();
 
         if (mine && has_walked()) {
             // The scan is complete: narrow the bracket, or find the k-th.
@@ -158,57 +164,63 @@ void kernel(uint i)
                 between = narrowed(between, far_pivots.y, beyond.y);
                 between = narrowed(between, far_pivots.z, beyond.z);
                 between = narrowed(between, far_pivots.w, beyond.w);
-                if (between.w == NONE) {
-                    // Fewer than k so beyond. Wider, unless that was the widest: then these are all.
+                if (up_to_high(between) == NONE) {
+                    // Fewer than k photons lie within the widest pivot. Scan wider, unless it already reached
+                    // max_radius: then fewer than k exist.
                     phase = far_pivots.w < args.max_radius2 ? COUNTING : FOUND;
                     within = beyond.w;
                     scans = 0u;
                     precise float growth = 1.1f * (float(args.k) / float(max(beyond.w, 1u)));
-                    float base = max(far_pivots.w, 0.0f);
-                    pivot = vec4(base, max(base * (min(growth, 16.0f) - 1.0f), 1e-30f), 0.0f, 0.0f);
+                    pivot = max(far_pivots.w, 0.0f);
+                    span = max(pivot * (min(growth, 16.0f) - 1.0f), 1e-30f);
                 } else {
                     phase = CLOSING_IN;
                 }
             } else if (args.k <= within) {
-                // At the pivot or before it, and `before` photons before the last of these.
+                // The k-th lies within the pivot, `before` places before the last photon there.
                 uint before = within - args.k;
                 uint kth = component(below, min(before, 3u));
                 if (before < 4u) {
                     phase = FOUND;
                     within = args.k + (before > 0u && component(below, before - 1u) == kth ? 1u : 0u);
-                    between.y = kth;
+                    between = kth_bracket(low_key(between), kth, up_to_low(between), up_to_high(between));
                 } else {
                     uint farther = (below.x > kth ? 1u : 0u) + (below.y > kth ? 1u : 0u) + (below.z > kth ? 1u : 0u);
-                    between = uvec4(between.x, kth, between.z, within - farther);
+                    between = kth_bracket(low_key(between), kth, up_to_low(between), within - farther);
                 }
             } else {
+                // The k-th lies beyond the pivot, `before` places behind the first photon there.
                 uint before = args.k - within - 1u;
                 uint kth = component(beyond, min(before, 3u));
-                if (before < 3u || beyond.x == between.y) {
+                bool one_key = beyond.x == high_key(between); // all photons beyond the pivot have it
+                if (before < 3u || one_key) {
                     phase = FOUND;
-                    within = beyond.x == between.y ? between.w
-                                                   : args.k + (component(beyond, before + 1u) == kth ? 1u : 0u);
-                    between.y = kth;
+                    within = one_key ? up_to_high(between)
+                                     : args.k + (component(beyond, before + 1u) == kth ? 1u : 0u);
+                    between = kth_bracket(low_key(between), kth, up_to_low(between), up_to_high(between));
                 } else {
-                    // Other photons may have the same distance as the fourth of these.
+                    // More photons than the fourth may have its key, so the bracket begins before it.
                     uint nearer = (beyond.x < kth ? 1u : 0u) + (beyond.y < kth ? 1u : 0u) + (beyond.z < kth ? 1u : 0u);
                     uint last = nearer == 0u ? middle : component(beyond, nearer - 1u);
-                    between = uvec4(max(between.x, last), between.y, within + nearer, between.w);
+                    between = kth_bracket(
+                        max(low_key(between), last), high_key(between), within + nearer, up_to_high(between));
                 }
             }
             if (phase == CLOSING_IN) {
-                if (between.y <= between.x || between.y - between.x == 1u) {
+                uint first = low_key(between);
+                uint end = high_key(between);
+                if (end <= first || end - first == 1u) {
                     // One distance is left. If several photons have it, kth_tie.glsl chooses among them by id.
                     phase = FOUND;
-                    within = between.w;
+                    within = up_to_high(between);
                 } else {
-                    float low = distance_of(between.x);
-                    high = distance_of(between.y);
-                    float share = (float(args.k - between.z) - 0.5f) / float(between.w - between.z);
-                    precise float even = low + (high - low) * share;
-                    uint next = scans < 6u ? key_of(even) : between.x + (between.y - between.x) / 2u;
-                    pivot.x = distance_of(min(max(next, between.x), between.y - 1u));
-                    within = between.z;
+                    float first2 = distance_of(first);
+                    float share = (float(args.k - up_to_low(between)) - 0.5f)
+                        / float(up_to_high(between) - up_to_low(between));
+                    precise float even = first2 + (distance_of(end) - first2) * share;
+                    uint next = scans < 6u ? key_of(even) : first + (end - first) / 2u;
+                    pivot = distance_of(min(max(next, first), end - 1u));
+                    within = up_to_low(between);
                     below = uvec4(0u, 0u, 0u, 0u);
                     beyond = uvec4(NONE, NONE, NONE, NONE);
                 }
@@ -216,14 +228,14 @@ void kernel(uint i)
                 below = uvec4(0u, 0u, 0u, 0u);
                 beyond = below;
             }
-            resume_at = uvec4(0u, 0u, 0u, 0u);
+            resume_at = at_first_row();
         }
     }
 
-    pivots = pivot;
+    pivots = pivots_of(pivot, span);
     inner = below;
     outer = beyond;
     bracket = between;
     cursor = resume_at;
-    tally = uvec4(within, visited, scans, phase);
+    tally = kth_tally(within, visited, scans, phase);
 }

@@ -3,7 +3,8 @@
 // only.
 #include <photongrid/backend/none.glsl>
 #include <photongrid/map/grid.glsl>
-#include <photongrid/estimate/kth_phases.glsl>
+#include <photongrid/estimate/kth_state.glsl>
+#include <photongrid/estimate/row_cursor.glsl>
 
 struct Params {
     Grid grid;
@@ -16,7 +17,7 @@ PARAMS(Params)
 IN_GROUPS(0)
 INPUT(0, vec4, points) // xyz: query point, m; w > 0: search here
 INPUT(1, uvec2, cells)
-OUTPUT(0, vec4, pivots)   // these are the states of kth_distance.glsl
+OUTPUT(0, vec4, pivots) // the states of kth_distance.glsl
 OUTPUT(1, uvec4, inner)
 OUTPUT(2, uvec4, outer)
 OUTPUT(3, uvec4, bracket)
@@ -93,13 +94,13 @@ float guessed(uvec4 c)
 void kernel(uint i)
 {
     vec4 p = points(i);
-    pivots = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    pivots = pivots_of(0.0f, 0.0f);
     inner = uvec4(0u, 0u, 0u, 0u);
     outer = uvec4(0u, 0u, 0u, 0u);
-    bracket = uvec4(0u, 0u, 0u, NONE);
-    cursor = uvec4(0u, 0u, 0u, 0u);
+    bracket = kth_bracket(0u, 0u, 0u, NONE);
+    cursor = at_first_row();
     bool searches = args.searching != 0u && p.w > 0.0f && is_finite(p);
-    tally = uvec4(0u, 0u, 0u, searches ? COUNTING : FOUND); // found: none
+    tally = kth_tally(0u, 0u, 0u, searches ? COUNTING : FOUND); // without a search, no photon is found
 
     uvec4 c = cell_coordinates(args.grid, p);
     bool looking = searches;
@@ -113,7 +114,7 @@ void kernel(uint i)
         float z = p.z - there.z;
         bool mine = looking && !(x * x + y * y + z * z > 0.0625f * guess);
         if (mine)
-            pivots.y = guess;
+            pivots = pivots_of(0.0f, guess);
         looking = looking && !mine;
     }
 }

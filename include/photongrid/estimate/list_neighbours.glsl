@@ -1,6 +1,11 @@
 // Lists the indices of the photons within a point's radius, in map order, sixteen at a time: kernels have no arrays and
 // write only their own element. The next part of the list continues where this one ended, so that all parts together
 // scan the photons once.
+//
+// The kernel is one function, because its loop changes nearly all of the local copies of the states.
+#include <photongrid/estimate/list_tally.glsl>
+#include <photongrid/estimate/row_cursor.glsl>
+#include <photongrid/estimate/search_radius.glsl>
 #include <photongrid/map/grid.glsl>
 
 struct Params {
@@ -13,21 +18,20 @@ PARAMS(Params)
 #include <photongrid/estimate/search_inputs.glsl>
 SWITCH(3, REPEATS) // the map may hold a photon several times
 INPUT(6, uint, list)         // photon ids
-INPUT(7, vec4, search_radii) // x: squared radius, m^2
+INPUT(7, vec4, search_radii) // see search_radius.glsl
 STATE(0, uvec4, first_four)  // indices of photons, the last one found first
 STATE(1, uvec4, second_four)
 STATE(2, uvec4, third_four)
 STATE(3, uvec4, fourth_four)
-STATE(4, uvec4, cursor)      // y, z of the next row, relative to the first row; the first photon not yet visited
-STATE(5, uvec4, tally)       // x: photons in this part; y: 1: no more photons; z: the last id that counts at the
-                             // radius; w: how often it still counts
+STATE(4, uvec4, cursor)      // see row_cursor.glsl; y and z are relative to the first row
+STATE(5, uvec4, tally)       // see list_tally.glsl
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
 
 bool done()
 {
-    return tally.y != 0u || tally.x == 16u;
+    return is_complete(tally) || listed_in_part(tally) == 16u;
 }
 
 void kernel(uint i)
@@ -35,7 +39,7 @@ void kernel(uint i)
     vec4 p = points(i);
     vec4 n = normals(i);
     uvec4 c = cell_coordinates(args.grid, p);
-    float radius2 = search_radii(i).x;
+    float radius2 = radius2_of(search_radii(i));
     float radius = wider(radius2);
     uvec2 rows_y = cells_within(p.y, radius, args.grid.origin.y, args.grid.inverse_cell.y, args.grid.resolution.y);
     uvec2 rows_z = cells_within(p.z, radius, args.grid.origin.z, args.grid.inverse_cell.z, args.grid.resolution.z);
@@ -43,12 +47,12 @@ void kernel(uint i)
     uvec4 b = second_four;
     uvec4 d = third_four;
     uvec4 e = fourth_four;
-    uint y = rows_y.x + cursor.x;
-    uint z = rows_z.x + cursor.y;
-    uint next = cursor.z;
-    uint held = tally.x;
-    uint last_id = tally.z;
-    uint last_left = tally.w;
+    uint y = rows_y.x + row_y(cursor);
+    uint z = rows_z.x + row_z(cursor);
+    uint next = first_unvisited(cursor);
+    uint held = listed_in_part(tally);
+    uint last_id = last_id_of(tally);
+    uint last_left = last_id_count(tally);
 
     uint left = args.visits;
     uint steps = args.ranges;
@@ -91,6 +95,6 @@ void kernel(uint i)
     second_four = b;
     third_four = d;
     fourth_four = e;
-    cursor = uvec4(y - rows_y.x, z - rows_z.x, next, 0u);
-    tally = uvec4(held, z > rows_z.y ? 1u : 0u, last_id, last_left);
+    cursor = row_cursor(y - rows_y.x, z - rows_z.x, next, 0u);
+    tally = list_tally(held, z > rows_z.y, last_id, last_left);
 }

@@ -1,5 +1,8 @@
 // Initialises a list of neighbours (list_neighbours.glsl) or, with GOES_ON, its next part. Points with w <= 0 and
 // points that are not finite have empty lists.
+#include <photongrid/estimate/list_tally.glsl>
+#include <photongrid/estimate/row_cursor.glsl>
+#include <photongrid/estimate/search_radius.glsl>
 #include <photongrid/map/grid.glsl>
 
 struct Params {
@@ -8,7 +11,7 @@ struct Params {
 PARAMS(Params)
 SWITCH(0, GOES_ON)
 INPUT(0, vec4, points)  // xyz: query point, m; w > 0: search here
-INPUT(1, uvec4, chosen) // see kth_result.glsl
+INPUT(1, uvec4, chosen) // see search_radius.glsl
 STATE(0, uvec4, cursor)
 STATE(1, uvec4, tally)
 
@@ -16,10 +19,10 @@ void kernel(uint i)
 {
     vec4 p = points(i);
     if (GOES_ON) {
-        tally.x = 0u;
+        tally = list_tally(0u, is_complete(tally), last_id_of(tally), last_id_count(tally));
     } else {
-        cursor = uvec4(0u, 0u, 0u, 0u);
+        cursor = at_first_row();
         bool searches = args.searching != 0u && p.w > 0.0f && is_finite(p);
-        tally = uvec4(0u, searches ? 0u : 1u, chosen(i).z, chosen(i).w);
+        tally = list_tally(0u, !searches, last_id_of(chosen(i)), last_id_count(chosen(i)));
     }
 }

@@ -1,14 +1,16 @@
 // The estimate while no photon has been summed yet.
+#include <photongrid/estimate/search_tally.glsl>
+
 struct Params {
     float radius2; // m^2
 };
 PARAMS(Params)
-INPUT(0, uvec4, tallies) // y: photons visited
+INPUT(0, uvec4, tallies) // see search_tally.glsl
 OUTPUT(0, vec4, irradiance)
 OUTPUT(1, uvec2, used)
 
 void kernel(uint i)
 {
     irradiance = vec4(0.0f, 0.0f, 0.0f, args.radius2);
-    used = uvec2(0u, tallies(i).y);
+    used = uvec2(0u, photons_visited(tallies(i)));
 }

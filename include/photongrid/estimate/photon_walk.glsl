@@ -1,6 +1,7 @@
 // Visits the photons near the query points of a subgroup (IN_GROUPS, backend/begin.hpp), or near a single point, in map
 // order. At each step every lane looks up one row of cells; then, chunk by chunk, every lane loads one photon of these
-// rows and broadcasts it to the others. Included by kernels after search_rows.glsl and photon_distance.glsl.
+// rows and broadcasts it to the others. Included by kernels after search_rows.glsl and photon_distance.glsl, and after
+// row_cursor.glsl.
 #include <photongrid/backend/group_middle.glsl>
 
 // The union of the points' search balls is inside this ball: its centre, the centre's cell, and the squared radius.
@@ -9,7 +10,10 @@ uvec4 walk_cell;
 float walk_radius2;
 uvec2 walk_y; // first and last row of cells in the ball, along y
 uvec2 walk_z; // and along z
-uvec4 walk;            // y and z of the next row; the first photon not yet visited; the searches' phase
+uint walk_next_y;      // the next row
+uint walk_next_z;
+uint walk_unvisited;   // the first photon not yet visited
+uint walk_phase;       // of the searches that share the walk
 uint walk_visits = 0u; // photons left in this pass's budget
 uint walk_steps = 0u;  // steps left in this pass's budget
 uint rows_end = 0u;    // inclusive prefix sum over the lanes of the photons in their current rows
@@ -20,20 +24,20 @@ vec4 chunk_direction;
 vec4 chunk_normal;
 
 // Begins a walk for the unfinished point in the centre of the subgroup and the points that can share its walk: those
-// that are close to it and at the same stage (`resume_at`: y, z, next photon, phase). Returns whether this point is one
-// of them.
+// that are close to it and go on at the same photon in the same phase (`resume_at`, row_cursor.glsl). Returns whether
+// this point is one of them.
 bool joins_walk(bool searching, vec4 p, uvec4 c, float radius2, uvec4 resume_at)
 {
     uint middle = group_middle(searching);
     float radius = wider(radius2);
     walk_center = lane_value(p, middle);
     walk_cell = lane_value(c, middle);
-    walk = lane_value(resume_at, middle);
+    uvec4 start_at = lane_value(resume_at, middle);
     float most = lane_value(radius, middle);
     float dx = abs(p.x - walk_center.x);
     float dy = abs(p.y - walk_center.y);
     float dz = abs(p.z - walk_center.z);
-    bool mine = searching && !(max(dx, max(dy, dz)) > 0.4f * most) && !(radius > 1.5f * most) && resume_at == walk;
+    bool mine = searching && !(max(dx, max(dy, dz)) > 0.4f * most) && !(radius > 1.5f * most) && resume_at == start_at;
     walk_radius2 = radius2;
     if (GROUP_LANES > 1u) {
         float extent = mine ? (sqrt(dx * dx + dy * dy + dz * dz) + radius) * 1.000001f : 0.0f;
@@ -42,20 +46,24 @@ bool joins_walk(bool searching, vec4 p, uvec4 c, float radius2, uvec4 resume_at)
     }
     walk_y = cells_within(walk_center.y, radius, args.grid.origin.y, args.grid.inverse_cell.y, args.grid.resolution.y);
     walk_z = cells_within(walk_center.z, radius, args.grid.origin.z, args.grid.inverse_cell.z, args.grid.resolution.z);
-    if (walk.y < walk_z.x) {
-        walk.x = 0u;
-        walk.y = walk_z.x;
+    walk_next_y = row_y(start_at);
+    walk_next_z = row_z(start_at);
+    walk_unvisited = first_unvisited(start_at);
+    walk_phase = phase_of_walk(start_at);
+    if (walk_next_z < walk_z.x) {
+        walk_next_y = 0u;
+        walk_next_z = walk_z.x;
     }
-    walk.x = max(walk.x, walk_y.x);
-    if (walk.x > walk_y.y) {
-        walk.x = walk_y.x;
-        ++walk.y;
+    walk_next_y = max(walk_next_y, walk_y.x);
+    if (walk_next_y > walk_y.y) {
+        walk_next_y = walk_y.x;
+        ++walk_next_z;
     }
     return mine;
 }
 
-uint walk_phase() { return walk.w; }
-bool has_walked() { return walk.y > walk_z.y; }
+uvec4 walk_cursor() { return row_cursor(walk_next_y, walk_next_z, walk_unvisited, 0u); }
+bool has_walked() { return walk_next_z > walk_z.y; }
 bool walks_on() { return walk_steps > 0u && !has_walked(); }
 
 // The index in the map of photon `nth` of the current rows.
@@ -71,8 +79,8 @@ uint index_of(uint nth)
 uint next_rows()
 {
     --walk_steps;
-    uint y = walk.x;
-    uint z = walk.y;
+    uint y = walk_next_y;
+    uint z = walk_next_z;
     if (GROUP_LANES > 1u) { // not by a loop: drivers that end loops early count the iterations of all of them
         uint rows = walk_y.y - walk_y.x + 1u;
         uint on = y - walk_y.x + group_lane();
@@ -80,21 +88,21 @@ uint next_rows()
         y = walk_y.x + on % rows;
     }
     uvec2 row = photons_of_row(walk_center, y, min(z, walk_z.y), walk_cell, walk_radius2);
-    uint first = max(row.x, walk.z);
+    uint first = max(row.x, walk_unvisited);
     uint held = z <= walk_z.y && first < row.y ? row.y - first : 0u;
     rows_end = group_sum_up_to(held);
     rows_shift = first - (rows_end - held);
     uint all = lane_value(rows_end, GROUP_LANES - 1u);
     if (all > walk_visits) {
         all = walk_visits;
-        walk.z = index_of(all);
+        walk_unvisited = index_of(all);
         walk_steps = 0u;
     } else {
-        walk.x = lane_value(y, GROUP_LANES - 1u) + 1u;
-        walk.y = lane_value(z, GROUP_LANES - 1u);
-        if (walk.x > walk_y.y) {
-            walk.x = walk_y.x;
-            ++walk.y;
+        walk_next_y = lane_value(y, GROUP_LANES - 1u) + 1u;
+        walk_next_z = lane_value(z, GROUP_LANES - 1u);
+        if (walk_next_y > walk_y.y) {
+            walk_next_y = walk_y.x;
+            ++walk_next_z;
         }
     }
     walk_visits -= all;

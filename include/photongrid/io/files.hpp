@@ -1,4 +1,4 @@
-// Writing of files, all or nothing.
+// Atomic replacement of files.
 #pragma once
 
 #include <stdexcept>

@@ -1,4 +1,4 @@
-// Writes a scene file after a change of its scene, with all that did not change as its author wrote it.
+// Edits scene text in place: replaces changed values, keeps formatting and comments.
 #pragma once
 
 #include <photongrid/scene/scene.hpp>

@@ -70,7 +70,8 @@ namespace {
             }
             if (least_length(part) < min_length)
                 fail(v.place,
-                    "its points or edges are less than 1e-9 m apart; expected a larger one (are the units right?)");
+                    std::is_same_v<Part, camera> ? "position and look_at are less than 1e-9 m apart; check \"units\""
+                                                 : "is smaller than 1e-9 m; check \"units\"");
         }
 
         /// What all shapes together must be, with the position of the one at fault.

@@ -26,7 +26,7 @@ namespace {
         json leaks = json::object();
         if (l.side)
             leaks["side"] = true;
-        if (l.needs_normals())
+        if (l.needs_photon_normals())
             leaks["min_cosine"] = as_written(l.min_cosine);
         if (l.flattening > 1)
             leaks["flattening"] = as_written(l.flattening);

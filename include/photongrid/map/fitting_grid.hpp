@@ -73,8 +73,9 @@ grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_per_radius = 1)
                 sample.begin(), at, sample.end(), [&](const auto& a, const auto& c) { return a[axis] < c[axis]; });
             return (*at)[axis];
         };
-        low[axis] = nth(stray);
-        high[axis] = nth(sample.size() - 1 - stray);
+        // No photon is found at 10^19 m or more, the square of which is no float.
+        low[axis] = std::clamp(nth(stray), -1e18f, 1e18f);
+        high[axis] = std::clamp(nth(sample.size() - 1 - stray), -1e18f, 1e18f);
     }
     const double extent = static_cast<double>(std::max({high.x - low.x, high.y - low.y, high.z - low.z}));
     if (!(extent > 0))

@@ -1,4 +1,4 @@
-// Attribute i of a photon map: that of the photon whose id is entry i of the list; zero if the entry is empty.
+// Gathers one attribute into map order: values[list[i]], or 0 for an empty entry.
 struct Params {
     uint photons; // ids are below this
 };

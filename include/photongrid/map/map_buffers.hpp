@@ -26,8 +26,8 @@ struct photons {
     uint size() const { return static_cast<uint>(positions.size()); }
 };
 
-// The parts of the light that a map can be made of, as bits.
-inline constexpr uint other_part = 1u;   ///< photons whose position has w = 0
+// The parts of the light that a map can be made of, as bits; other_part | caustic_part is every_part.
+inline constexpr uint other_part = 1u;   ///< photons whose position has a w other than 1
 inline constexpr uint caustic_part = 2u; ///< photons whose position has w = 1: caustic photons
 inline constexpr uint every_part = 3u;   ///< both
 

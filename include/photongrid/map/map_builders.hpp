@@ -48,8 +48,8 @@ namespace detail {
         if (const auto wrong
             = checked_count<kernels::range_past_end>(b, map.cells.size(), {.photons = p.size()}, reads(map.cells));
             wrong > 0)
-            throw backend_error(b.caps().backend + ": the device put photons of " + std::to_string(wrong)
-                + " cells past the last of " + std::to_string(p.size()) + "; it computes wrong results");
+            throw backend_error(b.caps().backend + ": " + std::to_string(wrong) + " cell ranges end past the "
+                + std::to_string(p.size()) + " photons; the device computed them wrongly");
 #endif
         if (parts != every_part)
             map.left_out = checked_count<kernels::other_part>(b, p.size(), {.parts = parts}, reads(p.positions));
@@ -86,7 +86,8 @@ map_buffers<B> sorted_map(B& b, photons<B> p, const grid& g, uint parts = every_
 /// Builds a photon map by stencil routing with m x m slots per cell (2.2.2): few passes, but approximate where cells
 /// overflow. The gaps that routing leaves between cells are removed. It consumes the photons. `seed` determines the
 /// order in which photons are drawn. `surplus` says what becomes of photons for which a cell has no slot.
-/// \throws std::invalid_argument for m outside 1 to 16, backend_error if cells x slots exceed the device's limit.
+/// \throws std::invalid_argument for m outside 1 to 16 or more than 2^27 photons; backend_error if cells x slots exceed
+///         the device's limit.
 /// \snippet snippets.cpp routed_map
 template <backend B>
 map_buffers<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 0, uint parts = every_part,
@@ -103,7 +104,7 @@ map_buffers<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed =
         map.surpluses = std::move(routed.surpluses);
         map.overflowing_cells = static_cast<uint>(routed.overflowing_cells);
         p.powers = std::move(routed.powers);
-        if (surplus == surplus_kind::power)
+        if (surplus == surplus_kind::power) // a cell has as many entries as photons that it keeps
             b.template run<kernels::pair_value>(cells, {}, reads(routed.cells), writes(routed.arrived));
         const auto sums = prefix_sums(b, routed.arrived);
         map.cells = b.template make<glm::uvec2>(cells);

@@ -12,44 +12,14 @@
 #include <bit>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
-#include <system_error>
 
 #include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
 
-namespace detail {
-    /// Writes a file by write(stream), beside the old one, and then replaces that. On an error the old file remains.
-    template <class Write>
-    void replace_map_file(const std::filesystem::path& file, const Write& write)
-    {
-        if (const auto reason = unwritable_reason(file); !reason.empty())
-            throw map_file_error(file, "cannot be written: " + reason);
-        const auto real = file_target(file);
-        auto part = real;
-        part += ".part";
-        std::error_code failed;
-        {
-            std::ofstream out(part, std::ios::binary | std::ios::trunc);
-            write(out);
-            out.close();
-            if (!out) {
-                std::filesystem::remove(part, failed);
-                throw map_file_error(file, "cannot be written; check that its folder can be written to and has room");
-            }
-        }
-        std::filesystem::rename(part, real, failed);
-        if (failed) {
-            const auto why = failed.message();
-            std::filesystem::remove(part, failed);
-            throw map_file_error(file, "cannot be written: " + why);
-        }
-    }
-} // namespace detail
-
-/// Writes the map to `file`; on an error the old file remains. The same map gives the same bytes on every backend.
+/// Writes the map to `file`; on an error the old file remains. Threads and processes may save to the same file at the
+/// same time: it is then one of their maps, whole. The same map gives the same bytes on every backend.
 /// `note`: any bytes that the caller wants to store with the map, such as its scene and settings.
 /// \throws map_file_error if the file cannot be written.
 /// \snippet snippets.cpp save_map
@@ -105,11 +75,11 @@ void save_map(B& b, const map_buffers<B>& map, const std::filesystem::path& file
     each_block([&](const std::byte* data, std::uint64_t bytes) { sum.add(data, bytes); });
     header.checksum = sum.value();
 
-    detail::replace_map_file(file, [&](std::ofstream& out) {
-        each_block([&](const std::byte* data, std::uint64_t bytes) {
-            out.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(bytes));
-        });
+    const auto reason = detail::replace_file(file, [&](const auto& append) {
+        each_block([&](const std::byte* data, std::uint64_t bytes) { append(data, static_cast<std::size_t>(bytes)); });
     });
+    if (!reason.empty())
+        throw map_file_error(file, "cannot be written: " + reason);
 }
 
 /// Reads a map that save_map() wrote on any backend. It checks every byte first. `note` receives the caller's note.

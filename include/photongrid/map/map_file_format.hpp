@@ -102,8 +102,7 @@ namespace detail {
         throw map_file_error(file, "is inconsistent; it was not written by save_map()");
     }
 
-    /// Checks the numbers of a header whose checksum is right: a forged file could still be inconsistent, and searches
-    /// must terminate for it too.
+    /// Validates the header: a checksum detects damage, not forgery, and a search of a forged map must still end.
     inline void check_map_header(const map_file_header& header, const std::filesystem::path& file)
     {
         const std::uint64_t n = header.photons, cells = header.cells;
@@ -123,7 +122,7 @@ namespace detail {
                 refuse_map(file);
     }
 
-    /// Checks the index of a forged file, in the same way: the cells' photons must follow each other.
+    /// Validates the index: ranges are contiguous from 0 and end within the photons.
     inline void check_map_index(
         std::span<const glm::uvec2> index, std::uint64_t photons, const std::filesystem::path& file)
     {

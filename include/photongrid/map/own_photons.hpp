@@ -13,10 +13,16 @@
 
 #include <photongrid/map/map_buffers.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <concepts>
 #include <limits>
 #include <ranges>
 #include <span>
+#include <sstream>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -59,6 +65,22 @@ struct photon_reader {
 };
 
 namespace detail {
+    /// The number of elements of a V, if its type tells; else 3.
+    template <class Reference>
+    constexpr std::size_t known_length()
+    {
+        using V = std::remove_cvref_t<Reference>;
+        if constexpr (std::is_array_v<V>)
+            return std::extent_v<V>;
+        else if constexpr (requires { std::tuple_size<V>::value; })
+            return std::tuple_size_v<V>;
+        else if constexpr (requires { std::integral_constant<std::size_t, V::length()>(); })
+            return V::length(); // GLM
+        else if constexpr (requires { std::integral_constant<std::size_t, V::extent>(); })
+            return V::extent; // std::span
+        else
+            return 3;
+    }
     template <class V>
     concept has_xyz = requires(const V& v)
     {
@@ -67,24 +89,101 @@ namespace detail {
         static_cast<float>(v.z);
     };
     template <class V>
-    concept has_elements = requires(const V& v)
-    {
-        static_cast<float>(v[0]);
-    };
+    concept has_elements = known_length<V>()
+    >= 3 && requires(const V& v) { static_cast<float>(v[0]); };
     template <class V>
     concept vector_like = has_xyz<V> || has_elements<V>;
     template <class V>
     concept power_like = vector_like<V> || std::is_arithmetic_v<std::remove_cvref_t<V>>;
 
-    template <class V>
-    glm::vec3 to_vec3(const V& v)
+    /// A vector with components T; a number stands for three equal ones.
+    template <class T, class V>
+    glm::vec<3, T> to_vec(const V& v)
     {
         if constexpr (std::is_arithmetic_v<V>)
-            return glm::vec3(static_cast<float>(v));
+            return glm::vec<3, T>(static_cast<T>(v));
         else if constexpr (has_xyz<V>)
-            return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+            return {static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)};
         else
-            return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+            return {static_cast<T>(v[0]), static_cast<T>(v[1]), static_cast<T>(v[2])};
+    }
+
+    /// Whether C has more digits than float, as double and integers of 32 bits have.
+    template <class C>
+    inline constexpr bool exceeds_float
+        = std::numeric_limits<C>::is_specialized ? (std::numeric_limits<C>::digits > std::numeric_limits<float>::digits)
+                                                 : sizeof(C) > sizeof(float);
+    /// The same for the components of a vector, or for a number.
+    template <class V>
+    constexpr bool has_doubles()
+    {
+        if constexpr (std::is_arithmetic_v<V>)
+            return exceeds_float<V>;
+        else if constexpr (has_xyz<V>)
+            return exceeds_float<std::remove_cvref_t<decltype(std::declval<const V&>().x)>>;
+        else
+            return exceeds_float<std::remove_cvref_t<decltype(std::declval<const V&>()[0])>>;
+    }
+
+    /// Throws if a map cannot have so many photons or points. `what`: "caller: name".
+    inline void check_map_size(const std::string& what, std::size_t n)
+    {
+        if (n > std::numeric_limits<uint>::max())
+            throw std::invalid_argument(
+                what + ": " + std::to_string(n) + " are more than the 2^32 - 1 that a map can hold");
+    }
+
+    /// The coordinates of up to 8,191 finite positions at equal intervals, axis by axis, each axis in ascending order.
+    /// `read(i)`: position i, a glm::dvec3.
+    template <class Read>
+    std::array<std::vector<double>, 3> sampled_coordinates(std::size_t n, const Read& read)
+    {
+        std::array<std::vector<double>, 3> axes;
+        // Should none of the sample be finite, twice as many are looked at.
+        for (std::size_t step = std::max<std::size_t>(n / 4096, 1); step > 0 && axes[0].empty(); step /= 2)
+            for (std::size_t i = 0; i < n; i += step)
+                if (const glm::dvec3 p = read(i); std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))
+                    for (std::size_t axis = 0; axis < 3; ++axis)
+                        axes[axis].push_back(p[static_cast<int>(axis)]);
+        for (auto& axis : axes)
+            std::sort(axis.begin(), axis.end());
+        return axes;
+    }
+
+    /// Throws if single precision is too coarse for these positions: if rounding moves coordinates by more than an
+    /// eighth of the distance of neighbours, taken as that of points which are spread evenly over a square. A sixteenth
+    /// of the sample at either end of each axis does not count, so that strays decide nothing. `what`: "caller: name".
+    template <class Read>
+    void check_rounding(const std::string& what, std::size_t n, const Read& read)
+    {
+        const auto axes = sampled_coordinates(n, read);
+        const std::size_t sampled = axes[0].size(), strays = sampled / 16;
+        if (strays == 0)
+            return; // too few to tell their distance
+        double moved = 0, extent = 0;
+        for (const auto& axis : axes) {
+            extent = std::max(extent, axis[sampled - 1 - strays] - axis[strays]);
+            for (std::size_t i = strays; i < sampled - strays; ++i)
+                moved = std::max(moved, std::abs(axis[i] - static_cast<double>(static_cast<float>(axis[i]))));
+        }
+        const double apart = extent / std::sqrt(static_cast<double>(n));
+        if (apart > 0 && moved * 8 > apart) {
+            std::ostringstream message;
+            message << what << ": single precision moves coordinates by up to " << moved
+                    << " m, and neighbours are about " << apart
+                    << " m apart; subtract an origin near them, or use photon_map or point_index, which do";
+            throw std::invalid_argument(message.str());
+        }
+    }
+
+    /// Uploads element(0) to element(n - 1), vectors of four.
+    template <backend B, class Element>
+    buffer_of<B, glm::vec4> upload_each(B& b, std::size_t n, const Element& element)
+    {
+        std::vector<glm::vec4> staged(n);
+        for (std::size_t i = 0; i < n; ++i)
+            staged[i] = element(i);
+        return b.upload(std::span<const glm::vec4>(staged));
     }
 } // namespace detail
 
@@ -102,7 +201,11 @@ concept own_photon = requires(const P& p)
 
 /// Uploads the caller's photons in their order. Directions and normals are uploaded if the type has them. Besides the
 /// buffers it needs 16 bytes per photon while it runs.
-/// \throws std::invalid_argument for more than 2^32 - 1 photons, backend_error if the device has no room.
+///
+/// Positions in double precision are rounded to single precision as they are, without a change of origin.
+/// \throws std::invalid_argument for more than 2^32 - 1 photons, and if rounding would move positions by more than an
+///         eighth of the distance of neighbours, as far from 0 (photon_map recentres positions); backend_error if the
+///         device has no room.
 /// \snippet snippets.cpp upload_photons
 template <backend B, std::ranges::contiguous_range Range>
 requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_t<Range>> photons<B> upload_photons(
@@ -111,52 +214,44 @@ requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_
     using P = std::ranges::range_value_t<Range>;
     using reader = photon_reader<P>;
     const auto n = static_cast<std::size_t>(std::ranges::size(own));
-    if (n > std::numeric_limits<uint>::max())
-        throw std::invalid_argument(
-            "upload_photons: photons: " + std::to_string(n) + " are more than the 2^32 - 1 that a map can hold");
+    detail::check_map_size("upload_photons: photons", n);
     const P* const from = std::ranges::data(own);
-    std::vector<glm::vec4> staged(n);
-    const auto upload = [&](auto&& element) {
-        for (std::size_t i = 0; i < n; ++i)
-            staged[i] = element(from[i]);
-        return b.upload(std::span<const glm::vec4>(staged));
-    };
+    if constexpr (detail::has_doubles<std::remove_cvref_t<decltype(reader::position(*from))>>())
+        detail::check_rounding("upload_photons: positions", n,
+            [&](std::size_t i) { return detail::to_vec<double>(reader::position(from[i])); });
     photons<B> p;
-    p.positions = upload([](const P& o) {
+    p.positions = detail::upload_each(b, n, [&](std::size_t i) {
         bool caustic = false;
-        if constexpr (requires { reader::caustic(o); })
-            caustic = reader::caustic(o);
-        return glm::vec4(detail::to_vec3(reader::position(o)), caustic ? 1.0f : 0.0f);
+        if constexpr (requires { reader::caustic(from[i]); })
+            caustic = reader::caustic(from[i]);
+        return glm::vec4(detail::to_vec<float>(reader::position(from[i])), caustic ? 1.0f : 0.0f);
     });
-    p.powers = upload([](const P& o) { return glm::vec4(detail::to_vec3(reader::power(o)), 0.0f); });
-    if constexpr (requires(const P& o) { reader::direction(o); })
-        p.directions = upload([](const P& o) { return glm::vec4(detail::to_vec3(reader::direction(o)), 0.0f); });
-    if constexpr (requires(const P& o) { reader::normal(o); })
-        p.normals = upload([](const P& o) { return glm::vec4(detail::to_vec3(reader::normal(o)), 0.0f); });
+    p.powers = detail::upload_each(
+        b, n, [&](std::size_t i) { return glm::vec4(detail::to_vec<float>(reader::power(from[i])), 0.0f); });
+    if constexpr (requires { reader::direction(*from); })
+        p.directions = detail::upload_each(
+            b, n, [&](std::size_t i) { return glm::vec4(detail::to_vec<float>(reader::direction(from[i])), 0.0f); });
+    if constexpr (requires { reader::normal(*from); })
+        p.normals = detail::upload_each(
+            b, n, [&](std::size_t i) { return glm::vec4(detail::to_vec<float>(reader::normal(from[i])), 0.0f); });
     return p;
 }
 
-namespace detail {
-    template <backend B, std::ranges::contiguous_range Range>
-    buffer_of<B, glm::vec4> upload_vectors(B& b, const Range& vectors, float w)
-    {
-        std::vector<glm::vec4> staged;
-        staged.reserve(static_cast<std::size_t>(std::ranges::size(vectors)));
-        for (const auto& v : vectors)
-            staged.emplace_back(to_vec3(v), w);
-        return b.upload(std::span<const glm::vec4>(staged));
-    }
-} // namespace detail
-
 /// Uploads query points, m: a range of vectors of any type that photon_reader accepts. w is 1, so that each gets an
-/// estimate.
-/// \throws backend_error if the device has no room.
+/// estimate. Doubles are rounded to single precision, as by upload_photons.
+/// \throws std::invalid_argument as upload_photons for double positions that lie too far from 0 for their distances;
+///         backend_error if the device has no room.
 /// \snippet snippets.cpp upload_points
 template <backend B, std::ranges::contiguous_range Range>
 requires std::ranges::sized_range<Range> && detail::vector_like<std::ranges::range_value_t<Range>>
     buffer_of<B, glm::vec4> upload_points(B& b, const Range& points)
 {
-    return detail::upload_vectors(b, points, 1.0f);
+    const auto* const from = std::ranges::data(points);
+    const auto n = static_cast<std::size_t>(std::ranges::size(points));
+    if constexpr (detail::has_doubles<std::ranges::range_value_t<Range>>())
+        detail::check_rounding(
+            "upload_points: points", n, [&](std::size_t i) { return detail::to_vec<double>(from[i]); });
+    return detail::upload_each(b, n, [&](std::size_t i) { return glm::vec4(detail::to_vec<float>(from[i]), 1.0f); });
 }
 
 /// Uploads the unit normals of the surfaces that query points lie on, on the side that is seen: one per point, in the
@@ -167,7 +262,9 @@ template <backend B, std::ranges::contiguous_range Range>
 requires std::ranges::sized_range<Range> && detail::vector_like<std::ranges::range_value_t<Range>>
     buffer_of<B, glm::vec4> upload_normals(B& b, const Range& normals)
 {
-    return detail::upload_vectors(b, normals, 0.0f);
+    const auto* const from = std::ranges::data(normals);
+    return detail::upload_each(b, static_cast<std::size_t>(std::ranges::size(normals)),
+        [&](std::size_t i) { return glm::vec4(detail::to_vec<float>(from[i]), 0.0f); });
 }
 
 } // namespace photongrid

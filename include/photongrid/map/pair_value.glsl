@@ -1,4 +1,5 @@
-// The values of sorted (key, value) pairs: the list of photon ids (figure 4, "photon list").
+// The second number of each pair: the id of sorted (cell, id) pairs, which gives the photon list (figure 4), or the count
+// of cells.
 struct Params {
     uint unused;
 };

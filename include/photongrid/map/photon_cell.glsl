@@ -5,7 +5,7 @@
 struct Params {
     Grid grid;
     uint photons;
-    uint parts; // which photons: bit 0 those with w of the position 0, bit 1 those with 1
+    uint parts; // other_part | caustic_part (map_buffers.hpp)
 };
 PARAMS(Params)
 INPUT(0, vec4, positions)

@@ -1,4 +1,4 @@
-// True for a cell whose photons are not all in the map: a device that works makes none.
+// True for a cell whose range ends past the last photon; only a faulty device produces one.
 struct Params {
     uint photons;
 };

@@ -17,7 +17,7 @@ OUTPUT(4, uint, arrived) // number of photons destined for the cell
 void kernel(uint i)
 {
     precise vec4 all = partial_sums(i * args.sums);
-    uint destined = uint(all.w); // a float holds each partial number exactly, but not always their sum
+    uint destined = uint(all.w); // exact for each partial sum (stencil_route), but not for their sum
     for (uint p = 1u; p < args.sums; ++p) {
         all += partial_sums(i * args.sums + p);
         destined += uint(partial_sums(i * args.sums + p).w);

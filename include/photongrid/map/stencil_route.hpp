@@ -24,11 +24,24 @@ struct routed_cells {
     std::uint64_t overflowing_cells = 0; ///< cells that received more photons than they have slots
 };
 
+namespace detail {
+    /// Throws if one of `sums` partial sums per cell could receive more photons than a float counts one by one.
+    inline void check_route_count(uint photons, uint sums)
+    {
+        constexpr uint most = 1u << 24;
+        if (route_block(photons, sums) > most)
+            throw std::invalid_argument("stencil_route: photons: " + std::to_string(photons) + "; at most "
+                + std::to_string(std::uint64_t{most} * sums)
+                + " are counted exactly if one cell receives them all. Build the map by sorting");
+    }
+} // namespace detail
+
 /// Routes photons to m x m slots per cell, with m from 1 to 16. Each cell keeps its first min(m*m, 255) photons in draw
 /// order, which is a permutation of the ids by `seed` and the same on every backend. The power of each cell is
 /// conserved per channel. Photons of other parts of the light than `parts` are discarded. The paper's "m = 16, about
 /// 40^3 cells" in 1024 x 1024 leaves room for 16 slots, m = 4 (docs/design/decisions.md).
-/// \throws std::invalid_argument for m outside 1 to 16, backend_error if cells x slots exceed the device's limit.
+/// \throws std::invalid_argument for m outside 1 to 16 or more than 2^27 photons; backend_error if cells x slots exceed
+///         the device's limit.
 /// \snippet snippets.cpp stencil_route
 template <backend B>
 routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, uint seed = 0, uint parts = every_part)
@@ -41,6 +54,7 @@ routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, 
     const uint n = p.size();
     // With eight partial sums per cell, the power of 70,000 equal photons has an error below 1e-4 in single precision.
     constexpr uint sums = 8;
+    detail::check_route_count(n, sums);
     const std::uint64_t slots = std::uint64_t{cells} * capacity;
     if (std::max(slots, std::uint64_t{cells} * sums) > b.caps().max_elements || slots > 0xFFFFFFFEu)
         throw backend_error(b.caps().backend + ": stencil_route: " + std::to_string(cells) + " cells of "

@@ -236,11 +236,42 @@ using shape_vectors = std::tuple<std::vector<ball_shape>, std::vector<turned_sha
 /// The bins of any surface.
 using surface_bins = std::variant<ring_bins, plane_bins, box_bins>;
 
+/// \name The profile of a scene's shape, for its bins
+/// @{
+
+/// Profile coordinates: the angle from +z of a sphere, the distance from the centre of a disk, the height of a
+/// cylinder, the distance from the apex of a cone, and the distance from the axis of a paraboloid.
+inline turned_profile profile_of(const sphere& x)
+{
+    return {turned_profile::form::sphere, x.center, {0, 0, 1}, x.radius, 0, M_PI};
+}
+inline turned_profile profile_of(const disk& x)
+{
+    return {turned_profile::form::disk, x.center, glm::normalize(x.normal), x.radius, 0, x.radius};
+}
+inline turned_profile profile_of(const cylinder& x)
+{
+    const double height = glm::length(x.top - x.base);
+    return {turned_profile::form::cylinder, x.base, glm::normalize(x.top - x.base), x.radius, height, height};
+}
+inline turned_profile profile_of(const cone& x)
+{
+    const double height = glm::length(x.base - x.apex);
+    return {turned_profile::form::cone, x.apex, glm::normalize(x.base - x.apex), x.radius, height,
+        std::hypot(height, x.radius)};
+}
+inline turned_profile profile_of(const paraboloid& x)
+{
+    return {turned_profile::form::paraboloid, x.vertex, glm::normalize(x.rim - x.vertex), x.radius,
+        glm::length(x.rim - x.vertex), x.radius};
+}
+/// @}
+
 /// Divides a surface into bins of about `size`, m. \throws std::invalid_argument for more bins than most_bins.
 template <class Round>
 surface_bins bins_of(const Round& x, double size)
 {
-    return ring_bins(x, size);
+    return ring_bins(profile_of(x), size);
 }
 inline surface_bins bins_of(const box& b, double size) { return box_bins(b, size); }       ///< the same
 inline surface_bins bins_of(const polygon& p, double size) { return plane_bins(p, size); } ///< the same
@@ -249,7 +280,7 @@ inline surface_bins bins_of(const polygon& p, double size) { return plane_bins(p
 template <class Round>
 double surface_area(const Round& x)
 {
-    return ring_bins(x, infinity).area_of_all();
+    return ring_bins(profile_of(x), infinity).area_of_all();
 }
 /// The same.
 inline double surface_area(const box& b)

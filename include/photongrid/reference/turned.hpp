@@ -85,37 +85,49 @@ struct turned_shape {
     }
 };
 
+/// A surface of revolution as ring_bins divides it: along a profile coordinate, an angle for a sphere, m for the
+/// others.
+struct turned_profile {
+    /// The kind of surface.
+    enum class form { sphere, disk, cylinder, cone, paraboloid } kind = form::sphere;
+    dvec3 origin{0};     ///< m; where the profile coordinate is 0, but for a sphere, its centre
+    dvec3 axis{0, 0, 1}; ///< unit
+    double radius = 1;   ///< m
+    double height = 0;   ///< m; along the axis
+    double length = 1;   ///< the last profile coordinate
+};
+
 /// The bins of a surface of revolution: rings along its profile, each divided into sectors so that bins are about
 /// square.
 class ring_bins {
 public:
-    /// \name Bins of about `size`, m
-    /// @{
-
-    /// \throws std::invalid_argument for more bins than most_bins.
-    ring_bins(const sphere& s, double size) : ring_bins(form::sphere, s.center, dvec3(0, 0, 1), s.radius, 0, M_PI, size)
+    /// Bins of about `size`, m. \throws std::invalid_argument for more bins than most_bins.
+    ring_bins(const turned_profile& p, double size)
+        : form_(p.kind), origin_(p.origin), axis_(p.axis), u_(across(p.axis)), v_(glm::cross(p.axis, u_)),
+          radius_(p.radius), height_(p.height)
     {
+        const double step = form_ == form::sphere ? size / radius_ : size;
+        require_few_bins(p.length / step, size);
+        edges_.push_back(0);
+        if (form_ == form::paraboloid) { // rings of equal arc length:
+                                         // d(arc) = sqrt(1 + (2 height rho / radius^2)^2) d(rho)
+            require_few_bins(2 * (radius_ + height_) / size, size);
+            while (edges_.back() < p.length)
+                edges_.push_back(std::min(p.length,
+                    edges_.back() + step / std::hypot(1.0, 2 * height_ * edges_.back() / (radius_ * radius_))));
+        } else {
+            const double rings = std::max(1.0, std::ceil(p.length / step - 1e-9));
+            for (double i = 1; i <= rings; ++i)
+                edges_.push_back(p.length * (i / rings));
+        }
+        double bins = 0;
+        first_.push_back(0);
+        for (std::size_t i = 0; i + 1 < edges_.size(); ++i) {
+            bins += std::max(1.0, std::round(2 * M_PI * radius_at(0.5 * (edges_[i] + edges_[i + 1])) / size));
+            require_few_bins(bins, size);
+            first_.push_back(static_cast<std::uint32_t>(bins));
+        }
     }
-    ring_bins(const disk& d, double size)
-        : ring_bins(form::disk, d.center, glm::normalize(d.normal), d.radius, 0, d.radius, size)
-    {
-    }
-    ring_bins(const cylinder& c, double size)
-        : ring_bins(form::cylinder, c.base, glm::normalize(c.top - c.base), c.radius, glm::length(c.top - c.base),
-            glm::length(c.top - c.base), size)
-    {
-    }
-    ring_bins(const cone& c, double size) // measured from the apex
-        : ring_bins(form::cone, c.apex, glm::normalize(c.base - c.apex), c.radius, glm::length(c.base - c.apex),
-            std::hypot(glm::length(c.base - c.apex), c.radius), size)
-    {
-    }
-    ring_bins(const paraboloid& p, double size)
-        : ring_bins(form::paraboloid, p.vertex, glm::normalize(p.rim - p.vertex), p.radius,
-            glm::length(p.rim - p.vertex), p.radius, size)
-    {
-    }
-    /// @}
 
     /// The number of bins.
     std::uint32_t size() const { return first_.back(); }
@@ -142,35 +154,7 @@ public:
     }
 
 private:
-    enum class form { sphere, disk, cylinder, cone, paraboloid };
-
-    /// `length`: the last profile coordinate, an angle for a sphere, m for the others.
-    ring_bins(form f, const dvec3& origin, const dvec3& axis, double radius, double height, double length, double size)
-        : form_(f), origin_(origin), axis_(axis), u_(across(axis)), v_(glm::cross(axis, u_)), radius_(radius),
-          height_(height)
-    {
-        const double step = f == form::sphere ? size / radius : size;
-        require_few_bins(length / step, size);
-        edges_.push_back(0);
-        if (f == form::paraboloid) { // rings of equal arc length:
-                                     // d(arc) = sqrt(1 + (2 height rho / radius^2)^2) d(rho)
-            require_few_bins(2 * (radius + height) / size, size);
-            while (edges_.back() < length)
-                edges_.push_back(std::min(
-                    length, edges_.back() + step / std::hypot(1.0, 2 * height * edges_.back() / (radius * radius))));
-        } else {
-            const double rings = std::max(1.0, std::ceil(length / step - 1e-9));
-            for (double i = 1; i <= rings; ++i)
-                edges_.push_back(length * (i / rings));
-        }
-        double bins = 0;
-        first_.push_back(0);
-        for (std::size_t i = 0; i + 1 < edges_.size(); ++i) {
-            bins += std::max(1.0, std::round(2 * M_PI * radius_at(0.5 * (edges_[i] + edges_[i + 1])) / size));
-            require_few_bins(bins, size);
-            first_.push_back(static_cast<std::uint32_t>(bins));
-        }
-    }
+    using form = turned_profile::form;
 
     double profile_coordinate(double z, double rho) const
     {

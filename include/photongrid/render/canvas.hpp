@@ -4,28 +4,10 @@
 #include <photongrid/render/scene_map.hpp>
 #include <photongrid/trace/eye_rays.hpp>
 
-#include <algorithm>
 #include <optional>
 #include <vector>
 
 namespace photongrid {
-
-/// Rows of a picture that are drawn together.
-struct row_band {
-    uint first = 0, rows = 0;
-
-    bool operator==(const row_band&) const = default;
-};
-
-/// The bands of a picture, from the top: as many rows each as output_settings::band has room for, at least one.
-inline std::vector<row_band> bands_of(const output_settings& o)
-{
-    const uint most = std::max(1u, o.band / o.width);
-    std::vector<row_band> all;
-    for (uint first = 0; first < o.height; first += most)
-        all.push_back({first, std::min(most, o.height - first)});
-    return all;
-}
 
 /// The pixels to which a pass adds light, row by row as in `raster`.
 template <backend B>

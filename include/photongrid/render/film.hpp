@@ -138,10 +138,10 @@ public:
         double unit = 0;
         take(head, sizeof head);
         take(&unit, sizeof unit);
+        if (head[0] > 16384 || head[1] > 16384 || head[2] > 1 || head[3] > 65536 || !(unit > 0) || std::isinf(unit))
+            throw std::invalid_argument("film: the data are not a film's");
         film f(head[0], head[1], unit, head[2] != 0);
         const std::size_t n = f.size();
-        if (head[0] > 16384 || head[1] > 16384 || head[2] > 1 || head[3] > 65536 || !(unit > 0))
-            throw std::invalid_argument("film: the data are not a film's");
         for (std::uint32_t i = 0; i < head[3]; ++i) {
             std::uint32_t pass = 0;
             take(&pass, sizeof pass);
@@ -232,7 +232,9 @@ private:
             auto& sum = sums_[i];
             const glm::dvec3 value = glm::dvec3(p.pixels[i]) / unit_;
             const double all = value.x + value.y + value.z;
-            if (!(std::abs(all) < largest)) { // false for NaN
+            // Each term, too: terms of either sign may cancel. False for NaN.
+            const auto holds = [](double x) { return std::abs(x) < largest; };
+            if (!holds(value.x) || !holds(value.y) || !holds(value.z) || !holds(all)) {
                 sum.invalid = 1;
                 continue;
             }
@@ -245,11 +247,14 @@ private:
         }
         for (std::size_t i = 0; i < layer_sums_.size(); ++i) {
             auto& sum = layer_sums_[i];
-            sum.searches.add(static_cast<double>(p.searches[i].w));
-            sum.count.add(static_cast<double>(p.searches[i].x));
-            sum.radius.add(static_cast<double>(p.searches[i].y));
-            if (exact_sum::holds(static_cast<double>(p.errors[i].x)))
-                sum.error.add(static_cast<double>(p.errors[i].x));
+            const glm::dvec4 tally(p.searches[i]);
+            if (!exact_sum::holds(tally.x) || !exact_sum::holds(tally.y) || !exact_sum::holds(tally.w))
+                continue; // as if this pass had not searched there
+            sum.searches.add(tally.w);
+            sum.count.add(tally.x);
+            sum.radius.add(tally.y);
+            if (const double error = static_cast<double>(p.errors[i].x); exact_sum::holds(error))
+                sum.error.add(error);
         }
     }
 

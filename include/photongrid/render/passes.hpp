@@ -91,7 +91,7 @@ template <backend B>
 void finish_band(B& b, const view_pass<B>& view, pass_pixels& light, render_stats& stats)
 {
     const auto append = [&](std::vector<glm::vec4>& all, const std::vector<glm::vec4>& more) {
-        all.reserve(view.picture_size()); // which growing would double
+        all.reserve(view.picture_size()); // one allocation: growth would double the peak
         all.insert(all.end(), more.begin(), more.end());
     };
     const auto& band = view.light();

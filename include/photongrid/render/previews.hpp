@@ -24,8 +24,8 @@ struct preview {
 struct preview_settings {
     bool enabled = true;   ///< false: no previews
     double target_ms = 40; ///< time for the first map, and for the first preview drawn with it
-    /// In place of previews, where the search sums light while it grows (as the paper's does): running estimates (2.4),
-    /// each nearer to the picture than the one before. cpu then searches twice, first by kernels.
+    /// Replace previews by running estimates (2.4) if the search is the paper's. On cpu the search then runs twice: by
+    /// kernels to show, by SIMD for the result.
     bool running_estimates = false;
 };
 
@@ -63,7 +63,7 @@ inline std::vector<preview> preview_schedule(const render_settings& s, std::uint
     while (std::min(s.output.width, s.output.height) / divisor >= 64 // smaller previews show too little
         && pixels(divisor) * costs.ms_per_preview_pixel > target_ms)
         divisor *= 2;
-    std::uint32_t least = 1; // a preview is drawn at a time
+    std::uint32_t least = 1; // a preview is drawn in one band, so it must fit
     while (pixels(least) > s.output.band)
         least *= 2;
     divisor = std::max(divisor, least);

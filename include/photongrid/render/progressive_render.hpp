@@ -42,30 +42,21 @@ public:
     }
     void resume(render_state s) override
     {
-        const bool aov = settings_.output.aov;
-        const auto has = [&](const pass_pixels& p, std::size_t n, bool searches) {
-            return p.pixels.size() == n && p.searches.size() == (searches ? n : 0) && p.errors.size() == (aov ? n : 0);
-        };
-        const auto bands = bands_of(settings_.output);
-        const auto next = std::find_if(bands.begin(), bands.end(), [&](auto b) { return b.first == s.pass.rows; });
-        const std::size_t width = settings_.output.width;
-        const bool drawn = s.pass.rows == settings_.output.height && s.pass.rays == 0;
-        if ((s.film.passes() > 0 && !s.film.is_for(settings_.output.width, settings_.output.height, aov))
-            || (!s.pass.empty() && ((next == bands.end() && !drawn) || !has(s.pass.light, s.pass.rows * width, aov)))
-            || (s.pass.rays > 0 && !has(s.pass.band, next->rows * width, true)))
-            throw std::invalid_argument("progressive_render::resume: state: does not match a picture of "
-                + std::to_string(settings_.output.width) + " x " + std::to_string(settings_.output.height) + " pixels"
-                + (settings_.output.aov ? " with layers" : ""));
+        if (!started_)
+            throw std::logic_error("progressive_render::resume: no picture was started; call start()");
+        check(s, settings_);
         film_ = std::move(s.film);
         unfinished_ = std::move(s.pass);
         light_ = std::move(unfinished_.light);
         previews_.enabled = false;
+        if (film_.passes() > 0)
+            ++pictures_;
         steps_ = picture_steps();
     }
     render_state state() override
     {
         render_state s{film_, unfinished_};
-        if (unfinished_.empty()) // else it was not taken up yet
+        if (unfinished_.empty()) // otherwise resume()'s state has not been consumed
             s.pass = {pass_, rows_done()};
         if (view_ && !view_->is_preview()) {
             const auto& band = view_->light();
@@ -150,7 +141,6 @@ private:
         unfinished_ = {};
         light_ = {};
         pictures_ = 0;
-        early_shown_ = false;
         if (!maps_.serves(pass(next_pass())))
             stats_ = {};
         stats_.trace_rays = stats_.radiance_estimate = {};
@@ -205,7 +195,8 @@ private:
         if (!has_previews())
             return steps;
         const uint photons = maps_.of().settings.map.photons;
-        for (const auto& p : preview_schedule(settings_, photons, early_shown_, costs_, previews_.target_ms)) {
+        const bool early_shown = pictures_ > 0; // before the map with all photons there is no other picture
+        for (const auto& p : preview_schedule(settings_, photons, early_shown, costs_, previews_.target_ms)) {
             steps.expand([this, p] { return steps_of_view(next_pass(), p); });
             steps.expand([this] { return end_preview(); });
         }
@@ -215,15 +206,10 @@ private:
     {
         step_list steps;
         steps.expand([this, number] { return steps_to_map(pass(number)); });
-        const auto bands = bands_of(settings_.output);
-        uint done = 0; // above 0 in a picture that was resumed
-        while (done < bands.size() && bands[done].first < rows_done())
-            ++done;
-        steps.repeat(done, static_cast<uint>(bands.size()), [this, number, bands](uint i) {
-            step_list band;
-            band.expand([this, number, b = bands[i]] { return steps_of_view(number, {}, b); });
-            band.expand([this] { return end_band(); });
-            return band;
+        steps.expand([this, number] {
+            return band_steps(
+                settings_.output, rows_done(), [this, number](row_band b) { return steps_of_view(number, {}, b); },
+                [this] { end_band(); });
         });
         steps.expand([this, number] { return end_pass(number); });
         return steps;
@@ -301,19 +287,17 @@ private:
     {
         if (pictures_ == 0)
             costs_.ms_per_preview_pixel = ms_per_pixel_of_view();
-        early_shown_ = settings_.map.photons > maps_.of().settings.map.photons;
         show(view_->take(), 1);
         view_.reset();
         return {};
     }
-    step_list end_band()
+    void end_band()
     {
         costs_.ms_per_pixel = ms_per_pixel_of_view();
         finish_band(b_, *view_, light_, stats_);
         view_.reset();
         if (light_.pixels.size() < picture_size() && film_.passes() == 0)
             ++pictures_;
-        return {};
     }
     step_list end_pass(uint number)
     {
@@ -363,7 +347,6 @@ private:
     kept_samples<B> kept_;
     std::optional<canvas<B>> shown_; ///< until the first pass is finished
     float shown_scale_ = 1;
-    bool early_shown_ = false;                 ///< a preview with fewer photons was shown
     uint samples_shown_ = 0, grown_shown_ = 0; ///< of view_
     double ms_before_ = 0;                     ///< time spent on views before view_
 };

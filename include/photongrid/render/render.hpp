@@ -13,6 +13,11 @@
 #include <photongrid/render/step_list.hpp>
 #include <photongrid/render/view_pass.hpp>
 
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <utility>
+
 #include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
@@ -46,6 +51,28 @@ step_list view_steps(view_pass<B>& v)
     return steps;
 }
 
+/// The steps of a pass over its bands of rows, without those above `rows_done`. `begin` is called with a band and
+/// returns the steps of its view; `end` is called after them.
+inline step_list band_steps(const output_settings& output, std::uint32_t rows_done,
+    std::function<step_list(row_band)> begin, std::function<void()> end)
+{
+    step_list steps;
+    const auto bands = bands_of(output);
+    const auto first
+        = std::find_if(bands.begin(), bands.end(), [&](const row_band& b) { return b.first >= rows_done; });
+    steps.repeat(static_cast<uint>(first - bands.begin()), static_cast<uint>(bands.size()),
+        [bands, begin = std::move(begin), end = std::move(end)](uint i) {
+            step_list of_band;
+            of_band.expand([begin, b = bands[i]] { return begin(b); });
+            of_band.expand([end] {
+                end();
+                return step_list();
+            });
+            return of_band;
+        });
+    return steps;
+}
+
 /// Traces photons and builds the map for a pass. A scene without indirect light has an empty map, unless that is an
 /// error for the caller.
 /// \throws std::invalid_argument for a scene or settings that check() rejects, std::runtime_error if too few
@@ -64,39 +91,53 @@ built_map<B> build_map(B& device, const scene& s, const render_settings& setting
 }
 
 /// The pixels of one pass over a view. Times and counts are added to `stats`.
-/// \throws as draw does.
+/// \throws what draw throws.
 template <backend B>
 pass_pixels draw_pass(B& device, const built_map<B>& built, const camera& view, const render_settings& settings,
     const render_observer& observer, render_stats& stats)
 {
+    check(settings);
+    check(view);
     kept_samples<B> reusable; // samples of a preview that the next view takes over
     const bool shows_previews = static_cast<bool>(observer.intermediate);
     const auto size = shows_previews || observer.cancelled ? step_size::small : step_size::largest;
     std::uint64_t invalid = 0;
-    const auto bands = bands_of(settings.output);
     if (shows_previews)
         for (const auto& p :
             preview_schedule(settings, settings.map.photons, false, {}, preview_settings{}.target_ms)) {
-            view_pass<B> preview(device, built, view, settings, {p, size, shows_previews}, reusable, stats);
+            view_pass<B> preview(device, built, view, settings, {p, size}, reusable, stats);
             run(view_steps(preview), observer, [](std::string_view) {});
             observer.intermediate(preview.mean_of_samples(invalid));
         }
+
+    const bool shows_estimates = shows_previews && bands_of(settings.output).size() == 1; // of a band: some rows only
+    const double pixels = static_cast<double>(settings.output.width) * settings.output.height;
     pass_pixels light;
-    for (std::size_t i = 0; i < bands.size(); ++i) {
-        const bool whole = bands.size() == 1; // else a running estimate is of some rows only
-        view_pass<B> pass(
-            device, built, view, settings, {{}, size, shows_previews && whole, false, bands[i]}, reusable, stats);
-        uint shown = 0; // running estimates (2.4)
-        run(view_steps(pass), observer, [&](std::string_view) {
-            if (observer.progress)
-                observer.progress("radiance_estimate",
-                    (static_cast<double>(i) + pass.fraction()) / static_cast<double>(bands.size()));
-            if (shows_previews && whole && pass.grown() > shown)
-                observer.intermediate(pass.running_estimate(invalid));
-            shown = pass.grown();
-        });
-        finish_band(device, pass, light, stats);
-    }
+    std::optional<view_pass<B>> band;
+    const auto begin = [&](row_band rows) {
+        band.emplace(
+            device, built, view, settings, view_pass_settings{{}, size, shows_estimates, false, rows}, reusable, stats);
+        return view_steps(*band);
+    };
+    const auto report = [&] {
+        const double of_band = band->fraction() * static_cast<double>(band->light().raster.size());
+        if (observer.progress)
+            observer.progress("radiance_estimate", (static_cast<double>(light.pixels.size()) + of_band) / pixels);
+    };
+    const auto end = [&] {
+        report(); // before pixels are read back
+        finish_band(device, *band, light, stats);
+        band.reset();
+    };
+    uint shown = 0; // running estimates (2.4)
+    run(band_steps(settings.output, 0, begin, end), observer, [&](std::string_view) {
+        if (!band)
+            return;
+        report();
+        if (band->grown() > shown)
+            observer.intermediate(band->running_estimate(invalid));
+        shown = band->grown();
+    });
     finish_pass(device, built, stats);
     return light;
 }

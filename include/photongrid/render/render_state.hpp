@@ -2,8 +2,12 @@
 #pragma once
 
 #include <photongrid/render/film.hpp>
+#include <photongrid/render/row_bands.hpp>
 
+#include <algorithm>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -28,7 +32,7 @@ struct unfinished_pass {
     pass_pixels light{};    ///< of the finished rows
     pass_pixels band{};     ///< of the band; its searches are there without layers too
 
-    /// Whether nothing of it is drawn.
+    /// True before its first ray.
     bool empty() const { return rows == 0 && rays == 0; }
 };
 
@@ -40,6 +44,45 @@ struct render_state {
     /// Whether there is nothing to resume.
     bool empty() const { return film.passes() == 0 && pass.empty(); }
 };
+
+/// Checks that `s` is the state of a picture with these settings. The number of rays of its unfinished pass has a limit
+/// that depends on the scene; view_pass checks it.
+/// \throws std::invalid_argument for the state of another picture.
+inline void check(const render_state& s, const render_settings& settings)
+{
+    const auto& o = settings.output;
+    const auto fail = [&](const std::string& what) {
+        throw std::invalid_argument("render_state: " + what + "; the picture has " + std::to_string(o.width) + " x "
+            + std::to_string(o.height) + " pixels" + (o.aov ? " with layers" : "") + " and passes 0 to "
+            + std::to_string(o.passes - 1));
+    };
+    if (s.film.passes() > 0 && !s.film.is_for(o.width, o.height, o.aov))
+        fail("film: is of another size, or differs in its layers");
+    std::uint32_t wanted = 0; // of the film's passes
+    for (std::uint32_t number = 0; number < o.passes; ++number)
+        wanted += s.film.holds(number) ? 1u : 0u;
+    if (wanted != s.film.passes())
+        fail("film: " + std::to_string(s.film.passes() - wanted) + " of its " + std::to_string(s.film.passes())
+            + " passes are not the picture's");
+
+    const auto& p = s.pass;
+    if (p.empty() && p.light.pixels.empty())
+        return;
+    if (p.number >= o.passes || s.film.holds(p.number))
+        fail("pass: number " + std::to_string(p.number) + " is finished or not the picture's");
+    const auto has = [&](const pass_pixels& pixels, std::size_t rows, bool searches) {
+        const std::size_t n = rows * o.width;
+        return pixels.pixels.size() == n && pixels.searches.size() == (searches ? n : 0)
+            && pixels.errors.size() == (o.aov ? n : 0);
+    };
+    const auto bands = bands_of(o);
+    const auto next = std::find_if(bands.begin(), bands.end(), [&](auto b) { return b.first == p.rows; });
+    const bool drawn = p.rows == o.height && p.rays == 0;
+    if ((next == bands.end() && !drawn) || !has(p.light, p.rows, o.aov))
+        fail("pass: its " + std::to_string(p.rows) + " finished rows are not whole bands of it");
+    if (p.rays > 0 && !has(p.band, next->rows, true))
+        fail("pass: the band after row " + std::to_string(p.rows) + " has another size");
+}
 
 } // namespace photongrid
 

@@ -37,7 +37,9 @@ public:
     virtual void start(const scene& s, const render_settings& settings, const preview_settings& previews = {}) = 0;
     /// Continues from a state() of the same scene, settings and device, without previews. The finished picture has the
     /// same bytes. Call it after start() and before step().
-    /// \throws std::invalid_argument for a state of another size. step() throws it for a state with too many rays.
+    /// \throws std::invalid_argument for the state of another picture: of another size, with passes that this one does
+    ///         not have, or with other bands. step() throws it for a state with too many rays.
+    /// \throws std::logic_error before start().
     virtual void resume(render_state s) = 0;
     /// The state so far, for resume().
     virtual render_state state() = 0;
@@ -52,8 +54,9 @@ public:
     void cancel() { stop_asked_ = true; }
 
     /// Whether picture() is the finished picture.
-    bool finished() const { return started_ && film_.passes() == settings_.output.passes; }
-    /// The number of pictures since start(), each better than the one before; 0: there is none yet.
+    bool finished() const { return started_ && film_.passes() >= settings_.output.passes; }
+    /// The number of pictures since start(), each better than the one before; 0: there is none yet. A resumed state
+    /// with finished passes is one.
     std::uint64_t pictures() const { return pictures_; }
     /// The best picture so far, in full size: the mean of the finished passes or, before the first is finished, the
     /// mean of its samples, a running estimate (3.4), or the last preview. NaN and infinite pixels are 0.
@@ -67,8 +70,9 @@ public:
     /// How many maps were started since this object was created.
     virtual std::uint64_t maps() const = 0;
 
-    // Of the backend.
+    /// What the backend's device can do.
     virtual const capabilities& caps() const = 0;
+    /// The cost of each of the backend's kernels so far.
     virtual const std::map<std::string, kernel_cost>& costs() const = 0;
 
 protected:

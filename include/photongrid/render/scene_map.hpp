@@ -35,7 +35,7 @@ inline bool same_map(const scene& a, const render_settings& as, const scene& b, 
     const bool fitted = as.map.grid == glm::uvec3(0);
     return same_light_paths(a, b) && as.seed == bs.seed && as.map.in_use() == bs.map.in_use()
         && (!fitted || as.estimate.k == bs.estimate.k) // fitting_grid depends on k
-        && (as.estimate.leaks.needs_normals() || !bs.estimate.leaks.needs_normals())
+        && (as.estimate.leaks.needs_photon_normals() || !bs.estimate.leaks.needs_photon_normals())
         && parts_of(as.output.only) == parts_of(bs.output.only)
         && (as.output.only != light_part::direct || bs.output.only == light_part::direct); // it has no photons
 }

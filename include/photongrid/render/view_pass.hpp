@@ -3,13 +3,14 @@
 #pragma once
 
 #include <photongrid/backend/zero_vectors.kernel.hpp>
-#include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/render/canvas.hpp>
 #include <photongrid/render/copy_light.kernel.hpp>
 #include <photongrid/render/edge_correction.hpp>
 #include <photongrid/render/picture_search.hpp>
 #include <photongrid/render/preview_image.hpp>
 #include <photongrid/render/previews.hpp>
+#include <photongrid/render/row_bands.hpp>
+#include <photongrid/render/running_search.hpp>
 #include <photongrid/render/scene_map.hpp>
 #include <photongrid/render/shade.kernel.hpp>
 #include <photongrid/render/tally_error.kernel.hpp>
@@ -20,19 +21,15 @@
 
 namespace photongrid {
 
-/// How much work a stage does per step, between possible interruptions.
-enum class step_size {
-    largest, ///< as much as the device can do at once: no interruptions needed
-    small,   ///< some ms on a CPU: the picture is displayed or may be cancelled
-};
-
 /// How a view is drawn. The bytes of the picture do not depend on it.
 struct view_pass_settings {
     std::optional<photongrid::preview> preview{}; ///< the preview to draw; empty: draw the picture
     step_size size = step_size::largest;          ///< size of the steps
-    bool watched = false;                         ///< provide running estimates, if the search can (3.4)
-    bool running = false; ///< if not, search by kernels before, which can (preview_settings::running_estimates)
-    std::optional<row_band> band{}; ///< the rows to draw, of a picture; empty: all
+    bool wants_running_estimates = false;         ///< provide them while the search runs, if it can (3.4)
+    /// If the backend's own search cannot, run the kernel search first and show its estimates
+    /// (preview_settings::running_estimates).
+    bool may_search_twice = false;
+    std::optional<row_band> band{}; ///< the rows of the picture to draw; empty: all
 };
 
 /// One pass over a band of the picture's rows, or over a preview. Each stage does part of its work for eye ray `ray`
@@ -55,7 +52,7 @@ public:
         if (how_.band && *how_.band != row_band{0, r.height}) {
             r.first_row = how_.band->first;
             r.height = how_.band->rows;
-            kept_.clear(); // of the whole
+            kept_.clear(); // they were traced for the whole picture, not for this band
         }
         detail::time_stage(b_, stats_.trace_rays, [&] {
             const std::size_t layers = !is_preview() && settings_.output.aov ? r.size() : 0;
@@ -85,35 +82,17 @@ public:
     /// Estimates the irradiance there from the photon map (2.3).
     bool irradiance(uint)
     {
-        progress did;
+        bool finished = false;
         detail::time_stage(b_, stats_.radiance_estimate, [&] {
-            if (!search_ && !growing_) {
-                grown_ = 0;
-                unfinished_ = samples_->direct.size();
-                if (grows() && !knn_search<B>::shows_running_estimate(picture_search()))
-                    start(growing_);
-                else
-                    start(search_);
-            }
-            const bool growing = grows() && !(growing_ && search_);
-            const uint passes = how_.size == step_size::largest ? nowhere : growing ? std::max(1u, grown_) : 8u;
-            did = search_ ? search_->advance(passes) : growing_->advance(passes);
-            if (growing) { // display it after 1, 2, 4, 8, ... passes
-                grown_ += passes;
-                // Previews have the light of all branches; running estimates among them must, too.
-                if (how_.running || canvas_.rays + 1 == branches_)
-                    ++running_pictures_;
-            }
-            if (did.finished && !search_) {
-                start(search_);
-                did = {};
-            }
+            if (!search_)
+                search_.emplace(b_, built_.map, samples_->hits.points, samples_->hits.surfaces, search_settings(),
+                    shown_while_running(), how_.size);
+            // Previews have the light of all branches; running estimates among them must, too.
+            if (search_->is_shown() && (how_.may_search_twice || canvas_.rays + 1 == branches_))
+                ++running_pictures_;
+            finished = search_->advance();
         });
-        if (did.finished)
-            unfinished_ = 0;
-        else if (!did.active.empty())
-            unfinished_ = did.active.back();
-        return did.finished;
+        return finished;
     }
 
     /// Adds the radiance of direct and indirect light to the pixels (2.4).
@@ -128,11 +107,11 @@ public:
     double fraction() const
     {
         const double pixels = static_cast<double>(canvas_.raster.size());
-        const double of_this_ray = search_ || growing_ ? 1.0 - static_cast<double>(unfinished_) / pixels : 0.0;
+        const double of_this_ray = search_ ? 1.0 - static_cast<double>(unfinished()) / pixels : 0.0;
         return (canvas_.rays + of_this_ray) / rays();
     }
     /// The number of pixels whose estimates for the current eye ray are not finished.
-    std::uint64_t unfinished() const { return unfinished_; }
+    std::uint64_t unfinished() const { return search_ ? search_->unfinished() : 0; }
     /// The number of complete samples per pixel: all their Fresnel branches were added.
     uint samples() const { return canvas_.rays / branches_; }
     /// Whether all samples that were begun are complete.
@@ -148,10 +127,8 @@ public:
         auto running = copy(canvas_.pixels);
         auto ignored = b_.template make<glm::vec4>(running.size());
         const float share = 1.0f / static_cast<float>(settings_.view.spp);
-        if (growing_)
-            shade(growing_->estimates(), share, running, ignored);
-        else if (search_)
-            shade(search_->estimates(), share, running, ignored);
+        if (search_)
+            shade(search_->running_estimates(), share, running, ignored);
         return detail::to_image(
             b_.download(running), canvas_.raster, settings_, static_cast<float>(settings_.view.spp), invalid);
     }
@@ -185,25 +162,17 @@ public:
     }
 
 private:
-    /// Whether the search's partial sums can be displayed while it runs (3.4).
-    bool grows() const
+    running_estimate_kind shown_while_running() const
     {
-        const auto s = picture_search();
-        return !is_preview() && how_.watched
-            && (knn_search<B>::shows_running_estimate(s) || (how_.running && detail::sums_while_growing(s)));
+        return running_estimate_of<B>(
+            picture_search(), how_.wants_running_estimates && !is_preview(), how_.may_search_twice);
     }
     /// The search of the picture itself, not of a preview.
     knn_settings picture_search() const { return detail::search_for(settings_, least_radius(built_.map.cells_of)); }
     knn_settings search_settings() const
     {
-        knn_settings k = picture_search();
-        if (how_.preview) {
-            k = detail::search_for_preview(k, *how_.preview);
-        } else if (grows()) {
-            k.visits_per_pass = 256;
-            k.ranges_per_pass = 64;
-        }
-        return k;
+        const auto k = picture_search();
+        return how_.preview ? detail::search_for_preview(k, *how_.preview) : k;
     }
     /// Settings with fewer shadow rays if pixels are large.
     render_settings light_settings() const
@@ -225,13 +194,6 @@ private:
         return done_ == 0;
     }
 
-    /// Starts a search at the hits.
-    template <class Search>
-    void start(std::optional<Search>& search)
-    {
-        search.emplace(b_, built_.map, samples_->hits.points, samples_->hits.surfaces, search_settings());
-    }
-
     knn_estimates<B> shade(
         knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches);
 
@@ -249,19 +211,16 @@ private:
 
     // Data passed from stage to stage.
     std::optional<eye_samples<B>> samples_;
-    buffer_of<B, uint> own_branches_; ///< which branches of an eye ray have light of their own (eye_rays.hpp)
-    bool lit_ = false;                ///< the samples already have their direct light
-    std::size_t done_ = 0;            ///< pixels that the stage has finished
-    std::optional<knn_search<B>> search_;
-    std::optional<knn_search_by_kernels<B>> growing_; ///< before search_, to be shown
-    uint grown_ = 0;                                  ///< passes of the search that is shown
+    buffer_of<B, uint> own_branches_;         ///< which branches of an eye ray have light of their own (eye_rays.hpp)
+    bool lit_ = false;                        ///< the samples already have their direct light
+    std::size_t done_ = 0;                    ///< pixels that the stage has finished
+    std::optional<running_search<B>> search_; ///< of the eye ray that is drawn
     uint running_pictures_ = 0;
-    std::uint64_t unfinished_ = 0;
     canvas<B> canvas_;
 };
 
-// What runs kernels is defined outside of the class: inside, `extern template` would not spare a file its
-// instantiation.
+// Defined outside the class: functions defined inside are implicitly inline, and `extern template` does not suppress
+// them.
 
 template <backend B>
 bool view_pass<B>::trace_eye(uint ray)
@@ -283,7 +242,7 @@ bool view_pass<B>::trace_eye(uint ray)
     };
     if (own_branches_.size() == 0) {
         own_branches_ = b_.template make<uint>(canvas_.raster.size());
-        // A pass that goes on within a sample: its earlier branches know which of the others have light.
+        // Resumed in the middle of a sample: retrace the earlier branches to learn which later ones must be traced.
         for (uint earlier = ray - ray % branches_; earlier < ray; ++earlier)
             trace(earlier, launch(canvas_.raster.size(), 0));
     }
@@ -312,13 +271,12 @@ bool view_pass<B>::shade(uint ray)
 {
     detail::time_stage(b_, stats_.radiance_estimate, [&] {
         const float share = is_preview() ? 1.0f : 1.0f / static_cast<float>(settings_.view.spp);
-        const auto found = shade(std::move(*search_).estimates(), share, canvas_.pixels, canvas_.searches);
+        const auto found = shade(search_->take(), share, canvas_.pixels, canvas_.searches);
         if (canvas_.errors.size() > 0)
             b_.template run<kernels::tally_error>(canvas_.errors.size(), {},
                 reads(samples_->hits.points, found.irradiance, found.standard_error), writes(canvas_.errors));
     });
     search_.reset();
-    growing_.reset();
     if (is_preview()) {
         kept_[ray] = std::move(samples_); // the next pass may have the same pixels
         samples_.reset();

@@ -122,6 +122,7 @@ struct shape_kind<box> {
     }
     static double size(const box& b) { return 0.5 * extent(b); }
     static double round_size(const box& b) { return glm::length(b.edge_u + b.edge_v + b.edge_w); }
+    static std::uint64_t steps(const box&) { return 5; } // the closest hit, three pairs of faces, the loop's end
     static void write(record_writer& w, const box& b)
     {
         const dvec3 u = glm::normalize(b.edge_u), v = glm::normalize(b.edge_v - glm::dot(b.edge_v, u) * u);

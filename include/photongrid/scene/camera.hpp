@@ -35,8 +35,7 @@ namespace detail {
 inline void check(const camera& c)
 {
     detail::require(detail::finite(c.position) && detail::finite(c.look_at), "position and look_at: must be finite");
-    detail::require(
-        c.position != c.look_at, "position and look_at: are the same point, so the camera has no direction of view");
+    detail::require(c.position != c.look_at, "position and look_at: must be different points");
     detail::require(detail::finite(c.up)
             && glm::length(glm::cross(c.up, c.look_at - c.position))
                 > 1e-9 * glm::length(c.up) * glm::length(c.look_at - c.position)

@@ -26,7 +26,7 @@ namespace detail {
     inline void require_axis(const dvec3& a, const dvec3& b, const char* what)
     {
         require(finite(a) && finite(b), std::string(what) + ": must be finite");
-        require(glm::length(b - a) > 0, std::string(what) + ": are the same point, so the shape has no axis");
+        require(glm::length(b - a) > 0, std::string(what) + ": must be different points");
     }
 } // namespace detail
 

@@ -37,9 +37,9 @@ field(const char*, Value Part::*, quantity) -> field<Part, Value>;
 /// - `number`, below kernels::SCENE_TABLES: the SWITCH and the table of its kernel code (trace/intersect/);
 /// - `fields`, a tuple of `field`: all members but the material;
 /// - `add_bounds(bounds, shape)`; `size(shape)`, m, which single precision must resolve;
-/// - `round_size(shape)`, m: if points of the shape are computed with roots or along axes, their largest distance from
-/// the
-///   position in its record; otherwise 0;
+/// - `round_size(shape)`, m: largest distance of a computed point from the record's position, if roots or axes are
+///   involved; else 0;
+/// - `steps(shape)`, if its kernel code loops: the most loop iterations of a ray, for devices that limit them;
 /// - `write(writer, shape)`: writes its records for the kernels;
 /// - `extent(shape)`, m, if files must limit more than radii: its axis, or its shortest edge.
 template <class Shape>

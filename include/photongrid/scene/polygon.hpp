@@ -6,6 +6,7 @@
 #include <photongrid/scene/record_writer.hpp>
 
 #include <algorithm>
+#include <optional>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -37,8 +38,33 @@ inline double extent(const polygon& p)
     return longest;
 }
 
+namespace detail {
+    /// The angle by which the edges turn about the normal n, from the first to the first again, radians. Edges shorter
+    /// than `least`, whose directions may be rounding errors, do not count.
+    inline double turn_of_edges(const polygon& p, const dvec3& n, double least)
+    {
+        double turn = 0;
+        std::optional<dvec3> first, last;
+        const auto add = [&](const dvec3& edge) {
+            if (last)
+                turn += std::atan2(glm::dot(n, glm::cross(*last, edge)), glm::dot(*last, edge));
+            last = edge;
+        };
+        for (std::size_t i = 0; i < p.vertices.size(); ++i) {
+            const dvec3 edge = p.vertices[(i + 1) % p.vertices.size()] - p.vertices[i];
+            if (!(glm::length(edge) > least))
+                continue;
+            add(edge);
+            first = first.value_or(edge);
+        }
+        if (first)
+            add(*first);
+        return turn;
+    }
+} // namespace detail
+
 /// \throws std::invalid_argument for fewer than 3 vertices, one that is not finite or is off the plane by more than
-/// 1e-5 of the polygon's extent, a polygon without area, or one that is not convex.
+/// 1e-5 of the polygon's extent, a polygon without area, or one that is not convex or winds around more than once.
 inline void check(const polygon& p)
 {
     detail::require(p.vertices.size() >= 3, "vertices: a polygon has at least 3");
@@ -59,6 +85,9 @@ inline void check(const polygon& p)
         detail::require(glm::dot(n, glm::cross(b - a, c - b)) >= -1e-9 * longest * longest,
             "vertices: the polygon is not convex at vertex " + std::to_string((i + 1) % p.vertices.size()));
     }
+    // Once around is 2 pi. A star turns to one side at all of its vertices too.
+    detail::require(detail::turn_of_edges(p, n, 1e-4 * longest) < 9,
+        "vertices: the polygon winds around more than once; list its vertices in order around it");
 }
 
 namespace detail {
@@ -102,6 +131,12 @@ struct shape_kind<polygon> {
     }
     static double size(const polygon& p) { return photongrid::extent(p); }
     static double round_size(const polygon&) { return 0; }
+    static std::uint64_t steps(const polygon& p)
+    {
+        // The shaft, the closest hit, a half-space per edge, and at grazing incidence hit_at_edge with one round more;
+        // each of the loops over edges has a round that only ends it.
+        return 2 * std::uint64_t{p.vertices.size()} + 5;
+    }
     static double extent(const polygon& p) { return photongrid::extent(p); }
     static void write(record_writer& w, const polygon& p) { detail::put_polygon(w, p, 0); }
     /// @}

@@ -44,7 +44,7 @@ struct map_settings {
     bool operator==(const map_settings&) const = default;
 };
 
-/// The radiance estimate of a picture (2.3).
+/// The irradiance estimate (the paper's radiance estimate) of a picture (2.3).
 struct estimate_settings {
     std::uint32_t k = 500;                         ///< photons sought per estimate
     double max_radius = 0.1;                       ///< m
@@ -76,8 +76,8 @@ struct output_settings {
     /// EV for tone-mapped output: pixel values times 2^exposure; none: fitted to the picture.
     std::optional<double> exposure{};
     bool aov = false; ///< radius, count and relative standard error of the estimate per pixel
-    /// Pixels drawn at a time, in whole rows: the device's memory grows with them and not with the picture. The light
-    /// does not depend on it, but on cpu for rounding. It is in no file.
+    /// Pixels per band of whole rows; bounds device memory. Changes results only by rounding, on cpu. Not stored in
+    /// scene files.
     std::uint32_t band = 1u << 20;
 
     bool operator==(const output_settings&) const = default;
@@ -95,8 +95,8 @@ struct render_settings {
 };
 
 /// The settings that reproduce the paper's method: its estimate (2.3: at least k, constant filter, no leak policy, no
-/// edge correction), one pass with one eye ray per pixel, which has the shadow rays of all; routed cells redistribute
-/// power alone (2.2.2). Other settings are unchanged.
+/// edge correction), one pass with one eye ray per pixel, which takes all shadow rays of the pixel (light_samples times
+/// spp: by default 32, as in the paper); routed cells redistribute power alone (2.2.2). Other settings are unchanged.
 /// \snippet snippets.cpp as_paper
 inline render_settings as_paper(render_settings s)
 {
@@ -107,7 +107,8 @@ inline render_settings as_paper(render_settings s)
     s.estimate.edges = edge_correction::none;
     s.map.surplus = surplus_kind::power;
     s.output.passes = 1;
-    s.view.light_samples = std::min(s.view.light_samples * std::max(s.view.spp, 1u), 65536u);
+    s.view.light_samples = static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(std::uint64_t{s.view.light_samples} * std::max(s.view.spp, 1u), 65536));
     s.view.spp = 1;
     return s;
 }

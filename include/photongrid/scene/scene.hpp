@@ -40,7 +40,7 @@ struct scene {
     std::vector<point_light> point_lights;         ///< a scene has at least one light of either kind
     std::vector<rectangle_light> rectangle_lights; ///< visible to the camera
     render_settings render;                        ///< the settings of the scene's file
-    std::optional<render_settings> paper;          ///< those for the paper's method, where as_paper(render) has others
+    std::optional<render_settings> paper;          ///< settings for --as-paper; empty: as_paper(render)
 
     bool operator==(const scene&) const = default;
 };
@@ -242,6 +242,8 @@ inline void check(const scene& s)
             + ", and both are glass; the outside of glass must be air, so move them apart");
     check(s.camera);
     check(s.render);
+    if (s.paper)
+        check(*s.paper);
 }
 
 } // namespace photongrid

@@ -71,7 +71,7 @@ namespace setting_table {
     };
     template <class Value, std::size_t N>
     one_of(const named<Value> (&)[N]) -> one_of<Value, N>;
-    /// A number, or none: found from what is drawn.
+    /// A number, or nullopt (auto): fitted to the picture.
     struct real_or_auto {
         real_range range;
         void check(const char* name, const std::optional<double>& v) const

@@ -31,12 +31,12 @@ static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SU
 
 /// The records of a scene, and their layout.
 struct scene_layout {
-    std::vector<glm::vec4> records; ///< as trace/scene_layout.glsl describes them; positions are recentred
-    uint features = 0;              ///< scene_feature bits of the shapes, materials and lights in use
-    uint steps_per_ray = 0;         ///< approximate number of loop iterations per ray: one per shape and per edge
-    dvec3 center{0};                ///< subtracted from every position, m
-    glm::vec3 low{0};               ///< m; box of the Lambertian surfaces, recentred: where photons can be stored
-    glm::vec3 high{0};              ///< m; its other corner
+    std::vector<glm::vec4> records;  ///< as trace/scene_layout.glsl describes them; positions are recentred
+    uint features = 0;               ///< scene_feature bits of the shapes, materials and lights in use
+    std::uint64_t steps_per_ray = 0; ///< bound on the loop iterations of a ray, its shaft included (shape_kind::steps)
+    dvec3 center{0};                 ///< subtracted from every position, m
+    glm::vec3 low{0};                ///< m; box of the Lambertian surfaces, recentred: where photons can be stored
+    glm::vec3 high{0};               ///< m; its other corner
 
     /// The records of a table's items; `number` is a shape_kind::number, kernels::MATERIAL_TABLE or
     /// kernels::LIGHT_TABLE.
@@ -58,7 +58,7 @@ namespace detail {
         return s;
     }
 
-    /// A point that moves exactly with the scene: the first point of its first light.
+    /// Reference point for recentring: the first light's first point, so a translated scene yields the same records.
     inline dvec3 anchor(const scene& s)
     {
         std::optional<dvec3> first;
@@ -88,6 +88,24 @@ namespace detail {
         for_each_light(s, all);
     }
 
+    /// \throws std::invalid_argument for more records than single precision can number, as tables do.
+    inline void require_numbered(std::size_t records)
+    {
+        require(records <= 1u << 24,
+            "scene: takes " + std::to_string(records)
+                + " records; at most 2^24 are possible. A vertex takes 2, so use fewer vertices");
+    }
+
+    /// The most iterations of the kernels' loops over a shape of this kind, per ray.
+    template <class Kind, class Shape>
+    std::uint64_t steps_of(Kind kind, const Shape& x)
+    {
+        if constexpr (requires { kind.steps(x); })
+            return kind.steps(x);
+        else
+            return 2; // the shaft; the closest hit, or occlusion
+    }
+
     /// Lays a scene out. Each member function writes one part.
     class layout_writer {
     public:
@@ -107,9 +125,7 @@ namespace detail {
             for (const auto& r : out_.records)
                 require(std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z) && std::isfinite(r.w),
                     "scene: a size or a power is too large for single precision; use smaller values");
-            require(out_.records.size() <= 1u << 24,
-                "scene: takes " + std::to_string(out_.records.size())
-                    + " records; at most 2^24 are possible. A vertex takes 2, so use fewer vertices");
+            require_numbered(out_.records.size());
             return std::move(out_);
         }
 
@@ -126,9 +142,9 @@ namespace detail {
                         kind.add_bounds(diffuse, x);
                     out_.features |= entry_of(m.kind).switches;
                     round_size_ = std::max(round_size_, kind.round_size(x));
+                    out_.steps_per_ray += steps_of(kind, x);
                 }
                 out_.features |= list.empty() ? 0u : 1u << kind.number;
-                out_.steps_per_ray += static_cast<uint>(list.size());
             });
             require(!diffuse.empty(), no_matte_shape);
             for_each_light(s_, [&](const auto& list, auto kind) {
@@ -136,8 +152,9 @@ namespace detail {
                     kind.add_bounds(all, l);
                 out_.features |= list.empty() ? 0u : kind.is_area ? has_area_lights | has_polygons : has_point_lights;
             });
-            // The edges of polygons, usually four; the surfaces of lights are polygons.
-            out_.steps_per_ray += static_cast<uint>(4 * s_.polygons.size() + 5 * s_.rectangle_lights.size());
+            for (const auto& l : s_.rectangle_lights) // their surfaces are polygons
+                out_.steps_per_ray += steps_of(shape_kind<polygon>{}, surface_of(l));
+            out_.steps_per_ray += 16; // of loops over kinds, lights and faces, and rounds that only end a loop
             scale_ = 0.5 * glm::length(all.high - all.low);
             require_resolvable(s_, scale_);
             // The centre, rounded to few bits, so that adding it to the anchor is exact.
@@ -232,15 +249,20 @@ struct device_scene {
 };
 
 namespace detail {
+    /// A bound on the loop iterations of one shadow ray to each light, the least that a pass takes.
+    inline std::uint64_t steps_of_shadow_rays(const scene_layout& layout)
+    {
+        return layout.steps_per_ray * layout.table(kernels::LIGHT_TABLE).count;
+    }
+
     /// \throws std::invalid_argument if the device would end loops over all shapes too early, and lose hits.
     inline void check_loops(const scene_layout& layout, const capabilities& caps)
     {
-        // A pass intersects all shapes at least once per light, for one shadow ray to each.
-        const std::uint64_t steps = std::uint64_t{layout.steps_per_ray + 1} * layout.table(kernels::LIGHT_TABLE).count;
+        const std::uint64_t steps = steps_of_shadow_rays(layout);
         if (caps.loop_limit > 0 && steps > caps.loop_limit)
-            throw std::invalid_argument("scene: " + caps.backend + ": tracing takes about " + std::to_string(steps)
+            throw std::invalid_argument("scene: " + caps.backend + ": tracing takes up to " + std::to_string(steps)
                 + " steps (shapes and their edges, times lights), and this driver silently ends loops after "
-                + std::to_string(caps.loop_limit) + "; use another backend, such as cpu, or fewer shapes");
+                + std::to_string(caps.loop_limit) + "; use a backend without a limit, or fewer shapes or lights");
     }
 } // namespace detail
 

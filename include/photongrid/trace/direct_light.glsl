@@ -10,9 +10,9 @@ struct Params {
     uvec2 strata;     // strata along the two edges of an area light; their product is the number of samples
     uint first;       // this pass takes samples first ...
     uint past;        // ... to past - 1
-    uint ray_id;      // which eye ray of the pixel
+    uint ray_id;      // sample x branches + branch
     uint seed;
-    uint first_pixel; // that of element 0
+    uint first_pixel; // pixel of element 0
 };
 PARAMS(Params)
 SWITCH(6, POINT_LIGHTS)
@@ -120,7 +120,8 @@ void kernel(uint i)
             vec3 stratum = corner;
             bool close = false;
             if (area) {
-                vec4 r = random4(uvec4(i + args.first_pixel, args.ray_id, 3000u + number, args.seed ^ (s * 0x9E3779B1u)));
+                vec4 r = random4(
+                    uvec4(i + args.first_pixel, args.ray_id, 3000u + number, args.seed ^ (s * 0x9E3779B1u)));
                 uint row = s / args.strata.x;
                 precise float u = float(s - row * args.strata.x);
                 precise float v = float(row);

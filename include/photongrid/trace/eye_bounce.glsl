@@ -10,9 +10,9 @@ struct Params {
     uint branch;     // bit n: reflected (1) or refracted (0) at the n-th glass surface
     uint splits;     // how many glass surfaces split a ray
     uint depth;      // surfaces a ray passes at most
-    float stratum;   // where this eye ray's random numbers begin in those of the pixel: its number / eye rays per pixel
+    float stratum;   // number of the eye ray in its pixel / eye rays per pixel: shifts its random numbers
     uint seed;
-    uint first_pixel; // that of element 0
+    uint first_pixel; // pixel of element 0
 };
 PARAMS(Params)
 SWITCH(4, MIRRORS)
@@ -24,7 +24,7 @@ STATE(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
 STATE(2, vec4, throughput) // rgb: factor between radiance here and at the eye; w: splits so far
 STATE(3, vec4, surface)    // xyz: normal towards the eye; w: material
 STATE(4, vec4, emitted)    // rgb: radiance of the light that the ray ended on, times throughput
-STATE(5, uint, branches)   // bit b: branch b has light of its own
+STATE(5, uint, branches)   // bit b: branch b must be traced for this pixel; branch 0 sets the other bits
 
 #include <photongrid/trace/intersect.glsl>
 #include <photongrid/trace/lights.glsl>
@@ -36,32 +36,75 @@ bool done()
     return point.w != 0.0f;
 }
 
+// The ray ends on the front of this light.
+void see_light(uint number)
+{
+    Light light = light_of(number);
+    float scale = light.radiance_per_power;
+    emitted = vec4(throughput.x * light.power.x * scale, throughput.y * light.power.y * scale,
+        throughput.z * light.power.z * scale, 0.0f);
+}
+
+// The Fresnel branch that a ray takes at a glass surface, and the factor on its throughput.
+struct FresnelBranch {
+    bool reflected;
+    float share;
+};
+
+// At a split, where other passes follow the other branch: the one that this pass follows. `counted`: whether this
+// pass counts the ray so far (kernel).
+FresnelBranch split_branch(uint splits, float reflectance, bool counted)
+{
+    if (counted)
+        branches = branches | 1u << min(args.branch | 1u << splits, 31u);
+    FresnelBranch b;
+    b.reflected = ((args.branch >> splits) & 1u) != 0u;
+    b.share = b.reflected ? reflectance : 1.0f - reflectance;
+    return b;
+}
+
+// Sampled with its Fresnel probability, a 4 % reflection that reaches a lamp is a firefly. Sample the rarer branch more
+// often as throughput falls, up to 1/4, and weight it accordingly.
+FresnelBranch sampled_branch(uint i, uint hits, float reflectance)
+{
+    FresnelBranch b;
+    b.reflected = true; // total internal reflection
+    b.share = 1.0f;
+    if (!(reflectance >= 1.0f)) {
+        precise float least = 0.25f - 0.25f * max(max(throughput.x, throughput.y), throughput.z);
+        float probability = min(max(reflectance, least), 1.0f - least);
+        vec4 r = random4(uvec4(i + args.first_pixel, args.branch, 2000u + hits, args.seed));
+        precise float u = r.x + args.stratum;
+        b.reflected = (u < 1.0f ? u : u - 1.0f) < probability;
+        precise float corrected = b.reflected ? reflectance / probability : (1.0f - reflectance) / (1.0f - probability);
+        b.share = corrected;
+    }
+    return b;
+}
+
 void kernel(uint i)
 {
     vec3 d = vec3(direction);
     Hit hit = intersect_closest(vec3(point), d);
     uint hits = uint(direction.w);
     uint splits = uint(throughput.w);
-    // A ray that hit fewer glass surfaces than there are splits is the same in several passes: count it in one of them,
-    // the one whose unused branch bits are 0.
-    bool mine = args.branch >> min(splits, 31u) == 0u; // a device that computes garbage may shift by anything
+    // A ray that has split fewer than `splits` times is the same in several passes. Count it in one of them, the one
+    // whose unused branch bits are 0.
+    bool counted = args.branch >> min(splits, 31u) == 0u; // a device that computes garbage may shift by anything
     if (hit.t < 0.0f) {
         point.w = -1.0f;
         return;
     }
     if (hit.material == NO_MATERIAL) {
         point.w = -1.0f;
-        Light light = light_of(hit.light);
-        float scale = light.radiance_per_power; // on the front only
-        if (mine && dot3(d, hit.normal) < 0.0f)
-            emitted = vec4(throughput.x * light.power.x * scale, throughput.y * light.power.y * scale,
-                throughput.z * light.power.z * scale, 0.0f);
+        if (counted && dot3(d, hit.normal) < 0.0f) // on the front only
+            see_light(hit.light);
         return;
     }
     Material material = material_of(hit.material);
     if (material.kind == LAMBERTIAN_SURFACE) {
         vec3 n = dot3(hit.normal, d) > 0.0f ? -hit.normal : hit.normal;
-        point = vec4(hit.position.x, hit.position.y, hit.position.z, mine ? 1.0f : -1.0f);
+        point = vec4(hit.position.x, hit.position.y, hit.position.z, counted ? 1.0f : -1.0f);
         surface = vec4(n.x, n.y, n.z, float(hit.material));
         return;
     }
@@ -72,27 +115,15 @@ void kernel(uint i)
         next = reflect_direction(d, hit.normal);
     if (GLASS && material.kind == GLASS_SURFACE) {
         Fresnel f = fresnel(d, hit.normal, material.index_of_refraction);
-        bool reflect_it = f.reflected >= 1.0f;
+        FresnelBranch b;
         if (splits < args.splits) {
-            if (mine)
-                branches = branches | 1u << min(args.branch | 1u << splits, 31u);
-            reflect_it = ((args.branch >> splits) & 1u) != 0u;
-            share = reflect_it ? f.reflected : 1.0f - f.reflected;
+            b = split_branch(splits, f.reflected, counted);
             ++splits;
-        } else if (!reflect_it) {
-            // A rare choice counts for much: with Fresnel's probability, a lamp that a faint ray sees by a reflection
-            // of 4 % is a bright speck. The fainter the ray, the less rare is the rarer choice: up to 1 of 4.
-            precise float least = 0.25f - 0.25f * max(max(throughput.x, throughput.y), throughput.z);
-            float probability = min(max(f.reflected, least), 1.0f - least);
-            vec4 r = random4(uvec4(i + args.first_pixel, args.branch, 2000u + hits, args.seed));
-            precise float u = r.x + args.stratum;
-            reflect_it = (u < 1.0f ? u : u - 1.0f) < probability;
-            precise float corrected = reflect_it ? f.reflected / probability : (1.0f - f.reflected) / (1.0f - probability);
-            share = corrected;
+        } else {
+            b = sampled_branch(i, hits, f.reflected);
         }
-        next = f.refracted;
-        if (reflect_it)
-            next = reflect_direction(d, hit.normal);
+        share = b.share;
+        next = b.reflected ? reflect_direction(d, hit.normal) : f.refracted;
     }
     ++hits;
     if (hits > args.depth || !(share > 0.0f)) {

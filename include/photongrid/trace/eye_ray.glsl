@@ -1,6 +1,7 @@
 // The ray from the camera through a pixel (2.4): through the pixel's centre if it is the only one, else through a
 // random point of the ray's own stratum of the pixel. Of n eye rays no two are in the same n-th of the pixel's width,
-// nor of its height (Chiu, Shirley and Wang, Multi-Jittered Sampling, 1994): edges along rows and columns are smooth.
+// nor of its height, so edges along rows and columns are smooth (Chiu, Shirley and Wang, Multi-Jittered Sampling,
+// 1994).
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 
@@ -10,15 +11,16 @@ struct Params {
     vec4 right;     // ... and the step from pixel to pixel along a row ...
     vec4 down;      // ... and along a column
     uint width;     // pixels in a row
-    uint sample_id; // which eye ray of the pixel
+    uint sample_id; // number of the eye ray in its pixel
     uvec2 strata;   // columns and rows of a pixel, one eye ray in each; 0, 0: one ray through its middle
-    uint branch;    // which way through glass the ray takes (eye_bounce.glsl)
+    uint branch;    // Fresnel branch (eye_bounce.glsl)
     uint seed;
-    uint first_pixel; // that of element 0
+    uint first_pixel; // pixel of element 0
 };
 PARAMS(Params)
-STATE(5, uint, branches)    // bit b: branch b has light of its own; that of branch 0 comes first and finds the others
-OUTPUT(0, vec4, point)      // xyz: origin, m; w: 0 in flight, -1 no light of its own
+// Bit b: branch b must be traced for this pixel. Branch 0 is traced first and sets the other bits.
+STATE(5, uint, branches)
+OUTPUT(0, vec4, point)      // xyz: origin, m; w: 0 in flight, -1 not traced
 OUTPUT(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
 OUTPUT(2, vec4, throughput) // rgb: factor between radiance here and at the eye; w: splits so far
 OUTPUT(3, vec4, surface)    // xyz: normal towards the eye; w: material
@@ -44,7 +46,8 @@ void kernel(uint i)
         vec4 r = random4(uvec4(pixel, args.sample_id, 1000u, args.seed));
         uint row = args.sample_id / args.strata.x;
         uint column = args.sample_id - row * args.strata.x;
-        // The strata of a column share out its width, in an order that begins at random; those of a row its height.
+        // Strata in one column get distinct x sub-offsets, cyclically from a random start; strata in one row get
+        // distinct y sub-offsets.
         uint first_x = uint(random4(uvec4(pixel, column, 1001u, args.seed)).x * float(args.strata.y));
         uint first_y = uint(random4(uvec4(pixel, row, 1002u, args.seed)).x * float(args.strata.x));
         uint nth_x = column * args.strata.y + (row + first_x) % args.strata.y;

@@ -25,7 +25,7 @@ struct raster {
 template <backend B>
 struct eye_hits {
     buffer_of<B, glm::vec4> points, directions, throughputs, surfaces, emissions;
-    uint first_pixel = 0; ///< that of element 0: the random numbers of a pixel depend on its number
+    uint first_pixel = 0; ///< pixel of element 0; random numbers depend on the pixel
 
     eye_hits(B& b, std::size_t n, uint first = 0)
         : points(b.template make<glm::vec4>(n)), directions(b.template make<glm::vec4>(n)),
@@ -77,8 +77,8 @@ inline kernels::eye_ray::Params eye_params(
 }
 
 /// Traces eye rays to their ends, for the pixels of `pixels`: `ray` is sample x branches + branch. Bit b of `branches`
-/// is set for the pixels whose branch b has light of its own; rays of others end at once. Branch 0 sets it, and the
-/// rays that split their other bits, so the branches of a sample must be traced in order.
+/// is set for the pixels for which branch b must be traced; rays of other pixels end at once. Branch 0 sets its own
+/// bit, and a ray that splits sets that of its other branch, so the branches of a sample must be traced in order.
 template <backend B>
 void trace_eye_rays(B& b, const device_scene<B>& s, const camera& view, const render_settings& settings,
     const raster& r, uint ray, launch pixels, eye_hits<B>& hits, buffer_of<B, uint>& branches)
@@ -106,9 +106,9 @@ void direct_light(B& b, const device_scene<B>& s, const eye_hits<B>& hits, const
 {
     b.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
     const uint samples = (s.layout.features & has_area_lights) != 0 ? settings.view.light_samples : 1u;
-    // Some drivers end loops after 65,535 iterations, counted over all lanes of a subgroup and over shapes and edges.
-    const uint work = (s.layout.steps_per_ray + 1) * s.layout.table(kernels::LIGHT_TABLE).count;
-    const uint per_pass = std::max(1u, 8192u / std::max(1u, work));
+    // Well below the 65,535 iterations, of all loops of an invocation, after which some drivers end loops
+    // (docs/design/decisions.md, "Loops are bounded").
+    const uint per_pass = std::max(1u, static_cast<uint>(16384 / steps_of_shadow_rays(s.layout)));
     for (uint first = 0; first < samples; first += per_pass)
         b.template run<kernels::direct_light>({pixels.elements, pixels.first, s.layout.features},
             {.strata = strata_of(samples),

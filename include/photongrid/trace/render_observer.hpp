@@ -19,10 +19,12 @@ struct render_cancelled : std::runtime_error {
 
 /// Callbacks of a render. Each may be empty.
 struct render_observer {
-    std::function<void(std::string_view stage, double fraction)>
-        progress;                                   ///< "trace_photons", …; fraction of the stage, 0 to 1
-    std::function<void(const image&)> intermediate; ///< the running estimate (3.4), after some passes
-    std::function<bool()> cancelled;                ///< called between passes; true: stop
+    /// "trace_photons", …; fraction of the stage, 0 to 1.
+    std::function<void(std::string_view stage, double fraction)> progress;
+    /// An unfinished picture: a preview, the running estimate (3.4) of a pass, or the mean of the passes so far.
+    std::function<void(const image&)> intermediate;
+    /// Called between passes of kernels; true: stop.
+    std::function<bool()> cancelled;
 };
 
 } // namespace photongrid

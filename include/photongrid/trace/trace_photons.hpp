@@ -134,7 +134,7 @@ private:
     {
         const auto make = [&] { return b_.template make<glm::vec4>(wanted_); };
         t_.photons = {make(), make(), make(), {}};
-        if (settings_.estimate.leaks.needs_normals())
+        if (settings_.estimate.leaks.needs_photon_normals())
             t_.photons.normals = make();
     }
     /// Ends tracing if so many paths have stored no photon that none will.
@@ -166,8 +166,8 @@ private:
     uint stored_ = 0;
 };
 
-// What runs kernels is defined outside of the class: inside, `extern template` would not spare a file its
-// instantiation.
+// Defined outside the class: functions defined inside are implicitly inline, and `extern template` does not suppress
+// them.
 
 template <backend B>
 void photon_tracing<B>::advance()
@@ -198,7 +198,7 @@ void photon_tracing<B>::advance()
         {.paths = paths_, .frames = frames, .stored_before = stored_},
         reads(sums, frames_.positions, frames_.powers, frames_.directions),
         writes(t_.photons.positions, t_.photons.powers, t_.photons.directions));
-    if (settings_.estimate.leaks.needs_normals())
+    if (settings_.estimate.leaks.needs_photon_normals())
         b_.template run<kernels::gather_normal>({taken, stored_},
             {.paths = paths_, .frames = frames, .stored_before = stored_},
             reads(sums, frames_.positions, frames_.powers, frames_.next_origins, frames_.next_directions),

@@ -10,10 +10,10 @@ SWITCH(7, AREA_LIGHTS)
 INPUT(0, vec4, scene)
 INPUT(1, vec4, origins)
 INPUT(2, vec4, directions)
-INPUT(3, vec4, leavings)  // directions in which rays leave the hits
+INPUT(3, vec4, leavings)  // xyz: directions in which rays leave the hits; w: length of the shadow ray, or 0: any
 OUTPUT(0, vec4, place)    // xyz: position; w: t, negative for a miss
 OUTPUT(1, vec4, facing)   // xyz: normal; w: material, -1 for a light
-OUTPUT(2, vec4, start)    // xyz: where the ray that leaves starts; w: is the way to the hit blocked, asked as for shadows
+OUTPUT(2, vec4, start)    // xyz: where the ray that leaves starts; w: 1 if the shadow ray from o in direction d is occluded
 
 #include <photongrid/trace/intersect.glsl>
 
@@ -25,5 +25,6 @@ void kernel(uint i)
     place = vec4(hit.position.x, hit.position.y, hit.position.z, hit.t);
     facing = vec4(hit.normal.x, hit.normal.y, hit.normal.z, hit.material == NO_MATERIAL ? -1.0f : float(hit.material));
     vec3 s = ray_start(hit.position, hit.normal, vec3(leavings(i)));
-    start = vec4(s.x, s.y, s.z, occluded(o, d, 3.0e38f, everything()) ? 1.0f : 0.0f);
+    float far = leavings(i).w > 0.0f ? leavings(i).w : 3.0e38f;
+    start = vec4(s.x, s.y, s.z, occluded(o, d, far, everything()) ? 1.0f : 0.0f);
 }

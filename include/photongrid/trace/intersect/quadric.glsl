@@ -24,22 +24,22 @@ float hit_quadric(uint at, vec3 o, vec3 d, float far)
         return far;
     precise float root = sqrt(disc);
     precise float k = b > 0.0f ? -(b + root) : root - b;
-    // The two solutions. A ray parallel to the asymptote has only the second.
-    float t0 = far;
-    float t1 = far;
-    if (abs(a) > 1e-12f)
-        t0 = k / a;
-    if (abs(k) > 0.0f)
-        t1 = c / k;
-    precise float z0 = p.z + q.z * t0;
-    precise float z1 = p.z + q.z * t1;
-    t0 += shift;
-    t1 += shift;
+    // The two solutions, k / a and c / k, each if it exists. A ray parallel to the asymptote has only the second.
     float nearest = far;
-    if (t0 > 0.0f && t0 < nearest && z0 >= 0.0f && z0 <= height)
-        nearest = t0;
-    if (t1 > 0.0f && t1 < nearest && z1 >= 0.0f && z1 <= height)
-        nearest = t1;
+    if (abs(a) > 1e-12f) {
+        float t0 = k / a;
+        precise float z0 = p.z + q.z * t0;
+        t0 += shift;
+        if (t0 > 0.0f && t0 < nearest && z0 >= 0.0f && z0 <= height)
+            nearest = t0;
+    }
+    if (abs(k) > 0.0f) {
+        float t1 = c / k;
+        precise float z1 = p.z + q.z * t1;
+        t1 += shift;
+        if (t1 > 0.0f && t1 < nearest && z1 >= 0.0f && z1 <= height)
+            nearest = t1;
+    }
     return nearest;
 }
 

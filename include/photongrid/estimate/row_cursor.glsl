@@ -1,0 +1,34 @@
+// Where a scan of the rows of cells goes on in its next pass, or a walk (photon_walk.glsl):
+//     x, y: y and z of the next row; z: the first photon not yet visited; w: the walk's phase, else 0
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+
+inline uvec4 row_cursor(uint y, uint z, uint photon, uint phase)
+{
+    return uvec4(y, z, photon, phase);
+}
+inline uvec4 at_first_row()
+{
+    return uvec4(0u, 0u, 0u, 0u);
+}
+inline uint row_y(uvec4 cursor)
+{
+    return cursor.x;
+}
+inline uint row_z(uvec4 cursor)
+{
+    return cursor.y;
+}
+inline uint first_unvisited(uvec4 cursor)
+{
+    return cursor.z;
+}
+inline uint phase_of_walk(uvec4 cursor)
+{
+    return cursor.w;
+}
+inline uvec4 in_phase(uvec4 cursor, uint phase)
+{
+    return uvec4(cursor.x, cursor.y, cursor.z, phase);
+}
+
+#endif

@@ -1,0 +1,41 @@
+// The result of the search for a radius, which gather_photons.glsl and list_neighbours.glsl use. kth_result.glsl,
+// grown_radius.glsl and given_radius.glsl write it; kth_tie.glsl finds the last id.
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+
+// `search_radius`: x: squared radius, m^2; y: 1 if a photon set it, 0 if it was given.
+inline vec4 search_radius_of(float radius2, bool is_by_photon)
+{
+    return vec4(radius2, is_by_photon ? 1.0f : 0.0f, 0.0f, 0.0f);
+}
+inline float radius2_of(vec4 search_radius)
+{
+    return search_radius.x;
+}
+inline bool is_by_photon(vec4 search_radius)
+{
+    return search_radius.y > 0.0f;
+}
+
+// Whether an unbiased estimate excludes the photon that set the radius. If that photon lies within the least radius of
+// an estimate's disc, it does not set the disc's radius, and it counts.
+inline bool excludes_photon(vec4 search_radius, float min_radius2)
+{
+    return is_by_photon(search_radius) && radius2_of(search_radius) >= min_radius2;
+}
+
+// `chosen`: x, y: see search_tally.glsl; z: the last id that counts at the radius itself; w: how often that id counts
+// there, since routed maps repeat photons.
+inline uvec4 chosen_of(uint found, uint visited, uint last_id, uint last_count)
+{
+    return uvec4(found, visited, last_id, last_count);
+}
+inline uint last_id_of(uvec4 chosen)
+{
+    return chosen.z;
+}
+inline uint last_id_count(uvec4 chosen)
+{
+    return chosen.w;
+}
+
+#endif

@@ -1,0 +1,96 @@
+// Limits that no number of a scene shows: the records of its buffer, the loops of devices that end long ones, and the
+// shadow rays of the paper's settings.
+#pragma once
+
+#include "test_scenes.hpp"
+
+#include <photongrid/trace/device_scene.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace photongrid::testing {
+
+/// A device whose driver ends loops after 65,535 iterations.
+inline capabilities limited_device()
+{
+    capabilities caps;
+    caps.backend = "limited";
+    caps.loop_limit = 65535;
+    return caps;
+}
+
+/// A lamp over `count` regular polygons.
+inline scene polygons_under_a_lamp(int count, int vertices)
+{
+    scene s;
+    s.materials = {{"white", material_kind::lambertian, dvec3(0.5)}};
+    s.point_lights = {{"bulb", {0, 3, 0}, dvec3(1)}};
+    for (int i = 0; i < count; ++i) {
+        polygon p{{}, 0};
+        for (int v = 0; v < vertices; ++v) {
+            const double angle = 2 * M_PI * v / vertices;
+            p.vertices.emplace_back(std::cos(angle), 0.01 * i, -std::sin(angle));
+        }
+        s.polygons.push_back(p);
+    }
+    return s;
+}
+
+// trace/intersect/polygon.glsl asks each edge of a polygon, and twice for a ray in its plane.
+TEST(loop_limits, every_edge_of_a_polygon_counts_twice)
+{
+    const auto limited = limited_device();
+    for (const int vertices : {20, 1024}) {
+        const auto many = lay_out(polygons_under_a_lamp(70000 / vertices, vertices));
+        EXPECT_THROW(detail::check_loops(many, limited), std::invalid_argument) << vertices << " vertices";
+        EXPECT_NO_THROW(detail::check_loops(many, capabilities{})) << "a device without a limit";
+        const auto grazed = lay_out(polygons_under_a_lamp(34000 / vertices, vertices));
+        EXPECT_THROW(detail::check_loops(grazed, limited), std::invalid_argument) << vertices << " vertices";
+        const auto few = lay_out(polygons_under_a_lamp(15000 / vertices, vertices));
+        EXPECT_NO_THROW(detail::check_loops(few, limited)) << vertices << " vertices";
+    }
+}
+
+TEST(loop_limits, lamps_multiply_and_never_wrap)
+{
+    auto s = polygons_under_a_lamp(14, 1024);
+    EXPECT_NO_THROW(detail::check_loops(lay_out(s), limited_device()));
+    s.point_lights.assign(4, s.point_lights[0]);
+    EXPECT_THROW(detail::check_loops(lay_out(s), limited_device()), std::invalid_argument);
+    s.point_lights.resize(1);
+    s.rectangle_lights.assign(6000, {"lamp", {0, 2, 0}, {1, 0, 0}, {0, 0, 1}, dvec3(1)}); // their surfaces are polygons
+    EXPECT_THROW(detail::check_loops(lay_out(s), limited_device()), std::invalid_argument);
+    // 2^16 steps for each of 2^16 lights: 0 in 32 bits.
+    scene_layout wide;
+    wide.records.assign(kernels::SCENE_TABLES, glm::vec4(0));
+    wide.records[kernels::LIGHT_TABLE] = {0, 65536, 6, 0};
+    wide.steps_per_ray = 65536;
+    EXPECT_THROW(detail::check_loops(wide, limited_device()), std::invalid_argument);
+}
+
+TEST(records, are_as_many_as_single_precision_can_number)
+{
+    // The largest integer to which all smaller ones are floats.
+    EXPECT_NO_THROW(detail::require_numbered(1u << 24));
+    EXPECT_NE(static_cast<std::uint32_t>(static_cast<float>((1u << 24) + 1)), (1u << 24) + 1);
+    EXPECT_THROW(detail::require_numbered((1u << 24) + 1), std::invalid_argument);
+}
+
+TEST(paper_settings, one_eye_ray_takes_all_shadow_rays_of_a_pixel)
+{
+    const auto paper = as_paper(render_settings{});
+    EXPECT_EQ(paper.view.spp, 1u);
+    EXPECT_EQ(paper.view.light_samples, 32u) << "Table 1, the Cornell box";
+    render_settings s;
+    s.view.spp = 3;
+    s.view.light_samples = 5;
+    EXPECT_EQ(as_paper(s).view.light_samples, 15u);
+    s.view.spp = s.view.light_samples = 65536; // each the most there may be; their product is 0 in 32 bits
+    EXPECT_EQ(as_paper(s).view.light_samples, 65536u);
+    EXPECT_NO_THROW(check(as_paper(s)));
+    EXPECT_EQ(as_paper(as_paper(s)), as_paper(s));
+}
+
+} // namespace photongrid::testing
