@@ -36,9 +36,11 @@ static_assert(backend<cpu_backend>);
 /// @{
 
 /// The algorithm of that name, with the same results.
-sort_report bitonic_sort(cpu_backend& b, cpu_backend::buffer<glm::uvec2>& pairs);
-cpu_backend::buffer<glm::uvec2> grid_index(cpu_backend& b, const cpu_backend::buffer<glm::uvec2>& pairs, uint cells);
-map_buffers<cpu_backend> sorted_map(cpu_backend& b, photons<cpu_backend> p, const grid& g, uint parts = every_part);
+sort_report bitonic_sort(cpu_backend& device, cpu_backend::buffer<glm::uvec2>& pairs);
+cpu_backend::buffer<glm::uvec2> grid_index(
+    cpu_backend& device, const cpu_backend::buffer<glm::uvec2>& pairs, uint cells);
+map_buffers<cpu_backend> sorted_map(
+    cpu_backend& device, photons<cpu_backend> p, const grid& g, uint parts = every_part);
 /// @}
 
 /// The search on the cpu backend. It finds the same photons as the kernels. Sums differ by at most 10^-6, because the
@@ -49,13 +51,13 @@ class knn_search<cpu_backend> {
 public:
     using vectors = cpu_backend::buffer<glm::vec4>;
 
-    knn_search(cpu_backend& b, const map_buffers<cpu_backend>& map, const vectors& points, const knn_settings& s)
-        : knn_search(b, map, points, nullptr, s)
+    knn_search(cpu_backend& device, const map_buffers<cpu_backend>& map, const vectors& points, const knn_settings& s)
+        : knn_search(device, map, points, nullptr, s)
     {
     }
-    knn_search(cpu_backend& b, const map_buffers<cpu_backend>& map, const vectors& points, const vectors& normals,
+    knn_search(cpu_backend& device, const map_buffers<cpu_backend>& map, const vectors& points, const vectors& normals,
         const knn_settings& s)
-        : knn_search(b, map, points, &normals, s)
+        : knn_search(device, map, points, &normals, s)
     {
     }
 
@@ -79,7 +81,7 @@ public:
     [[nodiscard]] knn_estimates<cpu_backend> estimates() &&;
 
 private:
-    knn_search(cpu_backend& b, const map_buffers<cpu_backend>& map, const vectors& points, const vectors* normals,
+    knn_search(cpu_backend& device, const map_buffers<cpu_backend>& map, const vectors& points, const vectors* normals,
         const knn_settings& s);
 
     detail::search_inputs<cpu_backend> in_;
@@ -92,9 +94,9 @@ private:
 /// @{
 
 /// The algorithm of that name, with the same results.
-neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& b, const map_buffers<cpu_backend>& map,
+neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& device, const map_buffers<cpu_backend>& map,
     const cpu::buffer<glm::vec4>& points, const knn_settings& settings);
-neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& b, const map_buffers<cpu_backend>& map,
+neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& device, const map_buffers<cpu_backend>& map,
     const cpu::buffer<glm::vec4>& points, const cpu::buffer<glm::vec4>& normals, const knn_settings& settings);
 /// @}
 

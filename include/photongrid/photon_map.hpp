@@ -103,11 +103,12 @@ private:
         return a;
     }
 
-    static photons<B> uploaded(B& b, const photon_attributes& a, const glm::dvec3& origin)
+    static photons<B> uploaded(B& device, const photon_attributes& a, const glm::dvec3& origin)
     {
         const glm::dvec3 zero(0);
-        return {detail::upload_view(b, a.positions, origin, 0.0f), detail::upload_view(b, a.powers, zero, 0.0f),
-            detail::upload_view(b, a.directions, zero, 0.0f), detail::upload_view(b, a.normals, zero, 0.0f)};
+        return {detail::upload_view(device, a.positions, origin, 0.0f),
+            detail::upload_view(device, a.powers, zero, 0.0f), detail::upload_view(device, a.directions, zero, 0.0f),
+            detail::upload_view(device, a.normals, zero, 0.0f)};
     }
 
     void require_a_disc() const
@@ -124,18 +125,18 @@ private:
         const vector_view& points, const vector_view* normals, const irradiance_options& options) const
     {
         require_a_disc();
-        B& b = *device_;
+        B& device = *device_;
         auto s = search();
         s.errors = options.standard_error;
-        const auto device_points = detail::upload_view(b, points, origin_, 1.0f);
+        const auto device_points = detail::upload_view(device, points, origin_, 1.0f);
         const auto estimates = [&] {
             if (normals == nullptr)
-                return knn_grid_estimate(b, map_, device_points, s);
-            const auto surface_normals = detail::upload_view(b, *normals, glm::dvec3(0), 0.0f);
-            return knn_grid_estimate(b, map_, device_points, surface_normals, s);
+                return knn_grid_estimate(device, map_, device_points, s);
+            const auto surface_normals = detail::upload_view(device, *normals, glm::dvec3(0), 0.0f);
+            return knn_grid_estimate(device, map_, device_points, surface_normals, s);
         }();
-        const auto values = b.download(estimates.irradiance), errors = b.download(estimates.standard_error);
-        const auto used = b.download(estimates.used);
+        const auto values = device.download(estimates.irradiance), errors = device.download(estimates.standard_error);
+        const auto used = device.download(estimates.used);
         std::vector<irradiance_at_point> all(values.size());
         for (std::size_t i = 0; i < all.size(); ++i) {
             irradiance_at_point e{.value = glm::vec3(values[i]), .radius = std::sqrt(values[i].w), .count = used[i].x};

@@ -74,11 +74,11 @@ public:
     [[nodiscard]] point_neighbours nearest(
         const vector_argument& queries, uint k, float max_radius = std::numeric_limits<float>::infinity()) const
     {
-        B& b = *device_;
+        B& device = *device_;
         const auto lists = knn_neighbours(
-            b, map_, detail::upload_view(b, queries, origin_, 1.0f), {.k = k, .max_radius = max_radius});
-        const auto ids = b.download(lists.ids);
-        const auto distances2 = b.download(lists.distances2);
+            device, map_, detail::upload_view(device, queries, origin_, 1.0f), {.k = k, .max_radius = max_radius});
+        const auto ids = device.download(lists.ids);
+        const auto distances2 = device.download(lists.distances2);
         point_neighbours n;
         for (std::size_t i = 0; i < queries.size(); ++i) {
             for (std::size_t entry = i * k; entry < (i + 1) * k && ids[entry] != nowhere; ++entry)
@@ -110,13 +110,13 @@ public:
     /// \throws std::invalid_argument for a radius of NaN; backend_error if the device has no room.
     [[nodiscard]] std::vector<uint> count_within(const vector_argument& queries, float radius) const
     {
-        B& b = *device_;
-        const auto points = detail::upload_view(b, queries, origin_, 1.0f);
+        B& device = *device_;
+        const auto points = detail::upload_view(device, queries, origin_, 1.0f);
         const float bounded = std::min(radius, std::numeric_limits<float>::max()); // NaN remains, and is refused
-        const auto e = knn_grid_estimate(
-            b, map_, points, {.max_radius = bounded, .search = search_kind::fixed_radius, .bias = bias_kind::paper});
+        const auto e = knn_grid_estimate(device, map_, points,
+            {.max_radius = bounded, .search = search_kind::fixed_radius, .bias = bias_kind::paper});
         std::vector<uint> counts;
-        for (const auto& used : b.download(e.used))
+        for (const auto& used : device.download(e.used))
             counts.push_back(used.x);
         return counts;
     }
@@ -128,11 +128,11 @@ private:
         return points;
     }
 
-    photons<B> uploaded(B& b, const vector_view& points) const
+    photons<B> uploaded(B& device, const vector_view& points) const
     {
         // A map needs powers, though these searches read none.
         const std::vector<glm::vec4> none(points.size());
-        return {detail::upload_view(b, points, origin_, 0.0f), b.upload(std::span(none))};
+        return {detail::upload_view(device, points, origin_, 0.0f), device.upload(std::span(none))};
     }
 
     B* device_;

@@ -15,7 +15,7 @@ namespace photongrid {
 inline
 #endif
     sort_report
-    bitonic_sort(cpu_backend& b, cpu_backend::buffer<glm::uvec2>& pairs)
+    bitonic_sort(cpu_backend& device, cpu_backend::buffer<glm::uvec2>& pairs)
 {
     const std::size_t n = pairs.size();
     sort_report report;
@@ -24,13 +24,13 @@ inline
     const auto levels = static_cast<uint>(std::countr_zero(std::bit_ceil(n)));
     report.steps = levels * (levels + 1) / 2;
     const cpu_backend::stopwatch watch;
-    auto scratch = b.make<glm::uvec2>(n);
-    const auto sorted
-        = cpu::radix_sort(b.threads(), b.elements_to_write(pairs).data(), b.elements_to_write(scratch).data(), n);
+    auto scratch = device.make<glm::uvec2>(n);
+    const auto sorted = cpu::radix_sort(
+        device.threads(), device.elements_to_write(pairs).data(), device.elements_to_write(scratch).data(), n);
     if (sorted.in_scratch)
         std::swap(pairs, scratch);
     report.passes = sorted.passes;
-    b.count_passes("radix_sort", report.passes, watch);
+    device.count_passes("radix_sort", report.passes, watch);
     return report;
 }
 

@@ -10,31 +10,31 @@ namespace photongrid {
 
 namespace cpu {
     template <element T>
-    buffer<T> copy(cpu_backend& b, const buffer<T>& from)
+    buffer<T> copy(cpu_backend& device, const buffer<T>& from)
     {
-        return b.upload(b.elements(from));
+        return device.upload(device.elements(from));
     }
 } // namespace cpu
 
 #if !defined(PHOTONGRID_CPU_COMPILED)
 inline
 #endif
-    knn_search<cpu_backend>::knn_search(cpu_backend& b, const map_buffers<cpu_backend>& map, const vectors& points,
+    knn_search<cpu_backend>::knn_search(cpu_backend& device, const map_buffers<cpu_backend>& map, const vectors& points,
         const vectors* normals, const knn_settings& s)
-    : in_(b, map, points, normals, s)
+    : in_(device, map, points, normals, s)
 {
     const std::size_t n = points.size();
-    e_ = {b.make<glm::vec4>(n), b.make<glm::uvec2>(n), b.make<glm::vec4>(s.errors ? n : 0)};
+    e_ = {device.make<glm::vec4>(n), device.make<glm::uvec2>(n), device.make<glm::vec4>(s.errors ? n : 0)};
     const auto unfinished = [&](auto& buffer, const auto& value) {
-        const auto elements = b.elements_to_write(buffer);
+        const auto elements = device.elements_to_write(buffer);
         std::fill(elements.begin(), elements.end(), value);
     };
     unfinished(e_.irradiance, glm::vec4(0, 0, 0, in_.max_radius2()));
     unfinished(e_.used, glm::uvec2(0));
     unfinished(e_.standard_error, glm::vec4(0));
     const cpu_backend::stopwatch watch;
-    order_ = cpu::order_along_curve(b, map.cells_of, points);
-    b.count_passes("knn_search", 0, watch);
+    order_ = cpu::order_along_curve(device, map.cells_of, points);
+    device.count_passes("knn_search", 0, watch);
 }
 
 #if !defined(PHOTONGRID_CPU_COMPILED)
@@ -43,7 +43,7 @@ inline
     progress
     knn_search<cpu_backend>::advance(uint passes)
 {
-    auto& b = *in_.b;
+    auto& device = *in_.device;
     const cpu_backend::stopwatch watch;
     const std::size_t n = in_.points->size(), begin = done_;
     const std::size_t per_pass = cpu::search_block_size * std::max(1u, in_.s.visits_per_pass / 128u);
@@ -52,14 +52,14 @@ inline
     done_ = std::min(n, begin + now * per_pass);
     if (done_ > begin) {
         auto job = cpu::make_search_job(in_, order_);
-        job.irradiance = b.elements_to_write(e_.irradiance).data();
-        job.used = b.elements_to_write(e_.used).data();
+        job.irradiance = device.elements_to_write(e_.irradiance).data();
+        job.used = device.elements_to_write(e_.used).data();
         if (job.errors)
-            job.standard_error = b.elements_to_write(e_.standard_error).data();
-        b.threads().for_blocks(done_ - begin, cpu::search_block_size,
+            job.standard_error = device.elements_to_write(e_.standard_error).data();
+        device.threads().for_blocks(done_ - begin, cpu::search_block_size,
             [&](std::size_t first, std::size_t past) { cpu::search_block(job, begin + first, begin + past); });
     }
-    b.count_passes("knn_search", now, watch);
+    device.count_passes("knn_search", now, watch);
     progress p;
     p.passes = now;
     for (uint i = 0; i < now; ++i)
@@ -74,8 +74,8 @@ inline
     knn_estimates<cpu_backend>
     knn_search<cpu_backend>::estimates() &
 {
-    auto& b = *in_.b;
-    return {cpu::copy(b, e_.irradiance), cpu::copy(b, e_.used), cpu::copy(b, e_.standard_error)};
+    auto& device = *in_.device;
+    return {cpu::copy(device, e_.irradiance), cpu::copy(device, e_.used), cpu::copy(device, e_.standard_error)};
 }
 
 #if !defined(PHOTONGRID_CPU_COMPILED)

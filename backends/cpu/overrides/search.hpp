@@ -16,13 +16,13 @@ inline constexpr std::size_t search_block_size = 256;
 
 /// The order of the points along a Morton curve (Morton 1966), which keeps neighbours together. The curve has 1,024
 /// steps along each axis of the grid.
-inline buffer<uint> order_along_curve(cpu_backend& b, const grid& g, const buffer<glm::vec4>& points_of)
+inline buffer<uint> order_along_curve(cpu_backend& device, const grid& g, const buffer<glm::vec4>& points_of)
 {
     const std::size_t n = points_of.size();
-    auto pairs = b.make<glm::uvec2>(n);
-    auto scratch = b.make<glm::uvec2>(n);
-    const auto points = b.elements(points_of);
-    const auto to = b.elements_to_write(pairs);
+    auto pairs = device.make<glm::uvec2>(n);
+    auto scratch = device.make<glm::uvec2>(n);
+    const auto points = device.elements(points_of);
+    const auto to = device.elements_to_write(pairs);
     const glm::vec3 steps = 1024.0f / (glm::vec3(g.cell) * glm::vec3(g.resolution));
     const auto spread = [](float u) {
         u = u > 0.0f ? u : 0.0f;
@@ -32,17 +32,17 @@ inline buffer<uint> order_along_curve(cpu_backend& b, const grid& g, const buffe
         v = (v | v << 4) & 0x030C30C3u;
         return (v | v << 2) & 0x09249249u;
     };
-    b.threads().for_blocks(n, 4096, [&](std::size_t first, std::size_t past) {
+    device.threads().for_blocks(n, 4096, [&](std::size_t first, std::size_t past) {
         for (std::size_t i = first; i < past; ++i) {
             const glm::vec3 u = (glm::vec3(points[i]) - glm::vec3(g.origin)) * steps;
             to[i] = {spread(u.x) | spread(u.y) << 1 | spread(u.z) << 2, static_cast<uint>(i)};
         }
     });
-    const auto sorted = radix_sort(b.threads(), to.data(), b.elements_to_write(scratch).data(), n);
-    const auto from = b.elements(sorted.in_scratch ? scratch : pairs);
-    auto ordered = b.make<uint>(n);
-    const auto order = b.elements_to_write(ordered);
-    b.threads().for_blocks(n, 16384, [&](std::size_t first, std::size_t past) {
+    const auto sorted = radix_sort(device.threads(), to.data(), device.elements_to_write(scratch).data(), n);
+    const auto from = device.elements(sorted.in_scratch ? scratch : pairs);
+    auto ordered = device.make<uint>(n);
+    const auto order = device.elements_to_write(ordered);
+    device.threads().for_blocks(n, 16384, [&](std::size_t first, std::size_t past) {
         for (std::size_t i = first; i < past; ++i)
             order[i] = from[i].y;
     });
@@ -52,27 +52,27 @@ inline buffer<uint> order_along_curve(cpu_backend& b, const grid& g, const buffe
 /// The job of the search `in`, without the buffers for its results.
 inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, const buffer<uint>& order)
 {
-    auto& b = *in.b;
+    auto& device = *in.device;
     const auto& s = in.s;
     const auto& photons = in.map->photons;
     search_job j;
     j.cells_of = in.map->cells_of;
-    j.cells = b.elements(in.map->cells);
-    j.positions = b.components(photons.positions);
-    j.powers = b.components(photons.powers);
+    j.cells = device.elements(in.map->cells);
+    j.positions = device.components(photons.positions);
+    j.powers = device.components(photons.powers);
     j.side = s.leaks.side;
     j.needs_photon_normals = s.leaks.needs_photon_normals();
     j.min_cosine = s.leaks.min_cosine;
     j.flattening = s.leaks.flattening > 1 ? s.leaks.flattening * s.leaks.flattening - 1.0f : 0.0f;
     if (j.side)
-        j.directions = b.components(photons.directions);
+        j.directions = device.components(photons.directions);
     if (j.needs_photon_normals)
-        j.normals = b.components(photons.normals);
-    j.list = b.elements(in.map->list).data();
-    j.points = b.elements(*in.points).data();
+        j.normals = device.components(photons.normals);
+    j.list = device.elements(in.map->list).data();
+    j.points = device.elements(*in.points).data();
     if (s.leaks.needs_point_normals())
-        j.point_normals = b.elements(*in.normals).data();
-    j.order = b.elements(order).data();
+        j.point_normals = device.elements(*in.normals).data();
+    j.order = device.elements(order).data();
     j.search = s.search;
     j.searching = in.searching();
     j.k = s.k;

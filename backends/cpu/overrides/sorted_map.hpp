@@ -14,13 +14,13 @@ namespace photongrid {
 namespace cpu {
     /// An attribute in the order of the list.
     inline cpu_backend::buffer<glm::vec4> in_order_of(
-        cpu_backend& b, std::span<const uint> list, const cpu_backend::buffer<glm::vec4>& attribute)
+        cpu_backend& device, std::span<const uint> list, const cpu_backend::buffer<glm::vec4>& attribute)
     {
         const std::size_t n = list.size();
-        const auto from = b.elements(attribute);
-        auto taken = b.make<glm::vec4>(n);
-        const auto to = b.components_to_write(taken);
-        b.threads().for_blocks(n, 4096, [&](std::size_t first, std::size_t past) {
+        const auto from = device.elements(attribute);
+        auto taken = device.make<glm::vec4>(n);
+        const auto to = device.components_to_write(taken);
+        device.threads().for_blocks(n, 4096, [&](std::size_t first, std::size_t past) {
             constexpr std::size_t ahead = 16; // prefetch so far ahead, since reads have random addresses
             for (std::size_t i = first; i < past; ++i) {
                 if (i + ahead < n)
@@ -43,7 +43,7 @@ namespace cpu {
 inline
 #endif
     map_buffers<cpu_backend>
-    sorted_map(cpu_backend& b, photons<cpu_backend> p, const grid& g, uint parts)
+    sorted_map(cpu_backend& device, photons<cpu_backend> p, const grid& g, uint parts)
 {
     const uint n = p.size();
     cpu::map_job j;
@@ -56,34 +56,34 @@ inline
     while (j.shift < cpu::map_job::most_shift && j.buckets() > buckets)
         ++j.shift;
     if (j.buckets() > cpu::map_job::most_buckets)
-        return sorted_map<cpu_backend>(b, std::move(p), g, parts);
+        return sorted_map<cpu_backend>(device, std::move(p), g, parts);
 
     const cpu_backend::stopwatch watch;
     map_buffers<cpu_backend> map;
     map.cells_of = g;
-    map.cells = b.make<glm::uvec2>(j.cells);
-    map.list = b.make<uint>(n);
-    auto positions = b.make<glm::vec4>(n), powers = b.make<glm::vec4>(n);
+    map.cells = device.make<glm::uvec2>(j.cells);
+    map.list = device.make<uint>(n);
+    auto positions = device.make<glm::vec4>(n), powers = device.make<glm::vec4>(n);
     {
         // One range per thread, so that counters are not shared. The result does not depend on the number of ranges.
-        const std::size_t threads = n < 16384 ? 1 : b.threads().threads(),
+        const std::size_t threads = n < 16384 ? 1 : device.threads().threads(),
                           part = std::max<std::size_t>((n + threads - 1) / threads, 1);
         std::vector<std::array<uint, cpu::map_job::most_buckets>> next(threads);
-        auto keys = b.make<uint>(n);
-        auto records = b.make<glm::vec4>(std::size_t{2} * n);
-        auto pairs = b.make<glm::uvec2>(n);
-        j.positions = b.elements(p.positions).data();
-        j.powers = b.elements(p.powers).data();
-        j.keys = b.elements_to_write(keys).data();
-        j.records = reinterpret_cast<cpu::photon_record*>(b.elements_to_write(records).data());
-        j.pairs = b.elements_to_write(pairs).data();
-        j.index = b.elements_to_write(map.cells).data();
-        j.list = b.elements_to_write(map.list).data();
-        j.out_positions = b.components_to_write(positions);
-        j.out_powers = b.components_to_write(powers);
+        auto keys = device.make<uint>(n);
+        auto records = device.make<glm::vec4>(std::size_t{2} * n);
+        auto pairs = device.make<glm::uvec2>(n);
+        j.positions = device.elements(p.positions).data();
+        j.powers = device.elements(p.powers).data();
+        j.keys = device.elements_to_write(keys).data();
+        j.records = reinterpret_cast<cpu::photon_record*>(device.elements_to_write(records).data());
+        j.pairs = device.elements_to_write(pairs).data();
+        j.index = device.elements_to_write(map.cells).data();
+        j.list = device.elements_to_write(map.list).data();
+        j.out_positions = device.components_to_write(positions);
+        j.out_powers = device.components_to_write(powers);
 
         std::atomic<uint> invalid = 0, left_out = 0;
-        b.threads().for_blocks(n, part, [&](std::size_t first, std::size_t past) {
+        device.threads().for_blocks(n, part, [&](std::size_t first, std::size_t past) {
             uint bad = 0, other = 0;
             next[first / part].fill(0);
             cpu::find_cells(j, first, past, next[first / part].data(), bad, other);
@@ -101,11 +101,11 @@ inline
                 sum += std::exchange(of_part[v], sum);
         }
         begin[j.buckets()] = sum;
-        b.threads().for_blocks(n, part, [&](std::size_t first, std::size_t past) {
+        device.threads().for_blocks(n, part, [&](std::size_t first, std::size_t past) {
             const auto lines = std::make_unique_for_overwrite<cpu::scatter_lines>();
             cpu::scatter_photons(j, first, past, next[first / part].data(), *lines);
         });
-        b.threads().for_blocks(j.buckets(), std::max(1u, j.buckets() / (8 * b.threads().threads())),
+        device.threads().for_blocks(j.buckets(), std::max(1u, j.buckets() / (8 * device.threads().threads())),
             [&](std::size_t first, std::size_t past) {
                 cpu::bucket_scratch scratch;
                 for (std::size_t v = first; v < past; ++v)
@@ -116,9 +116,9 @@ inline
     p.powers = std::move(powers);
     for (auto* attribute : {&p.directions, &p.normals})
         if (attribute->size() != 0)
-            *attribute = cpu::in_order_of(b, b.elements(map.list), *attribute);
+            *attribute = cpu::in_order_of(device, device.elements(map.list), *attribute);
     map.photons = std::move(p);
-    b.count_passes("sorted_map", 1, watch);
+    device.count_passes("sorted_map", 1, watch);
     return map;
 }
 

@@ -10,7 +10,8 @@ namespace photongrid {
 /// Sorts pairs in the same order as the generic bitonic_sort, in 57 passes instead of 210 for 1,048,576 pairs. It needs
 /// no extra memory if n is a power of two, otherwise two more buffers of n pairs. `steps_per_pass`: at most so many, 1
 /// to 4.
-inline sort_report bitonic_sort(vulkan_backend& b, vulkan_backend::buffer<glm::uvec2>& pairs, uint steps_per_pass = 4)
+inline sort_report bitonic_sort(
+    vulkan_backend& device, vulkan_backend::buffer<glm::uvec2>& pairs, uint steps_per_pass = 4)
 {
     if (steps_per_pass < 1 || steps_per_pass > 4)
         throw std::invalid_argument(
@@ -21,14 +22,14 @@ inline sort_report bitonic_sort(vulkan_backend& b, vulkan_backend::buffer<glm::u
         return report;
     const std::size_t padded = std::bit_ceil(n);
     if (padded != n) {
-        auto copy = b.make<glm::uvec2>(padded);
-        b.run<kernels::pad_pairs>(padded, {.pairs = static_cast<uint>(n)}, reads(pairs), writes(copy));
+        auto copy = device.make<glm::uvec2>(padded);
+        device.run<kernels::pad_pairs>(padded, {.pairs = static_cast<uint>(n)}, reads(pairs), writes(copy));
         std::swap(pairs, copy);
     }
     const auto levels = static_cast<uint>(std::countr_zero(padded));
     report.steps = levels * (levels + 1) / 2;
     const auto pass = [&](uint run_bits, uint first_bit, uint steps, bool whole_blocks) {
-        b.own_pass("bitonic_strides",
+        device.own_pass("bitonic_strides",
             "#define STEPS " + std::to_string(steps) + "\n#define SORT_BLOCKS " + (whole_blocks ? "1" : "0") + "\n",
             padded >> steps, {static_cast<uint>(padded), 1u << run_bits, 1u << (first_bit + 1 - steps)}, pairs);
         ++report.passes;
@@ -46,8 +47,8 @@ inline sort_report bitonic_sort(vulkan_backend& b, vulkan_backend::buffer<glm::u
             left -= steps;
         }
     if (padded != n) {
-        auto trimmed = b.make<glm::uvec2>(n);
-        b.run<kernels::pad_pairs>(n, {.pairs = static_cast<uint>(n)}, reads(pairs), writes(trimmed));
+        auto trimmed = device.make<glm::uvec2>(n);
+        device.run<kernels::pad_pairs>(n, {.pairs = static_cast<uint>(n)}, reads(pairs), writes(trimmed));
         std::swap(pairs, trimmed);
     }
     return report;

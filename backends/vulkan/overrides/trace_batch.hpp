@@ -11,11 +11,11 @@ namespace photongrid {
 
 /// Computes the same frames as the generic trace_batch, except that the powers and directions of paths that ended
 /// earlier are not written.
-inline uint trace_batch(vulkan_backend& b, const device_scene<vulkan_backend>& s,
+inline uint trace_batch(vulkan_backend& device, const device_scene<vulkan_backend>& s,
     detail::photon_frames<vulkan_backend>& f, uint paths, uint first, const render_settings& settings)
 {
     const auto& layout = s.layout;
-    b.run<kernels::emit_photon>({paths, 0u, layout.features}, {.first_path = first, .seed = settings.seed},
+    device.run<kernels::emit_photon>({paths, 0u, layout.features}, {.first_path = first, .seed = settings.seed},
         reads(s.records), writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
     constexpr uint together = 8;
     uint frame = 1;
@@ -24,8 +24,8 @@ inline uint trace_batch(vulkan_backend& b, const device_scene<vulkan_backend>& s
         // A record with this value in every word means that the path has ended before.
         const auto ended = std::bit_cast<uint>(
             kernels::event_code(kernels::NO_SURFACE, kernels::ENDED_BEFORE, kernels::NOTHING_BEFORE));
-        b.fill(f.positions, std::size_t{frame} * paths, std::size_t{passes} * paths, ended);
-        const auto p = b.run_frames<kernels::bounce_photon>({paths, frame * paths, layout.features}, paths,
+        device.fill(f.positions, std::size_t{frame} * paths, std::size_t{passes} * paths, ended);
+        const auto p = device.run_frames<kernels::bounce_photon>({paths, frame * paths, layout.features}, paths,
             {.paths = paths, .first_path = first, .last_frame = settings.map.photon_depth, .seed = settings.seed},
             reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions), passes);

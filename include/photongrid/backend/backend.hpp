@@ -233,21 +233,22 @@ namespace detail {
 // Not formatted: clang-format 14 breaks each of these lines in three.
 // clang-format off
 template <class B>
-concept backend = requires(B& b, const B& cb, typename B::template buffer<uint>& u,
+concept backend = requires(B& device, const B& const_device, typename B::template buffer<uint>& u,
     typename B::template buffer<glm::vec4>& v, launch l, detail::concept_probe::Params p, std::span<const uint> host) {
-    { b.template make<uint>(std::size_t{}) } -> std::same_as<typename B::template buffer<uint>>;
-    { b.upload(host) } -> std::same_as<typename B::template buffer<uint>>;
-    { b.download(u) } -> std::same_as<std::vector<uint>>;
+    { device.template make<uint>(std::size_t{}) } -> std::same_as<typename B::template buffer<uint>>;
+    { device.upload(host) } -> std::same_as<typename B::template buffer<uint>>;
+    { device.download(u) } -> std::same_as<std::vector<uint>>;
     { u.size() } -> std::same_as<std::size_t>;
-    b.template run<detail::concept_probe>(l, p, reads(u), writes(u));
-    { b.template run_until_done<detail::concept_probe>(l, p, reads(u), writes(u), uint{}) } -> std::same_as<progress>;
-    { b.template count<detail::concept_probe>(l, p, reads(u)) } -> std::same_as<std::uint64_t>;
-    b.template route<detail::route_probe>(l, p, reads(u), uint{}, uint{}, u, v);
-    b.finish();
-    { cb.caps() } -> std::same_as<const capabilities&>;
-    { cb.bytes() } -> std::same_as<std::uint64_t>;
-    { cb.peak_bytes() } -> std::same_as<std::uint64_t>;
-    { cb.costs() } -> std::same_as<const std::map<std::string, kernel_cost>&>;
+    device.template run<detail::concept_probe>(l, p, reads(u), writes(u));
+    { device.template run_until_done<detail::concept_probe>(l, p, reads(u), writes(u), uint{}) }
+        -> std::same_as<progress>;
+    { device.template count<detail::concept_probe>(l, p, reads(u)) } -> std::same_as<std::uint64_t>;
+    device.template route<detail::route_probe>(l, p, reads(u), uint{}, uint{}, u, v);
+    device.finish();
+    { const_device.caps() } -> std::same_as<const capabilities&>;
+    { const_device.bytes() } -> std::same_as<std::uint64_t>;
+    { const_device.peak_bytes() } -> std::same_as<std::uint64_t>;
+    { const_device.costs() } -> std::same_as<const std::map<std::string, kernel_cost>&>;
 };
 // clang-format on
 
@@ -255,11 +256,11 @@ namespace detail {
     /// The number of elements for which predicate K holds. Throws backend_error if the device returns an impossible
     /// count.
     template <predicate_kernel K, backend B, class Reads>
-    uint checked_count(B& b, launch l, const typename K::Params& args, Reads reads)
+    uint checked_count(B& device, launch l, const typename K::Params& args, Reads reads)
     {
-        const std::uint64_t n = b.template count<K>(l, args, reads);
+        const std::uint64_t n = device.template count<K>(l, args, reads);
         if (n > l.elements)
-            throw backend_error(b.caps().backend + ": count<" + std::string(kernel_name<K>())
+            throw backend_error(device.caps().backend + ": count<" + std::string(kernel_name<K>())
                 + ">: the device returned " + std::to_string(n) + "; there are " + std::to_string(l.elements)
                 + " elements");
         return static_cast<uint>(n);
@@ -275,9 +276,9 @@ using buffer_of = typename B::template buffer<T>;
 /// \snippet snippets.cpp upload
 template <backend B, std::ranges::contiguous_range Range>
 requires std::ranges::sized_range<Range> && element<std::ranges::range_value_t<Range>>
-    buffer_of<B, std::ranges::range_value_t<Range>> upload(B& b, const Range& elements)
+    buffer_of<B, std::ranges::range_value_t<Range>> upload(B& device, const Range& elements)
 {
-    return b.upload(std::span<const std::ranges::range_value_t<Range>>(elements));
+    return device.upload(std::span<const std::ranges::range_value_t<Range>>(elements));
 }
 
 /// The number of slots of a routed destination: m*m, but at most 255, since an 8-bit stencil cannot count further

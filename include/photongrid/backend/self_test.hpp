@@ -11,16 +11,16 @@
 
 namespace photongrid {
 
-/// Runs 65,536 quotients and square roots on `b` and compares them with the host's.
+/// Runs 65,536 quotients and square roots on `device` and compares them with the host's.
 /// Returns {division is exact, square root is exact}.
 template <class B>
-std::pair<bool, bool> test_arithmetic(B& b)
+std::pair<bool, bool> test_arithmetic(B& device)
 {
     constexpr uint n = 65536;
-    auto result = b.template make<glm::vec4>(n);
-    b.template run<kernels::arithmetic_probe>(n, {.seed = 1u}, reads(), writes(result));
+    auto result = device.template make<glm::vec4>(n);
+    device.template run<kernels::arithmetic_probe>(n, {.seed = 1u}, reads(), writes(result));
     bool division = true, square_root = true;
-    for (const auto& r : b.download(result)) {
+    for (const auto& r : device.download(result)) {
         division = division && r.x / r.y == r.z;
         square_root = square_root && std::sqrt(r.x) == r.w;
     }

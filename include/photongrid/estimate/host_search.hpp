@@ -78,18 +78,18 @@ class host_search {
 public:
     host_search() = default;
     template <backend B>
-    host_search(B& b, const map_buffers<B>& map, const knn_settings& settings, bool powers)
-        : grid_(map.cells_of), cells_(b.download(map.cells)), list_(b.download(map.list)),
-          positions_(b.download(map.photons.positions)), repeats_(map.may_repeat())
+    host_search(B& device, const map_buffers<B>& map, const knn_settings& settings, bool powers)
+        : grid_(map.cells_of), cells_(device.download(map.cells)), list_(device.download(map.list)),
+          positions_(device.download(map.photons.positions)), repeats_(map.may_repeat())
     {
         const auto& leaks = settings.leaks;
         settings_ = detail::checked(settings, map, 1, leaks.needs_point_normals() ? 1 : 0);
         if (powers)
-            powers_ = b.download(map.photons.powers);
+            powers_ = device.download(map.photons.powers);
         if (leaks.side)
-            directions_ = b.download(map.photons.directions);
+            directions_ = device.download(map.photons.directions);
         if (leaks.needs_photon_normals())
-            normals_ = b.download(map.photons.normals);
+            normals_ = device.download(map.photons.normals);
     }
 
     const knn_settings& settings() const { return settings_; }

@@ -50,15 +50,15 @@ public:
 
     /// `points`: xyz, m; points with w > 0 get an estimate. `map` and `points` must outlive the search.
     /// \throws std::invalid_argument for a radius of NaN, and for leak policies, since they need the points' normals.
-    knn_search_by_kernels(B& b, const map_buffers<B>& map, const vectors& points, const knn_settings& s)
-        : knn_search_by_kernels(b, map, points, nullptr, s)
+    knn_search_by_kernels(B& device, const map_buffers<B>& map, const vectors& points, const knn_settings& s)
+        : knn_search_by_kernels(device, map, points, nullptr, s)
     {
     }
     /// With the unit normals of the surfaces that the points lie on, on the side that is seen. They must outlive the
     /// search too.
     knn_search_by_kernels(
-        B& b, const map_buffers<B>& map, const vectors& points, const vectors& normals, const knn_settings& s)
-        : knn_search_by_kernels(b, map, points, &normals, s)
+        B& device, const map_buffers<B>& map, const vectors& points, const vectors& normals, const knn_settings& s)
+        : knn_search_by_kernels(device, map, points, &normals, s)
     {
     }
 
@@ -88,8 +88,8 @@ private:
     enum class stage { grow, radius, gather, finished };
 
     knn_search_by_kernels(
-        B& b, const map_buffers<B>& map, const vectors& points, const vectors* normals, const knn_settings& s)
-        : in_(b, map, points, normals, s)
+        B& device, const map_buffers<B>& map, const vectors& points, const vectors* normals, const knn_settings& s)
+        : in_(device, map, points, normals, s)
     {
         if (in_.s.search == search_kind::at_least_k) {
             start_growing();
@@ -132,27 +132,27 @@ private:
 template <backend B>
 knn_estimates<B> knn_search_by_kernels<B>::estimates()
 {
-    B& b = *in_.b;
+    B& device = *in_.device;
     const auto n = in_.points->size();
     const auto& s = in_.s;
-    knn_estimates<B> e{
-        b.template make<glm::vec4>(n), b.template make<glm::uvec2>(n), b.template make<glm::vec4>(s.errors ? n : 0)};
+    knn_estimates<B> e{device.template make<glm::vec4>(n), device.template make<glm::uvec2>(n),
+        device.template make<glm::vec4>(s.errors ? n : 0)};
     // Errors are 0 until photons are gathered; the contents of a new buffer are undefined.
     if (s.errors && stage_ != stage::gather && stage_ != stage::finished)
-        b.template run<kernels::zero_vectors>(n, {}, reads(), writes(e.standard_error));
+        device.template run<kernels::zero_vectors>(n, {}, reads(), writes(e.standard_error));
     if (gathered_.size() > 0 || n == 0) {
-        b.template run<kernels::knn_result>(n,
+        device.template run<kernels::knn_result>(n,
             {.k = s.k, .max_radius2 = in_.max_radius2(), .min_radius2 = in_.min_radius2()}, reads(gathered_, found_),
             writes(e.irradiance, e.used));
         return e;
     }
     if (stage_ == stage::radius) {
-        b.template run<kernels::no_estimate>(
+        device.template run<kernels::no_estimate>(
             n, {.radius2 = in_.max_radius2()}, reads(radius_search_->visited()), writes(e.irradiance, e.used));
         return e;
     }
-    auto errors = s.errors ? std::move(e.standard_error) : b.template make<glm::vec4>(n);
-    b.template run<kernels::irradiance_estimate>(n,
+    auto errors = s.errors ? std::move(e.standard_error) : device.template make<glm::vec4>(n);
+    device.template run<kernels::irradiance_estimate>(n,
         {.norm = detail::entry_of(s.filter).norm,
             .min_radius2 = in_.min_radius2(),
             .leave_out = s.bias == bias_kind::unbiased ? 1u : 0u},
@@ -169,7 +169,7 @@ void knn_search_by_kernels<B>::start_growing()
     gathered_ = in_.template make<glm::vec4>();
     found_ = in_.template make<glm::uvec4>();
     cursor_ = in_.template make<glm::uvec4>();
-    in_.b->template run<kernels::knn_start>(in_.points->size(),
+    in_.device->template run<kernels::knn_start>(in_.points->size(),
         {.grid = in_.map->cells_of, .searching = in_.searching() ? 1u : 0u}, reads(*in_.points),
         writes(gathered_, found_, cursor_));
 }
@@ -183,7 +183,7 @@ void knn_search_by_kernels<B>::start_gathering()
     squares_ = in_.template make<glm::vec4>();
     cursor_ = in_.template make<glm::uvec4>();
     tally_ = in_.template make<glm::uvec4>();
-    in_.b->template run<kernels::gather_start>(in_.points->size(), {.searching = in_.searching() ? 1u : 0u},
+    in_.device->template run<kernels::gather_start>(in_.points->size(), {.searching = in_.searching() ? 1u : 0u},
         reads(*in_.points, chosen_), writes(sum_, compensation_, squares_, cursor_, tally_));
 }
 
@@ -198,8 +198,8 @@ void knn_search_by_kernels<B>::next_stage()
         }
         radius_ = in_.template make<glm::vec4>();
         chosen_ = in_.template make<glm::uvec4>();
-        in_.b->template run<kernels::grown_radius>(in_.points->size(), {.k = in_.s.k, .max_radius2 = in_.max_radius2()},
-            reads(gathered_, found_), writes(radius_, chosen_));
+        in_.device->template run<kernels::grown_radius>(in_.points->size(),
+            {.k = in_.s.k, .max_radius2 = in_.max_radius2()}, reads(gathered_, found_), writes(radius_, chosen_));
         gathered_ = {};
         found_ = {};
         start_gathering();
@@ -222,12 +222,12 @@ void knn_search_by_kernels<B>::next_stage()
 template <backend B>
 progress knn_search_by_kernels<B>::run_stage(uint passes)
 {
-    B& b = *in_.b;
+    B& device = *in_.device;
     const map_buffers<B>& m = *in_.map;
     const auto& s = in_.s;
     switch (stage_) {
     case stage::grow:
-        return b.template run_until_done<kernels::knn_visit>(
+        return device.template run_until_done<kernels::knn_visit>(
             {in_.points->size(), 0u, in_.template policies<kernels::knn_visit>()},
             {.grid = m.cells_of,
                 .leaks = in_.leaks(),
@@ -240,7 +240,7 @@ progress knn_search_by_kernels<B>::run_stage(uint passes)
             writes(gathered_, found_, cursor_), passes);
     case stage::radius: return radius_search_->advance(passes);
     case stage::gather: {
-        return b.template run_until_done<kernels::gather_photons>(
+        return device.template run_until_done<kernels::gather_photons>(
             {in_.points->size(), 0u, gather_switches<kernels::gather_photons>()},
             {.grid = m.cells_of,
                 .leaks = in_.leaks(),
@@ -274,19 +274,19 @@ knn_search(B&, const map_buffers<B>&, const Rest&...) -> knn_search<B>;
 /// \snippet snippets.cpp knn_grid_estimate
 template <backend B>
 knn_estimates<B> knn_grid_estimate(
-    B& b, const map_buffers<B>& map, const buffer_of<B, glm::vec4>& points, const knn_settings& settings)
+    B& device, const map_buffers<B>& map, const buffer_of<B, glm::vec4>& points, const knn_settings& settings)
 {
-    knn_search<B> search(b, map, points, settings);
+    knn_search<B> search(device, map, points, settings);
     search.advance();
     return std::move(search).estimates();
 }
 /// With the unit normals of the surfaces that the points lie on, for leak policies.
 /// \snippet snippets.cpp upload_normals
 template <backend B>
-knn_estimates<B> knn_grid_estimate(B& b, const map_buffers<B>& map, const buffer_of<B, glm::vec4>& points,
+knn_estimates<B> knn_grid_estimate(B& device, const map_buffers<B>& map, const buffer_of<B, glm::vec4>& points,
     const buffer_of<B, glm::vec4>& normals, const knn_settings& settings)
 {
-    knn_search<B> search(b, map, points, normals, settings);
+    knn_search<B> search(device, map, points, normals, settings);
     search.advance();
     return std::move(search).estimates();
 }

@@ -49,16 +49,16 @@ namespace detail {
     template <backend B>
     neighbour_lists<B> list_neighbours(const search_inputs<B>& in)
     {
-        B& b = *in.b;
+        B& device = *in.device;
         const auto& m = *in.map;
         const uint n = static_cast<uint>(in.points->size()), k = in.s.k, padded = std::bit_ceil(k);
         neighbour_lists<B> lists{
-            k, b.template make<uint>(std::size_t{n} * k), b.template make<float>(std::size_t{n} * k)};
+            k, device.template make<uint>(std::size_t{n} * k), device.template make<float>(std::size_t{n} * k)};
         if (n == 0)
             return lists;
-        auto pairs = b.template make<glm::uvec2>(std::size_t{n} * padded);
+        auto pairs = device.template make<glm::uvec2>(std::size_t{n} * padded);
         const auto put = [&](uint entry, uint entries, bool held, const auto& indices, const auto& tally) {
-            b.template run<kernels::neighbour_pair>(
+            device.template run<kernels::neighbour_pair>(
                 {std::size_t{n} * entries, entry * n, pair_switches<kernels::neighbour_pair>(in, held)},
                 {.leaks = in.leaks(), .points = n},
                 reads(*in.points, in.point_normals(), m.photons.positions, in.directions(), in.photon_normals(), m.list,
@@ -73,10 +73,10 @@ namespace detail {
                 in.template make<glm::uvec4>(), in.template make<glm::uvec4>()};
             auto cursor = in.template make<glm::uvec4>(), tally = in.template make<glm::uvec4>();
             for (uint first = 0; first < k; first += part) {
-                b.template run<kernels::neighbours_start>({n, 0u, first > 0 ? 1u : 0u},
+                device.template run<kernels::neighbours_start>({n, 0u, first > 0 ? 1u : 0u},
                     {.searching = in.searching() ? 1u : 0u}, reads(*in.points, radius_search.chosen),
                     writes(cursor, tally));
-                b.template run_until_done<kernels::list_neighbours>(
+                device.template run_until_done<kernels::list_neighbours>(
                     {n, 0u,
                         in.template policies<kernels::list_neighbours>()
                             | in.template repeats<kernels::list_neighbours>()},
@@ -95,15 +95,15 @@ namespace detail {
                 put(filled, padded - filled, false, indices[0], tally);
         }
         if (padded > 1) {
-            auto next = b.template make<glm::uvec2>(pairs.size());
+            auto next = device.template make<glm::uvec2>(pairs.size());
             for (uint run = 2; run <= padded; run *= 2)
                 for (uint stride = run / 2; stride > 0; stride /= 2) {
-                    b.template run<kernels::sort_neighbours>(
+                    device.template run<kernels::sort_neighbours>(
                         pairs.size(), {.points = n, .run = run, .stride = stride}, reads(pairs), writes(next));
                     std::swap(pairs, next);
                 }
         }
-        b.template run<kernels::neighbour>(
+        device.template run<kernels::neighbour>(
             lists.ids.size(), {.points = n, .k = k}, reads(pairs), writes(lists.ids, lists.distances2));
         return lists;
     }
@@ -117,18 +117,18 @@ namespace detail {
 /// \snippet snippets.cpp knn_neighbours
 template <backend B>
 neighbour_lists<B> knn_neighbours(
-    B& b, const map_buffers<B>& map, const buffer_of<B, glm::vec4>& points, const knn_settings& settings)
+    B& device, const map_buffers<B>& map, const buffer_of<B, glm::vec4>& points, const knn_settings& settings)
 {
-    detail::check_lists(settings, points.size(), b.caps().max_elements);
-    return detail::list_neighbours(detail::search_inputs<B>(b, map, points, nullptr, settings));
+    detail::check_lists(settings, points.size(), device.caps().max_elements);
+    return detail::list_neighbours(detail::search_inputs<B>(device, map, points, nullptr, settings));
 }
 /// With the unit normals of the surfaces that the points lie on, for leak policies.
 template <backend B>
-neighbour_lists<B> knn_neighbours(B& b, const map_buffers<B>& map, const buffer_of<B, glm::vec4>& points,
+neighbour_lists<B> knn_neighbours(B& device, const map_buffers<B>& map, const buffer_of<B, glm::vec4>& points,
     const buffer_of<B, glm::vec4>& normals, const knn_settings& settings)
 {
-    detail::check_lists(settings, points.size(), b.caps().max_elements);
-    return detail::list_neighbours(detail::search_inputs<B>(b, map, points, &normals, settings));
+    detail::check_lists(settings, points.size(), device.caps().max_elements);
+    return detail::list_neighbours(detail::search_inputs<B>(device, map, points, &normals, settings));
 }
 
 } // namespace photongrid

@@ -76,7 +76,7 @@ knn_radius<B>::knn_radius(const detail::search_inputs<B>& in) : in_(in)
     }
     radius = in_.template make<glm::vec4>();
     chosen = in_.template make<glm::uvec4>();
-    in_.b->template run<kernels::given_radius>(
+    in_.device->template run<kernels::given_radius>(
         in_.points->size(), {.radius2 = in_.max_radius2()}, reads(), writes(radius, chosen));
 }
 
@@ -90,7 +90,7 @@ void knn_radius<B>::start_distances()
     bracket_ = in_.template make<glm::uvec4>();
     cursor_ = in_.template make<glm::uvec4>();
     tally_ = in_.template make<glm::uvec4>();
-    in_.b->template run<kernels::kth_guess>({in_.points->size(), 0u, in_.template together<kernels::kth_guess>()},
+    in_.device->template run<kernels::kth_guess>({in_.points->size(), 0u, in_.template together<kernels::kth_guess>()},
         {.grid = in_.map->cells_of,
             .k = in_.s.k,
             .max_radius2 = in_.max_radius2(),
@@ -106,7 +106,7 @@ void knn_radius<B>::start_ties()
     radius = in_.template make<glm::vec4>();
     chosen = in_.template make<glm::uvec4>();
     auto ids = in_.template make<glm::uvec4>();
-    in_.b->template run<kernels::kth_result>(in_.points->size(),
+    in_.device->template run<kernels::kth_result>(in_.points->size(),
         {.k = in_.s.k, .photons = in_.map->photons.size(), .max_radius2 = in_.max_radius2()}, reads(bracket_, tally_),
         writes(radius, chosen, ids, counts_, cursor_));
     bracket_ = std::move(ids);
@@ -118,11 +118,11 @@ void knn_radius<B>::start_ties()
 template <backend B>
 progress knn_radius<B>::run_stage(uint passes)
 {
-    B& b = *in_.b;
+    B& device = *in_.device;
     const map_buffers<B>& m = *in_.map;
     const auto& s = in_.s;
     if (stage_ == stage::distance)
-        return b.template run_until_done<kernels::kth_distance>(
+        return device.template run_until_done<kernels::kth_distance>(
             {in_.points->size(), 0u,
                 in_.template policies<kernels::kth_distance>() | in_.template together<kernels::kth_distance>()},
             {.grid = m.cells_of,
@@ -134,7 +134,7 @@ progress knn_radius<B>::run_stage(uint passes)
             reads(
                 *in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(), in_.photon_normals()),
             writes(pivots_, counts_, outer_, bracket_, cursor_, tally_), passes);
-    return b.template run_until_done<kernels::kth_tie>(
+    return device.template run_until_done<kernels::kth_tie>(
         {in_.points->size(), 0u, in_.template policies<kernels::kth_tie>() | in_.template together<kernels::kth_tie>()},
         {.grid = m.cells_of,
             .leaks = in_.leaks(),

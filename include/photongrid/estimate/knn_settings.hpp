@@ -125,22 +125,22 @@ namespace detail {
     template <backend B>
     struct search_inputs {
         using vectors = buffer_of<B, glm::vec4>;
-        B* b;
+        B* device;
         const map_buffers<B>* map;
         const vectors* points;
         const vectors* normals; ///< of the points; null if there are none
         knn_settings s;
 
-        search_inputs(
-            B& b_, const map_buffers<B>& map_, const vectors& points_, const vectors* normals_, const knn_settings& s_)
-            : b(&b_), map(&map_), points(&points_), normals(normals_),
+        search_inputs(B& device_, const map_buffers<B>& map_, const vectors& points_, const vectors* normals_,
+            const knn_settings& s_)
+            : device(&device_), map(&map_), points(&points_), normals(normals_),
               s(checked(s_, map_, points_.size(), normals_ != nullptr ? normals_->size() : 0))
         {
         }
         template <element T>
         buffer_of<B, T> make() const
         {
-            return b->template make<T>(points->size());
+            return device->template make<T>(points->size());
         }
         bool searching() const { return is_searching(s, map->photons.size()); }
         float max_radius2() const { return detail::max_radius2(s); }

@@ -23,30 +23,30 @@ struct sort_report {
 /// \throws backend_error if the device has no room.
 /// \snippet snippets.cpp bitonic_sort
 template <backend B>
-sort_report bitonic_sort(B& b, buffer_of<B, glm::uvec2>& pairs)
+sort_report bitonic_sort(B& device, buffer_of<B, glm::uvec2>& pairs)
 {
     const std::size_t n = pairs.size();
     sort_report report;
     if (n < 2)
         return report;
     const std::size_t padded = std::bit_ceil(n);
-    auto next = b.template make<glm::uvec2>(padded);
+    auto next = device.template make<glm::uvec2>(padded);
     if (padded != n) {
-        auto copy = b.template make<glm::uvec2>(padded);
-        b.template run<kernels::pad_pairs>(padded, {.pairs = static_cast<uint>(n)}, reads(pairs), writes(copy));
+        auto copy = device.template make<glm::uvec2>(padded);
+        device.template run<kernels::pad_pairs>(padded, {.pairs = static_cast<uint>(n)}, reads(pairs), writes(copy));
         std::swap(pairs, copy);
     }
     for (std::size_t run = 2; run <= padded; run *= 2)
         for (std::size_t stride = run / 2; stride > 0; stride /= 2) {
-            b.template run<kernels::bitonic_step>(padded,
+            device.template run<kernels::bitonic_step>(padded,
                 {.run = static_cast<uint>(run), .stride = static_cast<uint>(stride)}, reads(pairs), writes(next));
             std::swap(pairs, next);
             ++report.steps;
             ++report.passes;
         }
     if (padded != n) {
-        auto trimmed = b.template make<glm::uvec2>(n);
-        b.template run<kernels::pad_pairs>(n, {.pairs = static_cast<uint>(n)}, reads(pairs), writes(trimmed));
+        auto trimmed = device.template make<glm::uvec2>(n);
+        device.template run<kernels::pad_pairs>(n, {.pairs = static_cast<uint>(n)}, reads(pairs), writes(trimmed));
         std::swap(pairs, trimmed);
     }
     return report;

@@ -14,17 +14,17 @@ namespace photongrid {
 namespace detail {
     /// The finite positions among up to `most` photons at equal intervals of ids.
     template <backend B>
-    std::vector<glm::vec3> sample_positions(B& b, const photons<B>& p, uint most)
+    std::vector<glm::vec3> sample_positions(B& device, const photons<B>& p, uint most)
     {
         const uint n = p.size();
         std::vector<uint> ids;
         for (uint i = 0; i < std::min(n, most); ++i)
             ids.push_back(static_cast<uint>(std::uint64_t{i} * n / std::min(n, most)));
-        auto taken = b.template make<glm::vec4>(ids.size());
-        b.template run<kernels::gather_vector>(
-            ids.size(), {.photons = n}, reads(b.upload(std::span<const uint>(ids)), p.positions), writes(taken));
+        auto taken = device.template make<glm::vec4>(ids.size());
+        device.template run<kernels::gather_vector>(
+            ids.size(), {.photons = n}, reads(device.upload(std::span<const uint>(ids)), p.positions), writes(taken));
         std::vector<glm::vec3> positions;
-        for (const auto& v : b.download(taken))
+        for (const auto& v : device.download(taken))
             if (std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z))
                 positions.emplace_back(v);
         return positions;
@@ -59,9 +59,9 @@ namespace detail {
 /// \throws backend_error if the device fails.
 /// \snippet snippets.cpp fitting_grid
 template <backend B>
-grid fitting_grid(B& b, const photons<B>& p, uint k, float cells_per_radius = 1)
+grid fitting_grid(B& device, const photons<B>& p, uint k, float cells_per_radius = 1)
 {
-    auto sample = detail::sample_positions(b, p, 16384);
+    auto sample = detail::sample_positions(device, p, 16384);
     if (sample.empty())
         return make_grid(glm::vec3(0), glm::vec3(1), glm::uvec3(1));
     glm::vec3 low, high;

@@ -15,10 +15,10 @@ namespace photongrid {
 /// \throws backend_error if the device has no room.
 /// \snippet snippets.cpp grid_index
 template <backend B>
-buffer_of<B, glm::uvec2> grid_index(B& b, const buffer_of<B, glm::uvec2>& pairs, uint cells)
+buffer_of<B, glm::uvec2> grid_index(B& device, const buffer_of<B, glm::uvec2>& pairs, uint cells)
 {
-    auto index = b.template make<glm::uvec2>(cells);
-    b.template run<kernels::first_in_cell>(
+    auto index = device.template make<glm::uvec2>(cells);
+    device.template run<kernels::first_in_cell>(
         cells, {.pairs = static_cast<uint>(pairs.size())}, reads(pairs), writes(index));
     return index;
 }

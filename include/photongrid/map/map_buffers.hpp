@@ -92,10 +92,10 @@ struct map_buffers {
 /// \throws backend_error if the device fails.
 /// \snippet snippets.cpp redistributed_power
 template <backend B>
-double redistributed_power(B& b, const map_buffers<B>& map)
+double redistributed_power(B& device, const map_buffers<B>& map)
 {
     double sum = 0;
-    for (const auto& s : b.download(map.surpluses))
+    for (const auto& s : device.download(map.surpluses))
         sum += static_cast<double>(s.w);
     return sum;
 }

@@ -27,14 +27,14 @@ namespace photongrid {
 namespace detail {
     /// Reorders photons by `list`, one attribute at a time, so that only one attribute is in memory twice.
     template <backend B>
-    void reorder(B& b, photons<B>& p, const buffer_of<B, uint>& list)
+    void reorder(B& device, photons<B>& p, const buffer_of<B, uint>& list)
     {
         const uint n = p.size();
         for (auto* attribute : {&p.positions, &p.powers, &p.directions, &p.normals}) {
             if (attribute->size() == 0)
                 continue;
-            auto taken = b.template make<glm::vec4>(n);
-            b.template run<kernels::gather_vector>(n, {.photons = n}, reads(list, *attribute), writes(taken));
+            auto taken = device.template make<glm::vec4>(n);
+            device.template run<kernels::gather_vector>(n, {.photons = n}, reads(list, *attribute), writes(taken));
             *attribute = std::move(taken);
         }
     }
@@ -42,18 +42,18 @@ namespace detail {
     /// Ends the building of a map: moves the photons into it in the order of its list, and counts those of other parts
     /// of the light.
     template <backend B>
-    void take_photons(B& b, map_buffers<B>& map, photons<B> p, uint parts)
+    void take_photons(B& device, map_buffers<B>& map, photons<B> p, uint parts)
     {
 #ifdef PHOTONGRID_GUARD_READS // searches would visit up to 2^32 photons that are not there
         if (const auto wrong
-            = checked_count<kernels::range_past_end>(b, map.cells.size(), {.photons = p.size()}, reads(map.cells));
+            = checked_count<kernels::range_past_end>(device, map.cells.size(), {.photons = p.size()}, reads(map.cells));
             wrong > 0)
-            throw backend_error(b.caps().backend + ": " + std::to_string(wrong) + " cell ranges end past the "
+            throw backend_error(device.caps().backend + ": " + std::to_string(wrong) + " cell ranges end past the "
                 + std::to_string(p.size()) + " photons; the device computed them wrongly");
 #endif
         if (parts != every_part)
-            map.left_out = checked_count<kernels::other_part>(b, p.size(), {.parts = parts}, reads(p.positions));
-        reorder(b, p, map.list);
+            map.left_out = checked_count<kernels::other_part>(device, p.size(), {.parts = parts}, reads(p.positions));
+        reorder(device, p, map.list);
         map.photons = std::move(p);
     }
 } // namespace detail
@@ -63,23 +63,23 @@ namespace detail {
 /// \throws backend_error if the device has no room.
 /// \snippet snippets.cpp sorted_map
 template <backend B>
-map_buffers<B> sorted_map(B& b, photons<B> p, const grid& g, uint parts = every_part)
+map_buffers<B> sorted_map(B& device, photons<B> p, const grid& g, uint parts = every_part)
 {
     const uint n = p.size();
     map_buffers<B> map;
     map.cells_of = g;
-    map.invalid = detail::checked_count<kernels::invalid_photon>(b, n, {}, reads(p.positions, p.powers));
+    map.invalid = detail::checked_count<kernels::invalid_photon>(device, n, {}, reads(p.positions, p.powers));
     {
         // The pairs include the sort's padding, so that it need not copy them.
-        auto pairs = b.template make<glm::uvec2>(n == 0 ? 0 : std::bit_ceil(n));
-        b.template run<kernels::photon_cell>(
+        auto pairs = device.template make<glm::uvec2>(n == 0 ? 0 : std::bit_ceil(n));
+        device.template run<kernels::photon_cell>(
             pairs.size(), {.grid = g, .photons = n, .parts = parts}, reads(p.positions, p.powers), writes(pairs));
-        bitonic_sort(b, pairs);
-        map.cells = grid_index(b, pairs, cell_count(g));
-        map.list = b.template make<uint>(n);
-        b.template run<kernels::pair_value>(n, {}, reads(pairs), writes(map.list));
+        bitonic_sort(device, pairs);
+        map.cells = grid_index(device, pairs, cell_count(g));
+        map.list = device.template make<uint>(n);
+        device.template run<kernels::pair_value>(n, {}, reads(pairs), writes(map.list));
     }
-    detail::take_photons(b, map, std::move(p), parts);
+    detail::take_photons(device, map, std::move(p), parts);
     return map;
 }
 
@@ -90,32 +90,32 @@ map_buffers<B> sorted_map(B& b, photons<B> p, const grid& g, uint parts = every_
 ///         the device's limit.
 /// \snippet snippets.cpp routed_map
 template <backend B>
-map_buffers<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed = 0, uint parts = every_part,
+map_buffers<B> routed_map(B& device, photons<B> p, const grid& g, uint m, uint seed = 0, uint parts = every_part,
     surplus_kind surplus = surplus_kind::photons)
 {
     const uint n = p.size();
     const uint cells = cell_count(g);
     map_buffers<B> map;
     map.cells_of = g;
-    map.invalid = detail::checked_count<kernels::invalid_photon>(b, n, {}, reads(p.positions, p.powers));
+    map.invalid = detail::checked_count<kernels::invalid_photon>(device, n, {}, reads(p.positions, p.powers));
     buffer_of<B, uint> entries; // of each entry's photon
     {
-        auto routed = stencil_route(b, p, g, m, seed, parts);
+        auto routed = stencil_route(device, p, g, m, seed, parts);
         map.surpluses = std::move(routed.surpluses);
         map.overflowing_cells = static_cast<uint>(routed.overflowing_cells);
         p.powers = std::move(routed.powers);
         if (surplus == surplus_kind::power) // a cell has as many entries as photons that it keeps
-            b.template run<kernels::pair_value>(cells, {}, reads(routed.cells), writes(routed.arrived));
-        const auto sums = prefix_sums(b, routed.arrived);
-        map.cells = b.template make<glm::uvec2>(cells);
-        b.template run<kernels::packed_cell>(cells, {}, reads(sums, routed.arrived), writes(map.cells));
-        map.list = b.template make<uint>(n);
-        entries = b.template make<uint>(n);
-        b.template run<kernels::packed_photon>(
+            device.template run<kernels::pair_value>(cells, {}, reads(routed.cells), writes(routed.arrived));
+        const auto sums = prefix_sums(device, routed.arrived);
+        map.cells = device.template make<glm::uvec2>(cells);
+        device.template run<kernels::packed_cell>(cells, {}, reads(sums, routed.arrived), writes(map.cells));
+        map.list = device.template make<uint>(n);
+        entries = device.template make<uint>(n);
+        device.template run<kernels::packed_photon>(
             n, {.cells = cells}, reads(sums, routed.cells, routed.list), writes(map.list, entries));
     }
-    detail::take_photons(b, map, std::move(p), parts);
-    b.template run<kernels::share_power>(n, {}, reads(entries), writes(map.photons.powers));
+    detail::take_photons(device, map, std::move(p), parts);
+    device.template run<kernels::share_power>(n, {}, reads(entries), writes(map.photons.powers));
     return map;
 }
 
@@ -124,10 +124,10 @@ map_buffers<B> routed_map(B& b, photons<B> p, const grid& g, uint m, uint seed =
 /// \throws backend_error if the device has no room.
 /// \snippet snippets.cpp fitted_map
 template <backend B>
-map_buffers<B> fitted_map(B& b, photons<B> p, uint k)
+map_buffers<B> fitted_map(B& device, photons<B> p, uint k)
 {
-    const grid g = fitting_grid(b, p, k, b.caps().cells_per_radius);
-    return sorted_map(b, std::move(p), g);
+    const grid g = fitting_grid(device, p, k, device.caps().cells_per_radius);
+    return sorted_map(device, std::move(p), g);
 }
 
 } // namespace photongrid

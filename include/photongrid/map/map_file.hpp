@@ -24,14 +24,14 @@ namespace photongrid {
 /// \throws map_file_error if the file cannot be written.
 /// \snippet snippets.cpp save_map
 template <backend B>
-void save_map(B& b, const map_buffers<B>& map, const std::filesystem::path& file, const std::string& note = {})
+void save_map(B& device, const map_buffers<B>& map, const std::filesystem::path& file, const std::string& note = {})
 {
     static_assert(std::endian::native == std::endian::little, "map files are those of little-endian machines");
-    const auto cells = b.download(map.cells);
-    const auto list = b.download(map.list);
-    const auto positions = b.download(map.photons.positions), powers = b.download(map.photons.powers);
-    const auto directions = b.download(map.photons.directions), normals = b.download(map.photons.normals),
-               surpluses = b.download(map.surpluses);
+    const auto cells = device.download(map.cells);
+    const auto list = device.download(map.list);
+    const auto positions = device.download(map.photons.positions), powers = device.download(map.photons.powers);
+    const auto directions = device.download(map.photons.directions), normals = device.download(map.photons.normals),
+               surpluses = device.download(map.surpluses);
 
     if (note.size() > std::numeric_limits<std::uint32_t>::max())
         throw map_file_error(
@@ -87,7 +87,7 @@ void save_map(B& b, const map_buffers<B>& map, const std::filesystem::path& file
 /// \throws backend_error if the backend has no room for the map.
 /// \snippet snippets.cpp load_map
 template <backend B>
-map_buffers<B> load_map(B& b, const std::filesystem::path& file, std::string* note = nullptr)
+map_buffers<B> load_map(B& device, const std::filesystem::path& file, std::string* note = nullptr)
 {
     const detail::file_bytes bytes(file);
     const auto header = detail::map_header_of({bytes.data(), bytes.size()}, file);
@@ -104,16 +104,16 @@ map_buffers<B> load_map(B& b, const std::filesystem::path& file, std::string* no
     map.cells_of = header.cells_of;
     const auto index = next(std::type_identity<glm::uvec2>{}, header.cells);
     detail::check_map_index(index, n, file);
-    map.cells = b.upload(index);
-    map.list = b.upload(next(std::type_identity<uint>{}, n));
+    map.cells = device.upload(index);
+    map.list = device.upload(next(std::type_identity<uint>{}, n));
     const std::type_identity<glm::vec4> vectors;
-    map.photons.positions = b.upload(next(vectors, n));
-    map.photons.powers = b.upload(next(vectors, n));
+    map.photons.positions = device.upload(next(vectors, n));
+    map.photons.powers = device.upload(next(vectors, n));
     if ((header.attributes & 1u) != 0)
-        map.photons.directions = b.upload(next(vectors, n));
+        map.photons.directions = device.upload(next(vectors, n));
     if ((header.attributes & 2u) != 0)
-        map.photons.normals = b.upload(next(vectors, n));
-    map.surpluses = b.upload(next(vectors, header.surpluses));
+        map.photons.normals = device.upload(next(vectors, n));
+    map.surpluses = device.upload(next(vectors, header.surpluses));
     if (note != nullptr)
         note->assign(reinterpret_cast<const char*>(at), header.note);
     map.invalid = header.invalid;

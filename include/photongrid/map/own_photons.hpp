@@ -178,12 +178,12 @@ namespace detail {
 
     /// Uploads element(0) to element(n - 1), vectors of four.
     template <backend B, class Element>
-    buffer_of<B, glm::vec4> upload_each(B& b, std::size_t n, const Element& element)
+    buffer_of<B, glm::vec4> upload_each(B& device, std::size_t n, const Element& element)
     {
         std::vector<glm::vec4> staged(n);
         for (std::size_t i = 0; i < n; ++i)
             staged[i] = element(i);
-        return b.upload(std::span<const glm::vec4>(staged));
+        return device.upload(std::span<const glm::vec4>(staged));
     }
 } // namespace detail
 
@@ -209,7 +209,7 @@ concept own_photon = requires(const P& p)
 /// \snippet snippets.cpp upload_photons
 template <backend B, std::ranges::contiguous_range Range>
 requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_t<Range>> photons<B> upload_photons(
-    B& b, const Range& own)
+    B& device, const Range& own)
 {
     using P = std::ranges::range_value_t<Range>;
     using reader = photon_reader<P>;
@@ -220,20 +220,20 @@ requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_
         detail::check_rounding("upload_photons: positions", n,
             [&](std::size_t i) { return detail::to_vec<double>(reader::position(from[i])); });
     photons<B> p;
-    p.positions = detail::upload_each(b, n, [&](std::size_t i) {
+    p.positions = detail::upload_each(device, n, [&](std::size_t i) {
         bool caustic = false;
         if constexpr (requires { reader::caustic(from[i]); })
             caustic = reader::caustic(from[i]);
         return glm::vec4(detail::to_vec<float>(reader::position(from[i])), caustic ? 1.0f : 0.0f);
     });
     p.powers = detail::upload_each(
-        b, n, [&](std::size_t i) { return glm::vec4(detail::to_vec<float>(reader::power(from[i])), 0.0f); });
+        device, n, [&](std::size_t i) { return glm::vec4(detail::to_vec<float>(reader::power(from[i])), 0.0f); });
     if constexpr (requires { reader::direction(*from); })
-        p.directions = detail::upload_each(
-            b, n, [&](std::size_t i) { return glm::vec4(detail::to_vec<float>(reader::direction(from[i])), 0.0f); });
+        p.directions = detail::upload_each(device, n,
+            [&](std::size_t i) { return glm::vec4(detail::to_vec<float>(reader::direction(from[i])), 0.0f); });
     if constexpr (requires { reader::normal(*from); })
         p.normals = detail::upload_each(
-            b, n, [&](std::size_t i) { return glm::vec4(detail::to_vec<float>(reader::normal(from[i])), 0.0f); });
+            device, n, [&](std::size_t i) { return glm::vec4(detail::to_vec<float>(reader::normal(from[i])), 0.0f); });
     return p;
 }
 
@@ -244,14 +244,15 @@ requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_
 /// \snippet snippets.cpp upload_points
 template <backend B, std::ranges::contiguous_range Range>
 requires std::ranges::sized_range<Range> && detail::vector_like<std::ranges::range_value_t<Range>>
-    buffer_of<B, glm::vec4> upload_points(B& b, const Range& points)
+    buffer_of<B, glm::vec4> upload_points(B& device, const Range& points)
 {
     const auto* const from = std::ranges::data(points);
     const auto n = static_cast<std::size_t>(std::ranges::size(points));
     if constexpr (detail::has_doubles<std::ranges::range_value_t<Range>>())
         detail::check_rounding(
             "upload_points: points", n, [&](std::size_t i) { return detail::to_vec<double>(from[i]); });
-    return detail::upload_each(b, n, [&](std::size_t i) { return glm::vec4(detail::to_vec<float>(from[i]), 1.0f); });
+    return detail::upload_each(
+        device, n, [&](std::size_t i) { return glm::vec4(detail::to_vec<float>(from[i]), 1.0f); });
 }
 
 /// Uploads the unit normals of the surfaces that query points lie on, on the side that is seen: one per point, in the
@@ -260,10 +261,10 @@ requires std::ranges::sized_range<Range> && detail::vector_like<std::ranges::ran
 /// \snippet snippets.cpp upload_normals
 template <backend B, std::ranges::contiguous_range Range>
 requires std::ranges::sized_range<Range> && detail::vector_like<std::ranges::range_value_t<Range>>
-    buffer_of<B, glm::vec4> upload_normals(B& b, const Range& normals)
+    buffer_of<B, glm::vec4> upload_normals(B& device, const Range& normals)
 {
     const auto* const from = std::ranges::data(normals);
-    return detail::upload_each(b, static_cast<std::size_t>(std::ranges::size(normals)),
+    return detail::upload_each(device, static_cast<std::size_t>(std::ranges::size(normals)),
         [&](std::size_t i) { return glm::vec4(detail::to_vec<float>(from[i]), 0.0f); });
 }
 

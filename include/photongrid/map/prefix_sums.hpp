@@ -15,14 +15,15 @@ namespace photongrid {
 /// \throws backend_error if the device has no room for two more buffers of n elements.
 /// \snippet snippets.cpp prefix_sums
 template <backend B>
-buffer_of<B, uint> prefix_sums(B& b, const buffer_of<B, uint>& terms)
+buffer_of<B, uint> prefix_sums(B& device, const buffer_of<B, uint>& terms)
 {
     const auto n = terms.size();
-    auto sums = b.template make<uint>(n);
-    auto next = b.template make<uint>(n);
-    b.template run<kernels::prefix_sum_step>(n, {.stride = 1u}, reads(terms), writes(sums));
+    auto sums = device.template make<uint>(n);
+    auto next = device.template make<uint>(n);
+    device.template run<kernels::prefix_sum_step>(n, {.stride = 1u}, reads(terms), writes(sums));
     for (std::size_t stride = 4; stride < n; stride *= 4) {
-        b.template run<kernels::prefix_sum_step>(n, {.stride = static_cast<uint>(stride)}, reads(sums), writes(next));
+        device.template run<kernels::prefix_sum_step>(
+            n, {.stride = static_cast<uint>(stride)}, reads(sums), writes(next));
         std::swap(sums, next);
     }
     return sums;

@@ -44,7 +44,8 @@ namespace detail {
 ///         the device's limit.
 /// \snippet snippets.cpp stencil_route
 template <backend B>
-routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, uint seed = 0, uint parts = every_part)
+routed_cells<B> stencil_route(
+    B& device, const photons<B>& p, const grid& g, uint m, uint seed = 0, uint parts = every_part)
 {
     if (m < 1 || m > 16)
         throw std::invalid_argument(
@@ -56,28 +57,28 @@ routed_cells<B> stencil_route(B& b, const photons<B>& p, const grid& g, uint m, 
     constexpr uint sums = 8;
     detail::check_route_count(n, sums);
     const std::uint64_t slots = std::uint64_t{cells} * capacity;
-    if (std::max(slots, std::uint64_t{cells} * sums) > b.caps().max_elements || slots > 0xFFFFFFFEu)
-        throw backend_error(b.caps().backend + ": stencil_route: " + std::to_string(cells) + " cells of "
+    if (std::max(slots, std::uint64_t{cells} * sums) > device.caps().max_elements || slots > 0xFFFFFFFEu)
+        throw backend_error(device.caps().backend + ": stencil_route: " + std::to_string(cells) + " cells of "
             + std::to_string(capacity) + " slots are " + std::to_string(slots) + " slots; this device holds "
-            + std::to_string(b.caps().max_elements)
+            + std::to_string(device.caps().max_elements)
             + ". Use a coarser grid or a smaller m, or build the map by sorting");
     routed_cells<B> r;
-    r.list = b.template make<uint>(slots);
-    auto partial_sums = b.template make<glm::vec4>(std::size_t{cells} * sums);
-    b.template route<kernels::route_photon>(n, {.grid = g, .photons = n, .seed = seed, .parts = parts},
+    r.list = device.template make<uint>(slots);
+    auto partial_sums = device.template make<glm::vec4>(std::size_t{cells} * sums);
+    device.template route<kernels::route_photon>(n, {.grid = g, .photons = n, .seed = seed, .parts = parts},
         reads(p.positions, p.powers), cells, m, r.list, partial_sums);
-    r.cells = b.template make<glm::uvec2>(cells);
-    r.surpluses = b.template make<glm::vec4>(cells);
-    r.totals = b.template make<glm::vec4>(cells);
-    r.arrived = b.template make<uint>(cells);
-    auto scales = b.template make<glm::vec4>(cells);
-    b.template run<kernels::routed_cell>(cells, {.capacity = capacity, .sums = sums},
+    r.cells = device.template make<glm::uvec2>(cells);
+    r.surpluses = device.template make<glm::vec4>(cells);
+    r.totals = device.template make<glm::vec4>(cells);
+    r.arrived = device.template make<uint>(cells);
+    auto scales = device.template make<glm::vec4>(cells);
+    device.template run<kernels::routed_cell>(cells, {.capacity = capacity, .sums = sums},
         reads(partial_sums, r.list, p.powers), writes(r.cells, scales, r.surpluses, r.totals, r.arrived));
-    r.powers = b.template make<glm::vec4>(n);
-    b.template run<kernels::redistribute_power>(
+    r.powers = device.template make<glm::vec4>(n);
+    device.template run<kernels::redistribute_power>(
         n, {.grid = g}, reads(p.positions, p.powers, scales, r.surpluses), writes(r.powers));
     r.overflowing_cells
-        = detail::checked_count<kernels::overflowing_cell>(b, cells, {.capacity = capacity}, reads(r.totals));
+        = detail::checked_count<kernels::overflowing_cell>(device, cells, {.capacity = capacity}, reads(r.totals));
     return r;
 }
 

@@ -182,10 +182,10 @@ namespace detail {
 
     /// Uploads a vector_view or power_view.
     template <backend B, class View>
-    buffer_of<B, glm::vec4> upload_view(B& b, const View& vectors, const glm::dvec3& origin, float w)
+    buffer_of<B, glm::vec4> upload_view(B& device, const View& vectors, const glm::dvec3& origin, float w)
     {
         return upload_each(
-            b, vectors.size(), [&](std::size_t i) { return glm::vec4(glm::vec3(vectors[i] - origin), w); });
+            device, vectors.size(), [&](std::size_t i) { return glm::vec4(glm::vec3(vectors[i] - origin), w); });
     }
 } // namespace detail
 

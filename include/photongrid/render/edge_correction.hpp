@@ -57,15 +57,15 @@ namespace detail {
 /// size relative to the radius.
 /// \throws std::invalid_argument for a polygon of more than 1,999 vertices.
 template <backend B>
-buffer_of<B, glm::vec4> covered_shares(B& b, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
+buffer_of<B, glm::vec4> covered_shares(B& device, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
     const buffer_of<B, glm::vec4>& normals, const buffer_of<B, glm::vec4>& irradiances, filter_kind filter,
     float min_radius)
 {
     const auto n = points.size();
-    auto cover = b.template make<glm::vec4>(n);
-    b.template run<kernels::zero_vectors>(n, {}, reads(), writes(cover));
+    auto cover = device.template make<glm::vec4>(n);
+    device.template run<kernels::zero_vectors>(n, {}, reads(), writes(cover));
     for (const auto& range : detail::ranges_of_polygons(s.layout))
-        b.template run<kernels::covered_share>({n, 0u, detail::filter_switch(filter)},
+        device.template run<kernels::covered_share>({n, 0u, detail::filter_switch(filter)},
             {.min_radius2 = std::max(min_radius * min_radius, 1e-36f),
                 .first = range.first,
                 .polygons = range.polygons},
@@ -79,14 +79,14 @@ buffer_of<B, glm::vec4> covered_shares(B& b, const device_scene<B>& s, const buf
 /// \throws std::invalid_argument as covered_shares does.
 /// \snippet snippets.cpp correct_edges
 template <backend B>
-void correct_edges(B& b, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
+void correct_edges(B& device, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
     const buffer_of<B, glm::vec4>& normals, knn_estimates<B>& estimates, filter_kind filter, float min_radius)
 {
     constexpr float least = 0x1p-8f;
-    const auto cover = covered_shares(b, s, points, normals, estimates.irradiance, filter, min_radius);
-    b.template run<kernels::divide_by_share>(
+    const auto cover = covered_shares(device, s, points, normals, estimates.irradiance, filter, min_radius);
+    device.template run<kernels::divide_by_share>(
         estimates.irradiance.size(), {.least = least, .keeps_w = 1u}, reads(cover), writes(estimates.irradiance));
-    b.template run<kernels::divide_by_share>(estimates.standard_error.size(), {.least = least, .keeps_w = 0u},
+    device.template run<kernels::divide_by_share>(estimates.standard_error.size(), {.least = least, .keeps_w = 0u},
         reads(cover), writes(estimates.standard_error));
 }
 

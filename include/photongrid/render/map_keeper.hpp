@@ -33,8 +33,8 @@ struct map_source {
 template <backend B>
 class map_keeper {
 public:
-    /// `b` must outlive it.
-    explicit map_keeper(B& b) : b_(b) {}
+    /// `device` must outlive it.
+    explicit map_keeper(B& device) : device_(device) {}
 
     /// The map in use; there must be one.
     const built_map<B>& map() const { return *built_; }
@@ -69,7 +69,7 @@ public:
                 built_.reset();
             }
             making_of_ = source;
-            making_.emplace(b_, making_of_.scene, making_of_.settings);
+            making_.emplace(device_, making_of_.scene, making_of_.settings);
             ++begun_;
         }
         auto steps = map_steps(*making_);
@@ -90,7 +90,7 @@ public:
     }
 
 private:
-    B& b_;
+    B& device_;
     std::optional<built_map<B>> built_;
     map_source of_; ///< inputs of built_
     std::optional<map_building<B>> making_;

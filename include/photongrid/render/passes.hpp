@@ -88,39 +88,39 @@ namespace detail {
 /// Reads the pixels of a finished band of a pass back, adds them to those above, and its searches to `stats`.
 /// \throws backend_error if the device fails, or reports more searches than there were.
 template <backend B>
-void finish_band(B& b, const view_pass<B>& view, pass_pixels& light, render_stats& stats)
+void finish_band(B& device, const view_pass<B>& view, pass_pixels& light, render_stats& stats)
 {
     const auto append = [&](std::vector<glm::vec4>& all, const std::vector<glm::vec4>& more) {
         all.reserve(view.picture_size()); // one allocation: growth would double the peak
         all.insert(all.end(), more.begin(), more.end());
     };
     const auto& band = view.light();
-    const auto searches = b.download(band.searches);
+    const auto searches = device.download(band.searches);
     const double searched = static_cast<double>(searches.size()) * view.rays();
     glm::dvec4 sum(0);
     for (const auto& s : searches)
         sum += glm::dvec4(s);
     if (!(sum.w >= 0) || !(sum.w <= searched))
-        throw backend_error(b.caps().backend + ": shade: the device returned " + std::to_string(sum.w)
+        throw backend_error(device.caps().backend + ": shade: the device returned " + std::to_string(sum.w)
             + " as the number of searches; there are at most " + std::to_string(searched));
     detail::add(stats.estimate, sum);
-    append(light.pixels, b.download(band.pixels));
+    append(light.pixels, device.download(band.pixels));
     if (band.errors.size() > 0) {
         append(light.searches, searches);
-        append(light.errors, b.download(band.errors));
+        append(light.errors, device.download(band.errors));
     }
 }
 
 /// Adds the counts of a finished pass to `stats`.
 /// \throws backend_error if the device fails.
 template <backend B>
-void finish_pass(B& b, const built_map<B>& built, render_stats& stats)
+void finish_pass(B& device, const built_map<B>& built, render_stats& stats)
 {
-    detail::add(stats.photons, count_photons(b, built.trace, built.map.photons.size()));
+    detail::add(stats.photons, count_photons(device, built.trace, built.map.photons.size()));
     stats.map = built.stats.map;
     if (built.stats.map.builder == map_builder::route)
-        stats.map.redistributed_power = redistributed_power(b, built.map);
-    stats.peak_device_bytes = b.peak_bytes();
+        stats.map.redistributed_power = redistributed_power(device, built.map);
+    stats.peak_device_bytes = device.peak_bytes();
 }
 
 /// Moves the picture of a film, and its number of invalid pixels, to `out`.

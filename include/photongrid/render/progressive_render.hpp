@@ -26,8 +26,8 @@ namespace photongrid {
 template <backend B>
 class progressive_render : public renderer {
 public:
-    /// `b` must outlive it.
-    explicit progressive_render(B& b) : b_(b), maps_(b) {}
+    /// `device` must outlive it.
+    explicit progressive_render(B& device) : device_(device), maps_(device) {}
 
     void start(const scene& s, const render_settings& settings, const preview_settings& previews = {}) override
     {
@@ -61,7 +61,8 @@ public:
         if (view_ && !view_->is_preview()) {
             const auto& band = view_->light();
             s.pass.rays = band.rays;
-            s.pass.band = {b_.download(band.pixels), b_.download(band.searches), b_.download(band.errors)};
+            s.pass.band
+                = {device_.download(band.pixels), device_.download(band.searches), device_.download(band.errors)};
         }
         s.pass.light = light_;
         return s;
@@ -102,7 +103,7 @@ public:
         if (view_ && view_->grown() > 0 && !has_bands())
             return view_->running_estimate(invalid);
         auto shown = shown_
-            ? detail::to_image(b_.download(shown_->pixels), shown_->raster, settings_, shown_scale_, invalid)
+            ? detail::to_image(device_.download(shown_->pixels), shown_->raster, settings_, shown_scale_, invalid)
             : image{settings_.output.width, settings_.output.height, std::vector<glm::vec3>(picture_size())};
         std::uint64_t invalid_above = 0;
         const auto above = detail::finite_pixels(light_.pixels, 1, invalid_above);
@@ -128,8 +129,8 @@ public:
             film_.passes()};
     }
     std::uint64_t maps() const override { return maps_.begun(); }
-    const capabilities& caps() const override { return b_.caps(); }
-    const std::map<std::string, kernel_cost>& costs() const override { return b_.costs(); }
+    const capabilities& caps() const override { return device_.caps(); }
+    const std::map<std::string, kernel_cost>& costs() const override { return device_.costs(); }
 
 private:
     void begin_picture()
@@ -266,14 +267,14 @@ private:
                 = std::max(1u, with.estimate.k / std::max(1u, with.map.photons / maps_.of().settings.map.photons));
         ms_before_ = ms_of_views();
         samples_shown_ = grown_shown_ = 0;
-        view_.emplace(b_, maps_.map(), scene_.camera, with,
+        view_.emplace(device_, maps_.map(), scene_.camera, with,
             view_pass_settings{p, step_size::small, previews_.enabled && !has_bands(), shows_running_estimates(), band},
             kept_, stats_);
         if (!p && !unfinished_.empty()) {
             const auto& light = unfinished_.band;
             if (unfinished_.rays > 0)
-                view_->resume({{}, unfinished_.rays, upload(b_, light.pixels), upload(b_, light.searches),
-                    upload(b_, light.errors)});
+                view_->resume({{}, unfinished_.rays, upload(device_, light.pixels), upload(device_, light.searches),
+                    upload(device_, light.errors)});
             unfinished_ = {};
         }
         return view_steps(*view_);
@@ -294,14 +295,14 @@ private:
     void end_band()
     {
         costs_.ms_per_pixel = ms_per_pixel_of_view();
-        finish_band(b_, *view_, light_, stats_);
+        finish_band(device_, *view_, light_, stats_);
         view_.reset();
         if (light_.pixels.size() < picture_size() && film_.passes() == 0)
             ++pictures_;
     }
     step_list end_pass(uint number)
     {
-        finish_pass(b_, maps_.map(), stats_);
+        finish_pass(device_, maps_.map(), stats_);
         if (film_.size() == 0)
             film_ = film_for(scene_, maps_.map().scene.layout, settings_.output);
         film_.add(number, std::exchange(light_, {}));
@@ -331,7 +332,7 @@ private:
         }
     }
 
-    B& b_;
+    B& device_;
     scene scene_;
     preview_settings previews_;
     work_costs costs_;

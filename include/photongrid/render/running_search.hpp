@@ -46,7 +46,7 @@ public:
 
     /// `map`, `points` and their `normals` must outlive it.
     /// \throws std::invalid_argument as knn_search does, backend_error.
-    running_search(B& b, const map_buffers<B>& map, const vectors& points, const vectors& normals,
+    running_search(B& device, const map_buffers<B>& map, const vectors& points, const vectors& normals,
         const knn_settings& s, running_estimate_kind kind, step_size size);
 
     /// Runs a step. Returns whether the search is finished.
@@ -65,7 +65,7 @@ public:
 private:
     static constexpr uint all_passes = nowhere; ///< the search runs to its end
 
-    B& b_;
+    B& device_;
     const map_buffers<B>& map_;
     const vectors& points_;
     const vectors& normals_;
@@ -82,9 +82,9 @@ private:
 // them.
 
 template <backend B>
-running_search<B>::running_search(B& b, const map_buffers<B>& map, const vectors& points, const vectors& normals,
+running_search<B>::running_search(B& device, const map_buffers<B>& map, const vectors& points, const vectors& normals,
     const knn_settings& s, running_estimate_kind kind, step_size size)
-    : b_(b), map_(map), points_(points), normals_(normals), settings_(s), kind_(kind), size_(size),
+    : device_(device), map_(map), points_(points), normals_(normals), settings_(s), kind_(kind), size_(size),
       unfinished_(points.size())
 {
     if (kind_ != running_estimate_kind::none) {
@@ -92,9 +92,9 @@ running_search<B>::running_search(B& b, const map_buffers<B>& map, const vectors
         settings_.ranges_per_pass = 64;
     }
     if (kind_ == running_estimate_kind::by_kernels)
-        by_kernels_.emplace(b_, map_, points_, normals_, settings_);
+        by_kernels_.emplace(device_, map_, points_, normals_, settings_);
     else
-        search_.emplace(b_, map_, points_, normals_, settings_);
+        search_.emplace(device_, map_, points_, normals_, settings_);
 }
 
 template <backend B>
@@ -106,7 +106,7 @@ bool running_search<B>::advance()
     if (shown)
         passes_shown_ += passes;
     if (did.finished && !search_) {
-        search_.emplace(b_, map_, points_, normals_, settings_);
+        search_.emplace(device_, map_, points_, normals_, settings_);
         return false;
     }
     if (did.finished)

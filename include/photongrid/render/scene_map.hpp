@@ -48,13 +48,13 @@ public:
     /// that is an error for the caller.
     /// \throws std::invalid_argument for a scene or settings that check() rejects, backend_error.
     map_building(
-        B& b, const scene& s, const render_settings& settings, if_none_stored none = if_none_stored::trace_none)
-        : b_(b), settings_(settings)
+        B& device, const scene& s, const render_settings& settings, if_none_stored none = if_none_stored::trace_none)
+        : device_(device), settings_(settings)
     {
         check(settings);
-        built_.scene = upload_scene(b, s);
-        detail::stage_clock<B> clock(b, built_.stats.trace_photons);
-        tracing_.emplace(b, s, built_.scene, settings, none);
+        built_.scene = upload_scene(device, s);
+        detail::stage_clock<B> clock(device, built_.stats.trace_photons);
+        tracing_.emplace(device, s, built_.scene, settings, none);
         clock.stop();
     }
     map_building(const map_building&) = delete;
@@ -66,7 +66,7 @@ public:
     {
         if (!tracing_)
             return true;
-        detail::time_stage(b_, built_.stats.trace_photons, [&] { tracing_->advance(); });
+        detail::time_stage(device_, built_.stats.trace_photons, [&] { tracing_->advance(); });
         return tracing_->finished();
     }
     /// Sorts or routes the photons (2.2) in one step. Returns true.
@@ -76,7 +76,7 @@ public:
         if (tracing_) {
             built_.trace = tracing_->take();
             tracing_.reset();
-            detail::time_stage(b_, built_.stats.build_map, [&] { build(); });
+            detail::time_stage(device_, built_.stats.build_map, [&] { build(); });
         }
         return true;
     }
@@ -95,12 +95,12 @@ private:
         photons<B> p = std::move(built_.trace.photons);
         const auto& layout = built_.scene.layout;
         const grid g = settings_.map.grid == glm::uvec3(0)
-            ? fitting_grid(b_, p, settings_.estimate.k, b_.caps().cells_per_radius)
+            ? fitting_grid(device_, p, settings_.estimate.k, device_.caps().cells_per_radius)
             : make_grid(layout.low, layout.high, settings_.map.grid);
         const uint parts = parts_of(settings_.output.only);
         built_.map = settings_.map.builder == map_builder::sort
-            ? sorted_map(b_, std::move(p), g, parts)
-            : routed_map(b_, std::move(p), g, settings_.map.slots, settings_.seed, parts, settings_.map.surplus);
+            ? sorted_map(device_, std::move(p), g, parts)
+            : routed_map(device_, std::move(p), g, settings_.map.slots, settings_.seed, parts, settings_.map.surplus);
         auto& made = built_.stats.map;
         made.builder = settings_.map.builder;
         made.cells = cell_count(g);
@@ -109,7 +109,7 @@ private:
         made.left_out = built_.map.left_out;
     }
 
-    B& b_;
+    B& device_;
     render_settings settings_;
     built_map<B> built_;
     std::optional<photon_tracing<B>> tracing_; // of built_.scene

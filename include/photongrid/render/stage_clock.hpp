@@ -15,10 +15,10 @@ namespace photongrid::detail {
 template <backend B>
 class stage_clock {
 public:
-    stage_clock(B& b, stage_stats& out) : b_(b), out_(out)
+    stage_clock(B& device, stage_stats& out) : device_(device), out_(out)
     {
-        b_.finish();
-        before_ = total_cost(b_.costs());
+        device_.finish();
+        before_ = total_cost(device_.costs());
         start_ = std::chrono::steady_clock::now();
     }
     stage_clock(const stage_clock&) = delete;
@@ -26,17 +26,17 @@ public:
     /// Ends the stage. Call it while the stage's buffers still exist.
     void stop()
     {
-        b_.finish();
+        device_.finish();
         const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-        const auto now = total_cost(b_.costs());
+        const auto now = total_cost(device_.costs());
         out_.compile_ms += now.compile_ms - before_.compile_ms;
         out_.ms += ms - (now.compile_ms - before_.compile_ms);
         out_.passes += now.passes - before_.passes;
-        out_.device_bytes = std::max(out_.device_bytes, b_.bytes());
+        out_.device_bytes = std::max(out_.device_bytes, device_.bytes());
     }
 
 private:
-    B& b_;
+    B& device_;
     stage_stats& out_;
     kernel_cost before_;
     std::chrono::steady_clock::time_point start_;
@@ -44,9 +44,9 @@ private:
 
 /// Runs `work` and adds its time to `out`.
 template <backend B, class Work>
-void time_stage(B& b, stage_stats& out, const Work& work)
+void time_stage(B& device, stage_stats& out, const Work& work)
 {
-    stage_clock<B> clock(b, out);
+    stage_clock<B> clock(device, out);
     work();
     clock.stop();
 }

@@ -39,9 +39,9 @@ class view_pass {
 public:
     /// It draws nothing yet. It adds times to `stats`. `built`, `kept` and `stats` must outlive it.
     /// \throws std::invalid_argument for a camera or settings that check() rejects, backend_error.
-    view_pass(B& b, const built_map<B>& built, const camera& view, const render_settings& settings,
+    view_pass(B& device, const built_map<B>& built, const camera& view, const render_settings& settings,
         const view_pass_settings& how, kept_samples<B>& kept, render_stats& stats)
-        : b_(b), built_(built), view_(view), settings_(settings), how_(how), kept_(kept), stats_(stats),
+        : device_(device), built_(built), view_(view), settings_(settings), how_(how), kept_(kept), stats_(stats),
           branches_(1u << detail::splits_of(built.scene.layout))
     {
         check(settings);
@@ -54,7 +54,7 @@ public:
             r.height = how_.band->rows;
             kept_.clear(); // they were traced for the whole picture, not for this band
         }
-        detail::time_stage(b_, stats_.trace_rays, [&] {
+        detail::time_stage(device_, stats_.trace_rays, [&] {
             const std::size_t layers = !is_preview() && settings_.output.aov ? r.size() : 0;
             canvas_ = {r, 0, dark(r.size()), dark(r.size()), dark(layers)};
         });
@@ -83,9 +83,9 @@ public:
     bool irradiance(uint)
     {
         bool finished = false;
-        detail::time_stage(b_, stats_.radiance_estimate, [&] {
+        detail::time_stage(device_, stats_.radiance_estimate, [&] {
             if (!search_)
-                search_.emplace(b_, built_.map, samples_->hits.points, samples_->hits.surfaces, search_settings(),
+                search_.emplace(device_, built_.map, samples_->hits.points, samples_->hits.surfaces, search_settings(),
                     shown_while_running(), how_.size);
             // Previews have the light of all branches; running estimates among them must, too.
             if (search_->is_shown() && (how_.may_search_twice || canvas_.rays + 1 == branches_))
@@ -125,12 +125,12 @@ public:
     image running_estimate(std::uint64_t& invalid)
     {
         auto running = copy(canvas_.pixels);
-        auto ignored = b_.template make<glm::vec4>(running.size());
+        auto ignored = device_.template make<glm::vec4>(running.size());
         const float share = 1.0f / static_cast<float>(settings_.view.spp);
         if (search_)
             shade(search_->running_estimates(), share, running, ignored);
         return detail::to_image(
-            b_.download(running), canvas_.raster, settings_, static_cast<float>(settings_.view.spp), invalid);
+            device_.download(running), canvas_.raster, settings_, static_cast<float>(settings_.view.spp), invalid);
     }
     /// The mean of the complete samples, as an image of the picture's size. There must be at least one, and no
     /// incomplete one.
@@ -139,7 +139,7 @@ public:
     {
         const float scale
             = is_preview() ? 1.0f : static_cast<float>(settings_.view.spp) / static_cast<float>(samples());
-        return detail::to_image(b_.download(canvas_.pixels), canvas_.raster, settings_, scale, invalid);
+        return detail::to_image(device_.download(canvas_.pixels), canvas_.raster, settings_, scale, invalid);
     }
     /// A copy of the light so far, for display.
     canvas<B> snapshot() { return {canvas_.raster, canvas_.rays, copy(canvas_.pixels), {}, {}}; }
@@ -189,7 +189,7 @@ private:
     {
         const auto n = canvas_.raster.size();
         const std::size_t part = how_.size == step_size::small ? std::min<std::size_t>(n - done_, 65536) : n - done_;
-        detail::time_stage(b_, stats, [&] { stage(launch(part, static_cast<uint>(done_))); });
+        detail::time_stage(device_, stats, [&] { stage(launch(part, static_cast<uint>(done_))); });
         done_ = done_ + part == n ? 0 : done_ + part;
         return done_ == 0;
     }
@@ -200,7 +200,7 @@ private:
     buffer_of<B, glm::vec4> dark(std::size_t n);
     buffer_of<B, glm::vec4> copy(const buffer_of<B, glm::vec4>& original);
 
-    B& b_;
+    B& device_;
     const built_map<B>& built_;
     camera view_;
     render_settings settings_;
@@ -233,15 +233,15 @@ bool view_pass<B>::trace_eye(uint ray)
     }
     if (!samples_) {
         const auto n = canvas_.raster.size();
-        samples_.emplace(
-            eye_samples<B>{detail::eye_hits<B>(b_, n, canvas_.raster.first_pixel()), b_.template make<glm::vec4>(n)});
+        samples_.emplace(eye_samples<B>{
+            detail::eye_hits<B>(device_, n, canvas_.raster.first_pixel()), device_.template make<glm::vec4>(n)});
     }
     const auto trace = [&](uint r, launch pixels) {
         detail::trace_eye_rays(
-            b_, built_.scene, view_, settings_, canvas_.raster, r, pixels, samples_->hits, own_branches_);
+            device_, built_.scene, view_, settings_, canvas_.raster, r, pixels, samples_->hits, own_branches_);
     };
     if (own_branches_.size() == 0) {
-        own_branches_ = b_.template make<uint>(canvas_.raster.size());
+        own_branches_ = device_.template make<uint>(canvas_.raster.size());
         // Resumed in the middle of a sample: retrace the earlier branches to learn which later ones must be traced.
         for (uint earlier = ray - ray % branches_; earlier < ray; ++earlier)
             trace(earlier, launch(canvas_.raster.size(), 0));
@@ -258,10 +258,11 @@ bool view_pass<B>::direct_light(uint ray)
     const bool drawn = settings_.output.only == light_part::all || settings_.output.only == light_part::direct;
     return over_pixels(stats_.trace_rays, [&](launch pixels) {
         if (drawn) {
-            detail::direct_light(b_, built_.scene, samples_->hits, light_settings(), ray, pixels, samples_->direct);
+            detail::direct_light(
+                device_, built_.scene, samples_->hits, light_settings(), ray, pixels, samples_->direct);
         } else {
-            b_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->direct));
-            b_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->hits.emissions));
+            device_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->direct));
+            device_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->hits.emissions));
         }
     });
 }
@@ -269,11 +270,11 @@ bool view_pass<B>::direct_light(uint ray)
 template <backend B>
 bool view_pass<B>::shade(uint ray)
 {
-    detail::time_stage(b_, stats_.radiance_estimate, [&] {
+    detail::time_stage(device_, stats_.radiance_estimate, [&] {
         const float share = is_preview() ? 1.0f : 1.0f / static_cast<float>(settings_.view.spp);
         const auto found = shade(search_->take(), share, canvas_.pixels, canvas_.searches);
         if (canvas_.errors.size() > 0)
-            b_.template run<kernels::tally_error>(canvas_.errors.size(), {},
+            device_.template run<kernels::tally_error>(canvas_.errors.size(), {},
                 reads(samples_->hits.points, found.irradiance, found.standard_error), writes(canvas_.errors));
     });
     search_.reset();
@@ -291,9 +292,9 @@ knn_estimates<B> view_pass<B>::shade(
 {
     const auto& hits = samples_->hits;
     if (settings_.estimate.edges != edge_correction::none)
-        correct_edges(b_, built_.scene, hits.points, hits.surfaces, found, settings_.estimate.filter,
+        correct_edges(device_, built_.scene, hits.points, hits.surfaces, found, settings_.estimate.filter,
             least_radius(built_.map.cells_of));
-    b_.template run<kernels::shade>(pixels.size(), {.share = share},
+    device_.template run<kernels::shade>(pixels.size(), {.share = share},
         reads(built_.scene.records, hits.points, hits.throughputs, hits.surfaces, hits.emissions, samples_->direct,
             found.irradiance, found.used),
         writes(pixels, searches));
@@ -303,16 +304,16 @@ knn_estimates<B> view_pass<B>::shade(
 template <backend B>
 buffer_of<B, glm::vec4> view_pass<B>::dark(std::size_t n)
 {
-    auto light = b_.template make<glm::vec4>(n);
-    b_.template run<kernels::zero_vectors>(n, {}, reads(), writes(light));
+    auto light = device_.template make<glm::vec4>(n);
+    device_.template run<kernels::zero_vectors>(n, {}, reads(), writes(light));
     return light;
 }
 
 template <backend B>
 buffer_of<B, glm::vec4> view_pass<B>::copy(const buffer_of<B, glm::vec4>& original)
 {
-    auto light = b_.template make<glm::vec4>(original.size());
-    b_.template run<kernels::copy_light>(original.size(), {}, reads(original), writes(light));
+    auto light = device_.template make<glm::vec4>(original.size());
+    device_.template run<kernels::copy_light>(original.size(), {}, reads(original), writes(light));
     return light;
 }
 

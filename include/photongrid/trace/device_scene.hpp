@@ -271,12 +271,12 @@ namespace detail {
 ///         (capabilities::loop_limit); backend_error if the device has no room.
 /// \snippet snippets.cpp upload_scene
 template <backend B>
-device_scene<B> upload_scene(B& b, const scene& s)
+device_scene<B> upload_scene(B& device, const scene& s)
 {
     device_scene<B> d;
     d.layout = lay_out(s);
-    detail::check_loops(d.layout, b.caps());
-    d.records = b.upload(std::span<const glm::vec4>(d.layout.records));
+    detail::check_loops(d.layout, device.caps());
+    d.records = device.upload(std::span<const glm::vec4>(d.layout.records));
     return d;
 }
 

@@ -27,10 +27,10 @@ struct eye_hits {
     buffer_of<B, glm::vec4> points, directions, throughputs, surfaces, emissions;
     uint first_pixel = 0; ///< pixel of element 0; random numbers depend on the pixel
 
-    eye_hits(B& b, std::size_t n, uint first = 0)
-        : points(b.template make<glm::vec4>(n)), directions(b.template make<glm::vec4>(n)),
-          throughputs(b.template make<glm::vec4>(n)), surfaces(b.template make<glm::vec4>(n)),
-          emissions(b.template make<glm::vec4>(n)), first_pixel(first)
+    eye_hits(B& device, std::size_t n, uint first = 0)
+        : points(device.template make<glm::vec4>(n)), directions(device.template make<glm::vec4>(n)),
+          throughputs(device.template make<glm::vec4>(n)), surfaces(device.template make<glm::vec4>(n)),
+          emissions(device.template make<glm::vec4>(n)), first_pixel(first)
     {
     }
 };
@@ -80,14 +80,14 @@ inline kernels::eye_ray::Params eye_params(
 /// is set for the pixels for which branch b must be traced; rays of other pixels end at once. Branch 0 sets its own
 /// bit, and a ray that splits sets that of its other branch, so the branches of a sample must be traced in order.
 template <backend B>
-void trace_eye_rays(B& b, const device_scene<B>& s, const camera& view, const render_settings& settings,
+void trace_eye_rays(B& device, const device_scene<B>& s, const camera& view, const render_settings& settings,
     const raster& r, uint ray, launch pixels, eye_hits<B>& hits, buffer_of<B, uint>& branches)
 {
     const auto& layout = s.layout;
     const uint splits = splits_of(layout), sample = ray >> splits;
-    b.template run<kernels::eye_ray>(pixels, eye_params(view, layout.center, settings, r, ray, splits), reads(),
+    device.template run<kernels::eye_ray>(pixels, eye_params(view, layout.center, settings, r, ray, splits), reads(),
         writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
-    b.template run_until_done<kernels::eye_bounce>({pixels.elements, pixels.first, layout.features},
+    device.template run_until_done<kernels::eye_bounce>({pixels.elements, pixels.first, layout.features},
         {.branch = ray & ((1u << splits) - 1u),
             .splits = splits,
             .depth = settings.view.depth,
@@ -101,16 +101,16 @@ void trace_eye_rays(B& b, const device_scene<B>& s, const camera& view, const re
 /// Computes the irradiance of direct light at the hits of `pixels` into `light`, with a bounded number of shadow rays
 /// per pass.
 template <backend B>
-void direct_light(B& b, const device_scene<B>& s, const eye_hits<B>& hits, const render_settings& settings, uint ray,
-    launch pixels, buffer_of<B, glm::vec4>& light)
+void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, const render_settings& settings,
+    uint ray, launch pixels, buffer_of<B, glm::vec4>& light)
 {
-    b.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
+    device.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
     const uint samples = (s.layout.features & has_area_lights) != 0 ? settings.view.light_samples : 1u;
     // Well below the 65,535 iterations, of all loops of an invocation, after which some drivers end loops
     // (docs/design/decisions.md, "Loops are bounded").
     const uint per_pass = std::max(1u, static_cast<uint>(16384 / steps_of_shadow_rays(s.layout)));
     for (uint first = 0; first < samples; first += per_pass)
-        b.template run<kernels::direct_light>({pixels.elements, pixels.first, s.layout.features},
+        device.template run<kernels::direct_light>({pixels.elements, pixels.first, s.layout.features},
             {.strata = strata_of(samples),
                 .first = first,
                 .past = std::min(samples, first + per_pass),

@@ -47,22 +47,22 @@ namespace detail {
     struct photon_frames {
         buffer_of<B, glm::vec4> positions, powers, directions, next_origins, next_directions;
 
-        photon_frames(B& b, std::size_t n)
-            : positions(b.template make<glm::vec4>(n)), powers(b.template make<glm::vec4>(n)),
-              directions(b.template make<glm::vec4>(n)), next_origins(b.template make<glm::vec4>(n)),
-              next_directions(b.template make<glm::vec4>(n))
+        photon_frames(B& device, std::size_t n)
+            : positions(device.template make<glm::vec4>(n)), powers(device.template make<glm::vec4>(n)),
+              directions(device.template make<glm::vec4>(n)), next_origins(device.template make<glm::vec4>(n)),
+              next_directions(device.template make<glm::vec4>(n))
         {
         }
     };
 
     /// Sums the first `n` tallies.
     template <backend B>
-    path_tally<B> sum_tally(B& b, path_tally<B> t, uint n)
+    path_tally<B> sum_tally(B& device, path_tally<B> t, uint n)
     {
         do {
             const uint groups = (n + 15) / 16;
-            path_tally<B> sums{b.template make<glm::uvec4>(groups), b.template make<glm::uvec4>(groups)};
-            b.template run<kernels::sum_tallies>(
+            path_tally<B> sums{device.template make<glm::uvec4>(groups), device.template make<glm::uvec4>(groups)};
+            device.template run<kernels::sum_tallies>(
                 groups, {.terms = n}, reads(t.ends, t.hits), writes(sums.ends, sums.hits));
             t = std::move(sums);
             n = groups;
@@ -74,20 +74,22 @@ namespace detail {
 /// Traces `paths` paths from id `first` on, and returns the number of frames. Every 8 bounces it counts the paths that
 /// are still active, and stops if there are none.
 template <backend B>
-uint trace_batch(B& b, const device_scene<B>& s, detail::photon_frames<B>& f, uint paths, uint first,
+uint trace_batch(B& device, const device_scene<B>& s, detail::photon_frames<B>& f, uint paths, uint first,
     const render_settings& settings)
 {
     const auto& layout = s.layout;
-    b.template run<kernels::emit_photon>({paths, 0u, layout.features}, {.first_path = first, .seed = settings.seed},
-        reads(s.records), writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
+    device.template run<kernels::emit_photon>({paths, 0u, layout.features},
+        {.first_path = first, .seed = settings.seed}, reads(s.records),
+        writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
     uint frame = 1;
     for (; frame <= settings.map.photon_depth; ++frame) {
-        b.template run<kernels::bounce_photon>({paths, frame * paths, layout.features},
+        device.template run<kernels::bounce_photon>({paths, frame * paths, layout.features},
             {.paths = paths, .first_path = first, .last_frame = settings.map.photon_depth, .seed = settings.seed},
             reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
         if (frame % 8 == 0
-            && detail::checked_count<kernels::path_goes_on>(b, {paths, frame * paths}, {}, reads(f.positions)) == 0)
+            && detail::checked_count<kernels::path_goes_on>(device, {paths, frame * paths}, {}, reads(f.positions))
+                == 0)
             return frame + 1;
     }
     return frame;
@@ -103,13 +105,13 @@ enum class if_none_stored { fail, trace_none };
 template <backend B>
 class photon_tracing {
 public:
-    /// It traces nothing yet. `b` and `device` must outlive it.
-    photon_tracing(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings,
+    /// It traces nothing yet. `device` and `uploaded` must outlive it.
+    photon_tracing(B& device, const scene& s, const device_scene<B>& uploaded, const render_settings& settings,
         if_none_stored none = if_none_stored::fail)
-        : b_(b), device_(device), settings_(settings), lights_(detail::names_of_lights(s)), none_(none),
+        : device_(device), scene_(uploaded), settings_(settings), lights_(detail::names_of_lights(s)), none_(none),
           wanted_(settings.output.only == light_part::direct ? 0u : settings.map.photons),
           paths_(std::clamp(std::bit_ceil(wanted_ / 2 + 1), 1024u, 32768u)),
-          frames_(b, std::size_t{paths_} * (settings.map.photon_depth + 1))
+          frames_(device, std::size_t{paths_} * (settings.map.photon_depth + 1))
     {
         make_photons();
     }
@@ -132,7 +134,7 @@ public:
 private:
     void make_photons()
     {
-        const auto make = [&] { return b_.template make<glm::vec4>(wanted_); };
+        const auto make = [&] { return device_.template make<glm::vec4>(wanted_); };
         t_.photons = {make(), make(), make(), {}};
         if (settings_.estimate.leaks.needs_photon_normals())
             t_.photons.normals = make();
@@ -154,8 +156,8 @@ private:
         }
     }
 
-    B& b_;
-    const device_scene<B>& device_;
+    B& device_;
+    const device_scene<B>& scene_;
     render_settings settings_;
     std::string lights_;
     if_none_stored none_;
@@ -177,48 +179,48 @@ void photon_tracing<B>::advance()
     if (finished())
         return;
     const uint missing = wanted_ - stored_;
-    const uint frames = trace_batch(b_, device_, frames_, paths_, static_cast<uint>(t_.emitted), settings_);
+    const uint frames = trace_batch(device_, scene_, frames_, paths_, static_cast<uint>(t_.emitted), settings_);
 
-    auto storable = b_.template make<uint>(paths_);
-    path_tally<B> tally{b_.template make<glm::uvec4>(paths_), b_.template make<glm::uvec4>(paths_)};
-    b_.template run<kernels::tally_path>(paths_, {.paths = paths_, .frames = frames}, reads(frames_.positions),
+    auto storable = device_.template make<uint>(paths_);
+    path_tally<B> tally{device_.template make<glm::uvec4>(paths_), device_.template make<glm::uvec4>(paths_)};
+    device_.template run<kernels::tally_path>(paths_, {.paths = paths_, .frames = frames}, reads(frames_.positions),
         writes(storable, tally.ends, tally.hits));
-    const auto sums = prefix_sums(b_, storable);
+    const auto sums = prefix_sums(device_, storable);
 
     const uint emitted
-        = detail::checked_count<kernels::path_is_emitted>(b_, paths_, {.photons = missing}, reads(sums, storable));
+        = detail::checked_count<kernels::path_is_emitted>(device_, paths_, {.photons = missing}, reads(sums, storable));
     if (emitted == 0) // the first path always is; otherwise tracing would never end
-        throw backend_error(b_.caps().backend + ": count<path_is_emitted>: the device returned 0; at least 1 of "
+        throw backend_error(device_.caps().backend + ": count<path_is_emitted>: the device returned 0; at least 1 of "
             + std::to_string(paths_) + " paths is emitted");
     // A path stores at most one photon per bounce, and only the last of these paths exceeds the requested number.
     const auto found = detail::checked_count<kernels::is_found>(
-        b_, std::size_t{missing} + settings_.map.photon_depth, {.emitted = emitted}, reads(sums));
+        device_, std::size_t{missing} + settings_.map.photon_depth, {.emitted = emitted}, reads(sums));
     const uint taken = std::min(found, missing);
-    b_.template run<kernels::gather_photon>({taken, stored_},
+    device_.template run<kernels::gather_photon>({taken, stored_},
         {.paths = paths_, .frames = frames, .stored_before = stored_},
         reads(sums, frames_.positions, frames_.powers, frames_.directions),
         writes(t_.photons.positions, t_.photons.powers, t_.photons.directions));
     if (settings_.estimate.leaks.needs_photon_normals())
-        b_.template run<kernels::gather_normal>({taken, stored_},
+        device_.template run<kernels::gather_normal>({taken, stored_},
             {.paths = paths_, .frames = frames, .stored_before = stored_},
             reads(sums, frames_.positions, frames_.powers, frames_.next_origins, frames_.next_directions),
             writes(t_.photons.normals));
-    t_.tallies.push_back(detail::sum_tally(b_, std::move(tally), emitted));
+    t_.tallies.push_back(detail::sum_tally(device_, std::move(tally), emitted));
     t_.dropped += found - taken;
     t_.emitted += emitted;
     stored_ += taken;
     if (finished())
-        b_.template run<kernels::divide_power>(
+        device_.template run<kernels::divide_power>(
             wanted_, {.share = 1.0f / static_cast<float>(t_.emitted)}, reads(), writes(t_.photons.powers));
 }
 
 /// Traces all photons (photon_tracing).
 /// \throws std::runtime_error as photon_tracing::advance does, render_cancelled.
 template <backend B>
-traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& device, const render_settings& settings,
-    const render_observer& observer = {})
+traced_photons<B> trace_photons(B& device, const scene& s, const device_scene<B>& uploaded,
+    const render_settings& settings, const render_observer& observer = {})
 {
-    photon_tracing<B> tracing(b, s, device, settings);
+    photon_tracing<B> tracing(device, s, uploaded, settings);
     while (!tracing.finished()) {
         if (observer.cancelled && observer.cancelled())
             throw render_cancelled();
@@ -231,12 +233,12 @@ traced_photons<B> trace_photons(B& b, const scene& s, const device_scene<B>& dev
 
 /// The counts of all paths and hits, `stored` of which are in the map. Reads the tallies back.
 template <backend B>
-photon_stats count_photons(B& b, const traced_photons<B>& t, std::uint64_t stored)
+photon_stats count_photons(B& device, const traced_photons<B>& t, std::uint64_t stored)
 {
     photon_stats p;
     for (const auto& tally : t.tallies) {
-        const auto ends = b.download(tally.ends).at(0);
-        const auto hits = b.download(tally.hits).at(0);
+        const auto ends = device.download(tally.ends).at(0);
+        const auto hits = device.download(tally.hits).at(0);
         p.absorbed += ends.x;
         p.escaped += ends.y;
         p.cut_off += ends.z;
