@@ -74,7 +74,7 @@ public:
     /// False: a point's search is completed in one pass.
     static constexpr bool shows_running_estimate(const knn_settings&) { return false; }
 
-    progress advance(uint passes = nowhere);
+    progress advance(uint passes = all_passes);
 
     [[nodiscard]] knn_estimates<cpu_backend> estimates() &;
     /// The same without a copy.

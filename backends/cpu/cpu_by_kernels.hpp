@@ -158,7 +158,7 @@ public:
         std::vector<uint> arrived(destinations);
         const auto slot_elements = elements_to_write(slots);
         const auto total_elements = elements_to_write(totals);
-        std::fill(slot_elements.begin(), slot_elements.end(), nowhere);
+        std::fill(slot_elements.begin(), slot_elements.end(), no_id);
         std::fill(total_elements.begin(), total_elements.end(), glm::vec4(0));
         for (std::size_t begin = 0; begin < l.elements; begin += batch) {
             const std::size_t n = std::min(batch, l.elements - begin);

@@ -19,7 +19,7 @@ struct routing {
     launch draws;
     uint destinations, m;
 
-    /// Computes slots[d * capacity + r] = payload of the r-th draw to d, for `n` slots; empty slots are 0xFFFFFFFF. It
+    /// Computes slots[d * capacity + r] = payload of the r-th draw to d, for `n` slots; empty slots are `no_id`. It
     /// changes texture unit 0.
     /// \throws backend_error if the footprints exceed the device's largest render target.
     void fill(const texture& slots, std::size_t n)
@@ -40,7 +40,7 @@ struct routing {
             on.set_viewport(0, 0, static_cast<GLsizei>(drawn.width), static_cast<GLsizei>(drawn.height));
             gl.StencilMask(0xFFu);
             constexpr GLint zero = 0;
-            constexpr std::array<GLuint, 4> empty{nowhere, 0, 0, 0};
+            constexpr std::array<GLuint, 4> empty{no_id, 0, 0, 0};
             gl.ClearNamedFramebufferuiv(framebuffer, GL_COLOR, 0, empty.data());
             gl.ClearNamedFramebufferiv(framebuffer, GL_STENCIL, 0, &zero);
             gl.Enable(GL_STENCIL_TEST);

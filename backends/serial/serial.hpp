@@ -157,7 +157,7 @@ public:
         const uint sums = route_sums(totals.size(), destinations);
         const uint block = route_block(l.elements, sums);
         std::vector<uint> arrived(destinations);
-        std::fill(slots.data_.begin(), slots.data_.end(), nowhere);
+        std::fill(slots.data_.begin(), slots.data_.end(), no_id);
         std::fill(totals.data_.begin(), totals.data_.end(), glm::vec4(0));
         route_all(std::move(k), l, arrived, capacity, slots.data_.data(), sums, block, totals.data_.data());
         ++costs_[std::string(kernel_name<K>())].passes;

@@ -66,7 +66,7 @@ std::vector<survey> survey_forest(
         found[p].trees_per_hectare = 1e4f * per_square_metre[p].x;
         found[p].standard_error = 1e4f * errors[p].x;
         found[p].mean_height = means[p];
-        for (std::size_t n = p * k; n < (p + 1) * k && ids[n] != photongrid::nowhere; ++n) {
+        for (std::size_t n = p * k; n < (p + 1) * k && ids[n] != photongrid::no_id; ++n) {
             found[p].nearest.push_back(ids[n]);
             found[p].distances.push_back(std::sqrt(distances2[n]));
         }

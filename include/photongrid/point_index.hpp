@@ -18,8 +18,8 @@ namespace photongrid {
 
 /// A point near a query point.
 struct point_neighbour {
-    photon_id id = nowhere; ///< its index in the range that the index was made from
-    float distance2 = 0;    ///< m^2
+    photon_id id = no_id; ///< its index in the range that the index was made from
+    float distance2 = 0;  ///< m^2
 
     bool operator==(const point_neighbour&) const = default;
 };
@@ -81,7 +81,7 @@ public:
         const auto distances2 = device.download(lists.distances2);
         point_neighbours n;
         for (std::size_t i = 0; i < queries.size(); ++i) {
-            for (std::size_t entry = i * k; entry < (i + 1) * k && ids[entry] != nowhere; ++entry)
+            for (std::size_t entry = i * k; entry < (i + 1) * k && ids[entry] != no_id; ++entry)
                 n.all_.push_back({ids[entry], distances2[entry]});
             n.begin_.push_back(n.all_.size());
         }

@@ -212,7 +212,7 @@ TYPED_TEST(bad_input, that_is_empty_is_no_mistake)
     const auto one = upload_points(b, std::vector<glm::vec3>{{0.5f, 0.5f, 0.5f}});
     EXPECT_EQ(
         b.download(knn_grid_estimate(b, empty, one, {.k = 5, .max_radius = 1}).irradiance)[0], glm::vec4(0, 0, 0, 1));
-    EXPECT_EQ(b.download(knn_neighbours(b, empty, one, {.k = 2}).ids), (std::vector<uint>{nowhere, nowhere}));
+    EXPECT_EQ(b.download(knn_neighbours(b, empty, one, {.k = 2}).ids), (std::vector<uint>{no_id, no_id}));
     const auto none = upload_points(b, std::vector<glm::vec3>{});
     EXPECT_EQ(knn_grid_estimate(b, empty, none, {.k = 5}).irradiance.size(), 0u);
     EXPECT_EQ(knn_neighbours(b, empty, none, {.k = 5}).ids.size(), 0u);

@@ -56,12 +56,12 @@ TYPED_TEST_P(verbs, a_route_keeps_the_first_draws_and_adds_up_all)
                         std::vector<glm::vec4> amounts(n);
                         for (uint i = 0; i < n; ++i) {
                             sent[i] = random.below(8) == 0
-                                ? nowhere - random.below(2)
+                                ? no_id - random.below(2)
                                 : random.below(destinations + destinations / 10 + 1); // some to none
                             amounts[i] = {random(), -random(), 1e-3f * random(), 1};
                         }
                         const uint spare = destinations > 3 ? 3 : 0; // larger than needed: emptied too
-                        std::vector<uint> slots((destinations + spare) * capacity, nowhere), arrived(destinations);
+                        std::vector<uint> slots((destinations + spare) * capacity, no_id), arrived(destinations);
                         std::vector<glm::vec4> totals(destinations * parts + spare, glm::vec4(0));
                         const uint block = std::max(1u, (draws + parts - 1) / parts);
                         for (uint i = first; i < n; ++i) {

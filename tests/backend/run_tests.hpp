@@ -192,7 +192,7 @@ TYPED_TEST_P(verbs, each_pass_sees_what_all_before_it_wrote)
     std::vector<glm::uvec2> totals(n, glm::uvec2(3, 0));
     auto state = this->up(totals);
     auto old = b.template make<uint>(n);
-    b.template run_until_done<verb_kernels::countdown>(n, {.step = 1}, reads(last), writes(state, old), nowhere);
+    b.template run_until_done<verb_kernels::countdown>(n, {.step = 1}, reads(last), writes(state, old), all_passes);
     const auto marked = b.template count<verb_kernels::is_marked>(n, {.marks = 4}, reads(last));
     b.template run<verb_kernels::running_total>(n, {}, reads(last), writes(state, old));
     for (uint i = 0; i < n; ++i)
@@ -223,7 +223,7 @@ TYPED_TEST_P(verbs, elements_take_as_many_passes_as_they_need)
             const auto added_ = this->up(added);
             // All at once, and stopped after some passes and going on.
             for (const std::vector<uint>& most :
-                {std::vector<uint>{nowhere}, {0, 3, 1, 96, 10}, {100, 1}, {8, 8, 0, 83, 1, 5}}) {
+                {std::vector<uint>{all_passes}, {0, 3, 1, 96, 10}, {100, 1}, {8, 8, 0, 83, 1, 5}}) {
                 auto expected = states;
                 auto expected_old = old;
                 auto state = this->up(states);

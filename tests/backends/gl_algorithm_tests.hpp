@@ -18,7 +18,7 @@ namespace {
                     for (std::size_t i = 0; i < n; ++i) {
                         const uint d = static_cast<uint>(random()) % (destinations + destinations / 8 + 1);
                         pairs[i] = {i % 3 == 0 ? destinations / 2
-                                : i % 17 == 0  ? nowhere
+                                : i % 17 == 0  ? no_id
                                                : d,
                             static_cast<uint>(random())};
                         amounts[i]

@@ -69,11 +69,11 @@ TEST_F(vulkan, passes_over_unfinished_elements_fall_and_can_be_resumed)
             host[i] = uvec2(i % 21u, 0u);
         const auto expected = [&] {
             auto state = up(serial, host);
-            auto p = serial.run_until_done<test_kernels::countdown>(n, {.step = 1}, reads(), writes(state), nowhere);
+            auto p = serial.run_until_done<test_kernels::countdown>(n, {.step = 1}, reads(), writes(state), all_passes);
             return std::pair(serial.download(state), p);
         }();
         auto state = up(b(), host);
-        const auto p = b().run_until_done<test_kernels::countdown>(n, {.step = 1}, reads(), writes(state), nowhere);
+        const auto p = b().run_until_done<test_kernels::countdown>(n, {.step = 1}, reads(), writes(state), all_passes);
         EXPECT_EQ(b().download(state), expected.first);
         EXPECT_TRUE(p.finished);
         EXPECT_EQ(p.passes, expected.second.passes);

@@ -42,7 +42,7 @@ inline listed listed_by_force(
         l.distances2.push_back(d2);
         l.ids.push_back(id);
     }
-    l.ids.resize(settings.k, nowhere);
+    l.ids.resize(settings.k, no_id);
     l.distances2.resize(settings.k, std::numeric_limits<float>::infinity());
     return l;
 }

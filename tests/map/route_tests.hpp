@@ -53,7 +53,7 @@ TYPED_TEST_P(algorithms, route_keeps_the_first_in_draw_order_and_all_power)
                 ASSERT_EQ(totals[c].w, static_cast<float>(destined[c].size()));
                 glm::dvec3 before(0), after(0);
                 for (uint s = 0; s < capacity; ++s) {
-                    ASSERT_EQ(list[c * capacity + s], s < kept ? destined[c][s] : nowhere)
+                    ASSERT_EQ(list[c * capacity + s], s < kept ? destined[c][s] : no_id)
                         << "cell " << c << " slot " << s << " m " << m << " " << name_of(d);
                     if (s < kept)
                         after += glm::dvec3(powers[destined[c][s]]);
@@ -266,7 +266,7 @@ TYPED_TEST_P(algorithms, photons_of_a_routed_map_stand_for_those_without_a_slot)
                         ASSERT_NEAR(after[channel], before[channel], 1e-5 * before[channel]) << "cell " << c;
                 }
                 for (uint at = next; at < n; ++at)
-                    ASSERT_EQ(list[at], nowhere);
+                    ASSERT_EQ(list[at], no_id);
                 EXPECT_EQ(map.invalid, 1u);
             }
 }
@@ -293,7 +293,7 @@ TEST(routing, refuses_more_photons_than_it_can_count)
     ASSERT_NE(0x1p24f - 1.0f, 0x1p24f);
     EXPECT_NO_THROW(detail::check_route_count(1u << 27, 8));
     EXPECT_THROW(detail::check_route_count((1u << 27) + 1, 8), std::invalid_argument);
-    EXPECT_THROW(detail::check_route_count(nowhere, 8), std::invalid_argument);
+    EXPECT_THROW(detail::check_route_count(0xFFFFFFFFu, 8), std::invalid_argument);
 }
 
 // --- knn_grid_estimate

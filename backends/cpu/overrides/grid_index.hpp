@@ -23,7 +23,7 @@ inline
     // If pair i has another key than the pair before, all cells after that pair's key, up to the key of pair i, begin
     // at i.
     const auto cell_after = [&](std::size_t i) {
-        return i == 0 ? 0u : i > n ? cells : std::min(cells, from[i - 1].x == nowhere ? cells : from[i - 1].x + 1u);
+        return i == 0 ? 0u : i > n ? cells : std::min(cells, from[i - 1].x == 0xFFFFFFFFu ? cells : from[i - 1].x + 1u);
     };
     device.threads().for_blocks(n + 1, 65536, [&](std::size_t first, std::size_t past) {
         for (std::size_t i = first; i < past; ++i) {

@@ -97,7 +97,7 @@ HWY_INLINE float nth_smallest(float* values, std::size_t count, std::size_t n, f
 inline void end_list(const search_job& j, uint point, std::size_t held)
 {
     const std::size_t first = std::size_t{point} * j.k;
-    std::fill(j.ids + first + held, j.ids + first + j.k, nowhere);
+    std::fill(j.ids + first + held, j.ids + first + j.k, no_id);
     std::fill(j.distances2 + first + held, j.distances2 + first + j.k, std::numeric_limits<float>::infinity());
 }
 

@@ -215,11 +215,11 @@ namespace detail {
 /// - `download(buffer)`: its contents as std::vector<T>, every bit
 /// - `run<K>(launch, params, reads(…), writes(…))`: one pass (the paper's screen-sized quad)
 /// - `run_until_done<K>(launch, params, reads, writes, passes)`: passes over the elements not yet done (3.3, 4.3), at
-///   most `passes` of them; call it again to continue. Elements that are done are not written
+///   most `passes` of them, or `all_passes`; call it again to continue. Elements that are done are not written
 /// - `count<K>(launch, params, reads(…))`: the number of elements for which `holds` is true (occlusion query)
 /// - `route<K>(launch, params, reads, destinations, m, slots, totals)`: many-to-one scatter (2.2.2). With
 ///   cap = min(m*m, 255), slots[d*cap + r] is the payload of the r-th draw (in index order) with destination d, for
-///   r < cap; other slots are 0xFFFFFFFF. totals[d] is the sum of all amounts with destination d, added in that order.
+///   r < cap; other slots are `no_id`. totals[d] is the sum of all amounts with destination d, added in that order.
 ///   Draws with a destination past the last one are dropped. If `totals` has P elements per destination, there are P
 ///   partial sums: totals[d*P + p] is the sum, in order, of the draws of the p-th of P equal blocks. Shorter sums have
 ///   smaller rounding errors
@@ -298,8 +298,12 @@ constexpr uint route_block(uint draws, uint sums)
     return block > 0 ? block : 1u;
 }
 
-/// Marks "no destination" and "no payload" in route.
-inline constexpr uint nowhere = 0xFFFFFFFFu;
+/// Stands where there is no id: in a slot of route without a draw, in a list of fewer neighbours than were asked for.
+/// As a draw's destination it means none.
+inline constexpr uint no_id = 0xFFFFFFFFu;
+
+/// As a limit of passes, in run_until_done and in the searches' advance(): as many as are needed.
+inline constexpr uint all_passes = 0xFFFFFFFFu;
 
 } // namespace photongrid
 

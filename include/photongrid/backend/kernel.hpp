@@ -102,7 +102,7 @@ concept iterative_kernel = gather_kernel<K> && requires(K k) { { k.done() } -> s
 template <class K>
 concept predicate_kernel = kernel_struct<K> && requires(K k, uint i) { { k.holds(i) } -> std::same_as<bool>; };
 
-/// A routing kernel: draw i has a destination (none: 0xFFFFFFFF), a payload, and an amount that is added to the
+/// A routing kernel: draw i has a destination (none: `no_id`), a payload, and an amount that is added to the
 /// destination's total.
 template <class K>
 concept route_kernel = gather_kernel<K> && output_count<K> == 3 && std::same_as<output_t<K, 0>, uint>

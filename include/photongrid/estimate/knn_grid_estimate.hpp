@@ -73,7 +73,7 @@ public:
     static bool shows_running_estimate(const knn_settings& s) { return detail::sums_while_growing(s); }
 
     /// Runs at most `passes` more passes over the points that are not done. Work per pass and point is bounded.
-    progress advance(uint passes = nowhere)
+    progress advance(uint passes = all_passes)
     {
         return detail::run_stages(
             passes, [this] { return stage_ == stage::finished; }, [this](uint left) { return run_stage(left); },

@@ -22,7 +22,7 @@ template <backend B>
 struct neighbour_lists {
     uint k = 0;             ///< entries per list
     buffer_of<B, uint> ids; ///< point p's are entries p * k to p * k + k - 1: indices into the photons that the map
-                            ///< was made from; 0xFFFFFFFF: no more neighbours
+                            ///< was made from; `no_id`: no more neighbours
     buffer_of<B, float> distances2; ///< m^2, of the same photons; infinity where there is no neighbour
 };
 
@@ -86,7 +86,7 @@ namespace detail {
                         .ranges = in.s.ranges_per_pass},
                     reads(*in.points, in.point_normals(), m.cells, m.photons.positions, in.directions(),
                         in.photon_normals(), m.list, radius_search.radius),
-                    writes(indices[0], indices[1], indices[2], indices[3], cursor, tally), nowhere);
+                    writes(indices[0], indices[1], indices[2], indices[3], cursor, tally), all_passes);
                 for (uint four = 0; four < part && first + four < padded; four += 4)
                     put(first + four, std::min(4u, padded - (first + four)), true, indices[four / 4], tally);
             }

@@ -25,7 +25,7 @@ public:
     explicit knn_radius(const detail::search_inputs<B>& in);
 
     /// Runs at most `passes` more passes over the points that are not done.
-    progress advance(uint passes = nowhere)
+    progress advance(uint passes = all_passes)
     {
         return detail::run_stages(
             passes, [this] { return finished(); }, [this](uint left) { return run_stage(left); },

@@ -74,7 +74,7 @@ struct map_buffers {
     grid cells_of{};                ///< the grid of the cells
     photongrid::photons<B> photons; ///< cell by cell
     buffer_of<B, glm::uvec2> cells; ///< x: first, y: count
-    /// Ids: indices into the photons that the map was made from; 0xFFFFFFFF: none. In a routed map an id may occur
+    /// Ids: indices into the photons that the map was made from; `no_id`: none. In a routed map an id may occur
     /// several times (surplus_kind::photons).
     buffer_of<B, uint> list;
     uint invalid = 0;           ///< photons in no cell: NaN or infinite

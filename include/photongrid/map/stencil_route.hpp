@@ -15,7 +15,7 @@ namespace photongrid {
 /// The result of stencil_route. With cap = min(m*m, 255), cell c has the slots c*cap to c*cap + cap - 1.
 template <backend B>
 struct routed_cells {
-    buffer_of<B, uint> list;             ///< per slot: photon id; 0xFFFFFFFF: empty
+    buffer_of<B, uint> list;             ///< per slot: photon id; `no_id`: empty
     buffer_of<B, glm::uvec2> cells;      ///< x: first slot, y: photons kept
     buffer_of<B, glm::vec4> powers;      ///< per photon, W, after redistribution
     buffer_of<B, glm::vec4> totals;      ///< per cell: rgb: power destined for it, W; w: number of photons

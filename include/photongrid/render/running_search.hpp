@@ -63,8 +63,6 @@ public:
     knn_estimates<B> take() { return std::move(*search_).estimates(); }
 
 private:
-    static constexpr uint all_passes = nowhere; ///< the search runs to its end
-
     B& device_;
     const map_buffers<B>& map_;
     const vectors& points_;

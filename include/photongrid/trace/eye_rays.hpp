@@ -95,7 +95,7 @@ void trace_eye_rays(B& device, const device_scene<B>& s, const camera& view, con
             .seed = settings.seed,
             .first_pixel = hits.first_pixel},
         reads(s.records),
-        writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches), nowhere);
+        writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches), all_passes);
 }
 
 /// Computes the irradiance of direct light at the hits of `pixels` into `light`, with a bounded number of shadow rays
