@@ -178,7 +178,7 @@ faults=(
   "a band is left out|include/photongrid/render/render.hpp|b.first >= rows_done|b.first > rows_done"
   "the paper's estimate is not shown|include/photongrid/render/running_search.hpp|return running_estimate_kind::own;|return running_estimate_kind::none;"
   "a resumed picture is not shown|include/photongrid/render/progressive_render.hpp|            ++pictures_;|            (void)0;"
-  "a state of more passes goes on|include/photongrid/render/render_state.hpp|if (wanted != s.film.passes())|if (wanted > s.film.passes())|passes"
+  "a state of more passes goes on|include/photongrid/render/render_state.hpp|if (known != s.film.passes())|if (known > s.film.passes())|passes"
   "a finished pass is drawn again|include/photongrid/render/render_state.hpp|p.number >= o.passes \|\| s.film.holds(p.number)|p.number >= o.passes|passes"
   "a state of other bands goes on|include/photongrid/render/render_state.hpp|(next == bands.end() && !drawn)|(next == bands.end() && !drawn && p.rays > 0)|passes"
   "layers may be infinite|include/photongrid/render/film.hpp|!exact_sum::holds(tally.x) \|\| !exact_sum::holds(tally.y)|!exact_sum::holds(tally.x)|passes"

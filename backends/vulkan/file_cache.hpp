@@ -1,6 +1,7 @@
 // A folder that caches data between runs of a program: compiled kernels.
 #pragma once
 
+#include <photongrid/backend/file_target.hpp>
 #include <photongrid/backend/fnv1a.hpp>
 
 #include <algorithm>
@@ -11,7 +12,6 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
-#include <random>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -57,23 +57,12 @@ public:
         remove_oldest();
         const std::string contents = std::string(key) + std::string(value);
         const std::uint64_t sizes_and_sum[3] = {key.size(), value.size(), detail::fnv1a(contents)};
-        // Write to a temporary file and rename it, so that other programs never read an incomplete file.
-        const auto whole = path_of(key),
-                   beside
-            = std::filesystem::path(whole.string() + "." + std::to_string(std::random_device()()) + ".new");
-        {
-            std::ofstream file(beside, std::ios::binary);
-            file.write(magic, sizeof magic);
-            file.write(reinterpret_cast<const char*>(sizes_and_sum), sizeof sizes_and_sum);
-            file.write(contents.data(), static_cast<std::streamsize>(contents.size()));
-            file.flush();
-            if (!file)
-                failed = std::make_error_code(std::errc::io_error);
-        }
-        if (!failed)
-            std::filesystem::rename(beside, whole, failed);
-        if (failed)
-            std::filesystem::remove(beside, failed);
+        // Other programs never read an incomplete file. A cache that cannot be written is only slower.
+        (void)detail::replace_file(path_of(key), [&](const auto& append) {
+            append(magic, sizeof magic);
+            append(sizes_and_sum, sizeof sizes_and_sum);
+            append(contents.data(), contents.size());
+        });
     }
 
 private:

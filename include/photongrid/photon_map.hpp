@@ -114,8 +114,7 @@ private:
     void require_a_disc() const
     {
         const auto& s = search();
-        if (s.search != search_kind::fixed_radius && s.k > size() && size() > 0
-            && s.max_radius == std::numeric_limits<float>::infinity())
+        if (s.k > size() && size() > 0 && detail::is_unbounded(s))
             throw std::invalid_argument("photon_map::irradiance: k: " + std::to_string(s.k)
                 + " photons are sought, and the map has " + std::to_string(size())
                 + "; use a smaller k, or set max_radius");

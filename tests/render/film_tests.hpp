@@ -138,7 +138,7 @@ TEST(film, channels_that_are_too_bright_make_a_pixel_invalid)
     }
 }
 
-/// A pass whose counts or radii are NaN, infinite or huge has not searched there; an error that is, is left out.
+/// A pass whose counts or radii are NaN, infinite or huge has not searched there; such an error is left out alone.
 TEST(film, layers_that_are_not_finite_are_left_out_of_their_pass)
 {
     constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -167,6 +167,24 @@ TEST(film, layers_that_are_not_finite_are_left_out_of_their_pass)
                 near(layers.radius[1], radius / searches);
                 near(layers.relative_error[1], error / searches / std::sqrt(3.0));
             }
+}
+
+TEST(film, layers_of_the_only_pass_are_finite)
+{
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (const float bad : {std::nanf(""), infinity, -infinity})
+        for (int member = 0; member < 4; ++member) {
+            film f(2, 1, 1, true);
+            auto p = random_pass(0, 2, true);
+            (member == 2 ? p.errors[1].x : p.searches[1][member]) = bad; // searches.z is not a layer
+            f.add(0, p);
+            SCOPED_TRACE(testing::Message() << bad << " in member " << member);
+            const auto& layers = f.picture().picture.layers;
+            EXPECT_EQ(layers.count[1], member == 2 ? p.searches[1].x * (1 / p.searches[1].w) : 0.0f);
+            EXPECT_EQ(layers.radius[1], member == 2 ? p.searches[1].y * (1 / p.searches[1].w) : 0.0f);
+            EXPECT_EQ(layers.relative_error[1], 0.0f);
+            EXPECT_EQ(layers.count[0], p.searches[0].x * (1 / p.searches[0].w));
+        }
 }
 
 // Threads with a film each: whatever their shares, the films add up to the bytes of one that has all passes.

@@ -56,7 +56,7 @@ inline scene close_floor()
     return s;
 }
 
-TEST(standard_errors, are_about_the_spread_of_traced_maps)
+TEST(standard_errors, are_no_more_than_a_third_off_the_spread_of_traced_maps)
 {
     // The spread of n pictures is known to 1 / sqrt(2 n) of itself. The pixels' estimates share photons, so that their
     // mean is hardly better known than one of them.

@@ -215,7 +215,7 @@ namespace {
             {"exposure", [](scene& x) { x.render.output.exposure = 65; }, "exposure"},
             {"edge correction alone", [](scene& x) { x.render.estimate.edges = edge_correction::polygons; },
                 "edge_correction"},
-            {"settings for the paper's method", [](scene& x) { x.paper.emplace().view.spp = 0; }, "spp"},
+            {"settings for the paper's method", [](scene& x) { x.paper.emplace().view.spp = 0; }, "paper: spp"},
         };
     }
 

@@ -10,10 +10,10 @@
 // too.
 //
 // -ffast-math and its parts are refused: g++ has a macro for each. clang has only those of -ffast-math and
-// -ffinite-math-only; -funsafe-math-optimizations and its parts, of which it says nothing, must not be given to it.
+// -ffinite-math-only: do not give it -funsafe-math-optimizations or parts of that.
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0)                              \
     || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
-#error "photongrid: -ffast-math and its parts change results; compile without, or link photongrid::cpu_compiled"
+#error "photongrid: -ffast-math and its parts change results; compile without them"
 #endif
 #if defined(PHOTONGRID_CONTRACTION_IS_OFF)
 #elif defined(__clang__)

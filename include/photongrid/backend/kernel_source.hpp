@@ -66,8 +66,8 @@ namespace detail {
         spliced_source take() { return std::move(out_); }
 
     private:
-        /// Finds the file that C++ finds too: for "path" first the one beside the including file, then, as for <path>,
-        /// one whose name ends with the whole path.
+        /// Where C++ finds a file, finds the same: for "path" first the one beside the including file, then, as for
+        /// <path>, one whose name ends with the whole path.
         void include(const std::string& path, bool quoted, std::string_view from, std::size_t line)
         {
             const auto error = [&](const std::string& what) {

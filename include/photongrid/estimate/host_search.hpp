@@ -32,7 +32,7 @@ struct irradiance_at_point {
     glm::vec3 error{0};     ///< standard error of value, W/m^2; 0 unless requested
     float error_of_sum = 0; ///< standard error of the channels' sum, W/m^2; 0 unless requested
     float radius = 0;       ///< radius of the photons' disc, m; infinity: no estimate
-    uint count = 0;         ///< photons in the disc, or found in vain
+    uint count = 0;         ///< photons in the disc; without an estimate, photons found
 
     /// Whether `value` is an estimate.
     bool is_estimate() const { return std::isfinite(radius); }
@@ -42,10 +42,9 @@ namespace detail {
     /// What a search with settings `s` at p returns: `e`, or no estimate.
     inline irradiance_at_point estimate_or_none(irradiance_at_point e, const knn_settings& s, const glm::vec3& p)
     {
-        constexpr float unbounded = std::numeric_limits<float>::infinity();
-        const bool too_few = s.search != search_kind::fixed_radius && s.max_radius == unbounded && e.count < s.k;
+        const bool too_few = is_unbounded(s) && e.count < s.k;
         if (too_few || !kernels::is_finite(glm::vec4(p, 1)))
-            return {.radius = unbounded, .count = e.count};
+            return {.radius = std::numeric_limits<float>::infinity(), .count = e.count};
         return e;
     }
     inline void check_radius(float radius)
@@ -147,11 +146,12 @@ public:
                                     : found.begin();
         const float max2 = detail::max_radius2(s), min2 = detail::min_radius2(s);
         const float radius2 = by_photon ? distance2_of(*last) : max2;
-        const bool left_out = s.bias == bias_kind::unbiased;
+        const auto search_radius = kernels::search_radius_of(radius2, by_photon);
+        const bool excludes = s.bias == bias_kind::unbiased && kernels::excludes_photon(search_radius, min2);
         const float inverse = 1.0f / std::max(radius2, min2);
         glm::dvec4 sum(0), squares(0);
         for (std::size_t i = 0; i < n; ++i) {
-            if (left_out && by_photon && radius2 >= min2 && &found[i] == &*last)
+            if (excludes && &found[i] == &*last)
                 continue;
             const float t = std::min(distance2_of(found[i]) * inverse, 1.0f);
             const glm::vec4 weighted = powers_[found[i].index] * q.filter_weight(t);
@@ -161,9 +161,8 @@ public:
             squares += entries
                 * glm::dvec4(weighted.x * weighted.x, weighted.y * weighted.y, weighted.z * weighted.z, all * all);
         }
-        return detail::estimate_or_none(made_of({radius2, by_photon ? 1.0f : 0.0f, 0, 0}, glm::vec4(sum),
-                                            glm::vec4(squares), static_cast<uint>(n), left_out),
-            s, p);
+        return detail::estimate_or_none(
+            made_of(search_radius, glm::vec4(sum), glm::vec4(squares), static_cast<uint>(n)), s, p);
     }
 
 private:
@@ -237,13 +236,13 @@ private:
     }
 
     irradiance_at_point made_of(
-        const glm::vec4& search_radius, const glm::vec4& sum, const glm::vec4& squares, uint held, bool left_out) const
+        const glm::vec4& search_radius, const glm::vec4& sum, const glm::vec4& squares, uint held) const
     {
-        const glm::uvec4 tally(held, 0, 0, 0);
+        const auto tally = kernels::search_tally(held, 0);
         kernels::irradiance_estimate e;
         e.args = {.norm = detail::entry_of(settings_.filter).norm,
             .min_radius2 = detail::min_radius2(settings_),
-            .leave_out = left_out ? 1u : 0u};
+            .leave_out = settings_.bias == bias_kind::unbiased ? 1u : 0u};
         e.bind(slot<0>{}, std::span(&search_radius, 1));
         e.bind(slot<1>{}, std::span(&sum, 1));
         e.bind(slot<2>{}, std::span(&squares, 1));

@@ -99,6 +99,11 @@ namespace detail {
         const float r = s.max_radius;
         return r > 0 ? std::min(r * r, 1e38f) : 0.0f;
     }
+    /// Whether the radius has no limit: no photon is found beyond.
+    inline bool is_unbounded(const knn_settings& s)
+    {
+        return s.search != search_kind::fixed_radius && max_radius2(s) >= 1e38f;
+    }
     inline float min_radius2(const knn_settings& s) { return std::max(s.min_radius * s.min_radius, 1e-36f); }
     /// The SWITCHes of kernel K that photon_distance.glsl reads.
     template <class K>

@@ -95,6 +95,6 @@ void kernel(uint i)
     second_four = b;
     third_four = d;
     fourth_four = e;
-    cursor = row_cursor(y - rows_y.x, z - rows_z.x, next, 0u);
+    cursor = row_cursor(y - rows_y.x, z - rows_z.x, next);
     tally = list_tally(held, z > rows_z.y, last_id, last_left);
 }

@@ -62,7 +62,7 @@ bool joins_walk(bool searching, vec4 p, uvec4 c, float radius2, uvec4 resume_at)
     return mine;
 }
 
-uvec4 walk_cursor() { return row_cursor(walk_next_y, walk_next_z, walk_unvisited, 0u); }
+uvec4 walk_cursor() { return row_cursor(walk_next_y, walk_next_z, walk_unvisited); }
 bool has_walked() { return walk_next_z > walk_z.y; }
 bool walks_on() { return walk_steps > 0u && !has_walked(); }
 

@@ -2,9 +2,9 @@
 //     x, y: y and z of the next row; z: the first photon not yet visited; w: the walk's phase, else 0
 #ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
 
-inline uvec4 row_cursor(uint y, uint z, uint photon, uint phase)
+inline uvec4 row_cursor(uint y, uint z, uint photon)
 {
-    return uvec4(y, z, photon, phase);
+    return uvec4(y, z, photon, 0u);
 }
 inline uvec4 at_first_row()
 {

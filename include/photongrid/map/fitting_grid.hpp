@@ -73,7 +73,7 @@ grid fitting_grid(B& device, const photons<B>& p, uint k, float cells_per_radius
                 sample.begin(), at, sample.end(), [&](const auto& a, const auto& c) { return a[axis] < c[axis]; });
             return (*at)[axis];
         };
-        // No photon is found at 10^19 m or more, the square of which is no float.
+        // Searches end at 10^19 m (max_radius2); 10^18 leaves room for the square of the extent.
         low[axis] = std::clamp(nth(stray), -1e18f, 1e18f);
         high[axis] = std::clamp(nth(sample.size() - 1 - stray), -1e18f, 1e18f);
     }

@@ -138,10 +138,11 @@ namespace detail {
     template <class Read>
     std::array<std::vector<double>, 3> sampled_coordinates(std::size_t n, const Read& read)
     {
+        constexpr std::size_t most = 8191;
         std::array<std::vector<double>, 3> axes;
-        // Should none of the sample be finite, twice as many are looked at.
+        // If none of the sample is finite, the interval is halved.
         for (std::size_t step = std::max<std::size_t>(n / 4096, 1); step > 0 && axes[0].empty(); step /= 2)
-            for (std::size_t i = 0; i < n; i += step)
+            for (std::size_t i = 0; i < n && axes[0].size() < most; i += step)
                 if (const glm::dvec3 p = read(i); std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))
                     for (std::size_t axis = 0; axis < 3; ++axis)
                         axes[axis].push_back(p[static_cast<int>(axis)]);
@@ -151,8 +152,10 @@ namespace detail {
     }
 
     /// Throws if single precision is too coarse for these positions: if rounding moves coordinates by more than an
-    /// eighth of the distance of neighbours, taken as that of points which are spread evenly over a square. A sixteenth
-    /// of the sample at either end of each axis does not count, so that strays decide nothing. `what`: "caller: name".
+    /// eighth of the distance of neighbours, taken as that of points which are spread evenly over a cube. On a surface
+    /// neighbours are closer; what is refused is wrong in any case. A sixteenth of the sample at either end of each
+    /// axis does not count, so that strays decide nothing; fewer than 16 positions are not checked. `what`: "caller:
+    /// name".
     template <class Read>
     void check_rounding(const std::string& what, std::size_t n, const Read& read)
     {
@@ -166,12 +169,13 @@ namespace detail {
             for (std::size_t i = strays; i < sampled - strays; ++i)
                 moved = std::max(moved, std::abs(axis[i] - static_cast<double>(static_cast<float>(axis[i]))));
         }
-        const double apart = extent / std::sqrt(static_cast<double>(n));
+        const double apart = extent / std::cbrt(static_cast<double>(n));
         if (apart > 0 && moved * 8 > apart) {
             std::ostringstream message;
             message << what << ": single precision moves coordinates by up to " << moved
                     << " m, and neighbours are about " << apart
-                    << " m apart; subtract an origin near them, or use photon_map or point_index, which do";
+                    << " m apart; subtract an origin near them, or use photon_map or point_index, which do; positions "
+                       "of float are not checked";
             throw std::invalid_argument(message.str());
         }
     }
@@ -204,8 +208,8 @@ concept own_photon = requires(const P& p)
 ///
 /// Positions in double precision are rounded to single precision as they are, without a change of origin.
 /// \throws std::invalid_argument for more than 2^32 - 1 photons, and if rounding would move positions by more than an
-///         eighth of the distance of neighbours, as far from 0 (photon_map recentres positions); backend_error if the
-///         device has no room.
+///         eighth of the distance of neighbours, as happens far from 0 (photon_map avoids it; fewer than 16 photons are
+///         not checked); backend_error if the device has no room.
 /// \snippet snippets.cpp upload_photons
 template <backend B, std::ranges::contiguous_range Range>
 requires std::ranges::sized_range<Range> && own_photon<std::ranges::range_value_t<Range>> photons<B> upload_photons(

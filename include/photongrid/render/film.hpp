@@ -266,11 +266,13 @@ private:
         }
         auto& layers = out.picture.layers;
         for (std::size_t i = 0; i < only_->errors.size(); ++i) {
+            const auto finite_or_0 = [](float x) { return std::isfinite(x) ? x : 0.0f; };
             const auto& tally = only_->searches[i];
-            const float mean = tally.w > 0 ? 1.0f / tally.w : 0.0f; // per search
-            layers.radius.push_back(tally.y * mean);
-            layers.count.push_back(tally.x * mean);
-            layers.relative_error.push_back(only_->errors[i].x * mean);
+            const bool counts = std::isfinite(tally.x) && std::isfinite(tally.y) && std::isfinite(tally.w);
+            const float mean = counts && tally.w > 0 ? 1.0f / tally.w : 0.0f; // per search
+            layers.radius.push_back(counts ? tally.y * mean : 0.0f);
+            layers.count.push_back(counts ? tally.x * mean : 0.0f);
+            layers.relative_error.push_back(finite_or_0(only_->errors[i].x * mean));
         }
     }
 

@@ -125,7 +125,7 @@ pass_pixels draw_pass(B& device, const built_map<B>& built, const camera& view, 
             observer.progress("radiance_estimate", (static_cast<double>(light.pixels.size()) + of_band) / pixels);
     };
     const auto end = [&] {
-        report(); // before pixels are read back
+        report(); // here, since `end` runs before the callback below, and before pixels are read back
         finish_band(device, *band, light, stats);
         band.reset();
     };

@@ -56,17 +56,17 @@ inline void check(const render_state& s, const render_settings& settings)
             + std::to_string(o.height) + " pixels" + (o.aov ? " with layers" : "") + " and passes 0 to "
             + std::to_string(o.passes - 1));
     };
-    if (s.film.passes() > 0 && !s.film.is_for(o.width, o.height, o.aov))
-        fail("film: is of another size, or differs in its layers");
-    std::uint32_t wanted = 0; // of the film's passes
+    if (s.film.size() > 0 && !s.film.is_for(o.width, o.height, o.aov))
+        fail("film: its size or its layers differ");
+    std::uint32_t known = 0; // of the film's passes
     for (std::uint32_t number = 0; number < o.passes; ++number)
-        wanted += s.film.holds(number) ? 1u : 0u;
-    if (wanted != s.film.passes())
-        fail("film: " + std::to_string(s.film.passes() - wanted) + " of its " + std::to_string(s.film.passes())
+        known += s.film.holds(number) ? 1u : 0u;
+    if (known != s.film.passes())
+        fail("film: " + std::to_string(s.film.passes() - known) + " of its " + std::to_string(s.film.passes())
             + " passes are not the picture's");
 
     const auto& p = s.pass;
-    if (p.empty() && p.light.pixels.empty())
+    if (p.empty() && p.light.pixels.empty() && p.light.searches.empty() && p.light.errors.empty())
         return;
     if (p.number >= o.passes || s.film.holds(p.number))
         fail("pass: number " + std::to_string(p.number) + " is finished or not the picture's");
@@ -79,7 +79,7 @@ inline void check(const render_state& s, const render_settings& settings)
     const auto next = std::find_if(bands.begin(), bands.end(), [&](auto b) { return b.first == p.rows; });
     const bool drawn = p.rows == o.height && p.rays == 0;
     if ((next == bands.end() && !drawn) || !has(p.light, p.rows, o.aov))
-        fail("pass: its " + std::to_string(p.rows) + " finished rows are not whole bands of it");
+        fail("pass: " + std::to_string(p.rows) + " finished rows end within a band, or differ in their layers");
     if (p.rays > 0 && !has(p.band, next->rows, true))
         fail("pass: the band after row " + std::to_string(p.rows) + " has another size");
 }

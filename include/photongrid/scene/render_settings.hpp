@@ -96,7 +96,8 @@ struct render_settings {
 
 /// The settings that reproduce the paper's method: its estimate (2.3: at least k, constant filter, no leak policy, no
 /// edge correction), one pass with one eye ray per pixel, which takes all shadow rays of the pixel (light_samples times
-/// spp: by default 32, as in the paper); routed cells redistribute power alone (2.2.2). Other settings are unchanged.
+/// spp: by default 32, as in the paper's Cornell box); routed cells redistribute power alone (2.2.2). Other settings
+/// are unchanged.
 /// \snippet snippets.cpp as_paper
 inline render_settings as_paper(render_settings s)
 {

@@ -242,8 +242,13 @@ inline void check(const scene& s)
             + ", and both are glass; the outside of glass must be air, so move them apart");
     check(s.camera);
     check(s.render);
-    if (s.paper)
-        check(*s.paper);
+    if (s.paper) {
+        try {
+            check(*s.paper);
+        } catch (const std::invalid_argument& e) {
+            throw std::invalid_argument(std::string("paper: ") + e.what());
+        }
+    }
 }
 
 } // namespace photongrid

@@ -154,7 +154,8 @@ namespace detail {
             });
             for (const auto& l : s_.rectangle_lights) // their surfaces are polygons
                 out_.steps_per_ray += steps_of(shape_kind<polygon>{}, surface_of(l));
-            out_.steps_per_ray += 16; // of loops over kinds, lights and faces, and rounds that only end a loop
+            // Of loops over kinds, lights and faces, the corners of a lamp, and a last round of each loop: about 20.
+            out_.steps_per_ray += 32;
             scale_ = 0.5 * glm::length(all.high - all.low);
             require_resolvable(s_, scale_);
             // The centre, rounded to few bits, so that adding it to the anchor is exact.

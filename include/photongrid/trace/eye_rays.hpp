@@ -107,7 +107,7 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
     device.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
     const uint samples = (s.layout.features & has_area_lights) != 0 ? settings.view.light_samples : 1u;
     // Well below the 65,535 iterations, of all loops of an invocation, after which some drivers end loops
-    // (docs/design/decisions.md, "Loops are bounded").
+    // (docs/design/decisions.md, "How many iterations").
     const uint per_pass = std::max(1u, static_cast<uint>(16384 / steps_of_shadow_rays(s.layout)));
     for (uint first = 0; first < samples; first += per_pass)
         device.template run<kernels::direct_light>({pixels.elements, pixels.first, s.layout.features},
