@@ -206,7 +206,8 @@ namespace {
         const auto known = pixels.of(exact.mean), known_error = pixels.of(exact.standard_error);
 
         auto settings = settings_with_noise_of_photons_alone(s);
-        serial_backend b;
+        settings.estimate.leaks = {.side = true}; // the scene itself corrects edges
+        settings.estimate.edges = edge_correction::none;
         const int seeds = 8;
         std::vector<convergence_row> rows, smooth_rows, corrected_rows;
         const auto row = [&](std::vector<std::vector<double>> values, bool only_smooth) {

@@ -118,16 +118,17 @@ TEST(render_state, of_another_picture_is_refused)
              render_state{with_passes({0, 1, 2}), {}}, render_state{with_passes({1}), {2, 4, 0, rows(4), {}}},
              render_state{with_passes({1}), {0, 6, 0, rows(6), {}}}, render_state{{}, {0, 4, 5, rows(4), band}}})
         EXPECT_EQ(refusal(good), "");
-    const std::vector<std::pair<render_state, std::string>> all{{{with_passes({0}, 5), {}}, "film: is of another size"},
+    const std::vector<std::pair<render_state, std::string>> all{
+        {{with_passes({0}, 5), {}}, "film: its size or its layers differ"},
         {{with_passes({0, 1, 2, 3}), {}}, "film: 1 of its 4 passes are not the picture's"},
         {{with_passes({7}), {}}, "film: 1 of its 1 passes are not the picture's"},
         {{with_passes({1}), {1, 4, 0, rows(4), {}}}, "pass: number 1 is finished"},
         {{{}, {3, 4, 0, rows(4), {}}}, "pass: number 3 is finished or not the picture's"},
-        {{{}, {0, 2, 0, rows(2), {}}}, "pass: its 2 finished rows"},
-        {{{}, {0, 4, 0, rows(2), {}}}, "pass: its 4 finished rows"},
-        {{{}, {0, 0, 0, rows(2), {}}}, "pass: its 0 finished rows"},
-        {{{}, {0, 8, 0, rows(8), {}}}, "pass: its 8 finished rows"},
-        {{{}, {0, 6, 1, rows(6), {}}}, "pass: its 6 finished rows"},
+        {{{}, {0, 2, 0, rows(2), {}}}, "pass: 2 finished rows"},
+        {{{}, {0, 4, 0, rows(2), {}}}, "pass: 4 finished rows"},
+        {{{}, {0, 0, 0, rows(2), {}}}, "pass: 0 finished rows"},
+        {{{}, {0, 8, 0, rows(8), {}}}, "pass: 8 finished rows"},
+        {{{}, {0, 6, 1, rows(6), {}}}, "pass: 6 finished rows"},
         {{{}, {0, 4, 1, rows(4), rows(2)}}, "pass: the band after row 4 has another size"}};
     for (const auto& [state, words] : all)
         EXPECT_NE(refusal(state).find("render_state: " + words), std::string::npos) << words << ": " << refusal(state);

@@ -79,7 +79,8 @@ inline void check(const render_state& s, const render_settings& settings)
     const auto next = std::find_if(bands.begin(), bands.end(), [&](auto b) { return b.first == p.rows; });
     const bool drawn = p.rows == o.height && p.rays == 0;
     if ((next == bands.end() && !drawn) || !has(p.light, p.rows, o.aov))
-        fail("pass: " + std::to_string(p.rows) + " finished rows end within a band, or differ in their layers");
+        fail("pass: " + std::to_string(p.rows)
+            + " finished rows are no whole number of bands, or differ in their layers");
     if (p.rays > 0 && !has(p.band, next->rows, true))
         fail("pass: the band after row " + std::to_string(p.rows) + " has another size");
 }
