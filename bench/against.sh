@@ -324,6 +324,11 @@ bench_program() {
   done
   return 1
 }
+# Before abc5a39 the first step of a search (kth_guess) counted among trace_rays, since then among radiance_estimate; and since
+# 026727c total_ms holds the loading of drivers. With a base from before these, only sums can be compared.
+stage_times='(.stages | to_entries[] | [.key, .value.ms]), ["all but compiling", .total_ms - .compile_ms]'
+git merge-base --is-ancestor 026727c "$rev" || stage_times='.stages | ["trace_photons", .trace_photons.ms], ["build_map", .build_map.ms],
+  ["trace_rays and radiance_estimate", .trace_rays.ms + .radiance_estimate.ms], ["all stages", (map(.ms) | add)]'
 # What follows measures a side once: lines "NAME TAB ms". Whether a bench's own ratios are as wanted does not matter here.
 # whole_picture SIDE SCENE BACKEND
 whole_picture() {
@@ -333,10 +338,7 @@ whole_picture() {
   begin=$EPOCHREALTIME
   "${program[$1]}" "${options[@]}" >/dev/null
   end=$EPOCHREALTIME
-  # Before abc5a39 the first step of a search (kth_guess) counted among trace_rays, since then among radiance_estimate: only
-  # the sum of the two can be compared. Nor can total_ms: the program loads drivers within it since the backends are modules.
-  jq -r --arg name "$2, $3" '.stages | {trace_photons, build_map, "trace_rays and radiance_estimate": {ms: (.trace_rays.ms + .radiance_estimate.ms)},
-    "all stages": {ms: (map(.ms) | add)}} | to_entries[] | ["\($name): \(.key)", .value.ms] | @tsv' "$folder/stats.json"
+  jq -r --arg name "$2, $3" "($stage_times)"' | ["\($name): \(.[0])", .[1]] | @tsv' "$folder/stats.json"
   awk -v name="$2, $3" -v a="$begin" -v b="$end" 'BEGIN { printf "%s: the whole program\t%.3f\n", name, 1000 * (b - a) }'
 }
 # algorithms SIDE

@@ -43,7 +43,7 @@ public:
     {
     }
     template <detail::number_range Range>
-    // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): nor a range of numbers
+    // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): a vector_view is no range of numbers either
     vector_view(Range&&) = delete; // numbers are no vectors; for x, y, z, x, y, z, ... write vector_view::flat(numbers)
 
     /// A view of a member of structs: `read`, a function object without state, returns the member, a vector.
