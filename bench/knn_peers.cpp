@@ -13,6 +13,7 @@
 // photongrid makes whole estimates (it adds up the photons' power as well); peers only find. A peer takes every n-th
 // run of 64 points so that it ends within S seconds; photongrid takes all.
 #include "data_sets.hpp"
+#include "device_searches.hpp"
 #include "median.hpp"
 #include "peers.hpp"
 
@@ -58,28 +59,6 @@ double wanted(const arguments& a, int number)
     return number != 3 || a.shuffle ? 0 : a.backend == "vulkan" ? 1.8 : 1.1;
 }
 
-/// Points a second of whole estimates, all points again and again for as long as a peer gets, after one run to warm up,
-/// as a peer has. `e`: the last ones.
-template <backend B>
-double points_per_second(B& b, const map_buffers<B>& map, const buffer_of<B, vec4>& points,
-    const knn_settings& settings, double seconds, std::optional<knn_estimates<B>>& e)
-{
-    e = knn_grid_estimate(b, map, points, settings);
-    double spent = 0, done = 0;
-    for (; spent < seconds; done += static_cast<double>(points.size()))
-        spent += seconds_of([&] {
-            e = knn_grid_estimate(b, map, points, settings);
-            b.finish();
-        });
-    return done / spent;
-}
-
-template <backend B>
-photons<B> upload_photons(B& b, const data_set& s)
-{
-    return {b.upload(std::span<const vec4>(s.positions)), b.upload(std::span<const vec4>(s.powers))};
-}
-
 /// The cpu backend's search on two threads.
 class two_threads {
 public:
@@ -89,30 +68,20 @@ public:
     }
     double rate(const knn_settings& settings, double seconds)
     {
-        return points_per_second(b_, map_, points_, settings, seconds, last_);
+        std::optional<knn_estimates<cpu_backend>> e;
+        return points_per_second(b_, map_, points_, settings, seconds, e);
     }
 
 private:
     cpu_backend b_{2};
     map_buffers<cpu_backend> map_;
     cpu_backend::buffer<vec4> points_;
-    std::optional<knn_estimates<cpu_backend>> last_;
 };
 
 constexpr double least_build
     = 8; ///< how many times as fast as the fastest tree's build a million photons' is, on one thread
 constexpr double most_bytes = 48;    ///< per photon, after the build
 constexpr double least_by_two = 1.8; ///< points per second on two threads over those on one
-
-std::vector<peer> all_peers(const data_set& s)
-{
-    std::vector<peer> all{cgal(s)};
-    for (const int leaf : {10, 25, 50}) {
-        all.push_back(flann_tree(s, leaf));
-        all.push_back(nanoflann_tree(s, static_cast<size_t>(leaf)));
-    }
-    return all;
-}
 
 /// What is measured of one data set.
 struct measured {
@@ -155,7 +124,6 @@ int measure(B& b, int number, const arguments& a)
     const auto points = b.upload(std::span<const vec4>(s.points));
     const knn_settings settings{.k = s.k, .max_radius = 1e18f};
     std::vector<double> builds, searches, searches_by_two, peer_rates[8];
-    std::vector<float> known;
     map_buffers<B> map;
     for (int repetition = 0; repetition < 9; ++repetition) {
         auto p = upload_photons(b, s);
@@ -166,6 +134,10 @@ int measure(B& b, int number, const arguments& a)
     }
     const auto after = b.bytes();
     const auto peers = all_peers(s);
+    std::vector<peer_search> peer_searches;
+    for (const auto& p : peers)
+        peer_searches.emplace_back(p, s, s.k, a.threads, a.seconds);
+    kth_distances known(s.points.size());
     std::optional<two_threads> two;
     if (is_alone(a) && std::thread::hardware_concurrency() > 1)
         two.emplace(s, g);
@@ -175,11 +147,11 @@ int measure(B& b, int number, const arguments& a)
         searches.push_back(points_per_second(b, map, points, settings, a.seconds, e));
         if (two)
             searches_by_two.push_back(two->rate(settings, a.seconds));
-        if (known.empty())
-            for (const auto& v : b.download(e->irradiance))
-                known.push_back(v.w);
+        const auto found = b.download(e->irradiance);
+        for (size_t i = 0; i < found.size(); ++i)
+            wrong += known.differs(i, found[i].w) ? 1u : 0u;
         for (size_t i = 0; i < peers.size(); ++i)
-            peer_rates[i].push_back(rate(peers[i], s, known, a.threads, a.seconds, wrong));
+            peer_rates[i].push_back(peer_searches[i].rate(known, wrong));
     }
     size_t best = 0;
     double best_build = 1e9;

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "data_sets.hpp"
-#include "median.hpp"
+#include "kth_distances.hpp"
+#include "point_runs.hpp"
+#include "stopwatch.hpp"
 
 #include <CGAL/Orthogonal_k_neighbor_search.h>
 #include <CGAL/Search_traits_3.h>
@@ -15,39 +17,40 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace photongrid::bench {
 
 using std::size_t;
 
-inline double seconds_of(const std::function<void()>& work)
-{
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-/// Median of three.
-inline double median_seconds_of(const std::function<void()>& work)
-{
-    std::vector<double> all;
-    for (int repetition = 0; repetition < 3; ++repetition)
-        all.push_back(seconds_of(work));
-    return median(all);
-}
 /// A peer: how long it built, and its search.
 struct peer {
     std::string name;
     double build_seconds;
-    std::function<float(const vec4& point)> kth; ///< squared distance of the k-th nearest; from any thread
+    std::function<float(const vec4& point, uint k)> kth; ///< squared distance of the k-th nearest; from any thread
 };
 
 using kernel_of_cgal = CGAL::Simple_cartesian<float>;
 using cgal_search = CGAL::Orthogonal_k_neighbor_search<CGAL::Search_traits_3<kernel_of_cgal>>;
+
+/// Whether CGAL can build a tree of these photons. Of equal ones it splits off one at a time: so many as 10,000 take a
+/// second, ten times as many overflow its stack.
+inline bool is_for_cgal(const data_set& s)
+{
+    constexpr size_t most_equal = 10000;
+    auto sorted = s.positions;
+    std::sort(sorted.begin(), sorted.end(),
+        [](const vec4& a, const vec4& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
+    for (size_t i = most_equal; i < sorted.size(); ++i)
+        if (sorted[i] == sorted[i - most_equal])
+            return false;
+    return true;
+}
 
 inline peer cgal(const data_set& s)
 {
@@ -59,7 +62,7 @@ inline peer cgal(const data_set& s)
         tree = std::make_shared<cgal_search::Tree>(points.begin(), points.end());
         tree->build();
     });
-    return {"CGAL", build, [tree, k = s.k](const vec4& q) {
+    return {"CGAL", build, [tree](const vec4& q, uint k) {
                 const cgal_search search(*tree, kernel_of_cgal::Point_3(q.x, q.y, q.z), k);
                 float last = 0;
                 for (const auto& found : search)
@@ -80,7 +83,7 @@ inline peer flann_tree(const data_set& s, int leaf)
             data, flann::KDTreeSingleIndexParams(leaf));
         tree->buildIndex();
     });
-    return {"FLANN, leaves of " + std::to_string(leaf), build, [coordinates, tree, k = s.k](const vec4& q) {
+    return {"FLANN, leaves of " + std::to_string(leaf), build, [coordinates, tree](const vec4& q, uint k) {
                 thread_local std::vector<size_t> indices;
                 thread_local std::vector<float> distances;
                 indices.resize(k);
@@ -113,7 +116,7 @@ inline peer nanoflann_tree(const data_set& s, size_t leaf)
     std::shared_ptr<tree_type> tree;
     const double build = median_seconds_of(
         [&] { tree = std::make_shared<tree_type>(3, *data, nanoflann::KDTreeSingleIndexAdaptorParams(leaf)); });
-    return {"nanoflann, leaves of " + std::to_string(leaf), build, [data, tree, k = s.k](const vec4& q) {
+    return {"nanoflann, leaves of " + std::to_string(leaf), build, [data, tree](const vec4& q, uint k) {
                 thread_local std::vector<uint> indices;
                 thread_local std::vector<float> distances;
                 indices.resize(k);
@@ -124,39 +127,67 @@ inline peer nanoflann_tree(const data_set& s, size_t leaf)
             }};
 }
 
-/// Points per second of a peer. Each point's k-th squared distance is compared with `known`, and counted in `wrong` if
-/// it differs by more than the rounding of its terms, which the peer's compiler may fuse; the next photon's distance
-/// differs by a thousand times as much.
-inline double rate(
-    const peer& p, const data_set& s, const std::vector<float>& known, unsigned threads, double seconds, size_t& wrong)
+/// All peers that can hold these photons, with the sizes of leaves that are fastest for some set. They read `s`, which
+/// must outlive them.
+inline std::vector<peer> all_peers(const data_set& s)
 {
-    constexpr size_t run = 64;
-    constexpr float rounding = 0x1p-22f; // four units in the last place
-    const size_t runs = s.points.size() / run;
-    const auto search = [&](size_t every) {
-        std::atomic<size_t> done = 0, differ = 0;
+    std::vector<peer> all;
+    if (is_for_cgal(s))
+        all.push_back(cgal(s));
+    for (const int leaf : {10, 25, 50}) {
+        all.push_back(flann_tree(s, leaf));
+        all.push_back(nanoflann_tree(s, static_cast<size_t>(leaf)));
+    }
+    return all;
+}
+
+/// A peer's search at a set's points for the k nearest, or at the runs of them that it takes in `seconds`.
+class peer_search {
+public:
+    peer_search(const peer& p, const data_set& s, uint k, unsigned threads, double seconds)
+        : peer_(p), set_(s), k_(k), threads_(threads), seconds_(seconds)
+    {
+    }
+
+    /// Points per second. Each point's k-th squared distance is compared with `known`, and counted in `wrong` if it
+    /// differs. The first call chooses the runs.
+    double rate(kth_distances& known, size_t& wrong)
+    {
+        if (!runs_)
+            runs_ = fitting_runs(set_.points.size(), seconds_, seconds_,
+                [&](const point_runs& runs) { return seconds_of_search(runs, known, wrong); });
+        return static_cast<double>(runs_->taken()) / seconds_of_search(*runs_, known, wrong);
+    }
+
+private:
+    double seconds_of_search(const point_runs& runs, kth_distances& known, size_t& wrong) const
+    {
+        std::atomic<size_t> differ = 0;
         const auto one = [&](size_t r) {
             size_t bad = 0;
-            for (size_t i = r * every * run; i < r * every * run + run; ++i)
-                bad += std::abs(p.kth(s.points[i]) - known[i]) <= rounding * known[i] ? 0u : 1u;
-            done += run;
+            for (size_t i = runs.begin(r); i < runs.end(r); ++i)
+                bad += known.differs(i, peer_.kth(set_.points[i], k_)) ? 1u : 0u;
             differ += bad;
         };
-        const size_t n = std::max<size_t>(runs / every, 1);
         const double t = seconds_of([&] {
-            if (threads == 1) {
-                for (size_t r = 0; r < n; ++r)
+            if (threads_ == 1) {
+                for (size_t r = 0; r < runs.count(); ++r)
                     one(r);
             } else {
-                tbb::task_arena arena(static_cast<int>(threads));
-                arena.execute([&] { tbb::parallel_for(size_t{0}, n, one); });
+                tbb::task_arena arena(static_cast<int>(threads_));
+                arena.execute([&] { tbb::parallel_for(size_t{0}, runs.count(), one); });
             }
         });
         wrong += differ;
-        return static_cast<double>(done) / t;
-    };
-    const double first = search(std::max<size_t>(runs / 40, 1));
-    return search(std::max<size_t>(static_cast<size_t>(static_cast<double>(s.points.size()) / (first * seconds)), 1));
-}
+        return t;
+    }
+
+    const peer& peer_;
+    const data_set& set_;
+    uint k_;
+    unsigned threads_;
+    double seconds_;
+    std::optional<point_runs> runs_;
+};
 
 } // namespace photongrid::bench

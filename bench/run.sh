@@ -7,7 +7,7 @@
 #
 #   --algorithms  each algorithm on each backend by number of photons and entropy of keys: JSON and plots in out/algorithms/
 #   --peers       neighbour searches and sorts against CGAL, FLANN, nanoflann, std::sort, Highway's vqsort, TBB; sorting passes
-#                 on vulkan and gl against plain ones; whole pictures, the ring and the ball against POV-Ray
+#                 on vulkan and gl against plain ones; whole pictures, the ring and the ball against POV-Ray; plots in out/clustered_peers/
 #   --paper       the paper's Tables 1 and 2, what leaving out finished elements gains, our defaults beside the paper's method
 #   --interactive how soon a change is seen, and when a picture looks converged
 #   --estimates   error and cost of searches, filters, leak policies and edge correction, on whole pictures
@@ -157,6 +157,7 @@ if [[ $smoke == yes ]]; then
   must $build/bench/search_times 1 vulkan 1000
   must $build/bench/knn_peers --sets 1 --seconds 0.05
   must $build/bench/knn_peers_portable --sets 1 --seconds 0.05
+  must bench/clustered_peers.sh --photons 2000 --k 10 --seconds 0.01
   must $build/bench/sort_peers 1 65536
   must bench/estimator_errors.sh --quick
   must bench/edge_correction.sh --quick
@@ -192,6 +193,8 @@ if asked peers; then
   must $build/bench/knn_peers --backend vulkan --threads 2 --sets 3
   echo
   must $build/bench/knn_peers --backend gl --threads 2 --sets 3
+  title "Nearest neighbours among photons in clusters, one thread"
+  must bench/clustered_peers.sh
   title "Exact k against at least k, by grid"
   must $build/bench/search_times
   title "Sorting pairs, one thread"
