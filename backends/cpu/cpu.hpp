@@ -6,6 +6,7 @@
 #include <photongrid/backends/cpu/cpu_backend.hpp>
 #if !defined(PHOTONGRID_CPU_COMPILED) // else the library photongrid::cpu_compiled defines the overrides
 #include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>
+#include <photongrid/backends/cpu/overrides/block_map.hpp>
 #include <photongrid/backends/cpu/overrides/grid_index.hpp>
 #include <photongrid/backends/cpu/overrides/knn_grid_estimate.hpp>
 #include <photongrid/backends/cpu/overrides/knn_neighbours.hpp>

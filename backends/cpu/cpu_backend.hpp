@@ -5,6 +5,7 @@
 #include <photongrid/backends/cpu/cpu_by_kernels.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/estimate/knn_neighbours.hpp>
+#include <photongrid/map/block_map.hpp>
 #include <photongrid/map/map_builders.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -41,6 +42,7 @@ cpu_backend::buffer<glm::uvec2> grid_index(
     cpu_backend& device, const cpu_backend::buffer<glm::uvec2>& pairs, uint cells);
 map_buffers<cpu_backend> sorted_map(
     cpu_backend& device, photons<cpu_backend> p, const grid& g, uint parts = every_part);
+map_buffers<cpu_backend> block_map(cpu_backend& device, photons<cpu_backend> p, uint parts = every_part);
 /// @}
 
 /// The search on the cpu backend. It finds the same photons as the kernels. Sums differ by at most 10^-6, because the

@@ -12,8 +12,8 @@ namespace photongrid::vulkan {
 
 /// A batch has room for so many passes of so many buffers.
 inline constexpr std::uint32_t passes_per_batch = 64;
-inline constexpr std::uint32_t buffers_per_pass = 20; // 8 inputs, 8 outputs, 4 for verbs
-inline constexpr std::uint32_t inputs_per_pass = 8;
+inline constexpr std::uint32_t buffers_per_pass = 21; // 9 inputs, 8 outputs, 4 for verbs
+inline constexpr std::uint32_t inputs_per_pass = 9;
 
 /// A batch of at most passes_per_batch passes.
 struct batch {

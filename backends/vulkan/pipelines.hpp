@@ -64,12 +64,12 @@ public:
             bindings.push_back(
                 {i, texels ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
         for (std::uint32_t o = 0; v != verb::count && o < output_count<K>; ++o)
-            bindings.push_back({8 + o});
+            bindings.push_back({9 + o});
         static_assert(
-            input_count<K> <= 8 && output_count<K> <= 8, "a kernel has at most 8 inputs and 8 outputs and states");
+            input_count<K> <= 9 && output_count<K> <= 8, "a kernel has at most 9 inputs and 8 outputs and states");
         const std::uint32_t own = v == verb::count ? 1 : v == verb::run ? 0 : 3;
         for (std::uint32_t e = 0; e < own; ++e)
-            bindings.push_back({16 + e});
+            bindings.push_back({17 + e});
         const auto words = compile<K>(v, switches, texels);
         const auto begin = std::chrono::steady_clock::now();
         p = std::make_unique<pipeline>(

@@ -4,6 +4,7 @@
 
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/map/block_map.hpp>
 #include <photongrid/map/fitting_grid.hpp>
 #include <photongrid/map/map_builders.hpp>
 
@@ -17,6 +18,7 @@ PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> sorted_map(
     serial_backend&, photons<serial_backend>, const grid&, uint);
 PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> routed_map(
     serial_backend&, photons<serial_backend>, const grid&, uint, uint, uint, surplus_kind);
+PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> block_map(serial_backend&, photons<serial_backend>, uint);
 PHOTONGRID_COMPILED_HERE template routed_cells<serial_backend> stencil_route(
     serial_backend&, const photons<serial_backend>&, const grid&, uint, uint, uint);
 PHOTONGRID_COMPILED_HERE template grid fitting_grid(serial_backend&, const photons<serial_backend>&, uint, float);

@@ -47,18 +47,16 @@ protected:
         std::vector<uint> ids;    ///< of the photons in the map
         std::vector<vec4> powers; ///< by id: routing has changed them
     };
-    known_map known(const oriented_set& s, bool routed)
+    known_map known(const oriented_set& s, map_kind kind)
     {
         auto& b = this->b();
-        known_map m{routed ? routed_map(b, upload_photons(b, s), s.photons.g, 3, 5)
-                           : sorted_map(b, upload_photons(b, s), s.photons.g),
-            {}, std::vector<vec4>(s.photons.positions.size())};
-        const auto list = b.download(m.map.list);
+        known_map m{make_map(b, kind, upload_photons(b, s), s.photons.g, 3, 5), {},
+            std::vector<vec4>(s.photons.positions.size())};
         const auto stored = b.download(m.map.photons.powers);
-        for (const auto& c : b.download(m.map.cells))
-            for (uint at = c.x; at < c.x + c.y; ++at) {
-                m.ids.push_back(list[at]);
-                m.powers[list[at]] = stored[at];
+        for (const auto& ids : ids_in(b, m.map))
+            for (const uint id : ids) {
+                m.powers[id] = stored[m.ids.size()];
+                m.ids.push_back(id);
             }
         return m;
     }
@@ -77,7 +75,8 @@ protected:
         const auto used = b.download(e.used);
         const auto standard_error = b.download(e.standard_error);
         for (std::size_t q = 0; q < s.points.size(); ++q) {
-            const auto expected = estimate_by_force(s, m.ids, m.powers, q, settings, irradiance[q].w);
+            const auto expected = estimate_by_force(
+                s, m.ids, m.powers, q, settings, m.map.has_blocks() ? std::optional<float>() : irradiance[q].w);
             const auto where = " at point " + std::to_string(q);
             if (used[q].x != expected.ids.size())
                 return "used " + std::to_string(used[q].x) + ", not " + std::to_string(expected.ids.size()) + where;
@@ -108,10 +107,7 @@ protected:
         const photon_set& s, const map_buffers<B>& map, const std::vector<vec4>& points, const knn_settings& k)
     {
         auto& b = this->b();
-        const auto list = b.download(map.list);
-        std::vector<std::vector<uint>> in_cells;
-        for (const auto& c : b.download(map.cells))
-            in_cells.emplace_back(list.begin() + c.x, list.begin() + c.x + c.y);
+        const auto in_cells = ids_in(b, map);
         const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), k);
         const auto irradiance = b.download(e.irradiance);
         const auto used = b.download(e.used);
@@ -129,6 +125,7 @@ protected:
             const bool is_by_photon = near.size() >= k.k;
             if (is_by_photon) {
                 radius2 = k.search == search_kind::exact_k ? near[k.k - 1].first
+                    : map.has_blocks()                     ? radius2_in_blocks(near[k.k - 1].first, max2)
                                                            : grown_by_force(s.positions, s.g, in_cells, points[q], k);
                 std::erase_if(near, [&](const auto& n) { return n.first > radius2; });
                 if (k.search == search_kind::exact_k)
@@ -141,7 +138,8 @@ protected:
                 return "used " + std::to_string(used[q].x) + ", not " + std::to_string(near.size()) + where;
             const double min2 = static_cast<double>(k.min_radius) * static_cast<double>(k.min_radius),
                          disc = M_PI * std::max(static_cast<double>(radius2), min2);
-            if (is_by_photon && k.bias == bias_kind::unbiased && radius2 >= k.min_radius * k.min_radius)
+            if (is_by_photon && !(map.has_blocks() && k.search == search_kind::at_least_k)
+                && k.bias == bias_kind::unbiased && radius2 >= k.min_radius * k.min_radius)
                 near.pop_back();
             glm::dvec3 sum(0);
             for (const auto& n : near)

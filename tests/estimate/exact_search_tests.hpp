@@ -12,7 +12,8 @@ namespace photongrid::testing {
 TYPED_TEST_P(estimators, every_setting_equals_brute_force)
 {
     const auto s = make_oriented(distribution::box_faces, 900, {6, 6, 12}, 60, 3);
-    const auto sorted = this->known(s, false), routed = this->known(s, true);
+    const typename TestFixture::known_map maps[]
+        = {this->known(s, map_kind::sorted), this->known(s, map_kind::routed), this->known(s, map_kind::blocks)};
     for (std::size_t i = 0; i < std::size(all_policies); ++i) {
         static_assert(std::size(all_policies) >= std::size(filters));
         const knn_settings k{.k = 30,
@@ -22,15 +23,17 @@ TYPED_TEST_P(estimators, every_setting_equals_brute_force)
             .filter = filters[i % std::size(filters)].kind,
             .bias = all_biases[i % std::size(all_biases)],
             .leaks = all_policies[i]};
-        ASSERT_EQ(this->difference(s, i < 2 ? routed : sorted, k), "") << "policy " << i;
+        for (const auto& map : maps)
+            ASSERT_EQ(this->difference(s, map, k), "")
+                << "policy " << i << (map.map.has_blocks() ? ", block map" : ", grid map");
     }
 }
 
 TYPED_TEST_P(estimators, every_combination_equals_brute_force)
 {
     const auto s = make_oriented(distribution::box_faces, 900, {6, 6, 12}, 60, 3);
-    for (const bool routed : {false, true}) {
-        const auto map = this->known(s, routed);
+    for (const auto kind : all_maps) {
+        const auto map = this->known(s, kind);
         for (const auto search : all_searches)
             for (const auto& f : filters)
                 for (const auto bias : all_biases)
@@ -41,8 +44,9 @@ TYPED_TEST_P(estimators, every_combination_equals_brute_force)
                         k.bias = bias;
                         k.leaks = leaks;
                         ASSERT_EQ(this->difference(s, map, k), "")
-                            << "search " << int(search) << " filter " << f.name << " bias " << int(bias) << " side "
-                            << leaks.side << " cosine " << leaks.min_cosine << " flattening " << leaks.flattening;
+                            << name_of(kind) << " search " << int(search) << " filter " << f.name << " bias "
+                            << int(bias) << " side " << leaks.side << " cosine " << leaks.min_cosine << " flattening "
+                            << leaks.flattening;
                     }
     }
     this->report("A10_policies",
@@ -65,12 +69,13 @@ TYPED_TEST_P(estimators, exact_k_finds_flanns_photons_on_every_distribution)
         settings.bias = bias_kind::paper;
         settings.visits_per_pass = visits;
         settings.ranges_per_pass = visits == 1 ? 2 : 1023;
-        const auto what = this->difference(s, this->known(s, false), settings);
+        const auto kind = *rc::gen::element(map_kind::sorted, map_kind::blocks);
+        const auto what = this->difference(s, this->known(s, kind), settings);
         if (!what.empty())
             RC_FAIL(what);
 
         if (numbers.size() >= k) {
-            const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
+            const auto map = make_map(b, kind, upload_photons(b, s), s.photons.g);
             const auto irradiance
                 = b.download(knn_grid_estimate(b, map, b.upload(std::span<const vec4>(s.points)), settings).irradiance);
             const auto known = kth_by_flann(s.photons.positions, s.points, k);
@@ -98,9 +103,7 @@ TYPED_TEST_P(estimators, ties_at_the_kth_distance_go_by_id)
     }
     knn_settings settings{.k = 520, .max_radius = 1};
     settings.bias = bias_kind::paper;
-    const auto map = sorted_map(b, upload_photons(b, set), set.g);
     const std::vector<vec4> points(1, vec4(0.5f, 0.5f, 0.5f, 1.0f));
-    const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), settings);
     glm::dvec3 power(0);
     uint tied = 0;
     for (uint i = 0; i < 70020; ++i) {
@@ -108,14 +111,18 @@ TYPED_TEST_P(estimators, ties_at_the_kth_distance_go_by_id)
         if (nearer || tied++ < 500)
             power += glm::dvec3(set.powers[i]);
     }
-    EXPECT_EQ(b.download(e.used)[0].x, 520u);
-    const auto irradiance = b.download(e.irradiance)[0];
-    EXPECT_EQ(irradiance.w, 0.0625f);
     double largest = 0;
-    for (int c = 0; c < 3; ++c) {
-        const double expected = power[c] / (M_PI * 0.0625);
-        largest = std::max(largest, std::abs(static_cast<double>(irradiance[c]) / expected - 1));
-        EXPECT_NEAR(irradiance[c], expected, 2e-6 * expected);
+    for (const auto kind : exact_maps) {
+        const auto map = make_map(b, kind, upload_photons(b, set), set.g);
+        const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), settings);
+        EXPECT_EQ(b.download(e.used)[0].x, 520u) << name_of(kind);
+        const auto irradiance = b.download(e.irradiance)[0];
+        EXPECT_EQ(irradiance.w, 0.0625f) << name_of(kind);
+        for (int c = 0; c < 3; ++c) {
+            const double expected = power[c] / (M_PI * 0.0625);
+            largest = std::max(largest, std::abs(static_cast<double>(irradiance[c]) / expected - 1));
+            EXPECT_NEAR(irradiance[c], expected, 2e-6 * expected) << name_of(kind);
+        }
     }
     this->report("F3", "relative error of irradiance of the 520 nearest of 70,020, 70,000 of them tied:", largest);
 }
@@ -139,13 +146,15 @@ TYPED_TEST_P(estimators, ties_in_many_cells_go_by_id)
     s.directions.assign(729, vec4(0, -1, 0, 0));
     s.normals.assign(729, vec4(0, 1, 0, 0));
     s.point_normals.assign(125, vec4(0, 1, 0, 0));
-    const auto map = this->known(s, false);
-    for (const uint k : {1u, 4u, 13u, 50u})
-        for (const auto bias : all_biases) {
-            knn_settings settings{.k = k, .max_radius = 2, .min_radius = 1e-3f};
-            settings.bias = bias;
-            EXPECT_EQ(this->difference(s, map, settings), "") << "k " << k << " bias " << int(bias);
-        }
+    for (const auto kind : exact_maps) {
+        const auto map = this->known(s, kind);
+        for (const uint k : {1u, 4u, 13u, 50u})
+            for (const auto bias : all_biases) {
+                knn_settings settings{.k = k, .max_radius = 2, .min_radius = 1e-3f};
+                settings.bias = bias;
+                EXPECT_EQ(this->difference(s, map, settings), "") << "k " << k << " bias " << int(bias);
+            }
+    }
 }
 
 TYPED_TEST_P(estimators, ties_of_repeated_photons_go_by_id)
@@ -164,7 +173,7 @@ TYPED_TEST_P(estimators, ties_of_repeated_photons_go_by_id)
     s.directions.assign(42, vec4(0, -1, 0, 0));
     s.normals.assign(42, vec4(0, 1, 0, 0));
     s.point_normals.assign(4, vec4(0, 1, 0, 0));
-    const auto map = this->known(s, true);
+    const auto map = this->known(s, map_kind::routed);
     ASSERT_EQ(map.ids.size(), 42u);
     ASSERT_EQ(std::set(map.ids.begin(), map.ids.end()).size(), 11u);
     for (const uint k : {1u, 4u, 5u, 6u, 8u, 13u, 24u, 40u, 41u, 42u})
@@ -187,11 +196,13 @@ TYPED_TEST_P(estimators, squared_distances_too_small_for_a_float_count_as_zero)
     s.directions.assign(4, vec4(0, -1, 0, 0));
     s.normals.assign(4, vec4(0, 1, 0, 0));
     s.point_normals.assign(20, vec4(0, 1, 0, 0));
-    const auto map = this->known(s, false);
-    for (const uint k : {1u, 2u, 3u}) {
-        knn_settings settings{.k = k, .max_radius = 1, .min_radius = 1e-3f};
-        settings.bias = bias_kind::paper;
-        EXPECT_EQ(this->difference(s, map, settings), "") << "k " << k;
+    for (const auto kind : exact_maps) {
+        const auto map = this->known(s, kind);
+        for (const uint k : {1u, 2u, 3u}) {
+            knn_settings settings{.k = k, .max_radius = 1, .min_radius = 1e-3f};
+            settings.bias = bias_kind::paper;
+            EXPECT_EQ(this->difference(s, map, settings), "") << "k " << k;
+        }
     }
 }
 
@@ -211,15 +222,17 @@ TYPED_TEST_P(estimators, photons_within_the_least_radius_are_all_summed)
     s.directions.assign(12, vec4(0, -1, 0, 0));
     s.normals.assign(12, vec4(0, 1, 0, 0));
     s.point_normals.assign(3, vec4(0, 1, 0, 0));
-    const auto map = this->known(s, false);
-    for (const auto search : {search_kind::exact_k, search_kind::at_least_k})
-        for (const auto& f : filters)
-            for (const uint k : {1u, 2u, 3u, 4u, 5u, 10u, 12u}) {
-                const knn_settings settings{
-                    .k = k, .max_radius = 2, .min_radius = 0.0625f, .search = search, .filter = f.kind};
-                EXPECT_EQ(this->difference(s, map, settings), "")
-                    << "k " << k << " filter " << f.name << " search " << int(search);
-            }
+    for (const auto kind : exact_maps) {
+        const auto map = this->known(s, kind);
+        for (const auto search : {search_kind::exact_k, search_kind::at_least_k})
+            for (const auto& f : filters)
+                for (const uint k : {1u, 2u, 3u, 4u, 5u, 10u, 12u}) {
+                    const knn_settings settings{
+                        .k = k, .max_radius = 2, .min_radius = 0.0625f, .search = search, .filter = f.kind};
+                    EXPECT_EQ(this->difference(s, map, settings), "")
+                        << "k " << k << " filter " << f.name << " search " << int(search);
+                }
+    }
 }
 
 /// Photons and points at places that RapidCheck draws and shrinks, NaN, infinity and denormals among them. Photons that
@@ -243,7 +256,8 @@ TYPED_TEST_P(estimators, find_the_photons_of_brute_force_for_any_numbers)
             .min_radius = 1e-3f};
         settings.search = *rc::gen::element(search_kind::exact_k, search_kind::at_least_k);
         settings.bias = *rc::gen::element(bias_kind::paper, bias_kind::unbiased);
-        const auto map = sorted_map(b, upload_photons(b, s), s.g);
+        const auto kind = *rc::gen::element(map_kind::sorted, map_kind::blocks);
+        const auto map = make_map(b, kind, upload_photons(b, s), s.g);
         const auto wrong = this->other_photons(s, map, points, settings);
         if (!wrong.empty())
             RC_FAIL(wrong);
@@ -263,11 +277,13 @@ TYPED_TEST_P(estimators, distances_next_to_each_other_are_told_apart)
     }
     s.points = {{0.0f, 0.0f, 0.0f, 1.0f}};
     s.point_normals = {{0.0f, 1.0f, 0.0f, 0.0f}};
-    const auto map = this->known(s, false);
-    for (uint k = 1; k <= 300; k += 13) {
-        knn_settings settings{.k = k, .max_radius = 2};
-        settings.bias = bias_kind::paper;
-        EXPECT_EQ(this->difference(s, map, settings), "") << "k " << k;
+    for (const auto kind : exact_maps) {
+        const auto map = this->known(s, kind);
+        for (uint k = 1; k <= 300; k += 13) {
+            knn_settings settings{.k = k, .max_radius = 2};
+            settings.bias = bias_kind::paper;
+            EXPECT_EQ(this->difference(s, map, settings), "") << "k " << k;
+        }
     }
 }
 

@@ -95,8 +95,15 @@ std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std:
     return d2 < std::numeric_limits<float>::min() ? 0.0f : d2;
 }
 
+float radius2_in_blocks(float d2, float max_radius2)
+{
+    int exponent = 0;
+    const double eighths = std::ceil(8 * std::frexp(static_cast<double>(d2), &exponent));
+    return std::min(static_cast<float>(std::ldexp(eighths / 8, exponent)), max_radius2);
+}
+
 brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>& in_map,
-    const std::vector<vec4>& powers, std::size_t q, const knn_settings& k, float at_least_radius2)
+    const std::vector<vec4>& powers, std::size_t q, const knn_settings& k, std::optional<float> at_least_radius2)
 {
     std::vector<std::pair<float, uint>> near;
     const float max2 = k.max_radius * k.max_radius;
@@ -112,9 +119,10 @@ brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>&
         e.radius2 = static_cast<double>(near.back().first);
     }
     if (k.search == search_kind::at_least_k && near.size() >= k.k) {
-        std::erase_if(near, [&](const auto& x) { return x.first > at_least_radius2; });
-        e.kth = true;
-        e.radius2 = static_cast<double>(at_least_radius2);
+        e.kth = at_least_radius2.has_value();
+        const float radius2 = at_least_radius2.value_or(radius2_in_blocks(near[k.k - 1].first, max2));
+        std::erase_if(near, [&](const auto& x) { return x.first > radius2; });
+        e.radius2 = static_cast<double>(radius2);
     }
     const double min2 = static_cast<double>(k.min_radius) * static_cast<double>(k.min_radius);
     const double disc2 = std::max(e.radius2, min2);

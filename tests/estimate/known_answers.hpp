@@ -36,9 +36,14 @@ struct brute_estimate {
 /// precision, in the order that photon_distance.glsl promises.
 std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std::size_t id, const leak_policy& leaks);
 
-/// `at_least_radius2`: the squared radius of at_least_k, which depends on the order of cells.
+/// `at_least_radius2`: the squared radius of at_least_k in a grid map, which depends on the order of cells; none in a
+/// block map.
 brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>& in_map,
-    const std::vector<glm::vec4>& powers, std::size_t q, const knn_settings& k, float at_least_radius2);
+    const std::vector<glm::vec4>& powers, std::size_t q, const knn_settings& k, std::optional<float> at_least_radius2);
+
+/// The squared radius of at_least_k in a block map, if the k-th nearest photon has the squared distance d2: the next of
+/// the numbers 1, 1.25, 1.5 and 1.75 times a power of two.
+float radius2_in_blocks(float d2, float max_radius2);
 
 /// The squared radius of at_least_k, m^2, by figure 6 of the paper: the largest squared distance of the first k photons
 /// within the maximum radius, or that radius if there are fewer. Cells are visited ring by ring, and within a ring by

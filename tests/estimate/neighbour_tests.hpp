@@ -52,20 +52,19 @@ class neighbours : public on_backend<Tag> {
 protected:
     using B = typename Tag::type;
 
-    map_buffers<B> map_of(const oriented_set& s, bool routed = false)
+    map_buffers<B> map_of(const oriented_set& s, map_kind kind = map_kind::sorted)
     {
         auto& b = this->b();
         auto p = upload_photons(b, s.photons);
         p.directions = b.upload(std::span<const glm::vec4>(s.directions));
         p.normals = b.upload(std::span<const glm::vec4>(s.normals));
-        return routed ? routed_map(b, std::move(p), s.photons.g, 3, 5) : sorted_map(b, std::move(p), s.photons.g);
+        return make_map(b, kind, std::move(p), s.photons.g, 3, 5);
     }
-    std::vector<uint> ids_in(const map_buffers<B>& map)
+    std::vector<uint> ids_of(const map_buffers<B>& map)
     {
-        const auto list = this->b().download(map.list);
         std::vector<uint> ids;
-        for (const auto& c : this->b().download(map.cells))
-            ids.insert(ids.end(), list.begin() + c.x, list.begin() + c.x + c.y);
+        for (const auto& some : ids_in(this->b(), map))
+            ids.insert(ids.end(), some.begin(), some.end());
         return ids;
     }
     /// The lists of all points of `s`, row by row.
@@ -90,10 +89,10 @@ protected:
         return rows;
     }
     /// Which list differs from brute force's and how, or nothing.
-    std::string difference(const oriented_set& s, const knn_settings& settings, bool routed = false)
+    std::string difference(const oriented_set& s, const knn_settings& settings, map_kind kind = map_kind::sorted)
     {
-        const auto map = map_of(s, routed);
-        const auto in_map = ids_in(map);
+        const auto map = map_of(s, kind);
+        const auto in_map = ids_of(map);
         const auto rows = lists(map, s, settings);
         for (std::size_t q = 0; q < rows.size(); ++q) {
             const auto expected = listed_by_force(s, in_map, q, settings);
@@ -117,9 +116,10 @@ TYPED_TEST_P(neighbours, equal_brute_force_for_any_photons)
         const auto s = make_oriented(d, numbers, resolution, 40);
         const knn_settings settings{
             .k = *rc::gen::inRange(1u, 70u), .max_radius = static_cast<float>(*rc::gen::inRange(0, 20)) * 0.1f};
-        const auto wrong = this->difference(s, settings);
+        const auto kind = *rc::gen::elementOf(std::vector(std::begin(exact_maps), std::end(exact_maps)));
+        const auto wrong = this->difference(s, settings, kind);
         if (!wrong.empty())
-            RC_FAIL(wrong + " (" + name_of(d) + ")");
+            RC_FAIL(wrong + " (" + name_of(d) + ", " + name_of(kind) + ")");
     }));
 }
 
@@ -142,12 +142,13 @@ TYPED_TEST_P(neighbours, equal_brute_force_for_any_numbers)
         s.directions = s.normals = std::vector<glm::vec4>(s.photons.positions.size(), glm::vec4(0, 0, 1, 0));
         s.points = *rc::gen::resize(40, any_vectors(1));
         s.point_normals = std::vector<glm::vec4>(s.points.size(), glm::vec4(0, 0, 1, 0));
-        auto in_map = this->ids_in(this->map_of(s));
+        const auto kind = *rc::gen::elementOf(std::vector(std::begin(exact_maps), std::end(exact_maps)));
+        auto in_map = this->ids_of(this->map_of(s, kind));
         std::sort(in_map.begin(), in_map.end());
         RC_ASSERT(in_map == valid);
         const knn_settings settings{.k = *rc::gen::inRange(1u, 40u),
             .max_radius = *rc::gen::element(0.0f, 0.125f, 0.7f, 5.0f, 1e20f, std::numeric_limits<float>::infinity())};
-        const auto wrong = this->difference(s, settings);
+        const auto wrong = this->difference(s, settings, kind);
         if (!wrong.empty())
             RC_FAIL(wrong);
     }));
@@ -156,27 +157,28 @@ TYPED_TEST_P(neighbours, equal_brute_force_for_any_numbers)
 TYPED_TEST_P(neighbours, keep_every_leak_policy)
 {
     const auto s = make_oriented(distribution::box_faces, 900, {6, 6, 12}, 60, 3);
-    for (const bool routed : {false, true})
+    for (const auto kind : all_maps)
         for (const auto& leaks : {leak_policy{}, leak_policy{.side = true}, leak_policy{.min_cosine = 0.3f},
                  leak_policy{.flattening = 3}, leak_policy{.side = true, .min_cosine = -0.5f, .flattening = 1.5f}})
-            ASSERT_EQ(this->difference(s, {.k = 30, .max_radius = 0.4f, .leaks = leaks}, routed), "")
-                << "side " << leaks.side << " cosine " << leaks.min_cosine << " flattening " << leaks.flattening;
+            ASSERT_EQ(this->difference(s, {.k = 30, .max_radius = 0.4f, .leaks = leaks}, kind), "") << name_of(
+                kind) << " side " << leaks.side << " cosine " << leaks.min_cosine << " flattening " << leaks.flattening;
 }
 
 TYPED_TEST_P(neighbours, of_many_at_one_distance_have_the_smallest_ids)
 {
     // 500 photons at two points: every list is a tie. A routed map keeps few of them, and repeats those.
     const auto s = make_oriented(distribution::coincident, 500, {4, 4, 4}, 20, 5);
-    for (const bool routed : {false, true})
+    for (const auto kind : all_maps)
         for (const uint k : {1u, 3u, 16u, 17u, 64u, 65u, 300u})
-            ASSERT_EQ(this->difference(s, {.k = k, .max_radius = 3}, routed), "") << "k " << k << " routed " << routed;
+            ASSERT_EQ(this->difference(s, {.k = k, .max_radius = 3}, kind), "") << "k " << k << " " << name_of(kind);
 }
 
 TYPED_TEST_P(neighbours, lists_as_long_as_there_are_photons_and_longer)
 {
     const auto s = make_oriented(distribution::uniform, 200, {5, 5, 5}, 9, 6);
-    for (const uint k : {199u, 200u, 201u, 513u})
-        ASSERT_EQ(this->difference(s, {.k = k, .max_radius = 9}), "") << "k " << k;
+    for (const auto kind : exact_maps)
+        for (const uint k : {199u, 200u, 201u, 513u})
+            ASSERT_EQ(this->difference(s, {.k = k, .max_radius = 9}, kind), "") << "k " << k << " " << name_of(kind);
 }
 
 TYPED_TEST_P(neighbours, distances_are_flanns)
@@ -226,9 +228,11 @@ TYPED_TEST_P(neighbours, say_what_is_wrong)
 TYPED_TEST_P(neighbours, of_the_same_photons_are_the_same_with_small_passes)
 {
     const auto s = make_oriented(distribution::clustered, 3000, {9, 9, 9}, 50, 9);
-    const auto map = this->map_of(s);
-    EXPECT_EQ(this->lists(map, s, {.k = 50, .max_radius = 2}),
-        this->lists(map, s, {.k = 50, .max_radius = 2, .visits_per_pass = 37, .ranges_per_pass = 5}));
+    for (const auto kind : exact_maps) {
+        const auto map = this->map_of(s, kind);
+        EXPECT_EQ(this->lists(map, s, {.k = 50, .max_radius = 2}),
+            this->lists(map, s, {.k = 50, .max_radius = 2, .visits_per_pass = 37, .ranges_per_pass = 5}));
+    }
 }
 
 REGISTER_TYPED_TEST_SUITE_P(neighbours, equal_brute_force_for_any_photons, equal_brute_force_for_any_numbers,

@@ -1,6 +1,7 @@
 // Guarantees of the four algorithms, on any backend. References: std::, brute force, FLANN; then the serial backend,
 // bit for bit. Included by each on_<backend>.cpp, which instantiates the suite for its tags.
 #pragma once
+#include "block_map_tests.hpp"
 #include "buffer_tests.hpp"
 #include "route_tests.hpp"
 #include "search_tests.hpp"
@@ -22,6 +23,8 @@ REGISTER_TYPED_TEST_SUITE_P(algorithms, a_fitting_grid_suits_any_photons, buffer
     estimate_uses_exactly_the_photons_within_its_radius, estimate_adds_up_the_power_of_its_photons,
     estimate_defines_what_has_no_neighbours, coincident_photons_give_a_finite_estimate,
     poisoned_photons_are_counted_and_harmless, a_search_can_be_watched_and_resumed,
-    all_photons_in_one_cell_are_all_visited, everything_equals_the_serial_backend_bit_for_bit);
+    all_photons_in_one_cell_are_all_visited, blocks_hold_every_photon_once_in_boxes_that_fit,
+    block_maps_equal_the_serial_backends, searches_in_blocks_are_exact_at_every_scale,
+    everything_equals_the_serial_backend_bit_for_bit);
 
 } // namespace photongrid::testing

@@ -1,7 +1,7 @@
 // Photons and query points to test with: the distributions on which neighbour searches break.
 #pragma once
 
-#include <photongrid/map/map_builders.hpp>
+#include <photongrid/map/block_map.hpp>
 
 #include <cmath>
 #include <cstring>
@@ -109,6 +109,40 @@ inline std::vector<glm::vec4> make_points(const photon_set& s, std::size_t n, st
         points.emplace_back(p, 1.0f);
     }
     return points;
+}
+
+/// The kinds of maps that searches read.
+enum class map_kind { sorted, routed, blocks };
+inline constexpr map_kind all_maps[] = {map_kind::sorted, map_kind::routed, map_kind::blocks};
+inline constexpr map_kind exact_maps[] = {map_kind::sorted, map_kind::blocks}; ///< of every photon, as it was given
+
+inline const char* name_of(map_kind kind)
+{
+    constexpr const char* names[] = {"sorted map", "routed map", "block map"};
+    return names[static_cast<int>(kind)];
+}
+
+/// A map of a kind; `g`, `m` and `seed` where it has a grid, slots, or draws.
+template <backend B>
+map_buffers<B> make_map(
+    B& b, map_kind kind, photons<B> p, const grid& g, uint m = 16, uint seed = 3, uint parts = every_part)
+{
+    return kind == map_kind::routed ? routed_map(b, std::move(p), g, m, seed, parts)
+        : kind == map_kind::sorted  ? sorted_map(b, std::move(p), g, parts)
+                                    : block_map(b, std::move(p), parts);
+}
+
+/// The ids of a map's photons, by the cells or blocks that hold them.
+template <backend B>
+std::vector<std::vector<uint>> ids_in(B& b, const map_buffers<B>& map)
+{
+    const auto list = b.download(map.list);
+    std::vector<std::vector<uint>> ids;
+    if (map.has_blocks())
+        ids.emplace_back(list.begin(), list.begin() + map.in_blocks);
+    for (const auto& c : b.download(map.cells))
+        ids.emplace_back(list.begin() + c.x, list.begin() + c.x + c.y);
+    return ids;
 }
 
 template <backend B>

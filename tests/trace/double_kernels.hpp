@@ -38,6 +38,7 @@ inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintB
 #include <photongrid/estimate/row_cursor.glsl>
 #include <photongrid/estimate/search_radius.glsl>
 #include <photongrid/estimate/search_tally.glsl>
+#include <photongrid/map/block_tree.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/trace/photon_event.glsl>
 #include <photongrid/trace/scene_layout.glsl>

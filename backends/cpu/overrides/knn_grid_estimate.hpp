@@ -33,7 +33,7 @@ inline
     unfinished(e_.used, glm::uvec2(0));
     unfinished(e_.standard_error, glm::vec4(0));
     const cpu_backend::stopwatch watch;
-    order_ = cpu::order_along_curve(device, map.cells_of, points);
+    order_ = cpu::order_for_search(device, map, points);
     device.count_passes("knn_search", 0, watch);
 }
 

@@ -15,7 +15,7 @@ namespace cpu {
         const cpu_backend::stopwatch watch;
         const std::size_t n = in.points->size();
         neighbour_lists<cpu_backend> lists{in.s.k, device.make<uint>(n * in.s.k), device.make<float>(n * in.s.k)};
-        const auto order = order_along_curve(device, in.map->cells_of, *in.points);
+        const auto order = order_for_search(device, *in.map, *in.points);
         auto job = make_search_job(in, order);
         job.ids = device.elements_to_write(lists.ids).data();
         job.distances2 = device.elements_to_write(lists.distances2).data();

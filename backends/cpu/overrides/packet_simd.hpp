@@ -1,6 +1,6 @@
 // SIMD code for packets of photons. Included once per instruction set, so it has no include guard; other files include
 // simd.hpp.
-#include <photongrid/backends/cpu/overrides/rows_simd.hpp>
+#include <photongrid/backends/cpu/overrides/blocks_simd.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -51,7 +51,7 @@ public:
         const uints du;
         const std::size_t width = hn::Lanes(d);
         const float radius2 = radius * radius * 1.000004f + 1e-36f;
-        find_rows(j, center, radius2, rows_);
+        find_photons(j, center, radius2, rows_);
         std::size_t n = 0;
         for (std::size_t r = 0; r < rows_.rows; ++r)
             n += rows_.past[r] - rows_.first[r];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <photongrid/backends/cpu/cpu_backend.hpp>
+#include <photongrid/backends/cpu/overrides/curve_order.hpp>
 #include <photongrid/backends/cpu/overrides/radix_sort.hpp>
 #include <photongrid/backends/cpu/overrides/simd.hpp>
 #include <photongrid/estimate/knn_settings.hpp>
@@ -49,6 +50,19 @@ inline buffer<uint> order_along_curve(cpu_backend& device, const grid& g, const 
     return ordered;
 }
 
+/// The order of the points of a search, which keeps neighbours together: along the curve of a block map, else along a
+/// Morton curve.
+inline buffer<uint> order_for_search(
+    cpu_backend& device, const map_buffers<cpu_backend>& map, const buffer<glm::vec4>& points)
+{
+    if (!map.has_blocks())
+        return order_along_curve(device, map.cells_of, points);
+    const curve_job j{.curve = map.curve, .words = map.words, .positions = device.elements(points).data()};
+    auto pairs = begin_order(device, j, points.size()).pairs;
+    constexpr std::size_t least = 8; // fewer points at almost the same place need no order
+    return order_along_curve(device, j, std::move(pairs), least);
+}
+
 /// The job of the search `in`, without the buffers for its results.
 inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, const buffer<uint>& order)
 {
@@ -58,6 +72,10 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
     search_job j;
     j.cells_of = in.map->cells_of;
     j.cells = device.elements(in.map->cells);
+    j.levels = in.map->levels;
+    j.in_blocks = in.map->in_blocks;
+    if (in.map->has_blocks())
+        j.boxes = device.components(in.map->boxes);
     j.positions = device.components(photons.positions);
     j.powers = device.components(photons.powers);
     j.side = s.leaks.side;

@@ -15,6 +15,9 @@ namespace photongrid::cpu {
 struct search_job {
     grid cells_of{};
     std::span<const glm::uvec2> cells;
+    soa_vectors<const float> boxes;                                  ///< of a block map
+    uint levels = 0;                                                 ///< of a block map's tree; 0: a grid map
+    uint in_blocks = 0;                                              ///< photons of a block map in blocks
     soa_vectors<const float> positions, powers, directions, normals; ///< the last two only if a policy needs them
     const uint* list = nullptr;
     const glm::vec4* points = nullptr;

@@ -134,9 +134,11 @@ HWY_NOINLINE inline void list(
     end_list(j, point, held);
 }
 
-/// A first guess at the k-th squared distance, from cell counts.
+/// A first guess at the k-th squared distance, from cell counts or boxes.
 inline float guess(const search_job& j, uint point)
 {
+    if (j.levels > 0)
+        return std::min(guessed_by_boxes(j, glm::vec3(j.points[point])), j.max_radius2);
     return detail::guessed_radius2(j.cells_of, j.cells, glm::vec3(j.points[point]), j.k, j.max_radius2);
 }
 
@@ -158,7 +160,8 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
     query last;
     float last_radius = -1; // distance of the last query's k-th photon; none: -1
     float expected = -1;    // the distance to expect for the next query; -1: derive it from last_radius
-    const bool exact = j.search == search_kind::exact_k;
+    const bool exact = j.search != search_kind::fixed_radius, // finds the k-th distance
+        grows = j.search == search_kind::at_least_k;          // and takes the next radius of a series
     const float max_radius = std::sqrt(j.max_radius2);
     float step = 0; // mean distance between consecutive points
     for (std::size_t o = begin + 1; o < end; ++o)
@@ -222,6 +225,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             const float sure = std::max((packet_radius - distance_between(q.at, center) * 1.000001f) * 0.999998f, 0.0f);
             const float sure2 = std::min(begun_with >= max_radius ? j.max_radius2 : sure * sure, j.max_radius2);
             chosen_radius r{j.max_radius2, false};
+            float kth2 = -1; // squared distance of the k-th photon; none: -1
             float low2 = -1, high2 = sure2;
             if (exact && last_radius > 0 && (POLICIES == 0 || q.normal == last.normal)) {
                 // The band. A wrong band costs time only.
@@ -246,10 +250,16 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
                     found = scan<POLICIES>(j, q, low2, high2, near);
                     visited += static_cast<uint>(near.size());
                 }
-                if (found.x + found.y >= j.k)
-                    r = {
-                        nth_smallest(near.of(packet::kept), found.y, j.k - found.x, std::max(low2, 0.0f), high2), true};
-                else if (sure2 < j.max_radius2) {
+                if (found.x + found.y >= j.k) {
+                    kth2 = nth_smallest(near.of(packet::kept), found.y, j.k - found.x, std::max(low2, 0.0f), high2);
+                    r = {kth2, true};
+                    if (grows)
+                        r = {std::min(kernels::next_in_series(kth2), j.max_radius2), false};
+                    if (r.radius2 > sure2) { // start a new packet here
+                        expected = std::sqrt(r.radius2) * 1.00001f;
+                        break;
+                    }
+                } else if (sure2 < j.max_radius2) {
                     // The packet's radius is too small: start a new packet here.
                     const float growth
                         = 1.2f * static_cast<float>(j.k) / static_cast<float>(std::max(found.x + found.y, 1u));
@@ -265,9 +275,9 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
                 finish(j, point, r,
                     j.errors ? gather<true>(j, r, near, at_radius) : gather<false>(j, r, near, at_radius), visited);
             visited = 0;
-            last_radius = r.by_photon ? std::sqrt(r.radius2) : -1;
+            last_radius = kth2 >= 0 ? std::sqrt(kth2) : -1;
             last = q;
-            if (exact && r.by_photon && last_radius < 0.6f * begun_with) {
+            if (kth2 >= 0 && last_radius < 0.6f * begun_with) {
                 ++o;
                 break; // this packet has many more photons than needed
             }
@@ -278,7 +288,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
 template <int POLICIES>
 HWY_INLINE void search_or_grow(const search_job& j, std::size_t begin, std::size_t end)
 {
-    if (j.search == search_kind::at_least_k)
+    if (j.search == search_kind::at_least_k && j.levels == 0)
         grow_points<POLICIES>(j, begin, end);
     else
         search_points<POLICIES>(j, begin, end);

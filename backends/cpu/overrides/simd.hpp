@@ -27,11 +27,29 @@
 
 namespace photongrid::cpu {
 
+HWY_EXPORT(begin_order);
+HWY_EXPORT(find_words);
+HWY_EXPORT(find_boxes);
 HWY_EXPORT(find_cells);
 HWY_EXPORT(scatter_photons);
 HWY_EXPORT(order_bucket);
 HWY_EXPORT(scatter_pairs);
 HWY_EXPORT(search_block);
+
+/// See curve_simd.hpp.
+inline void begin_order(const curve_job& j, std::size_t first, std::size_t past, glm::uvec2* pairs, curve_summary& seen)
+{
+    HWY_DYNAMIC_DISPATCH(begin_order)(j, first, past, pairs, seen);
+}
+inline void find_words(const curve_job& j, uint word, glm::uvec2* pairs, std::size_t n)
+{
+    HWY_DYNAMIC_DISPATCH(find_words)(j, word, pairs, n);
+}
+inline void find_boxes(soa_vectors<const float> photons, uint in_blocks, std::size_t first, std::size_t past,
+    uint first_node, soa_vectors<float> corners)
+{
+    HWY_DYNAMIC_DISPATCH(find_boxes)(photons, in_blocks, first, past, first_node, corners);
+}
 
 /// See map_simd.hpp.
 inline void find_cells(

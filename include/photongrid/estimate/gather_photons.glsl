@@ -14,6 +14,7 @@
 #include <photongrid/estimate/row_cursor.glsl>
 #include <photongrid/estimate/search_radius.glsl>
 #include <photongrid/estimate/search_tally.glsl>
+#include <photongrid/map/block_tree.glsl>
 #include <photongrid/map/grid.glsl>
 
 struct Params {
@@ -21,7 +22,9 @@ struct Params {
     vec4 leaks;        // see photon_distance.glsl
     float min_radius2; // m^2; the disc is never smaller
     uint visits;       // the most photons to examine in a pass ...
-    uint ranges;       // ... and the most rows of cells
+    uint ranges;       // ... and the most rows of cells or boxes
+    uint levels;       // block map: of its tree
+    uint in_blocks;    // block map: photons in blocks
 };
 PARAMS(Params)
 #include <photongrid/estimate/search_inputs.glsl>
@@ -32,6 +35,7 @@ SWITCH(5, REPEATS) // the map may hold a photon several times
 IN_GROUPS(8)
 INPUT(6, uint, list)          // photon ids
 INPUT(7, vec4, powers)        // rgb, W; w: REPEATS: how often the map holds the photon
+INPUT(8, vec4, boxes)      // block map: see block_tree.glsl
 STATE(0, vec4, search_radius) // see search_radius.glsl
 STATE(1, uvec4, chosen)       // the same; w: how often the last id still counts
 STATE(2, vec4, sum)           // rgb: weighted power, W
@@ -42,6 +46,7 @@ STATE(6, uvec4, tally)        // see gather_tally.glsl
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
+#include <photongrid/estimate/search_blocks.glsl>
 #include <photongrid/estimate/photon_walk.glsl>
 
 uint chunk_id;

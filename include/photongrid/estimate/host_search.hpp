@@ -78,7 +78,8 @@ public:
     host_search() = default;
     template <backend B>
     host_search(B& device, const map_buffers<B>& map, const knn_settings& settings, bool powers)
-        : grid_(map.cells_of), cells_(device.download(map.cells)), list_(device.download(map.list)),
+        : grid_(map.cells_of), levels_(map.levels), in_blocks_(map.in_blocks), extent_(map.extent()),
+          cells_(device.download(map.cells)), boxes_(device.download(map.boxes)), list_(device.download(map.list)),
           positions_(device.download(map.photons.positions)), repeats_(map.may_repeat())
     {
         const auto& leaks = settings.leaks;
@@ -173,12 +174,16 @@ private:
     kernels::host_query query(const leak_policy& l, uint switches) const
     {
         kernels::host_query q;
-        q.args = {.grid = grid_, .leaks = {l.min_cosine, l.flattening * l.flattening - 1.0f, 0, 0}};
+        q.args = {.grid = grid_,
+            .leaks = {l.min_cosine, l.flattening * l.flattening - 1.0f, 0, 0},
+            .levels = levels_,
+            .in_blocks = in_blocks_};
         turn_switches(q, switches);
         q.bind(slot<0>{}, cells_);
         q.bind(slot<1>{}, positions_);
         q.bind(slot<2>{}, directions_);
         q.bind(slot<3>{}, normals_);
+        q.bind(slot<4>{}, boxes_);
         return q;
     }
 
@@ -188,18 +193,28 @@ private:
     {
         if (!(radius2 >= 0) || q.positions_data.empty() || !kernels::is_finite(p))
             return;
+        const auto visit_range = [&](const glm::uvec2& range) {
+            for (uint index = range.x; index < range.y; ++index)
+                if (const float d2 = q.photon_distance2(index, p, n); d2 <= radius2)
+                    f(index, d2);
+        };
+        if (!q.boxes_data.empty()) {
+            for (auto place = kernels::at_first_node(); !kernels::has_ended(place);) {
+                const bool near = q.is_near(place.x, p, radius2), block = q.is_block(place);
+                if (near && block)
+                    visit_range(q.photons_of_block(place.x));
+                place = near && !block ? kernels::at_children(place) : kernels::after_nodes(place, 1);
+            }
+            return;
+        }
         const auto& g = q.args.grid;
         const auto c = kernels::cell_coordinates(g, p);
         const float wide = q.wider(radius2);
         const auto rows_y = q.cells_within(p.y, wide, g.origin.y, g.inverse_cell.y, g.resolution.y),
                    rows_z = q.cells_within(p.z, wide, g.origin.z, g.inverse_cell.z, g.resolution.z);
         for (uint z = rows_z.x; z <= rows_z.y; ++z)
-            for (uint y = rows_y.x; y <= rows_y.y; ++y) {
-                const auto row = q.photons_of_row(p, y, z, c, radius2);
-                for (uint index = row.x; index < row.y; ++index)
-                    if (const float d2 = q.photon_distance2(index, p, n); d2 <= radius2)
-                        f(index, d2);
-            }
+            for (uint y = rows_y.x; y <= rows_y.y; ++y)
+                visit_range(q.photons_of_row(p, y, z, c, radius2));
     }
 
     /// Collects the photons that count in `scratch`, in no order. Returns how many there are.
@@ -212,9 +227,10 @@ private:
             return 0;
         const float max2 = detail::max_radius2(s);
         const bool exact = s.search == search_kind::exact_k;
-        float radius2 = exact ? std::min(1.3f * detail::guessed_radius2(grid_, cells_, p, s.k, max2), max2) : max2;
-        const auto extent = glm::vec3(grid_.cell) * glm::vec3(grid_.resolution);
-        const float far2 = 16 * (extent.x * extent.x + extent.y * extent.y + extent.z * extent.z);
+        const float guess = boxes_.empty() ? detail::guessed_radius2(grid_, cells_, p, s.k, max2)
+                                           : std::max(q.guessed_by_boxes(p, s.k), 1e-30f);
+        float radius2 = exact ? std::min(1.3f * guess, max2) : max2;
+        const float far2 = 16 * (extent_.x * extent_.x + extent_.y * extent_.y + extent_.z * extent_.z);
         for (;;) {
             found.clear();
             visit(q, p, n, radius2, [&](uint index, float d2) {
@@ -253,7 +269,10 @@ private:
     }
 
     grid grid_{};
+    uint levels_ = 0, in_blocks_ = 0; ///< of a block map
+    glm::vec3 extent_{0};             ///< of the map, m
     std::vector<glm::uvec2> cells_;
+    std::vector<glm::vec4> boxes_;
     std::vector<uint> list_;
     std::vector<glm::vec4> positions_, powers_, directions_, normals_;
     bool repeats_ = false; ///< the map may hold a photon several times

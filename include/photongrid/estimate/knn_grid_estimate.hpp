@@ -91,7 +91,7 @@ private:
         B& device, const map_buffers<B>& map, const vectors& points, const vectors* normals, const knn_settings& s)
         : in_(device, map, points, normals, s)
     {
-        if (in_.s.search == search_kind::at_least_k) {
+        if (in_.s.search == search_kind::at_least_k && !map.has_blocks()) {
             start_growing();
             return;
         }
@@ -111,7 +111,7 @@ private:
     uint gather_switches() const
     {
         const auto& s = in_.s;
-        return in_.template policies<K>() | in_.template repeats<K>() | detail::filter_switch(s.filter)
+        return in_.template map_switches<K>() | in_.template repeats<K>() | detail::filter_switch(s.filter)
             | (s.bias == bias_kind::unbiased ? K::LEAVE_OUT_switch : 0u) | (s.errors ? K::ERRORS_switch : 0u)
             | in_.template together<K>();
     }
@@ -246,9 +246,11 @@ progress knn_search_by_kernels<B>::run_stage(uint passes)
                 .leaks = in_.leaks(),
                 .min_radius2 = in_.min_radius2(),
                 .visits = s.visits_per_pass,
-                .ranges = s.ranges_per_pass},
+                .ranges = s.ranges_per_pass,
+                .levels = in_.map->levels,
+                .in_blocks = m.in_blocks},
             reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
-                in_.photon_normals(), m.list, m.photons.powers),
+                in_.photon_normals(), m.list, m.photons.powers, m.boxes),
             writes(radius_, chosen_, sum_, compensation_, squares_, cursor_, tally_), passes);
     }
     case stage::finished: break;

@@ -78,14 +78,16 @@ namespace detail {
                     writes(cursor, tally));
                 device.template run_until_done<kernels::list_neighbours>(
                     {n, 0u,
-                        in.template policies<kernels::list_neighbours>()
+                        in.template map_switches<kernels::list_neighbours>()
                             | in.template repeats<kernels::list_neighbours>()},
                     {.grid = m.cells_of,
                         .leaks = in.leaks(),
                         .visits = in.s.visits_per_pass,
-                        .ranges = in.s.ranges_per_pass},
+                        .ranges = in.s.ranges_per_pass,
+                        .levels = m.levels,
+                        .in_blocks = m.in_blocks},
                     reads(*in.points, in.point_normals(), m.cells, m.photons.positions, in.directions(),
-                        in.photon_normals(), m.list, radius_search.radius),
+                        in.photon_normals(), m.list, radius_search.radius, m.boxes),
                     writes(indices[0], indices[1], indices[2], indices[3], cursor, tally), all_passes);
                 for (uint four = 0; four < part && first + four < padded; four += 4)
                     put(first + four, std::min(4u, padded - (first + four)), true, indices[four / 4], tally);

@@ -1,7 +1,9 @@
 // The radius of an estimate or a list of neighbours: the distance of each point's k-th nearest photon (exact_k), or a
-// given radius (fixed_radius). Work per pass is bounded.
+// given radius (fixed_radius), or, in a block map, the next of a series of radii (at_least_k). Work per pass is
+// bounded.
 //
-//     exact_k:      kth_guess -> kth_distance -> kth_result -> kth_tie
+//     at_least_k, exact_k:
+//                   kth_guess -> kth_distance -> kth_result -> kth_tie
 //     fixed_radius: given_radius
 #pragma once
 
@@ -21,7 +23,7 @@ namespace photongrid {
 template <backend B>
 class knn_radius {
 public:
-    /// `in.s.search` must be exact_k or fixed_radius.
+    /// `in.s.search` must be exact_k, fixed_radius or, in a block map, at_least_k.
     explicit knn_radius(const detail::search_inputs<B>& in);
 
     /// Runs at most `passes` more passes over the points that are not done.
@@ -70,7 +72,7 @@ private:
 template <backend B>
 knn_radius<B>::knn_radius(const detail::search_inputs<B>& in) : in_(in)
 {
-    if (in_.s.search == search_kind::exact_k) {
+    if (in_.s.search != search_kind::fixed_radius) {
         start_distances();
         return;
     }
@@ -90,13 +92,18 @@ void knn_radius<B>::start_distances()
     bracket_ = in_.template make<glm::uvec4>();
     cursor_ = in_.template make<glm::uvec4>();
     tally_ = in_.template make<glm::uvec4>();
-    in_.device->template run<kernels::kth_guess>({in_.points->size(), 0u, in_.template together<kernels::kth_guess>()},
+    in_.device->template run<kernels::kth_guess>(
+        {in_.points->size(), 0u,
+            in_.template blocks<kernels::kth_guess>() | in_.template together<kernels::kth_guess>()},
         {.grid = in_.map->cells_of,
             .k = in_.s.k,
             .max_radius2 = in_.max_radius2(),
             .rows = 1023u,
-            .searching = in_.searching() ? 1u : 0u},
-        reads(*in_.points, in_.map->cells), writes(pivots_, counts_, outer_, bracket_, cursor_, tally_));
+            .searching = in_.searching() ? 1u : 0u,
+            .levels = in_.map->levels,
+            .in_blocks = in_.map->in_blocks},
+        reads(*in_.points, in_.map->cells, in_.map->boxes),
+        writes(pivots_, counts_, outer_, bracket_, cursor_, tally_));
 }
 
 template <backend B>
@@ -107,8 +114,11 @@ void knn_radius<B>::start_ties()
     chosen = in_.template make<glm::uvec4>();
     auto ids = in_.template make<glm::uvec4>();
     in_.device->template run<kernels::kth_result>(in_.points->size(),
-        {.k = in_.s.k, .photons = in_.map->photons.size(), .max_radius2 = in_.max_radius2()}, reads(bracket_, tally_),
-        writes(radius, chosen, ids, counts_, cursor_));
+        {.k = in_.s.k,
+            .photons = in_.map->photons.size(),
+            .max_radius2 = in_.max_radius2(),
+            .rounds_up = in_.s.search == search_kind::at_least_k ? 1u : 0u},
+        reads(bracket_, tally_), writes(radius, chosen, ids, counts_, cursor_));
     bracket_ = std::move(ids);
     pivots_ = {};
     outer_ = {};
@@ -124,26 +134,31 @@ progress knn_radius<B>::run_stage(uint passes)
     if (stage_ == stage::distance)
         return device.template run_until_done<kernels::kth_distance>(
             {in_.points->size(), 0u,
-                in_.template policies<kernels::kth_distance>() | in_.template together<kernels::kth_distance>()},
+                in_.template map_switches<kernels::kth_distance>() | in_.template together<kernels::kth_distance>()},
             {.grid = m.cells_of,
                 .leaks = in_.leaks(),
                 .k = s.k,
                 .max_radius2 = in_.max_radius2(),
                 .visits = s.visits_per_pass,
-                .ranges = s.ranges_per_pass},
-            reads(
-                *in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(), in_.photon_normals()),
+                .ranges = s.ranges_per_pass,
+                .levels = in_.map->levels,
+                .in_blocks = m.in_blocks},
+            reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
+                in_.photon_normals(), m.boxes),
             writes(pivots_, counts_, outer_, bracket_, cursor_, tally_), passes);
     return device.template run_until_done<kernels::kth_tie>(
-        {in_.points->size(), 0u, in_.template policies<kernels::kth_tie>() | in_.template together<kernels::kth_tie>()},
+        {in_.points->size(), 0u,
+            in_.template map_switches<kernels::kth_tie>() | in_.template together<kernels::kth_tie>()},
         {.grid = m.cells_of,
             .leaks = in_.leaks(),
             .k = s.k,
             .photons = m.photons.size(),
             .visits = s.visits_per_pass,
-            .ranges = s.ranges_per_pass},
+            .ranges = s.ranges_per_pass,
+            .levels = in_.map->levels,
+            .in_blocks = m.in_blocks},
         reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(), in_.photon_normals(),
-            m.list, radius),
+            m.list, radius, m.boxes),
         writes(chosen, bracket_, counts_, cursor_), passes);
 }
 

@@ -15,7 +15,7 @@ struct knn_settings {
     uint k = 50; ///< photons sought; fewer if max_radius holds fewer. Not used by fixed_radius
     float max_radius = std::numeric_limits<float>::infinity(); ///< m; photons farther away are rejected; 0 or less:
                                                                ///< none is found. fixed_radius needs a finite one
-    float min_radius = 0; ///< m; least radius of the estimate's disc. 0: 2^-20 of the grid's largest extent
+    float min_radius = 0; ///< m; least radius of the estimate's disc. 0: 2^-20 of the map's largest extent
     search_kind search = search_kind::exact_k;  ///< which photons count
     filter_kind filter = filter_kind::constant; ///< weight by distance
     bias_kind bias = bias_kind::unbiased;       ///< whether the photon that sets the radius counts
@@ -29,10 +29,11 @@ struct knn_settings {
     uint ranges_per_pass = 896; ///< the most rows of cells that one query reads in a pass, at least 2
 };
 
-/// The default of knn_settings::min_radius, m: 2^-20 of the grid's largest extent.
-inline float least_radius(const grid& g)
+/// The default of knn_settings::min_radius, m: 2^-20 of the map's largest extent.
+template <backend B>
+float least_radius(const map_buffers<B>& map)
 {
-    const auto extent = glm::vec3(g.cell) * glm::vec3(g.resolution);
+    const auto extent = map.extent();
     return std::max({extent.x, extent.y, extent.z}) * 0x1p-20f;
 }
 
@@ -85,7 +86,7 @@ namespace detail {
             throw std::invalid_argument(
                 "knn_search: leaks: min_cosine needs the photons' surface normals, which this map does not keep");
         if (!(s.min_radius > 0))
-            s.min_radius = least_radius(map.cells_of);
+            s.min_radius = least_radius(map);
         return s;
     }
     /// Whether a search can find anything.
@@ -114,11 +115,11 @@ namespace detail {
     }
     /// Whether the points are close enough for neighbours to search in a subgroup: if the expected radius is at least
     /// eight times the distance between points. Both are estimated as if points and photons were evenly distributed
-    /// over the largest side of the grid's box.
+    /// over the largest side of the map's box.
     template <backend B>
     bool are_close(const knn_settings& s, const map_buffers<B>& map, std::size_t points)
     {
-        const auto e = glm::dvec3(map.cells_of.cell) * glm::dvec3(map.cells_of.resolution);
+        const glm::dvec3 e(map.extent());
         const double area = std::max({e.x * e.y, e.y * e.z, e.z * e.x});
         const double photons = std::max(1.0, static_cast<double>(map.photons.size()));
         double disc = 3.14159265 * static_cast<double>(max_radius2(s));
@@ -167,6 +168,18 @@ namespace detail {
         uint policies() const
         {
             return policy_switches<K>(s.leaks);
+        }
+        /// The SWITCH of kernel K for block maps.
+        template <class K>
+        uint blocks() const
+        {
+            return map->has_blocks() ? K::BLOCKS_switch : 0u;
+        }
+        /// Both.
+        template <class K>
+        uint map_switches() const
+        {
+            return policies<K>() | blocks<K>();
         }
         /// The SWITCH of kernel K for maps that may hold a photon several times.
         template <class K>

@@ -9,6 +9,7 @@
 //
 // The kernel is one function, because it is one state machine over local copies of the states.
 #include <photongrid/backend/none.glsl>
+#include <photongrid/map/block_tree.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/estimate/distance_key.glsl>
 #include <photongrid/estimate/kth_state.glsl>
@@ -21,11 +22,14 @@ struct Params {
     uint k;            // photons sought
     float max_radius2; // m^2
     uint visits;       // the most photons to examine in a pass ...
-    uint ranges;       // ... and the most rows of cells
+    uint ranges;       // ... and the most rows of cells or boxes
+    uint levels;       // block map: of its tree
+    uint in_blocks;    // block map: photons in blocks
 };
 PARAMS(Params)
 #include <photongrid/estimate/search_inputs.glsl>
 IN_GROUPS(3)
+INPUT(6, vec4, boxes)      // block map: see block_tree.glsl
 STATE(0, vec4, pivots)   // see kth_state.glsl, also for bracket and tally
 STATE(1, uvec4, inner)   // COUNTING: photons within pivots 1 to 4; CLOSING_IN: the four largest keys up to the pivot
 STATE(2, uvec4, outer)   // COUNTING: photons within pivots 5 to 8; CLOSING_IN: the four smallest keys beyond the pivot
@@ -35,6 +39,7 @@ STATE(5, uvec4, tally)
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
+#include <photongrid/estimate/search_blocks.glsl>
 #include <photongrid/estimate/photon_walk.glsl>
 
 bool done()

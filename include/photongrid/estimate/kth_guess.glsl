@@ -1,7 +1,8 @@
-// A first guess at the squared distance of the k-th nearest photon, from the cells' counts alone: boxes of cells around
-// the query point, each about twice as wide as the one before, until one holds k photons. A wrong guess costs time
-// only.
+// A first guess at the squared distance of the k-th nearest photon. In a grid map it follows from the cells' counts
+// alone: boxes of cells around the query point, each about twice as wide as the one before, until one holds k photons.
+// In a block map it follows from the tree's boxes (guess_by_boxes.glsl). A wrong guess costs time only.
 #include <photongrid/backend/none.glsl>
+#include <photongrid/map/block_tree.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/estimate/kth_state.glsl>
 #include <photongrid/estimate/row_cursor.glsl>
@@ -12,11 +13,15 @@ struct Params {
     float max_radius2; // m^2
     uint rows;         // the most rows of cells in a box
     uint searching;    // 0: nothing can be found (no photons, k = 0, or no radius)
+    uint levels;       // block map: of its tree
+    uint in_blocks;    // block map: photons in blocks
 };
 PARAMS(Params)
+SWITCH(9, BLOCKS) // a block map, else a grid map
 IN_GROUPS(0)
 INPUT(0, vec4, points) // xyz: query point, m; w > 0: search here
-INPUT(1, uvec2, cells)
+INPUT(1, uvec2, cells) // grid map
+INPUT(2, vec4, boxes)  // block map: see block_tree.glsl
 OUTPUT(0, vec4, pivots) // the states of kth_distance.glsl
 OUTPUT(1, uvec4, inner)
 OUTPUT(2, uvec4, outer)
@@ -25,6 +30,7 @@ OUTPUT(4, uvec4, cursor)
 OUTPUT(5, uvec4, tally)
 
 #include <photongrid/backend/group_middle.glsl>
+#include <photongrid/estimate/guess_by_boxes.glsl>
 
 // The number of photons in a box of cells. The lanes of a group share its rows.
 uint photons_inside(uvec4 low, uvec4 high)
@@ -52,7 +58,7 @@ uint photons_inside(uvec4 low, uvec4 high)
 }
 
 // The guess for a point in cell c.
-float guessed(uvec4 c)
+float guessed_by_cells(uvec4 c)
 {
     uvec4 largest = uvec4(args.grid.resolution.x - 1u, args.grid.resolution.y - 1u, args.grid.resolution.z - 1u, 0u);
     float guess = args.max_radius2;
@@ -108,7 +114,11 @@ void kernel(uint i)
         // Points close to this one can use its guess.
         uint middle = group_middle(looking);
         vec4 there = lane_value(p, middle);
-        float guess = guessed(lane_value(c, middle));
+        float guess = args.max_radius2;
+        if (BLOCKS)
+            guess = min(max(guessed_by_boxes(there, args.k), 1.0e-30f), args.max_radius2);
+        else
+            guess = guessed_by_cells(lane_value(c, middle));
         float x = p.x - there.x;
         float y = p.y - there.y;
         float z = p.z - there.z;

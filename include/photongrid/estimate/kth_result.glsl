@@ -11,6 +11,7 @@ struct Params {
     uint k;            // photons sought
     uint photons;      // ids are below this
     float max_radius2; // m^2
+    uint rounds_up;    // 1: the radius is the next of a series (radius_series), which holds at least k photons
 };
 PARAMS(Params)
 INPUT(0, uvec4, brackets) // see kth_state.glsl
@@ -28,7 +29,10 @@ void kernel(uint i)
     search_radius = search_radius_of(args.max_radius2, false);
     if (kth)
         search_radius = search_radius_of(distance_of(high_key(brackets(i))), true);
-    bool tie = kth && found > args.k;
+    bool grows = args.rounds_up != 0u;
+    if (kth && grows)
+        search_radius = search_radius_of(min(next_in_series(radius2_of(search_radius)), args.max_radius2), false);
+    bool tie = kth && found > args.k && !grows;
     chosen = chosen_of(found, photons_visited(tallies(i)), NONE, tie ? 0u : NONE);
     bracket = id_bracket(0u, args.photons, 0u, tie ? FIRST_AND_LAST : FOUND_ID);
     counts = uvec4(0u, 0u, 0u, 0u);

@@ -4,6 +4,7 @@
 // below each of four pivots between them, as kth_distance.glsl counts distances. The kernel is one function, because it
 // is one state machine over local copies of the states.
 #include <photongrid/backend/none.glsl>
+#include <photongrid/map/block_tree.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/estimate/row_cursor.glsl>
 #include <photongrid/estimate/search_radius.glsl>
@@ -16,13 +17,16 @@ struct Params {
     uint k;            // photons sought
     uint photons;      // ids are below this
     uint visits;       // the most photons to examine in a pass ...
-    uint ranges;       // ... and the most rows of cells
+    uint ranges;       // ... and the most rows of cells or boxes
+    uint levels;       // block map: of its tree
+    uint in_blocks;    // block map: photons in blocks
 };
 PARAMS(Params)
 #include <photongrid/estimate/search_inputs.glsl>
 IN_GROUPS(3)
 INPUT(6, uint, list)         // photon ids
 INPUT(7, vec4, search_radii) // see search_radius.glsl
+INPUT(8, vec4, boxes)      // block map: see block_tree.glsl
 STATE(0, uvec4, chosen)      // the same; until the last id is found, w counts the ids at the radius below the bracket
 STATE(1, uvec4, bracket)     // see tie_state.glsl
 STATE(2, uvec4, counts)      // FIRST_AND_LAST: NONE - smallest id, largest id + 1; COUNTING_IDS: ids below each pivot
@@ -30,6 +34,7 @@ STATE(3, uvec4, cursor)      // see row_cursor.glsl
 
 #include <photongrid/estimate/photon_distance.glsl>
 #include <photongrid/estimate/search_rows.glsl>
+#include <photongrid/estimate/search_blocks.glsl>
 #include <photongrid/estimate/photon_walk.glsl>
 
 uint chunk_id;

@@ -16,6 +16,14 @@ inline bool is_by_photon(vec4 search_radius)
     return search_radius.y > 0.0f;
 }
 
+// The radii of a search for at least k photons in a block map: squared radii in steps of a quarter of a power of two.
+// Returns the smallest one that is not smaller than radius2; 0 is the first.
+inline float next_in_series(float radius2)
+{
+    uint bits = floatBitsToUint(radius2);
+    return radius2 > 0.0f ? uintBitsToFloat((bits + 0x001FFFFFu) & 0xFFE00000u) : 0.0f;
+}
+
 // Whether an unbiased estimate excludes the photon that set the radius. If that photon lies within the least radius of
 // an estimate's disc, it does not set the disc's radius, and it counts.
 inline bool excludes_photon(vec4 search_radius, float min_radius2)

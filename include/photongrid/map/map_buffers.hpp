@@ -1,10 +1,15 @@
-// A photon map in buffers: photons stored cell by cell, the grid, and the index of each cell's first photon. Sorting
-// (2.2.1) and stencil routing (2.2.2) both produce this form, so one estimate serves both. Cells are stored without
-// gaps, x fastest, so the photons of a row of neighbouring cells are contiguous.
+// A photon map in buffers. It is of one of two kinds, which all searches read:
+//
+// A grid map has photons stored cell by cell, the grid, and the index of each cell's first photon. Sorting (2.2.1) and
+// stencil routing (2.2.2) both produce it. Cells are stored without gaps, x fastest, so the photons of a row of
+// neighbouring cells are contiguous.
+//
+// A block map has photons along a curve, 16 to a block, and boxes around the blocks (block_map.hpp).
 #pragma once
 
 #include <photongrid/backend/backend.hpp>
 #include <photongrid/map/grid.kernel.hpp>
+#include <photongrid/map/hilbert.kernel.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -67,24 +72,38 @@ inline grid make_grid(glm::vec3 low, glm::vec3 high, glm::uvec3 resolution)
 /// The number of cells of `g`.
 inline uint cell_count(const grid& g) { return g.resolution.w; }
 
-/// A photon map. The photons of cell c are the cells[c].y elements from cells[c].x on, in every buffer of `photons` and
-/// in `list`. The photons that are in no cell come last.
+/// A photon map. In a grid map the photons of cell c are the cells[c].y elements from cells[c].x on, in every buffer of
+/// `photons` and in `list`. In a block map, block b has the elements from 16 b on, up to in_blocks. The photons that
+/// are in no cell or block come last.
 template <backend B>
 struct map_buffers {
-    grid cells_of{};                ///< the grid of the cells
-    photongrid::photons<B> photons; ///< cell by cell
-    buffer_of<B, glm::uvec2> cells; ///< x: first, y: count
+    grid cells_of{};                ///< grid map: the grid of the cells
+    photongrid::photons<B> photons; ///< cell by cell, or block by block
+    buffer_of<B, glm::uvec2> cells; ///< grid map: x: first, y: count. Empty in a block map
+    buffer_of<B, glm::vec4> boxes;  ///< block map: the tree's boxes (block_tree.glsl). Empty in a grid map
+    uint levels = 0;                ///< block map: of the tree
+    uint in_blocks = 0;             ///< block map: photons in blocks
+    kernels::Curve curve{};         ///< block map: the curve through the blocks
+    uint words = 0;                 ///< block map: words of the curve that photons are sorted by
     /// Ids: indices into the photons that the map was made from; `no_id`: none. In a routed map an id may occur
     /// several times (surplus_kind::photons).
     buffer_of<B, uint> list;
-    uint invalid = 0;           ///< photons in no cell: NaN or infinite
-    uint left_out = 0;          ///< photons in no cell: of another part of the light
+    uint invalid = 0;           ///< photons in no cell or block: NaN or infinite
+    uint left_out = 0;          ///< photons in no cell or block: of another part of the light
     uint overflowing_cells = 0; ///< routed: cells that received more photons than they have slots
     buffer_of<B, glm::vec4>
         surpluses; ///< routed: per cell, w: power of photons not kept, W, given to those kept; empty if sorted
 
     /// Whether an id may occur several times in `list`: in routed maps.
     bool may_repeat() const { return surpluses.size() > 0; }
+    /// Whether this is a block map; else a grid map.
+    bool has_blocks() const { return boxes.size() > 0; }
+    /// The edges, m, of the box of the photons in a block map, or of the grid.
+    glm::vec3 extent() const
+    {
+        return has_blocks() ? glm::max(glm::vec3(curve.high) - glm::vec3(curve.low), 0.0f)
+                            : glm::vec3(cells_of.cell) * glm::vec3(cells_of.resolution);
+    }
 };
 
 /// The power, W, all channels together, that stencil routing moved from photons that it could not keep to the others of
