@@ -19,6 +19,7 @@
 #include "peers.hpp"
 
 #include <photongrid/backends/cpu/cpu.hpp>
+#include <photongrid/map/block_map.hpp>
 #include <photongrid/map/map_builders.hpp>
 
 #include <algorithm>
@@ -42,6 +43,7 @@ struct map_kind {
 
 constexpr map_kind map_kinds[] = {
     {"grid", [](cpu_backend& b, photons<cpu_backend> p, uint k) { return fitted_map(b, std::move(p), k); }, false},
+    {"blocks", [](cpu_backend& b, photons<cpu_backend> p, uint) { return block_map(b, std::move(p)); }, true},
 };
 
 /// How many times as fast as the fastest peer a map must be.

@@ -4,6 +4,7 @@
 
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/estimate/knn_neighbours.hpp>
+#include <photongrid/map/block_map.hpp>
 #include <photongrid/map/map_file.hpp>
 #include <photongrid/map/own_photons.hpp>
 #include <photongrid/photon_map.hpp>
@@ -131,6 +132,11 @@ void maps(device_type& device)
         = device.download(map.list)[range.x]; // the first of them is photon `id` of those uploaded
     //! [sorted_map]
     expect(range.y > 0 && mine[id].position.x < -0.45f && mine[id].position.z < -0.45f, "sorted_map");
+
+    //! [block_map]
+    const auto blocks = photongrid::block_map(device, photongrid::upload_photons(device, mine)); // no grid to choose
+    //! [block_map]
+    expect(blocks.has_blocks() && blocks.in_blocks == mine.size(), "block_map");
 
     //! [fitted_map]
     const auto ready
@@ -267,8 +273,7 @@ void edges(device_type& device)
     //! [correct_edges]
     // A point on the floor's edge, where half of the disc hangs over: the estimate is half of the irradiance until
     // this is called.
-    photongrid::correct_edges(
-        device, scene, points, normals, found, settings.filter, photongrid::least_radius(map));
+    photongrid::correct_edges(device, scene, points, normals, found, settings.filter, photongrid::least_radius(map));
     //! [correct_edges]
     expect(is_near(before, 0.5, 0.15) && is_near(device.download(found.irradiance)[0].x, 1, 0.15), "correct_edges");
 }

@@ -165,7 +165,7 @@ TYPED_TEST_P(algorithms, searches_in_blocks_are_exact_at_every_scale)
             const auto e = knn_grid_estimate(b, map, at, {.k = k});
             const auto irradiance = b.download(e.irradiance);
             const auto used = b.download(e.used);
-            std::uint64_t visited = 0;
+            std::vector<uint> visited;
             for (std::size_t q = 0; q < points.size(); ++q) {
                 std::vector<float> near;
                 for (const auto& p : s.positions)
@@ -173,11 +173,13 @@ TYPED_TEST_P(algorithms, searches_in_blocks_are_exact_at_every_scale)
                 std::nth_element(near.begin(), near.begin() + k - 1, near.end());
                 ASSERT_EQ(irradiance[q].w, near[k - 1]) << "k " << k << " point " << q;
                 ASSERT_EQ(used[q].x, k);
-                visited += used[q].y;
+                visited.push_back(used[q].y);
             }
-            // A grid has a third of all photons in one cell, and every scan visits that.
+            // A grid has most photons in few cells, which every scan visits. Only a point whose neighbours lie beyond a
+            // whole cluster needs to.
+            std::nth_element(visited.begin(), visited.begin() + 150, visited.end());
             if (!tied && k <= 10) {
-                EXPECT_LT(visited / points.size(), s.positions.size() / 6) << "k " << k;
+                EXPECT_LT(visited[150], s.positions.size() / 8) << "k " << k;
             }
         }
     }

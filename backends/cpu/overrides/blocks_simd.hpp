@@ -17,10 +17,6 @@ HWY_INLINE void for_each_box(const search_job& j, uint node, const glm::vec3& at
     const floats d;
     const auto x = hn::Set(d, at.x), y = hn::Set(d, at.y), z = hn::Set(d, at.z), zero = hn::Zero(d);
     const std::size_t low = kernels::low_corner(node), high = kernels::high_corner(node);
-    const auto gap = [&](const float* p, vector v, std::size_t lane) HWY_ATTR {
-        return hn::Max(
-            hn::Max(hn::Sub(hn::Load(d, p + low + lane), v), hn::Sub(v, hn::Load(d, p + high + lane))), zero);
-    };
     const auto sum = [&](vector dx, vector dy, vector dz)
                          HWY_ATTR { return hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)); };
     for (std::size_t lane = 0; lane < lanes; lane += hn::Lanes(d)) {
@@ -120,7 +116,7 @@ inline float guessed_by_boxes(const search_job& j, const glm::vec3& at)
             const floats d;
             hn::Store(near2, d, s.near2 + lane);
             if (level == lowest) {
-                const auto kth = hn::MulAdd(hn::Sub(far2, near2), hn::Set(d, 0.64f * share), near2);
+                const auto kth = hn::Add(hn::Mul(hn::Sub(far2, near2), hn::Set(d, 0.64f * share)), near2);
                 guess = std::min(guess, hn::GetLane(hn::MinOfLanes(d, kth)));
             }
         });

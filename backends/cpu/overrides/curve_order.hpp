@@ -69,9 +69,8 @@ inline begun_order begin_order(cpu_backend& device, const curve_job& j, std::siz
     const auto pairs = device.elements_to_write(begun.pairs);
     constexpr std::size_t block = 16384;
     std::vector<curve_summary> seen(n / block + 1);
-    device.threads().for_blocks(n, block, [&](std::size_t first, std::size_t past) {
-        begin_order(j, first, past, pairs.data(), seen[first / block]);
-    });
+    device.threads().for_blocks(n, block,
+        [&](std::size_t first, std::size_t past) { begin_order(j, first, past, pairs.data(), seen[first / block]); });
     for (const auto& s : seen)
         begun.seen |= s;
     return begun;

@@ -218,7 +218,7 @@ private:
     }
 
     /// Collects the photons that count in `scratch`, in no order. Returns how many there are.
-    std::size_t collect(const kernels::host_query& q, const glm::vec4& p, const glm::vec4& n, const knn_settings& s,
+    std::size_t collect(kernels::host_query q, const glm::vec4& p, const glm::vec4& n, const knn_settings& s,
         query_scratch& scratch) const
     {
         auto& found = scratch.found_;

@@ -21,12 +21,15 @@ namespace photongrid {
 /// Writes the map to `file`; on an error the old file remains. Threads and processes may save to the same file at the
 /// same time: it is then one of their maps, whole. The same map gives the same bytes on every backend.
 /// `note`: any bytes that the caller wants to store with the map, such as its scene and settings.
-/// \throws map_file_error if the file cannot be written.
+/// \throws map_file_error if the file cannot be written, and for a block map, which files do not hold yet.
 /// \snippet snippets.cpp save_map
 template <backend B>
 void save_map(B& device, const map_buffers<B>& map, const std::filesystem::path& file, const std::string& note = {})
 {
     static_assert(std::endian::native == std::endian::little, "map files are those of little-endian machines");
+    if (map.has_blocks())
+        throw map_file_error(file,
+            "cannot be written: files hold grid maps only, and this is a block map; use sorted_map or fitted_map");
     const auto cells = device.download(map.cells);
     const auto list = device.download(map.list);
     const auto positions = device.download(map.photons.positions), powers = device.download(map.photons.powers);
