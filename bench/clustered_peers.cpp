@@ -2,9 +2,8 @@
 // cpu backend: docs/reference/measures.md. As in knn_peers, all are exact, at the same number of threads, and k-th
 // squared distances are compared. Exits 1 where a map is slower than wanted, 3 where distances differ.
 //
-//   clustered_peers [--sets NAME,NAME|all] [--k K,K] [--maps NAME,NAME] [--points photons|few] [--shuffle] [--threads
-//   N]
-//                   [--seconds S] [--photons N] [--data FILE]
+//   clustered_peers [--sets NAME,NAME|all] [--k K,K] [--maps NAME,NAME] [--points photons|few] [--shuffle]
+//                   [--threads N] [--seconds S] [--photons N] [--data FILE]
 //
 // --sets     all: uniform10m too, which needs 4 GB.
 // --points   photons: a search at each photon; few: at 65,536 points, half of them photons.

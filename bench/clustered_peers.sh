@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Searches among photons in clusters against CGAL, FLANN and nanoflann (bench/clustered_peers.cpp): Markdown here; in
-# out/clustered_peers/ the figures as TSV, and for each k a plot (SVG and PNG) of how many times as fast as the fastest peer
-# each kind of map is.
+# out/clustered_peers/ the figures as TSV, and for each k a plot (SVG and PNG) of how many times as fast as the fastest
+# peer each kind of map is.
 #
 #   bench/clustered_peers.sh [CLUSTERED_PEERS' OPTION...]
 #

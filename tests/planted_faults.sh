@@ -106,7 +106,7 @@ faults=(
   "cpu: padding has a distance|backends/cpu/overrides/packet_simd.hpp|of(squared_distance)[i] = std::numeric_limits<float>::infinity();|of(squared_distance)[i] = 0;"
   "cpu: a list ends one late|backends/cpu/overrides/search_simd.hpp|std::fill(j.ids + first + held,|std::fill(j.ids + first + std::min<std::size_t>(held + 1, j.k),"
   "cpu: a photon of a bucket lost|backends/cpu/overrides/map_simd.hpp|next[v] > begin[v] && next[v] % records|next[v] > begin[v] + 1u && next[v] % records"
-  "cpu: parts of the light swapped|backends/cpu/overrides/map_simd.hpp|hn::Eq(w, hn::Set(d, 1.0f))|hn::Ne(w, hn::Set(d, 1.0f))"
+  "cpu: parts of the light swapped|backends/cpu/overrides/photons_simd.hpp|hn::Eq(w, hn::Set(d, 1.0f))|hn::Ne(w, hn::Set(d, 1.0f))"
   "cpu: the last pair of a digit lost|backends/cpu/overrides/scatter_simd.hpp|p < next[v]; ++p)|p + 1 < next[v]; ++p)"
   "vulkan: groups hear another lane|backends/vulkan/compute_prelude.glsl|#define from_lane(V, LANE) subgroupShuffle(V, LANE)|#define from_lane(V, LANE) subgroupShuffle(V, (LANE) & 6u)"
   "vulkan: an element left off the list|backends/vulkan/iterate.glsl|keep = more;|keep = more && (i & 1023u) != 1023u;"

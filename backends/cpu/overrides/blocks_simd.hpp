@@ -9,8 +9,8 @@ HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// kernels::box_distance2 for 16 siblings, the first of which is `node`: calls f(squared distances, first lane) for
-/// each register of them.
+/// The squared distances of `at` from the boxes of 16 siblings, the first of which is `node`, and from their farthest
+/// corners: calls f(box_distance2, farthest_distance2, first lane) for each register of them.
 template <class F>
 HWY_INLINE void for_each_box(const search_job& j, uint node, const glm::vec3& at, const F& f)
 {

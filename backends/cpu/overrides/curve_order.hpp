@@ -113,21 +113,26 @@ inline ordered_pairs order_by_words(cpu_backend& device, const curve_job& j, buf
     return sorted;
 }
 
+/// The second number of each pair: the order of positions, from sorted pairs.
+inline buffer<uint> values_of(cpu_backend& device, std::span<const glm::uvec2> pairs)
+{
+    auto ordered = device.make<uint>(pairs.size());
+    const auto order = device.elements_to_write(ordered);
+    device.threads().for_blocks(pairs.size(), 16384, [&](std::size_t first, std::size_t past) {
+        for (std::size_t i = first; i < past; ++i)
+            order[i] = pairs[i].y;
+    });
+    return ordered;
+}
+
 /// The order of the positions of a job along its curve. `pairs`: by begin_order(). Runs of fewer than `least` positions
 /// with an equal word remain in their order.
 inline buffer<uint> order_along_curve(
     cpu_backend& device, const curve_job& j, buffer<glm::uvec2> pairs, std::size_t least)
 {
-    const std::size_t n = pairs.size();
-    auto scratch = device.make<glm::uvec2>(n);
+    auto scratch = device.make<glm::uvec2>(pairs.size());
     const auto sorted = order_by_words(device, j, pairs, scratch, 0, least);
-    auto ordered = device.make<uint>(n);
-    const auto order = device.elements_to_write(ordered);
-    device.threads().for_blocks(n, 16384, [&](std::size_t first, std::size_t past) {
-        for (std::size_t i = first; i < past; ++i)
-            order[i] = sorted[i].y;
-    });
-    return ordered;
+    return values_of(device, sorted);
 }
 
 } // namespace photongrid::cpu

@@ -1,10 +1,8 @@
 // SIMD code that orders photons along the Hilbert curve of a block map, and makes the boxes of its blocks. Included
 // once per instruction set, so it has no include guard; other files include simd.hpp.
-#include <hwy/highway.h>
-
 #include <photongrid/backends/cpu/overrides/curve_job.hpp>
+#include <photongrid/backends/cpu/overrides/photons_simd.hpp>
 #include <photongrid/map/block_tree.kernel.hpp>
-#include <photongrid/map/grid.kernel.hpp>
 #include <photongrid/map/hilbert.kernel.hpp>
 
 #include <algorithm>
@@ -21,36 +19,27 @@ inline void begin_order(curve_job j, std::size_t first, std::size_t past, glm::u
     const hn::CappedTag<float, lanes> d;
     const hn::RebindToUnsigned<decltype(d)> du;
     const std::size_t width = hn::Lanes(d);
-    const auto exponent = hn::Set(du, 0x7F800000u), none = hn::Set(du, no_id);
+    const auto none = hn::Set(du, no_id);
     auto low_x = hn::Set(d, seen.low.x), low_y = hn::Set(d, seen.low.y), low_z = hn::Set(d, seen.low.z);
     auto high_x = hn::Set(d, seen.high.x), high_y = hn::Set(d, seen.high.y), high_z = hn::Set(d, seen.high.z);
     std::size_t i = first;
     for (; i + width <= past; i += width) {
-        auto x = hn::Zero(d), y = x, z = x, w = x, red = x, green = x, blue = x, unused = x;
-        hn::LoadInterleaved4(d, &j.positions[i].x, x, y, z, w);
-        if (j.powers != nullptr)
-            hn::LoadInterleaved4(d, &j.powers[i].x, red, green, blue, unused);
-        auto bad = hn::Zero(du);
-        for (const auto& v : {x, y, z, red, green, blue})
-            bad = hn::Or(bad, hn::VecFromMask(du, hn::Eq(hn::And(hn::BitCast(du, v), exponent), exponent)));
-        const auto caustic = hn::RebindMask(du, hn::Eq(w, hn::Set(d, 1.0f)));
-        const auto part = hn::IfThenElse(caustic, hn::Set(du, caustic_part), hn::Set(du, other_part));
-        const auto other = hn::Eq(hn::And(part, hn::Set(du, j.parts)), hn::Zero(du));
-        const auto in_none = hn::Or(hn::Ne(bad, hn::Zero(du)), other);
+        const auto p = load_photons(j.positions, j.powers, j.parts, i);
+        const auto in_none = hn::Or(p.is_invalid, p.is_left_out);
         hn::StoreInterleaved2(hn::IfThenElseZero(in_none, none),
             hn::Add(hn::Set(du, static_cast<uint>(i)), hn::Iota(du, 0)), du, &pairs[i].x);
         const auto take = hn::RebindMask(d, in_none);
         const auto lower = [&](auto& low, auto v) HWY_ATTR { low = hn::Min(low, hn::IfThenElse(take, low, v)); };
         const auto higher = [&](auto& high, auto v) HWY_ATTR { high = hn::Max(high, hn::IfThenElse(take, high, v)); };
-        lower(low_x, x);
-        lower(low_y, y);
-        lower(low_z, z);
-        higher(high_x, x);
-        higher(high_y, y);
-        higher(high_z, z);
+        lower(low_x, p.x);
+        lower(low_y, p.y);
+        lower(low_z, p.z);
+        higher(high_x, p.x);
+        higher(high_y, p.y);
+        higher(high_z, p.z);
         seen.ordered += static_cast<uint>(width - hn::CountTrue(du, in_none));
-        seen.invalid += static_cast<uint>(hn::CountTrue(du, hn::Ne(bad, hn::Zero(du))));
-        seen.left_out += static_cast<uint>(hn::CountTrue(du, other));
+        seen.invalid += static_cast<uint>(hn::CountTrue(du, p.is_invalid));
+        seen.left_out += static_cast<uint>(hn::CountTrue(du, p.is_left_out));
     }
     seen.low = {hn::GetLane(hn::MinOfLanes(d, low_x)), hn::GetLane(hn::MinOfLanes(d, low_y)),
         hn::GetLane(hn::MinOfLanes(d, low_z))};

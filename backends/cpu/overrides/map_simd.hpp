@@ -1,15 +1,13 @@
-// SIMD code that builds a map. Included once per instruction set, so it has no include guard; other files include
-// simd.hpp.
+// SIMD code that builds a map. Included once per instruction set, after curve_simd.hpp, which includes
+// photons_simd.hpp; so it has no include guard, and other files include simd.hpp.
 //
 // Photons are sorted in two steps. The first moves them to buckets, which are ranges of cells: it moves a photon's data
 // too, in whole cache lines and past the caches, because reading the data later by the sorted ids would fetch a line
 // per photon. The second step orders each bucket, which fits the caches, by cell. Both steps are stable, so ids ascend
 // within a cell.
 #include <hwy/cache_control.h>
-#include <hwy/highway.h>
 
 #include <photongrid/backends/cpu/overrides/map_job.hpp>
-#include <photongrid/map/grid.kernel.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -28,7 +26,6 @@ inline void find_cells(map_job j, std::size_t first, std::size_t past, uint* in_
     const hn::RebindToSigned<decltype(d)> di;
     const std::size_t width = hn::Lanes(d);
     const grid& g = j.cells_of;
-    const auto exponent = hn::Set(du, 0x7F800000u);
     const auto cell = [&](hn::VFromD<decltype(d)> x, int axis) HWY_ATTR {
         const uint resolution = g.resolution[axis];
         auto u = hn::Mul(hn::Sub(x, hn::Set(d, g.origin[axis])), hn::Set(d, g.inverse_cell[axis]));
@@ -42,21 +39,13 @@ inline void find_cells(map_job j, std::size_t first, std::size_t past, uint* in_
     };
     std::size_t i = first;
     for (; i + width <= past; i += width) {
-        auto x = hn::Zero(d), y = x, z = x, w = x, red = x, green = x, blue = x, unused = x;
-        hn::LoadInterleaved4(d, &j.positions[i].x, x, y, z, w);
-        hn::LoadInterleaved4(d, &j.powers[i].x, red, green, blue, unused);
-        auto bad = hn::Zero(du);
-        for (const auto& v : {x, y, z, red, green, blue})
-            bad = hn::Or(bad, hn::VecFromMask(du, hn::Eq(hn::And(hn::BitCast(du, v), exponent), exponent)));
-        const auto caustic = hn::RebindMask(du, hn::Eq(w, hn::Set(d, 1.0f)));
-        const auto part = hn::IfThenElse(caustic, hn::Set(du, caustic_part), hn::Set(du, other_part));
-        const auto other = hn::Eq(hn::And(part, hn::Set(du, j.parts)), hn::Zero(du));
+        const auto p = load_photons(j.positions, j.powers, j.parts, i);
         const auto key
-            = hn::Add(times(hn::Add(times(cell(z, 2), g.resolution.y), cell(y, 1)), g.resolution.x), cell(x, 0));
-        const auto in_none = hn::Or(hn::Ne(bad, hn::Zero(du)), other);
+            = hn::Add(times(hn::Add(times(cell(p.z, 2), g.resolution.y), cell(p.y, 1)), g.resolution.x), cell(p.x, 0));
+        const auto in_none = hn::Or(p.is_invalid, p.is_left_out);
         hn::StoreU(hn::IfThenElse(in_none, hn::Set(du, j.cells), key), du, j.keys + i);
-        invalid += static_cast<uint>(hn::CountTrue(du, hn::Ne(bad, hn::Zero(du))));
-        left_out += static_cast<uint>(hn::CountTrue(du, other));
+        invalid += static_cast<uint>(hn::CountTrue(du, p.is_invalid));
+        left_out += static_cast<uint>(hn::CountTrue(du, p.is_left_out));
         for (std::size_t lane = 0; lane < width; ++lane)
             ++in_bucket[j.keys[i + lane] >> j.shift];
     }

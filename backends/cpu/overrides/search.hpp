@@ -40,14 +40,7 @@ inline buffer<uint> order_along_curve(cpu_backend& device, const grid& g, const 
         }
     });
     const auto sorted = radix_sort(device.threads(), to.data(), device.elements_to_write(scratch).data(), n);
-    const auto from = device.elements(sorted.in_scratch ? scratch : pairs);
-    auto ordered = device.make<uint>(n);
-    const auto order = device.elements_to_write(ordered);
-    device.threads().for_blocks(n, 16384, [&](std::size_t first, std::size_t past) {
-        for (std::size_t i = first; i < past; ++i)
-            order[i] = from[i].y;
-    });
-    return ordered;
+    return values_of(device, device.elements(sorted.in_scratch ? scratch : pairs));
 }
 
 /// The order of the points of a search, which keeps neighbours together: along the curve of a block map, else along a

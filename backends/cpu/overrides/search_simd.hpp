@@ -1,9 +1,9 @@
-// SIMD code of the searches exact_k and fixed_radius. Included once per instruction set, so it has no include guard;
-// other files include simd.hpp.
+// SIMD code of the searches exact_k and fixed_radius, and of at_least_k in block maps. Included once per instruction
+// set, so it has no include guard; other files include simd.hpp.
 //
-// Queries that are close together form packets. The photons near a packet, from all rows of cells that can hold any,
-// are copied to contiguous memory once, so that each query reads full registers of these photons only. Each query scans
-// them twice: to find the k-th squared distance, and to compute the weighted sums.
+// Queries that are close together form packets. The photons near a packet, from all rows of cells or blocks that can
+// hold any, are copied to contiguous memory once, so that each query reads full registers of these photons only. Each
+// query scans them twice: to find the k-th squared distance, and to compute the weighted sums.
 //
 // If a query point moves by s, the distance to its k-th nearest photon changes by at most s. So that distance lies in a
 // narrow band around the distance of the query before: photons nearer than the band are counted, those in the band are

@@ -11,8 +11,8 @@ namespace photongrid {
 
 /// Which photons an estimate uses: of those that no leak policy rejects, within the maximum radius.
 enum class search_kind : std::uint8_t {
-    at_least_k,   ///< at least k (2.3): the radius grows cell by cell and may overshoot, so the result depends on the
-                  ///< grid
+    at_least_k,   ///< at least k (2.3). In a grid map the radius grows cell by cell and may overshoot, so the result
+                  ///< depends on the grid. In a block map it is the next of a series of radii (search_radius.glsl)
     exact_k,      ///< the k nearest; of several photons at the k-th distance, those with the smallest ids
     fixed_radius, ///< all photons within the maximum radius
 };

@@ -1,6 +1,6 @@
 // The functions that host_search.hpp shares with the search kernels: a photon's distance, its weight, and the photons
-// of a row of cells or of a block that can lie within a radius. No device runs this kernel; it exists so that host and devices use
-// the same text.
+// of a row of cells or of a block that can lie within a radius. No device runs this kernel; it exists so that host and
+// devices use the same text.
 #include <photongrid/map/block_tree.glsl>
 #include <photongrid/map/grid.glsl>
 

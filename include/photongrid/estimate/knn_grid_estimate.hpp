@@ -2,7 +2,8 @@
 // search for at least k photons, for the k nearest, or for all within a radius, followed by a density estimate with a
 // standard error. Work per pass is bounded.
 //
-//     at_least_k:   knn_visit ----------------> knn_result          (the paper's: constant filter, no standard error)
+//     at_least_k, in a grid map; in a block map it goes the way of exact_k:
+//                   knn_visit ----------------> knn_result          (the paper's: constant filter, no standard error)
 //                             \-> grown_radius -> gather_photons -> irradiance_estimate
 //     exact_k:      kth_guess -> kth_distance -> kth_result -> kth_tie -> gather_photons -> irradiance_estimate
 //     fixed_radius: given_radius -------------------------------------> gather_photons -> irradiance_estimate
@@ -69,7 +70,7 @@ public:
     knn_search_by_kernels(B&, const map_buffers<B>&, const vectors&&, const vectors&, const knn_settings&) = delete;
     knn_search_by_kernels(B&, const map_buffers<B>&, const vectors&, const vectors&&, const knn_settings&) = delete;
 
-    /// Whether estimates() has usable values while a search with settings `s` is still running (3.4).
+    /// Whether estimates() has usable values while a search with settings `s` in a grid map is still running (3.4).
     static bool shows_running_estimate(const knn_settings& s) { return detail::sums_while_growing(s); }
 
     /// Runs at most `passes` more passes over the points that are not done. Work per pass and point is bounded.
@@ -247,7 +248,7 @@ progress knn_search_by_kernels<B>::run_stage(uint passes)
                 .min_radius2 = in_.min_radius2(),
                 .visits = s.visits_per_pass,
                 .ranges = s.ranges_per_pass,
-                .levels = in_.map->levels,
+                .levels = m.levels,
                 .in_blocks = m.in_blocks},
             reads(*in_.points, in_.point_normals(), m.cells, m.photons.positions, in_.directions(),
                 in_.photon_normals(), m.list, m.photons.powers, m.boxes),

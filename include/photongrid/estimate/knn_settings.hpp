@@ -26,7 +26,7 @@ struct knn_settings {
     /// a subgroup: there, visits_per_pass + ranges_per_pass must be at most 3,968, which is 4,095 per lane less 127 for
     /// the loops around those over photons and rows.
     uint visits_per_pass = 3072;
-    uint ranges_per_pass = 896; ///< the most rows of cells that one query reads in a pass, at least 2
+    uint ranges_per_pass = 896; ///< the most rows of cells or boxes that one query reads in a pass, at least 2
 };
 
 /// The default of knn_settings::min_radius, m: 2^-20 of the map's largest extent.
@@ -175,7 +175,7 @@ namespace detail {
         {
             return map->has_blocks() ? K::BLOCKS_switch : 0u;
         }
-        /// Both.
+        /// The SWITCHes of kernel K for this search's policies and for the kind of its map.
         template <class K>
         uint map_switches() const
         {

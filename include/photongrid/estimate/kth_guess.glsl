@@ -30,6 +30,7 @@ OUTPUT(4, uvec4, cursor)
 OUTPUT(5, uvec4, tally)
 
 #include <photongrid/backend/group_middle.glsl>
+#include <photongrid/estimate/search_blocks.glsl>
 #include <photongrid/estimate/guess_by_boxes.glsl>
 
 // The number of photons in a box of cells. The lanes of a group share its rows.

@@ -23,7 +23,7 @@ void kernel(uint i)
     vec4 farthest = is_high ? high_of_nothing() : low_of_nothing();
     for (uint photon = first; photon < first + held; ++photon) {
         vec4 p = positions(photon);
-        if (is_finite(p) && is_finite(powers(photon)) && is_of_parts(p, args.parts))
+        if (is_held(p, powers(photon), args.parts))
             farthest = is_high ? higher_corner(farthest, p) : lower_corner(farthest, p);
     }
     corner = farthest;

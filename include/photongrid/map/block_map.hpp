@@ -57,7 +57,7 @@ namespace detail {
         return corners;
     }
 
-    /// The curve through the box of all photons. Without photons it is any curve.
+    /// The curve through the box of all photons, m. Without photons it is any curve.
     inline kernels::Curve curve_through(const glm::vec4& low, const glm::vec4& high)
     {
         // No search finds photons at distances above 10^19 m, so those far outside need no order.
@@ -82,13 +82,14 @@ namespace detail {
             uint state = 0;
             glm::vec4 at;
         };
+        if (sample.empty())
+            return 1;
         std::vector<entry> along;
         for (const auto& p : sample)
             along.push_back({{}, 0, kernels::curve_coordinates(curve, glm::vec4(p, 0))});
         // All photons are denser than the sample. Along a line each further level halves their number in a cube.
-        const auto denser = static_cast<uint>(std::max(1.0,
-            std::ceil(std::log2(std::max(
-                1.0, static_cast<double>(photons) / static_cast<double>(std::max<std::size_t>(sample.size(), 1)))))));
+        const double per_sample = static_cast<double>(photons) / static_cast<double>(sample.size()); // at least 1
+        const auto denser = std::max(1u, static_cast<uint>(std::ceil(std::log2(per_sample))));
         float scale = curve.scale.x;
         for (uint word = 0; word < most_words; ++word, scale *= 1024.0f) {
             for (auto& e : along) {
@@ -119,15 +120,6 @@ namespace detail {
         return most_words;
     }
 
-    /// Moves photons into blocks in the order of `list`, and puts boxes around them.
-    template <backend B>
-    void take_blocks(B& device, map_buffers<B>& map, photons<B> p, uint parts)
-    {
-        reorder(device, p, map.list);
-        map.photons = std::move(p);
-        map.levels = tree_levels(map.in_blocks);
-        map.boxes = boxes_around(device, map.photons, map.in_blocks, parts);
-    }
 } // namespace detail
 
 /// Builds a map of blocks: photons along a Hilbert curve, ties by id, 16 to a block, and a tree of boxes around the
@@ -177,7 +169,10 @@ map_buffers<B> block_map(B& device, photons<B> p, uint parts = every_part)
     }
     pairs = {};
     next = {};
-    detail::take_blocks(device, map, std::move(p), parts);
+    detail::reorder(device, p, map.list);
+    map.photons = std::move(p);
+    map.levels = detail::tree_levels(map.in_blocks);
+    map.boxes = detail::boxes_around(device, map.photons, map.in_blocks, parts);
     return map;
 }
 

@@ -10,5 +10,5 @@ INPUT(1, vec4, powers)
 
 bool holds(uint i)
 {
-    return is_finite(positions(i)) && is_finite(powers(i)) && is_of_parts(positions(i), args.parts);
+    return is_held(positions(i), powers(i), args.parts);
 }

@@ -27,7 +27,6 @@ void kernel(uint i)
     if (ORDERED)
         photon = order(i);
     vec4 p = positions(photon);
-    bool counts = is_finite(p) && is_finite(powers(photon)) && is_of_parts(p, args.parts);
     vec4 q = curve_coordinates(args.curve, p);
     float scale = args.curve.scale.x;
     uvec2 along = uvec2(0u, 0u);
@@ -35,5 +34,5 @@ void kernel(uint i)
         along = word_along(q, scale, word, along.y);
         scale = scale * 1024.0f;
     }
-    pair = uvec2(counts ? along.x : NONE, i);
+    pair = uvec2(is_held(p, powers(photon), args.parts) ? along.x : NONE, i);
 }

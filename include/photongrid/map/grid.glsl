@@ -66,4 +66,10 @@ inline bool is_of_parts(vec4 position, uint parts)
     return (parts & (position.w == 1.0f ? 2u : 1u)) != 0u;
 }
 
+// Whether a map of the given parts of the light holds a photon: it must be finite.
+inline bool is_held(vec4 position, vec4 power, uint parts)
+{
+    return is_finite(position) && is_finite(power) && is_of_parts(position, parts);
+}
+
 #endif

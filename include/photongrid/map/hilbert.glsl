@@ -1,6 +1,6 @@
 // The Hilbert curve in three dimensions, level by level: each level cuts a cube into 8 and visits them in an order that
-// depends on the cube's orientation (Hamilton, Compact Hilbert Indices, 2006). Neighbours on the curve are neighbours in
-// space, so that runs of photons along it fit small boxes.
+// depends on the cube's orientation (Hamilton, Compact Hilbert Indices, 2006). Neighbours on the curve are neighbours
+// in space, so that runs of photons along it fit small boxes.
 //
 // A position's digits along the curve have no last level: they come in words of 10 levels, 30 bits, of which a map
 // takes as many as its densest clusters need.

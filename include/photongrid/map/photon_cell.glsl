@@ -19,7 +19,7 @@ void kernel(uint i)
         return;
     pair.y = i;
     vec4 p = positions(i);
-    if (!is_finite(p) || !is_finite(powers(i)) || !is_of_parts(p, args.parts))
+    if (!is_held(p, powers(i), args.parts))
         return;
     uvec4 c = cell_coordinates(args.grid, p);
     pair.x = cell_number(args.grid, c.x, c.y, c.z);

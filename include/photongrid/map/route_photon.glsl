@@ -25,7 +25,7 @@ void kernel(uint i)
     destination = NONE;
     payload = photon;
     power = vec4(carried.x, carried.y, carried.z, 1.0f);
-    if (!is_finite(p) || !is_finite(carried) || !is_of_parts(p, args.parts))
+    if (!is_held(p, carried, args.parts))
         return;
     uvec4 c = cell_coordinates(args.grid, p);
     destination = cell_number(args.grid, c.x, c.y, c.z);
