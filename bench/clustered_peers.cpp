@@ -18,7 +18,6 @@
 #include "peers.hpp"
 
 #include <photongrid/backends/cpu/cpu.hpp>
-#include <photongrid/map/block_map.hpp>
 #include <photongrid/map/map_builders.hpp>
 
 #include <algorithm>
@@ -41,8 +40,14 @@ struct map_kind {
 };
 
 constexpr map_kind map_kinds[] = {
-    {"grid", [](cpu_backend& b, photons<cpu_backend> p, uint k) { return fitted_map(b, std::move(p), k); }, false},
-    {"blocks", [](cpu_backend& b, photons<cpu_backend> p, uint) { return block_map(b, std::move(p)); }, true},
+    {"grid",
+        [](cpu_backend& b, photons<cpu_backend> p, uint k) {
+            const grid g = fitting_grid(b, p, k, b.caps().cells_per_radius);
+            return sorted_map(b, std::move(p), g);
+        },
+        false},
+    {"blocks", [](cpu_backend& b, photons<cpu_backend> p, uint) { return block_map(b, std::move(p)); }, false},
+    {"auto", [](cpu_backend& b, photons<cpu_backend> p, uint k) { return fitted_map(b, std::move(p), k); }, true},
 };
 
 /// How many times as fast as the fastest peer a map must be.

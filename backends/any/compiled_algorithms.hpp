@@ -10,8 +10,6 @@
 
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/estimate/knn_neighbours.hpp>
-#include <photongrid/map/block_map.hpp>
-#include <photongrid/map/fitting_grid.hpp>
 #include <photongrid/map/map_builders.hpp>
 #include <photongrid/render/progressive_render.hpp>
 
@@ -25,6 +23,7 @@
     EXTERN template map_buffers<B> routed_map(B&, photons<B>, const grid&, uint, uint, uint, surplus_kind);            \
     EXTERN template map_buffers<B> block_map(B&, photons<B>, uint);                                                    \
     EXTERN template grid fitting_grid(B&, const photons<B>&, uint, float);                                             \
+    EXTERN template map_buffers<B> fitted_map(B&, photons<B>, uint, uint);                                             \
     EXTERN template class knn_radius<B>;                                                                               \
     EXTERN template class knn_search_by_kernels<B>;                                                                    \
     EXTERN template neighbour_lists<B> knn_neighbours(                                                                 \

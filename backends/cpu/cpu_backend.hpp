@@ -5,7 +5,6 @@
 #include <photongrid/backends/cpu/cpu_by_kernels.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/estimate/knn_neighbours.hpp>
-#include <photongrid/map/block_map.hpp>
 #include <photongrid/map/map_builders.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>

@@ -329,7 +329,11 @@ private:
         std::vector<memory> all;
         const auto add = [&](const auto& b) {
             using value_type = typename std::remove_cvref_t<decltype(b)>::value_type;
-            all.push_back(b.memory_ ? b.memory_ : passes_.make<value_type>(0));
+            all.push_back(b.memory_);
+            if (!all.back()) {
+                all.back() = passes_.make<value_type>(0);
+                all.back()->forget(); // bytes() counts the caller's buffers only
+            }
         };
         std::apply([&](const auto&... b) { (add(b), ...); }, reads);
         std::apply([&](const auto&... b) { (add(b), ...); }, writes);

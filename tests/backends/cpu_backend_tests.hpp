@@ -23,19 +23,28 @@ namespace {
 
     /// All results of a search.
     struct findings {
-        std::vector<vec4> irradiance, errors;
+        std::vector<vec4> irradiance, errors, boxes;
         std::vector<uvec2> used, cells;
         std::vector<uint> list;
         bool operator==(const findings& other) const
         {
             return count_different_bits(irradiance, other.irradiance) + count_different_bits(errors, other.errors)
                 + count_different_bits(used, other.used) + count_different_bits(cells, other.cells)
-                + count_different_bits(list, other.list)
+                + count_different_bits(boxes, other.boxes) + count_different_bits(list, other.list)
                 == 0;
         }
     };
 
-    findings find(cpu_backend& b, distribution d, search_kind search, filter_kind filter, const leak_policy& leaks)
+    /// A kind of map and a number of photons sought: in block maps the cpu backend searches in one way for few photons,
+    /// in another for many.
+    struct searched_map {
+        map_kind kind;
+        uint k;
+    };
+    constexpr searched_map searched_maps[] = {{map_kind::sorted, 70}, {map_kind::blocks, 70}, {map_kind::blocks, 3}};
+
+    findings find(cpu_backend& b, const searched_map& in, distribution d, search_kind search, filter_kind filter,
+        const leak_policy& leaks)
     {
         auto set = make_photons(d, 6000, {12, 12, 12}, 3);
         const auto points = make_points(set, 1000, 3);
@@ -49,8 +58,8 @@ namespace {
         auto p = upload_photons(b, set);
         p.directions = b.upload(std::span<const vec4>(directions));
         p.normals = b.upload(std::span<const vec4>(normals));
-        const auto map = sorted_map(b, std::move(p), set.g);
-        knn_settings k{.k = 70, .max_radius = 0.3f};
+        const auto map = make_map(b, in.kind, std::move(p), set.g);
+        knn_settings k{.k = in.k, .max_radius = 0.3f};
         k.search = search;
         k.filter = filter;
         k.leaks = leaks;
@@ -59,22 +68,24 @@ namespace {
             k.bias = bias_kind::paper; // adds up while it searches
         const auto e = knn_grid_estimate(
             b, map, b.upload(std::span<const vec4>(points)), b.upload(std::span<const vec4>(up)), k);
-        return {b.download(e.irradiance), b.download(e.standard_error), b.download(e.used), b.download(map.cells),
-            b.download(map.list)};
+        return {b.download(e.irradiance), b.download(e.standard_error), b.download(map.boxes), b.download(e.used),
+            b.download(map.cells), b.download(map.list)};
     }
 } // namespace
 
 TEST(cpu_backend, threads_do_not_change_a_byte)
 {
     for (const auto d : all_distributions)
-        for (const auto search : {search_kind::at_least_k, search_kind::exact_k, search_kind::fixed_radius}) {
-            std::vector<findings> all;
-            for (const uint threads : {1u, 2u, 5u}) {
-                cpu_backend b(threads);
-                all.push_back(find(b, d, search, filter_kind::silverman, {.side = true}));
+        for (const auto search : {search_kind::at_least_k, search_kind::exact_k, search_kind::fixed_radius})
+            for (const auto& in : searched_maps) {
+                std::vector<findings> all;
+                for (const uint threads : {1u, 2u, 5u}) {
+                    cpu_backend b(threads);
+                    all.push_back(find(b, in, d, search, filter_kind::silverman, {.side = true}));
+                }
+                EXPECT_TRUE(all[0] == all[1] && all[0] == all[2])
+                    << name_of(d) << " search " << static_cast<int>(search) << " " << name_of(in.kind) << " k " << in.k;
             }
-            EXPECT_TRUE(all[0] == all[1] && all[0] == all[2]) << name_of(d) << " search " << static_cast<int>(search);
-        }
 }
 
 TEST(cpu_backend, instruction_sets_do_not_change_a_byte)
@@ -86,20 +97,22 @@ TEST(cpu_backend, instruction_sets_do_not_change_a_byte)
     for (const auto d : {distribution::uniform, distribution::clustered, distribution::box_faces})
         for (const auto search : {search_kind::at_least_k, search_kind::exact_k})
             for (const auto& filter : filters)
-                for (const auto& leaks : policies) {
-                    std::vector<findings> all;
-                    for (const auto target : targets) {
-                        hwy::SetSupportedTargetsForTest(target);
-                        hwy::GetChosenTarget().DeInit();
-                        all.push_back(find(b, d, search, filter.kind, leaks));
-                        hwy::SetSupportedTargetsForTest(0);
-                        hwy::GetChosenTarget().DeInit();
+                for (const auto& leaks : policies)
+                    for (const auto& in : searched_maps) {
+                        std::vector<findings> all;
+                        for (const auto target : targets) {
+                            hwy::SetSupportedTargetsForTest(target);
+                            hwy::GetChosenTarget().DeInit();
+                            all.push_back(find(b, in, d, search, filter.kind, leaks));
+                            hwy::SetSupportedTargetsForTest(0);
+                            hwy::GetChosenTarget().DeInit();
+                        }
+                        for (std::size_t t = 1; t < all.size(); ++t)
+                            EXPECT_TRUE(all[t] == all[0])
+                                << hwy::TargetName(targets[t]) << " against " << hwy::TargetName(targets[0]) << ", "
+                                << name_of(d) << " search " << static_cast<int>(search) << " filter " << filter.name
+                                << " " << name_of(in.kind) << " k " << in.k;
                     }
-                    for (std::size_t t = 1; t < all.size(); ++t)
-                        EXPECT_TRUE(all[t] == all[0])
-                            << hwy::TargetName(targets[t]) << " against " << hwy::TargetName(targets[0]) << ", "
-                            << name_of(d) << " search " << static_cast<int>(search) << " filter " << filter.name;
-                }
     std::string names;
     for (const auto target : targets)
         names += std::string(" ") + hwy::TargetName(target);
@@ -112,17 +125,44 @@ TEST(cpu_backend, points_do_not_depend_on_the_others_but_for_rounding)
     cpu_backend b(2);
     const auto set = make_photons(distribution::clustered, 10000, {16, 16, 16}, 2);
     const auto points = make_points(set, 500, 2);
-    const auto map = sorted_map(b, upload_photons(b, set), set.g);
-    const knn_settings k{.k = 50, .max_radius = 0.5f};
-    const auto together = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), k);
-    const auto irradiance = b.download(together.irradiance);
-    const auto used = b.download(together.used);
-    for (std::size_t i = 0; i < points.size(); i += 7) {
-        const auto alone = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(&points[i], 1)), k);
-        EXPECT_EQ(b.download(alone.irradiance)[0].w, irradiance[i].w);
-        EXPECT_EQ(b.download(alone.used)[0].x, used[i].x);
-        EXPECT_NEAR(b.download(alone.irradiance)[0].x, irradiance[i].x, 1e-6f * irradiance[i].x);
+    for (const auto& in : searched_maps) {
+        const auto map = make_map(b, in.kind, upload_photons(b, set), set.g);
+        const knn_settings k{.k = in.k, .max_radius = 0.5f};
+        const auto together = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)), k);
+        const auto irradiance = b.download(together.irradiance);
+        const auto used = b.download(together.used);
+        for (std::size_t i = 0; i < points.size(); i += 7) {
+            const auto alone = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(&points[i], 1)), k);
+            EXPECT_EQ(b.download(alone.irradiance)[0].w, irradiance[i].w);
+            EXPECT_EQ(b.download(alone.used)[0].x, used[i].x);
+            EXPECT_NEAR(b.download(alone.irradiance)[0].x, irradiance[i].x, 1e-6f * irradiance[i].x);
+        }
     }
+}
+
+/// Points among photons 2^18 times as dense as those near the point before, which say nothing about these.
+TEST(cpu_backend, searches_in_blocks_visit_few_photons_wherever_the_points_lie)
+{
+    cpu_backend b(2);
+    random_source u(4);
+    photon_set set;
+    for (uint i = 0; i < 100000; ++i) {
+        const float size = std::ldexp(1.0f, -6 * static_cast<int>(i % 4));
+        set.positions.emplace_back(glm::vec3(0.5f) + size * (glm::vec3(u(), u(), u()) - 0.5f), 0.0f);
+        set.powers.emplace_back(1);
+    }
+    const auto map = block_map(b, upload_photons(b, set));
+    for (const std::size_t points : {100u, 3000u})
+        for (const uint k : {1u, 10u, 100u}) {
+            std::vector<vec4> at;
+            for (std::size_t i = 0; i < points; ++i)
+                at.emplace_back(glm::vec3(set.positions[i * 31]), 1.0f);
+            const auto e = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(at)), {.k = k});
+            uint most = 0;
+            for (const auto& used : b.download(e.used))
+                most = std::max(most, used.y);
+            EXPECT_LT(most, 5000 + 50 * k) << points << " points, k " << k;
+        }
 }
 
 TEST(cpu_backend, buffers_can_be_turned_over)
@@ -253,11 +293,11 @@ TEST(cpu_backend, two_backends_work_side_by_side)
     findings a, c;
     std::thread first([&] {
         cpu_backend b(2);
-        a = find(b, distribution::uniform, search_kind::exact_k, filter_kind::cone, {});
+        a = find(b, searched_maps[0], distribution::uniform, search_kind::exact_k, filter_kind::cone, {});
     });
     std::thread second([&] {
         cpu_backend b(2);
-        c = find(b, distribution::uniform, search_kind::exact_k, filter_kind::cone, {});
+        c = find(b, searched_maps[0], distribution::uniform, search_kind::exact_k, filter_kind::cone, {});
     });
     first.join();
     second.join();

@@ -4,8 +4,6 @@
 
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
-#include <photongrid/map/block_map.hpp>
-#include <photongrid/map/fitting_grid.hpp>
 #include <photongrid/map/map_builders.hpp>
 
 #ifndef PHOTONGRID_COMPILED_HERE
@@ -22,6 +20,8 @@ PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> block_map(serial_b
 PHOTONGRID_COMPILED_HERE template routed_cells<serial_backend> stencil_route(
     serial_backend&, const photons<serial_backend>&, const grid&, uint, uint, uint);
 PHOTONGRID_COMPILED_HERE template grid fitting_grid(serial_backend&, const photons<serial_backend>&, uint, float);
+PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> fitted_map(
+    serial_backend&, photons<serial_backend>, uint, uint);
 PHOTONGRID_COMPILED_HERE template sort_report bitonic_sort(serial_backend&, buffer_of<serial_backend, glm::uvec2>&);
 PHOTONGRID_COMPILED_HERE template class knn_radius<serial_backend>;
 PHOTONGRID_COMPILED_HERE template class knn_search_by_kernels<serial_backend>;

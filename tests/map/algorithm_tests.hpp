@@ -25,6 +25,6 @@ REGISTER_TYPED_TEST_SUITE_P(algorithms, a_fitting_grid_suits_any_photons, buffer
     poisoned_photons_are_counted_and_harmless, a_search_can_be_watched_and_resumed,
     all_photons_in_one_cell_are_all_visited, blocks_hold_every_photon_once_in_boxes_that_fit,
     block_maps_equal_the_serial_backends, searches_in_blocks_are_exact_at_every_scale,
-    everything_equals_the_serial_backend_bit_for_bit);
+    fitted_maps_are_of_the_kind_that_suits_the_photons, everything_equals_the_serial_backend_bit_for_bit);
 
 } // namespace photongrid::testing

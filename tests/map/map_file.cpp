@@ -23,6 +23,14 @@ namespace {
             const auto set = make_photons(distribution::box_faces, 100, {4, 3, 5}, 1);
             save_map(b, sorted_map(b, upload_photons(b, set), set.g), folder / "map", "a note of 18 bytes");
             whole = bytes_of(folder / "map");
+
+            // 18 blocks under two boxes, and 12 photons of another part of the light.
+            auto more = make_photons(distribution::box_faces, 300, {4, 3, 5}, 1);
+            for (std::size_t i = 0; i < more.positions.size(); i += 25)
+                more.positions[i].w = 1;
+            save_map(b, block_map(b, upload_photons(b, more), other_part), folder / "other");
+            blocks = bytes_of(folder / "other");
+            std::filesystem::remove(folder / "other");
         }
         /// The error of load_map() for these bytes; empty if it accepts them.
         std::string complaint(const std::string& bytes)
@@ -50,6 +58,18 @@ namespace {
             return bytes;
         }
 
+        /// A file after a change to its header and to what follows, with its size and checksum put right.
+        using change = void (*)(detail::map_file_header&, std::string&);
+        static std::string forged(const std::string& bytes, change c)
+        {
+            detail::map_file_header header;
+            std::memcpy(&header, bytes.data(), sizeof header);
+            std::string rest = bytes.substr(sizeof header);
+            c(header, rest);
+            header.bytes = sizeof header + rest.size();
+            return summed(std::string(reinterpret_cast<const char*>(&header), sizeof header) + rest);
+        }
+
         /// The files in the folder.
         std::set<std::string> names() const
         {
@@ -61,7 +81,8 @@ namespace {
 
         serial_backend b;
         temporary_folder folder;
-        std::string whole;
+        std::string whole;  ///< of a grid map, "map" in the folder
+        std::string blocks; ///< of a block map
     };
 
     TEST_F(damaged_map_files, are_detected_whichever_byte_changed)
@@ -103,9 +124,11 @@ namespace {
         EXPECT_THROW((void)load_map(b, folder / "none"), map_file_error);
         EXPECT_THROW((void)load_map(b, folder / "."), map_file_error);
         EXPECT_NE(complaint("PNG or whatever").find("is not a photon map"), std::string::npos);
-        auto newer = whole;
-        newer[8] = 3;
-        EXPECT_NE(complaint(newer).find("version 3"), std::string::npos);
+        for (const int version : {2, 4}) {
+            auto another = whole;
+            another[8] = static_cast<char>(version);
+            EXPECT_NE(complaint(another).find("version " + std::to_string(version)), std::string::npos);
+        }
         auto other = whole;
         std::swap(other[12], other[15]);
         std::swap(other[13], other[14]);
@@ -114,29 +137,131 @@ namespace {
 
     TEST_F(damaged_map_files, with_a_valid_checksum_are_rejected_too)
     {
-        ASSERT_EQ(summed(whole), whole);
-        // Every word of the header, and the first cells: a wrong one is seen, or it is one of those that only tell a
-        // number.
+        // Every word of the header, and the first cells or boxes: a wrong one is seen, or it is one of those that only
+        // tell a number.
         const std::size_t harmless[] = {offsetof(detail::map_file_header, invalid),
             offsetof(detail::map_file_header, left_out), offsetof(detail::map_file_header, overflowing_cells),
             offsetof(detail::map_file_header, checksum), offsetof(detail::map_file_header, checksum) + 4};
-        for (std::size_t at = 8; at < sizeof(detail::map_file_header) + 64; at += 4) {
-            const bool is_header = at < sizeof(detail::map_file_header);
-            constexpr std::size_t lattice = offsetof(detail::map_file_header, cells_of),
-                                  resolution = lattice + offsetof(grid, resolution);
-            const bool is_lattice = at >= lattice && at < resolution;
-            if (std::find(std::begin(harmless), std::end(harmless), at) != std::end(harmless))
-                continue;
-            if (is_lattice && (at - lattice) % 16 == 12)
-                continue; // fourth components are not read
-            const std::uint32_t values[] = {0x7FC00000u, 0xFFFFFFFFu, 0xFFFFFF00u};
-            for (const auto value : values) {
-                auto changed = whole;
-                std::memcpy(changed.data() + at, &value, 4);
-                EXPECT_NE(complaint(summed(changed)), "")
-                    << "word at " << at << (is_header ? " of the header" : " of the cells") << " = " << value;
+        for (const auto& file : {whole, blocks}) {
+            ASSERT_EQ(summed(file), file);
+            ASSERT_EQ(complaint(file), "");
+            for (std::size_t at = 8; at < sizeof(detail::map_file_header) + 64; at += 4) {
+                const bool is_header = at < sizeof(detail::map_file_header);
+                constexpr std::size_t lattice = offsetof(detail::map_file_header, cells_of),
+                                      resolution = lattice + offsetof(grid, resolution);
+                const bool is_lattice = at >= lattice && at < resolution;
+                if (std::find(std::begin(harmless), std::end(harmless), at) != std::end(harmless))
+                    continue;
+                if ((is_lattice || (!is_header && file == blocks)) && (at - lattice) % 16 == 12)
+                    continue; // fourth components are not read
+                const std::uint32_t values[] = {0x7FC00000u, 0xFFFFFFFFu, 0xFFFFFF00u};
+                for (const auto value : values) {
+                    auto changed = file;
+                    std::memcpy(changed.data() + at, &value, 4);
+                    EXPECT_NE(complaint(summed(changed)), "")
+                        << (file == blocks ? "block map: " : "grid map: ") << "word at " << at
+                        << (is_header ? " of the header" : " of the cells or boxes") << " = " << value;
+                }
             }
         }
+    }
+
+    /// A block map whose parts do not fit each other could lead a search out of its buffers.
+    TEST_F(damaged_map_files, of_blocks_are_rejected_if_their_parts_do_not_fit)
+    {
+        using header = detail::map_file_header;
+        ASSERT_EQ(forged(blocks, [](header&, std::string&) {}), blocks);
+        header h;
+        std::memcpy(&h, blocks.data(), sizeof h);
+        ASSERT_EQ(h.in_blocks, 288u); // the changes below suit this tree
+        ASSERT_EQ(h.levels, 2u);
+        ASSERT_EQ(h.boxes, 2u * (16 + 32));
+        static const auto put = [](std::string& rest, std::size_t element, float value) { // x of a box or photon
+            std::memcpy(rest.data() + element * sizeof(glm::vec4), &value, sizeof value);
+        };
+        static constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
+                               infinity = std::numeric_limits<float>::infinity();
+        static constexpr std::size_t photons = 2 * (16 + 32) + detail::map_file_padded(300 * sizeof(uint)) / 16;
+        using kernels::high_corner, kernels::low_corner;
+        const std::pair<const char*, change> changes[] = {
+            {"a level less", [](header& f, std::string&) { --f.levels; }},
+            {"a level more", [](header& f, std::string&) { ++f.levels; }},
+            {"no level", [](header& f, std::string&) { f.levels = 0; }},
+            {"photons of one level in blocks", [](header& f, std::string&) { f.in_blocks = 256; }},
+            {"a block less", [](header& f, std::string&) { f.in_blocks = 272; }},
+            {"a block more", [](header& f, std::string&) { f.in_blocks = 289; }},
+            {"more in blocks than there are", [](header& f, std::string&) { f.in_blocks = 301; }},
+            {"more in blocks than there are, in wide boxes",
+                [](header& f, std::string& rest) {
+                    f.in_blocks = 301;
+                    for (const uint node : {1u, 33u, 34u}) {
+                        const glm::vec4 low(-1e30f), high(1e30f);
+                        std::memcpy(rest.data() + low_corner(node) * sizeof low, &low, sizeof low);
+                        std::memcpy(rest.data() + high_corner(node) * sizeof high, &high, sizeof high);
+                    }
+                }},
+            {"no photon in blocks", [](header& f, std::string&) { f.in_blocks = 0; }},
+            {"no word", [](header& f, std::string&) { f.words = 0; }},
+            {"ten words", [](header& f, std::string&) { f.words = 10; }},
+            {"a curve without scale", [](header& f, std::string&) { f.curve.scale.x = 0; }},
+            {"a curve of half the scale", [](header& f, std::string&) { f.curve.scale.x *= 0.5f; }},
+            {"a curve that ends early", [](header& f, std::string&) { f.curve.scale.y *= 0.5f; }},
+            {"a curve from -infinity", [](header& f, std::string&) { f.curve.low.y = -infinity; }},
+            {"a curve to 10^20", [](header& f, std::string&) { f.curve.high.z = 1e20f; }},
+            {"no box",
+                [](header& f, std::string& rest) {
+                    rest.erase(0, f.boxes * sizeof(glm::vec4));
+                    f.boxes = 0;
+                }},
+            {"fewer boxes",
+                [](header& f, std::string& rest) {
+                    f.boxes -= 32;
+                    rest.erase(f.boxes * sizeof(glm::vec4), 32 * sizeof(glm::vec4));
+                }},
+            {"more boxes",
+                [](header& f, std::string& rest) {
+                    rest.insert(f.boxes * sizeof(glm::vec4), 32 * sizeof(glm::vec4), '\0');
+                    f.boxes += 32;
+                }},
+            {"a grid",
+                [](header& f, std::string&) {
+                    f.cells_of = make_grid(glm::vec3(0), glm::vec3(1), {1, 1, 1});
+                }},
+            {"a grid and its cell",
+                [](header& f, std::string& rest) {
+                    f.cells_of = make_grid(glm::vec3(0), glm::vec3(1), {1, 1, 1});
+                    f.cells = 1;
+                    rest.insert(0, 64, '\0');
+                }},
+            {"a cell",
+                [](header& f, std::string& rest) {
+                    f.cells = 1;
+                    rest.insert(0, 64, '\0');
+                }},
+            {"surpluses",
+                [](header& f, std::string& rest) {
+                    f.surpluses = 4;
+                    rest.append(64, '\0');
+                }},
+            // Nodes 0 and 1 are used on the higher level, 16 to 33 on the lower one.
+            {"a box without children", [](header&, std::string& rest) { put(rest, low_corner(2), 0); }},
+            {"the last box without children", [](header&, std::string& rest) { put(rest, high_corner(15), 1e30f); }},
+            {"a block without photons", [](header&, std::string& rest) { put(rest, high_corner(34), nan); }},
+            {"a box of NaN", [](header&, std::string& rest) { put(rest, low_corner(1), nan); }},
+            {"a block of NaN", [](header&, std::string& rest) { put(rest, high_corner(33), nan); }},
+            {"a box without end", [](header&, std::string& rest) { put(rest, high_corner(0), infinity); }},
+            {"a block without end", [](header&, std::string& rest) { put(rest, low_corner(16), -infinity); }},
+            {"a box of nothing", [](header&, std::string& rest) { put(rest, low_corner(0), 3e38f); }},
+            {"a box smaller than its children", [](header&, std::string& rest) { put(rest, high_corner(0), 0.5f); }},
+            {"a block smaller than its photons", [](header&, std::string& rest) { put(rest, low_corner(20), 1.5f); }},
+            {"the first photon far away", [](header&, std::string& rest) { put(rest, photons, 2); }},
+            {"the last photon far away", [](header&, std::string& rest) { put(rest, photons + 287, -2); }},
+            {"a photon of NaN", [](header&, std::string& rest) { put(rest, photons + 100, nan); }},
+        };
+        for (const auto& [what, c] : changes)
+            EXPECT_NE(complaint(forged(blocks, c)).find("is inconsistent"), std::string::npos) << what;
+        // A photon in no block may lie anywhere.
+        EXPECT_EQ(complaint(forged(blocks, [](header&, std::string& rest) { put(rest, photons + 288, nan); })), "");
     }
 
     TEST_F(damaged_map_files, replace_no_device_and_no_link)

@@ -1,7 +1,7 @@
 // Photons and query points to test with: the distributions on which neighbour searches break.
 #pragma once
 
-#include <photongrid/map/block_map.hpp>
+#include <photongrid/map/map_builders.hpp>
 
 #include <cmath>
 #include <cstring>

@@ -367,6 +367,7 @@ namespace {
             EXPECT_TRUE(p.contains("dropped"));
             EXPECT_EQ(s.at("map").at("builder"), map);
             EXPECT_EQ(s.at("map").at("cells"), 32 * 32);
+            EXPECT_EQ(s.at("map").at("blocks"), 0);
             EXPECT_TRUE(s.at("map").contains("overflowing_cells"));
             EXPECT_TRUE(s.at("map").contains("redistributed_power"));
             for (const auto* stage : {"trace_photons", "build_map", "trace_rays", "radiance_estimate"}) {

@@ -50,6 +50,41 @@ TYPED_TEST_P(pictures, sorting_and_routing_agree)
     EXPECT_LT(relative_mse(some_kept, sorted), relative_mse(this->picture(s, settings), sorted));
 }
 
+/// With as many photons as the paper's search takes, that is: those of a grid map and those of a block map need not be
+/// the same.
+TYPED_TEST_P(pictures, sorting_and_blocks_agree)
+{
+    const auto s = small_cornell();
+    for (const auto search : {search_kind::exact_k, search_kind::fixed_radius}) {
+        auto settings = s.render;
+        settings.estimate.search = search;
+        render_stats in_grid, in_blocks;
+        const auto sorted = this->picture(s, settings, &in_grid);
+        settings.map.builder = map_builder::blocks;
+        const auto blocks = this->picture(s, settings, &in_blocks);
+        EXPECT_LE(relative_mse(blocks, sorted), 1e-9); // the same photons are added in another order
+        EXPECT_EQ(in_blocks.estimate.mean_count, in_grid.estimate.mean_count);
+        EXPECT_EQ(in_blocks.map.cells, 0u);
+        EXPECT_EQ(in_blocks.map.blocks, (in_blocks.photons.stored + 15) / 16);
+        EXPECT_EQ(in_grid.map.blocks, 0u);
+    }
+}
+
+/// Which kind suits which photons: fitted_maps_are_of_the_kind_that_suits_the_photons (block_map_tests.hpp).
+TYPED_TEST_P(pictures, an_automatic_map_of_a_room_is_in_a_fitted_grid)
+{
+    auto s = small_cornell();
+    s.render.map.builder = map_builder::automatic;
+    render_stats stats;
+    const auto automatic = this->picture(s, s.render, &stats);
+    EXPECT_EQ(stats.map.builder, map_builder::sort);
+    EXPECT_GT(stats.map.cells, 0u);
+    auto fitted = s.render;
+    fitted.map.builder = map_builder::sort;
+    fitted.map.grid = glm::uvec3(0);
+    EXPECT_TRUE(same_bytes(automatic, this->picture(s, fitted)));
+}
+
 TYPED_TEST_P(pictures, the_same_seed_gives_the_same_bytes)
 {
     const auto s = small_cornell();

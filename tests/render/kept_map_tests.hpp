@@ -43,16 +43,18 @@ TYPED_TEST_P(progressive, a_map_serves_until_the_light_changes)
     auto painted = s;
     painted.materials[0].reflectance *= 0.5;
     auto more = s.render, seeded = s.render, routed = s.render, finer = s.render, only = s.render, shallow = s.render,
-         facing = s.render;
+         facing = s.render, blocks = s.render, chosen = s.render;
     more.map.photons += 1000;
     seeded.seed = 7;
     routed.map.builder = map_builder::route;
+    blocks.map.builder = map_builder::blocks;
+    chosen.map.builder = map_builder::automatic;
     finer.map.grid *= 2u;
     only.output.only = light_part::caustic;
     shallow.map.photon_depth = 4;
     facing.estimate.leaks.min_cosine = 0.5f;
     for (const auto& [scene, with] : {std::pair{lit, s.render}, {grown, s.render}, {painted, s.render}, {s, more},
-             {s, seeded}, {s, routed}, {s, finer}, {s, only}, {s, shallow}, {s, facing}}) {
+             {s, seeded}, {s, routed}, {s, blocks}, {s, chosen}, {s, finer}, {s, only}, {s, shallow}, {s, facing}}) {
         drawing.start(s, s.render, {.enabled = false}); // each differs from this in one thing
         drawing.step();
         const auto maps = drawing.maps();

@@ -147,7 +147,7 @@ TYPED_TEST_P(pictures, a_light_that_stores_no_photon_is_named)
         EXPECT_NE(std::string(e.what()).find("'the bulb'"), std::string::npos) << e.what();
     }
     // A picture needs no indirect light.
-    for (const auto builder : {map_builder::sort, map_builder::route}) {
+    for (const auto builder : {map_builder::sort, map_builder::route, map_builder::blocks, map_builder::automatic}) {
         auto settings = s.render;
         settings.map.builder = builder;
         render_stats stats;

@@ -204,6 +204,16 @@ inline bool needs_estimate(const search_job& j, uint point)
     return j.searching && j.points[point].w > 0.0f && kernels::is_finite(j.points[point]);
 }
 
+/// A point of the search, with its normal if policies need it.
+template <int POLICIES>
+HWY_INLINE query query_at(const search_job& j, uint point)
+{
+    query q{glm::vec3(j.points[point]), glm::vec3(0)};
+    if (POLICIES != 0)
+        q.normal = glm::vec3(j.point_normals[point]);
+    return q;
+}
+
 /// Computes and stores the estimate from the sums.
 inline void finish(const search_job& j, uint point, chosen_radius r, const gathered& g, uint visited)
 {

@@ -4,7 +4,7 @@
 // It visits the same photons in the same order as knn_visit.glsl, a register at a time. Before the k-th photon it takes
 // all within the maximum radius; with the k-th the radius is set, and after that it takes all within the radius. So
 // only the register with the k-th photon must be examined photon by photon.
-#include <photongrid/backends/cpu/overrides/gather_simd.hpp>
+#include <photongrid/backends/cpu/overrides/select_simd.hpp>
 #include <photongrid/map/grid.kernel.hpp>
 
 #include <bit>
@@ -264,9 +264,7 @@ HWY_NOINLINE void grow_points(const search_job& j, std::size_t begin, std::size_
             finish(j, point, {j.max_radius2, false}, {}, 0);
             continue;
         }
-        query q{glm::vec3(j.points[point]), glm::vec3(0)};
-        if (POLICIES != 0)
-            q.normal = glm::vec3(j.point_normals[point]);
+        const query q = query_at<POLICIES>(j, point);
         if (!store) {
             growth<POLICIES, false> found(j, q, held);
             visit_rings(j, j.points[point], found);

@@ -44,18 +44,23 @@ public:
     }
 
     /// Copies the photons within `radius` of `center`, and perhaps some that are a little farther. Returns how many it
-    /// examined.
-    HWY_INLINE std::size_t fill(const search_job& j, const glm::vec3& center, float radius)
+    /// examined; if these were more than `most`, it copies none.
+    HWY_INLINE std::size_t fill(const search_job& j, const glm::vec3& center, float radius, std::size_t most)
     {
         const floats d;
         const uints du;
         const std::size_t width = hn::Lanes(d);
         const float radius2 = radius * radius * 1.000004f + 1e-36f;
-        find_photons(j, center, radius2, rows_);
+        if (j.levels > 0)
+            find_blocks(j, center, radius2, most, rows_);
+        else
+            find_rows(j, center, radius2, rows_);
         std::size_t n = 0;
         for (std::size_t r = 0; r < rows_.rows; ++r)
             n += rows_.past[r] - rows_.first[r];
         clear();
+        if (n > most)
+            return n;
         reserve(n);
         const auto cx = hn::Set(d, center.x), cy = hn::Set(d, center.y), cz = hn::Set(d, center.z),
                    within2 = hn::Set(d, radius2);
@@ -93,10 +98,13 @@ public:
             }
         }
         // Pad with photons that are infinitely far and have no power.
-        for (std::size_t i = k; i < k + lanes; ++i) {
-            of(x)[i] = of(y)[i] = of(z)[i] = std::numeric_limits<float>::infinity();
-            of(red)[i] = of(green)[i] = of(blue)[i] = 0;
-            indices_[i] = 0;
+        const auto far = hn::Set(d, std::numeric_limits<float>::infinity()), none = hn::Zero(d);
+        for (std::size_t i = k; i < k + lanes; i += width) {
+            for (const component p : {x, y, z})
+                hn::StoreU(far, d, of(p) + i);
+            for (const component p : {red, green, blue})
+                hn::StoreU(none, d, of(p) + i);
+            hn::StoreU(hn::Zero(du), du, indices_ + i);
         }
         size_ = k;
         return n;
@@ -119,15 +127,64 @@ public:
             indices_ + size_);
         size_ += added;
     }
+    /// Copies the distances to `kept`.
+    HWY_INLINE void copy_distances()
+    {
+        const floats d;
+        for (std::size_t i = 0; i < size_; i += hn::Lanes(d))
+            hn::Store(hn::Load(d, of(squared_distance) + i), d, of(kept) + i);
+    }
+    /// Removes the photons beyond the squared distance within2.
+    HWY_INLINE void keep(float within2)
+    {
+        const floats d;
+        const uints du;
+        const std::size_t n = size_;
+        float* const distances2 = of(squared_distance);
+        size_ = 0;
+        for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
+            const auto d2 = hn::Load(d, distances2 + i);
+            const auto index = hn::Load(du, indices_ + i);
+            const auto some = hn::And(hn::Le(d2, hn::Set(d, within2)), hn::FirstN(d, n - i));
+            const std::size_t added = store_some(d, d2, some, distances2 + size_);
+            store_some(du, index, hn::RebindMask(du, some), indices_ + size_);
+            size_ += added;
+        }
+    }
+    /// Removes photons at the squared distance last2, those of the greatest ids, until only k photons are left. None
+    /// may be beyond last2. Returns the greatest id left.
+    uint keep_least_ids(const uint* list, float last2, std::size_t k)
+    {
+        float* const distances2 = of(squared_distance);
+        std::vector<std::pair<uint, uint>> at_last; // ids and indices
+        std::size_t n = 0;
+        for (std::size_t i = 0; i < size_; ++i) {
+            if (distances2[i] == last2) {
+                at_last.emplace_back(list[indices_[i]], indices_[i]);
+            } else {
+                distances2[n] = distances2[i];
+                indices_[n++] = indices_[i];
+            }
+        }
+        std::sort(at_last.begin(), at_last.end());
+        uint last_id = 0;
+        for (std::size_t i = 0; n < k; ++i) {
+            distances2[n] = last2;
+            last_id = at_last[i].first;
+            indices_[n++] = at_last[i].second;
+        }
+        size_ = n;
+        return last_id;
+    }
     /// Loads the powers of all photons that add() has added.
     HWY_INLINE void fetch_powers(const search_job& j)
     {
         const floats d;
         const ints di;
         reserve(0);
-        for (std::size_t i = size_; i < size_ + lanes; ++i) { // padding without power
-            of(squared_distance)[i] = std::numeric_limits<float>::infinity();
-            indices_[i] = 0;
+        for (std::size_t i = size_; i < size_ + lanes; i += hn::Lanes(d)) { // padding without power
+            hn::StoreU(hn::Set(d, std::numeric_limits<float>::infinity()), d, of(squared_distance) + i);
+            hn::StoreU(hn::Zero(di), di, reinterpret_cast<int*>(indices_) + i);
         }
         for (std::size_t i = 0; i < size_; i += lanes)
             for (std::size_t l = i; l < i + lanes; l += hn::Lanes(d)) {

@@ -10,7 +10,10 @@
 // kept, and the k-th is selected among these few. The counts show whether the k-th is in the band. If not, the scan is
 // repeated without the band; if the packet's radius is too small, a new packet is made. The file is long because the
 // steps of this search are of use to no other.
-#include <photongrid/backends/cpu/overrides/grow_simd.hpp>
+//
+// In block maps, points are searched alone (tree_simd.hpp) where a packet would hold few points, or photons much denser
+// than expected.
+#include <photongrid/backends/cpu/overrides/tree_simd.hpp>
 #include <photongrid/estimate/host_guess.hpp>
 
 #include <bit>
@@ -44,108 +47,23 @@ HWY_INLINE glm::uvec2 scan(const search_job& j, const query& at, float low2, flo
     return {static_cast<uint>(counted), static_cast<uint>(k)};
 }
 
-/// The n-th smallest (from 1) of `count` numbers that are above low (or 0) and at most high. If they are evenly
-/// distributed, a few rounds of interpolation and counting find a pivot that n or n - 1 of them do not exceed. `values`
-/// is overwritten, up to four registers' width past its end.
-HWY_INLINE float nth_smallest(float* values, std::size_t count, std::size_t n, float low, float high)
+/// How far at most the distance of the k-th photon changes from one point to another with the same normal.
+template <int POLICIES>
+HWY_INLINE float band_width(const search_job& j, const query& from, const query& to)
 {
-    const floats d;
-    const std::size_t width = hn::Lanes(d), whole = (count + 4 * width - 1) / (4 * width) * (4 * width);
-    for (std::size_t more = 0; more < 4; ++more)
-        hn::StoreU(hn::Set(d, std::numeric_limits<float>::infinity()), d, values + count + more * width);
-    std::size_t below = 0, up_to = count; // how many are at most low, at most high
-    auto beyond = hn::Set(d, -1.0f);      // the pivot at low; -1, below all squared distances, until there is one
-    for (int rounds = 0; below + 1 < n && n < up_to; ++rounds) {
-        const float pivot
-            = low + (high - low) * (static_cast<float>(n - below) / static_cast<float>(up_to - below + 1));
-        if (rounds == 12 || !(pivot > low && pivot < high)) { // unevenly distributed, or equal
-            std::nth_element(values, values + (n - 1), values + count);
-            return values[n - 1];
-        }
-        const auto p = hn::Set(d, pivot);
-        std::size_t within = 0;
-        for (std::size_t i = 0; i < whole; i += 4 * width) // four registers at a time, for predictable branches
-            for (std::size_t v = 0; v < 4; ++v)
-                within += hn::CountTrue(d, hn::Le(hn::LoadU(d, values + i + v * width), p));
-        if (n <= within) {
-            up_to = within;
-            high = pivot;
-        } else {
-            below = within;
-            low = pivot;
-            beyond = p;
-        }
+    const glm::vec3 move(to.at.x - from.at.x, to.at.y - from.at.y, to.at.z - from.at.z);
+    float moved2 = move.x * move.x + move.y * move.y + move.z * move.z;
+    if (POLICIES == 2) {
+        const float h = move.x * to.normal.x + move.y * to.normal.y + move.z * to.normal.z;
+        moved2 += j.flattening * (h * h);
     }
-    if (n == up_to) { // the largest of these
-        const auto h = hn::Set(d, high);
-        auto largest = hn::Set(d, -1.0f);
-        for (std::size_t i = 0; i < count; i += width) {
-            const auto v = hn::LoadU(d, values + i);
-            largest = hn::Max(largest, hn::IfThenElse(hn::Le(v, h), v, largest));
-        }
-        return hn::GetLane(hn::MaxOfLanes(d, largest));
-    }
-    auto smallest = hn::Set(d, std::numeric_limits<float>::infinity());
-    for (std::size_t i = 0; i < count; i += width) {
-        const auto v = hn::LoadU(d, values + i);
-        smallest = hn::Min(smallest, hn::IfThenElse(hn::Gt(v, beyond), v, smallest));
-    }
-    return hn::GetLane(hn::MinOfLanes(d, smallest));
+    return std::sqrt(moved2);
 }
 
-/// Marks the end of a point's list after `held` entries.
-inline void end_list(const search_job& j, uint point, std::size_t held)
-{
-    const std::size_t first = std::size_t{point} * j.k;
-    std::fill(j.ids + first + held, j.ids + first + j.k, no_id);
-    std::fill(j.distances2 + first + held, j.distances2 + first + j.k, std::numeric_limits<float>::infinity());
-}
-
-/// Lists the photons within the radius, nearest first, from the distances of scan(). `keys` is scratch. It is not
-/// inlined, because sorting would take registers from the search for estimates.
-HWY_NOINLINE inline void list(
-    const search_job& j, uint point, chosen_radius r, const packet& near, std::vector<std::uint64_t>& keys)
-{
-    const floats d;
-    const uints du;
-    const std::size_t width = hn::Lanes(d), n = near.size();
-    const float* const distances = near.of(packet::squared_distance);
-    // The photons' numbers in the packet.
-    auto* const within = reinterpret_cast<uint*>(near.of(packet::kept));
-    const auto radius2 = hn::Set(d, r.radius2);
-    std::size_t held = 0;
-    for (std::size_t i = 0; i < n; i += width) {
-        const auto is_within = hn::And(hn::Le(hn::Load(d, distances + i), radius2), hn::FirstN(d, n - i));
-        held += store_some(du, hn::Add(hn::Set(du, static_cast<uint>(i)), hn::Iota(du, 0)),
-            hn::RebindMask(du, is_within), within + held);
-    }
-    // The bits of squared distances have the order of the distances; equal distances are ordered by id.
-    keys.resize(held);
-    for (std::size_t i = 0; i < held; ++i)
-        keys[i] = std::uint64_t{std::bit_cast<uint>(distances[within[i]])} << 32 | j.list[near.index(within[i])];
-    std::sort(keys.begin(), keys.end());
-    held = std::min<std::size_t>(held, j.k); // there may be more at the radius
-    uint* const ids = j.ids + std::size_t{point} * j.k;
-    float* const distances2 = j.distances2 + std::size_t{point} * j.k;
-    for (std::size_t i = 0; i < held; ++i) {
-        ids[i] = static_cast<uint>(keys[i]);
-        distances2[i] = std::bit_cast<float>(static_cast<uint>(keys[i] >> 32));
-    }
-    end_list(j, point, held);
-}
-
-/// A first guess at the k-th squared distance, from cell counts or boxes.
+/// A first guess at the k-th squared distance in a grid map, from cell counts.
 inline float guess(const search_job& j, uint point)
 {
-    if (j.levels > 0)
-        return std::min(guessed_by_boxes(j, glm::vec3(j.points[point])), j.max_radius2);
     return detail::guessed_radius2(j.cells_of, j.cells, glm::vec3(j.points[point]), j.k, j.max_radius2);
-}
-
-inline float distance_between(const glm::vec3& a, const glm::vec3& b)
-{
-    const float x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-    return std::sqrt(x * x + y * y + z * z);
 }
 
 /// Searches for the points order[begin] to order[end - 1]. It is one function, because most of its variables pass from
@@ -154,15 +72,45 @@ template <int POLICIES>
 HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::size_t end)
 {
     constexpr float surplus = 0.06f; // relative margin of a packet's radius over the last k-th distance
+    // In block maps: points with fewer photons sought, and packets of fewer points, are faster alone.
+    constexpr uint few_sought = 6, few_points = 3;
     packet near;
     std::vector<uint> at_radius;
     std::vector<std::uint64_t> keys;
     query last;
-    float last_radius = -1; // distance of the last query's k-th photon; none: -1
-    float expected = -1;    // the distance to expect for the next query; -1: derive it from last_radius
+    float last_radius = -1;          // distance of the last query's k-th photon; none: -1
+    float expected = -1;             // the distance to expect for the next query; -1: derive it from last_radius
+    std::size_t alone_until = begin; // points before it are searched alone
     const bool exact = j.search != search_kind::fixed_radius, // finds the k-th distance
-        grows = j.search == search_kind::at_least_k;          // and takes the next radius of a series
+        grows = j.search == search_kind::at_least_k,          // and takes the next radius of a series
+        in_tree = j.levels > 0;
     const float max_radius = std::sqrt(j.max_radius2);
+    const auto store = [&](uint point, chosen_radius r, uint visited) HWY_ATTR {
+        if (j.ids != nullptr)
+            list(j, point, r, near, keys);
+        else
+            finish(j, point, r, j.errors ? gather<true>(j, r, near, at_radius) : gather<false>(j, r, near, at_radius),
+                visited);
+    };
+    const auto search_alone = [&](const query& q, uint point) HWY_ATTR {
+        float bound2 = j.max_radius2;
+        if (exact && last_radius >= 0 && (POLICIES == 0 || q.normal == last.normal)) {
+            const float bound = (last_radius + band_width<POLICIES>(j, last, q)) * 1.000001f;
+            bound2 = std::min(bound2, bound * bound + std::numeric_limits<float>::min());
+            if (grows)
+                bound2 = std::min(kernels::next_in_series(bound2), j.max_radius2);
+        }
+        const tree_result found = search_tree<POLICIES>(j, q, bound2, near);
+        if (j.ids == nullptr)
+            near.fetch_powers(j);
+        store(point, found.radius, found.visited);
+        last_radius = found.kth2 >= 0 ? std::sqrt(found.kth2) : -1;
+        last = q;
+    };
+    // The photons near the last point and this one lie close enough together for a packet.
+    const auto suits_packet = [&](const glm::vec3& at) {
+        return j.k >= few_sought && last_radius > 0 && distance_between(at, last.at) < 2 * last_radius;
+    };
     float step = 0; // mean distance between consecutive points
     for (std::size_t o = begin + 1; o < end; ++o)
         step += distance_between(glm::vec3(j.points[j.order[o - 1]]), glm::vec3(j.points[j.order[o]]));
@@ -174,6 +122,12 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
                 end_list(j, first, 0);
             else
                 finish(j, first, {j.max_radius2, false}, {}, 0);
+            ++o;
+            continue;
+        }
+        if (in_tree && (o < alone_until || (exact && !suits_packet(glm::vec3(j.points[first]))))) {
+            search_alone(query_at<POLICIES>(j, first), first);
+            expected = -1;
             ++o;
             continue;
         }
@@ -207,20 +161,29 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             low = l;
             high = h;
         }
+        if (in_tree && exact && past - o < few_points) {
+            alone_until = past;
+            continue;
+        }
         const glm::vec3 center = 0.5f * low + 0.5f * high;
         float packet_radius = expected;
         for (std::size_t i = o; i < past; ++i)
             packet_radius
                 = std::max(packet_radius, expected + distance_between(glm::vec3(j.points[j.order[i]]), center));
-        uint visited = static_cast<uint>(near.fill(j, center, packet_radius));
+        // Where photons get much denser near the points, a packet has many more than the points need.
+        const std::size_t most
+            = in_tree && exact ? 512 + 16 * std::size_t{j.k} : std::numeric_limits<std::size_t>::max();
+        uint visited = static_cast<uint>(near.fill(j, center, packet_radius, most));
+        if (visited > most) {
+            alone_until = past;
+            continue;
+        }
 
         const float begun_with = expected;
         expected = -1;
         for (; o < past; ++o) {
             const uint point = j.order[o];
-            query q{glm::vec3(j.points[point]), glm::vec3(0)};
-            if (POLICIES != 0)
-                q.normal = glm::vec3(j.point_normals[point]);
+            const query q = query_at<POLICIES>(j, point);
             // The packet contains all photons within this distance of the point.
             const float sure = std::max((packet_radius - distance_between(q.at, center) * 1.000001f) * 0.999998f, 0.0f);
             const float sure2 = std::min(begun_with >= max_radius ? j.max_radius2 : sure * sure, j.max_radius2);
@@ -229,13 +192,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             float low2 = -1, high2 = sure2;
             if (exact && last_radius > 0 && (POLICIES == 0 || q.normal == last.normal)) {
                 // The band. A wrong band costs time only.
-                float moved = distance_between(q.at, last.at);
-                if (POLICIES == 2) {
-                    const glm::vec3 move(q.at.x - last.at.x, q.at.y - last.at.y, q.at.z - last.at.z);
-                    const float h = move.x * q.normal.x + move.y * q.normal.y + move.z * q.normal.z;
-                    moved = std::sqrt(moved * moved + j.flattening * (h * h));
-                }
-                moved += 1e-6f * last_radius;
+                const float moved = band_width<POLICIES>(j, last, q) + 1e-6f * last_radius;
                 if (moved < 0.5f * last_radius) {
                     low2 = (last_radius - moved) * (last_radius - moved);
                     high2 = std::min(sure2, (last_radius + moved) * (last_radius + moved));
@@ -264,16 +221,14 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
                     const float growth
                         = 1.2f * static_cast<float>(j.k) / static_cast<float>(std::max(found.x + found.y, 1u));
                     expected = std::max(begun_with * std::sqrt(std::clamp(growth, 1.3f, 8.0f)), 1e-15f);
-                    if (growth > 4 && !guessed)
+                    if (growth > 4 && in_tree)
+                        alone_until = o + 1;
+                    else if (growth > 4 && !guessed)
                         expected = std::max(expected, std::sqrt(1.3f * guess(j, point)));
                     break;
                 }
             }
-            if (j.ids != nullptr)
-                list(j, point, r, near, keys);
-            else
-                finish(j, point, r,
-                    j.errors ? gather<true>(j, r, near, at_radius) : gather<false>(j, r, near, at_radius), visited);
+            store(point, r, visited);
             visited = 0;
             last_radius = kth2 >= 0 ? std::sqrt(kth2) : -1;
             last = q;

@@ -100,8 +100,9 @@ void settings_panel::draw(double shown_exposure)
         "The photon that sets the radius: paper counts it, and is too bright by k / (k - 1); unbiased leaves it out.");
     draw_grid();
     choice(setting_table::map, "map",
-        "How the photon map is built (m). sort is exact; route takes fewer passes, but is approximate "
-        "where cells overflow.");
+        "How the photon map is built (m). sort and blocks are exact; blocks are fast where photons lie in clusters; "
+        "auto takes the one that suits the photons; route takes fewer passes, but is approximate where cells "
+        "overflow.");
     if (s.map.builder == map_builder::route) {
         number(setting_table::slots, "slots", 1, 16,
             "Cells hold at most slots x slots photons. With more, fewer photons are lost and more memory is used.");

@@ -6,13 +6,13 @@
 #pragma once
 
 #include <photongrid/map/block_box.kernel.hpp>
-#include <photongrid/map/block_tree.kernel.hpp>
+#include <photongrid/map/block_layout.hpp>
 #include <photongrid/map/counted_photon.kernel.hpp>
 #include <photongrid/map/curve_key.kernel.hpp>
-#include <photongrid/map/hilbert.kernel.hpp>
-#include <photongrid/map/map_builders.hpp>
+#include <photongrid/map/grid_maps.hpp>
 #include <photongrid/map/parent_box.kernel.hpp>
 #include <photongrid/map/reordered.kernel.hpp>
+#include <photongrid/map/sample_positions.hpp>
 
 #include <array>
 
@@ -22,22 +22,6 @@ namespace photongrid {
 
 namespace detail {
     inline constexpr uint curve_sample = 4096; // positions from which the number of words follows
-    inline constexpr uint most_words = 9; // of the curve: 90 binary digits per axis, as far as floats near 0 differ
-
-    /// The number of levels of a tree over `photons` photons: at least 1.
-    inline uint tree_levels(uint photons)
-    {
-        uint levels = 1;
-        for (std::uint64_t held = 16 * kernels::BLOCK; held < photons; held *= 16)
-            ++levels;
-        return levels;
-    }
-    /// The number of nodes of that tree, unused ones included.
-    inline uint tree_nodes(uint photons)
-    {
-        const uint blocks = photons / kernels::BLOCK + (photons % kernels::BLOCK != 0 ? 1u : 0u);
-        return kernels::first_of_level(tree_levels(photons) - 1) + (std::max(blocks, 1u) + 15u) / 16u * 16u;
-    }
 
     /// The boxes of a tree over the first `photons` photons, as block_tree.glsl stores them.
     template <backend B>
@@ -55,22 +39,6 @@ namespace detail {
                 {std::size_t{2} * (past - first), 2 * first}, {.nodes = nodes}, reads(corners), writes(corners));
         }
         return corners;
-    }
-
-    /// The curve through the box of all photons, m. Without photons it is any curve.
-    inline kernels::Curve curve_through(const glm::vec4& low, const glm::vec4& high)
-    {
-        // No search finds photons at distances above 10^19 m, so those far outside need no order.
-        const glm::vec4 limit(1e19f);
-        kernels::Curve c{glm::clamp(low, -limit, limit), glm::clamp(high, -limit, limit), glm::vec4(0)};
-        float farthest = 1e-14f; // the scale of the last word must fit a float
-        for (int axis = 0; axis < 3; ++axis) {
-            const float nearest = std::min(std::max(0.0f, c.low[axis]), c.high[axis]);
-            farthest = std::max({farthest, nearest - c.low[axis], c.high[axis] - nearest});
-        }
-        c.scale.x = std::ldexp(1.0f, -std::ilogb(farthest) - 2); // farthest < 2^(ilogb + 1)
-        c.scale.y = 0.5f / c.scale.x;
-        return c;
     }
 
     /// How many words of the curve separate `photons` photons, of which `sample` is a part, so that few of them lie in

@@ -1,8 +1,9 @@
 // A photon map in a file, so that an animation or another process can search it without tracing and sorting again.
 //
 // The file has a header (detail::map_file_header) and the map's buffers in little-endian order, each aligned to 64
-// bytes: cells, list, positions, powers, directions, normals, surpluses, and the caller's note. Empty buffers are left
-// out. Loading maps the file into memory, if the system supports that, and uploads from there.
+// bytes: cells, boxes, list, positions, powers, directions, normals, surpluses, and the caller's note. Empty buffers
+// are left out: a grid map has no boxes, and a block map has no cells and no surpluses. Loading maps the file into
+// memory, if the system supports that, and uploads from there.
 #pragma once
 
 #include <photongrid/backend/file_target.hpp>
@@ -21,28 +22,30 @@ namespace photongrid {
 /// Writes the map to `file`; on an error the old file remains. Threads and processes may save to the same file at the
 /// same time: it is then one of their maps, whole. The same map gives the same bytes on every backend.
 /// `note`: any bytes that the caller wants to store with the map, such as its scene and settings.
-/// \throws map_file_error if the file cannot be written, and for a block map, which files do not hold yet.
+/// \throws map_file_error if the file cannot be written.
 /// \snippet snippets.cpp save_map
 template <backend B>
 void save_map(B& device, const map_buffers<B>& map, const std::filesystem::path& file, const std::string& note = {})
 {
     static_assert(std::endian::native == std::endian::little, "map files are those of little-endian machines");
-    if (map.has_blocks())
-        throw map_file_error(file,
-            "cannot be written: files hold grid maps only, and this is a block map; use sorted_map or fitted_map");
     const auto cells = device.download(map.cells);
     const auto list = device.download(map.list);
-    const auto positions = device.download(map.photons.positions), powers = device.download(map.photons.powers);
-    const auto directions = device.download(map.photons.directions), normals = device.download(map.photons.normals),
-               surpluses = device.download(map.surpluses);
+    const auto boxes = device.download(map.boxes), positions = device.download(map.photons.positions),
+               powers = device.download(map.photons.powers), directions = device.download(map.photons.directions),
+               normals = device.download(map.photons.normals), surpluses = device.download(map.surpluses);
 
     if (note.size() > std::numeric_limits<std::uint32_t>::max())
         throw map_file_error(
             file, "cannot be written: its note of " + std::to_string(note.size()) + " bytes is longer than 2^32 - 1");
     detail::map_file_header header;
     header.cells_of = map.cells_of;
+    header.curve = map.curve;
     header.photons = map.photons.size();
     header.cells = static_cast<std::uint32_t>(cells.size());
+    header.boxes = static_cast<std::uint32_t>(boxes.size());
+    header.levels = map.levels;
+    header.in_blocks = map.in_blocks;
+    header.words = map.words;
     header.surpluses = static_cast<std::uint32_t>(surpluses.size());
     header.attributes = (directions.empty() ? 0u : 1u) | (normals.empty() ? 0u : 2u);
     header.invalid = map.invalid;
@@ -51,6 +54,7 @@ void save_map(B& device, const map_buffers<B>& map, const std::filesystem::path&
     header.note = static_cast<std::uint32_t>(note.size());
     const auto each_buffer = [&](auto&& f) {
         f(cells);
+        f(boxes);
         f(list);
         for (const auto* attribute : {&positions, &powers, &directions, &normals, &surpluses})
             f(*attribute);
@@ -105,12 +109,22 @@ map_buffers<B> load_map(B& device, const std::filesystem::path& file, std::strin
     };
     map_buffers<B> map;
     map.cells_of = header.cells_of;
+    map.curve = header.curve;
+    map.levels = header.levels;
+    map.in_blocks = header.in_blocks;
+    map.words = header.words;
     const auto index = next(std::type_identity<glm::uvec2>{}, header.cells);
     detail::check_map_index(index, n, file);
-    map.cells = device.upload(index);
-    map.list = device.upload(next(std::type_identity<uint>{}, n));
     const std::type_identity<glm::vec4> vectors;
-    map.photons.positions = device.upload(next(vectors, n));
+    const auto boxes = next(vectors, header.boxes);
+    const auto list = next(std::type_identity<uint>{}, n);
+    const auto positions = next(vectors, n);
+    if (!boxes.empty())
+        detail::check_map_boxes(boxes, positions.first(header.in_blocks), file);
+    map.cells = device.upload(index);
+    map.boxes = device.upload(boxes);
+    map.list = device.upload(list);
+    map.photons.positions = device.upload(positions);
     map.photons.powers = device.upload(next(vectors, n));
     if ((header.attributes & 1u) != 0)
         map.photons.directions = device.upload(next(vectors, n));

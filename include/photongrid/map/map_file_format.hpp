@@ -2,12 +2,15 @@
 #pragma once
 
 #include <photongrid/backend/fnv1a.hpp>
+#include <photongrid/map/block_layout.hpp>
 #include <photongrid/map/map_buffers.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -29,15 +32,20 @@ public:
 
 namespace detail {
     inline constexpr std::array<char, 8> map_file_magic{'p', 'h', 'g', 'r', 'i', 'd', 'm', '\n'};
-    inline constexpr std::uint32_t map_file_version = 2, map_file_byte_order = 0x01020304u;
+    inline constexpr std::uint32_t map_file_version = 3, map_file_byte_order = 0x01020304u;
 
     struct map_file_header {
         std::array<char, 8> magic = map_file_magic;
         std::uint32_t version = map_file_version;
         std::uint32_t byte_order = map_file_byte_order;
-        grid cells_of{};
+        grid cells_of{};        ///< grid map; else 0
+        kernels::Curve curve{}; ///< block map; else 0
         std::uint32_t photons = 0;
-        std::uint32_t cells = 0;
+        std::uint32_t cells = 0;      ///< grid map; else 0
+        std::uint32_t boxes = 0;      ///< block map: elements, two per node of the tree; else 0
+        std::uint32_t levels = 0;     ///< block map; else 0
+        std::uint32_t in_blocks = 0;  ///< block map; else 0
+        std::uint32_t words = 0;      ///< block map; else 0
         std::uint32_t surpluses = 0;  ///< elements; 0 or as many as cells
         std::uint32_t attributes = 0; ///< bit 0: directions, bit 1: normals
         std::uint32_t invalid = 0, left_out = 0, overflowing_cells = 0;
@@ -45,7 +53,7 @@ namespace detail {
         std::uint64_t bytes = 0;    ///< of the whole file
         std::uint64_t checksum = 0; ///< of the whole file, taken with 0 here
     };
-    static_assert(sizeof(map_file_header) == 128 && std::is_trivially_copyable_v<map_file_header>);
+    static_assert(sizeof(map_file_header) == 192 && std::is_trivially_copyable_v<map_file_header>);
 
     constexpr std::uint64_t map_file_padded(std::uint64_t bytes) { return (bytes + 63) / 64 * 64; }
 
@@ -102,24 +110,54 @@ namespace detail {
         throw map_file_error(file, "is inconsistent; it was not written by save_map()");
     }
 
-    /// Validates the header: a checksum detects damage, not forgery, and a search of a forged map must still end.
-    inline void check_map_header(const map_file_header& header, const std::filesystem::path& file)
+    /// Whether all bytes of a grid or a curve are 0, as in a map of the other kind.
+    template <class T>
+    bool is_unused(const T& part)
     {
-        const std::uint64_t n = header.photons, cells = header.cells;
-        const auto size_of = [&](std::uint64_t count, std::size_t element) { return map_file_padded(count * element); };
-        const std::uint64_t expected = size_of(1, sizeof header) + size_of(cells, sizeof(glm::uvec2))
-            + size_of(n, sizeof(uint)) + size_of(header.surpluses, sizeof(glm::vec4)) + size_of(header.note, 1)
-            + size_of(n, sizeof(glm::vec4)) * (2u + (header.attributes & 1u) + (header.attributes >> 1 & 1u));
+        const T unused{};
+        return std::memcmp(&part, &unused, sizeof part) == 0;
+    }
+
+    /// Whether the header is of a grid map whose grid has as many cells as the file.
+    inline bool is_of_grid_map(const map_file_header& header)
+    {
+        const std::uint64_t cells = header.cells;
         const grid& g = header.cells_of;
         const auto& r = g.resolution;
-        if (header.attributes > 3 || expected != header.bytes || (header.surpluses != 0 && header.surpluses != cells)
-            || r[0] < 1 || r[1] < 1 || r[2] < 1 || r[3] != cells || std::uint64_t{r[0]} * r[1] > cells
+        if (header.boxes != 0 || header.levels != 0 || header.in_blocks != 0 || header.words != 0
+            || !is_unused(header.curve) || (header.surpluses != 0 && header.surpluses != cells) || r[0] < 1 || r[1] < 1
+            || r[2] < 1 || r[3] != cells || std::uint64_t{r[0]} * r[1] > cells
             || std::uint64_t{r[0]} * r[1] * r[2] != cells)
-            refuse_map(file);
+            return false;
         for (int axis = 0; axis < 3; ++axis)
             if (!std::isfinite(g.origin[axis]) || !std::isfinite(g.inverse_cell[axis]) || !std::isfinite(g.cell[axis])
                 || !(g.inverse_cell[axis] > 0) || !(g.cell[axis] > 0))
-                refuse_map(file);
+                return false;
+        return true;
+    }
+
+    /// Whether the header is of a block map as block_map() builds it.
+    inline bool is_of_block_map(const map_file_header& header)
+    {
+        const auto &c = header.curve, same = curve_through(c.low, c.high); // NaN equals nothing
+        return header.cells == 0 && header.surpluses == 0 && is_unused(header.cells_of)
+            && header.in_blocks <= header.photons && header.levels == tree_levels(header.in_blocks)
+            && header.boxes == std::uint64_t{2} * tree_nodes(header.in_blocks) && header.words >= 1
+            && header.words <= most_words && c.low == same.low && c.high == same.high && c.scale == same.scale;
+    }
+
+    /// Validates the header: a checksum detects damage, not forgery, and a search of a forged map must still end.
+    inline void check_map_header(const map_file_header& header, const std::filesystem::path& file)
+    {
+        const std::uint64_t n = header.photons;
+        const auto size_of = [&](std::uint64_t count, std::size_t element) { return map_file_padded(count * element); };
+        const std::uint64_t expected = size_of(1, sizeof header) + size_of(header.cells, sizeof(glm::uvec2))
+            + size_of(header.boxes, sizeof(glm::vec4)) + size_of(n, sizeof(uint))
+            + size_of(header.surpluses, sizeof(glm::vec4)) + size_of(header.note, 1)
+            + size_of(n, sizeof(glm::vec4)) * (2u + (header.attributes & 1u) + (header.attributes >> 1 & 1u));
+        if (header.attributes > 3 || expected != header.bytes
+            || !(header.boxes != 0 ? is_of_block_map(header) : is_of_grid_map(header)))
+            refuse_map(file);
     }
 
     /// Validates the index: ranges are contiguous from 0 and end within the photons.
@@ -134,6 +172,49 @@ namespace detail {
         }
         if (sum_of_counts > photons)
             refuse_map(file);
+    }
+
+    /// Validates the boxes of a block map: each contains its photons or its children's boxes, and those of nodes
+    /// without photons are boxes of nothing. A search visits the children of each box that it is near to, and nodes
+    /// without photons may have none. `photons`: the positions of those in blocks.
+    inline void check_map_boxes(
+        std::span<const glm::vec4> boxes, std::span<const glm::vec4> photons, const std::filesystem::path& file)
+    {
+        const auto contains = [&](uint node, const glm::vec4& low, const glm::vec4& high) { // false for NaN
+            // Denormals count as 0, and a device may have made them 0.
+            constexpr float margin = std::numeric_limits<float>::min();
+            const auto below = boxes[kernels::low_corner(node)] - low, above = high - boxes[kernels::high_corner(node)];
+            return below.x <= margin && below.y <= margin && below.z <= margin && above.x <= margin && above.y <= margin
+                && above.z <= margin;
+        };
+        auto held = static_cast<uint>(photons.size()); // photons, or used nodes of the level below
+        uint past = tree_nodes(held);
+        const uint lowest = tree_levels(held) - 1;
+        for (uint level = lowest + 1; level-- > 0;) {
+            const uint first = kernels::first_of_level(level),
+                       used = held / kernels::BLOCK + (held % kernels::BLOCK != 0 ? 1u : 0u);
+            for (uint node = first; node < past; ++node) {
+                const auto &low = boxes[kernels::low_corner(node)], &high = boxes[kernels::high_corner(node)];
+                const uint begin = (node - first) * kernels::BLOCK;
+                if (node - first >= used) {
+                    if (low != kernels::low_of_nothing() || high != kernels::high_of_nothing())
+                        refuse_map(file);
+                    continue;
+                }
+                bool fits = kernels::is_finite(low) && kernels::is_finite(high);
+                for (uint i = 0; i < std::min(held - begin, kernels::BLOCK); ++i) {
+                    const uint child = kernels::first_child(node) + i;
+                    fits = fits
+                        && (level == lowest ? contains(node, photons[begin + i], photons[begin + i])
+                                            : contains(node, boxes[kernels::low_corner(child)],
+                                                boxes[kernels::high_corner(child)]));
+                }
+                if (!fits)
+                    refuse_map(file);
+            }
+            past = first;
+            held = used;
+        }
     }
 } // namespace detail
 

@@ -14,8 +14,9 @@ namespace photongrid {
 
 /// The photon map that was built.
 struct map_stats {
-    map_builder builder = map_builder::sort; ///< sorted or routed (2.2)
-    std::uint64_t cells = 0;                 ///< of the whole grid
+    map_builder builder = map_builder::sort; ///< how it was built; sort or blocks where the setting was automatic
+    std::uint64_t blocks = 0;                ///< of a block map
+    std::uint64_t cells = 0;                 ///< of the whole grid; 0 in a block map
     glm::uvec3 resolution{0};                ///< cells along each axis
     std::uint64_t overflowing_cells = 0;     ///< routed cells that received more photons than they have slots
     double redistributed_power = 0;          ///< W, rgb together: power of photons not kept, given to those kept

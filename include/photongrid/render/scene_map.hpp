@@ -1,8 +1,7 @@
-// Builds a scene's photon map (figure 1, left): traces photons and puts them into a grid. It runs again only if
+// Builds a scene's photon map (figure 1, left): traces photons and puts them into a map. It runs again only if
 // geometry, materials, lights or a setting that same_map() compares changes.
 #pragma once
 
-#include <photongrid/map/fitting_grid.hpp>
 #include <photongrid/map/map_builders.hpp>
 #include <photongrid/render/stage_clock.hpp>
 #include <photongrid/trace/trace_photons.hpp>
@@ -29,12 +28,12 @@ constexpr uint parts_of(light_part only)
 }
 
 /// Whether the photon map of scene `a` with settings `as` can be used for scene `b` with `bs`: same shapes, materials
-/// and lights, and the same photons in the same grid. Cameras, names and the settings of other stages do not matter.
+/// and lights, and the same photons in the same map. Cameras, names and the settings of other stages do not matter.
 inline bool same_map(const scene& a, const render_settings& as, const scene& b, const render_settings& bs)
 {
-    const bool fitted = as.map.grid == glm::uvec3(0);
+    const bool fitted = !as.map.has_given_grid() && as.map.builder != map_builder::blocks;
     return same_light_paths(a, b) && as.seed == bs.seed && as.map.in_use() == bs.map.in_use()
-        && (!fitted || as.estimate.k == bs.estimate.k) // fitting_grid depends on k
+        && (!fitted || as.estimate.k == bs.estimate.k) // a fitted map depends on k
         && (as.estimate.leaks.needs_photon_normals() || !bs.estimate.leaks.needs_photon_normals())
         && parts_of(as.output.only) == parts_of(bs.output.only)
         && (as.output.only != light_part::direct || bs.output.only == light_part::direct); // it has no photons
@@ -69,7 +68,7 @@ public:
         detail::time_stage(device_, built_.stats.trace_photons, [&] { tracing_->advance(); });
         return tracing_->finished();
     }
-    /// Sorts or routes the photons (2.2) in one step. Returns true.
+    /// Builds the map of the photons (2.2) in one step. Returns true.
     /// \throws backend_error.
     bool build_map()
     {
@@ -93,20 +92,34 @@ private:
     void build()
     {
         photons<B> p = std::move(built_.trace.photons);
-        const auto& layout = built_.scene.layout;
-        const grid g = settings_.map.grid == glm::uvec3(0)
-            ? fitting_grid(device_, p, settings_.estimate.k, device_.caps().cells_per_radius)
-            : make_grid(layout.low, layout.high, settings_.map.grid);
-        const uint parts = parts_of(settings_.output.only);
-        built_.map = settings_.map.builder == map_builder::sort
-            ? sorted_map(device_, std::move(p), g, parts)
-            : routed_map(device_, std::move(p), g, settings_.map.slots, settings_.seed, parts, settings_.map.surplus);
+        built_.map = map_of(std::move(p), parts_of(settings_.output.only));
         auto& made = built_.stats.map;
         made.builder = settings_.map.builder;
-        made.cells = cell_count(g);
-        made.resolution = glm::uvec3(g.resolution);
+        if (made.builder == map_builder::automatic)
+            made.builder = built_.map.has_blocks() ? map_builder::blocks : map_builder::sort;
+        made.blocks = (built_.map.in_blocks + kernels::BLOCK - 1) / kernels::BLOCK;
+        made.cells = cell_count(built_.map.cells_of);
+        made.resolution = glm::uvec3(built_.map.cells_of.resolution);
         made.overflowing_cells = built_.map.overflowing_cells;
         made.left_out = built_.map.left_out;
+    }
+
+    map_buffers<B> map_of(photons<B> p, uint parts)
+    {
+        const auto& m = settings_.map;
+        const uint k = settings_.estimate.k;
+        switch (m.builder) {
+        case map_builder::blocks: return block_map(device_, std::move(p), parts);
+        case map_builder::automatic: return fitted_map(device_, std::move(p), k, parts);
+        case map_builder::sort:
+        case map_builder::route: break;
+        }
+        const auto& layout = built_.scene.layout;
+        const grid g = m.has_given_grid() ? make_grid(layout.low, layout.high, m.grid)
+                                          : fitting_grid(device_, p, k, device_.caps().cells_per_radius);
+        return m.builder == map_builder::sort
+            ? sorted_map(device_, std::move(p), g, parts)
+            : routed_map(device_, std::move(p), g, m.slots, settings_.seed, parts, m.surplus);
     }
 
     B& device_;

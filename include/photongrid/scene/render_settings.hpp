@@ -14,8 +14,9 @@
 
 namespace photongrid {
 
-/// How a photon map is built: sorted_map (2.2.1) or routed_map (2.2.2).
-enum class map_builder { sort, route };
+/// How a photon map is built: sorted_map (2.2.1), routed_map (2.2.2), block_map, or whichever of a sorted map in a
+/// fitted grid and a block map suits the photons (fitted_map).
+enum class map_builder { sort, route, blocks, automatic };
 
 /// Which part of the light a picture shows. Photons are divided by their paths: a caustic photon has hit mirrors and
 /// glass only, an indirect photon a diffuse surface too. Lamps that are directly visible count as direct light.
@@ -25,20 +26,27 @@ enum class light_part { all, direct, caustic, indirect };
 struct map_settings {
     std::uint32_t photons = 65000;                ///< photons stored
     std::uint32_t photon_depth = 32;              ///< the most surfaces that a photon path hits
-    map_builder builder = map_builder::sort;      ///< sorted or routed
+    map_builder builder = map_builder::sort;      ///< how the map is built
     std::uint32_t slots = 4;                      ///< m: routed cells have m x m slots
     surplus_kind surplus = surplus_kind::photons; ///< photons for which a routed cell has no slot
-    /// Cells of the map over the scene; 0, 0, 0: fitted to the photons and k (fitting_grid.hpp).
+    /// Cells of a sorted or routed map over the scene; 0, 0, 0: fitted to the photons and k (fitting_grid.hpp).
     glm::uvec3 grid{25, 25, 50};
 
+    /// Whether the map is in the grid that these settings give.
+    bool has_given_grid() const
+    {
+        return grid != glm::uvec3(0) && (builder == map_builder::sort || builder == map_builder::route);
+    }
     /// The same settings, with defaults for those that this builder does not use.
     map_settings in_use() const
     {
         map_settings s = *this;
-        if (builder == map_builder::sort) {
+        if (builder != map_builder::route) {
             s.slots = map_settings{}.slots;
             s.surplus = map_settings{}.surplus;
         }
+        if (!has_given_grid())
+            s.grid = glm::uvec3(0);
         return s;
     }
     bool operator==(const map_settings&) const = default;

@@ -169,7 +169,7 @@ namespace setting_table {
     inline constexpr setting k{"k", of(&estimate_settings::k), whole_range{1, 1u << 24}, in_scenes::required,
         "photons sought per estimate; not used by fixed_radius"};
     inline constexpr setting grid{"grid", of(&map_settings::grid), cells{1u << 20, 0x1p31}, in_scenes::required,
-        "cells of the photon map over the scene, or auto: fitted to the photons and k"};
+        "cells of a sorted or routed photon map over the scene, or auto: fitted to the photons and k"};
     inline constexpr setting max_radius{"max_radius", of(&estimate_settings::max_radius), any_length{},
         in_scenes::required, "largest search radius; of fixed_radius, the radius"};
     inline constexpr setting light_samples{"light_samples", of(&view_settings::light_samples), whole_range{1, 65536},
@@ -185,8 +185,11 @@ namespace setting_table {
     inline constexpr setting seed{"seed", of(&render_settings::seed), whole_range{0, 0xFFFFFFFFu}, in_scenes::optional,
         "same seed, same picture"};
     inline constexpr setting map{"map", of(&map_settings::builder),
-        one_of{{named{"sort", map_builder::sort}, {"route", map_builder::route}}}, in_scenes::optional,
-        "build the photon map by bitonic sort or stencil routing"};
+        one_of{{named{"sort", map_builder::sort}, {"route", map_builder::route}, {"blocks", map_builder::blocks},
+            {"auto", map_builder::automatic}}},
+        in_scenes::optional,
+        "build the photon map by bitonic sort or stencil routing, both in a grid, or of blocks along a curve; or auto: "
+        "a fitted grid or blocks, as suits the photons"};
     inline constexpr setting slots{
         "slots", of(&map_settings::slots), whole_range{1, 16}, in_scenes::optional, "routed cells have N x N slots"};
     inline constexpr setting surplus{"surplus", of(&map_settings::surplus),
