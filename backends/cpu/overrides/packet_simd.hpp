@@ -127,12 +127,17 @@ public:
             indices_ + size_);
         size_ += added;
     }
-    /// Copies the distances to `kept`.
-    HWY_INLINE void copy_distances()
+    /// Copies the squared distances to `kept`, and returns the largest.
+    HWY_INLINE float copy_distances()
     {
         const floats d;
-        for (std::size_t i = 0; i < size_; i += hn::Lanes(d))
-            hn::Store(hn::Load(d, of(squared_distance) + i), d, of(kept) + i);
+        auto largest = hn::Zero(d);
+        for (std::size_t i = 0; i < size_; i += hn::Lanes(d)) {
+            const auto d2 = hn::Load(d, of(squared_distance) + i);
+            hn::Store(d2, d, of(kept) + i);
+            largest = hn::Max(largest, hn::IfThenElseZero(hn::FirstN(d, size_ - i), d2));
+        }
+        return hn::GetLane(hn::MaxOfLanes(d, largest));
     }
     /// Removes the photons beyond the squared distance within2.
     HWY_INLINE void keep(float within2)

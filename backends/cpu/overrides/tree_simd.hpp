@@ -65,8 +65,8 @@ public:
     /// The k-th squared distance of at least k photons.
     HWY_INLINE float kth2() const
     {
-        held_.copy_distances();
-        return nth_smallest(held_.of(packet::kept), held_.size(), j_.k, 0.0f, bound2_);
+        const float largest = held_.copy_distances();
+        return nth_smallest(held_.of(packet::kept), held_.size(), j_.k, 0.0f, largest);
     }
     /// The squared radius of a search whose k-th squared distance is kth2.
     HWY_INLINE float radius2(float kth2) const
