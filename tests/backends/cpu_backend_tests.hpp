@@ -140,7 +140,8 @@ TEST(cpu_backend, points_do_not_depend_on_the_others_but_for_rounding)
     }
 }
 
-/// Points among photons 2^18 times as dense as those near the point before, which say nothing about these.
+/// Each cluster is 2^18 times as dense as the next larger, so the distance found for a point says nothing about a point
+/// in another cluster.
 TEST(cpu_backend, searches_in_blocks_visit_few_photons_wherever_the_points_lie)
 {
     cpu_backend b(2);

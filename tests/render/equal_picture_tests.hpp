@@ -50,8 +50,7 @@ TYPED_TEST_P(pictures, sorting_and_routing_agree)
     EXPECT_LT(relative_mse(some_kept, sorted), relative_mse(this->picture(s, settings), sorted));
 }
 
-/// With as many photons as the paper's search takes, that is: those of a grid map and those of a block map need not be
-/// the same.
+/// The paper's search is left out: in a block map it ends at other radii.
 TYPED_TEST_P(pictures, sorting_and_blocks_agree)
 {
     const auto s = small_cornell();

@@ -36,10 +36,8 @@ inline void find_blocks(const search_job& j, const glm::vec3& at, float radius2,
     const auto near = [&](uint node) HWY_ATTR {
         uint bits = 0;
         for_each_box(j, node, at, [&](vector d2, std::size_t lane) HWY_ATTR {
-            std::uint8_t of_register[8] = {};
             const floats d;
-            hn::StoreMaskBits(d, hn::Le(d2, hn::Set(d, radius2)), of_register);
-            bits |= (of_register[0] | static_cast<uint>(of_register[1]) << 8) << lane;
+            bits |= bits_of(d, hn::Le(d2, hn::Set(d, radius2))) << lane;
         });
         return bits;
     };

@@ -40,6 +40,15 @@ HWY_INLINE std::size_t store_some(D d, hn::VFromD<D> v, Mask mask, hn::TFromD<D>
     }
 }
 
+/// The lanes of a mask as bits, the first lane lowest.
+template <class D>
+HWY_INLINE uint bits_of(D d, hn::Mask<D> mask)
+{
+    std::uint8_t bits[8] = {}; // StoreMaskBits writes up to 8 bytes
+    hn::StoreMaskBits(d, mask, bits);
+    return bits[0] | static_cast<uint>(bits[1]) << 8;
+}
+
 /// A query point and its normal.
 struct query {
     glm::vec3 at{0}, normal{0};

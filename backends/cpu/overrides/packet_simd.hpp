@@ -157,7 +157,7 @@ public:
         }
     }
     /// Removes photons at the squared distance last2, those of the greatest ids, until only k photons are left. None
-    /// may be beyond last2. Returns the greatest id left.
+    /// may be beyond last2. Returns the greatest id left at that distance.
     uint keep_least_ids(const uint* list, float last2, std::size_t k)
     {
         float* const distances2 = of(squared_distance);

@@ -47,6 +47,12 @@ HWY_INLINE glm::uvec2 scan(const search_job& j, const query& at, float low2, flo
     return {static_cast<uint>(counted), static_cast<uint>(k)};
 }
 
+inline float distance_between(const glm::vec3& a, const glm::vec3& b)
+{
+    const float x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+    return std::sqrt(x * x + y * y + z * z);
+}
+
 /// How far at most the distance of the k-th photon changes from one point to another with the same normal.
 template <int POLICIES>
 HWY_INLINE float band_width(const search_job& j, const query& from, const query& to)

@@ -100,12 +100,6 @@ HWY_NOINLINE inline void list(
     end_list(j, point, held);
 }
 
-inline float distance_between(const glm::vec3& a, const glm::vec3& b)
-{
-    const float x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-    return std::sqrt(x * x + y * y + z * z);
-}
-
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -140,9 +140,7 @@ HWY_INLINE void visit_blocks(const search_job& j, const glm::vec3& at, Found& fo
         found.visit(s.node - first_block + lane);
         for (std::size_t l = 0; l < lanes; l += hn::Lanes(d)) {
             const auto v = hn::Load(d, s.near2 + l);
-            std::uint8_t bits[8] = {};
-            hn::StoreMaskBits(d, hn::Le(v, hn::Set(d, found.bound2())), bits);
-            for (uint left = bits[0] | static_cast<uint>(bits[1]) << 8; left != 0; left &= left - 1) {
+            for (uint left = bits_of(d, hn::Le(v, hn::Set(d, found.bound2()))); left != 0; left &= left - 1) {
                 const uint n = static_cast<uint>(l) + static_cast<uint>(std::countr_zero(left));
                 if (s.near2[n] <= found.bound2())
                     found.visit(s.node - first_block + n);

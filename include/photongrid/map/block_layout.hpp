@@ -15,6 +15,9 @@ namespace photongrid::detail {
 
 inline constexpr uint most_words = 9; // of the curve: 90 binary digits per axis, as far as floats near 0 differ
 
+/// The number of blocks, or nodes, that hold so many photons, or nodes of the level below.
+inline uint block_count(uint held) { return held / kernels::BLOCK + (held % kernels::BLOCK != 0 ? 1u : 0u); }
+
 /// The number of levels of a tree over `photons` photons: at least 1.
 inline uint tree_levels(uint photons)
 {
@@ -26,8 +29,8 @@ inline uint tree_levels(uint photons)
 /// The number of nodes of that tree, unused ones included.
 inline uint tree_nodes(uint photons)
 {
-    const uint blocks = photons / kernels::BLOCK + (photons % kernels::BLOCK != 0 ? 1u : 0u);
-    return kernels::first_of_level(tree_levels(photons) - 1) + (std::max(blocks, 1u) + 15u) / 16u * 16u;
+    const uint blocks = std::max(block_count(photons), 1u);
+    return kernels::first_of_level(tree_levels(photons) - 1) + kernels::BLOCK * block_count(blocks);
 }
 
 /// The curve through the box of all photons, m. Without photons it is any curve.

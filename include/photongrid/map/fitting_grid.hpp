@@ -27,9 +27,7 @@ namespace detail {
         std::sort(cubes.begin(), cubes.end());
         return static_cast<std::size_t>(std::unique(cubes.begin(), cubes.end()) - cubes.begin());
     }
-} // namespace detail
 
-namespace detail {
     /// fitting_grid() of `photons` photons, of which `sample` is a part.
     inline grid grid_fitting(std::vector<glm::vec3> sample, uint photons, uint k, float cells_per_radius)
     {

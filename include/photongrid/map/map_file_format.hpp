@@ -191,8 +191,7 @@ namespace detail {
         uint past = tree_nodes(held);
         const uint lowest = tree_levels(held) - 1;
         for (uint level = lowest + 1; level-- > 0;) {
-            const uint first = kernels::first_of_level(level),
-                       used = held / kernels::BLOCK + (held % kernels::BLOCK != 0 ? 1u : 0u);
+            const uint first = kernels::first_of_level(level), used = block_count(held);
             for (uint node = first; node < past; ++node) {
                 const auto &low = boxes[kernels::low_corner(node)], &high = boxes[kernels::high_corner(node)];
                 const uint begin = (node - first) * kernels::BLOCK;

@@ -97,7 +97,7 @@ private:
         made.builder = settings_.map.builder;
         if (made.builder == map_builder::automatic)
             made.builder = built_.map.has_blocks() ? map_builder::blocks : map_builder::sort;
-        made.blocks = (built_.map.in_blocks + kernels::BLOCK - 1) / kernels::BLOCK;
+        made.blocks = detail::block_count(built_.map.in_blocks);
         made.cells = cell_count(built_.map.cells_of);
         made.resolution = glm::uvec3(built_.map.cells_of.resolution);
         made.overflowing_cells = built_.map.overflowing_cells;
