@@ -89,7 +89,7 @@ task task_of(const std::string& scene, bool paper, uint visits, uint divisor)
     detail::trace_eye_rays(b, built.scene, s.camera, settings, raster, 0, launch(raster.size(), 0), hits, branches);
     t.points = b.download(hits.points);
     t.normals = b.download(hits.surfaces);
-    t.search = detail::search_for(settings, least_radius(t.cells));
+    t.search = detail::search_for(settings);
     if (visits > 0) {
         t.search.visits_per_pass = visits;
         t.search.ranges_per_pass = std::max(visits / 4, 2u);

@@ -55,7 +55,7 @@ faults=(
   "flattening ignored|include/photongrid/estimate/photon_distance.glsl|longer = d2 + args.leaks.y * (h * h)|longer = d2 + 0.0f * args.leaks.y * (h * h)"
   "standard error without the spread|include/photongrid/estimate/irradiance_estimate.glsl|terms / float(found - 2u)|terms / terms"
   "standard error of one channel|include/photongrid/estimate/gather_photons.glsl|all * all|weighted.x * weighted.x + 0.0f * all"
-  "disc without floor|include/photongrid/estimate/irradiance_estimate.glsl|max(radius2, args.min_radius2)|radius2"
+  "disc without floor|include/photongrid/estimate/irradiance_estimate.glsl|max(radius2, least2)|radius2"
   "rows without a wider radius|include/photongrid/estimate/search_rows.glsl|sqrt(radius2) * 1.00000095f + 1.1e-19f|sqrt(radius2)"
   "rows of a shorter radius|include/photongrid/estimate/search_rows.glsl|sqrt(radius2) * 1.00000095f|sqrt(radius2) * 0.99999f"
   "packed cells begin late|include/photongrid/map/packed_cell.glsl|sums(i) - count,|sums(i) - count + (count > 3u ? 1u : 0u),"
@@ -222,7 +222,7 @@ faults=(
   "vulkan: the caller's commands overtake a pass|backends/vulkan/recorder.hpp|} else {|} else if (timed_) {|vulkan_callers_device"
   "vulkan: the host reads too early|backends/vulkan/recorder.hpp|barrier(now_.commands, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);|(void)0;|vulkan_callers_device"
   "verbs: an upload beyond the limit|backends/serial/serial.hpp|check_size(data.size());|(void)data.size();"
-  "a photon within the least radius is excluded from the error|include/photongrid/estimate/irradiance_estimate.glsl|args.leave_out != 0u && excludes_photon(search_radius, args.min_radius2)|args.leave_out != 0u"
+  "a photon within the least radius is excluded from the error|include/photongrid/estimate/irradiance_estimate.glsl|args.leave_out != 0u && excludes_photon(search_radius, least2)|args.leave_out != 0u"
   "the radius is the k-th visited photon's|include/photongrid/estimate/knn_visit.glsl|if (held < args.k && d2 > radius2)|if (held < args.k)"
 )
 

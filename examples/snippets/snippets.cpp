@@ -273,7 +273,7 @@ void edges(device_type& device)
     //! [correct_edges]
     // A point on the floor's edge, where half of the disc hangs over: the estimate is half of the irradiance until
     // this is called.
-    photongrid::correct_edges(device, scene, points, normals, found, settings.filter, photongrid::least_radius(map));
+    photongrid::correct_edges(device, scene, points, normals, found, settings.filter);
     //! [correct_edges]
     expect(is_near(before, 0.5, 0.15) && is_near(device.download(found.irradiance)[0].x, 1, 0.15), "correct_edges");
 }

@@ -136,10 +136,10 @@ protected:
                 return "squared radius " + std::to_string(irradiance[q].w) + ", not " + std::to_string(radius2) + where;
             if (used[q].x != near.size())
                 return "used " + std::to_string(used[q].x) + ", not " + std::to_string(near.size()) + where;
-            const double min2 = static_cast<double>(k.min_radius) * static_cast<double>(k.min_radius),
+            const double min2 = least_disc2(points[q], k.min_radius),
                          disc = M_PI * std::max(static_cast<double>(radius2), min2);
             if (is_by_photon && !(map.has_blocks() && k.search == search_kind::at_least_k)
-                && k.bias == bias_kind::unbiased && radius2 >= k.min_radius * k.min_radius)
+                && k.bias == bias_kind::unbiased && static_cast<double>(radius2) >= min2)
                 near.pop_back();
             glm::dvec3 sum(0);
             for (const auto& n : near)

@@ -235,6 +235,59 @@ TYPED_TEST_P(estimators, photons_within_the_least_radius_are_all_summed)
     }
 }
 
+TYPED_TEST_P(estimators, estimates_in_small_clusters_ignore_far_photons)
+{
+    // Clusters from 1e-3 to 1e-9 m about 0, and photons 1e6 m away. Without them the estimates would be the same: the
+    // least radius of a disc follows the point's own coordinates, by which rounding moves photons there.
+    oriented_set s;
+    s.photons.g = make_grid(glm::vec3(-1), glm::vec3(1e6f), {4, 4, 4});
+    random_source u(31);
+    for (int i = 0; i < 1200; ++i) {
+        const float size = i % 3 == 0 ? 1e-3f : i % 3 == 1 ? 1e-6f : 1e-9f, x = size * (u() - 0.5f);
+        s.photons.positions.emplace_back(x, size * (u() - 0.5f), i % 50 == 0 ? 1e6f : 0.0f, 0.0f);
+        s.photons.powers.emplace_back(1 + u(), 1 + u(), 1 + u(), 0.0f);
+        if (i % 40 < 3)
+            s.points.emplace_back(x, size * (u() - 0.5f), 0.0f, 1.0f);
+    }
+    s.directions.assign(1200, vec4(0, -1, 0, 0));
+    s.normals.assign(1200, vec4(0, 1, 0, 0));
+    s.point_normals.assign(s.points.size(), vec4(0, 1, 0, 0));
+    for (const auto kind : exact_maps) {
+        const auto map = this->known(s, kind);
+        for (const auto search : all_searches) // seen from afar, a cluster has one distance: other filters round badly
+            EXPECT_EQ(this->difference(s, map, {.k = 10, .max_radius = 1e-2f, .search = search}), "")
+                << "search " << int(search);
+    }
+}
+
+TYPED_TEST_P(estimators, discs_are_no_smaller_than_rounding_moves_photons)
+{
+    // Photons in one place at several distances from 0: the disc's radius is 2^-24 of the point's largest coordinate,
+    // or min_radius where that is larger.
+    oriented_set s;
+    s.photons.g = make_grid(glm::vec3(-100), glm::vec3(100), {4, 4, 4});
+    random_source u(32);
+    for (const glm::vec3 place :
+        {glm::vec3(0), glm::vec3(0.25f, -3, 1), glm::vec3(1e-12f, 0, -1e-9f), glm::vec3(64, 1, 99)})
+        for (int i = 0; i < 12; ++i) {
+            s.photons.positions.emplace_back(place, 0.0f);
+            s.photons.powers.emplace_back(1 + u(), 1 + u(), 1 + u(), 0.0f);
+            if (i == 0)
+                s.points.emplace_back(place, 1.0f);
+        }
+    s.directions.assign(48, vec4(0, -1, 0, 0));
+    s.normals.assign(48, vec4(0, 1, 0, 0));
+    s.point_normals.assign(s.points.size(), vec4(0, 1, 0, 0));
+    for (const auto kind : exact_maps) {
+        const auto map = this->known(s, kind);
+        for (const auto search : {search_kind::exact_k, search_kind::at_least_k})
+            for (const float least : {0.0f, -1.0f, 1e-7f}) {
+                const knn_settings settings{.k = 12, .max_radius = 2, .min_radius = least, .search = search};
+                EXPECT_EQ(this->difference(s, map, settings), "") << "search " << int(search) << " least " << least;
+            }
+    }
+}
+
 /// Photons and points at places that RapidCheck draws and shrinks, NaN, infinity and denormals among them. Photons that
 /// are not finite are in no map. Whole numbers as powers tell by their sums which photons an estimate has.
 TYPED_TEST_P(estimators, find_the_photons_of_brute_force_for_any_numbers)

@@ -95,6 +95,13 @@ std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std:
     return d2 < std::numeric_limits<float>::min() ? 0.0f : d2;
 }
 
+double least_disc2(const vec4& point, float min_radius)
+{
+    const glm::dvec3 size = glm::abs(glm::dvec3(point)) * 0x1p-24;
+    const double radius = std::max({static_cast<double>(min_radius), size.x, size.y, size.z, 1e-18});
+    return radius * radius;
+}
+
 float radius2_in_blocks(float d2, float max_radius2)
 {
     int exponent = 0;
@@ -124,7 +131,7 @@ brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>&
         std::erase_if(near, [&](const auto& x) { return x.first > radius2; });
         e.radius2 = static_cast<double>(radius2);
     }
-    const double min2 = static_cast<double>(k.min_radius) * static_cast<double>(k.min_radius);
+    const double min2 = least_disc2(s.points[q], k.min_radius);
     const double disc2 = std::max(e.radius2, min2);
     std::map<uint, uint> entries; // routed maps hold a photon several times
     for (const uint id : in_map)

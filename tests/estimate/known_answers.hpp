@@ -23,6 +23,10 @@ oriented_set make_oriented(
 oriented_set make_oriented(
     distribution d, const std::vector<std::uint64_t>& numbers, glm::uvec3 resolution, std::size_t points);
 
+/// The squared radius of the least disc of an estimate at a point, m^2: of min_radius, of 2^-24 of the point's largest
+/// coordinate, or of 1e-18 m, whichever is largest.
+double least_disc2(const glm::vec4& point, float min_radius);
+
 /// One estimate by brute force.
 struct brute_estimate {
     std::vector<uint> ids; ///< by (distance, id); those within the radius

@@ -103,8 +103,6 @@ namespace {
                 const auto lists = b.download(
                     knn_neighbours(b, map, b.upload(std::span<const vec4>(points)), {.k = k, .max_radius = 10}).ids);
                 const auto used = b.download(e.used);
-                const float floor2
-                    = std::pow(std::max({set.g.cell.x * 12, set.g.cell.y * 12, set.g.cell.z * 12}) * 0x1p-20f, 2.0f);
                 for (std::size_t q = 0; q < points.size(); ++q) {
                     const auto n = trees.find(points[q], k);
                     const auto flushed
@@ -114,7 +112,7 @@ namespace {
                     ASSERT_EQ(irradiance[q].w, fth) << name_of(d) << ", k " << k << ", point " << q << ": FLANN";
                     ASSERT_EQ(used[q].x, k);
                     ++compared;
-                    if (flushed(n.distances2[k]) == nth || nth <= floor2)
+                    if (flushed(n.distances2[k]) == nth || static_cast<double>(nth) <= least_disc2(points[q], 0))
                         continue; // a tie at the k-th: nanoflann does not specify which one it returns
                     const auto sorted = [&](auto first) {
                         std::vector<std::uint32_t> ids(first, first + k);

@@ -109,6 +109,7 @@ public:
         result.args.norm = norm;
         result.args.min_radius2 = min_radius2_;
         result.args.leave_out = 1;
+        result.points_data = one_point;
         result.search_radii_data = radius;
         result.sums_data = sums;
         result.squares_data = squares;

@@ -112,10 +112,11 @@ HWY_INLINE vector entries_of(const search_job& j, const packet& near, std::size_
     return hn::GatherIndex(d, j.powers.w, hn::LoadU(di, reinterpret_cast<const int*>(near.indices() + i)));
 }
 
-/// Sums the photons within the radius, as gather_photons.glsl does, from the packet's distances. It is one function,
-/// because all of it adds to the same sums, which the compiler keeps in registers.
+/// Sums the photons within the radius of a point, as gather_photons.glsl does, from the packet's distances. It is one
+/// function, because all of it adds to the same sums, which the compiler keeps in registers.
 template <bool ERRORS>
-HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& near, std::vector<uint>& at_radius)
+HWY_INLINE gathered gather(
+    const search_job& j, uint point, chosen_radius r, const packet& near, std::vector<uint>& at_radius)
 {
     const floats d;
     constexpr std::size_t width = hn::MaxLanes(d);
@@ -123,7 +124,8 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
     const float* const distances = near.of(packet::squared_distance);
     const float *const p_red = near.of(packet::red), *const p_green = near.of(packet::green),
                        *const p_blue = near.of(packet::blue);
-    const float inverse_disc2 = 1.0f / std::max(r.radius2, j.min_radius2);
+    const float least2 = kernels::least_disc2(j.points[point], j.min_radius2);
+    const float inverse_disc2 = 1.0f / std::max(r.radius2, least2);
     const auto radius2 = hn::Set(d, r.radius2), inverse = hn::Set(d, inverse_disc2), one = hn::Set(d, 1.0f);
     const filter_kind filter = j.filter;
     lane_sums red, green, blue, red2, green2, blue2, all2;
@@ -167,7 +169,7 @@ HWY_INLINE gathered gather(const search_job& j, chosen_radius r, const packet& n
     std::size_t counted = at_most - within;
     if (j.search == search_kind::exact_k && r.by_photon && at_most > j.k)
         counted = j.k - within;
-    const bool excludes = j.leave_out && kernels::excludes_photon(r.packed(), j.min_radius2);
+    const bool excludes = j.leave_out && kernels::excludes_photon(r.packed(), least2);
     double extra[3] = {}, extra2[4] = {};
     if (counted > (excludes ? 1u : 0u)) {
         const auto by_id = [&](uint a, uint b) { return j.list[near.index(a)] < j.list[near.index(b)]; };
@@ -225,6 +227,7 @@ inline void finish(const search_job& j, uint point, chosen_radius r, const gathe
     e.bind(slot<1>{}, std::span(&g.sum, 1));
     e.bind(slot<2>{}, std::span(&g.squares, 1));
     e.bind(slot<3>{}, std::span(&tally, 1));
+    e.bind(slot<4>{}, std::span(j.points + point, 1));
     e.kernel(0);
     j.irradiance[point] = e.irradiance;
     j.used[point] = e.used;

@@ -275,8 +275,8 @@ HWY_NOINLINE void grow_points(const search_job& j, std::size_t begin, std::size_
         visit_rings(j, j.points[point], found);
         held.fetch_powers(j);
         finish(j, point, found.chosen(),
-            j.errors ? gather<true>(j, found.chosen(), held, at_radius)
-                     : gather<false>(j, found.chosen(), held, at_radius),
+            j.errors ? gather<true>(j, point, found.chosen(), held, at_radius)
+                     : gather<false>(j, point, found.chosen(), held, at_radius),
             found.visited());
     }
 }

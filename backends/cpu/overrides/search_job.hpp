@@ -28,7 +28,7 @@ struct search_job {
     bool searching = true; ///< false: nothing can be found
     uint k = 0;            ///< photons sought
     float max_radius2 = 0; ///< m^2
-    float min_radius2 = 0; ///< m^2
+    float min_radius2 = 0; ///< m^2; see least_disc2 (search_radius.glsl)
     bool side = false;     ///< leak policies, see photon_distance.glsl
     bool needs_photon_normals = false;
     float min_cosine = -1;

@@ -95,7 +95,8 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
         if (j.ids != nullptr)
             list(j, point, r, near, keys);
         else
-            finish(j, point, r, j.errors ? gather<true>(j, r, near, at_radius) : gather<false>(j, r, near, at_radius),
+            finish(j, point, r,
+                j.errors ? gather<true>(j, point, r, near, at_radius) : gather<false>(j, point, r, near, at_radius),
                 visited);
     };
     const auto search_alone = [&](const query& q, uint point) HWY_ATTR {

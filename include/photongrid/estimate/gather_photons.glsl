@@ -20,7 +20,7 @@
 struct Params {
     Grid grid;
     vec4 leaks;        // see photon_distance.glsl
-    float min_radius2; // m^2; the disc is never smaller
+    float min_radius2; // m^2; see least_disc2
     uint visits;       // the most photons to examine in a pass ...
     uint ranges;       // ... and the most rows of cells or boxes
     uint levels;       // block map: of its tree
@@ -69,8 +69,9 @@ void kernel(uint i)
     vec4 n = normals(i);
     uvec4 c = cell_coordinates(args.grid, p);
     float radius2 = radius2_of(search_radius);
-    bool excludes = LEAVE_OUT && excludes_photon(search_radius, args.min_radius2);
-    float inverse_disc2 = 1.0f / max(radius2, args.min_radius2);
+    float least2 = least_disc2(p, args.min_radius2);
+    bool excludes = LEAVE_OUT && excludes_photon(search_radius, least2);
+    float inverse_disc2 = 1.0f / max(radius2, least2);
     uint last_id = last_id_of(chosen);
     uint last_left = last_id_count(chosen);
     vec4 total = sum;

@@ -145,11 +145,12 @@ public:
         auto& found = scratch.found_;
         const auto last = by_photon ? std::max_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(n))
                                     : found.begin();
-        const float max2 = detail::max_radius2(s), min2 = detail::min_radius2(s);
+        const float max2 = detail::max_radius2(s);
+        const float least2 = kernels::least_disc2(glm::vec4(p, 1), detail::min_radius2(s.min_radius));
         const float radius2 = by_photon ? distance2_of(*last) : max2;
         const auto search_radius = kernels::search_radius_of(radius2, by_photon);
-        const bool excludes = s.bias == bias_kind::unbiased && kernels::excludes_photon(search_radius, min2);
-        const float inverse = 1.0f / std::max(radius2, min2);
+        const bool excludes = s.bias == bias_kind::unbiased && kernels::excludes_photon(search_radius, least2);
+        const float inverse = 1.0f / std::max(radius2, least2);
         glm::dvec4 sum(0), squares(0);
         for (std::size_t i = 0; i < n; ++i) {
             if (excludes && &found[i] == &*last)
@@ -163,7 +164,7 @@ public:
                 * glm::dvec4(weighted.x * weighted.x, weighted.y * weighted.y, weighted.z * weighted.z, all * all);
         }
         return detail::estimate_or_none(
-            made_of(search_radius, glm::vec4(sum), glm::vec4(squares), static_cast<uint>(n)), s, p);
+            made_of(p, search_radius, glm::vec4(sum), glm::vec4(squares), static_cast<uint>(n)), s, p);
     }
 
 private:
@@ -251,18 +252,20 @@ private:
         }
     }
 
-    irradiance_at_point made_of(
-        const glm::vec4& search_radius, const glm::vec4& sum, const glm::vec4& squares, uint held) const
+    irradiance_at_point made_of(const glm::vec3& p, const glm::vec4& search_radius, const glm::vec4& sum,
+        const glm::vec4& squares, uint held) const
     {
         const auto tally = kernels::search_tally(held, 0);
+        const glm::vec4 point(p, 1);
         kernels::irradiance_estimate e;
         e.args = {.norm = detail::entry_of(settings_.filter).norm,
-            .min_radius2 = detail::min_radius2(settings_),
+            .min_radius2 = detail::min_radius2(settings_.min_radius),
             .leave_out = settings_.bias == bias_kind::unbiased ? 1u : 0u};
         e.bind(slot<0>{}, std::span(&search_radius, 1));
         e.bind(slot<1>{}, std::span(&sum, 1));
         e.bind(slot<2>{}, std::span(&squares, 1));
         e.bind(slot<3>{}, std::span(&tally, 1));
+        e.bind(slot<4>{}, std::span(&point, 1));
         e.kernel(0);
         return {
             glm::vec3(e.irradiance), glm::vec3(e.standard_error), e.standard_error.w, std::sqrt(e.irradiance.w), held};

@@ -143,8 +143,8 @@ knn_estimates<B> knn_search_by_kernels<B>::estimates()
         device.template run<kernels::zero_vectors>(n, {}, reads(), writes(e.standard_error));
     if (gathered_.size() > 0 || n == 0) {
         device.template run<kernels::knn_result>(n,
-            {.k = s.k, .max_radius2 = in_.max_radius2(), .min_radius2 = in_.min_radius2()}, reads(gathered_, found_),
-            writes(e.irradiance, e.used));
+            {.k = s.k, .max_radius2 = in_.max_radius2(), .min_radius2 = in_.min_radius2()},
+            reads(gathered_, found_, *in_.points), writes(e.irradiance, e.used));
         return e;
     }
     if (stage_ == stage::radius) {
@@ -157,7 +157,7 @@ knn_estimates<B> knn_search_by_kernels<B>::estimates()
         {.norm = detail::entry_of(s.filter).norm,
             .min_radius2 = in_.min_radius2(),
             .leave_out = s.bias == bias_kind::unbiased ? 1u : 0u},
-        reads(radius_, sum_, squares_, tally_), writes(e.irradiance, e.used, errors));
+        reads(radius_, sum_, squares_, tally_, *in_.points), writes(e.irradiance, e.used, errors));
     if (s.errors)
         e.standard_error = std::move(errors);
     return e;

@@ -15,7 +15,8 @@ struct knn_settings {
     uint k = 50; ///< photons sought; fewer if max_radius holds fewer. Not used by fixed_radius
     float max_radius = std::numeric_limits<float>::infinity(); ///< m; photons farther away are rejected; 0 or less:
                                                                ///< none is found. fixed_radius needs a finite one
-    float min_radius = 0; ///< m; least radius of the estimate's disc. 0: 2^-20 of the map's largest extent
+    float min_radius = 0; ///< m; least radius of the estimate's disc. It is never below 2^-24 of the point's largest
+                          ///< coordinate, by which rounding may have moved photons, nor below 1e-18 m
     search_kind search = search_kind::exact_k;  ///< which photons count
     filter_kind filter = filter_kind::constant; ///< weight by distance
     bias_kind bias = bias_kind::unbiased;       ///< whether the photon that sets the radius counts
@@ -28,14 +29,6 @@ struct knn_settings {
     uint visits_per_pass = 3072;
     uint ranges_per_pass = 896; ///< the most rows of cells or boxes that one query reads in a pass, at least 2
 };
-
-/// The default of knn_settings::min_radius, m: 2^-20 of the map's largest extent.
-template <backend B>
-float least_radius(const map_buffers<B>& map)
-{
-    const auto extent = map.extent();
-    return std::max({extent.x, extent.y, extent.z}) * 0x1p-20f;
-}
 
 /// The paper's choice (2.3): at least k, constant filter, no leak policy. k, radii and errors are unchanged.
 /// \snippet snippets.cpp as_paper
@@ -57,7 +50,7 @@ namespace detail {
             && !s.errors;
     }
 
-    /// `s` with its default min_radius filled in. Throws if the settings do not suit this map and these points.
+    /// `s`. Throws if the settings do not suit this map and these points.
     template <backend B>
     knn_settings checked(knn_settings s, const map_buffers<B>& map, std::size_t points, std::size_t normals)
     {
@@ -85,8 +78,6 @@ namespace detail {
         if (s.leaks.needs_photon_normals() && map.photons.size() > 0 && map.photons.normals.size() == 0)
             throw std::invalid_argument(
                 "knn_search: leaks: min_cosine needs the photons' surface normals, which this map does not keep");
-        if (!(s.min_radius > 0))
-            s.min_radius = least_radius(map);
         return s;
     }
     /// Whether a search can find anything.
@@ -105,7 +96,11 @@ namespace detail {
     {
         return s.search != search_kind::fixed_radius && max_radius2(s) >= 1e38f;
     }
-    inline float min_radius2(const knn_settings& s) { return std::max(s.min_radius * s.min_radius, 1e-36f); }
+    /// The parameter of least_disc2 (search_radius.glsl), m^2, for a least radius in m.
+    inline float min_radius2(float min_radius)
+    {
+        return min_radius > 0 ? std::max(min_radius * min_radius, 1e-36f) : 1e-36f;
+    }
     /// The SWITCHes of kernel K that photon_distance.glsl reads.
     template <class K>
     uint policy_switches(const leak_policy& l)
@@ -150,7 +145,7 @@ namespace detail {
         }
         bool searching() const { return is_searching(s, map->photons.size()); }
         float max_radius2() const { return detail::max_radius2(s); }
-        float min_radius2() const { return detail::min_radius2(s); }
+        float min_radius2() const { return detail::min_radius2(s.min_radius); }
         // Attributes that no policy needs are not read; another buffer is bound in their place.
         const vectors& point_normals() const { return normals != nullptr ? *normals : *points; }
         const vectors& directions() const { return s.leaks.side ? map->photons.directions : map->photons.positions; }

@@ -24,11 +24,25 @@ inline float next_in_series(float radius2)
     return radius2 > 0.0f ? uintBitsToFloat((bits + 0x001FFFFFu) & 0xFFE00000u) : 0.0f;
 }
 
+// The least squared radius of the disc of an estimate at a point, m^2: min_radius2, but at least (2^-24 c)^2, where c
+// is the point's largest coordinate. Rounding moves coordinates by up to 2^-24 of themselves, so photons that lie in one
+// place as numbers may lie that far apart.
+inline float least_disc2(vec4 point, float min_radius2)
+{
+    float x = abs(point.x);
+    float y = abs(point.y);
+    float z = abs(point.z);
+    float largest = y > x ? y : x;
+    float rounding = (z > largest ? z : largest) * 5.9604645e-8f; // 2^-24
+    float rounding2 = rounding * rounding;
+    return rounding2 > min_radius2 ? rounding2 : min_radius2; // min_radius2 for NaN
+}
+
 // Whether an unbiased estimate excludes the photon that set the radius. If that photon lies within the least radius of
 // an estimate's disc, it does not set the disc's radius, and it counts.
-inline bool excludes_photon(vec4 search_radius, float min_radius2)
+inline bool excludes_photon(vec4 search_radius, float least_disc2)
 {
-    return is_by_photon(search_radius) && radius2_of(search_radius) >= min_radius2;
+    return is_by_photon(search_radius) && radius2_of(search_radius) >= least_disc2;
 }
 
 // `chosen`: x, y: see search_tally.glsl; z: the last id that counts at the radius itself; w: how often that id counts

@@ -11,10 +11,11 @@
 // passes near the point within the disc, so that slightly bent walls stay connected. The photons of other polygons must
 // be rejected (leak_policy::min_cosine).
 #include <photongrid/backend/vector.glsl>
+#include <photongrid/estimate/search_radius.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
-    float min_radius2; // m^2; discs are never smaller
+    float min_radius2; // m^2; see least_disc2
     uint first;        // record of the first polygon of this pass
     uint polygons;     // how many
 };
@@ -66,7 +67,7 @@ void kernel(uint i)
         return;
     vec3 p = vec3(point);
     vec3 n = vec3(surfaces(i));
-    precise float radius = sqrt(max(estimates(i).w, args.min_radius2));
+    precise float radius = sqrt(max(estimates(i).w, least_disc2(point, args.min_radius2)));
     precise float inverse = 1.0f / radius;
     float sum = cover.x;
     float found = cover.y;

@@ -59,16 +59,14 @@ namespace detail {
 template <backend B>
 buffer_of<B, glm::vec4> covered_shares(B& device, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
     const buffer_of<B, glm::vec4>& normals, const buffer_of<B, glm::vec4>& irradiances, filter_kind filter,
-    float min_radius)
+    float min_radius = 0)
 {
     const auto n = points.size();
     auto cover = device.template make<glm::vec4>(n);
     device.template run<kernels::zero_vectors>(n, {}, reads(), writes(cover));
     for (const auto& range : detail::ranges_of_polygons(s.layout))
         device.template run<kernels::covered_share>({n, 0u, detail::filter_switch(filter)},
-            {.min_radius2 = std::max(min_radius * min_radius, 1e-36f),
-                .first = range.first,
-                .polygons = range.polygons},
+            {.min_radius2 = detail::min_radius2(min_radius), .first = range.first, .polygons = range.polygons},
             reads(s.records, points, normals, irradiances), writes(cover));
     return cover;
 }
@@ -80,7 +78,7 @@ buffer_of<B, glm::vec4> covered_shares(B& device, const device_scene<B>& s, cons
 /// \snippet snippets.cpp correct_edges
 template <backend B>
 void correct_edges(B& device, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
-    const buffer_of<B, glm::vec4>& normals, knn_estimates<B>& estimates, filter_kind filter, float min_radius)
+    const buffer_of<B, glm::vec4>& normals, knn_estimates<B>& estimates, filter_kind filter, float min_radius = 0)
 {
     constexpr float least = 0x1p-8f;
     const auto cover = covered_shares(device, s, points, normals, estimates.irradiance, filter, min_radius);

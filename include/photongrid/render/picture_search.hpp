@@ -11,7 +11,7 @@
 namespace photongrid::detail {
 
 /// The search in the photon map for a picture with settings `s`.
-inline knn_settings search_for(const render_settings& s, float min_radius)
+inline knn_settings search_for(const render_settings& s)
 {
     knn_settings k;
     k.k = s.estimate.k;
@@ -21,7 +21,6 @@ inline knn_settings search_for(const render_settings& s, float min_radius)
     k.bias = s.estimate.bias;
     k.leaks = s.estimate.leaks;
     k.errors = s.output.aov;
-    k.min_radius = min_radius;
     return k;
 }
 

@@ -157,8 +157,7 @@ private:
     bool has_previews() const { return previews_.enabled && !shows_running_estimates(); }
     bool shows_running_estimates() const
     {
-        return previews_.running_estimates && !has_bands()
-            && detail::sums_while_growing(detail::search_for(settings_, 1));
+        return previews_.running_estimates && !has_bands() && detail::sums_while_growing(detail::search_for(settings_));
     }
 
     /// A preview with few photons, the map, previews with all photons, then the passes.

@@ -168,7 +168,7 @@ private:
             picture_search(), how_.wants_running_estimates && !is_preview(), how_.may_search_twice);
     }
     /// The search of the picture itself, not of a preview.
-    knn_settings picture_search() const { return detail::search_for(settings_, least_radius(built_.map)); }
+    knn_settings picture_search() const { return detail::search_for(settings_); }
     knn_settings search_settings() const
     {
         const auto k = picture_search();
@@ -292,8 +292,7 @@ knn_estimates<B> view_pass<B>::shade(
 {
     const auto& hits = samples_->hits;
     if (settings_.estimate.edges != edge_correction::none)
-        correct_edges(device_, built_.scene, hits.points, hits.surfaces, found, settings_.estimate.filter,
-            least_radius(built_.map));
+        correct_edges(device_, built_.scene, hits.points, hits.surfaces, found, settings_.estimate.filter);
     device_.template run<kernels::shade>(pixels.size(), {.share = share},
         reads(built_.scene.records, hits.points, hits.throughputs, hits.surfaces, hits.emissions, samples_->direct,
             found.irradiance, found.used),
