@@ -75,10 +75,10 @@ struct query_lanes {
 };
 
 /// Squared distances of a register of photons, from photon i on, as in photon_distance.glsl: photons that a policy
-/// rejects are farther than any radius. POLICIES: 0: none, 1: only leak_policy::side, 2: any.
-template <int POLICIES>
-HWY_INLINE vector squared_distances(
-    const search_job& j, const query_lanes& q, const photon_vectors& photons, std::size_t i)
+/// rejects are farther than any radius. POLICIES: 0: none, 1: only leak_policy::side, 2: any. `photons`:
+/// photon_vectors, or the job itself for those of the map.
+template <int POLICIES, class Photons>
+HWY_INLINE vector squared_distances(const search_job& j, const query_lanes& q, const Photons& photons, std::size_t i)
 {
     const floats d;
     const auto smallest = hn::Set(d, std::numeric_limits<float>::min()),

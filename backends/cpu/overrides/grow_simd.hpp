@@ -53,6 +53,7 @@ public:
         visited_ += static_cast<uint>(past - first);
         if (STORE)
             store_.reserve(past - first + lanes);
+        auto stored = store_.end();
         for (std::size_t i = first; i < past;) {
             for (std::size_t group = 0; group < lanes / width;
                  ++group, i += width) { // unrolled, so that sums stay in registers
@@ -61,7 +62,7 @@ public:
                 if (!enough())
                     within = grow(d2, within);
                 if (STORE)
-                    store_.add(d2, within, i);
+                    stored.add(d2, within, i);
                 else
                     add(group, within, i);
                 held_ += hn::CountTrue(d, within);
@@ -72,6 +73,7 @@ public:
                     s.flush();
             }
         }
+        store_.take(stored);
     }
 
 private:

@@ -118,15 +118,24 @@ public:
         if (size_ + n + slack > stride_)
             grow(size_ + n);
     }
-    /// Adds those photons of a register for which `some` is true. The register begins at photon `index` of the map.
-    HWY_INLINE void add(vector distances2, hn::Mask<floats> some, std::size_t index)
-    {
-        const uints du;
-        const std::size_t added = store_some(floats(), distances2, some, of(squared_distance) + size_);
-        store_some(du, hn::Add(hn::Set(du, static_cast<uint>(index)), hn::Iota(du, 0)), hn::RebindMask(du, some),
-            indices_ + size_);
-        size_ += added;
-    }
+    /// The place after the last photon. While photons are added there, the compiler keeps it in registers.
+    struct place {
+        float* distances2;
+        uint* indices;
+        std::size_t size;
+
+        /// Adds those photons of a register for which `some` is true. The register begins at photon `index` of the map.
+        HWY_INLINE void add(vector d2, hn::Mask<floats> some, std::size_t index)
+        {
+            const uints du;
+            store_some(du, hn::Add(hn::Set(du, static_cast<uint>(index)), hn::Iota(du, 0)), hn::RebindMask(du, some),
+                indices + size);
+            size += store_some(floats(), d2, some, distances2 + size);
+        }
+    };
+    HWY_INLINE place end() { return {of(squared_distance), indices_, size_}; }
+    /// Takes the photons that were added at `end`. There must be room for them: see reserve().
+    HWY_INLINE void take(const place& end) { size_ = end.size; }
     /// Copies the squared distances to `kept`, and returns the largest.
     HWY_INLINE float copy_distances()
     {

@@ -20,7 +20,6 @@ class found_in_tree {
     const search_job& j_;
     packet& held_;
     const query_lanes q_;
-    const photon_vectors photons_;
     float bound2_;
     std::size_t limit_ = std::numeric_limits<std::size_t>::max(); ///< so many are held before the bound is reduced
     uint last_id_ = no_id; ///< photons at the bound are needed only with lesser ids
@@ -28,7 +27,7 @@ class found_in_tree {
 
 public:
     HWY_INLINE found_in_tree(const search_job& j, const query& at, float bound2, packet& held)
-        : j_(j), held_(held), q_(at), photons_{j.positions, j.directions, j.normals}, bound2_(bound2)
+        : j_(j), held_(held), q_(at), bound2_(bound2)
     {
         if (j.search != search_kind::fixed_radius)
             limit_ = j.k + std::max<std::size_t>(lanes, j.k / 2);
@@ -47,8 +46,9 @@ public:
         const uint first = block * kernels::BLOCK, n = std::min(j_.in_blocks - first, kernels::BLOCK);
         const auto within = hn::Set(d, bound2_);
         visited_ += n;
+        auto found = held_.end();
         for (uint i = 0; i < n; i += static_cast<uint>(hn::Lanes(d))) {
-            const auto d2 = squared_distances<POLICIES>(j_, q_, photons_, first + i);
+            const auto d2 = squared_distances<POLICIES>(j_, q_, j_, first + i);
             auto some = hn::Le(d2, within);
             if (n < kernels::BLOCK)
                 some = hn::And(some, hn::FirstN(d, n - i));
@@ -56,8 +56,9 @@ public:
                 const auto lesser = hn::Lt(hn::LoadU(du, j_.list + first + i), hn::Set(du, last_id_));
                 some = hn::And(some, hn::Or(hn::Lt(d2, within), hn::RebindMask(d, lesser)));
             }
-            held_.add(d2, some, first + i);
+            found.add(d2, some, first + i);
         }
+        held_.take(found);
         held_.reserve(lanes);
         if (held_.size() >= limit_)
             reduce();
