@@ -149,6 +149,7 @@ if [[ $smoke == yes ]]; then
   must bench/pictures.sh --quick
   must $build/bench/kernel_costs
   must $build/bench/unfinished --quick
+  must $build/bench/hashed_routing --quick
   must bench/convergence.sh --quick cpu
   must bench/defaults.sh --quick
   must bench/inclusion.sh --smoke

@@ -18,8 +18,8 @@ set(headers
   backend/verb_kernels backend/verb_tests backend/verbs backends/serial_algorithms
   estimate/estimator_tests estimate/estimators estimate/exact_search_tests estimate/known_answers
   estimate/neighbour_tests estimate/policy_tests
-  map/algorithm_tests map/algorithms map/block_map_tests map/buffer_tests map/map_file_tests map/photon_generator
-  map/photon_sets map/route_tests map/search_tests map/sort_tests map/whole_map_tests)
+  map/algorithm_tests map/algorithms map/block_map_tests map/buffer_tests map/hashed_route_tests map/map_file_tests
+  map/photon_generator map/photon_sets map/route_tests map/search_tests map/sort_tests map/whole_map_tests)
 list(TRANSFORM headers PREPEND ${root}/photongrid/backend_tests/)
 list(TRANSFORM headers APPEND .hpp)
 target_sources(photongrid_backend_tests INTERFACE FILE_SET HEADERS BASE_DIRS ${root} ${CMAKE_CURRENT_BINARY_DIR}/generated FILES ${root}/photongrid/backend_tests.hpp ${headers} ${verb_kernel_text})

@@ -10,6 +10,7 @@
 
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/estimate/knn_neighbours.hpp>
+#include <photongrid/map/hashed_route.hpp>
 #include <photongrid/map/map_builders.hpp>
 #include <photongrid/render/progressive_render.hpp>
 
@@ -21,6 +22,8 @@
     EXTERN template map_buffers<B> sorted_map(B&, photons<B>, const grid&, uint);                                      \
     EXTERN template routed_cells<B> stencil_route(B&, const photons<B>&, const grid&, uint, uint, uint);               \
     EXTERN template map_buffers<B> routed_map(B&, photons<B>, const grid&, uint, uint, uint, surplus_kind);            \
+    EXTERN template routed_survivors<B> hashed_route(                                                                  \
+        B&, photons<B>, const virtual_grid&, const hashed_route_settings&);                                            \
     EXTERN template map_buffers<B> block_map(B&, photons<B>, uint);                                                    \
     EXTERN template grid fitting_grid(B&, const photons<B>&, uint, float);                                             \
     EXTERN template map_buffers<B> fitted_map(B&, photons<B>, uint, uint);                                             \

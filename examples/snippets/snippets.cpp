@@ -5,6 +5,7 @@
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/estimate/knn_neighbours.hpp>
 #include <photongrid/map/block_map.hpp>
+#include <photongrid/map/hashed_route.hpp>
 #include <photongrid/map/map_file.hpp>
 #include <photongrid/map/own_photons.hpp>
 #include <photongrid/photon_map.hpp>
@@ -172,6 +173,32 @@ void routed_maps(device_type& device)
     //! [redistributed_power]
     const auto exact = photongrid::sorted_map(device, photongrid::upload_photons(device, mine), cells);
     expect(moved > 0.5 && moved < 3 && photongrid::redistributed_power(device, exact) == 0, "redistributed_power");
+}
+
+void hashed_maps(device_type& device)
+{
+    const std::vector<photon> mine = photons_on_a_square();
+
+    //! [make_virtual_grid]
+    // Cells of 1 mm in a cube of 1 m: a billion, none of which is stored.
+    const photongrid::virtual_grid cells
+        = photongrid::make_virtual_grid(glm::vec3(-0.5f), glm::vec3(0.5f), glm::uvec3(1000));
+    const std::uint64_t n = photongrid::cell_count(cells); // 1000000000
+    //! [make_virtual_grid]
+    expect(n == 1000000000 && photongrid::cell_number(cells, glm::vec3(-0.5f)) == 0, "make_virtual_grid");
+
+    //! [hashed_route]
+    auto routed = photongrid::hashed_route(device, photongrid::upload_photons(device, mine), cells,
+        {.kind = photongrid::bucket_kind::hash, .m = 4, .buckets = 300});      // 4 x 4 slots per bucket
+    const photongrid::uint dropped = routed.dropped;                           // at least 10000 - 300 x 16
+    const auto map = photongrid::block_map(device, std::move(routed.photons)); // what survives, as any photons
+    //! [hashed_route]
+    expect(dropped >= 5200 && map.photons.size() == 10000 - dropped, "hashed_route");
+
+    //! [dropped_power]
+    const double power = photongrid::redistributed_power(device, routed); // W, of 3 W in three channels
+    //! [dropped_power]
+    expect(is_near(static_cast<float>(power), 3e-4 * dropped, 1e-3), "dropped_power");
 }
 
 void estimates(device_type& device, const photongrid::map_buffers<device_type>& map)
@@ -382,6 +409,7 @@ try {
     algorithms(device);
     maps(device);
     routed_maps(device);
+    hashed_maps(device);
     const auto map = photongrid::fitted_map(device, photongrid::upload_photons(device, photons_on_a_square()), 50);
     estimates(device, map);
     files(device, map);

@@ -7,6 +7,7 @@
 
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/estimate/knn_neighbours.hpp>
+#include <photongrid/map/hashed_route.hpp>
 #include <photongrid/map/map_file.hpp>
 #include <photongrid/render/progressive_render.hpp>
 #include <photongrid/render/render.hpp>
@@ -82,6 +83,19 @@ namespace {
         append(bits, b.download(r.list));
         append(bits, b.download(r.powers));
         append(bits, std::vector<std::uint64_t>{r.overflowing_cells});
+        return bits;
+    }
+
+    template <class B>
+    std::string hashed(B& b, bucket_kind kind)
+    {
+        const auto set = testing::make_photons(testing::distribution::clustered, 300, {5, 4, 3}, 7);
+        const auto r = hashed_route(b, testing::upload_photons(b, set),
+            make_virtual_grid(glm::vec3(0), glm::vec3(1), glm::uvec3(1000)), {.kind = kind, .m = 2});
+        std::string bits;
+        append(bits, b.download(r.list));
+        append(bits, b.download(r.photons.powers));
+        append(bits, std::vector<uint>{r.overflowing_buckets, r.dropped, r.invalid, r.left_out, r.occupied_cells});
         return bits;
     }
 
@@ -173,6 +187,8 @@ namespace {
         {"sort", [](B& b) { return sort(b, 128); }},
         {"sort_padded", [](B& b) { return sort(b, 100); }},
         {"stencil_route", [](B& b) { return route(b); }},
+        {"hashed_route_by_rank", [](B& b) { return hashed(b, bucket_kind::rank); }},
+        {"hashed_route", [](B& b) { return hashed(b, bucket_kind::hash); }},
         {"sorted_map_and_estimate", [](B& b) { return estimate(b, false); }},
         {"routed_map_and_estimate", [](B& b) { return estimate(b, true); }},
         {"neighbour_lists", [](B& b) { return lists(b); }},

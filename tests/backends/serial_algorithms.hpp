@@ -4,6 +4,7 @@
 
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/map/hashed_route.hpp>
 #include <photongrid/map/map_builders.hpp>
 
 #ifndef PHOTONGRID_COMPILED_HERE
@@ -19,6 +20,8 @@ PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> routed_map(
 PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> block_map(serial_backend&, photons<serial_backend>, uint);
 PHOTONGRID_COMPILED_HERE template routed_cells<serial_backend> stencil_route(
     serial_backend&, const photons<serial_backend>&, const grid&, uint, uint, uint);
+PHOTONGRID_COMPILED_HERE template routed_survivors<serial_backend> hashed_route(
+    serial_backend&, photons<serial_backend>, const virtual_grid&, const hashed_route_settings&);
 PHOTONGRID_COMPILED_HERE template grid fitting_grid(serial_backend&, const photons<serial_backend>&, uint, float);
 PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> fitted_map(
     serial_backend&, photons<serial_backend>, uint, uint);

@@ -3,6 +3,7 @@
 #pragma once
 #include "block_map_tests.hpp"
 #include "buffer_tests.hpp"
+#include "hashed_route_tests.hpp"
 #include "route_tests.hpp"
 #include "search_tests.hpp"
 #include "sort_tests.hpp"
@@ -25,6 +26,11 @@ REGISTER_TYPED_TEST_SUITE_P(algorithms, a_fitting_grid_suits_any_photons, buffer
     poisoned_photons_are_counted_and_harmless, a_search_can_be_watched_and_resumed,
     all_photons_in_one_cell_are_all_visited, blocks_hold_every_photon_once_in_boxes_that_fit,
     block_maps_equal_the_serial_backends, searches_in_blocks_are_exact_at_every_scale,
-    fitted_maps_are_of_the_kind_that_suits_the_photons, everything_equals_the_serial_backend_bit_for_bit);
+    fitted_maps_are_of_the_kind_that_suits_the_photons, hashed_buckets_keep_the_first_in_draw_order,
+    hashed_routes_take_hard_cases, hashed_routes_conserve_power_in_crowded_cells,
+    ranks_of_virtual_cells_are_the_occupied_cells_of_a_stored_grid, hashed_routes_equal_the_serial_backends,
+    hashed_cells_have_their_power_in_the_mean_and_the_predicted_variance, errors_of_hashed_survivors_cover_the_thinning,
+    searches_among_hashed_survivors_are_exact, hashed_routes_throw_for_wrong_arguments,
+    everything_equals_the_serial_backend_bit_for_bit);
 
 } // namespace photongrid::testing

@@ -24,16 +24,18 @@
 namespace photongrid {
 
 namespace detail {
-    /// Reorders photons by `list`, one attribute at a time, so that only one attribute is in memory twice.
+    /// Takes the photons of `list` in its order, one attribute at a time, so that only one attribute is in memory
+    /// twice.
     template <backend B>
     void reorder(B& device, photons<B>& p, const buffer_of<B, uint>& list)
     {
-        const uint n = p.size();
+        const uint n = p.size(), taken_photons = static_cast<uint>(list.size());
         for (auto* attribute : {&p.positions, &p.powers, &p.directions, &p.normals}) {
             if (attribute->size() == 0)
                 continue;
-            auto taken = device.template make<glm::vec4>(n);
-            device.template run<kernels::gather_vector>(n, {.photons = n}, reads(list, *attribute), writes(taken));
+            auto taken = device.template make<glm::vec4>(taken_photons);
+            device.template run<kernels::gather_vector>(
+                taken_photons, {.photons = n}, reads(list, *attribute), writes(taken));
             *attribute = std::move(taken);
         }
     }

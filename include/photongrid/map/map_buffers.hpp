@@ -39,6 +39,26 @@ inline constexpr uint every_part = 3u;   ///< both
 /// A uniform grid: origin, cell edges (m) and resolution, as kernels read it.
 using grid = kernels::Grid;
 
+namespace detail {
+    /// Fits the cells of `g` along each axis to the box from `low` to `high`. `caller` names itself in errors.
+    inline void fit_axes(grid& g, const char* caller, glm::vec3 low, glm::vec3 high, glm::uvec3 resolution)
+    {
+        const float scale = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x),
+            std::abs(high.y), std::abs(high.z), high.x - low.x, high.y - low.y, high.z - low.z});
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!std::isfinite(low[axis]) || !std::isfinite(high[axis]) || !std::isfinite(high[axis] - low[axis])
+                || high[axis] < low[axis])
+                throw std::invalid_argument(std::string(caller) + ": low, high: axis " + std::to_string(axis)
+                    + " goes from " + std::to_string(low[axis]) + " to " + std::to_string(high[axis])
+                    + "; both must be finite, and low not larger than high");
+            const float extent = std::max({high[axis] - low[axis], 1e-6f * scale, 1e-30f});
+            g.origin[axis] = low[axis];
+            g.cell[axis] = extent / static_cast<float>(resolution[axis]);
+            g.inverse_cell[axis] = static_cast<float>(resolution[axis]) / extent;
+        }
+    }
+} // namespace detail
+
 /// A grid of `resolution` cells over the box from `low` to `high` (m). An axis without extent gets a small one, so that
 /// photons in a plane need no special case. Points outside belong to the border cells.
 /// \throws std::invalid_argument for a resolution of 0, more than 2^31 cells, or a box that is not finite.
@@ -53,19 +73,7 @@ inline grid make_grid(glm::vec3 low, glm::vec3 high, glm::uvec3 resolution)
             + " cells; each axis needs at least 1, all together at most 2^31");
     grid g{};
     g.resolution = glm::uvec4(resolution, static_cast<uint>(cells));
-    const float scale = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x), std::abs(high.y),
-        std::abs(high.z), high.x - low.x, high.y - low.y, high.z - low.z});
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!std::isfinite(low[axis]) || !std::isfinite(high[axis]) || !std::isfinite(high[axis] - low[axis])
-            || high[axis] < low[axis])
-            throw std::invalid_argument("make_grid: low, high: axis " + std::to_string(axis) + " goes from "
-                + std::to_string(low[axis]) + " to " + std::to_string(high[axis])
-                + "; both must be finite, and low not larger than high");
-        const float extent = std::max({high[axis] - low[axis], 1e-6f * scale, 1e-30f});
-        g.origin[axis] = low[axis];
-        g.cell[axis] = extent / static_cast<float>(resolution[axis]);
-        g.inverse_cell[axis] = static_cast<float>(resolution[axis]) / extent;
-    }
+    detail::fit_axes(g, "make_grid", low, high, resolution);
     return g;
 }
 
@@ -106,6 +114,18 @@ struct map_buffers {
     }
 };
 
+namespace detail {
+    /// The sum of the fourth components, which it reads back.
+    template <backend B>
+    double sum_of_w(B& device, const buffer_of<B, glm::vec4>& vectors)
+    {
+        double sum = 0;
+        for (const auto& v : device.download(vectors))
+            sum += static_cast<double>(v.w);
+        return sum;
+    }
+} // namespace detail
+
 /// The power, W, all channels together, that stencil routing moved from photons that it could not keep to the others of
 /// their cells (2.2.2); 0 for a sorted map. Reads the surpluses back.
 /// \throws backend_error if the device fails.
@@ -113,10 +133,7 @@ struct map_buffers {
 template <backend B>
 double redistributed_power(B& device, const map_buffers<B>& map)
 {
-    double sum = 0;
-    for (const auto& s : device.download(map.surpluses))
-        sum += static_cast<double>(s.w);
-    return sum;
+    return detail::sum_of_w(device, map.surpluses);
 }
 
 } // namespace photongrid

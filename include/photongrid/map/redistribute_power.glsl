@@ -1,6 +1,7 @@
 // The power of photon i after its cell's surplus has been redistributed (2.2.2). This includes photons that were not
 // kept, which no search finds.
 #include <photongrid/map/grid.glsl>
+#include <photongrid/map/redistributed.glsl>
 
 struct Params {
     Grid grid;
@@ -16,9 +17,5 @@ void kernel(uint i)
 {
     uvec4 c = cell_coordinates(args.grid, positions(i));
     uint cell = cell_number(args.grid, c.x, c.y, c.z);
-    vec4 arrived = powers(i);
-    vec4 scale = scales(cell);
-    vec4 surplus = surpluses(cell);
-    power = vec4(arrived.x * scale.x + surplus.x, arrived.y * scale.y + surplus.y, arrived.z * scale.z + surplus.z,
-        arrived.w);
+    power = redistributed(powers(i), scales(cell), surpluses(cell));
 }
