@@ -88,6 +88,8 @@ namespace {
                           s.output.width = value.x;
                           s.output.height = value.y;
                       });
+                  else if constexpr (std::is_same_v<std::decay_t<decltype(row.values)>, setting_table::cells>)
+                      o.settings.push_back([value](render_settings& s) { s.map.use_grid(value); });
                   else
                       o.settings.push_back([row, value](render_settings& s) { row.of(s) = value; });
               },

@@ -14,6 +14,21 @@ namespace {
         EXPECT_EQ(parse_scene("s.json", text(lines)).render.map.grid, glm::uvec3(0));
     }
 
+    TEST(scene_file, without_a_grid_gets_the_map_that_suits)
+    {
+        auto lines = good;
+        auto& render = lines[12];
+        const std::string grid = "\"grid\": [4, 1, 4], ";
+        EXPECT_EQ(parse_scene("s.json", text(lines)).render.map.builder, map_builder::sort);
+        render.erase(render.find(grid), grid.size());
+        const auto map = parse_scene("s.json", text(lines)).render.map;
+        EXPECT_EQ(map.builder, map_builder::automatic);
+        EXPECT_EQ(map.grid, glm::uvec3(0));
+        render.replace(render.find("\"k\""), 3, "\"map\": \"route\", \"k\"");
+        EXPECT_EQ(parse_scene("s.json", text(lines)).render.map.builder, map_builder::route);
+        EXPECT_EQ(parse_scene("s.json", text(lines)).render.map.grid, glm::uvec3(0));
+    }
+
     TEST(scene_file, reads_every_part)
     {
         const auto s = parse_scene("s.json", text(good));

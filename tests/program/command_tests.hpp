@@ -249,6 +249,21 @@ namespace {
             << "the grid does not change what exact_k finds";
     }
 
+    TEST_F(program, gives_an_automatic_map_the_grid_that_follows)
+    {
+        auto last = small_with({"--map", "auto", "--stats", "stats.json", "-o", "a.pfm"});
+        ASSERT_EQ(run(last).code, 0);
+        auto s = nlohmann::json::parse(contents(folder / "stats.json"));
+        EXPECT_EQ(s.at("settings").at("map"), "auto");
+        EXPECT_NE(s.at("map").at("cells"), 32 * 32);
+        auto first = small_with({"--stats", "stats.json", "-o", "a.pfm"});
+        first.insert(first.begin() + 2, {"--map", "auto"}); // before --grid
+        ASSERT_EQ(run(first).code, 0);
+        s = nlohmann::json::parse(contents(folder / "stats.json"));
+        EXPECT_EQ(s.at("settings").at("map"), "sort");
+        EXPECT_EQ(s.at("map").at("cells"), 32 * 32);
+    }
+
     TEST_F(program, renders_on_threads)
     {
         auto with_backend = [&](std::vector<std::string> more) {

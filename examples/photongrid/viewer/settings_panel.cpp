@@ -167,7 +167,7 @@ void settings_panel::draw_grid()
     auto cells = glm::ivec3(document_.now().settings.map.grid);
     bool fitted = cells == glm::ivec3(0);
     if (ImGui::Checkbox("fitted grid", &fitted))
-        change("grid", [&](render_settings& r) { r.map.grid = fitted ? glm::uvec3(0) : grid_; });
+        change("grid", [&](render_settings& r) { r.map.use_grid(fitted ? glm::uvec3(0) : grid_); });
     tip("fitted grid",
         "Fits the cells of the photon map to the photons and k (g). Speed: searches take longer in a grid that is too "
         "coarse or too fine. Error: none for the k nearest; at_least_k depends on the cells.");
@@ -216,7 +216,8 @@ void settings_panel::key(const key_press& p, double shown_exposure)
     case 's': next(setting_table::search); return;
     case 'w': next(setting_table::filter); return;
     case 'g':
-        change("grid", [&](render_settings& s) { s.map.grid = s.map.grid == glm::uvec3(0) ? grid_ : glm::uvec3(0); });
+        change(
+            "grid", [&](render_settings& s) { s.map.use_grid(s.map.grid == glm::uvec3(0) ? grid_ : glm::uvec3(0)); });
         return;
     case 'b': {
         document_.begin("backend");

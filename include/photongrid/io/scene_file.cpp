@@ -50,7 +50,7 @@ namespace {
             if (count_lights(scene_) == 0)
                 fail(at(root(), "lights").place, "lights: the scene has none; expected at least one");
             check_shapes();
-            read_settings(at(root(), "render"), "render", scene_.render);
+            read_render(at(root(), "render"));
             if (const auto* paper = root().find("as_paper"))
                 read_settings(*paper, "as_paper", scene_.paper.emplace(as_paper(scene_.render)));
             return std::move(scene_);
@@ -279,6 +279,18 @@ namespace {
                 to.min_cosine = static_cast<float>(in_range(*cosine, p.min_cosine));
             if (const auto* flattening = v.find("flattening"))
                 to.flattening = static_cast<float>(in_range(*flattening, p.flattening));
+        }
+
+        /// A scene that names neither a map nor a grid gets the map that suits its photons.
+        void read_render(const json_value& v)
+        {
+            auto& map = scene_.render.map;
+            if (v.find("grid") == nullptr) {
+                map.grid = glm::uvec3(0);
+                if (v.find("map") == nullptr)
+                    map.builder = map_builder::automatic;
+            }
+            read_settings(v, "render", scene_.render);
         }
 
         void read_settings(const json_value& v, const char* kind, render_settings& to)

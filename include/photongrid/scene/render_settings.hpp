@@ -37,6 +37,13 @@ struct map_settings {
     {
         return grid != glm::uvec3(0) && (builder == map_builder::sort || builder == map_builder::route);
     }
+    /// Sets the grid. An automatic map has a grid of its own, so one that is given makes it a sorted map.
+    void use_grid(glm::uvec3 given)
+    {
+        grid = given;
+        if (given != glm::uvec3(0) && builder == map_builder::automatic)
+            builder = map_builder::sort;
+    }
     /// The same settings, with defaults for those that this builder does not use.
     map_settings in_use() const
     {

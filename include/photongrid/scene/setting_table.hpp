@@ -168,8 +168,9 @@ namespace setting_table {
         "photons", of(&map_settings::photons), whole_range{1, 1u << 27}, in_scenes::required, "photons stored"};
     inline constexpr setting k{"k", of(&estimate_settings::k), whole_range{1, 1u << 24}, in_scenes::required,
         "photons sought per estimate; not used by fixed_radius"};
-    inline constexpr setting grid{"grid", of(&map_settings::grid), cells{1u << 20, 0x1p31}, in_scenes::required,
-        "cells of a sorted or routed photon map over the scene, or auto: fitted to the photons and k"};
+    inline constexpr setting grid{"grid", of(&map_settings::grid), cells{1u << 20, 0x1p31}, in_scenes::optional,
+        "cells of a sorted or routed photon map over the scene, or auto: fitted to the photons and k; cells make an "
+        "automatic map a sorted one"};
     inline constexpr setting max_radius{"max_radius", of(&estimate_settings::max_radius), any_length{},
         in_scenes::required, "largest search radius; of fixed_radius, the radius"};
     inline constexpr setting light_samples{"light_samples", of(&view_settings::light_samples), whole_range{1, 65536},
