@@ -159,6 +159,7 @@ if [[ $smoke == yes ]]; then
   must $build/bench/knn_peers --sets 1 --seconds 0.05
   must $build/bench/knn_peers_portable --sets 1 --seconds 0.05
   must bench/clustered_peers.sh --photons 2000 --k 10 --seconds 0.01
+  must $build/bench/clustered_maps --photons 2000 --k 10 --seconds 0.005 --sets sphere,nested
   must $build/bench/sort_peers 1 65536
   must bench/estimator_errors.sh --quick
   must bench/edge_correction.sh --quick
@@ -196,6 +197,8 @@ if asked peers; then
   must $build/bench/knn_peers --backend gl --threads 2 --sets 3
   title "Nearest neighbours among photons in clusters, one thread"
   must bench/clustered_peers.sh
+  title "Grids and blocks for photons in clusters"
+  must $build/bench/clustered_maps
   title "Exact k against at least k, by grid"
   must $build/bench/search_times
   title "Sorting pairs, one thread"

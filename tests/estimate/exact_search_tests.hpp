@@ -317,6 +317,34 @@ TYPED_TEST_P(estimators, find_the_photons_of_brute_force_for_any_numbers)
     }));
 }
 
+/// Photons in up to four clumps of any extents and distances, and points in the same clumps, some of them photons.
+TYPED_TEST_P(estimators, find_the_photons_of_brute_force_in_any_clumps)
+{
+    auto& b = this->b();
+    EXPECT_TRUE(rc::check("k-th distance, number and sum of photons equal brute force, however photons lie", [&] {
+        const auto clumps = *rc::gen::suchThat(rc::gen::resize(4, rc::gen::container<std::vector<clump>>(any_clump())),
+            [](const auto& c) { return !c.empty(); });
+        photon_set s;
+        s.positions = *up_to(300, place_in(clumps, 0));
+        for (uint id = 0; id < s.positions.size(); ++id)
+            s.powers.emplace_back(1.0f, static_cast<float>(id), static_cast<float>(id * 37 % 101), 0.0f);
+        s.g = make_grid(glm::vec3(-1), glm::vec3(1), glm::uvec3(*rc::gen::inRange(1u, 9u)));
+        auto points = *up_to(12, place_in(clumps, 1));
+        for (std::size_t id = 0; id < s.positions.size(); id += 37)
+            points.emplace_back(glm::vec3(s.positions[id]), 1.0f);
+        knn_settings settings{.k = *rc::gen::element(1u, 2u, 10u, 50u),
+            .max_radius = *rc::gen::element(std::numeric_limits<float>::infinity(), 1.0f, 1e-6f, 1e8f),
+            .min_radius = 1e-3f};
+        settings.search = *rc::gen::element(search_kind::exact_k, search_kind::at_least_k);
+        const auto map = *rc::gen::arbitrary<bool>()  ? block_map(b, upload_photons(b, s))
+            : settings.search == search_kind::exact_k ? fitted_map(b, upload_photons(b, s), settings.k)
+                                                      : sorted_map(b, upload_photons(b, s), s.g);
+        const auto wrong = this->other_photons(s, map, points, settings);
+        if (!wrong.empty())
+            RC_FAIL(wrong);
+    }));
+}
+
 TYPED_TEST_P(estimators, distances_next_to_each_other_are_told_apart)
 {
     // Squared distances two roundings apart, some of them twice: every pivot of the k-th's search lies at a photon or

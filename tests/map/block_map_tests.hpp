@@ -194,6 +194,11 @@ TYPED_TEST_P(algorithms, fitted_maps_are_of_the_kind_that_suits_the_photons)
             fitted_map(b, upload_photons(b, make_photons(distribution::uniform, 10000, {8, 8, 8}, 9)), k).has_blocks())
             << "k " << k;
     }
+    // Photons of a cluster and others by turns: a sample at equal intervals would see the others alone.
+    auto by_turns = make_photons(distribution::uniform, 65536, {8, 8, 8}, 9);
+    for (std::size_t i = 1; i < by_turns.positions.size(); i += 2)
+        by_turns.positions[i] = vec4(0.5f + 1e-4f * glm::vec3(by_turns.positions[i]), 0.0f);
+    EXPECT_TRUE(fitted_map(b, upload_photons(b, by_turns), 10).has_blocks());
     // As large a part of the photons as other builders take.
     const auto caustic = fitted_map(b, upload_photons(b, in_clusters), 10, caustic_part);
     EXPECT_EQ(caustic.in_blocks, 2000u);

@@ -6,6 +6,7 @@
 
 #include <rapidcheck.h>
 
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -32,6 +33,43 @@ inline rc::Gen<std::vector<glm::vec4>> any_vectors(float w)
 {
     return rc::gen::container<std::vector<glm::vec4>>(rc::gen::apply(
         [w](float x, float y, float z) { return glm::vec4(x, y, z, w); }, any_number(), any_number(), any_number()));
+}
+
+/// Where photons lie densely: evenly in a box, a rectangle, on a line or at a point.
+struct clump {
+    glm::vec3 middle;
+    float extent; ///< half of it; from far below the smallest number whose square is one to 10^6
+    int axes;     ///< along how many axes it has an extent
+};
+
+/// A clump anywhere from 0 to 10^9 m away.
+inline rc::Gen<clump> any_clump()
+{
+    const auto middle = rc::gen::element(0.0f, 1.0f, -0.75f, 1000.3f, 1e6f, -1e9f);
+    return rc::gen::apply(
+        [](float x, float y, float z, float extent, int axes) -> clump {
+            return {{x, y, z}, extent, axes};
+        },
+        middle, middle, middle, rc::gen::element(1.0f, 0.0f, 1e-3f, 1e-6f, 1e-12f, 3e-20f, 1e-40f, 1e3f, 1e6f),
+        rc::gen::inRange(0, 4));
+}
+
+/// A place in one of `clumps`: at one of 17 steps along each axis, so that distances tie, or anywhere; and `w`.
+inline rc::Gen<glm::vec4> place_in(const std::vector<clump>& clumps, float w)
+{
+    return rc::gen::apply(
+        [clumps, w](std::size_t number, const std::array<int, 3>& steps, bool ties) {
+            const auto& c = clumps[number];
+            glm::vec4 at(c.middle, w);
+            for (int axis = 0; axis < c.axes; ++axis) {
+                const int step = steps[static_cast<std::size_t>(axis)];
+                at[axis] += c.extent * (ties ? static_cast<float>(step % 9) / 8 : static_cast<float>(step) * 0x1p-20f);
+            }
+            return at;
+        },
+        rc::gen::inRange<std::size_t>(0, clumps.size()),
+        rc::gen::container<std::array<int, 3>>(rc::gen::inRange(-(1 << 20), (1 << 20) + 1)),
+        rc::gen::arbitrary<bool>());
 }
 
 /// Up to `most` elements, more of them as RapidCheck's size grows. The elements do not grow with it.

@@ -25,8 +25,8 @@ inline float next_in_series(float radius2)
 }
 
 // The least squared radius of the disc of an estimate at a point, m^2: min_radius2, but at least (2^-24 c)^2, where c
-// is the point's largest coordinate. Rounding moves coordinates by up to 2^-24 of themselves, so photons that lie in one
-// place as numbers may lie that far apart.
+// is the point's largest coordinate. Rounding moves coordinates by up to 2^-24 of themselves, so photons whose stored
+// positions are equal may lie that far apart.
 inline float least_disc2(vec4 point, float min_radius2)
 {
     float x = abs(point.x);
