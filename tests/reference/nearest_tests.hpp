@@ -1,6 +1,7 @@
 // The search against FLANN and nanoflann.
 #pragma once
 
+#include "../estimate/known_answers.hpp"
 #include "landed_photons.hpp"
 
 #include <photongrid/estimate/knn_neighbours.hpp>
