@@ -249,19 +249,26 @@ namespace {
             << "the grid does not change what exact_k finds";
     }
 
-    TEST_F(program, gives_an_automatic_map_the_grid_that_follows)
+    TEST_F(program, a_grid_makes_the_automatic_map_of_a_scene_a_sorted_one)
     {
-        auto last = small_with({"--map", "auto", "--stats", "stats.json", "-o", "a.pfm"});
-        ASSERT_EQ(run(last).code, 0);
-        auto s = nlohmann::json::parse(contents(folder / "stats.json"));
-        EXPECT_EQ(s.at("settings").at("map"), "auto");
-        EXPECT_NE(s.at("map").at("cells"), 32 * 32);
-        auto first = small_with({"--stats", "stats.json", "-o", "a.pfm"});
-        first.insert(first.begin() + 2, {"--map", "auto"}); // before --grid
-        ASSERT_EQ(run(first).code, 0);
-        s = nlohmann::json::parse(contents(folder / "stats.json"));
+        auto scene = nlohmann::json::parse(contents(ring));
+        scene["render"].erase("grid");
+        scene["render"].erase("map");
+        std::ofstream(folder / "no_grid.json") << scene;
+        const auto drawn = [&](std::vector<std::string> more) {
+            more.insert(more.begin(),
+                {"render", "no_grid.json", "--backend", "serial", "--size", "32x24", "--photons", "300", "--k", "16",
+                    "-o", "a.pfm", "--stats", "stats.json"});
+            EXPECT_EQ(run(more).code, 0);
+            return nlohmann::json::parse(contents(folder / "stats.json"));
+        };
+        EXPECT_EQ(drawn({}).at("settings").at("map"), "auto");
+        const auto s = drawn({"--grid", "32,1,32"});
         EXPECT_EQ(s.at("settings").at("map"), "sort");
         EXPECT_EQ(s.at("map").at("cells"), 32 * 32);
+        for (const auto& both : {std::vector<std::string>{"--grid", "32,1,32", "--map", "auto"},
+                 std::vector<std::string>{"--map", "auto", "--grid", "32,1,32"}})
+            EXPECT_EQ(drawn(both).at("settings").at("map"), "auto") << "a map that is named stays";
     }
 
     TEST_F(program, renders_on_threads)
