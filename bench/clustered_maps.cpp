@@ -24,8 +24,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <sstream>
 #include <string>
 
 namespace {
@@ -92,9 +90,7 @@ bool measure(B&& b, const arguments& a)
 {
     bool all_good = true;
     for (const auto& which : clustered_sets()) {
-        const bool asked = a.sets.empty() ? std::strcmp(which.name, only_by_name) != 0
-                                          : std::find(a.sets.begin(), a.sets.end(), which.name) != a.sets.end();
-        if (!asked)
+        if (!is_asked_for(a.sets, which))
             continue;
         auto s = make_clustered_set(which, a.photons);
         if (a.few_points)
@@ -140,10 +136,7 @@ arguments parsed(int argc, char** argv)
         if (i + 1 == argc)
             usage_error(option + ": expected a value after it");
         const std::string value = argv[++i];
-        std::vector<std::string> words;
-        std::istringstream list(value);
-        for (std::string word; std::getline(list, word, ',');)
-            words.push_back(word);
+        const auto words = names_in(value.c_str());
         if (option == "--sets") {
             a.sets = words;
         } else if (option == "--backends") {

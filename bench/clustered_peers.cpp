@@ -23,7 +23,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
-#include <sstream>
 #include <string>
 
 namespace {
@@ -80,8 +79,7 @@ bool has(const std::vector<std::string>& names, const char* name)
 
 bool is_asked_for(const arguments& a, const clustered_set& which)
 {
-    return has(a.sets, "all") || has(a.sets, which.name)
-        || (a.sets.empty() && std::strcmp(which.name, only_by_name) != 0);
+    return has(a.sets, "all") || bench::is_asked_for(a.sets, which);
 }
 
 /// A map in one row of the table, or a peer.
@@ -208,15 +206,6 @@ int measure(cpu_backend& b, const clustered_set& which, const data_set& s, uint 
         worst = std::max(worst, t.row(which, k, each.kind, each.m, best, s.points.size(), each.bytes, each.compared));
     }
     return worst;
-}
-
-std::vector<std::string> names_in(const char* list)
-{
-    std::vector<std::string> names;
-    std::istringstream in(list);
-    for (std::string name; std::getline(in, name, ',');)
-        names.push_back(name);
-    return names;
 }
 
 /// The command line; nothing where it is wrong.

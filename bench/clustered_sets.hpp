@@ -5,10 +5,14 @@
 #include "data_sets.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <numeric>
 #include <span>
+#include <sstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace photongrid::bench {
 
@@ -286,6 +290,23 @@ inline void search_at_photons(data_set& s)
 {
     for (const auto& p : s.positions)
         s.points.emplace_back(vec3(p), 1.0f);
+}
+
+/// Whether a set is among `names`, or, without names, among those that need none.
+inline bool is_asked_for(const std::vector<std::string>& names, const clustered_set& which)
+{
+    return names.empty() ? std::strcmp(which.name, only_by_name) != 0
+                         : std::find(names.begin(), names.end(), which.name) != names.end();
+}
+
+/// The names in a list with commas.
+inline std::vector<std::string> names_in(const char* list)
+{
+    std::vector<std::string> names;
+    std::istringstream in(list);
+    for (std::string name; std::getline(in, name, ',');)
+        names.push_back(name);
+    return names;
 }
 
 /// Searches are made at 65,536 points: by turns at any photon and anywhere in the photons' box.

@@ -3,7 +3,7 @@
 // predicts. Prints a table per data set of data_sets.hpp.
 //
 //   hashed_routing [--quick]
-#include "data_sets.hpp"
+#include "device_searches.hpp"
 
 #include <photongrid/backends/cpu/cpu.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
@@ -20,14 +20,10 @@ namespace {
 
 using namespace photongrid;
 using bench::data_set;
+using bench::upload_photons;
 using glm::vec4;
 
 double sum_of(const vec4& v) { return static_cast<double>(v.x) + static_cast<double>(v.y) + static_cast<double>(v.z); }
-
-photons<cpu_backend> upload(cpu_backend& b, const data_set& s)
-{
-    return {b.upload(std::span<const vec4>(s.positions)), b.upload(std::span<const vec4>(s.powers)), {}, {}};
-}
 
 /// The estimates of one map at the points, all channels together.
 struct estimates {
@@ -89,7 +85,7 @@ void measure(cpu_backend& b, const data_set& s, std::size_t most_points, uint se
         points.push_back(s.points[i * s.points.size() / most_points]);
     const auto at = b.upload(std::span<const vec4>(points));
     const float radius = std::sqrt(static_cast<float>(s.k) / static_cast<float>(n)); // about 3 k photons per m^2
-    const auto exact = estimated(b, block_map(b, upload(b, s)), at, radius);
+    const auto exact = estimated(b, block_map(b, upload_photons(b, s)), at, radius);
     const auto relative = [&](const std::vector<double>& squares) { // as relMSE: the mean over points
         double sum = 0;
         for (std::size_t q = 0; q < squares.size(); ++q)
@@ -105,7 +101,7 @@ void measure(cpu_backend& b, const data_set& s, std::size_t most_points, uint se
         double dropped = 0;
         for (uint seed = 0; seed < seeds; ++seed) {
             settings.seed = seed;
-            auto r = hashed_route(b, upload(b, s), g, settings);
+            auto r = hashed_route(b, upload_photons(b, s), g, settings);
             buckets = r.arrived.size();
             dropped = static_cast<double>(r.dropped) / n;
             if (!ranked && variance.empty())
