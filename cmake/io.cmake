@@ -17,7 +17,11 @@ target_sources(photongrid_io PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_
 target_link_libraries(photongrid_io PUBLIC photongrid PRIVATE $<BUILD_INTERFACE:photongrid_warnings>
   $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> OpenEXR::OpenEXR PNG::PNG)
 if(PHOTONGRID_SANITIZE)
-  set_target_properties(photongrid_io PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0) # a third of the compiler's time
+  set(together 0) # all
+  if(PHOTONGRID_FUZZ)
+    set(together 8) # in two: one for each core, since little else is compiled
+  endif()
+  set_target_properties(photongrid_io PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${together})
 endif()
 if(NOT PROJECT_IS_TOP_LEVEL)
   set_target_properties(photongrid_io PROPERTIES EXCLUDE_FROM_ALL TRUE)
