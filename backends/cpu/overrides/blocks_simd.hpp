@@ -9,24 +9,45 @@ HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The squared distances of `at` from the boxes of 16 siblings, the first of which is `node`: calls f(squared
-/// distances, first lane) for each register of them. A box of nothing is infinitely far.
-template <class F>
-HWY_INLINE void for_each_box(const search_job& j, uint node, const glm::vec3& at, const F& f)
+/// A box around points, or a single point.
+struct box_of_points {
+    glm::vec3 low{std::numeric_limits<float>::max()}, high{-std::numeric_limits<float>::max()};
+
+    void add(const glm::vec3& p)
+    {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+};
+
+/// The squared distances of a box of points from a register of boxes. `lows`, `highs`: where their corners' x, y and z
+/// are. A box of nothing is infinitely far. No point of the box of points is nearer to such a box, rounding included:
+/// each step here rounds a number that is not larger in the same way (block_tree.glsl).
+HWY_INLINE vector box_distances2(
+    const box_of_points& p, const soa_vectors<const float>& lows, const soa_vectors<const float>& highs)
 {
     const floats d;
-    const auto x = hn::Set(d, at.x), y = hn::Set(d, at.y), z = hn::Set(d, at.z), zero = hn::Zero(d);
+    const auto apart = [&](const float* low, const float* high, float p_low, float p_high) HWY_ATTR {
+        const auto below = hn::Sub(hn::Load(d, low), hn::Set(d, p_high)),
+                   above = hn::Sub(hn::Set(d, p_low), hn::Load(d, high));
+        return hn::Max(hn::Max(below, above), hn::Zero(d));
+    };
+    const auto x = apart(lows.x, highs.x, p.low.x, p.high.x), y = apart(lows.y, highs.y, p.low.y, p.high.y),
+               z = apart(lows.z, highs.z, p.low.z, p.high.z);
+    const auto d2 = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
+    return hn::IfThenElseZero(hn::Ge(d2, hn::Set(d, std::numeric_limits<float>::min())), d2);
+}
+
+/// The squared distances of a box of points from the boxes of 16 siblings, the first of which is `node`: calls
+/// f(squared distances, first lane) for each register of them.
+template <class F>
+HWY_INLINE void for_each_box(const search_job& j, uint node, const box_of_points& p, const F& f)
+{
     const std::size_t low = kernels::low_corner(node), high = kernels::high_corner(node);
-    for (std::size_t lane = 0; lane < lanes; lane += hn::Lanes(d)) {
-        const auto apart = [&](const float* corners, vector v) HWY_ATTR {
-            const auto below = hn::Sub(hn::Load(d, corners + low + lane), v),
-                       above = hn::Sub(v, hn::Load(d, corners + high + lane));
-            return hn::Max(hn::Max(below, above), zero);
-        };
-        const auto dx = apart(j.boxes.x, x), dy = apart(j.boxes.y, y), dz = apart(j.boxes.z, z);
-        const auto d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-        f(hn::IfThenElseZero(hn::Ge(d2, hn::Set(d, std::numeric_limits<float>::min())), d2), lane);
-    }
+    for (std::size_t lane = 0; lane < lanes; lane += hn::Lanes(floats()))
+        f(box_distances2(p, {j.boxes.x + low + lane, j.boxes.y + low + lane, j.boxes.z + low + lane},
+              {j.boxes.x + high + lane, j.boxes.y + high + lane, j.boxes.z + high + lane}),
+            lane);
 }
 
 /// Finds the photons of all blocks that can lie within radius2, in the order of the map, or stops when they are more
@@ -35,7 +56,7 @@ inline void find_blocks(const search_job& j, const glm::vec3& at, float radius2,
 {
     const auto near = [&](uint node) HWY_ATTR {
         uint bits = 0;
-        for_each_box(j, node, at, [&](vector d2, std::size_t lane) HWY_ATTR {
+        for_each_box(j, node, {at, at}, [&](vector d2, std::size_t lane) HWY_ATTR {
             const floats d;
             bits |= bits_of(d, hn::Le(d2, hn::Set(d, radius2))) << lane;
         });

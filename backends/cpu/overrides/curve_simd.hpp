@@ -86,6 +86,7 @@ inline void find_words(curve_job j, uint word, glm::uvec2* pairs, std::size_t n)
     };
     const auto rotated = [&](integers v, integers left, integers right)
                              HWY_ATTR { return hn::And(hn::Or(hn::Shl(v, left), hn::Shr(v, right)), seven); };
+    constexpr std::size_t ahead = 32; // pairs are in any order, so that their positions are not in a cache
     HWY_ALIGN uint last[2 * lanes];
     for (std::size_t i = 0; i < n; i += width) {
         uint* here = &pairs[i].x;
@@ -96,6 +97,9 @@ inline void find_words(curve_job j, uint word, glm::uvec2* pairs, std::size_t n)
             }
             here = last;
         }
+        if (i + ahead + width <= n)
+            for (std::size_t lane = 0; lane < width; ++lane)
+                hwy::Prefetch(j.positions + pairs[i + ahead + lane].y);
         auto old = hn::Zero(du), photon = old;
         hn::LoadInterleaved2(du, here, old, photon);
         const auto index = hn::BitCast(di, hn::ShiftLeft<2>(photon));

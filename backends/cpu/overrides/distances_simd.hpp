@@ -1,6 +1,7 @@
 // SIMD code for photons as structures of arrays, and their distances from a point. Included once per instruction set
 // (Highway), so it has no include guard: search_simd.hpp includes grow_simd.hpp, and so on through gather_simd.hpp,
 // packet_simd.hpp and rows_simd.hpp to this file; other files include simd.hpp.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <photongrid/backends/cpu/overrides/compress_table.hpp>

@@ -116,6 +116,30 @@ HWY_INLINE vector entries_of(const search_job& j, const packet& near, std::size_
     return hn::GatherIndex(d, j.powers.w, hn::LoadU(di, reinterpret_cast<const int*>(near.indices() + i)));
 }
 
+/// The filter's weight of a photon at the radius. `least2`: least_disc2 of the point.
+HWY_INLINE float weight_at_radius(const search_job& j, chosen_radius r, float least2)
+{
+    const float t = r.radius2 * (1.0f / std::max(r.radius2, least2));
+    return hn::GetLane(weight_of(j.filter, hn::Set(floats(), std::min(t, 1.0f))));
+}
+
+/// The sums over photons at the radius.
+struct sums_at_radius {
+    double sum[3] = {}, squares[4] = {}; ///< red, green, blue, and of all three
+
+    /// Adds a photon of this power, which the map holds `entries` times.
+    HWY_INLINE void add(const glm::vec3& power, float weight, float entries)
+    {
+        const float f[3] = {power.x * weight, power.y * weight, power.z * weight};
+        const float all = f[0] + f[1] + f[2];
+        for (int c = 0; c < 3; ++c) {
+            sum[c] += static_cast<double>(f[c]);
+            squares[c] += static_cast<double>(f[c] * f[c] * entries);
+        }
+        squares[3] += static_cast<double>(all * all * entries);
+    }
+};
+
 /// Sums the photons within the radius of a point, as gather_photons.glsl does, from the packet's distances. It is one
 /// function, because all of it adds to the same sums, which the compiler keeps in registers.
 template <bool ERRORS>
@@ -174,7 +198,7 @@ HWY_INLINE gathered gather(
     if (j.search == search_kind::exact_k && r.by_photon && at_most > j.k)
         counted = j.k - within;
     const bool excludes = j.leave_out && kernels::excludes_photon(r.packed(), least2);
-    double extra[3] = {}, extra2[4] = {};
+    sums_at_radius extra;
     if (counted > (excludes ? 1u : 0u)) {
         const auto by_id = [&](uint a, uint b) { return j.list[near.index(a)] < j.list[near.index(b)]; };
         at_radius.clear();
@@ -183,24 +207,34 @@ HWY_INLINE gathered gather(
                 at_radius.push_back(static_cast<uint>(i));
         std::partial_sort(
             at_radius.begin(), at_radius.begin() + static_cast<std::ptrdiff_t>(counted), at_radius.end(), by_id);
-        const float at_rim = hn::GetLane(weight_of(filter, hn::Set(d, std::min(r.radius2 * inverse_disc2, 1.0f))));
+        const float rim = weight_at_radius(j, r, least2);
         for (std::size_t i = 0; i + (excludes ? 1 : 0) < counted; ++i) {
-            const float f[3]
-                = {p_red[at_radius[i]] * at_rim, p_green[at_radius[i]] * at_rim, p_blue[at_radius[i]] * at_rim};
-            const float all = f[0] + f[1] + f[2];
-            const float entries = j.repeats ? j.powers.w[near.index(at_radius[i])] : 1.0f;
-            for (int c = 0; c < 3; ++c) {
-                extra[c] += static_cast<double>(f[c]);
-                extra2[c] += static_cast<double>(f[c] * f[c] * entries);
-            }
-            extra2[3] += static_cast<double>(all * all * entries);
+            const std::size_t n = at_radius[i];
+            extra.add({p_red[n], p_green[n], p_blue[n]}, rim, j.repeats ? j.powers.w[near.index(n)] : 1.0f);
         }
     }
     gathered g;
-    g.sum = {red.total(extra[0]), green.total(extra[1]), blue.total(extra[2]), 0.0f};
+    g.sum = {red.total(extra.sum[0]), green.total(extra.sum[1]), blue.total(extra.sum[2]), 0.0f};
     if (ERRORS)
-        g.squares = {red2.total(extra2[0]), green2.total(extra2[1]), blue2.total(extra2[2]), all2.total(extra2[3])};
+        g.squares = {red2.total(extra.squares[0]), green2.total(extra.squares[1]), blue2.total(extra.squares[2]),
+            all2.total(extra.squares[3])};
     g.held = static_cast<uint>(within + counted);
+    return g;
+}
+
+/// The same, of the only photon, which is at the radius. `index`: its place in the map.
+HWY_INLINE gathered gather_one(const search_job& j, uint point, chosen_radius r, std::size_t index)
+{
+    gathered g;
+    g.held = 1;
+    const float least2 = kernels::least_disc2(j.points[point], j.min_radius2);
+    if (j.leave_out && kernels::excludes_photon(r.packed(), least2))
+        return g;
+    sums_at_radius s;
+    s.add({j.powers.x[index], j.powers.y[index], j.powers.z[index]}, weight_at_radius(j, r, least2),
+        j.repeats ? j.powers.w[index] : 1.0f);
+    g.sum = glm::vec4(glm::dvec4(s.sum[0], s.sum[1], s.sum[2], 0));
+    g.squares = glm::vec4(glm::dvec4(s.squares[0], s.squares[1], s.squares[2], s.squares[3]));
     return g;
 }
 

@@ -200,13 +200,18 @@ public:
             hn::StoreU(hn::Set(d, std::numeric_limits<float>::infinity()), d, of(squared_distance) + i);
             hn::StoreU(hn::Zero(di), di, reinterpret_cast<int*>(indices_) + i);
         }
-        for (std::size_t i = 0; i < size_; i += lanes)
-            for (std::size_t l = i; l < i + lanes; l += hn::Lanes(d)) {
-                const auto at = hn::Load(di, reinterpret_cast<const int*>(indices_ + l));
-                hn::Store(hn::GatherIndex(d, j.powers.x, at), d, of(red) + l);
-                hn::Store(hn::GatherIndex(d, j.powers.y, at), d, of(green) + l);
-                hn::Store(hn::GatherIndex(d, j.powers.z, at), d, of(blue) + l);
+        const std::size_t whole = (size_ + lanes - 1) / lanes * lanes;
+        for (std::size_t i = 0; i < whole; i += hn::Lanes(d)) {
+            if (i >= size_) { // a gather is slow
+                for (const component p : {red, green, blue})
+                    hn::Store(hn::Zero(d), d, of(p) + i);
+                continue;
             }
+            const auto at = hn::Load(di, reinterpret_cast<const int*>(indices_ + i));
+            hn::Store(hn::GatherIndex(d, j.powers.x, at), d, of(red) + i);
+            hn::Store(hn::GatherIndex(d, j.powers.y, at), d, of(green) + i);
+            hn::Store(hn::GatherIndex(d, j.powers.z, at), d, of(blue) + i);
+        }
     }
 
 private:

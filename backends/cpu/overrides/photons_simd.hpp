@@ -1,5 +1,6 @@
 // SIMD code that reads photons and finds which of them a map holds. Included once per instruction set, so it has no
 // include guard; other files include simd.hpp.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <photongrid/backends/cpu/buffer.hpp>

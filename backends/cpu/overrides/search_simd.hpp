@@ -1,5 +1,6 @@
-// SIMD code of the searches exact_k and fixed_radius, and of at_least_k in block maps. Included once per instruction
-// set, so it has no include guard; other files include simd.hpp.
+// SIMD code of the searches exact_k and fixed_radius, and of at_least_k in block maps; nearest_simd.hpp has exact_k for
+// the nearest photon alone in block maps. Included once per instruction set, so it has no include guard; other files
+// include simd.hpp.
 //
 // Queries that are close together form packets. The photons near a packet, from all rows of cells or blocks that can
 // hold any, are copied to contiguous memory once, so that each query reads full registers of these photons only. Each
@@ -13,7 +14,7 @@
 //
 // In block maps, points are searched alone (tree_simd.hpp) where a packet would hold few points, or photons much denser
 // than expected.
-#include <photongrid/backends/cpu/overrides/tree_simd.hpp>
+#include <photongrid/backends/cpu/overrides/nearest_simd.hpp>
 #include <photongrid/estimate/host_guess.hpp>
 
 #include <bit>
@@ -78,8 +79,8 @@ template <int POLICIES>
 HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::size_t end)
 {
     constexpr float surplus = 0.06f; // relative margin of a packet's radius over the last k-th distance
-    // In block maps: points with fewer photons sought, and packets of fewer points, are faster alone.
-    constexpr uint few_sought = 6, few_points = 3;
+    // In block maps packets of fewer points are faster alone.
+    constexpr uint few_points = 3;
     packet near;
     std::vector<uint> at_radius;
     std::vector<std::uint64_t> keys;
@@ -115,9 +116,8 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
         last = q;
     };
     // The photons near the last point and this one lie close enough together for a packet.
-    const auto suits_packet = [&](const glm::vec3& at) {
-        return j.k >= few_sought && last_radius > 0 && distance_between(at, last.at) < 2 * last_radius;
-    };
+    const auto suits_packet
+        = [&](const glm::vec3& at) { return last_radius > 0 && distance_between(at, last.at) < 2 * last_radius; };
     float step = 0; // mean distance between consecutive points
     for (std::size_t o = begin + 1; o < end; ++o)
         step += distance_between(glm::vec3(j.points[j.order[o - 1]]), glm::vec3(j.points[j.order[o]]));
@@ -252,6 +252,8 @@ HWY_INLINE void search_or_grow(const search_job& j, std::size_t begin, std::size
 {
     if (j.search == search_kind::at_least_k && j.levels == 0)
         grow_points<POLICIES>(j, begin, end);
+    else if (j.search == search_kind::exact_k && j.k == 1 && j.levels > 0)
+        find_nearest<POLICIES>(j, begin, end);
     else
         search_points<POLICIES>(j, begin, end);
 }

@@ -102,7 +102,7 @@ HWY_INLINE void visit_blocks(const search_job& j, const glm::vec3& at, Found& fo
         auto& s = path[level];
         s.node = node;
         for_each_box(
-            j, node, at, [&](vector near2, std::size_t lane) HWY_ATTR { hn::Store(near2, d, s.near2 + lane); });
+            j, node, {at, at}, [&](vector near2, std::size_t lane) HWY_ATTR { hn::Store(near2, d, s.near2 + lane); });
     };
     const auto far = hn::Set(d, std::numeric_limits<float>::infinity());
     // Takes the nearest of the boxes within the bound: its lane, or 16 if there is none.
