@@ -209,8 +209,8 @@ HWY_INLINE gathered gather(
             at_radius.begin(), at_radius.begin() + static_cast<std::ptrdiff_t>(counted), at_radius.end(), by_id);
         const float rim = weight_at_radius(j, r, least2);
         for (std::size_t i = 0; i + (excludes ? 1 : 0) < counted; ++i) {
-            const std::size_t n = at_radius[i];
-            extra.add({p_red[n], p_green[n], p_blue[n]}, rim, j.repeats ? j.powers.w[near.index(n)] : 1.0f);
+            const std::size_t at = at_radius[i];
+            extra.add({p_red[at], p_green[at], p_blue[at]}, rim, j.repeats ? j.powers.w[near.index(at)] : 1.0f);
         }
     }
     gathered g;
