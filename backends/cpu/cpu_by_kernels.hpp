@@ -30,6 +30,7 @@ public:
         caps_.device = "this CPU, " + std::to_string(pool_.threads()) + (pool_.threads() == 1 ? " thread" : " threads");
         caps_.max_elements = std::uint64_t{1} << 31;
         caps_.cells_per_radius = 1;
+        caps_.nearest_in_blocks = true; // nearest_simd.hpp
         caps_.max_route_slots = 16;
         caps_.exact_division = true; // IEEE 754, as C++ on every platform with std::numeric_limits<float>::is_iec559
         caps_.exact_sqrt = true;

@@ -93,6 +93,7 @@ struct capabilities {
     bool exact_division = false;    ///< a / b rounds correctly (self-test at start)
     bool exact_sqrt = false;        ///< sqrt rounds correctly (self-test at start)
     float cells_per_radius = 2;     ///< the grid resolution at which searches are fastest: cells per search radius
+    bool nearest_in_blocks = false; ///< the nearest photon alone is found fastest in a block map, however photons lie
     uint loop_limit = 0;            ///< iterations after which the driver silently ends loops; 0: none known
 };
 
