@@ -3,6 +3,8 @@
 #include <photongrid/backends/cpu/overrides/rows_simd.hpp>
 #include <photongrid/map/block_tree.kernel.hpp>
 
+#include <bit>
+
 #include <photongrid/backend/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
@@ -50,47 +52,58 @@ HWY_INLINE void for_each_box(const search_job& j, uint node, const box_of_points
             lane);
 }
 
+/// Those of 16 siblings, the first of which is `node`, whose boxes are within radius2 of a box of points, as bits.
+HWY_INLINE uint siblings_near(const search_job& j, uint node, const box_of_points& p, float radius2)
+{
+    const floats d;
+    uint bits = 0;
+    for_each_box(j, node, p,
+        [&](vector d2, std::size_t lane) HWY_ATTR { bits |= bits_of(d, hn::Le(d2, hn::Set(d, radius2))) << lane; });
+    return bits;
+}
+
+/// Calls f(node) for all 16 sibling blocks, the first of which is `node`, that can be within radius2 of a box of
+/// points, in the order of the map, until f returns false.
+template <class F>
+HWY_INLINE void for_each_sixteen_blocks(const search_job& j, const box_of_points& p, float radius2, const F& f)
+{
+    if (j.levels == 1) {
+        f(0u);
+        return;
+    }
+    struct {
+        uint node, left; ///< the first of 16 siblings, and those that are still to visit, as bits
+    } path[8];
+    path[0] = {0, siblings_near(j, 0, p, radius2)};
+    for (uint depth = 0;;) {
+        auto& here = path[depth];
+        if (here.left == 0) {
+            if (depth-- == 0)
+                return;
+            continue;
+        }
+        const uint child = kernels::first_child(here.node + static_cast<uint>(std::countr_zero(here.left)));
+        here.left &= here.left - 1;
+        if (depth + 2 < j.levels)
+            path[++depth] = {child, siblings_near(j, child, p, radius2)};
+        else if (!f(child))
+            return;
+    }
+}
+
 /// Finds the photons of all blocks that can lie within radius2, in the order of the map, or stops when they are more
 /// than `most`. Neighbouring blocks give one range.
 inline void find_blocks(const search_job& j, const glm::vec3& at, float radius2, std::size_t most, rows_found& s)
 {
-    const auto near = [&](uint node) HWY_ATTR {
-        uint bits = 0;
-        for_each_box(j, node, {at, at}, [&](vector d2, std::size_t lane) HWY_ATTR {
-            const floats d;
-            bits |= bits_of(d, hn::Le(d2, hn::Set(d, radius2))) << lane;
-        });
-        return bits;
-    };
-    struct {
-        uint node, left; ///< the first of 16 siblings, and those that are still to visit, as bits
-    } path[8];
     const uint first_block = kernels::first_of_level(j.levels - 1);
     std::size_t n = 0, held = 0;
-    uint depth = 0;
-    path[0] = {0, near(0)};
-    while (held <= most) {
-        auto& here = path[depth];
-        if (here.left == 0) {
-            if (depth == 0)
-                break;
-            --depth;
-            continue;
-        }
-        if (depth + 1 < j.levels) {
-            const uint child = here.node + static_cast<uint>(std::countr_zero(here.left));
-            here.left &= here.left - 1;
-            ++depth;
-            path[depth].node = kernels::first_child(child);
-            path[depth].left = near(path[depth].node);
-            continue;
-        }
+    for_each_sixteen_blocks(j, {at, at}, radius2, [&](uint node) HWY_ATTR {
         if (s.first.size() < n + lanes) {
             s.first.resize(2 * n + lanes);
             s.past.resize(2 * n + lanes);
         }
-        for (; here.left != 0; here.left &= here.left - 1) {
-            const uint block = here.node - first_block + static_cast<uint>(std::countr_zero(here.left)),
+        for (uint left = siblings_near(j, node, {at, at}, radius2); left != 0; left &= left - 1) {
+            const uint block = node - first_block + static_cast<uint>(std::countr_zero(left)),
                        first = block * kernels::BLOCK, past = std::min(first + kernels::BLOCK, j.in_blocks);
             held += past - first;
             if (n > 0 && s.past[n - 1] == first) {
@@ -100,7 +113,8 @@ inline void find_blocks(const search_job& j, const glm::vec3& at, float radius2,
                 s.past[n++] = past;
             }
         }
-    }
+        return held <= most;
+    });
     s.rows = n;
 }
 

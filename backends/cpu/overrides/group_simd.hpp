@@ -39,38 +39,13 @@ public:
     HWY_INLINE bool find(const search_job& j, const box_of_points& points, float bound2, uint known)
     {
         const floats d;
-        const auto within = hn::Set(d, bound2);
-        const auto near = [&](uint node) HWY_ATTR {
-            uint bits = 0;
-            for_each_box(j, node, points,
-                [&](vector d2, std::size_t lane) HWY_ATTR { bits |= bits_of(d, hn::Le(d2, within)) << lane; });
-            return bits;
-        };
-        struct {
-            uint node, left; ///< the first of 16 siblings, and those that are still to visit, as bits
-        } path[8];
         size_ = 0;
-        if (j.levels == 1)
-            add(j, 0, points, within, known);
-        else
-            path[0] = {0, near(0)};
-        for (uint depth = 0; j.levels > 1;) {
-            auto& here = path[depth];
-            if (here.left == 0) {
-                if (depth-- == 0)
-                    break;
-                continue;
-            }
-            const uint child = kernels::first_child(here.node + static_cast<uint>(std::countr_zero(here.left)));
-            here.left &= here.left - 1;
-            if (depth + 2 < j.levels) {
-                path[++depth] = {child, near(child)};
-                continue;
-            }
-            add(j, child, points, within, known);
-            if (size_ > most - lanes)
-                return false;
-        }
+        for_each_sixteen_blocks(j, points, bound2, [&](uint node) HWY_ATTR {
+            add(j, node, points, hn::Set(d, bound2), known);
+            return size_ <= most - lanes;
+        });
+        if (size_ > most - lanes)
+            return false;
         // Pad with boxes of nothing.
         const auto largest = hn::Set(d, std::numeric_limits<float>::max());
         for (std::size_t axis = 0; axis < 3; ++axis)
