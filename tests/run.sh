@@ -18,7 +18,8 @@
 #
 # The stages, in turn; the run stops at the first that fails:
 #   texts       clang-format, that each planted fault still finds its place, and the length of commits' subjects
-#   sanitizers  the serial backend under the address and undefined behaviour sanitizers (build-asan/)
+#   sanitizers  the serial backend under clang's address and undefined behaviour sanitizers (build-asan/); in full every
+#               backend under g++'s (build-asan-gcc/)
 #   clang       headers, kernels and a smoke test with clang 14 (build-clang/)
 #   fuzzing     clang's fuzzer on the scene reader for 20 s, in full 300 s (build-fuzz/)
 #   tests       everything with g++, assertions on (build-tests/)
@@ -164,22 +165,24 @@ check_subjects() {
   return $long
 }
 stage_sanitizers() {
+  local folder=build-asan
   if [[ $full == yes ]]; then
     # Mesa's drivers and the validation layer leak a little at exit, and are unloaded by then: see keep_loaded.cpp.
     local asan lavapipe layer
     asan=$(readlink -f "$(g++ -print-file-name=libasan.so)")
     lavapipe=$(find /usr/lib -name 'libvulkan_lvp.so' -print -quit)
     layer=$(find /usr/lib -name 'libVkLayer_khronos_validation.so' -print -quit)
-    configure asan -DPHOTONGRID_CPU=ON -DPHOTONGRID_GL=ON -DPHOTONGRID_VULKAN=ON "-DCMAKE_CROSSCOMPILING_EMULATOR=env;PHOTONGRID_KEEP_LOADED=$lavapipe:$layer;LD_PRELOAD=$asan:$PWD/build-asan/tests/libkeep_loaded.so"
-    printf 'leak:%s\n' libOSMesa libvulkan_lvp libVkLayer_khronos_validation libEGL_mesa swrast_dri libLLVM >build-asan/leaks.supp
-    export LSAN_OPTIONS=suppressions=$PWD/build-asan/leaks.supp:print_suppressions=0
+    folder=build-asan-gcc
+    configure asan_gcc -DPHOTONGRID_CPU=ON -DPHOTONGRID_GL=ON -DPHOTONGRID_VULKAN=ON "-DCMAKE_CROSSCOMPILING_EMULATOR=env;PHOTONGRID_KEEP_LOADED=$lavapipe:$layer;LD_PRELOAD=$asan:$PWD/$folder/tests/libkeep_loaded.so"
+    printf 'leak:%s\n' libOSMesa libvulkan_lvp libVkLayer_khronos_validation libEGL_mesa swrast_dri libLLVM >$folder/leaks.supp
+    export LSAN_OPTIONS=suppressions=$PWD/$folder/leaks.supp:print_suppressions=0
   else
     configure asan
   fi
-  cmake --build build-asan --target "$sanitized_target"
+  cmake --build "$folder" --target "$sanitized_target"
   # OSMesa's run differs from EGL's by its context only, which gl_backend tests with both.
   skipped="|on_gl_osmesa"
-  run_tests build-asan "${sanitized[@]}"
+  run_tests "$folder" "${sanitized[@]}"
   skipped=
 }
 stage_clang() {

@@ -120,13 +120,13 @@ namespace {
 
     TYPED_TEST(gl_backend_test, maps_and_estimates_as_serial_does)
     {
-        // Each of 54 maps is compared whole, and searched from points that take a software GPU most of the time.
+        // Each of 36 maps is compared whole, and searched from points that take a software GPU most of the time.
         const auto points = query_points(100);
         for (const cloud& c : clouds(12000))
             for (const auto& [low, high, resolution] : {std::tuple{glm::vec3(0), glm::vec3(1), glm::uvec3(13, 7, 20)},
                      {glm::vec3(0), glm::vec3(1, 0.52f, 1), glm::uvec3(40, 1, 40)},
                      {glm::vec3(0.1f), glm::vec3(0.9f), glm::uvec3(1)}})
-                for (uint m : {0u, 1u, 2u, 4u, 15u, 16u}) {
+                for (uint m : {0u, 1u, 4u, 16u}) {
                     const grid g = make_grid(low, high, resolution);
                     const knn_settings s{.k = 32, .max_radius = 0.3f};
                     expect_same(map_and_search(this->gpu(), c, g, m, points, s),

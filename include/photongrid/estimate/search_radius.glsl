@@ -40,9 +40,9 @@ inline float least_disc2(vec4 point, float min_radius2)
 
 // Whether an unbiased estimate excludes the photon that set the radius. If that photon lies within the least radius of
 // an estimate's disc, it does not set the disc's radius, and it counts.
-inline bool excludes_photon(vec4 search_radius, float least_disc2)
+inline bool excludes_photon(vec4 search_radius, float least2)
 {
-    return is_by_photon(search_radius) && radius2_of(search_radius) >= least_disc2;
+    return is_by_photon(search_radius) && radius2_of(search_radius) >= least2;
 }
 
 // `chosen`: x, y: see search_tally.glsl; z: the last id that counts at the radius itself; w: how often that id counts

@@ -27,6 +27,9 @@ void kernel(uint i)
     if (ORDERED)
         photon = order(i);
     vec4 p = positions(photon);
+    pair = uvec2(NONE, i);
+    if (!is_held(p, powers(photon), args.parts))
+        return; // before its coordinates, which may not be finite, become integers
     vec4 q = curve_coordinates(args.curve, p);
     float scale = args.curve.scale.x;
     uvec2 along = uvec2(0u, 0u);
@@ -34,5 +37,5 @@ void kernel(uint i)
         along = word_along(q, scale, word, along.y);
         scale = scale * 1024.0f;
     }
-    pair = uvec2(is_held(p, powers(photon), args.parts) ? along.x : NONE, i);
+    pair.x = along.x;
 }
