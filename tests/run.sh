@@ -121,9 +121,10 @@ elif [[ -n $only ]] || ((${#words[@]} > 0)); then
   exit
 fi
 
-short=(--label-exclude "long|full") sanitized=(--label-exclude "long|heavy|full") sanitized_target=photongrid_quick_tests fuzz_seconds=20 everything=OFF clang_targets=(photongrid_smoke)
+short=(--label-exclude "long|full") sanitized=(--label-exclude "long|heavy|full") sanitized_target=photongrid_quick_tests fuzz_seconds=20 everything=OFF together=ON clang_targets=(photongrid_smoke)
 if [[ $full == yes ]]; then
   short=() sanitized=(--label-exclude long) sanitized_target=all fuzz_seconds=300 everything=ON
+  together=OFF # so that a file that lacks an include is seen
   clang_targets+=(all_verify_interface_header_sets)
 fi
 
@@ -202,12 +203,12 @@ stage_fuzzing() {
   build-fuzz/tests/fuzz_scene -verbosity=0 -print_final_stats=1 -max_total_time=$fuzz_seconds -max_len=4096 -dict=tests/io/scene_corpus.dict -artifact_prefix=build-fuzz/ build-fuzz/corpus tests/io/scene_corpus
 }
 stage_tests() {
-  configure tests -DPHOTONGRID_FULL_TESTS=$everything
+  configure tests -DPHOTONGRID_FULL_TESTS=$everything -DCMAKE_UNITY_BUILD=$together
   cmake --build build-tests
   run_tests build-tests "${short[@]}"
 }
 stage_gpu_assisted() {
-  configure tests -DPHOTONGRID_FULL_TESTS=$everything
+  configure tests -DPHOTONGRID_FULL_TESTS=$everything -DCMAKE_UNITY_BUILD=$together
   cmake --build build-tests --target on_vulkan
   PHOTONGRID_GPU_AV=1 run_tests build-tests --tests-regex '^on_vulkan(_heavy)?$'
 }

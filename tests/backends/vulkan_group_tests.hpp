@@ -106,7 +106,7 @@ TEST_F(vulkan, points_that_search_together_find_what_each_finds_alone)
         const auto s = make_photons(d, 3000, uvec3(9, 7, 5), 5);
         random_source u(7);
         std::vector<vec4> points;
-        for (const auto& p : make_points(s, 40, 3))
+        for (const auto& p : make_points(s, 16, 3))
             for (int i = 0; i < 25; ++i) // runs of neighbours that begin anywhere in a group; some unwanted
                 points.emplace_back(p.x + step * u(), p.y + step * u(), p.z + step * u(), i % 9 == 4 ? 0.0f : 1.0f);
         // Many of many, so that guesses fail for some of a group and not for others; few, to the radius; in small
