@@ -22,6 +22,9 @@ if(PHOTONGRID_SANITIZE)
     set(together 8) # in two: one for each core, since little else is compiled
   endif()
   set_target_properties(photongrid_io PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${together})
+  if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
+    target_compile_options(photongrid_io PRIVATE -fsanitize=fuzzer-no-link) # the fuzzer sees what its inputs execute
+  endif()
 endif()
 if(NOT PROJECT_IS_TOP_LEVEL)
   set_target_properties(photongrid_io PROPERTIES EXCLUDE_FROM_ALL TRUE)

@@ -21,7 +21,7 @@
 #   sanitizers  the serial backend under clang's address and undefined behaviour sanitizers (build-asan/); in full every
 #               backend under g++'s (build-asan-gcc/)
 #   clang       headers, kernels and a smoke test with clang 14 (build-clang/)
-#   fuzzing     clang's fuzzer on the scene reader for 20 s, in full 300 s (build-fuzz/)
+#   fuzzing     clang's fuzzer on the scene reader for 20 s (build-asan/), in full 300 s (build-fuzz/, optimized)
 #   tests       everything with g++, assertions on (build-tests/)
 # and with --full:
 #   gpu_assisted  the Vulkan backend under GPU-assisted validation
@@ -196,11 +196,17 @@ stage_clang() {
   fi
 }
 stage_fuzzing() {
-  configure fuzz
-  cmake --build build-fuzz --target fuzz_scene
-  # New inputs go to the first folder, one that breaks the reader to build-fuzz/crash-….
-  mkdir -p build-fuzz/corpus
-  build-fuzz/tests/fuzz_scene -verbosity=0 -print_final_stats=1 -max_total_time=$fuzz_seconds -max_len=4096 -dict=tests/io/scene_corpus.dict -artifact_prefix=build-fuzz/ build-fuzz/corpus tests/io/scene_corpus
+  local folder=build-asan # which has the library already
+  if [[ $full == yes ]]; then
+    folder=build-fuzz
+    configure fuzz
+  else
+    configure asan
+  fi
+  cmake --build "$folder" --target fuzz_scene
+  # New inputs go to the first folder, one that breaks the reader to its parent, as crash-….
+  mkdir -p "$folder/corpus"
+  "$folder/tests/fuzz_scene" -verbosity=0 -print_final_stats=1 -max_total_time=$fuzz_seconds -max_len=4096 -dict=tests/io/scene_corpus.dict "-artifact_prefix=$folder/" "$folder/corpus" tests/io/scene_corpus
 }
 stage_tests() {
   configure tests -DPHOTONGRID_FULL_TESTS=$everything -DCMAKE_UNITY_BUILD=$together
