@@ -13,6 +13,7 @@
 #include <photongrid/map/hashed_route.hpp>
 #include <photongrid/map/map_builders.hpp>
 #include <photongrid/render/progressive_render.hpp>
+#include <photongrid/trace/ray_search.hpp>
 
 // Types and `extern` cannot stand in parentheses.
 // NOLINTBEGIN(bugprone-macro-parentheses)
@@ -29,6 +30,7 @@
     EXTERN template map_buffers<B> fitted_map(B&, photons<B>, uint, uint);                                             \
     EXTERN template class knn_radius<B>;                                                                               \
     EXTERN template class knn_search_by_kernels<B>;                                                                    \
+    EXTERN template class ray_search<B>;                                                                               \
     EXTERN template neighbour_lists<B> knn_neighbours(                                                                 \
         B&, const map_buffers<B>&, const buffer_of<B, glm::vec4>&, const knn_settings&);                               \
     EXTERN template neighbour_lists<B> knn_neighbours(B&, const map_buffers<B>&, const buffer_of<B, glm::vec4>&,       \

@@ -13,6 +13,7 @@
 #include <photongrid/reference/reference.hpp>
 #include <photongrid/render/progressive_render.hpp>
 #include <photongrid/render/render.hpp>
+#include <photongrid/trace/ray_search.hpp>
 
 #include <algorithm>
 #include <array>
@@ -20,6 +21,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <random>
 
 using device_type = photongrid::serial_backend; // or gl_backend, vulkan_backend, cpu_backend
@@ -253,6 +255,19 @@ void estimates(device_type& device, const photongrid::map_buffers<device_type>& 
         "knn_neighbours");
 }
 
+void rays(device_type& device)
+{
+    //! [trace_rays]
+    const photongrid::mesh square{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+    const auto triangles = photongrid::upload_triangles(device, photongrid::build_triangle_tree(square));
+    constexpr float no_end = std::numeric_limits<float>::infinity();
+    const auto origins = photongrid::upload(device, vectors{{0.5f, 0, 3, no_end}, {2, 0, 3, no_end}});
+    const auto directions = photongrid::upload(device, vectors{{0, 0, -2, 0}, {0, 0, -2, 0}});
+    const auto hits = photongrid::trace_rays(device, triangles, origins, directions);
+    //! [trace_rays]
+    expect(hits[0] == photongrid::ray_hit{1.5f, 0} && hits[1].triangle == photongrid::no_id, "trace_rays");
+}
+
 void files(device_type& device, const photongrid::map_buffers<device_type>& map)
 {
     const std::filesystem::path file = std::filesystem::temp_directory_path()
@@ -413,6 +428,7 @@ try {
     const auto map = photongrid::fitted_map(device, photongrid::upload_photons(device, photons_on_a_square()), 50);
     estimates(device, map);
     files(device, map);
+    rays(device);
     edges(device);
     pictures(device);
 } catch (const std::exception& e) {
