@@ -124,6 +124,7 @@ faults=(
   "rays: a hit may be outside of its box|include/photongrid/trace/ray_tests.glsl|t = t > inside.x ? t : inside.x;|"
   "rays: ties go to the tree|include/photongrid/trace/trace_ray.glsl| \|\| (t == closest && a.w < triangle)|"
   "rays: the other child is forgotten|include/photongrid/trace/trace_ray.glsl|both = next != NO_PAIR;|both = next != NO_PAIR && pair != 5u;"
+  "rays: a tree may become deep|include/photongrid/trace/triangle_tree.hpp|if (held <= most_below(depth + 1))|if (held > 0)"
   "rays: slivers that look like lines are missed|include/photongrid/trace/ray_tests.glsl|least_of(x) <= 0.0f && most_of(x)|least_of(x) > 0.0f && most_of(x)"
   "blocks: a box loses its last photon|include/photongrid/map/block_box.glsl|photon < first + held;|photon + 1u < first + held;"
   "blocks: a walk skips a sibling|include/photongrid/map/block_tree.glsl|uint node = place.x + more;|uint node = place.x + more + (place.x % 7u == 3u ? 1u : 0u);"

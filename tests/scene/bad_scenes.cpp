@@ -3,6 +3,7 @@
 #include "limit_tests.hpp"
 #include "test_scenes.hpp"
 
+#include <photongrid/scene/mesh.hpp>
 #include <photongrid/scene/setting_table.hpp>
 #include <photongrid/trace/device_scene.hpp>
 
@@ -263,6 +264,12 @@ namespace {
                 auto s = good;
                 n.in(s) = bad;
                 said += refusal_of(s) + '\n';
+            }
+        for (const mesh& m : {mesh{{{0, static_cast<float>(nan), 0}}, {}}, mesh{{{0, 0, 0}}, {{0, 0, 1}}}})
+            try {
+                check(m);
+            } catch (const std::invalid_argument& e) {
+                said += std::string(e.what()) + '\n';
             }
         std::size_t checks = 0;
         for (const auto& file :

@@ -10,9 +10,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace photongrid::testing {
 
@@ -184,6 +188,55 @@ TYPED_TEST_P(mesh_rays, hit_nothing_out_of_range)
     EXPECT_NE(hits[0].triangle, no_id);
     for (std::size_t i = 1; i < hits.size(); ++i)
         EXPECT_EQ(hits[i].triangle, no_id) << "ray " << i;
+}
+
+TEST(triangle_trees, say_what_is_wrong_with_a_mesh)
+{
+    const auto said = [](const mesh& m) -> std::string {
+        try {
+            (void)build_triangle_tree(m);
+            return "";
+        } catch (const std::invalid_argument& e) {
+            return e.what();
+        }
+    };
+    const mesh good{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    EXPECT_EQ(said(good), "");
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity(), 2e18f}) {
+        auto m = good;
+        m.positions[2].y = bad;
+        EXPECT_EQ(said(m).find("mesh: positions[2]: coordinate 1 is "), 0u) << said(m);
+    }
+    auto m = good;
+    m.triangles.push_back({0, 3, 1});
+    EXPECT_EQ(said(m), "mesh: triangles[1]: corner 1 is vertex 3; there are 3");
+    EXPECT_THROW(detail::require_countable((1u << 28) + 1), std::invalid_argument);
+    EXPECT_NO_THROW(detail::require_countable(1u << 28));
+}
+
+TEST(triangle_trees, hold_each_triangle_once_in_few_levels)
+{
+    for (const auto& [name, m, closed] : ray_meshes(3000)) {
+        const auto tree = build_triangle_tree(m);
+        std::vector<bool> seen(m.triangles.size());
+        for (std::size_t t = 0; t < m.triangles.size(); ++t) {
+            const uint index = tree.corners[kernels::TRIANGLE_RECORDS * t].w;
+            ASSERT_LT(index, seen.size()) << name;
+            EXPECT_FALSE(seen[index]) << name << ", triangle " << index;
+            seen[index] = true;
+        }
+        EXPECT_LE(tree.depth, kernels::DEEPEST_PAIR) << name;
+        EXPECT_LE(tree.pairs.size(), kernels::PAIR_RECORDS * std::max<std::size_t>(m.triangles.size(), 1)) << name;
+    }
+    // Distances that double: the surface area heuristic alone would cut one triangle off at each level.
+    mesh far;
+    for (int i = 0; i < 170; ++i)
+        for (const auto& p : {glm::vec3(0, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)}) {
+            if (far.positions.size() % 3 == 0)
+                far.triangles.emplace_back(glm::uvec3(0, 1, 2) + static_cast<uint>(far.positions.size()));
+            far.positions.push_back(std::ldexp(1.0f, i - 112) * (p + 1.0f));
+        }
+    EXPECT_LE(build_triangle_tree(far).depth, kernels::DEEPEST_PAIR);
 }
 
 REGISTER_TYPED_TEST_SUITE_P(mesh_rays, hit_what_a_loop_over_all_triangles_hits, go_on_from_pass_to_pass,

@@ -29,7 +29,7 @@ inline std::array<glm::vec3, 3> corners_of(const mesh& m, std::size_t triangle)
 }
 
 /// \throws std::invalid_argument for an index of a vertex that does not exist, a coordinate that is not finite or above
-///         10^18 m, or more than 2^28 triangles.
+///         10^18 m.
 inline void check(const mesh& m)
 {
     constexpr float most = 1e18f; // m; squares of distances must be finite
@@ -45,9 +45,6 @@ inline void check(const mesh& m)
                 throw std::invalid_argument("mesh: triangles[" + std::to_string(t) + "]: corner "
                     + std::to_string(corner) + " is vertex " + std::to_string(m.triangles[t][corner]) + "; there are "
                     + std::to_string(m.positions.size()));
-    if (m.triangles.size() > 1u << 28)
-        throw std::invalid_argument("mesh: triangles: " + std::to_string(m.triangles.size())
-            + "; at most 2^28 are possible, so split the mesh");
 }
 
 } // namespace photongrid

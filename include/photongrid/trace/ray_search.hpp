@@ -41,6 +41,8 @@ enum class hit_kind {
     any,     ///< whether there is one: the first that is found
 };
 
+static_assert(kernels::NO_TRIANGLE == no_id);
+
 /// The hit of a ray.
 struct ray_hit {
     float distance; ///< along the ray, in lengths of its direction; without a hit, its length

@@ -23,5 +23,5 @@ void kernel(uint i)
     vec3 d = vec3(directions(i));
     bool searches = is_finite3(vec3(o)) && is_up_to(1.0e18f, vec3(o)) && is_finite3(d) && is_up_to(1.0e18f, d)
         && !is_up_to(1.0e-18f, d) && o.w > 0.0f;
-    state = ray_state(searches ? 0u : NO_PAIR, 0u, o.w, 0xFFFFFFFFu);
+    state = ray_state(searches ? 0u : NO_PAIR, 0u, o.w, NO_TRIANGLE);
 }

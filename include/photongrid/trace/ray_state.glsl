@@ -3,6 +3,8 @@
 // Barringer and Akenine-Moller, Dynamic Stackless Binary Tree Traversal, JCGT 2(2), 2013.
 #ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
 
+const uint NO_TRIANGLE = 0xFFFFFFFFu;
+
 inline uvec4 ray_state(uint pair, uint trail, float distance, uint triangle)
 {
     return uvec4(pair, trail, floatBitsToUint(distance), triangle);
@@ -21,7 +23,7 @@ inline float distance_of_hit(uvec4 state)
 {
     return uintBitsToFloat(state.z);
 }
-// NONE: no hit so far.
+// NO_TRIANGLE: no hit so far.
 inline uint triangle_of(uvec4 state)
 {
     return state.w;

@@ -85,7 +85,7 @@ void kernel(uint i)
             climbs = pair != NO_PAIR && next == NO_PAIR;
         }
         pair = next;
-        if (ANY_HIT && triangle != 0xFFFFFFFFu)
+        if (ANY_HIT && triangle != NO_TRIANGLE)
             pair = NO_PAIR;
         steps -= min(taken, steps);
     }

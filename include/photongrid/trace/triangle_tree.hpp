@@ -13,6 +13,8 @@
 #include <glm/common.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -231,11 +233,22 @@ namespace detail {
     };
 } // namespace detail
 
+namespace detail {
+    /// \throws std::invalid_argument for more triangles than the leaves of a tree can number.
+    inline void require_countable(std::size_t triangles)
+    {
+        if (triangles > 1u << 28)
+            throw std::invalid_argument(
+                "mesh: triangles: " + std::to_string(triangles) + "; a tree holds at most 2^28, so split the mesh");
+    }
+} // namespace detail
+
 /// Builds the tree of a mesh.
-/// \throws std::invalid_argument as check(mesh) does.
+/// \throws std::invalid_argument as check(mesh) does, or for more than 2^28 triangles.
 inline triangle_tree build_triangle_tree(const mesh& m)
 {
     check(m);
+    detail::require_countable(m.triangles.size());
     return detail::tree_builder(m).build();
 }
 
