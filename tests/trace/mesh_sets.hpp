@@ -3,6 +3,7 @@
 
 #include <photongrid/scene/mesh.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
@@ -88,6 +89,20 @@ inline mesh with_slivers(const mesh& coarse)
     return m;
 }
 
+/// Triangles each twice as large and as far from 0 as the one before. The surface area heuristic alone would cut a few
+/// of them off at each level of a tree, down to a depth above its limit.
+inline mesh doubling_sizes()
+{
+    mesh m;
+    for (uint i = 0; i < 128; ++i) {
+        const float size = std::ldexp(1.0f, static_cast<int>(i) - 70);
+        for (const auto& p : {glm::vec3(1, 1, 1), glm::vec3(2, 1, 1), glm::vec3(1, 2, 1)})
+            m.positions.push_back(size * p);
+        m.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    return m;
+}
+
 /// `b` after `a`.
 inline mesh joined(mesh a, const mesh& b)
 {
@@ -107,7 +122,7 @@ inline std::vector<named_mesh> ray_meshes(uint size)
         {"a ball of 1 um in one of 1,000 km", joined(bumpy_ball(rings, 1e-6f, 0.2f), bumpy_ball(rings, 1e6f, 0.2f)),
             true},
         {"a fan of slivers", sliver_fan(size)}, {"triangles in one point", in_one_point(size)},
-        {"one triangle", {{{-1, -1, 1}, {1, -1, 1}, {0, 1, 1}}, {{0, 1, 2}}}},
+        {"sizes that double", doubling_sizes()}, {"one triangle", {{{-1, -1, 1}, {1, -1, 1}, {0, 1, 1}}, {{0, 1, 2}}}},
         {"a point and a line", {{{0, 0, 1}, {1, 0, 1}, {2, 0, 1}}, {{0, 0, 0}, {0, 1, 2}}}}, {"nothing", {}}};
 }
 
@@ -141,6 +156,9 @@ inline ray_set rays_at(const mesh& m, std::size_t n, float from, std::uint32_t s
             o = in_plane(4 * any().x, 4 * any().y);
             d = in_plane(0.5f * u(), 0.5f * u()) - o;
         }
+        const float longest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+        if (longest > 0)
+            d *= std::ldexp(1.0f, -std::ilogb(longest)); // directions have a least length
         rays.origins.emplace_back(o, std::numeric_limits<float>::infinity());
         rays.directions.emplace_back(d, 0.0f);
     }
