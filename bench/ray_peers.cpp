@@ -153,8 +153,7 @@ int main(int count, char** values)
             return 2;
         }
     }
-    const uint rings = std::max(3u, static_cast<uint>(std::sqrt(static_cast<double>(a.triangles) / 4)));
-    const mesh m = testing::bumpy_ball(rings, 1, 0.2f);
+    const mesh m = testing::bumpy_ball(testing::rings_of(a.triangles), 1, 0.2f);
     const auto rays = random_rays(a.rays);
     const auto n = static_cast<double>(m.triangles.size());
 
@@ -189,9 +188,8 @@ int main(int count, char** values)
     for (const auto kind : {hit_kind::closest, hit_kind::any}) {
         std::vector<double> seconds[4];
         for (int r = 0; r < a.repeats; ++r)
-            for (size_t s = 0; s < 4; ++s) {
+            for (size_t s = 0; s < 4; ++s)
                 seconds[s].push_back(seconds_of([&] { hits[s] = searchers[s](kind); }));
-            }
         for (size_t s = 0; s < 4; ++s) {
             size_t other = 0, escaped = 0;
             for (size_t i = 0; i < a.rays; ++i) {

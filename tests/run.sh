@@ -121,7 +121,8 @@ elif [[ -n $only ]] || ((${#words[@]} > 0)); then
   exit
 fi
 
-short=(--label-exclude "long|full") sanitized=(--label-exclude "long|heavy|full") sanitized_target=photongrid_quick_tests fuzz_seconds=20 everything=OFF together=ON clang_targets=(photongrid_smoke)
+short=(--label-exclude "long|full") sanitized=(--label-exclude "long|heavy|full")
+sanitized_target=photongrid_quick_tests fuzz_seconds=20 everything=OFF together=ON clang_targets=(photongrid_smoke)
 if [[ $full == yes ]]; then
   short=() sanitized=(--label-exclude long) sanitized_target=all fuzz_seconds=300 everything=ON
   together=OFF # so that a file that lacks an include is seen
@@ -206,7 +207,8 @@ stage_fuzzing() {
   cmake --build "$folder" --target fuzz_scene
   # New inputs go to the first folder, one that breaks the reader to its parent, as crash-….
   mkdir -p "$folder/corpus"
-  "$folder/tests/fuzz_scene" -verbosity=0 -print_final_stats=1 -max_total_time=$fuzz_seconds -max_len=4096 -dict=tests/io/scene_corpus.dict "-artifact_prefix=$folder/" "$folder/corpus" tests/io/scene_corpus
+  "$folder/tests/fuzz_scene" -verbosity=0 -print_final_stats=1 -max_total_time=$fuzz_seconds -max_len=4096 \
+    -dict=tests/io/scene_corpus.dict "-artifact_prefix=$folder/" "$folder/corpus" tests/io/scene_corpus
 }
 stage_tests() {
   configure tests -DPHOTONGRID_FULL_TESTS=$everything -DCMAKE_UNITY_BUILD=$together

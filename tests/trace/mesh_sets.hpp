@@ -49,6 +49,12 @@ inline mesh bumpy_ball(uint rings, float radius, float bump)
     return m;
 }
 
+/// The rings of a bumpy_ball of about so many triangles.
+inline uint rings_of(uint triangles)
+{
+    return std::max(3u, static_cast<uint>(std::sqrt(static_cast<double>(triangles) / 4)));
+}
+
 /// Triangles with one corner in common and opposite edges of 10^-4 of their length.
 inline mesh sliver_fan(uint slivers)
 {
@@ -116,7 +122,7 @@ inline mesh joined(mesh a, const mesh& b)
 /// `size`: about as many triangles as the largest of them have.
 inline std::vector<named_mesh> ray_meshes(uint size)
 {
-    const uint rings = std::max(3u, static_cast<uint>(std::sqrt(static_cast<double>(size) / 4)));
+    const uint rings = rings_of(size);
     const mesh ball = bumpy_ball(rings, 1, 0.2f);
     return {{"a bumpy ball", ball, true}, {"a bumpy ball with slivers", with_slivers(ball), true},
         {"a ball of 1 um in one of 1,000 km", joined(bumpy_ball(rings, 1e-6f, 0.2f), bumpy_ball(rings, 1e6f, 0.2f)),

@@ -68,15 +68,13 @@ namespace detail {
             tree_.pairs.reserve(items_.size() * kernels::PAIR_RECORDS / 2 + kernels::PAIR_RECORDS);
             const range all{0, items_.size()};
             // The first pair has no parent, whose split it would be: a tree of one leaf has an empty second child.
-            const auto middle = all.size() <= 1 ? all.past : split(all, 0);
+            const auto middle = split(all, box_of(all), 0);
             add_pair({all.first, middle}, {middle, all.past}, kernels::NO_PAIR, 0);
             for (const item& x : items_) {
                 const auto corners = corners_of(mesh_, x.triangle);
                 for (std::size_t c = 0; c < 3; ++c)
                     tree_.corners.push_back(bits_of(corners[c], c == 0 ? x.triangle : 0));
             }
-            if (items_.empty())
-                tree_.corners.resize(kernels::TRIANGLE_RECORDS, glm::uvec4(0)); // buffers are not empty
             return std::move(tree_);
         }
 
@@ -175,13 +173,13 @@ namespace detail {
         }
 
         /// Orders the items of a range so that those of one side come first. Returns where the others begin, or the
-        /// range's end if it is to be a leaf. `depth`: of the pair that the sides would be.
-        std::size_t split(const range& r, uint depth)
+        /// range's end if it is to be a leaf. `box`: around the range; `depth`: of the pair that the sides would be.
+        std::size_t split(const range& r, const tree_box& box, uint depth)
         {
             if (r.size() <= 1 || depth > kernels::DEEPEST_PAIR)
                 return r.past;
             const plane p = best_plane(r);
-            const double area = box_of(r).area();
+            const double area = box.area();
             // A pair costs as much as the test of one triangle.
             if (depth > 0 && r.size() <= few && !(p.cost + area < static_cast<double>(r.size()) * area))
                 return r.past;
@@ -215,7 +213,7 @@ namespace detail {
                 const auto at = pair * kernels::PAIR_RECORDS + 2 * side;
                 tree_.pairs[at] = bits_of(b.low, 0);
                 tree_.pairs[at + 1] = bits_of(b.high, 0);
-                const auto middle = split(r, depth + 1);
+                const auto middle = split(r, b, depth + 1);
                 children[side] = middle == r.past
                     ? kernels::leaf_of(
                         static_cast<uint>(r.first), static_cast<uint>(std::max<std::size_t>(r.size(), 1)))
