@@ -104,8 +104,9 @@ configure() {
 run_tests() {
   local folder=$1
   shift
-  # A program that was not built fails as a whole; its cases are not known.
-  ctest --test-dir "$folder" --output-on-failure --no-tests=error -j2 --exclude-regex "_NOT_BUILT$skipped" "$@"
+  # One more at a time than there are cores, since the window's tests mostly wait. A program that was not built fails as
+  # a whole; its cases are not known.
+  ctest --test-dir "$folder" --output-on-failure --no-tests=error -j$(($(nproc) + 1)) --exclude-regex "_NOT_BUILT$skipped" "$@"
 }
 skipped=
 source tests/part.sh

@@ -5,7 +5,7 @@
 
 #include "faulty_jobs.hpp"
 
-#include <faulty_backends_under_test.hpp>
+#include <backends_under_test.hpp>
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ protected:
     std::unique_ptr<faulty> b;
     std::uint64_t resting = 0; ///< bytes of the backend's own
 };
-TYPED_TEST_SUITE(faulty_devices, faulty_backends_under_test<::testing::Types>);
+TYPED_TEST_SUITE(faulty_devices, backends_under_test<::testing::Types>);
 
 TYPED_TEST(faulty_devices, fail_by_the_documented_exception_and_work_again)
 {
