@@ -12,15 +12,12 @@ set(test_environment "RC_PARAMS=${PHOTONGRID_RC_PARAMS};XDG_CACHE_HOME=${PROJECT
 set(cost_on_vulkan 345)
 set(cost_on_gl 207)
 set(cost_viewer_window 72)
-set(cost_on_serial_heavy 73)
-set(cost_on_serial 60)
 set(cost_vulkan_backend 56)
 set(cost_on_gl_heavy 52)
 set(cost_on_cpu 45)
 set(cost_on_vulkan_heavy 35)
 set(cost_gl_backend 40)
 set(cost_host_caustics 34)
-set(cost_faulty_backend 25)
 
 # photongrid_cases(PROGRAM TEST FILTER LABEL...): those cases of the program that TEST runs, which FILTER chooses.
 function(photongrid_cases program test filter)

@@ -5,4 +5,5 @@
 #include <photongrid/backends/cpu/overrides/grid_index.hpp>
 #include <photongrid/backends/cpu/overrides/knn_grid_estimate.hpp>
 #include <photongrid/backends/cpu/overrides/knn_neighbours.hpp>
+#include <photongrid/backends/cpu/overrides/ray_search.hpp>
 #include <photongrid/backends/cpu/overrides/sorted_map.hpp>

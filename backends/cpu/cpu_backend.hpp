@@ -6,6 +6,7 @@
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/estimate/knn_neighbours.hpp>
 #include <photongrid/map/map_builders.hpp>
+#include <photongrid/trace/ray_search.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -99,6 +100,27 @@ neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& device, const map_buffe
     const cpu::buffer<glm::vec4>& points, const knn_settings& settings);
 neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& device, const map_buffers<cpu_backend>& map,
     const cpu::buffer<glm::vec4>& points, const cpu::buffer<glm::vec4>& normals, const knn_settings& settings);
+/// @}
+
+/// \name Rays by code for this backend
+/// @{
+
+/// The triangles of a mesh in a tree of nodes with up to eight children (overrides/wide_tree.hpp).
+template <>
+struct device_triangles<cpu_backend> {
+    cpu::buffer<float> nodes, blocks;
+    glm::vec3 low{0}, high{0}; ///< box of all triangles, m
+
+    /// Of both buffers.
+    std::size_t bytes() const { return (nodes.size() + blocks.size()) * sizeof(float); }
+};
+/// The algorithm of that name.
+triangle_tree build_triangle_tree(cpu_backend& device, const mesh& m);
+device_triangles<cpu_backend> upload_triangles(cpu_backend& device, const triangle_tree& tree);
+
+/// The same hits; where any hit will do, perhaps another one. A pass completes the searches of some of the rays.
+template <>
+progress ray_search<cpu_backend>::advance(uint passes);
 /// @}
 
 } // namespace photongrid

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -190,6 +191,16 @@ TYPED_TEST_P(mesh_rays, hit_nothing_out_of_range)
         EXPECT_EQ(hits[i].triangle, no_id) << "ray " << i;
 }
 
+TYPED_TEST_P(mesh_rays, are_searched_for_in_the_same_tree)
+{
+    for (const auto& [name, m, closed] : ray_meshes(20000)) {
+        const auto expected = build_triangle_tree(m), tree = build_triangle_tree(this->b(), m);
+        EXPECT_EQ(tree.pairs, expected.pairs) << name;
+        EXPECT_EQ(tree.corners, expected.corners) << name;
+        EXPECT_EQ(tree.depth, expected.depth) << name;
+    }
+}
+
 TEST(triangle_trees, say_what_is_wrong_with_a_mesh)
 {
     const auto said = [](const mesh& m) -> std::string {
@@ -214,9 +225,45 @@ TEST(triangle_trees, say_what_is_wrong_with_a_mesh)
     EXPECT_NO_THROW(detail::require_countable(1u << 28));
 }
 
+/// That each pair is where the one above it says, with boxes around what is below, and ends at leaves in order.
+inline void expect_whole(const triangle_tree& tree, const std::string& name)
+{
+    const auto pairs = static_cast<uint>(tree.pairs.size() / kernels::PAIR_RECORDS);
+    std::vector<uint> visits(pairs, 0);
+    uint next_triangle = 0;
+    const std::function<detail::tree_box(uint, uint)> visit = [&](uint child, uint above) {
+        detail::tree_box contents;
+        if (kernels::is_leaf(child)) {
+            EXPECT_EQ(kernels::first_of_leaf(child), next_triangle) << name;
+            for (uint t = kernels::first_of_leaf(child); t < kernels::past_leaf(child); ++t)
+                for (uint c = 0; c < 3; ++c)
+                    contents.add(kernels::corner_of(tree.corners[kernels::TRIANGLE_RECORDS * t + c]));
+            next_triangle = kernels::past_leaf(child);
+            return contents;
+        }
+        ++visits[child];
+        const auto* records = &tree.pairs[kernels::PAIR_RECORDS * child];
+        EXPECT_EQ(records[2].w, above) << name << ", pair " << child;
+        for (uint side = 0; side < 2; ++side) {
+            const detail::tree_box box{
+                kernels::corner_of(records[2 * side]), kernels::corner_of(records[2 * side + 1])};
+            if (box.low.x > box.high.x)
+                continue; // an empty child
+            const auto found = visit(records[side].w, kernels::below_child(child, side));
+            EXPECT_EQ(box.low, found.low) << name << ", pair " << child;
+            EXPECT_EQ(box.high, found.high) << name << ", pair " << child;
+            contents.add(box);
+        }
+        return contents;
+    };
+    (void)visit(0, kernels::NO_PAIR);
+    EXPECT_EQ(next_triangle, tree.corners.size() / kernels::TRIANGLE_RECORDS) << name;
+    EXPECT_EQ(std::count(visits.begin(), visits.end(), 1u), pairs) << name;
+}
+
 TEST(triangle_trees, hold_each_triangle_once_in_few_levels)
 {
-    for (const auto& [name, m, closed] : ray_meshes(3000)) {
+    for (const auto& [name, m, closed] : ray_meshes(20000)) {
         const auto tree = build_triangle_tree(m);
         std::vector<bool> seen(m.triangles.size());
         for (std::size_t t = 0; t < m.triangles.size(); ++t) {
@@ -225,6 +272,7 @@ TEST(triangle_trees, hold_each_triangle_once_in_few_levels)
             EXPECT_FALSE(seen[index]) << name << ", triangle " << index;
             seen[index] = true;
         }
+        expect_whole(tree, name);
         EXPECT_LE(tree.depth, kernels::DEEPEST_PAIR) << name;
         EXPECT_LE(tree.pairs.size(), kernels::PAIR_RECORDS * std::max<std::size_t>(m.triangles.size(), 1)) << name;
     }
@@ -232,6 +280,7 @@ TEST(triangle_trees, hold_each_triangle_once_in_few_levels)
 
 REGISTER_TYPED_TEST_SUITE_P(mesh_rays, hit_what_a_loop_over_all_triangles_hits, go_on_from_pass_to_pass,
     hit_anything_where_there_is_a_closest_hit, never_leave_a_closed_mesh, long_never_leave_a_closed_mesh,
-    hit_where_double_precision_says, hit_slivers_that_rounding_flattens, hit_nothing_out_of_range);
+    hit_where_double_precision_says, hit_slivers_that_rounding_flattens, hit_nothing_out_of_range,
+    are_searched_for_in_the_same_tree);
 
 } // namespace photongrid::testing

@@ -35,6 +35,7 @@ HWY_EXPORT(scatter_photons);
 HWY_EXPORT(order_bucket);
 HWY_EXPORT(scatter_pairs);
 HWY_EXPORT(search_block);
+HWY_EXPORT(trace_block);
 
 /// See curve_simd.hpp.
 inline void begin_order(const curve_job& j, std::size_t first, std::size_t past, glm::uvec2* pairs, curve_summary& seen)
@@ -77,6 +78,12 @@ inline void scatter_pairs(const digit& by, const glm::uvec2* from, std::size_t f
 inline void search_block(const search_job& j, std::size_t begin, std::size_t end)
 {
     HWY_DYNAMIC_DISPATCH(search_block)(j, begin, end);
+}
+
+/// See rays_simd.hpp.
+inline void trace_block(const ray_job& j, std::size_t begin, std::size_t end)
+{
+    HWY_DYNAMIC_DISPATCH(trace_block)(j, begin, end);
 }
 
 } // namespace photongrid::cpu

@@ -26,6 +26,13 @@ struct device_triangles {
     buffer_of<B, glm::uvec4> corners; ///< of the triangles, in the order of the leaves
 };
 
+/// Builds the tree of a mesh as build_triangle_tree(m) does, on the device's threads if it has any.
+template <backend B>
+triangle_tree build_triangle_tree(B&, const mesh& m)
+{
+    return build_triangle_tree(m);
+}
+
 /// Uploads a tree.
 /// \throws backend_error if the device has no room.
 template <backend B>
@@ -88,6 +95,7 @@ private:
     const buffer_of<B, glm::vec4>* directions_;
     ray_search_settings settings_;
     buffer_of<B, glm::uvec4> states_; ///< see trace/ray_state.glsl
+    std::size_t passes_ = 0;          ///< run so far
     bool finished_ = false;
 };
 
@@ -114,6 +122,7 @@ progress ray_search<B>::advance(uint passes)
     const progress p = device_->template run_until_done<kernels::trace_ray>(
         {states_.size(), 0u, this->template switches<kernels::trace_ray>()}, {.steps = settings_.steps_per_pass},
         reads(*origins_, *directions_, triangles_->pairs, triangles_->corners), writes(states_), passes);
+    passes_ += p.passes;
     finished_ = p.finished;
     return p;
 }

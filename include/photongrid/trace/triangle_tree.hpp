@@ -50,59 +50,154 @@ namespace detail {
         }
     };
 
-    /// Builds a triangle_tree. The same mesh gives the same tree on every machine.
+    /// A box as eight numbers of which all are minima, so that compilers make vector code: the lowest x, y and z, m,
+    /// and the highest ones with the opposite sign. The fourth and the eighth are not of the box.
+    struct least_box {
+        alignas(16) std::array<float, 8> least;
+
+        static least_box of_nothing() { return {{1e30f, 1e30f, 1e30f, 1e30f, 1e30f, 1e30f, 1e30f, 1e30f}}; }
+        static least_box of(const glm::vec3& p) { return {{p.x, p.y, p.z, 0, -p.x, -p.y, -p.z, 0}}; }
+
+        void add(const least_box& b)
+        {
+            std::array<float, 8> both; // of its own, which compilers need to know that nothing overlaps
+            for (std::size_t i = 0; i < 8; ++i)
+                both[i] = b.least[i] < least[i] ? b.least[i] : least[i];
+            least = both;
+        }
+        /// Half of the surface, m^2.
+        double area() const
+        {
+            const auto extent = [&](std::size_t axis) {
+                return -static_cast<double>(least[axis]) - static_cast<double>(least[4 + axis]);
+            };
+            const double x = extent(0), y = extent(1), z = extent(2);
+            return x < 0 ? 0 : x * y + y * z + z * x;
+        }
+        tree_box box() const { return {{least[0], least[1], least[2]}, {-least[4], -least[5], -least[6]}}; }
+    };
+
+    /// Builds a triangle_tree. The same mesh gives the same tree on every machine, with any number of threads.
     class tree_builder {
     public:
-        explicit tree_builder(const mesh& m) : mesh_(m)
-        {
-            for (std::size_t t = 0; t < m.triangles.size(); ++t) {
-                item x{{}, static_cast<uint>(t)};
-                for (const auto& c : corners_of(m, t))
-                    x.box.add(c);
-                items_.push_back(x);
-            }
-        }
+        explicit tree_builder(const mesh& m) : mesh_(m), items_(m.triangles.size()) {}
 
-        triangle_tree build()
+        /// `run(n, f)` calls f(i) for each i below n, in any order or at once.
+        template <class Run>
+        triangle_tree build(const Run& run)
         {
-            tree_.pairs.reserve(items_.size() * kernels::PAIR_RECORDS / 2 + kernels::PAIR_RECORDS);
-            const range all{0, items_.size()};
-            // The first pair has no parent, whose split it would be: a tree of one leaf has an empty second child.
-            const auto middle = split(all, box_of(all), 0);
-            add_pair({all.first, middle}, {middle, all.past}, kernels::NO_PAIR, 0);
-            for (const item& x : items_) {
-                const auto corners = corners_of(mesh_, x.triangle);
-                for (std::size_t c = 0; c < 3; ++c)
-                    tree_.corners.push_back(bits_of(corners[c], c == 0 ? x.triangle : 0));
+            const std::size_t n = items_.size();
+            part all{0, n};
+            for (std::size_t t = 0; t < n; ++t) {
+                const auto c = corners_of(mesh_, t);
+                items_[t] = item(c, static_cast<uint>(t));
+                all.add(items_[t]);
             }
-            return std::move(tree_);
+            // The upper part of the tree, then what is below it, in pieces.
+            std::vector<piece> pieces;
+            grower top{items_, std::max<std::size_t>(n / 32, 4096), &pieces};
+            top.grow_root(all);
+            std::vector<grower> below(pieces.size(), grower{items_});
+            run(pieces.size(), [&](std::size_t i) { pieces[i].root = below[i].grow(pieces[i].of, pieces[i].depth); });
+
+            triangle_tree tree{std::move(top.pairs), {}, top.depth};
+            for (std::size_t i = 0; i < pieces.size(); ++i) {
+                append(tree, pieces[i], below[i].pairs);
+                tree.depth = std::max(tree.depth, below[i].depth);
+            }
+            tree.corners.resize(n * kernels::TRIANGLE_RECORDS);
+            constexpr std::size_t block = 65536;
+            run((n + block - 1) / block, [&](std::size_t b) {
+                for (std::size_t t = b * block; t < std::min(n, (b + 1) * block); ++t) {
+                    const uint triangle = items_[t].triangle();
+                    const auto corners = corners_of(mesh_, triangle);
+                    for (std::size_t c = 0; c < 3; ++c)
+                        tree.corners[t * kernels::TRIANGLE_RECORDS + c] = bits_of(corners[c], c == 0 ? triangle : 0);
+                }
+            });
+            return tree;
         }
 
     private:
-        static constexpr std::size_t bins = 16;
+        static constexpr std::size_t most_bins = 16;
         static constexpr std::size_t few = 4; ///< the most triangles of a leaf that could be split
 
+        /// A triangle's box, and its index in the mesh, in halves: with its bits as a float, often subnormal,
+        /// arithmetic on all lanes would be slow.
         struct item {
-            tree_box box;
-            uint triangle;
+            least_box box;
 
-            /// Twice the middle of its box along an axis, m.
-            float middle(int axis) const { return box.low[axis] + box.high[axis]; }
+            item() = default;
+            item(const std::array<glm::vec3, 3>& corners, uint triangle) : box(least_box::of(corners[0]))
+            {
+                box.add(least_box::of(corners[1]));
+                box.add(least_box::of(corners[2]));
+                box.least[3] = static_cast<float>(triangle & 0xFFFFu);
+                box.least[7] = static_cast<float>(triangle >> 16u);
+            }
+            uint triangle() const { return static_cast<uint>(box.least[3]) | static_cast<uint>(box.least[7]) << 16u; }
+            /// Twice the middle of its box, m.
+            least_box middle() const
+            {
+                least_box m;
+                for (std::size_t i = 0; i < 4; ++i)
+                    m.least[i] = box.least[i] - box.least[4 + i];
+                for (std::size_t i = 0; i < 4; ++i)
+                    m.least[4 + i] = box.least[4 + i] - box.least[i];
+                return m;
+            }
         };
-        struct range {
-            std::size_t first, past; ///< of items_
+        /// A range of items, to become a subtree.
+        struct part {
+            std::size_t first, past;
+            least_box box = least_box::of_nothing(), middles = box; ///< of the items' boxes; of their middles
+
             std::size_t size() const { return past - first; }
+            void add(const item& x)
+            {
+                box.add(x.box);
+                middles.add(x.middle());
+            }
         };
-        /// A split of a range by a plane between two bins.
+        /// A part that another grower makes a subtree of.
+        struct piece {
+            part of;
+            uint depth, above; ///< of its first pair; the pair and child that it is below
+            uint root = 0;     ///< what it becomes, in the grower's own pairs
+        };
+        /// A split of a part by a plane between two bins.
         struct plane {
             double cost = std::numeric_limits<double>::max(); ///< triangles times area, summed over both sides, m^2
-            int axis = 0;
-            float low = 0, per_bin = 0; ///< item::middle of the first bin's start; 1 / bin's width
-            std::size_t bin = 0;        ///< the last one of the first side
+            std::size_t axis = 0;
+            std::size_t bin = 0; ///< the last one of the first side
+        };
+        /// The bins of a part along each axis, of equal width.
+        struct bins {
+            std::size_t count;
+            std::array<float, 4> low,
+                per_bin; ///< item::middle() of the first bin's start; 1 / bin's width, 0 without width
 
-            std::size_t bin_of(const item& x) const
+            explicit bins(const part& p) : count(p.size() <= 4 ? 4 : p.size() <= 16 ? 8 : most_bins)
             {
-                return std::min(static_cast<std::size_t>((x.middle(axis) - low) * per_bin), bins - 1);
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    low[axis] = p.middles.least[axis];
+                    per_bin[axis] = static_cast<float>(count) / (-p.middles.least[4 + axis] - low[axis]);
+                    if (!(per_bin[axis] > 0 && per_bin[axis] <= std::numeric_limits<float>::max()))
+                        per_bin[axis] = 0; // or too little width to divide by
+                }
+                low[3] = per_bin[3] = 0;
+            }
+            /// Along each axis; the fourth has no meaning.
+            std::array<int, 4> of(const item& x) const
+            {
+                const auto m = x.middle();
+                const int last = static_cast<int>(count) - 1;
+                std::array<int, 4> n;
+                for (std::size_t i = 0; i < 4; ++i) {
+                    const int b = static_cast<int>((m.least[i] - low[i]) * per_bin[i]);
+                    n[i] = b < last ? b : last;
+                }
+                return n;
             }
         };
 
@@ -111,123 +206,175 @@ namespace detail {
             return {std::bit_cast<uint>(v.x), std::bit_cast<uint>(v.y), std::bit_cast<uint>(v.z), w};
         }
 
-        tree_box box_of(const range& r) const
-        {
-            tree_box b;
-            for (std::size_t i = r.first; i < r.past; ++i)
-                b.add(items_[i].box);
-            return b;
-        }
+        /// Makes pairs of nodes of parts.
+        struct grower {
+            std::vector<item>& items;
+            std::size_t size_of_piece = 0;        ///< parts of up to so many items are left to others ...
+            std::vector<piece>* pieces = nullptr; ///< ... and added here; null: none is
+            std::vector<glm::uvec4> pairs{};
+            uint depth = 0; ///< of the deepest pair
 
-        /// The best plane for a range; its cost is the largest number if all middles are one point.
-        plane best_plane(const range& r) const
-        {
-            tree_box middles;
-            for (std::size_t i = r.first; i < r.past; ++i)
-                middles.add(glm::vec3(items_[i].middle(0), items_[i].middle(1), items_[i].middle(2)));
-            plane best;
-            for (int axis = 0; axis < 3; ++axis) {
-                plane p;
-                p.axis = axis;
-                p.low = middles.low[axis];
-                p.per_bin = static_cast<float>(bins) / (middles.high[axis] - p.low);
-                if (!(p.per_bin <= std::numeric_limits<float>::max()))
-                    continue; // no width, or too little to divide by
-                std::array<tree_box, bins> boxes;
-                std::array<std::size_t, bins> counts{};
-                for (std::size_t i = r.first; i < r.past; ++i) {
-                    const std::size_t b = p.bin_of(items_[i]);
-                    boxes[b].add(items_[i].box);
-                    ++counts[b];
-                }
-                std::array<double, bins> after{}; // cost of the bins from here on
-                tree_box right;
-                std::size_t held = 0;
-                for (std::size_t b = bins; b-- > 1;) {
-                    right.add(boxes[b]);
-                    held += counts[b];
-                    after[b] = static_cast<double>(held) * right.area();
-                }
-                tree_box left;
-                held = 0;
-                for (std::size_t b = 0; b + 1 < bins; ++b) {
-                    left.add(boxes[b]);
-                    held += counts[b];
-                    if (held == 0 || held == r.size())
+            /// The first pair has no parent, whose split it would be: a tree of one leaf has an empty second child.
+            void grow_root(const part& all)
+            {
+                part halves[2]{all, {all.past, all.past}};
+                (void)split(all, 0, halves);
+                add_pair(halves, 0);
+            }
+
+            /// The child that a part becomes: a leaf, or the pair of its halves, at that depth.
+            uint grow(const part& p, uint at)
+            {
+                part halves[2]{};
+                return split(p, at, halves) ? add_pair(halves, at)
+                                            : kernels::leaf_of(static_cast<uint>(p.first),
+                                                static_cast<uint>(std::max<std::size_t>(p.size(), 1)));
+            }
+
+        private:
+            uint add_pair(const part (&halves)[2], uint at)
+            {
+                const auto pair = static_cast<uint>(pairs.size() / kernels::PAIR_RECORDS),
+                           first = pair * kernels::PAIR_RECORDS;
+                depth = std::max(depth, at);
+                pairs.resize(pairs.size() + kernels::PAIR_RECORDS);
+                for (uint side = 0; side < 2; ++side) {
+                    const part& p = halves[side];
+                    const uint above = kernels::below_child(pair, side);
+                    const tree_box box = p.box.box();
+                    pairs[first + 2 * side] = bits_of(box.low, pairs[first + 2 * side].w);
+                    pairs[first + 2 * side + 1] = bits_of(box.high, pairs[first + 2 * side + 1].w);
+                    if (pieces != nullptr && p.size() > 0 && p.size() <= size_of_piece) {
+                        pieces->push_back({p, at + 1, above});
                         continue;
-                    p.cost = static_cast<double>(held) * left.area() + after[b + 1];
-                    p.bin = b;
-                    if (p.cost < best.cost)
-                        best = p;
+                    }
+                    const uint child = grow(p, at + 1);
+                    pairs[first + side].w = child;
+                    if (!kernels::is_leaf(child))
+                        pairs[child * kernels::PAIR_RECORDS + 2].w = above;
                 }
+                if (pair == 0)
+                    pairs[2].w = kernels::NO_PAIR;
+                return pair;
             }
-            return best;
-        }
 
-        /// The most triangles that a subtree can hold if its first pair has this depth.
-        static std::uint64_t most_below(uint depth)
-        {
-            return depth > kernels::DEEPEST_PAIR
-                ? kernels::MOST_IN_LEAF
-                : std::uint64_t{kernels::MOST_IN_LEAF} << (kernels::DEEPEST_PAIR + 1 - depth);
-        }
-
-        /// Orders the items of a range so that those of one side come first. Returns where the others begin, or the
-        /// range's end if it is to be a leaf. `box`: around the range; `depth`: of the pair that the sides would be.
-        std::size_t split(const range& r, const tree_box& box, uint depth)
-        {
-            if (r.size() <= 1 || depth > kernels::DEEPEST_PAIR)
-                return r.past;
-            const plane p = best_plane(r);
-            const double area = box.area();
-            // A pair costs as much as the test of one triangle.
-            if (depth > 0 && r.size() <= few && !(p.cost + area < static_cast<double>(r.size()) * area))
-                return r.past;
-            const auto begin = items_.begin() + static_cast<std::ptrdiff_t>(r.first),
-                       end = items_.begin() + static_cast<std::ptrdiff_t>(r.past);
-            if (p.cost < std::numeric_limits<double>::max()) {
-                const auto middle = std::partition(begin, end, [&](const item& x) { return p.bin_of(x) <= p.bin; });
-                const auto held = static_cast<std::uint64_t>(std::max(middle - begin, end - middle));
-                if (held <= most_below(depth + 1))
-                    return static_cast<std::size_t>(middle - items_.begin());
+            /// The best plane for a part; its cost is the largest number if all middles are one point.
+            plane best_plane(const part& p, const bins& in) const
+            {
+                struct contents {
+                    least_box box;
+                    std::size_t held;
+                };
+                contents found[3][most_bins];
+                for (auto& of_axis : found)
+                    std::fill_n(of_axis, in.count, contents{least_box::of_nothing(), 0});
+                for (std::size_t i = p.first; i < p.past; ++i) {
+                    const item& x = items[i];
+                    const auto bin = in.of(x);
+                    for (std::size_t axis = 0; axis < 3; ++axis) {
+                        contents& c = found[axis][static_cast<std::size_t>(bin[axis])];
+                        c.box.add(x.box);
+                        ++c.held;
+                    }
+                }
+                plane best;
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    if (in.per_bin[axis] == 0)
+                        continue;
+                    std::array<double, most_bins> after; // cost of the bins from here on
+                    contents right{least_box::of_nothing(), 0};
+                    for (std::size_t b = in.count; b-- > 1;) {
+                        right.box.add(found[axis][b].box);
+                        right.held += found[axis][b].held;
+                        after[b] = static_cast<double>(right.held) * right.box.area();
+                    }
+                    contents left{least_box::of_nothing(), 0};
+                    for (std::size_t b = 0; b + 1 < in.count; ++b) {
+                        left.box.add(found[axis][b].box);
+                        left.held += found[axis][b].held;
+                        if (left.held == 0 || left.held == p.size())
+                            continue;
+                        const double cost = static_cast<double>(left.held) * left.box.area() + after[b + 1];
+                        if (cost < best.cost)
+                            best = {cost, axis, b};
+                    }
+                }
+                return best;
             }
-            // No plane divides them, or the tree would become too deep: halves, by place, or by index at one place.
-            const auto half = begin + (end - begin) / 2;
-            std::nth_element(begin, half, end, [&](const item& a, const item& b) {
-                const float x = a.middle(p.axis), y = b.middle(p.axis);
-                return x < y || (x == y && a.triangle < b.triangle);
-            });
-            return static_cast<std::size_t>(half - items_.begin());
-        }
 
-        uint add_pair(const range& first, const range& second, uint link, uint depth)
-        {
-            const auto pair = static_cast<uint>(tree_.pairs.size() / kernels::PAIR_RECORDS);
-            tree_.depth = std::max(tree_.depth, depth);
-            tree_.pairs.resize(tree_.pairs.size() + kernels::PAIR_RECORDS);
-            uint children[2]{};
-            const range sides[] = {first, second};
-            for (uint side = 0; side < 2; ++side) {
-                const range& r = sides[side];
-                const tree_box b = box_of(r);
-                const auto at = pair * kernels::PAIR_RECORDS + 2 * side;
-                tree_.pairs[at] = bits_of(b.low, 0);
-                tree_.pairs[at + 1] = bits_of(b.high, 0);
-                const auto middle = split(r, b, depth + 1);
-                children[side] = middle == r.past
-                    ? kernels::leaf_of(
-                        static_cast<uint>(r.first), static_cast<uint>(std::max<std::size_t>(r.size(), 1)))
-                    : add_pair({r.first, middle}, {middle, r.past}, kernels::below_child(pair, side), depth + 1);
+            /// The most triangles that a subtree can hold if its first pair has this depth.
+            static std::uint64_t most_below(uint at)
+            {
+                return at > kernels::DEEPEST_PAIR
+                    ? kernels::MOST_IN_LEAF
+                    : std::uint64_t{kernels::MOST_IN_LEAF} << (kernels::DEEPEST_PAIR + 1 - at);
             }
-            tree_.pairs[pair * kernels::PAIR_RECORDS].w = children[0];
-            tree_.pairs[pair * kernels::PAIR_RECORDS + 1].w = children[1];
-            tree_.pairs[pair * kernels::PAIR_RECORDS + 2].w = link;
-            return pair;
+
+            /// Divides a part, whose items are ordered so that those of one half come first. Returns false if it is to
+            /// be a leaf. `at`: depth of the pair that the halves would be.
+            bool split(const part& p, uint at, part (&halves)[2])
+            {
+                if (p.size() <= 1 || at > kernels::DEEPEST_PAIR)
+                    return false;
+                const bins in(p);
+                const plane best = best_plane(p, in);
+                const double area = p.box.area();
+                // A pair costs as much as the test of one triangle.
+                if (at > 0 && p.size() <= few && !(best.cost + area < static_cast<double>(p.size()) * area))
+                    return false;
+                if (best.cost < std::numeric_limits<double>::max()) {
+                    halves[0] = {p.first, p.first};
+                    halves[1] = {p.past, p.past};
+                    while (halves[0].past < halves[1].first) {
+                        item& x = items[halves[0].past];
+                        if (static_cast<std::size_t>(in.of(x)[best.axis]) <= best.bin) {
+                            halves[0].add(x);
+                            ++halves[0].past;
+                        } else {
+                            halves[1].add(x);
+                            std::swap(x, items[--halves[1].first]);
+                        }
+                    }
+                    if (std::max(halves[0].size(), halves[1].size()) <= most_below(at + 1))
+                        return true;
+                }
+                // No plane divides them, or the tree would become too deep: halves, by place, or by index at one place.
+                const auto begin = items.begin() + static_cast<std::ptrdiff_t>(p.first),
+                           end = items.begin() + static_cast<std::ptrdiff_t>(p.past), half = begin + (end - begin) / 2;
+                std::nth_element(begin, half, end, [&](const item& a, const item& b) {
+                    const float x = a.middle().least[best.axis], y = b.middle().least[best.axis];
+                    return x < y || (x == y && a.triangle() < b.triangle());
+                });
+                const auto middle = static_cast<std::size_t>(half - items.begin());
+                halves[0] = {p.first, middle};
+                halves[1] = {middle, p.past};
+                for (part& h : halves)
+                    for (std::size_t i = h.first; i < h.past; ++i)
+                        h.add(items[i]);
+                return true;
+            }
+        };
+
+        /// Adds the pairs of a piece behind those of the tree.
+        static void append(triangle_tree& tree, const piece& p, const std::vector<glm::uvec4>& pairs)
+        {
+            const auto offset = static_cast<uint>(tree.pairs.size() / kernels::PAIR_RECORDS);
+            const auto moved = [&](uint child) { return kernels::is_leaf(child) ? child : child + offset; };
+            tree.pairs.insert(tree.pairs.end(), pairs.begin(), pairs.end());
+            for (std::size_t at = offset * kernels::PAIR_RECORDS; at < tree.pairs.size(); at += kernels::PAIR_RECORDS) {
+                tree.pairs[at].w = moved(tree.pairs[at].w);
+                tree.pairs[at + 1].w = moved(tree.pairs[at + 1].w);
+                tree.pairs[at + 2].w = at == offset * kernels::PAIR_RECORDS
+                    ? p.above
+                    : kernels::below_child(
+                        kernels::pair_above(tree.pairs[at + 2].w) + offset, kernels::child_above(tree.pairs[at + 2].w));
+            }
+            tree.pairs[kernels::pair_above(p.above) * kernels::PAIR_RECORDS + kernels::child_above(p.above)].w
+                = moved(p.root);
         }
 
         const mesh& mesh_;
         std::vector<item> items_;
-        triangle_tree tree_;
     };
 } // namespace detail
 
@@ -239,15 +386,24 @@ namespace detail {
             throw std::invalid_argument(
                 "mesh: triangles: " + std::to_string(triangles) + "; a tree holds at most 2^28, so split the mesh");
     }
+
+    template <class Run>
+    triangle_tree build_triangle_tree(const mesh& m, const Run& run)
+    {
+        check(m);
+        require_countable(m.triangles.size());
+        return tree_builder(m).build(run);
+    }
 } // namespace detail
 
 /// Builds the tree of a mesh.
 /// \throws std::invalid_argument as check(mesh) does, or for more than 2^28 triangles.
 inline triangle_tree build_triangle_tree(const mesh& m)
 {
-    check(m);
-    detail::require_countable(m.triangles.size());
-    return detail::tree_builder(m).build();
+    return detail::build_triangle_tree(m, [](std::size_t n, const auto& f) {
+        for (std::size_t i = 0; i < n; ++i)
+            f(i);
+    });
 }
 
 } // namespace photongrid

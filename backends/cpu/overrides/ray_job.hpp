@@ -1,0 +1,24 @@
+// The parameters of the SIMD code that searches for the hits of rays: plain pointers, because it is compiled once per
+// instruction set.
+#pragma once
+
+#include <photongrid/backends/cpu/buffer.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid::cpu {
+
+/// Rays and the triangles that they may hit.
+struct ray_job {
+    const float* nodes = nullptr; ///< see wide_tree.hpp
+    const float* blocks = nullptr;
+    glm::vec3 low{0}, high{0}; ///< box of all triangles, m
+    bool any = false;          ///< the first hit that is found is enough
+    const glm::vec4* origins = nullptr;
+    const glm::vec4* directions = nullptr;
+    glm::uvec4* states = nullptr; ///< see trace/ray_state.glsl
+};
+
+} // namespace photongrid::cpu
+
+#include <photongrid/backend/exact_end.hpp>
