@@ -193,7 +193,7 @@ TYPED_TEST_P(mesh_rays, hit_nothing_out_of_range)
 
 TYPED_TEST_P(mesh_rays, are_searched_for_in_the_same_tree)
 {
-    for (const auto& [name, m, closed] : ray_meshes(20000)) {
+    for (const auto& [name, m, closed] : ray_meshes(6000)) {
         const auto expected = build_triangle_tree(m), tree = build_triangle_tree(this->b(), m);
         EXPECT_EQ(tree.pairs, expected.pairs) << name;
         EXPECT_EQ(tree.corners, expected.corners) << name;
@@ -263,7 +263,7 @@ inline void expect_whole(const triangle_tree& tree, const std::string& name)
 
 TEST(triangle_trees, hold_each_triangle_once_in_few_levels)
 {
-    for (const auto& [name, m, closed] : ray_meshes(20000)) {
+    for (const auto& [name, m, closed] : ray_meshes(6000)) {
         const auto tree = build_triangle_tree(m);
         std::vector<bool> seen(m.triangles.size());
         for (std::size_t t = 0; t < m.triangles.size(); ++t) {
