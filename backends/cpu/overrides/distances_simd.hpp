@@ -4,7 +4,6 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
-#include <photongrid/backends/cpu/overrides/lanes_simd.hpp>
 #include <photongrid/backends/cpu/overrides/search_job.hpp>
 
 #include <limits>

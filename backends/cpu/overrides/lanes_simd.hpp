@@ -1,12 +1,5 @@
-// What the SIMD code shares: its vectors of up to 16 lanes, and masks as bits. Included once per instruction set, by
-// several files: the guard is Highway's, which counts the instruction sets.
-#if defined(PHOTONGRID_LANES_SIMD) == defined(HWY_TARGET_TOGGLE)
-#ifdef PHOTONGRID_LANES_SIMD
-#undef PHOTONGRID_LANES_SIMD
-#else
-#define PHOTONGRID_LANES_SIMD
-#endif
-
+// What the SIMD code shares: its vectors of up to 16 lanes, and masks as bits. for_each_target.hpp includes it once per
+// instruction set, before the files that use it, so it has no include guard; other files include simd.hpp.
 #include <hwy/highway.h>
 
 #include <photongrid/backends/cpu/buffer.hpp>
@@ -57,5 +50,3 @@ HWY_INLINE uint bits_of(D d, hn::Mask<D> mask)
 HWY_AFTER_NAMESPACE();
 
 #include <photongrid/backend/exact_end.hpp>
-
-#endif

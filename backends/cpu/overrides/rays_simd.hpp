@@ -5,7 +5,6 @@
 // so, and sometimes if not, and the lanes only choose the triangles that hit_triangle() is then asked about.
 #include <hwy/cache_control.h>
 
-#include <photongrid/backends/cpu/overrides/lanes_simd.hpp>
 #include <photongrid/backends/cpu/overrides/ray_job.hpp>
 #include <photongrid/backends/cpu/overrides/wide_tree.hpp>
 #include <photongrid/trace/ray_state.kernel.hpp>
