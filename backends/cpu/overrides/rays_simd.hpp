@@ -208,7 +208,7 @@ private:
 template <bool ANY>
 HWY_INLINE void trace_rays(const ray_job& j, std::size_t begin, std::size_t end)
 {
-    constexpr std::size_t most = 8; // with 4 or 16 it is slower
+    constexpr std::size_t most = 8; // four are slower, 16 no faster
     std::optional<hit_search> searches[most];
     std::size_t next = begin, searching = 0;
     const auto start = [&](std::optional<hit_search>& s) HWY_ATTR {
