@@ -120,7 +120,7 @@ namespace detail {
 
     private:
         static constexpr std::size_t most_bins = 16;
-        static constexpr std::size_t few = 4; ///< the most triangles of a leaf that could be split
+        static constexpr std::size_t few = 6; ///< the most triangles of a leaf that could be split
 
         /// A triangle's box, and its index in the mesh, in halves: with its bits as a float, often subnormal,
         /// arithmetic on all lanes would be slow.
@@ -319,8 +319,8 @@ namespace detail {
                 const bins in(p);
                 const plane best = best_plane(p, in);
                 const double area = p.box.area();
-                // A pair costs as much as the test of one triangle.
-                if (at > 0 && p.size() <= few && !(best.cost + area < static_cast<double>(p.size()) * area))
+                // A pair costs as much as the tests of three triangles.
+                if (at > 0 && p.size() <= few && !(best.cost + 3 * area < static_cast<double>(p.size()) * area))
                     return false;
                 if (best.cost < std::numeric_limits<double>::max()) {
                     halves[0] = {p.first, p.first};
