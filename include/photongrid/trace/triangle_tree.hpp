@@ -60,7 +60,7 @@ namespace detail {
 
         void add(const least_box& b)
         {
-            std::array<float, 8> both; // of its own, which compilers need to know that nothing overlaps
+            std::array<float, 8> both; // a local: nothing overlaps it, so that the loop becomes vector code
             for (std::size_t i = 0; i < 8; ++i)
                 both[i] = b.least[i] < least[i] ? b.least[i] : least[i];
             least = both;
@@ -122,8 +122,8 @@ namespace detail {
         static constexpr std::size_t most_bins = 16;
         static constexpr std::size_t few = 6; ///< the most triangles of a leaf that could be split
 
-        /// A triangle's box, and its index in the mesh, in halves: with its bits as a float, often subnormal,
-        /// arithmetic on all lanes would be slow.
+        /// A triangle's box, and the halves of its index in the mesh as two floats. The index's bits as one float would
+        /// often be subnormal, and arithmetic on all lanes slow.
         struct item {
             least_box box;
 
@@ -174,8 +174,8 @@ namespace detail {
         /// The bins of a part along each axis, of equal width.
         struct bins {
             std::size_t count;
-            std::array<float, 4> low,
-                per_bin; ///< item::middle() of the first bin's start; 1 / bin's width, 0 without width
+            std::array<float, 4> low;     ///< item::middle() where the first bin starts
+            std::array<float, 4> per_bin; ///< 1 / bin's width; 0 without width
 
             explicit bins(const part& p) : count(p.size() <= 4 ? 4 : p.size() <= 16 ? 8 : most_bins)
             {
