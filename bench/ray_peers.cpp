@@ -1,11 +1,12 @@
-// Rays against triangles, beside Embree, one thread: docs/reference/measures.md.
+// Rays against triangles, beside Embree: docs/reference/measures.md.
 //
-//   ray_peers [--triangles N] [--rays N] [--repeats N]
+//   ray_peers [--triangles N] [--rays N] [--repeats N] [--threads N]
 //
 // The mesh is a closed ball with bumps (tests/trace/mesh_sets.hpp) of about N triangles, 100,000 unless given. Half of
 // the rays begin at random places inside of it, the others on a sphere around it, in random directions. Each searcher
 // finds the closest hits of all, then whether anything is hit; medians of the repeats, which take turns. The stream is
 // Embree's call for many rays at once. Exits 3 where more than one hit in 10,000 is another triangle than Embree's.
+// --threads  that build the trees, 1 unless given; rays are searched for by one
 #include "median.hpp"
 #include "stopwatch.hpp"
 
@@ -35,12 +36,14 @@ struct arguments {
     uint triangles = 100000;
     size_t rays = 100000;
     int repeats = 5;
+    uint threads = 1; // that build the trees
 };
 
 /// The mesh in Embree.
 class embree_mesh {
 public:
-    embree_mesh(const mesh& m, RTCSceneFlags flags) : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_))
+    embree_mesh(const mesh& m, RTCSceneFlags flags, uint threads)
+        : device_(rtcNewDevice(("threads=" + std::to_string(threads)).c_str())), scene_(rtcNewScene(device_))
     {
         rtcSetDeviceMemoryMonitorFunction(
             device_,
@@ -165,6 +168,8 @@ int main(int count, char** values)
             a.rays = number;
         else if (name == "--repeats")
             a.repeats = static_cast<int>(number);
+        else if (name == "--threads")
+            a.threads = static_cast<uint>(number);
         else {
             std::fprintf(stderr, "ray_peers: unknown argument \"%s\"\n", name.c_str());
             return 2;
@@ -176,13 +181,13 @@ int main(int count, char** values)
     const auto n = static_cast<double>(m.triangles.size());
 
     triangle_tree tree;
-    const double build = seconds_of([&] { tree = build_triangle_tree(m); });
-    const embree_mesh fast(m, RTC_SCENE_FLAG_NONE), robust(m, RTC_SCENE_FLAG_ROBUST);
-    std::printf("%zu triangles, %zu rays, one thread\n", m.triangles.size(), a.rays);
+    cpu_backend builder(a.threads);
+    const double build = seconds_of([&] { tree = build_triangle_tree(builder, m); });
+    const embree_mesh fast(m, RTC_SCENE_FLAG_NONE, a.threads), robust(m, RTC_SCENE_FLAG_ROBUST, a.threads);
+    std::printf("%zu triangles, %zu rays; trees by %u threads, rays by one\n", m.triangles.size(), a.rays, a.threads);
     const double mesh_bytes = 12.0 * static_cast<double>(m.positions.size() + m.triangles.size());
     ours<serial_backend> serial(serial_backend{}, tree, rays);
-    cpu_backend one_thread(1);
-    const double uploading = seconds_of([&] { (void)upload_triangles(one_thread, tree); });
+    const double uploading = seconds_of([&] { (void)upload_triangles(builder, tree); });
     ours<cpu_backend> cpu(cpu_backend(1), tree, rays);
     std::printf(
         "build: photongrid %.3f s, for cpu %.3f s more, Embree %.3f s\n", build, uploading, fast.build_seconds());
