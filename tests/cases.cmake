@@ -91,13 +91,17 @@ endfunction()
 # What a quick run under sanitizers builds.
 add_custom_target(photongrid_quick_tests)
 
-# photongrid_test(NAME [SOURCES file...] [LIBRARIES lib...] [PLAIN] [COMPILED] [SANITIZED] [what photongrid_run takes...])
+# photongrid_test(NAME [SOURCES file...] [LIBRARIES lib...] [PLAIN] [COMPILED] [SANITIZED | UNSANITIZED]
+#   [what photongrid_run takes...])
 # builds NAME.cpp, or SOURCES, and runs it. PLAIN: what it computes itself takes less time than optimizing it would.
 # COMPILED: it reads no kernel of the library and takes the algorithms that photongrid::renderer has compiled.
-# SANITIZED: a short run runs it under sanitizers alone, a full one also without.
+# SANITIZED: a short run runs it under sanitizers alone, a full one also without. UNSANITIZED: the other way round.
 function(photongrid_test name)
-  cmake_parse_arguments(arg "LONG;HEAVY_CASES;HEAVY;SHARED_OUT;PLAIN;COMPILED;SANITIZED" "" "SOURCES;LIBRARIES;FULL_CASES"
-    ${ARGN})
+  cmake_parse_arguments(arg "LONG;HEAVY_CASES;HEAVY;SHARED_OUT;PLAIN;COMPILED;SANITIZED;UNSANITIZED" ""
+    "SOURCES;LIBRARIES;FULL_CASES" ${ARGN})
+  if(arg_UNSANITIZED AND PHOTONGRID_SANITIZE)
+    set(arg_HEAVY TRUE)
+  endif()
   if(NOT arg_SOURCES)
     set(arg_SOURCES ${name}.cpp)
   endif()

@@ -84,7 +84,7 @@ run_part() {
 run_stale() {
   local stale program tests=()
   configure tests -DPHOTONGRID_FULL_TESTS=OFF
-  stale=$(ninja -C build-tests -n | sed -n 's/.*Linking CXX executable tests\/\([a-z_]*\)$/\1/p')
+  stale=$(ninja -C build-tests -n all photongrid_quick_tests | sed -n 's/.*Linking CXX executable tests\/\([a-z_]*\)$/\1/p')
   if grep -qx on_serial <<<"$stale"; then
     stale=$(grep -vE "^(on_(cpu|gl|vulkan)|own_kernels|threads)$|^(gl|vulkan)_" <<<"$stale" || true)
   fi

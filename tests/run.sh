@@ -22,7 +22,7 @@
 #               backend under g++'s (build-asan-gcc/)
 #   clang       headers, kernels and a smoke test with clang 14 (build-clang/)
 #   fuzzing     clang's fuzzer on the scene reader for 20 s (build-asan/), in full 300 s (build-fuzz/, optimized)
-#   tests       everything with g++, assertions on (build-tests/)
+#   tests       everything with g++, assertions on (build-tests/), but for what the sanitizers have run, unless in full
 # and with --full:
 #   gpu_assisted  the Vulkan backend under GPU-assisted validation
 #   benches       each bench, briefly
@@ -106,7 +106,8 @@ run_tests() {
   shift
   # One more at a time than there are cores, since the window's tests mostly wait. A program that was not built fails as
   # a whole; its cases are not known.
-  ctest --test-dir "$folder" --output-on-failure --no-tests=error -j$(($(nproc) + 1)) --exclude-regex "_NOT_BUILT$skipped" "$@"
+  ctest --test-dir "$folder" --output-on-failure --no-tests=error -j$(($(nproc) + 1)) \
+    --exclude-regex "_NOT_BUILT$skipped" "$@"
 }
 skipped=
 source tests/part.sh

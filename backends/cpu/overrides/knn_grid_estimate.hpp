@@ -1,6 +1,7 @@
 // The cpu backend's search, in SIMD code, with the points in an order that keeps neighbours together.
 #pragma once
 
+#include <photongrid/backends/cpu/overrides/in_order.hpp>
 #include <photongrid/backends/cpu/overrides/search.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 
@@ -47,9 +48,8 @@ inline
     const cpu_backend::stopwatch watch;
     const std::size_t n = in_.points->size(), begin = done_;
     const std::size_t per_pass = cpu::search_block_size * std::max(1u, in_.s.visits_per_pass / 128u);
-    const std::size_t left = (n - begin + per_pass - 1) / per_pass;
-    const auto now = static_cast<uint>(std::min<std::size_t>(passes, left));
-    done_ = std::min(n, begin + now * per_pass);
+    auto part = cpu::next_passes(n, begin, per_pass, passes);
+    done_ = part.end;
     if (done_ > begin) {
         auto job = cpu::make_search_job(in_, order_);
         job.irradiance = device.elements_to_write(e_.irradiance).data();
@@ -59,13 +59,8 @@ inline
         device.threads().for_blocks(done_ - begin, cpu::search_block_size,
             [&](std::size_t first, std::size_t past) { cpu::search_block(job, begin + first, begin + past); });
     }
-    device.count_passes("knn_search", now, watch);
-    progress p;
-    p.passes = now;
-    for (uint i = 0; i < now; ++i)
-        p.active.push_back(n - begin - i * per_pass);
-    p.finished = done_ == n;
-    return p;
+    device.count_passes("knn_search", part.made.passes, watch);
+    return part.made;
 }
 
 #if !defined(PHOTONGRID_CPU_COMPILED)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <photongrid/backends/cpu/cpu_backend.hpp>
+#include <photongrid/backends/cpu/overrides/in_order.hpp>
 #include <photongrid/backends/cpu/overrides/simd.hpp>
 #include <photongrid/backends/cpu/overrides/wide_tree.hpp>
 
@@ -43,12 +44,11 @@ inline
 {
     auto& device = *device_;
     const cpu_backend::stopwatch watch;
-    const std::size_t n = states_.size(), rays_per_pass = std::size_t{64} * settings_.steps_per_pass;
-    const std::size_t begin = std::min(n, passes_ * rays_per_pass),
-                      left = (n - begin + rays_per_pass - 1) / rays_per_pass;
-    const auto now = static_cast<uint>(std::min<std::size_t>(passes, left));
-    const std::size_t end = std::min(n, begin + now * rays_per_pass);
-    if (end > begin) {
+    // With the usual steps a pass, 65,536 rays: work for many threads, and well below a second of one.
+    const std::size_t n = states_.size(), per_pass = std::size_t{64} * settings_.steps_per_pass,
+                      begin = std::min(n, passes_ * per_pass);
+    auto part = cpu::next_passes(n, begin, per_pass, passes);
+    if (part.end > begin) {
         cpu::ray_job j;
         j.nodes = device.elements(triangles_->nodes).data();
         j.blocks = device.elements(triangles_->blocks).data();
@@ -57,20 +57,14 @@ inline
         j.any = settings_.kind == hit_kind::any;
         j.origins = device.elements(*origins_).data();
         j.directions = device.elements(*directions_).data();
-        j.states = device.elements_to_write(states_).data() + begin;
-        j.origins += begin;
-        j.directions += begin;
-        device.threads().for_blocks(
-            end - begin, 256, [&](std::size_t first, std::size_t past) { cpu::trace_block(j, first, past); });
+        j.states = device.elements_to_write(states_).data();
+        device.threads().for_blocks(part.end - begin, 256,
+            [&](std::size_t first, std::size_t past) { cpu::trace_block(j, begin + first, begin + past); });
     }
-    passes_ += now;
-    device.count_passes("ray_search", now, watch);
-    progress p;
-    p.passes = now;
-    for (uint i = 0; i < now; ++i)
-        p.active.push_back(n - begin - i * rays_per_pass);
-    p.finished = finished_ = end == n;
-    return p;
+    passes_ += part.made.passes;
+    finished_ = part.made.finished;
+    device.count_passes("ray_search", part.made.passes, watch);
+    return part.made;
 }
 
 } // namespace photongrid

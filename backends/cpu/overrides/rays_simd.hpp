@@ -176,7 +176,7 @@ private:
 
     HWY_INLINE void visit_block(const float* block, uint leaf)
     {
-        const uint all = (2u << (leaf >> 28u & 7u)) - 1; // its triangles
+        const uint all = (1u << (kernels::past_leaf(leaf) - kernels::first_of_leaf(leaf))) - 1; // its triangles
         for (uint some = ray_.passes_through(block) & all; some != 0; some &= some - 1) {
             const auto n = static_cast<std::size_t>(std::countr_zero(some));
             const float t = ray_.hit(block, n);

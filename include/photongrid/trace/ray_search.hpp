@@ -95,7 +95,7 @@ private:
     const buffer_of<B, glm::vec4>* directions_;
     ray_search_settings settings_;
     buffer_of<B, glm::uvec4> states_; ///< see trace/ray_state.glsl
-    std::size_t passes_ = 0;          ///< run so far
+    std::size_t passes_ = 0;          ///< run so far; overrides go on from there
     bool finished_ = false;
 };
 

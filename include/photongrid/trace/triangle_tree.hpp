@@ -4,13 +4,13 @@
 #pragma once
 
 #include <photongrid/scene/mesh.hpp>
+#include <photongrid/trace/tree_box.hpp>
 #include <photongrid/trace/tree_node.kernel.hpp>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <glm/common.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
 #include <stdexcept>
@@ -29,54 +29,6 @@ struct triangle_tree {
 };
 
 namespace detail {
-    struct tree_box {
-        glm::vec3 low{1e30f}, high{-1e30f}; ///< m; without contents no ray meets it
-
-        void add(const tree_box& b)
-        {
-            low = glm::min(low, b.low);
-            high = glm::max(high, b.high);
-        }
-        void add(const glm::vec3& p)
-        {
-            low = glm::min(low, p);
-            high = glm::max(high, p);
-        }
-        /// Half of the surface, m^2; 0 of a box without contents.
-        double area() const
-        {
-            const glm::dvec3 e = glm::dvec3(high) - glm::dvec3(low);
-            return e.x < 0 ? 0 : e.x * e.y + e.y * e.z + e.z * e.x;
-        }
-    };
-
-    /// A box as eight numbers of which all are minima, so that compilers make vector code: the lowest x, y and z, m,
-    /// and the highest ones with the opposite sign. The fourth and the eighth are not of the box.
-    struct least_box {
-        alignas(16) std::array<float, 8> least;
-
-        static least_box of_nothing() { return {{1e30f, 1e30f, 1e30f, 1e30f, 1e30f, 1e30f, 1e30f, 1e30f}}; }
-        static least_box of(const glm::vec3& p) { return {{p.x, p.y, p.z, 0, -p.x, -p.y, -p.z, 0}}; }
-
-        void add(const least_box& b)
-        {
-            std::array<float, 8> both; // a local: nothing overlaps it, so that the loop becomes vector code
-            for (std::size_t i = 0; i < 8; ++i)
-                both[i] = b.least[i] < least[i] ? b.least[i] : least[i];
-            least = both;
-        }
-        /// Half of the surface, m^2.
-        double area() const
-        {
-            const auto extent = [&](std::size_t axis) {
-                return -static_cast<double>(least[axis]) - static_cast<double>(least[4 + axis]);
-            };
-            const double x = extent(0), y = extent(1), z = extent(2);
-            return x < 0 ? 0 : x * y + y * z + z * x;
-        }
-        tree_box box() const { return {{least[0], least[1], least[2]}, {-least[4], -least[5], -least[6]}}; }
-    };
-
     /// Builds a triangle_tree. The same mesh gives the same tree on every machine, with any number of threads.
     class tree_builder {
     public:
@@ -376,9 +328,7 @@ namespace detail {
         const mesh& mesh_;
         std::vector<item> items_;
     };
-} // namespace detail
 
-namespace detail {
     /// \throws std::invalid_argument for more triangles than the leaves of a tree can number.
     inline void require_countable(std::size_t triangles)
     {
