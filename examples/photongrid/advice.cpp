@@ -28,6 +28,8 @@ namespace {
                 kind.add_bounds(b, x);
         };
         for_each_shape(s, add);
+        for (const auto& m : s.meshes)
+            add_bounds(b, m);
         for_each_light(s, add);
         return b;
     }
@@ -54,9 +56,13 @@ namespace {
 std::string summary_of(const scene& s)
 {
     const auto count = [](std::size_t n, const char* what) { return text(n, ' ', what, n == 1 ? "" : "s"); };
-    return text('"', s.name, "\": ", count(count_shapes(s), "shape"), ", ", count(s.materials.size(), "material"), ", ",
-        count(count_lights(s), "light"), " of ", detail::power_of_lights(s), " W (red + green + blue), ",
-        size_of(bounds_of(s)));
+    std::size_t triangles = 0;
+    for (const auto& m : s.meshes)
+        triangles += m.surface->triangles.size();
+    const auto of_meshes = triangles > 0 ? text(" (meshes of ", count(triangles, "triangle"), ')') : "";
+    return text('"', s.name, "\": ", count(count_shapes(s), "shape"), of_meshes, ", ",
+        count(s.materials.size(), "material"), ", ", count(count_lights(s), "light"), " of ",
+        detail::power_of_lights(s), " W (red + green + blue), ", size_of(bounds_of(s)));
 }
 
 std::vector<std::string> oddities(const scene& s)
@@ -67,10 +73,12 @@ std::vector<std::string> oddities(const scene& s)
     if (size > 1000 || size < 0.01)
         odd.push_back(text("the scene measures ", size_of(b), "; are its lengths in the unit that \"units\" names?"));
     std::set<std::uint32_t> used;
-    for_each_shape(s, [&](const auto& list, auto) {
+    const auto use = [&](const auto& list, auto) {
         for (const auto& x : list)
             used.insert(x.material);
-    });
+    };
+    for_each_shape(s, use);
+    use(s.meshes, nullptr);
     for (std::uint32_t m = 0; m < s.materials.size(); ++m)
         if (!used.contains(m))
             odd.push_back(text("no shape has the material \"", s.materials[m].name, '"'));

@@ -14,6 +14,7 @@
 #include "../render/scene_picture_tests.hpp"
 #include "../trace/box_tests.hpp"
 #include "../trace/mesh_ray_tests.hpp"
+#include "../trace/mesh_scene_tests.hpp"
 #include "../trace/ray_tests.hpp"
 
 #include <photongrid/trace/bounce_photon.kernel.hpp>
@@ -24,6 +25,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, verbs, ::testing::Types<vulkan_tag>, tag_
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, algorithms, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, estimators, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, pictures, ::testing::Types<vulkan_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, mesh_scenes, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases_of_pictures, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, progressive, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases, ::testing::Types<vulkan_tag>, tag_names);
@@ -69,9 +71,11 @@ TEST(specialisation, a_scene_without_glass_and_lamps_has_smaller_kernels)
         vulkan_backend fresh(vulkan_options{});
         const auto device = upload_scene(fresh, s);
         detail::photon_frames<vulkan_backend> f(fresh, 64);
+        const detail::mesh_search<vulkan_backend> no_meshes(fresh, device, 0);
         fresh.run<kernels::bounce_photon>({32, 32u, device.layout.features},
             {.paths = 32, .first_path = 0, .last_frame = 1, .seed = 1},
-            reads(device.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions),
+            reads(device.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions,
+                no_meshes.found(), device.faces, device.planes, device.vertices),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
         fresh.finish();
         return fresh.costs().at("bounce_photon").instructions;

@@ -43,8 +43,8 @@ namespace {
                 ++bad;
             }
         }
-        for (const auto* name : {"minimal", "sphere", "cylinder", "cone", "paraboloid", "disk", "box", "triangle",
-                 "pentagon", "materials", "rectangle_light", "units_mm_kw", "units_cm_mw", "every_setting",
+        for (const auto* name : {"minimal", "sphere", "cylinder", "cone", "paraboloid", "disk", "box", "mesh",
+                 "triangle", "pentagon", "materials", "rectangle_light", "units_mm_kw", "units_cm_mw", "every_setting",
                  "comments_and_schema", "byte_order_mark", "crlf_and_tabs", "glass_ball", "ring", "cornell_box",
                  "largest_and_smallest_lengths", "estimate_settings"})
             EXPECT_TRUE(good.contains(name)) << name;

@@ -57,7 +57,7 @@ namespace detail {
                 shapes += t.count;
                 next += t.count * t.stride;
             }
-        if (shapes != count_shapes(s) + s.rectangle_lights.size())
+        if (shapes != count_shapes(s) - s.meshes.size() + s.rectangle_lights.size())
             return "a shape is in no table";
         if (polygons.first != next)
             return "the tables of the shapes do not follow each other";

@@ -48,6 +48,26 @@ inline scene small_cornell()
     return s;
 }
 
+/// A convex polygon as a mesh: a fan of triangles.
+inline placed_mesh mesh_of(const polygon& p)
+{
+    mesh fan;
+    for (const auto& v : p.vertices)
+        fan.positions.emplace_back(v);
+    for (uint i = 2; i < p.vertices.size(); ++i)
+        fan.triangles.push_back({0, i - 1, i});
+    return {"", std::make_shared<const mesh>(std::move(fan)), glm::dmat3(1), dvec3(0), p.material};
+}
+
+/// The scene with a mesh for each of its polygons.
+inline scene with_meshes(scene s)
+{
+    for (const auto& p : s.polygons)
+        s.meshes.push_back(mesh_of(p));
+    s.polygons.clear();
+    return s;
+}
+
 /// Every shape there is, in one scene, under a point light and a lamp.
 inline scene all_shapes()
 {
@@ -71,6 +91,20 @@ inline scene all_shapes()
         .estimate = {.k = 40, .max_radius = 0.3},
         .view = {.spp = 1, .light_samples = 4},
         .output = {.width = 96, .height = 64}};
+    return s;
+}
+
+/// The same with meshes: a glass one, a white one that is mirrored, and a metal one that shares its surface.
+inline scene all_shapes_and_meshes()
+{
+    auto s = all_shapes();
+    s.name = "all_shapes_and_meshes";
+    // A tetrahedron, seen from outside counterclockwise.
+    const auto surface = std::make_shared<const mesh>(
+        mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}});
+    s.meshes = {{"", surface, glm::dmat3(0.5), {0.7, 0.05, 0.9}, 2},
+        {"", surface, glm::dmat3(-0.4, 0, 0, 0, 0.5, 0, 0, 0, 0.4), {-0.5, 0.01, 1.2}, 0},
+        {"", surface, glm::dmat3(0.3, 0, 0.1, 0, 0.6, 0, -0.1, 0, 0.3), {-1.6, 0.02, 1.2}, 1}};
     return s;
 }
 

@@ -43,6 +43,8 @@ namespace {
         {
             if (s.name != before_.name || s.materials != before_.materials)
                 throw_other("name or materials");
+            if (s.meshes != before_.meshes)
+                throw_other("meshes");
             edit_camera(s.camera);
             edit_parts(at(root(), "shapes"), s, [](auto& of, const auto& f) { for_each_shape(of, f); });
             edit_parts(at(root(), "lights"), s, [](auto& of, const auto& f) { for_each_light(of, f); });

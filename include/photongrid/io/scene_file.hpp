@@ -8,7 +8,7 @@
 
 namespace photongrid {
 
-/// Reads the scene in `text`; `file` is its name in messages.
+/// Reads the scene in `text`; `file` is its name in messages. Files of meshes are sought in its folder.
 /// \throws scene_error.
 scene parse_scene(const std::string& file, std::string text);
 

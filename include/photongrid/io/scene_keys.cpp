@@ -1,6 +1,7 @@
 #include <photongrid/io/scene_keys.hpp>
 #include <photongrid/scene/scene.hpp>
 
+#include <iterator>
 #include <type_traits>
 
 namespace photongrid {
@@ -11,6 +12,9 @@ namespace {
         {"camera", must}, {"materials", must}, {"shapes", must}, {"lights", must}, {"render", must}, {"as_paper", may}};
     constexpr scene_key units_keys[] = {{"length", must}, {"power", must}};
     constexpr scene_key camera_keys[] = {{"position", must}, {"look_at", must}, {"up", may}, {"vertical_fov", must}};
+    constexpr scene_key mesh_keys[] = {{"type", must}, {"file", may}, {"positions", may}, {"triangles", may},
+        {"scale", may}, {"rotate", may}, {"translate", may}, {"matrix", may}, {"material", must}};
+    constexpr scene_key rotate_keys[] = {{"axis", must}, {"degrees", must}};
     constexpr scene_key leaks_keys[] = {{"side", may}, {"min_cosine", may}, {"flattening", may}};
     // The keys of materials, shapes and lights come from the tables in scene/ (material_kinds, shape_kind, light_kind).
     template <class Kind>
@@ -50,6 +54,7 @@ namespace {
                     kinds.push_back({triangle_name, keys});
                 kinds.push_back({kind.name, keys});
             });
+            kinds.push_back({mesh_name, {std::begin(mesh_keys), std::end(mesh_keys)}});
             return kinds;
         }();
         return all;
@@ -106,7 +111,7 @@ std::span<const object_keys> known_objects()
 {
     static const auto all = [] {
         std::vector<object_keys> objects{{"scene", scene_keys}, {"units", units_keys}, {"camera", camera_keys},
-            {"render", render_keys()}, {"as_paper", as_paper_keys()}, {"leaks", leaks_keys}};
+            {"render", render_keys()}, {"as_paper", as_paper_keys()}, {"leaks", leaks_keys}, {"rotate", rotate_keys}};
         for (const auto* kinds : {&material_keys(), &shape_keys(), &light_keys()})
             for (const auto& k : *kinds)
                 objects.push_back({k.name, k.keys});

@@ -1,3 +1,4 @@
+#include <photongrid/io/scene_keys.hpp>
 #include <photongrid/io/scene_writer.hpp>
 
 #include <nlohmann/json.hpp>
@@ -42,6 +43,30 @@ namespace {
         json all = json::array();
         for (const auto& p : points)
             all.push_back(three(p));
+        return all;
+    }
+
+    json mesh_json(const placed_mesh& m, const std::string& material)
+    {
+        json all = {{"type", mesh_name}};
+        if (!m.file.empty()) {
+            all["file"] = m.file;
+        } else {
+            json positions = json::array(), triangles = json::array();
+            for (const auto& p : m.surface->positions)
+                positions.push_back({as_written(p.x), as_written(p.y), as_written(p.z)});
+            for (const auto& t : m.surface->triangles)
+                triangles.push_back({t.x, t.y, t.z});
+            all["positions"] = std::move(positions);
+            all["triangles"] = std::move(triangles);
+        }
+        if (m.linear != glm::dmat3(1) || m.offset != dvec3(0)) {
+            json rows = json::array();
+            for (int row = 0; row < 3; ++row)
+                rows.push_back({m.linear[0][row], m.linear[1][row], m.linear[2][row], m.offset[row]});
+            all["matrix"] = std::move(rows);
+        }
+        all["material"] = material;
         return all;
     }
 
@@ -121,6 +146,8 @@ std::string scene_text(const scene& s, const render_settings& settings)
             shapes.push_back(std::move(shape));
         }
     });
+    for (const auto& m : s.meshes)
+        shapes.push_back(mesh_json(m, names.at(m.material)));
     for_each_light(s, [&](const auto& list, auto kind) {
         for (const auto& x : list)
             lights.push_back(with_fields({{"type", kind.name}, {"name", x.name}}, x, kind.fields));

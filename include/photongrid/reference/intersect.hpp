@@ -1,7 +1,9 @@
-// Ray-scene intersection for the reference renderer: tests every shape, without an acceleration structure.
+// Ray-scene intersection for the reference renderer: tests every shape, without an acceleration structure but for the
+// triangles of meshes.
 #pragma once
 
 #include <photongrid/reference/shapes.hpp>
+#include <photongrid/reference/triangles.hpp>
 
 #include <numbers>
 #include <span>
@@ -26,11 +28,12 @@ struct light_source {
     dvec3 radiance() const { return power / (std::numbers::pi * area); }
 };
 
-/// The shapes of a scene, numbered in the order of shape_lists(), followed by the surfaces of rectangle lights.
+/// The shapes of a scene, numbered in the order of shape_lists(), followed by the surfaces of rectangle lights and the
+/// triangles of meshes.
 class geometry {
 public:
     /// The scene must pass check(). It is copied.
-    explicit geometry(const scene& s)
+    explicit geometry(const scene& s) : triangles_(s)
     {
         for_each_shape(s, [&](const auto& list, auto) {
             for (const auto& x : list)
@@ -46,7 +49,11 @@ public:
             total += l.power.x + l.power.y + l.power.z;
         for (auto& l : lights_)
             l.probability = (l.power.x + l.power.y + l.power.z) / total;
+        first_triangle_ = static_cast<std::uint32_t>(materials_.size());
     }
+
+    /// The number of the first mesh's first triangle.
+    std::uint32_t first_triangle() const { return first_triangle_; }
 
     /// The closest hit of r; its shape is `nothing` for a miss.
     hit nearest(const ray& r) const
@@ -59,9 +66,19 @@ public:
             }
             return true;
         });
+        triangles_.each_hit(r, triangle_from(r), h.t, [&](std::uint32_t triangle, double t) {
+            h.t = t;
+            h.shape = first_triangle_ + triangle;
+            return t;
+        });
         if (h.shape == nothing)
             return h;
         h.position = r.origin + h.t * r.direction;
+        if (h.shape >= first_triangle_) {
+            h.normal = triangles_.settle(h.shape - first_triangle_, h.position);
+            h.material = triangles_.material(h.shape - first_triangle_);
+            return h;
+        }
         with(h.shape, [&](const auto& shape) { h.normal = shape.settle(h.position); });
         if (!detail::finite(h.position) || !detail::finite(h.normal))
             return {}; // the shape is too small for double precision at this distance from the origin
@@ -78,6 +95,11 @@ public:
             found = number != target && shape.distance(r, number == r.from) < far;
             return !found;
         });
+        if (!found)
+            triangles_.each_hit(r, triangle_from(r), far, [&](std::uint32_t, double) {
+                found = true;
+                return 0.0;
+            });
         return found;
     }
 
@@ -103,6 +125,11 @@ private:
         lights_.push_back(source);
     }
     void add(const point_light& l) { lights_.push_back({.corner = l.position, .power = l.power}); }
+    /// The triangle that the ray starts on, or none.
+    std::uint32_t triangle_from(const ray& r) const
+    {
+        return r.from != nothing && r.from >= first_triangle_ ? r.from - first_triangle_ : nothing;
+    }
     /// Calls visit(shape, number) for each shape until it returns false.
     template <class Visit>
     void each(Visit visit) const
@@ -131,7 +158,9 @@ private:
     }
 
     shape_vectors shapes_;
-    std::vector<std::uint32_t> materials_; ///< per shape
+    triangle_set triangles_;
+    std::uint32_t first_triangle_ = 0;
+    std::vector<std::uint32_t> materials_; ///< per shape, but for triangles
     std::uint32_t first_light_ = 0;
     std::vector<light_source> lights_; ///< rectangles first, in the order of their shapes
 };

@@ -38,7 +38,7 @@ public:
         if (lights_.empty())
             return;
         paths_per_group_ = (settings.paths + light_groups - 1) / light_groups;
-        cut(s, settings);
+        cut(s, shapes, settings);
         if (size_ == 0)
             return;
         stats.bins = size_;
@@ -86,17 +86,25 @@ private:
     static double brightness(const light_source& l) { return l.power.x + l.power.y + l.power.z; }
 
     /// Chooses the bins' size and divides every diffuse surface into bins.
-    void cut(const scene& s, const reference_settings& settings)
+    void cut(const scene& s, const geometry& shapes, const reference_settings& settings)
     {
+        // Calls visit(shape, its number in `shapes`, whether it is diffuse).
         const auto each_shape = [&](auto visit) {
+            std::uint32_t number = 0;
             for_each_shape(s, [&](const auto& list, auto) {
                 for (const auto& x : list)
-                    visit(x, is_diffuse(s.materials[x.material]));
+                    visit(x, number++, is_diffuse(s.materials[x.material]));
             });
+            number = shapes.first_triangle();
+            for (const auto& m : s.meshes)
+                for (std::size_t t = 0; t < m.surface->triangles.size(); ++t) {
+                    const auto c = corners_of(m, t);
+                    visit(polygon{{c[0], c[1], c[2]}, m.material}, number++, is_diffuse(s.materials[m.material]));
+                }
         };
         double area = 0;
         bool shiny = false;
-        each_shape([&](const auto& x, bool diffuse) {
+        each_shape([&](const auto& x, std::uint32_t, bool diffuse) {
             area += diffuse ? surface_area(x) : 0;
             shiny = shiny || !diffuse;
         });
@@ -106,13 +114,14 @@ private:
         // -1/4.
         bin_ = settings.bin > 0 ? settings.bin
                                 : std::sqrt(area) / (8 * std::pow(static_cast<double>(settings.paths), 0.25));
-        each_shape([&](const auto& x, bool diffuse) {
-            surfaces_.emplace_back();
-            if (!diffuse)
+        each_shape([&](const auto& x, std::uint32_t number, bool diffuse) {
+            surfaces_.resize(std::max<std::size_t>(surfaces_.size(), number + std::size_t{1}));
+            if (!diffuse || !(surface_area(x) > 0))
                 return;
-            surfaces_.back().bins.emplace(bins_of(x, bin_));
-            surfaces_.back().first = size_;
-            size_ += 2 * std::visit([](const auto& b) { return b.size(); }, *surfaces_.back().bins);
+            auto& surface = surfaces_[number];
+            surface.bins.emplace(bins_of(x, bin_));
+            surface.first = size_;
+            size_ += 2 * std::visit([](const auto& b) { return b.size(); }, *surface.bins);
             require_few_bins(size_, bin_);
         });
     }

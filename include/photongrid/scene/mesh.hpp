@@ -19,6 +19,8 @@ namespace photongrid {
 struct mesh {
     std::vector<glm::vec3> positions;  ///< of the vertices, m
     std::vector<glm::uvec3> triangles; ///< the indices of each one's corners
+
+    bool operator==(const mesh&) const = default;
 };
 
 /// The corners of a triangle, m. Its index must be valid, and so must be the indices of its corners.

@@ -10,6 +10,7 @@
 #include <photongrid/scene/lights.hpp>
 #include <photongrid/scene/material.hpp>
 #include <photongrid/scene/paraboloid.hpp>
+#include <photongrid/scene/placed_mesh.hpp>
 #include <photongrid/scene/polygon.hpp>
 #include <photongrid/scene/setting_table.hpp>
 #include <photongrid/scene/sphere.hpp>
@@ -37,6 +38,7 @@ struct scene {
     std::vector<disk> disks;                       ///< two-sided if Lambertian
     std::vector<box> boxes;                        ///< closed; those of glass must not overlap
     std::vector<polygon> polygons;                 ///< two-sided if Lambertian
+    std::vector<placed_mesh> meshes;               ///< two-sided if Lambertian; closed if glass
     std::vector<point_light> point_lights;         ///< a scene has at least one light of either kind
     std::vector<rectangle_light> rectangle_lights; ///< visible to the camera
     render_settings render;                        ///< the settings of the scene's file
@@ -92,10 +94,10 @@ void for_each_light(Scene& s, F&& f)
         [&](auto&... lists) { (f(lists, light_kind<detail::item_of<decltype(lists)>>{}), ...); }, light_lists(s));
 }
 
-/// The number of shapes of a scene.
+/// The number of shapes of a scene; a mesh is one.
 inline std::size_t count_shapes(const scene& s)
 {
-    std::size_t n = 0;
+    std::size_t n = s.meshes.size();
     for_each_shape(s, [&](const auto& list, auto) { n += list.size(); });
     return n;
 }
@@ -111,7 +113,8 @@ inline std::size_t count_lights(const scene& s)
 /// Whether two scenes have the same light paths: the same materials, shapes and lights.
 inline bool same_light_paths(const scene& a, const scene& b)
 {
-    return a.materials == b.materials && shape_lists(a) == shape_lists(b) && light_lists(a) == light_lists(b);
+    return a.materials == b.materials && shape_lists(a) == shape_lists(b) && a.meshes == b.meshes
+        && light_lists(a) == light_lists(b);
 }
 
 namespace detail {
@@ -205,10 +208,12 @@ namespace detail {
     inline bool has_matte_shape(const scene& s)
     {
         bool has = false;
-        for_each_shape(s, [&](const auto& list, auto) {
+        const auto look = [&](const auto& list, auto) {
             for (const auto& x : list)
                 has = has || is_diffuse(s.materials[x.material]);
-        });
+        };
+        for_each_shape(s, look);
+        look(s.meshes, nullptr);
         return has;
     }
 
@@ -229,12 +234,14 @@ namespace detail {
 
 /// Checks a whole scene. The reader of scene files checks each part and adds its line.
 /// \throws std::invalid_argument "part[index].member: what is wrong"; also for a scene without lights, or for glass
-///         bodies that overlap. Only a photon map needs a Lambertian shape (upload_scene, scene files).
+///         bodies that overlap (meshes are not compared). Only a photon map needs a Lambertian shape (upload_scene,
+///         scene files).
 inline void check(const scene& s)
 {
     detail::check_all("materials", s.materials, s.materials.size());
     const auto all = [&](const auto& list, auto kind) { detail::check_all(kind.list, list, s.materials.size()); };
     for_each_shape(s, all);
+    detail::check_all("meshes", s.meshes, s.materials.size());
     for_each_light(s, all);
     detail::require(count_lights(s) > 0, "lights: the scene has none; add at least one");
     if (const auto pair = detail::overlapping_glass(s))

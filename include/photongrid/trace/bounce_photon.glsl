@@ -7,6 +7,7 @@
 #include <photongrid/backend/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 #include <photongrid/trace/photon_event.glsl>
+#include <photongrid/trace/ray_state.glsl>
 
 struct Params {
     uint paths;      // elements of a frame
@@ -24,6 +25,10 @@ INPUT(2, vec4, powers)
 INPUT(3, vec4, directions)
 INPUT(4, vec4, next_origins)
 INPUT(5, vec4, next_directions)
+INPUT(6, uvec4, mesh_hits) // these four: see mesh_hit.glsl
+INPUT(7, uvec4, faces)
+INPUT(8, vec4, planes)
+INPUT(9, vec4, vertices)
 OUTPUT(0, vec4, position)       // xyz, m; w: event
 // w of power, next_origin and next_direction: x, y and z of the normal.
 OUTPUT(1, vec4, power)          // rgb of the incoming photon, W, not yet divided by the number of paths
@@ -32,6 +37,7 @@ OUTPUT(3, vec4, next_origin)
 OUTPUT(4, vec4, next_direction)
 
 #include <photongrid/trace/intersect.glsl>
+#include <photongrid/trace/mesh_hit.glsl>
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/optics.glsl>
 
@@ -75,6 +81,8 @@ void kernel(uint i)
         return;
     }
     Hit hit = intersect_closest(o, d);
+    if (MESHES)
+        hit = closer_hit(hit, i - frame * args.paths, o, d);
     if (hit.t < 0.0f) {
         position.w = event_code(NO_SURFACE, ESCAPED, NOTHING_BEFORE);
         return;

@@ -4,10 +4,12 @@
 
 #include <photongrid/backend/backend.hpp>
 #include <photongrid/scene/scene.hpp>
+#include <photongrid/trace/ray_search.hpp>
 #include <photongrid/trace/scene_layout.kernel.hpp>
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -23,11 +25,20 @@ enum scene_feature : uint {
     has_glass = detail::entry_of(material_kind::glass).switches,
     has_point_lights = 1u << 6,
     has_area_lights = 1u << 7,
+    has_meshes = 1u << 9, ///< number 8 is that of boxes
 };
 
 static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SURFACE
     && static_cast<uint>(surface_kind::reflecting) == kernels::MIRROR_SURFACE
     && static_cast<uint>(surface_kind::refracting) == kernels::GLASS_SURFACE);
+
+/// The triangles of all meshes of a scene, in the meshes' order. For kernels: trace/mesh_hit.glsl.
+struct mesh_layout {
+    mesh triangles;                ///< recentred
+    std::vector<glm::uvec4> faces; ///< of each triangle: its vertices, and its material
+    std::vector<glm::vec4> planes; ///< of each triangle: unit normal; offset, m
+    std::size_t without_area = 0;  ///< triangles that are lines or points: they only close cracks of a surface
+};
 
 /// The records of a scene, and their layout.
 struct scene_layout {
@@ -37,6 +48,7 @@ struct scene_layout {
     dvec3 center{0};                 ///< subtracted from every position, m
     glm::vec3 low{0};                ///< m; box of the Lambertian surfaces, recentred: where photons can be stored
     glm::vec3 high{0};               ///< m; its other corner
+    mesh_layout meshes;
 
     /// The records of a table's items; `number` is a shape_kind::number, kernels::MATERIAL_TABLE or
     /// kernels::LIGHT_TABLE.
@@ -53,6 +65,8 @@ namespace detail {
         };
         for_each_shape(s, move);
         for_each_light(s, move);
+        for (auto& m : s.meshes)
+            m.offset -= by;
         s.camera.position -= by;
         s.camera.look_at -= by;
         return s;
@@ -121,6 +135,7 @@ namespace detail {
                 = static_cast<float>(std::max(round_size_ * 0x1p-19, scale_ * 0x1p-26));
             write_materials(w);
             write_shapes(w);
+            write_meshes();
             write_lights(w);
             for (const auto& r : out_.records)
                 require(std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z) && std::isfinite(r.w),
@@ -146,6 +161,13 @@ namespace detail {
                 }
                 out_.features |= list.empty() ? 0u : 1u << kind.number;
             });
+            for (const auto& m : s_.meshes) {
+                const auto& of = s_.materials[m.material];
+                add_bounds(all, m);
+                if (is_diffuse(of))
+                    add_bounds(diffuse, m);
+                out_.features |= has_meshes | entry_of(of.kind).switches;
+            }
             require(!diffuse.empty(), no_matte_shape);
             for_each_light(s_, [&](const auto& list, auto kind) {
                 for (const auto& l : list)
@@ -193,6 +215,45 @@ namespace detail {
             for (std::size_t i = 0; i < s_.rectangle_lights.size(); ++i)
                 put_polygon(w, surface_of(s_.rectangle_lights[i]), i + 1);
             enter(number, first, s_.polygons.size() + s_.rectangle_lights.size(), 0);
+        }
+
+        /// Appends the triangles of all meshes.
+        void write_meshes()
+        {
+            auto& all = out_.meshes;
+            for (const auto& m : s_.meshes) {
+                require_countable(all.triangles.triangles.size() + m.surface->triangles.size());
+                const auto vertices = static_cast<uint>(all.triangles.positions.size());
+                for (const auto& p : m.surface->positions)
+                    all.triangles.positions.emplace_back(place_of(m, p) - out_.center);
+                const bool mirrored = glm::determinant(m.linear) < 0; // as corners_of(placed_mesh)
+                for (auto t : m.surface->triangles) {
+                    if (mirrored)
+                        std::swap(t.y, t.z);
+                    all.triangles.triangles.push_back(t + vertices);
+                    all.faces.emplace_back(t + vertices, m.material);
+                    write_plane(all.faces.size() - 1);
+                }
+            }
+        }
+
+        /// The plane of a triangle as it is in single precision. A triangle without area has that of any that contains
+        /// its longest edge.
+        void write_plane(std::size_t triangle)
+        {
+            const auto corners = corners_of(out_.meshes.triangles, triangle);
+            const dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
+            dvec3 n = glm::cross(b - a, c - a);
+            if (!(glm::length(n) > 0)) {
+                ++out_.meshes.without_area;
+                const dvec3 ab = b - a, ac = c - a, edge = glm::dot(ab, ab) > glm::dot(ac, ac) ? ab : ac;
+                const dvec3 other = std::abs(edge.x) < std::abs(edge.y) ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+                n = glm::cross(edge, other);
+                if (!(glm::length(n) > 0))
+                    n = dvec3(0, 0, 1);
+            }
+            n = glm::normalize(n);
+            out_.meshes.planes.emplace_back(glm::vec3(n), static_cast<float>(glm::dot(n, a)));
         }
 
         void write_materials(record_writer& w)
@@ -245,11 +306,35 @@ inline scene_layout lay_out(const scene& original)
 /// A scene on a device.
 template <backend B>
 struct device_scene {
-    scene_layout layout;             ///< with the records on the host
+    scene_layout layout;             ///< with the records on the host, but without the triangles of meshes
     buffer_of<B, glm::vec4> records; ///< as trace/scene_layout.glsl describes them
+    /// \name Of meshes, as trace/mesh_hit.glsl describes them; without meshes an element each
+    /// @{
+    device_triangles<B> triangles; ///< the tree
+    buffer_of<B, glm::uvec4> faces;
+    buffer_of<B, glm::vec4> planes;
+    buffer_of<B, glm::vec4> vertices;
+    /// @}
+
+    bool has_meshes() const { return (layout.features & photongrid::has_meshes) != 0; }
 };
 
 namespace detail {
+    template <backend B>
+    void upload_meshes(B& device, mesh_layout m, device_scene<B>& to)
+    {
+        to.triangles = upload_triangles(device, build_triangle_tree(device, m.triangles));
+        std::vector<glm::vec4> vertices;
+        for (const auto& p : m.triangles.positions)
+            vertices.emplace_back(p, 0.0f);
+        m.faces.resize(std::max<std::size_t>(m.faces.size(), 1)); // kernels need a buffer, even if they do not read it
+        m.planes.resize(std::max<std::size_t>(m.planes.size(), 1));
+        vertices.resize(std::max<std::size_t>(vertices.size(), 1));
+        to.faces = upload(device, m.faces);
+        to.planes = upload(device, m.planes);
+        to.vertices = upload(device, vertices);
+    }
+
     /// A bound on the loop iterations of one shadow ray to each light, the least that a pass takes.
     inline std::uint64_t steps_of_shadow_rays(const scene_layout& layout)
     {
@@ -278,6 +363,7 @@ device_scene<B> upload_scene(B& device, const scene& s)
     d.layout = lay_out(s);
     detail::check_loops(d.layout, device.caps());
     d.records = device.upload(std::span<const glm::vec4>(d.layout.records));
+    detail::upload_meshes(device, std::exchange(d.layout.meshes, {}), d);
     return d;
 }
 

@@ -4,6 +4,7 @@
 // the eye rays of a pixel.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
+#include <photongrid/trace/ray_state.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
@@ -13,12 +14,17 @@ struct Params {
     float stratum;   // number of the eye ray in its pixel / eye rays per pixel: shifts its random numbers
     uint seed;
     uint first_pixel; // pixel of element 0
+    uint first;       // the eye ray of mesh hit 0
 };
 PARAMS(Params)
 SWITCH(4, MIRRORS)
 SWITCH(5, GLASS)
 SWITCH(7, AREA_LIGHTS)
 INPUT(0, vec4, scene)
+INPUT(1, uvec4, mesh_hits) // these four: see mesh_hit.glsl
+INPUT(2, uvec4, faces)
+INPUT(3, vec4, planes)
+INPUT(4, vec4, vertices)
 STATE(0, vec4, point)      // xyz: origin, at the end the point hit, m; w: 0 in flight, 1 on a diffuse surface, else -1
 STATE(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
 STATE(2, vec4, throughput) // rgb: factor between radiance here and at the eye; w: splits so far
@@ -27,6 +33,7 @@ STATE(4, vec4, emitted)    // rgb: radiance of the light that the ray ended on, 
 STATE(5, uint, branches)   // bit b: branch b must be traced for this pixel; branch 0 sets the other bits
 
 #include <photongrid/trace/intersect.glsl>
+#include <photongrid/trace/mesh_hit.glsl>
 #include <photongrid/trace/lights.glsl>
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/optics.glsl>
@@ -86,6 +93,8 @@ void kernel(uint i)
 {
     vec3 d = vec3(direction);
     Hit hit = intersect_closest(vec3(point), d);
+    if (MESHES)
+        hit = closer_hit(hit, i - args.first, vec3(point), d);
     uint hits = uint(direction.w);
     uint splits = uint(throughput.w);
     // A ray that has split fewer than `splits` times is the same in several passes. Count it in one of them, the one

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <photongrid/backend/zero_vectors.kernel.hpp>
+#include <photongrid/trace/add_unblocked.kernel.hpp>
 #include <photongrid/trace/device_scene.hpp>
 #include <photongrid/trace/direct_light.kernel.hpp>
 #include <photongrid/trace/eye_bounce.kernel.hpp>
 #include <photongrid/trace/eye_ray.kernel.hpp>
+#include <photongrid/trace/eye_ray_to_search.kernel.hpp>
+#include <photongrid/trace/mesh_search.hpp>
+#include <photongrid/trace/shadow_ray.kernel.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -87,15 +91,28 @@ void trace_eye_rays(B& device, const device_scene<B>& s, const camera& view, con
     const uint splits = splits_of(layout), sample = ray >> splits;
     device.template run<kernels::eye_ray>(pixels, eye_params(view, layout.center, settings, r, ray, splits), reads(),
         writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
-    device.template run_until_done<kernels::eye_bounce>({pixels.elements, pixels.first, layout.features},
-        {.branch = ray & ((1u << splits) - 1u),
-            .splits = splits,
-            .depth = settings.view.depth,
-            .stratum = static_cast<float>(sample) / static_cast<float>(settings.view.spp),
-            .seed = settings.seed,
-            .first_pixel = hits.first_pixel},
-        reads(s.records),
-        writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches), all_passes);
+    mesh_search<B> meshes(device, s, pixels.elements);
+    for (bool finished = false; !finished;) {
+        if (s.has_meshes()) {
+            device.template run<kernels::eye_ray_to_search>(pixels.elements, {.first = pixels.first},
+                reads(hits.points, hits.directions), writes(meshes.origins, meshes.directions));
+            meshes.search(hit_kind::closest);
+        }
+        finished
+            = device
+                  .template run_until_done<kernels::eye_bounce>({pixels.elements, pixels.first, layout.features},
+                      {.branch = ray & ((1u << splits) - 1u),
+                          .splits = splits,
+                          .depth = settings.view.depth,
+                          .stratum = static_cast<float>(sample) / static_cast<float>(settings.view.spp),
+                          .seed = settings.seed,
+                          .first_pixel = hits.first_pixel,
+                          .first = pixels.first},
+                      reads(s.records, meshes.found(), s.faces, s.planes, s.vertices),
+                      writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches),
+                      s.has_meshes() ? 1u : all_passes)
+                  .finished;
+    }
 }
 
 /// Computes the irradiance of direct light at the hits of `pixels` into `light`, with a bounded number of shadow rays
@@ -106,6 +123,25 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
 {
     device.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
     const uint samples = (s.layout.features & has_area_lights) != 0 ? settings.view.light_samples : 1u;
+    if (s.has_meshes()) {
+        mesh_search<B> meshes(device, s, pixels.elements);
+        for (uint number = 0; number < s.layout.table(kernels::LIGHT_TABLE).count; ++number)
+            for (uint sample = 0; sample < samples; ++sample) {
+                device.template run<kernels::shadow_ray>({pixels.elements, 0u, s.layout.features},
+                    {.strata = strata_of(samples),
+                        .light = number,
+                        .sample_id = sample,
+                        .first = pixels.first,
+                        .ray_id = ray,
+                        .seed = settings.seed,
+                        .first_pixel = hits.first_pixel},
+                    reads(s.records, hits.points, hits.surfaces), writes(meshes.origins, meshes.directions));
+                meshes.search(hit_kind::any);
+                device.template run<kernels::add_unblocked>(pixels, {.light = number, .first = pixels.first},
+                    reads(s.records, meshes.directions, meshes.found()), writes(light));
+            }
+        return;
+    }
     // Well below the 65,535 iterations, of all loops of an invocation, after which some drivers end loops
     // (docs/design/decisions.md, "How many iterations").
     const uint per_pass = std::max(1u, static_cast<uint>(16384 / steps_of_shadow_rays(s.layout)));

@@ -81,6 +81,8 @@ public:
     bool finished() const { return finished_; }
     /// The hits, once finished.
     std::vector<ray_hit> hits() const;
+    /// The hits for kernels, as trace/ray_state.glsl describes them, once finished. The search ends with that.
+    buffer_of<B, glm::uvec4> take_states() { return std::move(states_); }
 
 private:
     template <class K>

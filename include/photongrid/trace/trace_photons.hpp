@@ -12,9 +12,11 @@
 #include <photongrid/trace/gather_normal.kernel.hpp>
 #include <photongrid/trace/gather_photon.kernel.hpp>
 #include <photongrid/trace/is_found.kernel.hpp>
+#include <photongrid/trace/mesh_search.hpp>
 #include <photongrid/trace/path_goes_on.kernel.hpp>
 #include <photongrid/trace/path_is_emitted.kernel.hpp>
 #include <photongrid/trace/photon_stats.hpp>
+#include <photongrid/trace/photon_to_search.kernel.hpp>
 #include <photongrid/trace/render_observer.hpp>
 #include <photongrid/trace/sum_tallies.kernel.hpp>
 #include <photongrid/trace/tally_path.kernel.hpp>
@@ -78,14 +80,21 @@ uint trace_batch(B& device, const device_scene<B>& s, detail::photon_frames<B>& 
     const render_settings& settings)
 {
     const auto& layout = s.layout;
+    detail::mesh_search<B> meshes(device, s, paths);
     device.template run<kernels::emit_photon>({paths, 0u, layout.features},
         {.first_path = first, .seed = settings.seed}, reads(s.records),
         writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
     uint frame = 1;
     for (; frame <= settings.map.photon_depth; ++frame) {
+        if (s.has_meshes()) {
+            device.template run<kernels::photon_to_search>(paths, {.first = (frame - 1) * paths},
+                reads(f.positions, f.next_origins, f.next_directions), writes(meshes.origins, meshes.directions));
+            meshes.search(hit_kind::closest);
+        }
         device.template run<kernels::bounce_photon>({paths, frame * paths, layout.features},
             {.paths = paths, .first_path = first, .last_frame = settings.map.photon_depth, .seed = settings.seed},
-            reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions),
+            reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, meshes.found(),
+                s.faces, s.planes, s.vertices),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
         if (frame % 8 == 0
             && detail::checked_count<kernels::path_goes_on>(device, {paths, frame * paths}, {}, reads(f.positions))

@@ -1,0 +1,152 @@
+// The triangles of meshes for the reference renderer: in double precision, in a tree of boxes of its own, which is
+// split at the median.
+#pragma once
+
+#include <photongrid/reference/ray.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid::reference {
+
+/// Triangles and the tree of their boxes.
+class triangle_set {
+public:
+    /// The triangles of all meshes of a scene, in their order.
+    explicit triangle_set(const scene& s)
+    {
+        for (const auto& m : s.meshes)
+            for (std::size_t t = 0; t < m.surface->triangles.size(); ++t) {
+                const auto c = corners_of(m, t);
+                const dvec3 n = glm::cross(c[1] - c[0], c[2] - c[0]);
+                const double area = glm::length(n);
+                triangles_.push_back({c[0], c[1] - c[0], c[2] - c[0], area > 0 ? n / area : dvec3(0, 0, 1)});
+                materials_.push_back(m.material);
+            }
+        order_.resize(triangles_.size());
+        std::iota(order_.begin(), order_.end(), 0u);
+        if (!order_.empty())
+            build(0, static_cast<std::uint32_t>(order_.size()));
+    }
+
+    /// How many there are.
+    std::uint32_t size() const { return static_cast<std::uint32_t>(triangles_.size()); }
+    /// The material of a triangle.
+    std::uint32_t material(std::uint32_t triangle) const { return materials_[triangle]; }
+
+    /// Calls visit(triangle, t) for triangles that the ray hits at t < far, other than `from`, until it returns the
+    /// distance up to which the rest matters; `far` is updated with it.
+    template <class Visit>
+    void each_hit(const ray& r, std::uint32_t from, double far, Visit visit) const
+    {
+        if (nodes_.empty())
+            return;
+        const dvec3 inverse = 1.0 / r.direction;
+        std::vector<std::uint32_t> open{0};
+        while (!open.empty() && far > 0) {
+            const node& n = nodes_[open.back()];
+            open.pop_back();
+            if (!meets(n, r, inverse, far))
+                continue;
+            if (n.right != 0) {
+                open.push_back(n.right);
+                open.push_back(static_cast<std::uint32_t>(&n - nodes_.data()) + 1);
+                continue;
+            }
+            for (std::uint32_t i = n.first; i < n.past; ++i)
+                if (order_[i] != from)
+                    if (const double t = distance(triangles_[order_[i]], r); t < far)
+                        far = visit(order_[i], t);
+        }
+    }
+
+    /// Moves p onto a triangle's plane and returns its normal.
+    dvec3 settle(std::uint32_t triangle, dvec3& p) const
+    {
+        const auto& t = triangles_[triangle];
+        p -= glm::dot(p - t.corner, t.normal) * t.normal;
+        return t.normal;
+    }
+
+private:
+    struct triangle {
+        dvec3 corner, edge_u, edge_v, normal;
+    };
+    struct node {
+        dvec3 low{infinity}, high{-infinity};
+        std::uint32_t right = 0;           ///< its second child; the first one follows it; 0: a leaf
+        std::uint32_t first = 0, past = 0; ///< of a leaf, in order_
+    };
+
+    /// By Cramer's rule (Möller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection, 1997), a little larger
+    /// than the triangle, so that rounding opens no gap between neighbours.
+    static double distance(const triangle& t, const ray& r)
+    {
+        constexpr double margin = 1e-12;
+        const dvec3 p = glm::cross(r.direction, t.edge_v), from = r.origin - t.corner, q = glm::cross(from, t.edge_u);
+        const double inverse = 1 / glm::dot(t.edge_u, p), u = glm::dot(from, p) * inverse,
+                     v = glm::dot(r.direction, q) * inverse, at = glm::dot(t.edge_v, q) * inverse;
+        return u >= -margin && v >= -margin && u + v <= 1 + margin && at > 0 ? at : infinity;
+    }
+
+    static bool meets(const node& n, const ray& r, const dvec3& inverse, double far)
+    {
+        double enter = 0, leave = far;
+        for (int i = 0; i < 3; ++i) {
+            const double a = (n.low[i] - r.origin[i]) * inverse[i], b = (n.high[i] - r.origin[i]) * inverse[i];
+            if (std::isnan(a) || std::isnan(b)) // along the plane of a face
+                continue;
+            enter = std::max(enter, std::min(a, b));
+            leave = std::min(leave, std::max(a, b));
+        }
+        return enter <= leave * (1 + 1e-12);
+    }
+
+    dvec3 corner(std::uint32_t i, int which) const
+    {
+        const auto& t = triangles_[order_[i]];
+        return which == 0 ? t.corner : t.corner + (which == 1 ? t.edge_u : t.edge_v);
+    }
+
+    void build(std::uint32_t first, std::uint32_t past)
+    {
+        const std::size_t at = nodes_.size();
+        node made;
+        for (std::uint32_t i = first; i < past; ++i)
+            for (int c = 0; c < 3; ++c) {
+                made.low = glm::min(made.low, corner(i, c));
+                made.high = glm::max(made.high, corner(i, c));
+            }
+        const double margin = 1e-12 * glm::length(made.high - made.low);
+        made.low -= margin;
+        made.high += margin;
+        made.first = first;
+        made.past = past;
+        nodes_.push_back(made);
+        if (past - first <= 4)
+            return;
+        const dvec3 size = made.high - made.low;
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const auto middle_of = [&](std::uint32_t t) {
+            return (3.0 * triangles_[t].corner + triangles_[t].edge_u + triangles_[t].edge_v)[axis];
+        };
+        const std::uint32_t half = first + (past - first) / 2;
+        std::nth_element(order_.begin() + first, order_.begin() + half, order_.begin() + past,
+            [&](std::uint32_t a, std::uint32_t b) { return middle_of(a) < middle_of(b); });
+        build(first, half);
+        nodes_[at].right = static_cast<std::uint32_t>(nodes_.size());
+        build(half, past);
+    }
+
+    std::vector<triangle> triangles_;
+    std::vector<std::uint32_t> materials_;
+    std::vector<std::uint32_t> order_; ///< of the triangles in the leaves
+    std::vector<node> nodes_;          ///< the root first
+};
+
+} // namespace photongrid::reference
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,71 @@
+// Meshes that are placed in a scene.
+#pragma once
+
+#include <photongrid/scene/bounds.hpp>
+#include <photongrid/scene/mesh.hpp>
+
+#include <array>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <memory>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// A mesh in a scene. Several may share one surface. If it is of glass, it must be closed, with the corners of each
+/// triangle counterclockwise as seen from outside.
+struct placed_mesh {
+    std::string file;                    ///< that the surface was read from; empty: none
+    std::shared_ptr<const mesh> surface; ///< not null; it must not change any more
+    glm::dmat3 linear{1};                ///< scales and turns the surface's vertices ...
+    dvec3 offset{0};                     ///< ... and then moves them, m
+    std::uint32_t material = 0;          ///< index into scene::materials
+
+    bool operator==(const placed_mesh& other) const
+    {
+        return file == other.file && linear == other.linear && offset == other.offset && material == other.material
+            && (surface == other.surface || (surface && other.surface && *surface == *other.surface));
+    }
+};
+
+/// The place of a vertex of the surface in the scene, m.
+inline dvec3 place_of(const placed_mesh& m, const glm::vec3& vertex) { return m.linear * dvec3(vertex) + m.offset; }
+
+/// The corners of a triangle in the scene, m. Where `linear` mirrors the surface, the last two are exchanged, so that
+/// its outside stays outside.
+inline std::array<dvec3, 3> corners_of(const placed_mesh& m, std::size_t triangle)
+{
+    const auto of = corners_of(*m.surface, triangle);
+    std::array<dvec3, 3> placed{place_of(m, of[0]), place_of(m, of[1]), place_of(m, of[2])};
+    if (glm::determinant(m.linear) < 0)
+        std::swap(placed[1], placed[2]);
+    return placed;
+}
+
+/// \throws std::invalid_argument for a mesh without surface or triangles, a surface that check() rejects, or a
+///         placement that is not finite or leaves no volume.
+inline void check(const placed_mesh& m)
+{
+    detail::require(m.surface != nullptr, "surface: there is none");
+    detail::require(!m.surface->triangles.empty(), "triangles: the mesh has none");
+    check(*m.surface);
+    detail::require(detail::finite(m.linear[0]) && detail::finite(m.linear[1]) && detail::finite(m.linear[2])
+            && detail::finite(m.offset),
+        "matrix: must be finite");
+    detail::require(std::abs(glm::determinant(m.linear))
+            > 1e-12 * glm::length(m.linear[0]) * glm::length(m.linear[1]) * glm::length(m.linear[2]),
+        "matrix: makes the mesh flat; scale it by more than 0 along each axis");
+}
+
+/// Adds the corners of the mesh's triangles.
+inline void add_bounds(bounds& b, const placed_mesh& m)
+{
+    for (std::size_t t = 0; t < m.surface->triangles.size(); ++t)
+        for (const auto& c : corners_of(m, t))
+            b.add(c);
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

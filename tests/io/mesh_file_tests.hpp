@@ -1,0 +1,248 @@
+// Meshes in scene files: PLY files of each format, inline ones, where they are placed, and what is refused.
+#pragma once
+
+#include "scene_texts.hpp"
+
+#include <photongrid/io/ply_file.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <functional>
+
+namespace photongrid {
+namespace {
+
+    /// A value as the bytes of a binary file.
+    template <class T>
+    std::string bytes_of(T v, bool big)
+    {
+        std::string b(sizeof v, '\0');
+        std::memcpy(b.data(), &v, sizeof v);
+        if (big != (std::endian::native == std::endian::big))
+            std::reverse(b.begin(), b.end());
+        return b;
+    }
+
+    const std::vector<glm::vec3> square_positions{{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0.25f, 1}};
+
+    /// A quadrilateral and a triangle, with properties and elements that have nothing to do with them.
+    std::string binary_square(bool big)
+    {
+        std::string b = std::string("ply\r\nformat binary_") + (big ? "big" : "little")
+            + "_endian 1.0\r\ncomment made by hand\r\nelement camera 1\r\nproperty double at\r\nelement vertex 4\r\n"
+              "property uchar red\r\nproperty float x\r\nproperty double y\r\nproperty float32 z\r\n"
+              "property list uchar short weights\r\nelement face 2\r\nproperty int16 material\r\n"
+              "property list uint8 int32 vertex_index\r\nend_header\r\n";
+        b += bytes_of(0.5, big);
+        for (const auto& p : square_positions) {
+            b += bytes_of(std::uint8_t{200}, big) + bytes_of(p.x, big) + bytes_of(static_cast<double>(p.y), big)
+                + bytes_of(p.z, big) + bytes_of(std::uint8_t{2}, big) + bytes_of(std::int16_t{-1}, big)
+                + bytes_of(std::int16_t{7}, big);
+        }
+        const auto face = [&](const std::vector<std::int32_t>& corners) {
+            b += bytes_of(std::int16_t{3}, big) + bytes_of(static_cast<std::uint8_t>(corners.size()), big);
+            for (const auto c : corners)
+                b += bytes_of(c, big);
+        };
+        face({0, 1, 2, 3});
+        face({2, 1, 0});
+        return b;
+    }
+
+    const std::string ascii_square = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                                     "property float z\nelement face 2\nproperty list uchar uint vertex_indices\n"
+                                     "end_header\n0 0 0\n+1 -0 0.0\n1e0 0 1\n0 25e-2 1\n4 0 1 2 3\n3 2 1 0";
+
+    std::string ply_refusal(const std::string& bytes)
+    {
+        try {
+            parse_ply("m.ply", bytes);
+            return "";
+        } catch (const scene_error& e) {
+            return e.what();
+        }
+    }
+    std::string replaced(std::string in, const std::string& from, const std::string& to)
+    {
+        const auto at = in.find(from);
+        EXPECT_NE(at, std::string::npos) << from;
+        return in.replace(at, from.size(), to);
+    }
+
+    TEST(ply_file, every_format_gives_the_same_mesh)
+    {
+        const mesh expected{square_positions, {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}}};
+        EXPECT_EQ(parse_ply("m.ply", ascii_square), expected);
+        EXPECT_EQ(parse_ply("m.ply", binary_square(false)), expected);
+        EXPECT_EQ(parse_ply("m.ply", binary_square(true)), expected);
+        EXPECT_EQ(parse_ply("m.ply", replaced(ascii_square, "\n0 0 0", "\r\n0\t0 0 \r")), expected);
+    }
+
+    TEST(ply_file, faces_may_come_before_vertices)
+    {
+        const auto m = parse_ply("m.ply",
+            "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\nproperty "
+            "float x\nproperty float y\nproperty float z\nend_header\n3 2 1 0\n0 0 0\n1 0 0\n0 1 0\n");
+        EXPECT_EQ(m.triangles, (std::vector<glm::uvec3>{{2, 1, 0}}));
+    }
+
+    TEST(ply_file, refuses_with_the_line_or_the_byte)
+    {
+        struct bad {
+            std::string from, to, place, what;
+        };
+        for (const auto& b : {bad{"ply", "plx", ":1:1", "no PLY file"}, {"ascii", "asci", ":2:1", "binary_big_endian"},
+                 {"format ascii 1.0\n", "", "", "lacks a line \"format\""}, {"vertex 4", "vertex -4", ":3:1", "-4"},
+                 {"vertex 4", "vertex 4000000000000", "", "need more bytes"}, {"float y", "flaot y", ":5:1", "flaot"},
+                 {"property float z\n", "", "", "x, y and z"}, {"vertex_indices", "corners", "", "vertex_indices"},
+                 {"list uchar", "list float", ":8:1", "whole number"}, {"end_header", "end", ":9:1", "end_header"},
+                 {"+1 -0", "one -0", ":11:1", "\"one\""}, {"1e0", "nan", ":12:4", "not finite"},
+                 {"1e0", "1e30", ":12:5", "10^18"}, {"25e-2", "1e400", "", "not finite"},
+                 {"4 0 1 2 3", "2 0 1", ":14:2", "2 corners"}, {"4 0 1 2 3", "9 0 1 2 3", "", "expected a number"},
+                 {"4 0 1 2 3", "900 0 1", "", "need more bytes"},
+                 {"4 0 1 2 3", "4 0 1 2 4", "", "is vertex 4; there are 4"},
+                 {"4 0 1 2 3", "4 0 1 2 -3", ":14:11", "whole number"},
+                 {"4 0 1 2 3", "4 0 1 2 1.5", ":14:12", "whole number"}}) {
+            const auto said = ply_refusal(replaced(ascii_square, b.from, b.to));
+            EXPECT_TRUE(said.starts_with("m.ply" + b.place)) << b.to << ": " << said;
+            EXPECT_NE(said.find(b.what), std::string::npos) << b.to << ": " << said;
+        }
+        const auto cut = ply_refusal(binary_square(true).substr(0, binary_square(true).size() - 1));
+        EXPECT_NE(cut.find("byte "), std::string::npos) << cut;
+        EXPECT_NE(ply_refusal(""), "");
+    }
+
+    // Any bytes are a mesh whose indices are valid, or refused.
+    TEST(ply_file, survives_damage)
+    {
+        for (const auto& whole : {ascii_square, binary_square(false)}) {
+            for (std::size_t n = 0; n + 1 < whole.size(); ++n)
+                (void)ply_refusal(whole.substr(0, n));
+            std::uint32_t state = 1;
+            for (int i = 0; i < 20'000; ++i) {
+                auto damaged = whole;
+                for (int changes = 0; changes < 3; ++changes) {
+                    state = state * 1664525u + 1013904223u;
+                    damaged[(state >> 8) % damaged.size()] = "0-9e. \nlistx\x00\xff\x7f"[(state >> 4) % 15];
+                }
+                try {
+                    EXPECT_NO_THROW(check(parse_ply("m.ply", damaged)));
+                } catch (const scene_error&) {
+                }
+            }
+        }
+    }
+
+    /// A folder for a test's files.
+    std::filesystem::path mesh_folder()
+    {
+        const auto folder = std::filesystem::temp_directory_path() / "photongrid-mesh-files";
+        std::filesystem::create_directories(folder / "below");
+        std::ofstream(folder / "below" / "square.ply") << ascii_square;
+        std::ofstream(folder / "cut.ply") << ascii_square.substr(0, ascii_square.size() - 9);
+        return folder;
+    }
+    /// `good` with a mesh for its polygon.
+    std::string text_with(const std::string& mesh)
+    {
+        auto lines = good;
+        lines[9] = R"(  {"type": "mesh", "material": "white", )" + mesh + "}],";
+        return text(lines);
+    }
+    const std::string inline_square = R"("positions": [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0.25, 1]],
+        "triangles": [[0, 1, 2], [0, 2, 3], [2, 1, 0]])";
+
+    TEST(mesh_in_a_scene, comes_from_a_file_or_the_scene)
+    {
+        const auto file = (mesh_folder() / "s.json").string();
+        const auto by_file = parse_scene(file, text_with(R"("file": "below/square.ply")"));
+        const auto in_line = parse_scene(file, text_with(inline_square));
+        ASSERT_EQ(by_file.meshes.size(), 1u);
+        ASSERT_EQ(in_line.meshes.size(), 1u);
+        EXPECT_EQ(*by_file.meshes[0].surface, *in_line.meshes[0].surface);
+        EXPECT_EQ(by_file.meshes[0].material, 0u);
+        EXPECT_EQ(by_file.meshes[0].file, "below/square.ply");
+        for (const auto& s : {by_file, in_line}) {
+            const auto again = parse_scene(file, scene_text(s, s.render));
+            EXPECT_TRUE(again == s) << scene_text(s, s.render);
+        }
+    }
+
+    TEST(mesh_in_a_scene, is_scaled_then_rotated_then_moved_in_the_files_unit)
+    {
+        const auto placed = [](const std::string& how) {
+            auto in_mm = text_with(inline_square + ", " + how);
+            return parse_scene("s.json", replaced(in_mm, R"("length": "m")", R"("length": "mm")")).meshes.at(0);
+        };
+        const auto m = placed(R"("scale": [10, 20, 30], "rotate": {"axis": [0, 2, 0], "degrees": 90},
+            "translate": [1, 2, 3])");
+        // x to -z, z to x.
+        const dvec3 p = place_of(m, {1, 1, 1}), expected{0.031, 0.022, -0.007};
+        EXPECT_LT(glm::length(p - expected), 1e-15) << p.x << " " << p.y << " " << p.z;
+        const auto same = placed(R"("matrix": [[0, 0, 30, 1], [0, 20, 0, 2], [-10, 0, 0, 3]])");
+        EXPECT_LT(glm::length(place_of(same, {1, 1, 1}) - expected), 1e-15);
+        const auto again = parse_scene("s.json",
+            scene_text(
+                [&] {
+                    auto s = parse_scene("s.json", text_with(inline_square));
+                    s.meshes[0] = m;
+                    return s;
+                }(),
+                {}));
+        EXPECT_EQ(again.meshes.at(0), m);
+    }
+
+    TEST(mesh_in_a_scene, is_refused_with_its_place)
+    {
+        const auto file = (mesh_folder() / "s.json").string();
+        const auto said = [&](const std::string& mesh) {
+            try {
+                parse_scene(file, text_with(mesh));
+                return std::string();
+            } catch (const scene_error& e) {
+                EXPECT_EQ(e.line, 10u) << e.what();
+                return std::string(e.what());
+            }
+        };
+        struct bad {
+            std::string mesh, what;
+        };
+        for (const auto& b : {bad{R"("scale": 2)", "either a \"file\" or"},
+                 {R"("file": "below/square.ply", "positions": [])", "either a \"file\" or"},
+                 {R"("positions": [[0, 0, 0]])", "either a \"file\" or"}, {R"("file": "none.ply")", "cannot be read"},
+                 {R"("file": "../s.ply")", "without \"..\""}, {R"("file": "/etc/passwd")", "relative"},
+                 {R"("file": "cut.ply")", "the file ends"},
+                 {R"("positions": [[0, 0, 0]], "triangles": [[0, 0, 1]])", "from 0 to 0"},
+                 {R"("positions": [], "triangles": [])", "at least one position"},
+                 {R"("positions": [[0, 0, 0]], "triangles": [])", "at least one triangle"},
+                 {R"("file": "below/square.ply", "scale": 0)", "flat"},
+                 {R"("file": "below/square.ply", "scale": [1, 0, 1])", "flat"},
+                 {R"("file": "below/square.ply", "scale": 2, "matrix": [])", "either a \"matrix\" or"},
+                 {R"("file": "below/square.ply", "matrix": [[1, 0, 0, 0]])", "3 rows"},
+                 {R"("file": "below/square.ply", "rotate": {"axis": [0, 0, 0], "degrees": 9})", "shorter"},
+                 {R"("file": "below/square.ply", "rotate": 90)", "\"axis\""}}) {
+            const auto message = said(b.mesh);
+            EXPECT_NE(message.find(b.what), std::string::npos) << b.mesh << ": " << message;
+        }
+    }
+
+    TEST(mesh_in_a_scene, mirrored_by_a_negative_scale_keeps_its_outside)
+    {
+        const auto volume = [](const placed_mesh& m) {
+            double v = 0;
+            for (std::size_t t = 0; t < m.surface->triangles.size(); ++t) {
+                const auto c = corners_of(m, t);
+                v += glm::dot(c[0], glm::cross(c[1], c[2])) / 6;
+            }
+            return v;
+        };
+        const std::string tetrahedron = R"("positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+            "triangles": [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], "scale": )";
+        for (const auto* scale : {"2", "-2", "[-2, 2, 2]", "[-2, -2, 2]"})
+            EXPECT_NEAR(volume(parse_scene("s.json", text_with(tetrahedron + scale)).meshes.at(0)), 8.0 / 6, 1e-12)
+                << scale;
+    }
+
+} // namespace
+} // namespace photongrid

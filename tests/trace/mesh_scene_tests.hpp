@@ -1,0 +1,98 @@
+// Meshes in scenes, on any backend: pictures of polygons as meshes, rooms that no light leaves, and the serial
+// backend's photons and pictures. Included by each on_<backend>.cpp.
+#pragma once
+
+#include "../render/pictures.hpp"
+#include "mesh_sets.hpp"
+
+namespace photongrid::testing {
+
+template <class Tag>
+class mesh_scenes : public pictures<Tag> {
+protected:
+    photon_stats traced(const scene& s)
+    {
+        auto& b = this->b();
+        const auto device = upload_scene(b, s);
+        const auto t = trace_photons(b, s, device, s.render);
+        return count_photons(b, t, s.render.map.photons);
+    }
+};
+TYPED_TEST_SUITE_P(mesh_scenes);
+
+/// Inside a closed surface with bumps, which are concave and convex edges.
+inline scene bumpy_room(uint triangles, float size, const dvec3& middle)
+{
+    scene s;
+    s.name = "bumpy_room";
+    s.materials = {{"white", material_kind::lambertian, dvec3(0.95)}};
+    s.meshes = {{"", std::make_shared<const mesh>(bumpy_ball(rings_of(triangles), 1, 0.2f)),
+        glm::dmat3(static_cast<double>(size)), middle, 0}};
+    s.point_lights = {{"bulb", middle, dvec3(10)}};
+    s.camera = {middle + dvec3(0.1 * static_cast<double>(size)), middle, {0, 1, 0}, 90};
+    s.render = {.map = {.photons = 30000, .photon_depth = 40, .grid = {12, 12, 12}},
+        .estimate = {.k = 50, .max_radius = 0.3 * static_cast<double>(size)},
+        .output = {.width = 16, .height = 16}};
+    return s;
+}
+
+/// A glass ball in that room.
+inline scene bumpy_room_with_glass()
+{
+    auto s = bumpy_room(600, 2, {0.5, 0.25, -3});
+    s.materials.push_back({"glass", material_kind::glass, dvec3(1), 1.5});
+    s.meshes.push_back(
+        {"", std::make_shared<const mesh>(bumpy_ball(12, 1, 0.05f)), glm::dmat3(0.4), {0.9, 0.25, -3}, 1});
+    return s;
+}
+
+TYPED_TEST_P(mesh_scenes, draw_what_their_polygons_draw)
+{
+    for (const auto& s : {small_cornell(), all_shapes()}) {
+        const auto m = with_meshes(s);
+        ASSERT_EQ(m.meshes.size(), s.polygons.size());
+        render_stats by_polygons, by_meshes;
+        // A ray through an edge may see the one surface or the other: at most a hundredth of the pixels.
+        const auto a = this->picture(s, s.render, &by_polygons), b = this->picture(m, s.render, &by_meshes);
+        std::size_t different = 0;
+        for (std::size_t i = 0; i < a.pixels.size(); ++i)
+            for (int c = 0; c < 3; ++c)
+                if (std::abs(a.pixels[i][c] - b.pixels[i][c]) > 1e-3f * (a.pixels[i][c] + 0.01f)) {
+                    ++different;
+                    break;
+                }
+        EXPECT_LE(different, a.pixels.size() / 100) << s.name;
+        EXPECT_LE(relative_mse(b, a), 1e-3) << s.name;
+        EXPECT_NEAR(static_cast<double>(by_meshes.photons.emitted), static_cast<double>(by_polygons.photons.emitted),
+            1e-3 * static_cast<double>(by_polygons.photons.emitted))
+            << s.name;
+        expect_an_exact_account(by_meshes.photons, s.render.map.photons);
+    }
+}
+
+TYPED_TEST_P(mesh_scenes, equal_the_serial_backends)
+{
+    auto s = all_shapes_and_meshes();
+    this->expect_serial(s, s.render);
+    s.render.view.spp = 3;
+    s.render.output.width = 24;
+    s.render.output.height = 16;
+    this->expect_serial(s, s.render);
+    const auto room = bumpy_room_with_glass();
+    this->expect_serial(room, room.render);
+}
+
+TYPED_TEST_P(mesh_scenes, no_photon_leaves_a_closed_room)
+{
+    for (const auto& s : {bumpy_room(600, 1, dvec3(0)), bumpy_room(3000, 1000, {1e4, 0, 0}), bumpy_room_with_glass()}) {
+        const auto p = this->traced(s);
+        EXPECT_EQ(p.escaped, 0u) << "of " << p.emitted << " paths, with " << p.diffuse_hits << " hits";
+        EXPECT_GT(p.diffuse_hits, 10 * p.emitted);
+        expect_an_exact_account(p, s.render.map.photons);
+    }
+}
+
+REGISTER_TYPED_TEST_SUITE_P(
+    mesh_scenes, draw_what_their_polygons_draw, equal_the_serial_backends, no_photon_leaves_a_closed_room);
+
+} // namespace photongrid::testing
