@@ -91,7 +91,7 @@ faults=(
   "samples share out a pixel's width in no order|include/photongrid/trace/eye_ray.glsl|(row + first_x) % args.strata.y|first_x|optics"
   "samples share out a pixel's height in one order|include/photongrid/trace/eye_ray.glsl|(column + first_y)|(column + 0u * first_y)|optics"
   "edges of estimates not corrected|include/photongrid/render/view_pass.hpp|settings_.estimate.edges != edge_correction::none|settings_.estimate.edges == edge_correction::none"
-  "lamp twice as bright|include/photongrid/trace/direct_light.glsl|3.18309886e-1f * share|6.36619772e-1f * share"
+  "lamp twice as bright|include/photongrid/trace/light_sample.glsl|3.18309886e-1f * share|6.36619772e-1f * share"
   'shafts forget the margin of the light|include/photongrid/trace/intersect/sphere.glsl|precise float both = (s.w + radius) * 1.00001f;|precise float both = s.w * 1.00001f;'
   'shafts look at one corner|include/photongrid/trace/intersect/polygon.glsl|+ (by_u < 0.0f ? by_u : 0.0f) + (by_v < 0.0f ? by_v : 0.0f);|+ 0.0f;'
   "lists forget ties|include/photongrid/estimate/list_neighbours.glsl|list(at) <= last_id|list(at) < last_id"
@@ -175,18 +175,18 @@ faults=(
   "eye rays without the seed|include/photongrid/trace/eye_ray.glsl|1000u, args.seed|1000u, 1u|optics"
   "eye rays alike in all pixels|include/photongrid/trace/eye_ray.glsl|uvec4(pixel, args.sample_id|uvec4(0u, args.sample_id|optics"
   "all bands show the first rows|include/photongrid/trace/eye_ray.glsl|uint pixel = i + args.first_pixel;|uint pixel = i + 0u * args.first_pixel;"
-  "all bands have the shadow rays of the first|include/photongrid/trace/direct_light.glsl|uvec4(i + args.first_pixel, args.ray_id|uvec4(i, args.ray_id"
+  "all bands have the shadow rays of the first|include/photongrid/trace/light_sample.glsl|uvec4(i + args.first_pixel, args.ray_id|uvec4(i, args.ray_id"
   "all bands choose branches as the first|include/photongrid/trace/eye_bounce.glsl|uvec4(i + args.first_pixel, args.branch|uvec4(i, args.branch"
   "branches without strata|include/photongrid/trace/eye_bounce.glsl|r.x + args.stratum|r.x + 0.0f * args.stratum|optics"
   "faint rays are not corrected|include/photongrid/trace/eye_bounce.glsl|share = corrected;|share = 1.0f;|optics"
   "rare choices stay rare|include/photongrid/trace/eye_bounce.glsl|float least = 0.25f - 0.25f|float least = 0.0f - 0.0f|optics"
   "a branch with light is left out|include/photongrid/trace/eye_bounce.glsl|1u << min(args.branch \| 1u << splits, 31u)|1u << min(args.branch \| 2u << splits, 31u)"
   "all samples choose as the first|include/photongrid/trace/eye_rays.hpp|.stratum = static_cast<float>(sample)|.stratum = 0 * static_cast<float>(sample)"
-  "one jitter for all strata of a lamp|include/photongrid/trace/direct_light.glsl|args.seed ^ (s * 0x9E3779B1u)|args.seed|optics"
-  "one jitter for all lamps|include/photongrid/trace/direct_light.glsl|3000u + number|3000u|optics"
-  "shadow rays without the seed|include/photongrid/trace/direct_light.glsl|args.seed ^ (s|1u ^ (s|optics"
-  "shadow rays alike for all eye rays|include/photongrid/trace/direct_light.glsl|uvec4(i + args.first_pixel, args.ray_id,|uvec4(i + args.first_pixel, 0u,|optics"
-  "a bulb's direct light 1 % too bright|include/photongrid/trace/direct_light.glsl|7.95774715e-2f|8.03732e-2f|optics"
+  "one jitter for all strata of a lamp|include/photongrid/trace/light_sample.glsl|args.seed ^ (s * 0x9E3779B1u)|args.seed|optics"
+  "one jitter for all lamps|include/photongrid/trace/light_sample.glsl|3000u + number|3000u|optics"
+  "shadow rays without the seed|include/photongrid/trace/light_sample.glsl|args.seed ^ (s|1u ^ (s|optics"
+  "shadow rays alike for all eye rays|include/photongrid/trace/light_sample.glsl|uvec4(i + args.first_pixel, args.ray_id,|uvec4(i + args.first_pixel, 0u,|optics"
+  "a bulb's direct light 1 % too bright|include/photongrid/trace/light_sample.glsl|7.95774715e-2f|8.03732e-2f|optics"
   "tint of glass lost in reflection|include/photongrid/trace/eye_bounce.glsl|tinted.x * share|(dot3(next, hit.normal) * dot3(d, hit.normal) < 0.0f ? throughput.x : tinted.x) * share|optics"
   "metal keeps its colour to itself|include/photongrid/trace/bounce_photon.glsl|(colour.y / survival)|(1.0f)|optics"
   "Fresnel 1 % off|include/photongrid/trace/optics.glsl|float reflected = 0.5f|float reflected = 0.505f|optics"
@@ -222,6 +222,15 @@ faults=(
   "auto picks cpu where it was not built|backends/any/any.cpp|any::find(\"cpu\") ? \"cpu\" : \"serial\"|\"cpu\"|program"
   "a missing root is a hit|include/photongrid/trace/intersect/quadric.glsl|float nearest = far;|float nearest = abs(a) > 1e-12f \|\| shift > 0.0f ? far : far + shift;"
   "edges count once for loops|include/photongrid/scene/polygon.hpp|2 * std::uint64_t{p.vertices.size()} + 5|1 * std::uint64_t{p.vertices.size()} + 5|bad_scenes"
+  "meshes are behind all shapes|include/photongrid/trace/mesh_hit.glsl|hit.t >= 0.0f && hit.t <= t|hit.t >= 0.0f"
+  "points of meshes stay at edges|include/photongrid/trace/mesh_hit.glsl|off_edges(ray_at(o, d, t), face, vec3(plane))|ray_at(o, d, t)"
+  "meshes cast no shadows|include/photongrid/trace/add_unblocked.glsl|triangle_of(mesh_hits(i - args.first)) != NO_TRIANGLE|false"
+  "mirrored meshes turn inside out|include/photongrid/trace/device_scene.hpp|if (mirrored)|if (mirrored && m.material == 99)|on_serial_pictures"
+  "placed meshes turn inside out|include/photongrid/scene/placed_mesh.hpp|glm::determinant(m.linear) < 0|false|scene_file"
+  "big-endian files are read as little-endian|include/photongrid/io/ply_file.cpp|format_ == format::big_endian)|false)|scene_file"
+  "faces' indices are not looked at|include/photongrid/io/ply_file.cpp|>= made_.positions.size())|> made_.positions.size())|scene_file"
+  "meshes lie outside the scene's folder|include/photongrid/io/scene_file.cpp|std::find(path.begin(), path.end(), \"..\") == path.end()|true|scene_file"
+  "the reference hits the triangle that it leaves|include/photongrid/reference/triangles.hpp|if (order_[i] != from)|if (order_[i] + 1 != 0 && from + 1 >= 0)|reference"
   "loop steps wrap|include/photongrid/trace/device_scene.hpp|return layout.steps_per_ray * layout|return static_cast<uint>(layout.steps_per_ray) * layout|bad_scenes"
   "shadow rays of the paper wrap|include/photongrid/scene/render_settings.hpp|std::uint64_t{s.view.light_samples} * std::max|s.view.light_samples * std::max|bad_scenes"
   "a star is a polygon|include/photongrid/scene/polygon.hpp|1e-4 * longest) < 9|1e-4 * longest) < 19|bad_scenes"
@@ -279,7 +288,7 @@ tests_of() {
     backends/vulkan/*) echo on_vulkan ;;
     */film.hpp | */exact_sum.hpp) echo passes ;;
     */scene/scene.hpp | */render/*.hpp | */eye_ray*| */trace_photons.hpp) echo on_serial_pictures ;;
-    */bounce_photon.glsl | */covered_share.glsl | */direct_light.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
+    */bounce_photon.glsl | */covered_share.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */add_unblocked.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
     *) echo on_serial_algorithms ;;
   esac
 }

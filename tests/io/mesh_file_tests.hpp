@@ -94,13 +94,13 @@ namespace {
         };
         for (const auto& b : {bad{"ply", "plx", ":1:1", "no PLY file"}, {"ascii", "asci", ":2:1", "binary_big_endian"},
                  {"format ascii 1.0\n", "", "", "lacks a line \"format\""}, {"vertex 4", "vertex -4", ":3:1", "-4"},
-                 {"vertex 4", "vertex 4000000000000", "", "need more bytes"}, {"float y", "flaot y", ":5:1", "flaot"},
+                 {"vertex 4", "vertex 4000000000000", "", "more bytes"}, {"float y", "flaot y", ":5:1", "flaot"},
                  {"property float z\n", "", "", "x, y and z"}, {"vertex_indices", "corners", "", "vertex_indices"},
                  {"list uchar", "list float", ":8:1", "whole number"}, {"end_header", "end", ":9:1", "end_header"},
                  {"+1 -0", "one -0", ":11:1", "\"one\""}, {"1e0", "nan", ":12:4", "not finite"},
                  {"1e0", "1e30", ":12:5", "10^18"}, {"25e-2", "1e400", "", "not finite"},
-                 {"4 0 1 2 3", "2 0 1", ":14:2", "2 corners"}, {"4 0 1 2 3", "9 0 1 2 3", "", "expected a number"},
-                 {"4 0 1 2 3", "900 0 1", "", "need more bytes"},
+                 {"4 0 1 2 3", "2 0 1", ":14:2", "2 corners"}, {"4 0 1 2 3", "6 0 1 2 3", "", "with 1 corners"},
+                 {"4 0 1 2 3", "900 0 1", "", "more bytes"},
                  {"4 0 1 2 3", "4 0 1 2 4", "", "is vertex 4; there are 4"},
                  {"4 0 1 2 3", "4 0 1 2 -3", ":14:11", "whole number"},
                  {"4 0 1 2 3", "4 0 1 2 1.5", ":14:12", "whole number"}}) {
@@ -126,10 +126,13 @@ namespace {
                     state = state * 1664525u + 1013904223u;
                     damaged[(state >> 8) % damaged.size()] = "0-9e. \nlistx\x00\xff\x7f"[(state >> 4) % 15];
                 }
+                mesh m;
                 try {
-                    EXPECT_NO_THROW(check(parse_ply("m.ply", damaged)));
+                    m = parse_ply("m.ply", damaged);
                 } catch (const scene_error&) {
+                    continue;
                 }
+                EXPECT_NO_THROW(check(m));
             }
         }
     }
