@@ -71,11 +71,11 @@ TEST(specialisation, a_scene_without_glass_and_lamps_has_smaller_kernels)
         vulkan_backend fresh(vulkan_options{});
         const auto device = upload_scene(fresh, s);
         detail::photon_frames<vulkan_backend> f(fresh, 64);
-        const detail::mesh_search<vulkan_backend> no_meshes(fresh, device, 0);
+        const detail::mesh_hits<vulkan_backend> none(fresh, device, 0);
         fresh.run<kernels::bounce_photon>({32, 32u, device.layout.features},
             {.paths = 32, .first_path = 0, .last_frame = 1, .seed = 1},
-            reads(device.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions,
-                no_meshes.found(), device.faces, device.planes, device.vertices),
+            reads(device.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, none.places,
+                none.normals, none.shadings),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
         fresh.finish();
         return fresh.costs().at("bounce_photon").instructions;

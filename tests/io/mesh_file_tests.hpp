@@ -79,6 +79,21 @@ namespace {
         EXPECT_EQ(parse_ply("m.ply", replaced(ascii_square, "\n0 0 0", "\r\n0\t0 0 \r")), expected);
     }
 
+    TEST(ply_file, normals_are_read_if_there_are_all_three)
+    {
+        const auto with = [](const char* names, const char* values) {
+            return parse_ply("m.ply",
+                std::string("ply\nformat ascii 1.0\nelement vertex 3\n") + names
+                    + "property float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int "
+                      "vertex_indices\nend_header\n"
+                    + values + " 0 0 0\n" + values + " 1 0 0\n" + values + " 0 1 0\n3 0 1 2\n");
+        };
+        const auto smooth = with("property float nx\nproperty float nz\nproperty float ny\n", "1 2 3");
+        EXPECT_EQ(smooth.normals, std::vector<glm::vec3>(3, {1, 3, 2}));
+        EXPECT_EQ(smooth.positions[1], glm::vec3(1, 0, 0));
+        EXPECT_TRUE(with("property float nx\nproperty float nz\n", "1 2").normals.empty());
+    }
+
     TEST(ply_file, faces_may_come_before_vertices)
     {
         const auto m = parse_ply("m.ply",
@@ -100,8 +115,7 @@ namespace {
                  {"+1 -0", "one -0", ":11:1", "\"one\""}, {"1e0", "nan", ":12:4", "not finite"},
                  {"1e0", "1e30", ":12:5", "10^18"}, {"25e-2", "1e400", "", "not finite"},
                  {"4 0 1 2 3", "2 0 1", ":14:2", "2 corners"}, {"4 0 1 2 3", "6 0 1 2 3", "", "with 1 corners"},
-                 {"4 0 1 2 3", "900 0 1", "", "more bytes"},
-                 {"4 0 1 2 3", "4 0 1 2 4", "", "is vertex 4; there are 4"},
+                 {"4 0 1 2 3", "900 0 1", "", "more bytes"}, {"4 0 1 2 3", "4 0 1 2 4", "", "is vertex 4; there are 4"},
                  {"4 0 1 2 3", "4 0 1 2 -3", ":14:11", "whole number"},
                  {"4 0 1 2 3", "4 0 1 2 1.5", ":14:12", "whole number"}}) {
             const auto said = ply_refusal(replaced(ascii_square, b.from, b.to));
@@ -166,7 +180,10 @@ namespace {
         EXPECT_EQ(*by_file.meshes[0].surface, *in_line.meshes[0].surface);
         EXPECT_EQ(by_file.meshes[0].material, 0u);
         EXPECT_EQ(by_file.meshes[0].file, "below/square.ply");
-        for (const auto& s : {by_file, in_line}) {
+        const auto smooth = parse_scene(
+            file, text_with(inline_square + R"(, "normals": [[0, 1, 0], [0, 2, 0], [0.1, 1, 0], [1, 1, 1]])"));
+        EXPECT_EQ(smooth.meshes.at(0).surface->normals[2], glm::vec3(0.1f, 1, 0));
+        for (const auto& s : {by_file, in_line, smooth}) {
             const auto again = parse_scene(file, scene_text(s, s.render));
             EXPECT_TRUE(again == s) << scene_text(s, s.render);
         }
@@ -219,6 +236,9 @@ namespace {
                  {R"("positions": [[0, 0, 0]], "triangles": [[0, 0, 1]])", "from 0 to 0"},
                  {R"("positions": [], "triangles": [])", "at least one position"},
                  {R"("positions": [[0, 0, 0]], "triangles": [])", "at least one triangle"},
+                 {R"("positions": [[0, 0, 0]], "triangles": [[0, 0, 0]], "normals": [])", "each of the 1 positions"},
+                 {R"("positions": [[0, 0, 0]], "triangles": [[0, 0, 0]], "normals": [[0, 0, 0]])", "shorter"},
+                 {R"("file": "below/square.ply", "normals": [])", "either a \"file\" or"},
                  {R"("file": "below/square.ply", "scale": 0)", "flat"},
                  {R"("file": "below/square.ply", "scale": [1, 0, 1])", "flat"},
                  {R"("file": "below/square.ply", "scale": 2, "matrix": [])", "either a \"matrix\" or"},

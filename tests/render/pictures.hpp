@@ -5,6 +5,7 @@
 #include "../backends/serial_pictures.hpp"
 #include "../map/photon_sets.hpp"
 #include "../scene/test_scenes.hpp"
+#include "ball_over_floor.hpp"
 
 #include <photongrid/render/render.hpp>
 
@@ -62,6 +63,30 @@ protected:
         return std::move(drawn.picture);
     }
     image picture(const scene& s) { return picture(s, s.render); }
+
+    /// The photons within a circle on the floor have the power that two refractions bring there.
+    void expect_focus(const scene& s, const ball_over_floor& ball)
+    {
+        const double within = 0.12; // m from the axis on the floor
+        const double expected = ball.power_on_floor(within);
+        auto& b = this->b();
+        const auto device = upload_scene(b, s);
+        const auto t = trace_photons(b, s, device, s.render);
+        const auto positions = b.download(t.photons.positions);
+        const auto powers = b.download(t.photons.powers);
+        double power = 0, squares = 0;
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            const dvec3 p = dvec3(positions[i]) + device.layout.center;
+            if (std::hypot(p.x, p.z) > within)
+                continue;
+            power += static_cast<double>(powers[i].x);
+            squares += static_cast<double>(powers[i].x) * static_cast<double>(powers[i].x);
+        }
+        // Light reflected twice and more inside the ball adds a little.
+        EXPECT_GT(power, expected - 4 * std::sqrt(squares));
+        EXPECT_LT(power, expected * 1.02 + 4 * std::sqrt(squares));
+        EXPECT_GT(expected, 0.01);
+    }
 
     /// Traced photons and the picture made of them, equal to serial's: bit for bit where arithmetic rounds correctly.
     void expect_serial(const scene& s, const render_settings& settings)

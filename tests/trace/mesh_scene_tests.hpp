@@ -2,7 +2,8 @@
 // backend's photons and pictures. Included by each on_<backend>.cpp.
 #pragma once
 
-#include "../render/pictures.hpp"
+#include "../render/known_energy_tests.hpp"
+#include "../render/known_picture_tests.hpp"
 #include "mesh_sets.hpp"
 
 namespace photongrid::testing {
@@ -92,7 +93,68 @@ TYPED_TEST_P(mesh_scenes, no_photon_leaves_a_closed_room)
     }
 }
 
-REGISTER_TYPED_TEST_SUITE_P(
-    mesh_scenes, draw_what_their_polygons_draw, equal_the_serial_backends, no_photon_leaves_a_closed_room);
+/// Whatever way light takes through glass that absorbs nothing, it comes from a lamp, and all lamps are alike. Glass by
+/// its shading normals neither adds nor takes.
+TYPED_TEST_P(mesh_scenes, smooth_glass_and_mirrors_amid_lamps_cannot_be_seen)
+{
+    for (const auto& m :
+        {material{"glass", material_kind::glass, dvec3(1), 1.5}, material{"mirror", material_kind::mirror, dvec3(1)}}) {
+        auto s = ball_amid_lamps(m);
+        s.spheres.clear();
+        // Coarse, so that many rays see it from behind its shading normals.
+        s.meshes = {{"", std::make_shared<const mesh>(smooth_ball(8)), glm::dmat3(0.5), dvec3(0), 1}};
+        const auto drawn = this->picture(s);
+        dvec3 mean(0);
+        for (const auto& p : drawn.pixels)
+            mean += dvec3(p) / static_cast<double>(drawn.pixels.size());
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(mean[c], dvec3(1, 2, 4)[c], 0.002 * dvec3(1, 2, 4)[c]) << m.name << ", channel " << c;
+    }
+}
+
+/// Glass of index n around a white body has n^2 times the radiance of the lamps inside, and the body reflects all of
+/// it: from outside it looks like the lamps.
+TYPED_TEST_P(mesh_scenes, a_white_body_in_glass_amid_lamps_cannot_be_seen)
+{
+    for (const bool by_mesh : {false, true}) {
+        auto s = ball_amid_lamps({"glass", material_kind::glass, dvec3(1), 1.5});
+        s.materials.push_back({"white", material_kind::lambertian, dvec3(1)});
+        if (by_mesh) {
+            const auto ball = std::make_shared<const mesh>(smooth_ball(30));
+            s.spheres.clear();
+            s.meshes = {{"", ball, glm::dmat3(0.5), dvec3(0), 1}, {"", ball, glm::dmat3(0.25), dvec3(0), 2}};
+        } else {
+            s.spheres.push_back({dvec3(0), 0.25, 2});
+        }
+        s.render.output.only = light_part::all;
+        s.render.map = {.photons = 60000, .photon_depth = 64, .grid = {16, 16, 16}};
+        s.render.estimate.k = 200;
+        s.render.estimate.max_radius = 0.1;
+        const auto drawn = this->picture(s);
+        // Pixels that see the body.
+        dvec3 mean(0);
+        double seen = 0;
+        for (uint y = 12; y < 20; ++y)
+            for (uint x = 12; x < 20; ++x, ++seen)
+                mean += dvec3(drawn.pixels[y * s.render.output.width + x]);
+        mean /= seen;
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(mean[c], dvec3(1, 2, 4)[c], 0.03 * dvec3(1, 2, 4)[c]) << by_mesh << ", channel " << c;
+    }
+}
+
+TYPED_TEST_P(mesh_scenes, a_smooth_glass_ball_focuses_the_power_that_optics_predicts)
+{
+    const ball_over_floor ball;
+    auto s = ball.as_scene();
+    s.spheres.clear();
+    s.meshes = {{"", std::make_shared<const mesh>(smooth_ball(rings_of(20'000))), glm::dmat3(ball.radius),
+        {0, ball.height, 0}, 1}};
+    this->expect_focus(s, ball);
+}
+
+REGISTER_TYPED_TEST_SUITE_P(mesh_scenes, draw_what_their_polygons_draw, equal_the_serial_backends,
+    no_photon_leaves_a_closed_room, smooth_glass_and_mirrors_amid_lamps_cannot_be_seen,
+    a_white_body_in_glass_amid_lamps_cannot_be_seen, a_smooth_glass_ball_focuses_the_power_that_optics_predicts);
 
 } // namespace photongrid::testing

@@ -49,6 +49,14 @@ inline mesh bumpy_ball(uint rings, float radius, float bump)
     return m;
 }
 
+/// A ball with the normals of a sphere.
+inline mesh smooth_ball(uint rings)
+{
+    auto m = bumpy_ball(rings, 1, 0);
+    m.normals = m.positions;
+    return m;
+}
+
 /// The rings of a bumpy_ball of about so many triangles.
 inline uint rings_of(uint triangles)
 {

@@ -160,6 +160,7 @@ namespace {
         hits.throughputs
             = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(n, glm::vec4(glm::vec3(throughput), 0.0f))));
         auto branches = b.make<uint>(n);
+        const detail::mesh_hits<serial_backend> none(b, device, 0);
         b.run<kernels::eye_bounce>({n, 0u, device.layout.features},
             {.branch = branch,
                 .splits = splits,
@@ -168,8 +169,7 @@ namespace {
                 .seed = 1,
                 .first_pixel = 0,
                 .first = 0},
-            reads(device.records, detail::mesh_search<serial_backend>(b, device, 0).found(), device.faces,
-                device.planes, device.vertices),
+            reads(device.records, none.places, none.normals, none.shadings),
             writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
         return {b.download(hits.points), b.download(hits.directions), b.download(hits.throughputs)};
     }

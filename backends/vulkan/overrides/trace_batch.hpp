@@ -17,7 +17,7 @@ inline uint trace_batch(vulkan_backend& device, const device_scene<vulkan_backen
     const auto& layout = s.layout;
     if (s.has_meshes()) // other passes come between bounces
         return trace_batch<vulkan_backend>(device, s, f, paths, first, settings);
-    const detail::mesh_search<vulkan_backend> no_meshes(device, s, 0);
+    const detail::mesh_hits<vulkan_backend> none(device, s, 0);
     device.run<kernels::emit_photon>({paths, 0u, layout.features}, {.first_path = first, .seed = settings.seed},
         reads(s.records), writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
     constexpr uint together = 8;
@@ -30,8 +30,8 @@ inline uint trace_batch(vulkan_backend& device, const device_scene<vulkan_backen
         device.fill(f.positions, std::size_t{frame} * paths, std::size_t{passes} * paths, ended);
         const auto p = device.run_frames<kernels::bounce_photon>({paths, frame * paths, layout.features}, paths,
             {.paths = paths, .first_path = first, .last_frame = settings.map.photon_depth, .seed = settings.seed},
-            reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, no_meshes.found(),
-                s.faces, s.planes, s.vertices),
+            reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, none.places,
+                none.normals, none.shadings),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions), passes);
         frame += p.passes;
         finished = p.finished;

@@ -37,7 +37,8 @@ namespace {
     }
 
     /// What a property is for.
-    enum class role { none, x, y, z, corners };
+    enum class role { x, y, z, nx, ny, nz, corners, none };
+    constexpr std::array coordinate_names{"x", "y", "z", "nx", "ny", "nz"}; // in the order of their roles
 
     struct property {
         role use = role::none;
@@ -195,8 +196,10 @@ namespace {
                     fail("the length of a list is of the type " + quoted(w[2]) + "; expected a whole number");
                 if (e.name == "face" && (name == "vertex_indices" || name == "vertex_index"))
                     p.use = role::corners;
-            } else if (e.name == "vertex" && (name == "x" || name == "y" || name == "z")) {
-                p.use = name == "x" ? role::x : name == "y" ? role::y : role::z;
+            } else if (e.name == "vertex") {
+                const auto known = std::find(coordinate_names.begin(), coordinate_names.end(), name);
+                if (known != coordinate_names.end())
+                    p.use = static_cast<role>(known - coordinate_names.begin());
             }
             e.properties.push_back(p);
         }
@@ -213,21 +216,23 @@ namespace {
                     + ", which need more bytes than the file has");
             if (least == 0)
                 return;
-            const bool is_vertex = e.name == "vertex";
+            const bool is_vertex = e.name == "vertex", is_smooth = has(role::nx) && has(role::ny) && has(role::nz);
             if (is_vertex)
                 made_.positions.reserve(made_.positions.size() + e.count);
             for (std::uint64_t i = 0; i < e.count; ++i) {
-                glm::vec3 v(0);
+                std::array<float, 6> v{};
                 for (const auto& p : e.properties) {
                     if (p.count)
                         read_list(p);
                     else if (p.use == role::none)
                         (void)next(p.type);
                     else
-                        v[p.use == role::x ? 0 : p.use == role::y ? 1 : 2] = coordinate(p.type);
+                        v[static_cast<std::size_t>(p.use)] = coordinate(p.type);
                 }
                 if (is_vertex)
-                    made_.positions.push_back(v);
+                    made_.positions.emplace_back(v[0], v[1], v[2]);
+                if (is_vertex && is_smooth)
+                    made_.normals.emplace_back(v[3], v[4], v[5]);
             }
         }
         float coordinate(scalar type)

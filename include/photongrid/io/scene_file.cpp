@@ -223,15 +223,16 @@ namespace {
         void read_mesh(const json_value& v)
         {
             placed_mesh m;
-            const auto *file = v.find("file"), *positions = v.find("positions"), *triangles = v.find("triangles");
-            if (file != nullptr ? positions != nullptr || triangles != nullptr
+            const auto *file = v.find("file"), *positions = v.find("positions"), *triangles = v.find("triangles"),
+                       *normals = v.find("normals");
+            if (file != nullptr ? positions != nullptr || triangles != nullptr || normals != nullptr
                                 : positions == nullptr || triangles == nullptr)
                 fail(v.place, "a mesh has either a \"file\" or \"positions\" and \"triangles\"");
             if (file != nullptr) {
                 m.file = file_name(*file);
                 m.surface = mesh_in(m.file, *file);
             } else {
-                m.surface = std::make_shared<const mesh>(inline_mesh(*positions, *triangles));
+                m.surface = std::make_shared<const mesh>(inline_mesh(*positions, *triangles, normals));
             }
             read_placement(v, m);
             m.material = material_of(v);
@@ -263,7 +264,7 @@ namespace {
             return surface;
         }
 
-        mesh inline_mesh(const json_value& positions, const json_value& triangles) const
+        mesh inline_mesh(const json_value& positions, const json_value& triangles, const json_value* normals) const
         {
             mesh m;
             read_list(positions, json_tree::max_values, "positions", [&](const json_value& p) {
@@ -280,6 +281,12 @@ namespace {
             });
             if (m.triangles.empty())
                 wrong(triangles, "at least one triangle");
+            if (normals != nullptr) {
+                read_list(*normals, json_tree::max_values, "normals",
+                    [&](const json_value& n) { m.normals.emplace_back(direction(n)); });
+                if (m.normals.size() != m.positions.size())
+                    wrong(*normals, "a normal for each of the " + std::to_string(m.positions.size()) + " positions");
+            }
             return m;
         }
 

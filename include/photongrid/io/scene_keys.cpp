@@ -13,7 +13,7 @@ namespace {
     constexpr scene_key units_keys[] = {{"length", must}, {"power", must}};
     constexpr scene_key camera_keys[] = {{"position", must}, {"look_at", must}, {"up", may}, {"vertical_fov", must}};
     constexpr scene_key mesh_keys[] = {{"type", must}, {"file", may}, {"positions", may}, {"triangles", may},
-        {"scale", may}, {"rotate", may}, {"translate", may}, {"matrix", may}, {"material", must}};
+        {"normals", may}, {"scale", may}, {"rotate", may}, {"translate", may}, {"matrix", may}, {"material", must}};
     constexpr scene_key rotate_keys[] = {{"axis", must}, {"degrees", must}};
     constexpr scene_key leaks_keys[] = {{"side", may}, {"min_cosine", may}, {"flattening", may}};
     // The keys of materials, shapes and lights come from the tables in scene/ (material_kinds, shape_kind, light_kind).

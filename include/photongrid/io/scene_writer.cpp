@@ -59,6 +59,8 @@ namespace {
                 triangles.push_back({t.x, t.y, t.z});
             all["positions"] = std::move(positions);
             all["triangles"] = std::move(triangles);
+            for (const auto& n : m.surface->normals)
+                all["normals"].push_back({as_written(n.x), as_written(n.y), as_written(n.z)});
         }
         if (m.linear != glm::dmat3(1) || m.offset != dvec3(0)) {
             json rows = json::array();

@@ -39,6 +39,10 @@ struct specular_bounce {
     /// goes to)^2 at refraction, because radiance / n^2 is constant; 1 at reflection. Power traced from the lights is
     /// not scaled.
     double radiance_scale = 1;
+    bool refracted = false;
+    /// The factor for power that is traced from the lights: Veach's correction for shading normals (1997, section 5.3),
+    /// at most 8.
+    double adjoint = 1;
 };
 
 /// At a refracting surface, `u` in [0, 1) selects reflection with Fresnel's probability. The caller applies the
@@ -46,7 +50,7 @@ struct specular_bounce {
 inline specular_bounce specular(const material& m, const dvec3& d, const dvec3& normal, double u)
 {
     const double d_dot_n = glm::dot(d, normal);
-    const specular_bounce reflected{glm::normalize(d - 2 * d_dot_n * normal), 1};
+    const specular_bounce reflected{glm::normalize(d - 2 * d_dot_n * normal)};
     if (!refracts(m))
         return reflected;
     const bool entering = d_dot_n < 0;
@@ -60,13 +64,44 @@ inline specular_bounce specular(const material& m, const dvec3& d, const dvec3& 
         return reflected;
     const dvec3 into = entering ? -normal : normal;
     const dvec3 sideways = d - cos_i * into; // of length sin_i
-    return {glm::normalize(n_i / n_t * sideways + cos_t * into), n_i * n_i / (n_t * n_t)};
+    return {glm::normalize(n_i / n_t * sideways + cos_t * into), n_i * n_i / (n_t * n_t), true};
 }
 
-/// The same with a number from `random` where the surface needs one.
-inline specular_bounce specular(const material& m, const dvec3& d, const dvec3& normal, random_stream& random)
+/// The normals at a hit on the side of a ray of direction d. As in the photon-map renderer the shading normal is turned
+/// towards the ray where their cosine is below 2^-7.
+struct facing_normals {
+    dvec3 geometric, shading;
+
+    facing_normals(const hit& h, const dvec3& d)
+    {
+        const double side = glm::dot(h.normal, d) > 0 ? -1 : 1, least = 0x1p-7;
+        geometric = side * h.normal;
+        shading = side * h.shading;
+        if (const double cosine = -glm::dot(shading, d); cosine < least && h.shading != h.normal)
+            shading = glm::normalize(shading - (least - cosine) * d);
+    }
+
+    /// The factor on power that the surface receives along d, which its geometric normal has measured; at most 8.
+    double received(const dvec3& d) const { return std::min(8.0, glm::dot(shading, d) / glm::dot(geometric, d)); }
+};
+
+/// The same at a hit, by its shading normal, or by the geometric one where that would lead to the wrong side; with a
+/// number from `random` where the surface needs one.
+inline specular_bounce specular(const material& m, const hit& h, const dvec3& d, random_stream& random)
 {
-    return specular(m, d, normal, refracts(m) ? random() : 0);
+    const double u = refracts(m) ? random() : 0;
+    if (h.shading == h.normal)
+        return specular(m, d, h.normal, u);
+    const facing_normals n(h, d);
+    auto bounce = specular(m, d, glm::dot(h.normal, d) > 0 ? -n.shading : n.shading, u);
+    const double side = glm::dot(bounce.direction, n.geometric);
+    if (bounce.refracted ? side < 0 : side > 0) {
+        bounce.adjoint = std::min(8.0,
+            std::abs(
+                glm::dot(d, n.shading) * side / (glm::dot(d, n.geometric) * glm::dot(bounce.direction, n.shading))));
+        return bounce;
+    }
+    return specular(m, d, h.normal, bounce.refracted ? 1 : -1); // of the same kind, or reflected totally
 }
 
 } // namespace photongrid::reference

@@ -76,10 +76,12 @@ public:
         h.position = r.origin + h.t * r.direction;
         if (h.shape >= first_triangle_) {
             h.normal = triangles_.settle(h.shape - first_triangle_, h.position);
+            h.shading = triangles_.shading(h.shape - first_triangle_, h.position, h.normal);
             h.material = triangles_.material(h.shape - first_triangle_);
             return h;
         }
         with(h.shape, [&](const auto& shape) { h.normal = shape.settle(h.position); });
+        h.shading = h.normal;
         if (!detail::finite(h.position) || !detail::finite(h.normal))
             return {}; // the shape is too small for double precision at this distance from the origin
         h.material = materials_[h.shape];

@@ -196,11 +196,12 @@ private:
             if (is_diffuse(m)) {
                 if (surface == 1)
                     return 0; // direct light, which the path tracer computes
-                flux[bin_at(h, r.direction)] += power;
+                flux[bin_at(h, r.direction)] += power * facing_normals(h, r.direction).received(r.direction);
                 return 1;
             }
-            power *= m.reflectance;
-            r = {h.position, specular(m, r.direction, h.normal, random).direction, h.shape};
+            const auto bounce = specular(m, h, r.direction, random);
+            power *= m.reflectance * bounce.adjoint;
+            r = {h.position, bounce.direction, h.shape};
         }
         return 0;
     }

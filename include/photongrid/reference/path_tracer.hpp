@@ -45,9 +45,9 @@ public:
             if (is_diffuse(m)) {
                 if (++surfaces > settings_.photon_depth)
                     return sum;
-                const dvec3 normal = glm::dot(h.normal, r.direction) > 0 ? -h.normal : h.normal;
+                const facing_normals normals(h, r.direction);
                 throughput *= m.reflectance;
-                sum += throughput / M_PI * (caustics_.irradiance(h, r.direction, group) + direct(h, normal, random));
+                sum += throughput / M_PI * (caustics_.irradiance(h, r.direction, group) + direct(h, normals, random));
                 if (surfaces >= 3) { // Russian roulette
                     const double survival = std::min(1.0, std::max({throughput.x, throughput.y, throughput.z}));
                     if (!(random() < survival))
@@ -55,18 +55,16 @@ public:
                     throughput /= survival;
                 }
                 const double u = random(), v = random();
-                r = {h.position, cosine_direction(normal, u, v), h.shape};
-                density = glm::dot(r.direction, normal) / M_PI;
-                if (!(density > 0))
+                r = {h.position, cosine_direction(normals.shading, u, v), h.shape};
+                density = glm::dot(r.direction, normals.shading) / M_PI;
+                if (!(density > 0) || !(glm::dot(r.direction, normals.geometric) > 0))
                     return sum;
                 through_specular = false;
             } else {
                 if (surfaces == 0 ? ++specular_before > settings_.depth : ++surfaces > settings_.photon_depth)
                     return sum;
-                const auto bounce = specular(m, r.direction, h.normal, random);
-                throughput *= m.reflectance;
-                if (surfaces > 0) // not before the first diffuse surface, as in the photon-map renderer
-                    throughput *= bounce.radiance_scale;
+                const auto bounce = specular(m, h, r.direction, random);
+                throughput *= m.reflectance * bounce.radiance_scale;
                 r = {h.position, bounce.direction, h.shape};
                 through_specular = true;
             }
@@ -83,7 +81,7 @@ private:
     }
 
     /// The irradiance of direct light, by one shadow ray to a light chosen by power.
-    dvec3 direct(const hit& h, const dvec3& normal, random_stream& random) const
+    dvec3 direct(const hit& h, const facing_normals& normals, random_stream& random) const
     {
         const auto lights = shapes_.lights();
         const light_source* light = &lights.front();
@@ -105,7 +103,7 @@ private:
         if (!(distance > 0))
             return dvec3(0);
         const dvec3 d = towards / distance;
-        const double cosine = glm::dot(normal, d);
+        const double cosine = glm::dot(normals.geometric, d) > 0 ? glm::dot(normals.shading, d) : 0;
         const double leaving = light->is_area ? -glm::dot(light->normal, d) : 1;
         if (!(cosine > 0) || !(leaving > 0) || shapes_.blocked({h.position, d, h.shape}, distance, light->shape))
             return dvec3(0);

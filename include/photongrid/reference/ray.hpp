@@ -32,6 +32,7 @@ struct hit {
     std::uint32_t light = nothing;    ///< index into geometry::lights()
     dvec3 position{0};                ///< moved onto the surface
     dvec3 normal{0, 0, 1};            ///< unit; outward, or as the shape defines it
+    dvec3 shading{0, 0, 1};           ///< the same, interpolated between a mesh's vertices if they have normals
 };
 
 /// A unit vector perpendicular to n.

@@ -5,6 +5,8 @@
 #include <photongrid/reference/ray.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <numeric>
 #include <vector>
 
@@ -25,6 +27,15 @@ public:
                 const double area = glm::length(n);
                 triangles_.push_back({c[0], c[1] - c[0], c[2] - c[0], area > 0 ? n / area : dvec3(0, 0, 1)});
                 materials_.push_back(m.material);
+                if (const auto& normals = m.surface->normals; !normals.empty()) {
+                    const auto& v = m.surface->triangles[t];
+                    std::array<dvec3, 3> of{
+                        normal_of(m, normals[v.x]), normal_of(m, normals[v.y]), normal_of(m, normals[v.z])};
+                    if (glm::determinant(m.linear) < 0)
+                        std::swap(of[1], of[2]); // as corners_of does
+                    triangles_.back().smooth = static_cast<std::int64_t>(normals_.size());
+                    normals_.push_back(of);
+                }
             }
         order_.resize(triangles_.size());
         std::iota(order_.begin(), order_.end(), 0u);
@@ -71,9 +82,27 @@ public:
         return t.normal;
     }
 
+    /// The interpolated normal at a point of a triangle, unit, on the side of `normal`; without normals that.
+    dvec3 shading(std::uint32_t triangle, const dvec3& p, const dvec3& normal) const
+    {
+        const auto& t = triangles_[triangle];
+        if (t.smooth < 0)
+            return normal;
+        const auto& of = normals_[static_cast<std::size_t>(t.smooth)];
+        const dvec3 from = p - t.corner, area = glm::cross(t.edge_u, t.edge_v);
+        const double area2 = glm::dot(area, area), v = glm::dot(glm::cross(from, t.edge_v), area) / area2,
+                     w = glm::dot(glm::cross(t.edge_u, from), area) / area2;
+        const dvec3 sum = (1 - v - w) * of[0] + v * of[1] + w * of[2];
+        const double length = glm::length(sum);
+        if (!(length > 0) || !std::isfinite(length))
+            return normal;
+        return glm::dot(sum, normal) < 0 ? -sum / length : sum / length;
+    }
+
 private:
     struct triangle {
         dvec3 corner, edge_u, edge_v, normal;
+        std::int64_t smooth = -1; ///< index in normals_
     };
     struct node {
         dvec3 low{infinity}, high{-infinity};
@@ -142,6 +171,7 @@ private:
     }
 
     std::vector<triangle> triangles_;
+    std::vector<std::array<dvec3, 3>> normals_; ///< of the corners of triangles that have any
     std::vector<std::uint32_t> materials_;
     std::vector<std::uint32_t> order_; ///< of the triangles in the leaves
     std::vector<node> nodes_;          ///< the root first

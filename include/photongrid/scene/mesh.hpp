@@ -19,6 +19,7 @@ namespace photongrid {
 struct mesh {
     std::vector<glm::vec3> positions;  ///< of the vertices, m
     std::vector<glm::uvec3> triangles; ///< the indices of each one's corners
+    std::vector<glm::vec3> normals{};  ///< for shading, of the vertices, of any length; empty: triangles look flat
 
     bool operator==(const mesh&) const = default;
 };
@@ -31,7 +32,7 @@ inline std::array<glm::vec3, 3> corners_of(const mesh& m, std::size_t triangle)
 }
 
 /// \throws std::invalid_argument for an index of a vertex that does not exist, a coordinate that is not finite or above
-///         10^18 m.
+///         10^18 m, or normals that are not finite or not as many as positions.
 inline void check(const mesh& m)
 {
     constexpr float most = 1e18f; // m; squares of distances must be finite
@@ -41,6 +42,12 @@ inline void check(const mesh& m)
                 throw std::invalid_argument("mesh: positions[" + std::to_string(v) + "]: coordinate "
                     + std::to_string(axis) + " is " + std::to_string(m.positions[v][axis])
                     + "; expected a number between -10^18 and 10^18");
+    if (!m.normals.empty() && m.normals.size() != m.positions.size())
+        throw std::invalid_argument("mesh: normals: there are " + std::to_string(m.normals.size()) + " of them and "
+            + std::to_string(m.positions.size()) + " positions; expected one for each, or none");
+    for (std::size_t v = 0; v < m.normals.size(); ++v)
+        if (!std::isfinite(m.normals[v].x) || !std::isfinite(m.normals[v].y) || !std::isfinite(m.normals[v].z))
+            throw std::invalid_argument("mesh: normals[" + std::to_string(v) + "]: is not finite");
     for (std::size_t t = 0; t < m.triangles.size(); ++t)
         for (int corner = 0; corner < 3; ++corner)
             if (m.triangles[t][corner] >= m.positions.size())

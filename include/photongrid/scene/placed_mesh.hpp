@@ -43,6 +43,17 @@ inline std::array<dvec3, 3> corners_of(const placed_mesh& m, std::size_t triangl
     return placed;
 }
 
+/// The direction of a vertex's normal in the scene: a unit vector, or 0 for a normal of length 0.
+inline dvec3 normal_of(const placed_mesh& m, const glm::vec3& normal)
+{
+    // The cofactors of `linear`: its inverse transposed, times the determinant, whose sign is that of mirroring.
+    const auto& l = m.linear;
+    const glm::dmat3 cofactors(glm::cross(l[1], l[2]), glm::cross(l[2], l[0]), glm::cross(l[0], l[1]));
+    const dvec3 n = cofactors * dvec3(normal) * (glm::determinant(l) < 0 ? -1.0 : 1.0);
+    const double length = glm::length(n);
+    return length > 0 ? n / length : dvec3(0);
+}
+
 /// \throws std::invalid_argument for a mesh without surface or triangles, a surface that check() rejects, or a
 ///         placement that is not finite or leaves no volume.
 inline void check(const placed_mesh& m)

@@ -7,7 +7,6 @@
 #include <photongrid/backend/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 #include <photongrid/trace/photon_event.glsl>
-#include <photongrid/trace/ray_state.glsl>
 
 struct Params {
     uint paths;      // elements of a frame
@@ -25,10 +24,9 @@ INPUT(2, vec4, powers)
 INPUT(3, vec4, directions)
 INPUT(4, vec4, next_origins)
 INPUT(5, vec4, next_directions)
-INPUT(6, uvec4, mesh_hits) // these four: see mesh_hit.glsl
-INPUT(7, uvec4, faces)
-INPUT(8, vec4, planes)
-INPUT(9, vec4, vertices)
+INPUT(6, vec4, mesh_places) // these three: see mesh_surface.glsl
+INPUT(7, vec4, mesh_normals)
+INPUT(8, vec4, mesh_shadings)
 OUTPUT(0, vec4, position)       // xyz, m; w: event
 // w of power, next_origin and next_direction: x, y and z of the normal.
 OUTPUT(1, vec4, power)          // rgb of the incoming photon, W, not yet divided by the number of paths
@@ -40,6 +38,7 @@ OUTPUT(4, vec4, next_direction)
 #include <photongrid/trace/mesh_hit.glsl>
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/optics.glsl>
+#include <photongrid/trace/shading_normals.glsl>
 
 void kernel(uint i)
 {
@@ -82,7 +81,7 @@ void kernel(uint i)
     }
     Hit hit = intersect_closest(o, d);
     if (MESHES)
-        hit = closer_hit(hit, i - frame * args.paths, o, d);
+        hit = closer_hit(hit, i - frame * args.paths);
     if (hit.t < 0.0f) {
         position.w = event_code(NO_SURFACE, ESCAPED, NOTHING_BEFORE);
         return;
@@ -99,7 +98,15 @@ void kernel(uint i)
     direction.w = float(hit.material);
     vec4 r = random4(uvec4(id, frame, 0u, args.seed));
     uint surface = material.kind == LAMBERTIAN_SURFACE ? DIFFUSE_SURFACE : SPECULAR_SURFACE;
-    vec3 facing = dot3(hit.normal, d) > 0.0f ? -hit.normal : hit.normal;
+    FacingNormals sides = facing_normals(hit, d);
+    vec3 facing = sides.shading;
+    if (SMOOTH && surface == DIFFUSE_SURFACE) {
+        // What the surface receives about its shading normal; it sends that out about its geometric normal.
+        precise float share = dot3(facing, d) / dot3(sides.geometric, d);
+        float received = share < 8.0f ? share : 8.0f;
+        precise vec3 scaled = vec3(power) * received;
+        power = vec4(scaled.x, scaled.y, scaled.z, 0.0f);
+    }
     power.w = facing.x;
     next_origin.w = facing.y;
     next_direction.w = facing.z;
@@ -110,14 +117,17 @@ void kernel(uint i)
     position.w = event_code(surface, frame < args.last_frame ? GOES_ON : CUT_OFF, hit_before);
     vec3 next = facing;
     if (material.kind == LAMBERTIAN_SURFACE)
-        next = cosine_direction(facing, r.y, r.z);
-    if (MIRRORS && material.kind == MIRROR_SURFACE)
-        next = reflect_direction(d, hit.normal);
-    if (GLASS && material.kind == GLASS_SURFACE) {
-        Fresnel f = fresnel(d, hit.normal, material.index_of_refraction);
-        next = f.refracted;
-        if (r.w < f.reflected)
-            next = reflect_direction(d, hit.normal);
+        next = cosine_direction(sides.geometric, r.y, r.z);
+    if ((MIRRORS && material.kind == MIRROR_SURFACE) || (GLASS && material.kind == GLASS_SURFACE)) {
+        Fresnel f = total_reflection(d);
+        if (GLASS && material.kind == GLASS_SURFACE)
+            f = fresnel(d, outward_normal(hit, sides, d), material.index_of_refraction);
+        Leaving l = leave_specular(hit, sides, f, r.w < f.reflected, material.index_of_refraction, d);
+        next = l.direction;
+        if (SMOOTH) {
+            precise vec3 scaled = vec3(power) * l.adjoint;
+            power = vec4(scaled.x, scaled.y, scaled.z, facing.x);
+        }
     }
     vec3 start = ray_start(hit.position, hit.normal, next);
     next_origin = vec4(start.x, start.y, start.z, facing.y);

@@ -25,19 +25,21 @@ enum scene_feature : uint {
     has_glass = detail::entry_of(material_kind::glass).switches,
     has_point_lights = 1u << 6,
     has_area_lights = 1u << 7,
-    has_meshes = 1u << 9, ///< number 8 is that of boxes
+    has_meshes = 1u << 9,        ///< number 8 is that of boxes
+    has_smooth_meshes = 1u << 10 ///< meshes with normals
 };
 
 static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SURFACE
     && static_cast<uint>(surface_kind::reflecting) == kernels::MIRROR_SURFACE
     && static_cast<uint>(surface_kind::refracting) == kernels::GLASS_SURFACE);
 
-/// The triangles of all meshes of a scene, in the meshes' order. For kernels: trace/mesh_hit.glsl.
+/// The triangles of all meshes of a scene, in the meshes' order, as trace/mesh_surface.glsl describes them.
 struct mesh_layout {
-    mesh triangles;                ///< recentred
-    std::vector<glm::uvec4> faces; ///< of each triangle: its vertices, and its material
-    std::vector<glm::vec4> planes; ///< of each triangle: unit normal; offset, m
-    std::size_t without_area = 0;  ///< triangles that are lines or points: they only close cracks of a surface
+    mesh triangles;                 ///< recentred; without normals
+    std::vector<glm::uvec4> faces;  ///< of each triangle: its vertices, its material, whether it has normals
+    std::vector<glm::vec4> planes;  ///< of each triangle: unit normal; offset, m
+    std::vector<glm::vec4> normals; ///< of each vertex; empty if no mesh has any
+    std::size_t without_area = 0;   ///< triangles that are lines or points: they only close cracks of a surface
 };
 
 /// The records of a scene, and their layout.
@@ -167,6 +169,7 @@ namespace detail {
                 if (is_diffuse(of))
                     add_bounds(diffuse, m);
                 out_.features |= has_meshes | entry_of(of.kind).switches;
+                out_.features |= m.surface->normals.empty() ? 0u : has_smooth_meshes;
             }
             require(!diffuse.empty(), no_matte_shape);
             for_each_light(s_, [&](const auto& list, auto kind) {
@@ -226,12 +229,18 @@ namespace detail {
                 const auto vertices = static_cast<uint>(all.triangles.positions.size());
                 for (const auto& p : m.surface->positions)
                     all.triangles.positions.emplace_back(place_of(m, p) - out_.center);
+                const uint smooth = m.surface->normals.empty() ? 0 : 1;
+                if ((out_.features & has_smooth_meshes) != 0) {
+                    for (const auto& n : m.surface->normals)
+                        all.normals.emplace_back(normal_of(m, n), 0.0f);
+                    all.normals.resize(all.triangles.positions.size(), glm::vec4(0));
+                }
                 const bool mirrored = glm::determinant(m.linear) < 0; // as corners_of(placed_mesh)
                 for (auto t : m.surface->triangles) {
                     if (mirrored)
                         std::swap(t.y, t.z);
                     all.triangles.triangles.push_back(t + vertices);
-                    all.faces.emplace_back(t + vertices, m.material);
+                    all.faces.emplace_back(t + vertices, 2 * m.material + smooth);
                     write_plane(all.faces.size() - 1);
                 }
             }
@@ -308,12 +317,13 @@ template <backend B>
 struct device_scene {
     scene_layout layout;             ///< with the records on the host, but without the triangles of meshes
     buffer_of<B, glm::vec4> records; ///< as trace/scene_layout.glsl describes them
-    /// \name Of meshes, as trace/mesh_hit.glsl describes them; without meshes an element each
+    /// \name Of meshes, as trace/mesh_surface.glsl describes them; an element each if there is nothing
     /// @{
     device_triangles<B> triangles; ///< the tree
     buffer_of<B, glm::uvec4> faces;
     buffer_of<B, glm::vec4> planes;
     buffer_of<B, glm::vec4> vertices;
+    buffer_of<B, glm::vec4> normals;
     /// @}
 
     bool has_meshes() const { return (layout.features & photongrid::has_meshes) != 0; }
@@ -327,12 +337,14 @@ namespace detail {
         std::vector<glm::vec4> vertices;
         for (const auto& p : m.triangles.positions)
             vertices.emplace_back(p, 0.0f);
-        m.faces.resize(std::max<std::size_t>(m.faces.size(), 1)); // kernels need a buffer, even if they do not read it
-        m.planes.resize(std::max<std::size_t>(m.planes.size(), 1));
-        vertices.resize(std::max<std::size_t>(vertices.size(), 1));
-        to.faces = upload(device, m.faces);
-        to.planes = upload(device, m.planes);
-        to.vertices = upload(device, vertices);
+        const auto upload_some = [&](auto& elements) {
+            elements.resize(std::max<std::size_t>(elements.size(), 1)); // kernels need a buffer, even if none is read
+            return upload(device, elements);
+        };
+        to.faces = upload_some(m.faces);
+        to.planes = upload_some(m.planes);
+        to.vertices = upload_some(vertices);
+        to.normals = upload_some(m.normals);
     }
 
     /// A bound on the loop iterations of one shadow ray to each light, the least that a pass takes.

@@ -4,7 +4,6 @@
 // the eye rays of a pixel.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
-#include <photongrid/trace/ray_state.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
@@ -21,10 +20,9 @@ SWITCH(4, MIRRORS)
 SWITCH(5, GLASS)
 SWITCH(7, AREA_LIGHTS)
 INPUT(0, vec4, scene)
-INPUT(1, uvec4, mesh_hits) // these four: see mesh_hit.glsl
-INPUT(2, uvec4, faces)
-INPUT(3, vec4, planes)
-INPUT(4, vec4, vertices)
+INPUT(1, vec4, mesh_places) // these three: see mesh_surface.glsl
+INPUT(2, vec4, mesh_normals)
+INPUT(3, vec4, mesh_shadings)
 STATE(0, vec4, point)      // xyz: origin, at the end the point hit, m; w: 0 in flight, 1 on a diffuse surface, else -1
 STATE(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
 STATE(2, vec4, throughput) // rgb: factor between radiance here and at the eye; w: splits so far
@@ -37,6 +35,7 @@ STATE(5, uint, branches)   // bit b: branch b must be traced for this pixel; bra
 #include <photongrid/trace/lights.glsl>
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/optics.glsl>
+#include <photongrid/trace/shading_normals.glsl>
 
 bool done()
 {
@@ -94,7 +93,7 @@ void kernel(uint i)
     vec3 d = vec3(direction);
     Hit hit = intersect_closest(vec3(point), d);
     if (MESHES)
-        hit = closer_hit(hit, i - args.first, vec3(point), d);
+        hit = closer_hit(hit, i - args.first);
     uint hits = uint(direction.w);
     uint splits = uint(throughput.w);
     // A ray that has split fewer than `splits` times is the same in several passes. Count it in one of them, the one
@@ -111,19 +110,22 @@ void kernel(uint i)
         return;
     }
     Material material = material_of(hit.material);
+    FacingNormals sides = facing_normals(hit, d);
     if (material.kind == LAMBERTIAN_SURFACE) {
-        vec3 n = dot3(hit.normal, d) > 0.0f ? -hit.normal : hit.normal;
-        point = vec4(hit.position.x, hit.position.y, hit.position.z, counted ? 1.0f : -1.0f);
-        surface = vec4(n.x, n.y, n.z, float(hit.material));
+        vec3 p = hit.position;
+        if (SMOOTH) // shadow rays start off the surface about its shading normal
+            p = ray_start(p, sides.geometric, sides.geometric);
+        point = vec4(p.x, p.y, p.z, counted ? 1.0f : -1.0f);
+        surface = vec4(sides.shading.x, sides.shading.y, sides.shading.z, float(hit.material));
         return;
     }
     vec3 next = d;
     precise vec3 tinted = vec3(throughput) * material.reflectance;
     float share = 1.0f;
     if (MIRRORS && material.kind == MIRROR_SURFACE)
-        next = reflect_direction(d, hit.normal);
+        next = leave_specular(hit, sides, total_reflection(d), true, 1.0f, d).direction;
     if (GLASS && material.kind == GLASS_SURFACE) {
-        Fresnel f = fresnel(d, hit.normal, material.index_of_refraction);
+        Fresnel f = fresnel(d, outward_normal(hit, sides, d), material.index_of_refraction);
         FresnelBranch b;
         if (splits < args.splits) {
             b = split_branch(splits, f.reflected, counted);
@@ -131,8 +133,9 @@ void kernel(uint i)
         } else {
             b = sampled_branch(i, hits, f.reflected);
         }
-        share = b.share;
-        next = b.reflected ? reflect_direction(d, hit.normal) : f.refracted;
+        next = leave_specular(hit, sides, f, b.reflected, material.index_of_refraction, d).direction;
+        precise float scaled = b.reflected ? b.share : b.share * f.radiance_scale;
+        share = scaled;
     }
     ++hits;
     if (hits > args.depth || !(share > 0.0f)) {

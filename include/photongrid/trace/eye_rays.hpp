@@ -91,12 +91,13 @@ void trace_eye_rays(B& device, const device_scene<B>& s, const camera& view, con
     const uint splits = splits_of(layout), sample = ray >> splits;
     device.template run<kernels::eye_ray>(pixels, eye_params(view, layout.center, settings, r, ray, splits), reads(),
         writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
-    mesh_search<B> meshes(device, s, pixels.elements);
+    mesh_hits<B> on_meshes(device, s, pixels.elements);
+    mesh_rays<B> rays(device, s.has_meshes() ? pixels.elements : 0);
     for (bool finished = false; !finished;) {
         if (s.has_meshes()) {
             device.template run<kernels::eye_ray_to_search>(pixels.elements, {.first = pixels.first},
-                reads(hits.points, hits.directions), writes(meshes.origins, meshes.directions));
-            meshes.search(hit_kind::closest);
+                reads(hits.points, hits.directions), writes(rays.origins, rays.directions));
+            rays.find(device, s, on_meshes);
         }
         finished
             = device
@@ -108,7 +109,7 @@ void trace_eye_rays(B& device, const device_scene<B>& s, const camera& view, con
                           .seed = settings.seed,
                           .first_pixel = hits.first_pixel,
                           .first = pixels.first},
-                      reads(s.records, meshes.found(), s.faces, s.planes, s.vertices),
+                      reads(s.records, on_meshes.places, on_meshes.normals, on_meshes.shadings),
                       writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches),
                       s.has_meshes() ? 1u : all_passes)
                   .finished;
@@ -124,7 +125,7 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
     device.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
     const uint samples = (s.layout.features & has_area_lights) != 0 ? settings.view.light_samples : 1u;
     if (s.has_meshes()) {
-        mesh_search<B> meshes(device, s, pixels.elements);
+        mesh_rays<B> rays(device, pixels.elements);
         for (uint number = 0; number < s.layout.table(kernels::LIGHT_TABLE).count; ++number)
             for (uint sample = 0; sample < samples; ++sample) {
                 device.template run<kernels::shadow_ray>({pixels.elements, 0u, s.layout.features},
@@ -135,10 +136,10 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
                         .ray_id = ray,
                         .seed = settings.seed,
                         .first_pixel = hits.first_pixel},
-                    reads(s.records, hits.points, hits.surfaces), writes(meshes.origins, meshes.directions));
-                meshes.search(hit_kind::any);
+                    reads(s.records, hits.points, hits.surfaces), writes(rays.origins, rays.directions));
+                const auto found = rays.search(device, s, hit_kind::any);
                 device.template run<kernels::add_unblocked>(pixels, {.light = number, .first = pixels.first},
-                    reads(s.records, meshes.directions, meshes.found()), writes(light));
+                    reads(s.records, rays.directions, found), writes(light));
             }
         return;
     }

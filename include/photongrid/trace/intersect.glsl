@@ -47,6 +47,7 @@ Hit intersect_closest(vec3 o, vec3 d)
     hit.light = 0u;
     hit.position = ray_at(o, d, c.t);
     hit.normal = vec3(0.0f, 0.0f, 1.0f);
+    hit.shading = hit.normal;
     if (SPHERES && c.kind == SPHERE)
         hit = sphere_surface(c.at, hit);
     if (QUADRICS && c.kind == QUADRIC)
@@ -57,6 +58,7 @@ Hit intersect_closest(vec3 o, vec3 d)
         hit = box_surface(c.at, o, d, hit);
     if (POLYGONS && c.kind == POLYGON)
         hit = polygon_surface(c.at, hit);
+    hit.shading = hit.normal;
     return hit;
 }
 

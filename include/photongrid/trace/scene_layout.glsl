@@ -3,8 +3,8 @@
 #ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
 
 const uint SCENE_TABLES = 16u;
-const uint MATERIAL_TABLE = 4u; // no kind of shape has the numbers 4 to 7, the SWITCHes of materials and lights, or 9,
-                                // that of meshes
+const uint MATERIAL_TABLE = 4u; // no kind of shape has the numbers 4 to 7, the SWITCHes of materials and lights, or 9
+                                // and 10, those of meshes
 const uint SCENE_SIZES = 5u;    // x: what ray_offset adds for curved shapes, m
 const uint LIGHT_TABLE = 6u;
 const uint FIRST_MATERIAL = SCENE_TABLES; // materials come first, so that kernels need not look their table up
@@ -47,6 +47,7 @@ struct Hit {
     uint light;     // number of that light
     vec3 position;
     vec3 normal;    // geometric, unit; outward, or as the shape defines it
+    vec3 shading;   // of a mesh with vertex normals (SMOOTH): the interpolated normal, unit, on the side of `normal`
 };
 
 // The distance by which a ray's origin is offset from its surface: a bound on the rounding error of their distance. It

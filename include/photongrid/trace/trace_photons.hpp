@@ -80,7 +80,8 @@ uint trace_batch(B& device, const device_scene<B>& s, detail::photon_frames<B>& 
     const render_settings& settings)
 {
     const auto& layout = s.layout;
-    detail::mesh_search<B> meshes(device, s, paths);
+    detail::mesh_hits<B> hits(device, s, paths);
+    detail::mesh_rays<B> rays(device, s.has_meshes() ? paths : 0);
     device.template run<kernels::emit_photon>({paths, 0u, layout.features},
         {.first_path = first, .seed = settings.seed}, reads(s.records),
         writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
@@ -88,13 +89,13 @@ uint trace_batch(B& device, const device_scene<B>& s, detail::photon_frames<B>& 
     for (; frame <= settings.map.photon_depth; ++frame) {
         if (s.has_meshes()) {
             device.template run<kernels::photon_to_search>(paths, {.first = (frame - 1) * paths},
-                reads(f.positions, f.next_origins, f.next_directions), writes(meshes.origins, meshes.directions));
-            meshes.search(hit_kind::closest);
+                reads(f.positions, f.next_origins, f.next_directions), writes(rays.origins, rays.directions));
+            rays.find(device, s, hits);
         }
         device.template run<kernels::bounce_photon>({paths, frame * paths, layout.features},
             {.paths = paths, .first_path = first, .last_frame = settings.map.photon_depth, .seed = settings.seed},
-            reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, meshes.found(),
-                s.faces, s.planes, s.vertices),
+            reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, hits.places,
+                hits.normals, hits.shadings),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
         if (frame % 8 == 0
             && detail::checked_count<kernels::path_goes_on>(device, {paths, frame * paths}, {}, reads(f.positions))

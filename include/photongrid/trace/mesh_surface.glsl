@@ -1,0 +1,104 @@
+// The surface at a ray's hit on a triangle, for kernels that follow paths (mesh_hit.glsl).
+#include <photongrid/backend/vector.glsl>
+#include <photongrid/trace/ray_state.glsl>
+#include <photongrid/trace/scene_layout.glsl>
+
+struct Params {
+    uint unused;
+};
+PARAMS(Params)
+SWITCH(10, SMOOTH)
+INPUT(0, vec4, scene)
+INPUT(1, vec4, origins)    // of the rays
+INPUT(2, vec4, directions)
+INPUT(3, uvec4, hits)      // see ray_state.glsl
+INPUT(4, uvec4, faces)     // of each triangle, xyz: its vertices; w: 2 x material + 1 if they have normals
+INPUT(5, vec4, planes)     // of each triangle, xyz: unit normal; w: offset
+INPUT(6, vec4, vertices)   // xyz, m
+INPUT(7, vec4, normals)    // of each vertex, xyz, of any length; only with SMOOTH
+OUTPUT(0, vec4, place)     // xyz: of the hit, m; w: its distance; -1: no hit
+OUTPUT(1, vec4, normal)    // xyz: geometric normal, unit; w: material
+OUTPUT(2, vec4, shading)   // xyz: interpolated normal, unit, on the side of the geometric one; without normals that
+
+#include <photongrid/trace/intersect/plane.glsl>
+
+// Twice the area of the triangle of p and an edge, negative where p is on the edge's other side.
+float area_at_edge(vec3 p, vec3 from, vec3 to, vec3 normal)
+{
+    precise vec3 edge = to - from;
+    precise vec3 way = p - from;
+    return dot3(cross3(edge, way), normal);
+}
+
+// A point of a triangle by the weights of its corners: their sum is not 1.
+struct Weighted {
+    vec3 weights;
+    vec3 point;
+};
+
+// Moves a point of a triangle off its edges, by the offset of rays or a quarter of the triangle's height. Where
+// surfaces meet at an edge, rays that leave the point then start on its side of the other surface.
+Weighted off_edges(vec3 p, uvec4 face, vec3 normal)
+{
+    vec3 a = vec3(vertices(face.x));
+    vec3 b = vec3(vertices(face.y));
+    vec3 c = vec3(vertices(face.z));
+    float off = ray_offset(p, scene(SCENE_SIZES).x);
+    Weighted at;
+    at.weights = vec3(area_at_edge(p, b, c, normal), area_at_edge(p, c, a, normal), area_at_edge(p, a, b, normal));
+    at.point = p;
+    precise vec3 opposite_a = c - b;
+    precise vec3 opposite_b = a - c;
+    precise vec3 opposite_c = b - a;
+    precise vec3 least = vec3(sqrt(dot3(opposite_a, opposite_a)), sqrt(dot3(opposite_b, opposite_b)),
+                             sqrt(dot3(opposite_c, opposite_c)))
+        * off;
+    precise float quarter = 0.25f * dot3(cross3(opposite_c, -opposite_b), normal);
+    least = vec3(min(least.x, quarter), min(least.y, quarter), min(least.z, quarter));
+    if (!(quarter > 0.0f)) {
+        at.weights = vec3(1.0f, 1.0f, 1.0f); // a line or a point
+        return at;
+    }
+    if (!(at.weights.x < least.x || at.weights.y < least.y || at.weights.z < least.z))
+        return at;
+    vec3 w = vec3(max(at.weights.x, least.x), max(at.weights.y, least.y), max(at.weights.z, least.z));
+    precise vec3 moved = (a * w.x + b * w.y + c * w.z) / (w.x + w.y + w.z);
+    at.weights = w;
+    at.point = moved;
+    return at;
+}
+
+// The normals of a triangle's vertices, weighted; the geometric normal where they cancel out.
+vec3 shading_normal(uvec4 face, vec3 weights, vec3 normal)
+{
+    precise vec3 sum = vec3(normals(face.x)) * weights.x + vec3(normals(face.y)) * weights.y
+        + vec3(normals(face.z)) * weights.z;
+    precise vec3 scaled = sum / largest3(vec3(abs(sum.x), abs(sum.y), abs(sum.z)));
+    vec3 n = normalized3(scaled);
+    if (!is_finite3(n))
+        return normal;
+    return dot3(n, normal) < 0.0f ? -n : n;
+}
+
+void kernel(uint i)
+{
+    uvec4 found = hits(i);
+    uint triangle = triangle_of(found);
+    place = vec4(0.0f, 0.0f, 0.0f, -1.0f);
+    normal = vec4(0.0f, 0.0f, 1.0f, 0.0f);
+    shading = normal;
+    if (triangle == NO_TRIANGLE)
+        return;
+    uvec4 face = faces(triangle);
+    vec4 plane = planes(triangle);
+    float t = distance_of_hit(found);
+    Weighted at = off_edges(ray_at(vec3(origins(i)), vec3(directions(i)), t), face, vec3(plane));
+    vec3 p = onto_plane(plane, at.point);
+    place = vec4(p.x, p.y, p.z, t);
+    normal = vec4(plane.x, plane.y, plane.z, float(face.w >> 1u));
+    shading = normal;
+    if (SMOOTH && (face.w & 1u) != 0u) {
+        vec3 n = shading_normal(face, at.weights, vec3(plane));
+        shading = vec4(n.x, n.y, n.z, 0.0f);
+    }
+}
