@@ -143,6 +143,37 @@ TYPED_TEST_P(mesh_scenes, a_white_body_in_glass_amid_lamps_cannot_be_seen)
     }
 }
 
+/// Glass of index 1 refracts nothing. Through it the photon map has the light that shadow rays find without it, about
+/// the normals that a flat floor claims to have.
+TYPED_TEST_P(mesh_scenes, photons_and_shadow_rays_light_by_the_same_normals)
+{
+    scene s;
+    s.materials = {{"white", material_kind::lambertian, dvec3(0.8)}, {"pane", material_kind::glass, dvec3(1), 1}};
+    mesh floor{{{-2, 0, -2}, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}}, {{0, 1, 2}, {0, 2, 3}},
+        std::vector<glm::vec3>(4, {1.5f, 2, 0.5f})};
+    s.meshes = {{"", std::make_shared<const mesh>(floor), glm::dmat3(1), dvec3(0), 0}};
+    s.point_lights = {{"bulb", {0.75, 1, 0.25}, dvec3(10)}};
+    s.camera = {{0.1, 2, 0}, {0, 0, 0}, {0, 0, 1}, 40};
+    s.render = {.map = {.photons = 60000, .grid = {40, 1, 40}},
+        .estimate = {.k = 200, .max_radius = 0.2},
+        .output = {.width = 16, .height = 16}};
+    s.render.output.only = light_part::direct;
+    const auto direct = this->picture(s);
+    s.polygons = {{{{-3, 0.5, -3}, {-3, 0.5, 3}, {3, 0.5, 3}, {3, 0.5, -3}}, 1}};
+    s.render.output.only = light_part::caustic;
+    const auto through_pane = this->picture(s);
+    double sum = 0, known = 0;
+    for (std::size_t i = 0; i < direct.pixels.size(); ++i) {
+        sum += static_cast<double>(through_pane.pixels[i].x);
+        known += static_cast<double>(direct.pixels[i].x);
+        EXPECT_NEAR(through_pane.pixels[i].x, direct.pixels[i].x, 0.4f * direct.pixels[i].x) << i;
+    }
+    EXPECT_NEAR(sum, known, 0.01 * known);
+    const dvec3 way = glm::normalize(s.point_lights[0].position), normal = glm::normalize(dvec3(1.5, 2, 0.5));
+    const double distance2 = glm::dot(s.point_lights[0].position, s.point_lights[0].position);
+    EXPECT_NEAR(direct.pixels[8 * 16 + 8].x, 0.8 / M_PI * 10 / (4 * M_PI * distance2) * glm::dot(way, normal), 0.05);
+}
+
 TYPED_TEST_P(mesh_scenes, a_smooth_glass_ball_focuses_the_power_that_optics_predicts)
 {
     const ball_over_floor ball;
@@ -154,7 +185,8 @@ TYPED_TEST_P(mesh_scenes, a_smooth_glass_ball_focuses_the_power_that_optics_pred
 }
 
 REGISTER_TYPED_TEST_SUITE_P(mesh_scenes, draw_what_their_polygons_draw, equal_the_serial_backends,
-    no_photon_leaves_a_closed_room, smooth_glass_and_mirrors_amid_lamps_cannot_be_seen,
-    a_white_body_in_glass_amid_lamps_cannot_be_seen, a_smooth_glass_ball_focuses_the_power_that_optics_predicts);
+    no_photon_leaves_a_closed_room, photons_and_shadow_rays_light_by_the_same_normals,
+    smooth_glass_and_mirrors_amid_lamps_cannot_be_seen, a_white_body_in_glass_amid_lamps_cannot_be_seen,
+    a_smooth_glass_ball_focuses_the_power_that_optics_predicts);
 
 } // namespace photongrid::testing
