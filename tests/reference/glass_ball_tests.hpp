@@ -208,7 +208,7 @@ namespace {
     TEST(validation, a_glass_ball_of_triangles_has_it_too)
     {
         const ball_on_axis ball;
-        expect_profile(ball, ball.as_scene_of_triangles(20'000), 1.5);
+        expect_profile(ball, ball.as_scene_of_triangles(20'000), 1.3);
     }
 
 } // namespace

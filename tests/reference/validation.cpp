@@ -5,3 +5,4 @@
 #include "glass_ball_tests.hpp"
 #include "mirror_tests.hpp"
 #include "nearest_tests.hpp"
+#include "shading_normal_tests.hpp"

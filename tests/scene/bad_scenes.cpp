@@ -201,6 +201,20 @@ namespace {
                         = std::make_shared<const mesh>(mesh{{{0, static_cast<float>(nan), 0}}, {{0, 0, 0}}});
                 },
                 "meshes[1].mesh: positions[0]"},
+            {"mesh with too few normals",
+                [](scene& x) {
+                    auto m = *x.meshes[0].surface;
+                    m.normals = {{0, 1, 0}};
+                    x.meshes[0].surface = std::make_shared<const mesh>(m);
+                },
+                "meshes[0].mesh: normals: there are 1"},
+            {"mesh with a normal that is none",
+                [](scene& x) {
+                    auto m = *x.meshes[0].surface;
+                    m.normals.assign(m.positions.size(), {0, 1, static_cast<float>(infinity)});
+                    x.meshes[0].surface = std::make_shared<const mesh>(m);
+                },
+                "meshes[0].mesh: normals[0]"},
             {"mesh nowhere", [](scene& x) { x.meshes[2].offset.y = infinity; }, "meshes[2].matrix"},
             {"mesh scaled by 0", [](scene& x) { x.meshes[2].linear[1] = dvec3(0); }, "meshes[2].matrix"},
             {"mesh of no material", [](scene& x) { x.meshes[0].material = 99; }, "meshes[0].material"},

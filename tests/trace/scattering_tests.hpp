@@ -196,6 +196,13 @@ namespace {
         }
     }
 
+    /// The factor of refraction on radiance, for rays aimed from a distance: from outside those of the ball enter it.
+    double radiance_scale(const material& m, double distance)
+    {
+        const double n2 = m.index_of_refraction * m.index_of_refraction;
+        return distance > 1 ? 1 / n2 : n2;
+    }
+
     TEST(scattering, eye_rays_have_the_throughput_of_their_branch)
     {
         for (const auto& m : materials)
@@ -214,7 +221,7 @@ namespace {
                         bool reflected = true;
                         if (m.kind == material_kind::glass) {
                             reflected = branch == 1;
-                            share = reflected ? in.reflectance() : 1 - in.reflectance();
+                            share = reflected ? in.reflectance() : (1 - in.reflectance()) * radiance_scale(m, distance);
                         }
                         if (share == 0) {
                             ASSERT_EQ(e.points[i].w, -1.0f) << "a branch without light ends";
@@ -242,10 +249,12 @@ namespace {
             for (std::size_t i = 0; i < origins.size(); ++i) {
                 const incidence in(ways[i], outwards[i], m);
                 const double share = in.reflectance();
-                reflections += glm::dot(dvec3(glm::vec3(e.directions[i])), in.normal) > 0 ? 1 : 0;
+                const bool reflected = glm::dot(dvec3(glm::vec3(e.directions[i])), in.normal) > 0;
+                reflections += reflected ? 1 : 0;
                 expected += share;
                 variance += share * (1 - share);
-                ASSERT_TRUE(close(dvec3(glm::vec3(e.throughputs[i])), m.reflectance, 1e-6)) << i;
+                const double scale = reflected ? 1 : radiance_scale(m, distance);
+                ASSERT_TRUE(close(dvec3(glm::vec3(e.throughputs[i])), scale * m.reflectance, 1e-6)) << i;
             }
             EXPECT_LE(std::abs(reflections - expected), far_off * std::sqrt(variance)) << distance;
         }
@@ -271,7 +280,7 @@ namespace {
                 reflections += reflected ? 1 : 0;
                 expected += p;
                 variance += p * (1 - p);
-                const double counts = reflected ? share / p : (1 - share) / (1 - p);
+                const double counts = reflected ? share / p : (1 - share) / (1 - p) * radiance_scale(m, distance);
                 ASSERT_TRUE(close(
                     dvec3(glm::vec3(e.throughputs[i])), double{faint} * counts * m.reflectance, 2e-3 * double{faint}))
                     << i;
