@@ -61,6 +61,8 @@ namespace {
             return static_cast<double>((s * s + p * p) / 2);
         }
         dvec3 reflected() const { return d + 2 * cosine * normal; }
+        /// Of an eye ray that is refracted: radiance divided by the index squared is constant.
+        double radiance_scale() const { return from * from / (to * to); }
         /// Snell's law.
         dvec3 refracted() const
         {
@@ -196,13 +198,6 @@ namespace {
         }
     }
 
-    /// The factor of refraction on radiance, for rays aimed from a distance: from outside those of the ball enter it.
-    double radiance_scale(const material& m, double distance)
-    {
-        const double n2 = m.index_of_refraction * m.index_of_refraction;
-        return distance > 1 ? 1 / n2 : n2;
-    }
-
     TEST(scattering, eye_rays_have_the_throughput_of_their_branch)
     {
         for (const auto& m : materials)
@@ -221,7 +216,7 @@ namespace {
                         bool reflected = true;
                         if (m.kind == material_kind::glass) {
                             reflected = branch == 1;
-                            share = reflected ? in.reflectance() : (1 - in.reflectance()) * radiance_scale(m, distance);
+                            share = reflected ? in.reflectance() : (1 - in.reflectance()) * in.radiance_scale();
                         }
                         if (share == 0) {
                             ASSERT_EQ(e.points[i].w, -1.0f) << "a branch without light ends";
@@ -253,7 +248,7 @@ namespace {
                 reflections += reflected ? 1 : 0;
                 expected += share;
                 variance += share * (1 - share);
-                const double scale = reflected ? 1 : radiance_scale(m, distance);
+                const double scale = reflected ? 1 : in.radiance_scale();
                 ASSERT_TRUE(close(dvec3(glm::vec3(e.throughputs[i])), scale * m.reflectance, 1e-6)) << i;
             }
             EXPECT_LE(std::abs(reflections - expected), far_off * std::sqrt(variance)) << distance;
@@ -280,7 +275,7 @@ namespace {
                 reflections += reflected ? 1 : 0;
                 expected += p;
                 variance += p * (1 - p);
-                const double counts = reflected ? share / p : (1 - share) / (1 - p) * radiance_scale(m, distance);
+                const double counts = reflected ? share / p : (1 - share) / (1 - p) * in.radiance_scale();
                 ASSERT_TRUE(close(
                     dvec3(glm::vec3(e.throughputs[i])), double{faint} * counts * m.reflectance, 2e-3 * double{faint}))
                     << i;
