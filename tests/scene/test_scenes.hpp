@@ -94,7 +94,8 @@ inline scene all_shapes()
     return s;
 }
 
-/// The same with meshes: a glass one, a white one that is mirrored, and a metal one that shares its surface.
+/// The same with meshes: a glass one with normals, a white one that is mirrored, and a metal one that shares its
+/// surface.
 inline scene all_shapes_and_meshes()
 {
     auto s = all_shapes();
@@ -102,7 +103,9 @@ inline scene all_shapes_and_meshes()
     // A tetrahedron, seen from outside counterclockwise.
     const auto surface = std::make_shared<const mesh>(
         mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}});
-    s.meshes = {{"", surface, glm::dmat3(0.5), {0.7, 0.05, 0.9}, 2},
+    auto smooth = *surface;
+    smooth.normals = {{-1, -1, -1}, {1, 0, 0}, {0, 2, 0.5f}, {0, 0, 1}};
+    s.meshes = {{"", std::make_shared<const mesh>(smooth), glm::dmat3(0.5), {0.7, 0.05, 0.9}, 2},
         {"", surface, glm::dmat3(-0.4, 0, 0, 0, 0.5, 0, 0, 0, 0.4), {-0.5, 0.01, 1.2}, 0},
         {"", surface, glm::dmat3(0.3, 0, 0.1, 0, 0.6, 0, -0.1, 0, 0.3), {-1.6, 0.02, 1.2}, 1}};
     return s;
