@@ -43,7 +43,7 @@ void kernel(uint i)
         for (uint s = args.first; s < past; ++s) {
             LightSample found = light_sample(seen, number, s, i, lit);
             if (!(found.per_power > 0.0f)
-                || (found.has_ray && occluded(lit.origin, found.direction, found.length, between)))
+                || (found.has_ray && occluded(lit.origin, found.direction, found.far, between)))
                 continue;
             precise vec3 more = sum + seen.light.power * found.per_power;
             sum = more;

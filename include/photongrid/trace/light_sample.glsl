@@ -117,7 +117,7 @@ struct LightSample {
     float per_power; // irradiance if it is visible, divided by the light's power, m^-2
     bool has_ray;    // else it counts as visible
     vec3 direction;  // of the shadow ray, unit
-    float length;    // of the shadow ray, m
+    float far;       // length of the shadow ray, m
 };
 
 // Sample s of light `number`, for element i. The sample of an area light is a random point of its stratum. A stratum
@@ -128,7 +128,7 @@ LightSample light_sample(SeenLight seen, uint number, uint s, uint i, LitPoint l
     none.per_power = 0.0f;
     none.has_ray = false;
     none.direction = lit.normal;
-    none.length = 0.0f;
+    none.far = 0.0f;
     vec3 corner = seen.light.position;
     vec3 target = corner;
     vec3 stratum = corner;
@@ -184,6 +184,6 @@ LightSample light_sample(SeenLight seen, uint number, uint s, uint i, LitPoint l
     // For a stratum partly below the horizon, samples below it count as visible.
     found.has_ray = cosine > 0.0f;
     found.direction = direction;
-    found.length = seen.area ? far : far * 0.9999f; // a point light may touch a surface
+    found.far = seen.area ? far : far * 0.9999f; // a point light may touch a surface
     return found;
 }

@@ -40,8 +40,8 @@ void kernel(uint i)
         return; // all samples of a point light are the same
     LightSample found = light_sample(seen, args.light, args.sample_id, args.first + i, lit);
     if (!(found.per_power > 0.0f)
-        || (found.has_ray && occluded(lit.origin, found.direction, found.length, everything())))
+        || (found.has_ray && occluded(lit.origin, found.direction, found.far, everything())))
         return;
-    origin = vec4(lit.origin.x, lit.origin.y, lit.origin.z, found.has_ray ? found.length : 0.0f);
+    origin = vec4(lit.origin.x, lit.origin.y, lit.origin.z, found.has_ray ? found.far : 0.0f);
     direction = vec4(found.direction.x, found.direction.y, found.direction.z, found.per_power);
 }
