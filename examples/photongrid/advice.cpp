@@ -20,6 +20,8 @@ namespace {
     }
     std::string point(const dvec3& p) { return text('(', p.x, ", ", p.y, ", ", p.z, ')'); }
 
+    std::string count(std::size_t n, const char* what) { return text(n, ' ', what, n == 1 ? "" : "s"); }
+
     bounds bounds_of(const scene& s)
     {
         bounds b;
@@ -46,6 +48,26 @@ namespace {
         return true;
     }
 
+    /// What of the meshes is kept although it has no meaning by itself.
+    void add_oddities(std::vector<std::string>& odd, const scene& s)
+    {
+        std::size_t without_area = 0, without_normal = 0;
+        for (const auto& m : s.meshes) {
+            for (std::size_t t = 0; t < m.surface->triangles.size(); ++t) {
+                const auto c = corners_of(m, t);
+                without_area += glm::cross(c[1] - c[0], c[2] - c[0]) == dvec3(0) ? 1 : 0;
+            }
+            for (const auto& n : m.surface->normals)
+                without_normal += n == glm::vec3(0) ? 1 : 0;
+        }
+        if (without_area > 0)
+            odd.push_back(
+                count(without_area, "triangle") + " of meshes without area; such close cracks, so they are kept");
+        if (without_normal > 0)
+            odd.push_back(
+                count(without_normal, "normal") + " of meshes of length 0; the other corners' normals decide");
+    }
+
     std::string size_of(const bounds& b)
     {
         const dvec3 size = b.high - b.low;
@@ -55,7 +77,6 @@ namespace {
 
 std::string summary_of(const scene& s)
 {
-    const auto count = [](std::size_t n, const char* what) { return text(n, ' ', what, n == 1 ? "" : "s"); };
     std::size_t triangles = 0;
     for (const auto& m : s.meshes)
         triangles += m.surface->triangles.size();
@@ -79,6 +100,7 @@ std::vector<std::string> oddities(const scene& s)
     };
     for_each_shape(s, use);
     use(s.meshes, nullptr);
+    add_oddities(odd, s);
     for (std::uint32_t m = 0; m < s.materials.size(); ++m)
         if (!used.contains(m))
             odd.push_back(text("no shape has the material \"", s.materials[m].name, '"'));

@@ -145,6 +145,21 @@ namespace {
         }
     }
 
+    TEST_F(program_on_odd_scenes, says_what_of_a_mesh_has_no_area_or_normal)
+    {
+        auto odd = whole;
+        std::ofstream(folder / "odd.ply")
+            << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+               "z\nproperty "
+               "float nx\nproperty float ny\nproperty float nz\nelement face 2\nproperty list uchar int "
+               "vertex_indices\nend_header\n0 0 0 0 1 0\n0.1 0 0 0 0 0\n0 0.1 0 1 0 0\n3 0 1 2\n3 0 1 1\n";
+        const auto material = odd["shapes"][0]["material"];
+        odd["shapes"].push_back({{"type", "mesh"}, {"file", "odd.ply"}, {"material", material}});
+        expect(draw(odd), {});
+        expect(run({"check", "s.json"}).out,
+            {"meshes of 2 triangles", "1 triangle of meshes without area", "1 normal of meshes of length 0"});
+    }
+
     TEST_F(program_on_odd_scenes, says_what_the_camera_misses)
     {
         auto away = whole; // straight up
