@@ -30,8 +30,7 @@ namespace {
                 kind.add_bounds(b, x);
         };
         for_each_shape(s, add);
-        for (const auto& m : s.meshes)
-            add_bounds(b, m);
+        add(s.meshes, shape_kind<placed_mesh>{});
         for_each_light(s, add);
         return b;
     }

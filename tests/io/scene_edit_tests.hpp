@@ -121,6 +121,28 @@ namespace {
         }
     }
 
+    TEST(scene_edit, moves_meshes_where_their_place_is_written)
+    {
+        for (const auto& [before, after] :
+            {std::pair{R"("material": "white"})", R"("material": "white", "translate": [1, 0, -0.5]})"},
+                {R"("translate": [10, 0, 0.5], "material": "white"})",
+                    R"("translate": [11, 0, 0], "material": "white"})"},
+                {R"("matrix": [[2, 0, 0, 1], [0, 1, 0, 0], [0, 0, 1, 0]], "material": "white"})",
+                    R"("matrix": [[2, 0, 0, 2], [0, 1, 0, 0], [0, 0, 1, -0.5]], "material": "white"})"}}) {
+            const std::string triangle
+                = R"({"type": "mesh", "positions": [[0, 0, 0], [9, 0, 0], [0, 9, 0]], "triangles": [[0, 1, 2]], )";
+            const std::string ball = R"({"material": "white", "type": "sphere")";
+            const auto text = with(by_hand, ball, triangle + before + ",\n  " + ball);
+            auto s = parse_scene("s.json", text);
+            s.meshes.at(0).offset += dvec3(0.001, 0, -0.0005);
+            const auto changed = edited_scene_text("s.json", text, s, s.render);
+            EXPECT_EQ(changed, with(by_hand, ball, triangle + after + ",\n  " + ball));
+            EXPECT_LT(glm::length(parse_scene("s.json", changed).meshes.at(0).offset - s.meshes[0].offset), 1e-15);
+            s.meshes[0].linear[0][0] *= 2;
+            EXPECT_THROW((void)edited_scene_text("s.json", text, s, s.render), std::invalid_argument);
+        }
+    }
+
     TEST(scene_edit, refuses_other_scenes)
     {
         const auto s = parse_scene("s.json", by_hand);

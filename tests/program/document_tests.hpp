@@ -85,8 +85,9 @@ namespace {
 
     TEST(scene_parts, what_is_moved_moves_alone_and_back)
     {
-        const auto s = testing::all_shapes();
+        const auto s = testing::all_shapes_and_meshes();
         const auto parts = parts_of(s);
+        EXPECT_EQ(parts.back().name, "mesh, gold");
         for (std::size_t p = 0; p < parts.size(); ++p) {
             auto moved = s;
             move(moved, parts[p], {0.25, -0.5, 1});
@@ -101,6 +102,23 @@ namespace {
             auto again = parts_of(moved);
             EXPECT_EQ(again, parts);
         }
+    }
+
+    TEST(scene_parts, a_pick_finds_the_mesh_that_is_seen)
+    {
+        auto s = testing::with_meshes(small_cornell());        // floor, ceiling, back, red and green
+        s.point_lights = {{"bulb", {0.1, 0.2, -2}, dvec3(1)}}; // behind the camera
+        const auto parts = parts_of(s);
+        const auto seen_at = [&](double x, double y) {
+            const auto found = pick(s, parts, 200, 200, x, y);
+            const auto meshes
+                = found ? items_of<placed_mesh>(s, parts[found->part]) : std::vector<const placed_mesh*>();
+            return meshes.size() == 1 ? meshes[0] - s.meshes.data() : -1;
+        };
+        EXPECT_EQ(seen_at(100, 195), 0);
+        EXPECT_EQ(seen_at(100, 20), 2);
+        EXPECT_EQ(seen_at(3, 100) + seen_at(197, 100), 3 + 4);
+        EXPECT_EQ(seen_at(60, 150), -1) << "a ball";
     }
 
     TEST(scene_parts, a_pick_finds_what_is_seen_and_a_drag_keeps_it_under_the_mouse)

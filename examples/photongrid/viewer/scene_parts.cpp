@@ -120,13 +120,20 @@ std::optional<grip> pick(
     if (hit.shape == reference::nothing)
         return std::nullopt;
 
-    // The reference numbers shapes in the order of the lists, then rectangle lights, which are the next list.
+    // The reference numbers shapes in the order of the lists, then rectangle lights, which are the next list, then the
+    // triangles of meshes.
     std::size_t before = 0;
     std::optional<scene_item> hit_item;
     for_each_list(s, [&](const auto& list, auto, std::size_t number) {
-        if (!hit_item && hit.shape < before + list.size())
-            hit_item = scene_item{number, hit.shape - before};
-        before += list.size();
+        using item = typename std::decay_t<decltype(list)>::value_type;
+        for (std::size_t i = 0; i < list.size() && !hit_item; ++i) {
+            if constexpr (std::is_same_v<item, placed_mesh>)
+                before += list[i].surface->triangles.size();
+            else if constexpr (!std::is_same_v<item, point_light>)
+                ++before;
+            if (hit.shape < before)
+                hit_item = scene_item{number, i};
+        }
     });
     for (std::size_t p = 0; p < parts.size(); ++p)
         if (hit_item && std::find(parts[p].items.begin(), parts[p].items.end(), *hit_item) != parts[p].items.end())

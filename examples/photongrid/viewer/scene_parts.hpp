@@ -10,7 +10,7 @@
 namespace photongrid::viewer {
 
 /// A shape or a light of the scene: the number of its list, first those of shape_lists(), then those of light_lists(),
-/// and its index there.
+/// then the meshes, and its index there.
 struct scene_item {
     std::size_t list = 0;  ///< number of the list
     std::size_t index = 0; ///< in the list
@@ -26,7 +26,7 @@ struct scene_part {
     bool operator==(const scene_part&) const = default;
 };
 
-/// Calls f(list, kind, number) for each list of shapes and of lights (shape_kind, light_kind).
+/// Calls f(list, kind, number) for each list of shapes, of lights and of meshes (shape_kind, light_kind).
 template <class Scene, class F>
 void for_each_list(Scene& s, F&& f)
 {
@@ -34,6 +34,7 @@ void for_each_list(Scene& s, F&& f)
     const auto next = [&](auto& list, auto kind) { f(list, kind, number++); };
     for_each_shape(s, next);
     for_each_light(s, next);
+    next(s.meshes, shape_kind<placed_mesh>{});
 }
 
 /// Calls f(item, kind) for each shape or light of `part`.

@@ -43,11 +43,10 @@ namespace {
         {
             if (s.name != before_.name || s.materials != before_.materials)
                 throw_other("name or materials");
-            if (s.meshes != before_.meshes)
-                throw_other("meshes");
             edit_camera(s.camera);
             edit_parts(at(root(), "shapes"), s, [](auto& of, const auto& f) { for_each_shape(of, f); });
             edit_parts(at(root(), "lights"), s, [](auto& of, const auto& f) { for_each_light(of, f); });
+            edit_meshes(s.meshes);
             edit_settings(settings);
             return replaced();
         }
@@ -160,6 +159,27 @@ namespace {
                 if (const auto& type = at(v, "type").text; type == kind || (triangles_too && type == triangle_name))
                     items.push_back(&v);
             return items;
+        }
+
+        /// Meshes may have moved.
+        void edit_meshes(const std::vector<placed_mesh>& meshes)
+        {
+            using kind = shape_kind<placed_mesh>;
+            const auto items = items_of(at(root(), "shapes"), kind::name, false);
+            if (meshes.size() != before_.meshes.size())
+                throw_other("number of meshes");
+            for (std::size_t i = 0; i < meshes.size(); ++i) {
+                const auto &was = before_.meshes[i].offset, &is = meshes[i].offset;
+                if (!same_but_for_fields(before_.meshes[i], meshes[i], kind{}))
+                    throw_other("mesh, or scale, rotation or material of one");
+                if (const auto* matrix = items[i]->find("matrix"))
+                    for (int row = 0; row < 3; ++row)
+                        edit(matrix->items[static_cast<std::size_t>(row)].items[3], length_, was[row], is[row]);
+                else if (const auto* translate = items[i]->find("translate"))
+                    edit(*translate, length_, was, is);
+                else if (was != is)
+                    add_member(*items[i], "translate", three_text(is, length_));
+            }
         }
 
         // --- settings ---

@@ -202,7 +202,7 @@ namespace {
         {
             const auto& type = type_of(v, "shape", shape_names());
             open(v, type);
-            if (type == mesh_name)
+            if (type == shape_kind<placed_mesh>::name)
                 read_mesh(v);
             for_each_shape(scene_, [&](auto& list, auto kind) {
                 using shape = typename std::decay_t<decltype(list)>::value_type;

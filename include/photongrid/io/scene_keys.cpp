@@ -54,7 +54,7 @@ namespace {
                     kinds.push_back({triangle_name, keys});
                 kinds.push_back({kind.name, keys});
             });
-            kinds.push_back({mesh_name, {std::begin(mesh_keys), std::end(mesh_keys)}});
+            kinds.push_back({shape_kind<placed_mesh>::name, {std::begin(mesh_keys), std::end(mesh_keys)}});
             return kinds;
         }();
         return all;

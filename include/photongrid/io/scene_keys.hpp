@@ -23,9 +23,6 @@ struct object_keys {
 /// In scene files, another name for a polygon with three vertices.
 inline constexpr const char* triangle_name = "triangle";
 
-/// In scene files, the type of a placed_mesh among the shapes.
-inline constexpr const char* mesh_name = "mesh";
-
 /// Every kind of object.
 std::span<const object_keys> known_objects();
 

@@ -48,7 +48,7 @@ namespace {
 
     json mesh_json(const placed_mesh& m, const std::string& material)
     {
-        json all = {{"type", mesh_name}};
+        json all = {{"type", shape_kind<placed_mesh>::name}};
         if (!m.file.empty()) {
             all["file"] = m.file;
         } else {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <photongrid/scene/bounds.hpp>
+#include <photongrid/scene/fields.hpp>
 #include <photongrid/scene/mesh.hpp>
 
 #include <array>
@@ -69,13 +70,21 @@ inline void check(const placed_mesh& m)
         "matrix: makes the mesh flat; scale it by more than 0 along each axis");
 }
 
-/// Adds the corners of the mesh's triangles.
-inline void add_bounds(bounds& b, const placed_mesh& m)
-{
-    for (std::size_t t = 0; t < m.surface->triangles.size(); ++t)
-        for (const auto& c : corners_of(m, t))
-            b.add(c);
-}
+/// What of a shape_kind meshes have: kernels search them in another way, so they are in no table of theirs.
+template <>
+struct shape_kind<placed_mesh> {
+    static constexpr const char* name = "mesh";                                                    ///< in scene files
+    static constexpr const char* list = "meshes";                                                  ///< member of scene
+    static constexpr std::tuple fields{field{"translate", &placed_mesh::offset, quantity::point}}; ///< what moves it
+
+    /// Adds the corners of its triangles.
+    static void add_bounds(bounds& b, const placed_mesh& m)
+    {
+        for (std::size_t t = 0; t < m.surface->triangles.size(); ++t)
+            for (const auto& c : corners_of(m, t))
+                b.add(c);
+    }
+};
 
 } // namespace photongrid
 

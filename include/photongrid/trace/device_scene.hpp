@@ -67,8 +67,7 @@ namespace detail {
         };
         for_each_shape(s, move);
         for_each_light(s, move);
-        for (auto& m : s.meshes)
-            m.offset -= by;
+        move(s.meshes, shape_kind<placed_mesh>{});
         s.camera.position -= by;
         s.camera.look_at -= by;
         return s;
@@ -165,9 +164,9 @@ namespace detail {
             });
             for (const auto& m : s_.meshes) {
                 const auto& of = s_.materials[m.material];
-                add_bounds(all, m);
+                shape_kind<placed_mesh>::add_bounds(all, m);
                 if (is_diffuse(of))
-                    add_bounds(diffuse, m);
+                    shape_kind<placed_mesh>::add_bounds(diffuse, m);
                 out_.features |= has_meshes | entry_of(of.kind).switches;
                 out_.features |= m.surface->normals.empty() ? 0u : has_smooth_meshes;
             }
