@@ -104,6 +104,24 @@ inline specular_bounce specular(const material& m, const hit& h, const dvec3& d,
     return specular(m, d, h.normal, bounce.refracted ? 1 : -1); // of the same kind, or reflected totally
 }
 
+/// The same for power from a light. A reflection goes where an eye ray that takes it backwards comes from: by the shading
+/// normal, by the geometric one, by either at random with twice the power, or nowhere (adjoint 0).
+inline specular_bounce specular_of_light(const material& m, const hit& h, const dvec3& d, random_stream& random)
+{
+    auto bounce = specular(m, h, d, random);
+    if (bounce.refracted || h.shading == h.normal)
+        return bounce;
+    const facing_normals n(h, d);
+    const auto mirrored = [](const dvec3& v, const dvec3& normal) { return v - 2 * glm::dot(v, normal) * normal; };
+    const dvec3 other = mirrored(d, n.geometric);
+    const bool by_shading = glm::dot(mirrored(d, n.shading), n.geometric) > 0,
+               by_geometric = !(glm::dot(mirrored(-other, n.shading), n.geometric) > 0);
+    if (by_shading && by_geometric && random() < 0.5)
+        return {glm::normalize(other), 1, false, 2};
+    bounce.adjoint *= by_shading && by_geometric ? 2 : by_shading || by_geometric ? 1 : 0;
+    return bounce;
+}
+
 } // namespace photongrid::reference
 
 #include <photongrid/backend/exact_end.hpp>

@@ -199,7 +199,9 @@ private:
                 flux[bin_at(h, r.direction)] += power * facing_normals(h, r.direction).received(r.direction);
                 return 1;
             }
-            const auto bounce = specular(m, h, r.direction, random);
+            const auto bounce = specular_of_light(m, h, r.direction, random);
+            if (bounce.adjoint == 0)
+                return 0;
             power *= m.reflectance * bounce.adjoint;
             r = {h.position, bounce.direction, h.shape};
         }

@@ -122,9 +122,13 @@ void kernel(uint i)
         Fresnel f = total_reflection(d);
         if (GLASS && material.kind == GLASS_SURFACE)
             f = fresnel(d, outward_normal(hit, sides, d), material.index_of_refraction);
-        Leaving l = leave_specular(hit, sides, f, r.w < f.reflected, material.index_of_refraction, d);
+        Leaving l = photon_leaves(hit, sides, f, r.w < f.reflected, material.index_of_refraction, d, r.y);
         next = l.direction;
         if (SMOOTH) {
+            if (!(l.adjoint > 0.0f)) {
+                position.w = event_code(surface, ABSORBED, hit_before);
+                return;
+            }
             precise vec3 scaled = vec3(power) * l.adjoint;
             power = vec4(scaled.x, scaled.y, scaled.z, facing.x);
         }

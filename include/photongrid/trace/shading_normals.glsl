@@ -66,3 +66,28 @@ Leaving leave_specular(Hit hit, FacingNormals sides, Fresnel f, bool reflected, 
     }
     return l;
 }
+
+// The same for a photon, which must go where an eye ray comes from. Reflected by the shading normal it does, if that leads
+// out of the surface; and along the geometric reflection `other`, if an eye ray that comes from there falls back to the
+// geometric normal. Where both are possible, `u` chooses; where neither is, adjoint is 0.
+Leaving photon_leaves(Hit hit, FacingNormals sides, Fresnel f, bool reflected, float index, vec3 d, float u)
+{
+    Leaving l = leave_specular(hit, sides, f, reflected, index, d);
+    if (SMOOTH && reflected) {
+        vec3 outward = outward_normal(hit, sides, d);
+        vec3 other = reflect_direction(d, hit.normal);
+        bool by_shading = dot3(reflect_direction(d, outward), sides.geometric) > 0.0f;
+        bool by_geometric = !(dot3(reflect_direction(-other, outward), sides.geometric) > 0.0f);
+        if (by_shading && by_geometric) {
+            if (u < 0.5f) {
+                l.direction = other;
+                l.adjoint = 1.0f;
+            }
+            precise float doubled = 2.0f * l.adjoint;
+            l.adjoint = doubled;
+        } else if (!by_shading && !by_geometric) {
+            l.adjoint = 0.0f;
+        }
+    }
+    return l;
+}
