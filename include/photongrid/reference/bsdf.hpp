@@ -104,8 +104,8 @@ inline specular_bounce specular(const material& m, const hit& h, const dvec3& d,
     return specular(m, d, h.normal, bounce.refracted ? 1 : -1); // of the same kind, or reflected totally
 }
 
-/// The same for power from a light. A reflection goes where an eye ray that takes it backwards comes from: by the shading
-/// normal, by the geometric one, by either at random with twice the power, or nowhere (adjoint 0).
+/// The same for power from a light. A reflection goes where an eye ray that takes it backwards comes from: by the
+/// shading normal, by the geometric one, by either at random with twice the power, or nowhere (adjoint 0).
 inline specular_bounce specular_of_light(const material& m, const hit& h, const dvec3& d, random_stream& random)
 {
     auto bounce = specular(m, h, d, random);
