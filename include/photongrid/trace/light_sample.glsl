@@ -178,12 +178,12 @@ LightSample light_sample(SeenLight seen, uint number, uint s, uint i, LitPoint l
     if (!(length2 > 0.0f))
         return none;
     precise float far = sqrt(length2);
-    precise vec3 direction = ray / far;
+    precise vec3 way = ray / far;
     LightSample found;
     found.per_power = factor;
     // For a stratum partly below the horizon, samples below it count as visible.
     found.has_ray = cosine > 0.0f;
-    found.direction = direction;
+    found.direction = way;
     found.far = seen.area ? far : far * 0.9999f; // a point light may touch a surface
     return found;
 }

@@ -23,11 +23,11 @@ OUTPUT(2, vec4, shading)   // xyz: interpolated normal, unit, on the side of the
 #include <photongrid/trace/intersect/plane.glsl>
 
 // Twice the area of the triangle of p and an edge, negative where p is on the edge's other side.
-float area_at_edge(vec3 p, vec3 from, vec3 to, vec3 normal)
+float area_at_edge(vec3 p, vec3 from, vec3 to, vec3 n)
 {
     precise vec3 edge = to - from;
     precise vec3 way = p - from;
-    return dot3(cross3(edge, way), normal);
+    return dot3(cross3(edge, way), n);
 }
 
 // A point of a triangle by the weights of its corners: their sum is not 1.
@@ -38,14 +38,14 @@ struct Weighted {
 
 // Moves a point of a triangle off its edges, by the offset of rays or a quarter of the triangle's height. Where
 // surfaces meet at an edge, rays that leave the point then start on its side of the other surface.
-Weighted off_edges(vec3 p, uvec4 face, vec3 normal)
+Weighted off_edges(vec3 p, uvec4 face, vec3 n)
 {
     vec3 a = vec3(vertices(face.x));
     vec3 b = vec3(vertices(face.y));
     vec3 c = vec3(vertices(face.z));
     float off = ray_offset(p, scene(SCENE_SIZES).x);
     Weighted at;
-    at.weights = vec3(area_at_edge(p, b, c, normal), area_at_edge(p, c, a, normal), area_at_edge(p, a, b, normal));
+    at.weights = vec3(area_at_edge(p, b, c, n), area_at_edge(p, c, a, n), area_at_edge(p, a, b, n));
     at.point = p;
     precise vec3 opposite_a = c - b;
     precise vec3 opposite_b = a - c;
@@ -53,7 +53,7 @@ Weighted off_edges(vec3 p, uvec4 face, vec3 normal)
     precise vec3 least = vec3(sqrt(dot3(opposite_a, opposite_a)), sqrt(dot3(opposite_b, opposite_b)),
                              sqrt(dot3(opposite_c, opposite_c)))
         * off;
-    precise float quarter = 0.25f * dot3(cross3(opposite_c, -opposite_b), normal);
+    precise float quarter = 0.25f * dot3(cross3(opposite_c, -opposite_b), n);
     least = vec3(min(least.x, quarter), min(least.y, quarter), min(least.z, quarter));
     if (!(quarter > 0.0f)) {
         at.weights = vec3(1.0f, 1.0f, 1.0f); // a line or a point
@@ -69,15 +69,15 @@ Weighted off_edges(vec3 p, uvec4 face, vec3 normal)
 }
 
 // The normals of a triangle's vertices, weighted; the geometric normal where they cancel out.
-vec3 shading_normal(uvec4 face, vec3 weights, vec3 normal)
+vec3 shading_normal(uvec4 face, vec3 weights, vec3 geometric)
 {
     precise vec3 sum = vec3(normals(face.x)) * weights.x + vec3(normals(face.y)) * weights.y
         + vec3(normals(face.z)) * weights.z;
     precise vec3 scaled = sum / largest3(vec3(abs(sum.x), abs(sum.y), abs(sum.z)));
     vec3 n = normalized3(scaled);
     if (!is_finite3(n))
-        return normal;
-    return dot3(n, normal) < 0.0f ? -n : n;
+        return geometric;
+    return dot3(n, geometric) < 0.0f ? -n : n;
 }
 
 void kernel(uint i)
