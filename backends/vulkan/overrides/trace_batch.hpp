@@ -11,15 +11,17 @@ namespace photongrid {
 
 /// Computes the same frames as the generic trace_batch, except that the powers and directions of paths that ended
 /// earlier are not written.
-inline uint trace_batch(vulkan_backend& device, const device_scene<vulkan_backend>& s,
-    detail::photon_frames<vulkan_backend>& f, uint paths, uint first, const render_settings& settings)
+template <backend B>
+requires std::same_as<B, vulkan_backend> uint trace_batch(B& device, const device_scene<B>& s,
+    detail::photon_frames<B>& f, uint paths, uint first, const render_settings& settings)
 {
     const auto& layout = s.layout;
     if (s.has_meshes()) // other passes come between bounces
-        return trace_batch<vulkan_backend>(device, s, f, paths, first, settings);
-    const detail::mesh_hits<vulkan_backend> none(device, s, 0);
-    device.run<kernels::emit_photon>({paths, 0u, layout.features}, {.first_path = first, .seed = settings.seed},
-        reads(s.records), writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
+        return detail::trace_batch_by_passes(device, s, f, paths, first, settings);
+    const detail::mesh_hits<B> none(device, s, 0);
+    device.template run<kernels::emit_photon>({paths, 0u, layout.features},
+        {.first_path = first, .seed = settings.seed}, reads(s.records),
+        writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
     constexpr uint together = 8;
     uint frame = 1;
     for (bool finished = false; !finished && frame <= settings.map.photon_depth;) {
@@ -28,11 +30,12 @@ inline uint trace_batch(vulkan_backend& device, const device_scene<vulkan_backen
         const auto ended = std::bit_cast<uint>(
             kernels::event_code(kernels::NO_SURFACE, kernels::ENDED_BEFORE, kernels::NOTHING_BEFORE));
         device.fill(f.positions, std::size_t{frame} * paths, std::size_t{passes} * paths, ended);
-        const auto p = device.run_frames<kernels::bounce_photon>({paths, frame * paths, layout.features}, paths,
-            {.paths = paths, .first_path = first, .last_frame = settings.map.photon_depth, .seed = settings.seed},
-            reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, none.places,
-                none.normals, none.shadings),
-            writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions), passes);
+        const auto p
+            = device.template run_frames<kernels::bounce_photon>({paths, frame * paths, layout.features}, paths,
+                {.paths = paths, .first_path = first, .last_frame = settings.map.photon_depth, .seed = settings.seed},
+                reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, none.places,
+                    none.normals, none.shadings),
+                writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions), passes);
         frame += p.passes;
         finished = p.finished;
     }

@@ -71,6 +71,36 @@ namespace detail {
         } while (n > 1);
         return t;
     }
+
+    /// trace_batch by a pass for each bounce.
+    template <backend B>
+    uint trace_batch_by_passes(B& device, const device_scene<B>& s, photon_frames<B>& f, uint paths, uint first,
+        const render_settings& settings)
+    {
+        const auto& layout = s.layout;
+        mesh_hits<B> hits(device, s, paths);
+        mesh_rays<B> rays(device, s.has_meshes() ? paths : 0);
+        device.template run<kernels::emit_photon>({paths, 0u, layout.features},
+            {.first_path = first, .seed = settings.seed}, reads(s.records),
+            writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
+        uint frame = 1;
+        for (; frame <= settings.map.photon_depth; ++frame) {
+            if (s.has_meshes()) {
+                device.template run<kernels::photon_to_search>(paths, {.first = (frame - 1) * paths},
+                    reads(f.positions, f.next_origins, f.next_directions), writes(rays.origins, rays.directions));
+                rays.find(device, s, hits);
+            }
+            device.template run<kernels::bounce_photon>({paths, frame * paths, layout.features},
+                {.paths = paths, .first_path = first, .last_frame = settings.map.photon_depth, .seed = settings.seed},
+                reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, hits.places,
+                    hits.normals, hits.shadings),
+                writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
+            if (frame % 8 == 0
+                && checked_count<kernels::path_goes_on>(device, {paths, frame * paths}, {}, reads(f.positions)) == 0)
+                return frame + 1;
+        }
+        return frame;
+    }
 } // namespace detail
 
 /// Traces `paths` paths from id `first` on, and returns the number of frames. Every 8 bounces it counts the paths that
@@ -79,30 +109,7 @@ template <backend B>
 uint trace_batch(B& device, const device_scene<B>& s, detail::photon_frames<B>& f, uint paths, uint first,
     const render_settings& settings)
 {
-    const auto& layout = s.layout;
-    detail::mesh_hits<B> hits(device, s, paths);
-    detail::mesh_rays<B> rays(device, s.has_meshes() ? paths : 0);
-    device.template run<kernels::emit_photon>({paths, 0u, layout.features},
-        {.first_path = first, .seed = settings.seed}, reads(s.records),
-        writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
-    uint frame = 1;
-    for (; frame <= settings.map.photon_depth; ++frame) {
-        if (s.has_meshes()) {
-            device.template run<kernels::photon_to_search>(paths, {.first = (frame - 1) * paths},
-                reads(f.positions, f.next_origins, f.next_directions), writes(rays.origins, rays.directions));
-            rays.find(device, s, hits);
-        }
-        device.template run<kernels::bounce_photon>({paths, frame * paths, layout.features},
-            {.paths = paths, .first_path = first, .last_frame = settings.map.photon_depth, .seed = settings.seed},
-            reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, hits.places,
-                hits.normals, hits.shadings),
-            writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
-        if (frame % 8 == 0
-            && detail::checked_count<kernels::path_goes_on>(device, {paths, frame * paths}, {}, reads(f.positions))
-                == 0)
-            return frame + 1;
-    }
-    return frame;
+    return detail::trace_batch_by_passes(device, s, f, paths, first, settings);
 }
 
 /// What photon tracing does in a scene where no path stores a photon, as under a bulb over a bare floor.
