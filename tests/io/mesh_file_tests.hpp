@@ -250,6 +250,22 @@ namespace {
         }
     }
 
+    TEST(mesh_in_a_scene, may_be_a_light)
+    {
+        auto lines = good;
+        lines[11] = R"(  {"type": "mesh_light", "name": "ember", "power": [1, 2, 3], "translate": [0, 1, 0], )"
+            + inline_square + "}],";
+        const auto s = parse_scene("s.json", text(lines));
+        ASSERT_EQ(s.mesh_lights.size(), 1u);
+        EXPECT_EQ(s.mesh_lights[0].name, "ember");
+        EXPECT_EQ(s.mesh_lights[0].power, dvec3(1, 2, 3));
+        EXPECT_EQ(s.mesh_lights[0].surface.offset, dvec3(0, 1, 0));
+        EXPECT_EQ(s.mesh_lights[0].surface.surface->positions, square_positions);
+        EXPECT_TRUE(parse_scene("again.json", scene_text(s, s.render)) == s);
+        lines[11] = R"(  {"type": "mesh_light", "power": 1, "positions": [[0, 0, 0]], "triangles": [[0, 0, 0]]}],)";
+        expect_refusal(refusal(text(lines)), "12:3", {"no area"});
+    }
+
     TEST(mesh_in_a_scene, mirrored_by_a_negative_scale_keeps_its_outside)
     {
         const auto volume = [](const placed_mesh& m) {

@@ -2,6 +2,7 @@
 // committed corpus (scene_corpus.cpp) hold it to the same function.
 #pragma once
 
+#include <photongrid/io/ply_file.hpp>
 #include <photongrid/io/scene_file.hpp>
 
 #include <photongrid/map/map_buffers.hpp>
@@ -78,11 +79,30 @@ namespace detail {
     }
 } // namespace detail
 
+/// Reads `bytes` as a PLY file, with the same result as broken_promise.
+inline std::string broken_in_ply(std::string_view bytes)
+{
+    mesh m;
+    try {
+        m = parse_ply("s.json.ply", bytes);
+    } catch (const scene_error& e) {
+        return detail::broken_in_message(e, bytes);
+    }
+    try {
+        check(m);
+        return m.triangles.size() > bytes.size() ? "more triangles than bytes" : "";
+    } catch (const std::invalid_argument& e) {
+        return std::string("check() refuses what the reader took: ") + e.what();
+    }
+}
+
 /// Reads `text` as a scene and lays it out for a device. Returns the violated guarantee, or "": either a good
 /// scene_error, or a scene that check() takes and that lay_out() takes or refuses with std::invalid_argument.
 inline std::string broken_promise(std::string_view text)
 {
     try {
+        if (text.starts_with("ply"))
+            return broken_in_ply(text);
         scene s;
         try {
             s = parse_scene("s.json", std::string(text));

@@ -171,7 +171,7 @@ namespace {
                 }
                 ++scenes_read;
                 const auto text = scene_text(s, s.render);
-                const auto again = parse_scene("again.json", text);
+                const auto again = parse_scene((f.path().parent_path() / "again.json").string(), text);
                 EXPECT_TRUE(again == s) << f.path() << " is written as\n" << text;
                 EXPECT_EQ(scene_text(again, again.render), text);
             }

@@ -64,7 +64,9 @@ namespace {
     TEST(reference_meshes, draw_what_their_polygons_draw)
     {
         const auto s = testing::small_cornell();
-        const auto m = testing::with_meshes(s);
+        auto m = testing::with_meshes(s);
+        m.mesh_lights = {{"lamp", testing::mesh_of(surface_of(s.rectangle_lights[0])), s.rectangle_lights[0].power}};
+        m.rectangle_lights.clear();
         auto settings = quick(24, 24, 64);
         settings.paths = 1 << 18;
         settings.area_light_caustics = caustics_by::bins; // of the triangles too

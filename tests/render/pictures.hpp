@@ -39,6 +39,8 @@ inline dvec3 power_of_lights(const scene& s)
         total += l.power;
     for (const auto& l : s.point_lights)
         total += l.power;
+    for (const auto& l : s.mesh_lights)
+        total += l.power;
     return total;
 }
 

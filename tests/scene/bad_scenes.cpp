@@ -145,6 +145,7 @@ namespace {
                 [](scene& x) {
                     x.point_lights.clear();
                     x.rectangle_lights.clear();
+                    x.mesh_lights.clear();
                 },
                 "lights:"},
             {"disk without a normal", [](scene& x) { x.disks[0].normal = dvec3(0); }, "disks[0]"},
@@ -217,6 +218,16 @@ namespace {
                 "meshes[0].mesh: normals[0]"},
             {"mesh nowhere", [](scene& x) { x.meshes[2].offset.y = infinity; }, "meshes[2].matrix"},
             {"mesh scaled by 0", [](scene& x) { x.meshes[2].linear[1] = dvec3(0); }, "meshes[2].matrix"},
+            {"light of no mesh", [](scene& x) { x.mesh_lights[0].surface.surface = nullptr; },
+                "mesh_lights[0].surface"},
+            {"light without area",
+                [](scene& x) {
+                    x.mesh_lights[0].surface.surface
+                        = std::make_shared<const mesh>(mesh{{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 1}}});
+                },
+                "mesh_lights[0].triangles"},
+            {"dark mesh", [](scene& x) { x.mesh_lights[0].power = dvec3(0); }, "mesh_lights[0].power"},
+            {"light nowhere", [](scene& x) { x.mesh_lights[0].surface.offset.z = nan; }, "mesh_lights[0].matrix"},
             {"mesh of no material", [](scene& x) { x.meshes[0].material = 99; }, "meshes[0].material"},
             {"camera nowhere", [](scene& x) { x.camera.position.x = nan; }, "position"},
             {"camera at its target", [](scene& x) { x.camera.look_at = x.camera.position; }, "position and look_at"},

@@ -70,6 +70,27 @@ TEST(loop_limits, lamps_multiply_and_never_wrap)
     EXPECT_THROW(detail::check_loops(wide, limited_device()), std::invalid_argument);
 }
 
+/// As shapes that single precision cannot resolve beside the rest of the scene.
+TEST(meshes, too_small_for_the_scene_are_refused)
+{
+    for (const double size : {1e-4, 1e-6}) { // of a floor of 2 m
+        auto s = polygons_under_a_lamp(1, 20);
+        s.meshes = {mesh_of({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0})};
+        s.meshes[0].linear = glm::dmat3(size);
+        auto lamp = polygons_under_a_lamp(1, 20);
+        lamp.mesh_lights = {{"ember", s.meshes[0], dvec3(1)}};
+        for (const auto& [with, name] : {std::pair{s, "meshes[0]"}, {lamp, "mesh_lights[0]"}})
+            try {
+                const auto layout = lay_out(with);
+                EXPECT_GT(size, 1e-5);
+                EXPECT_EQ(layout.meshes.faces.size(), 1u);
+            } catch (const std::invalid_argument& e) {
+                EXPECT_LT(size, 1e-5);
+                EXPECT_EQ(std::string(e.what()).find(name), 0u) << e.what();
+            }
+    }
+}
+
 TEST(records, are_as_many_as_single_precision_can_number)
 {
     // The largest integer to which all smaller ones are floats.

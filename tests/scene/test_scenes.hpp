@@ -94,7 +94,7 @@ inline scene all_shapes()
     return s;
 }
 
-/// The same with meshes: a glass one with normals, a white one that is mirrored, and a metal one that shares its
+/// The same with meshes: a glass one with normals, a white one that is mirrored, a metal one and a lamp that share its
 /// surface.
 inline scene all_shapes_and_meshes()
 {
@@ -108,6 +108,8 @@ inline scene all_shapes_and_meshes()
     s.meshes = {{"", std::make_shared<const mesh>(smooth), glm::dmat3(0.5), {0.7, 0.05, 0.9}, 2},
         {"", surface, glm::dmat3(-0.4, 0, 0, 0, 0.5, 0, 0, 0, 0.4), {-0.5, 0.01, 1.2}, 0},
         {"", surface, glm::dmat3(0.3, 0, 0.1, 0, 0.6, 0, -0.1, 0, 0.3), {-1.6, 0.02, 1.2}, 1}};
+    s.mesh_lights
+        = {{"ember", {"", surface, glm::dmat3(0.2, 0, 0, 0, -0.3, 0, 0, 0, 0.1), {1.5, 1.2, 1}, 0}, {5, 3, 1}}};
     return s;
 }
 

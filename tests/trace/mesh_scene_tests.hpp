@@ -175,6 +175,65 @@ TYPED_TEST_P(mesh_scenes, photons_and_shadow_rays_light_by_the_same_normals)
     EXPECT_NEAR(direct.pixels[8 * 16 + 8].x, 0.8 / M_PI * 10 / (4 * M_PI * distance2) * glm::dot(way, normal), 0.05);
 }
 
+/// A closed room whose walls are one mesh that emits 1, 2 and 4 W/(m^2 sr), by triangles of many sizes.
+TYPED_TEST_P(mesh_scenes, a_ball_amid_a_mesh_that_emits_has_the_known_radiance)
+{
+    auto s = ball_amid_lamps({"white", material_kind::lambertian, {0.8, 0.5, 0.3}});
+    s.rectangle_lights.clear();
+    auto walls = bumpy_ball(6, 1, 0);
+    for (auto& t : walls.triangles)
+        std::swap(t.y, t.z); // outside is inside
+    mesh_light l{"walls", {"", std::make_shared<const mesh>(walls), glm::dmat3(1.5), dvec3(0), 0}, dvec3(1)};
+    l.power = M_PI * area_of(l.surface) * dvec3(1, 2, 4);
+    s.mesh_lights = {l};
+    s.polygons[0] = {{{-0.1, -0.1, 1.2}, {0.1, -0.1, 1.2}, {0, 0.1, 1.2}}, 0}; // behind the ball
+    s.render.view.light_samples = 64;
+    const auto drawn = this->picture(s);
+    const auto cosines = cosines_at_the_ball(s);
+    dvec3 seen(0);
+    double pixels = 0;
+    for (std::size_t i = 0; i < cosines.size(); ++i)
+        for (int c = 0; c < 3; ++c) {
+            const double radiance = dvec3(1, 2, 4)[c];
+            if (cosines[i] < 0) {
+                ASSERT_NEAR(drawn.pixels[i][c], radiance, 1e-5 * radiance) << i;
+            } else if (cosines[i] <= 1) {
+                seen[c] += static_cast<double>(drawn.pixels[i][c]) / radiance;
+                pixels += c == 0 ? 1 : 0;
+            }
+        }
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(seen[c] / pixels, s.materials[1].reflectance[c], 0.005 * s.materials[1].reflectance[c]) << c;
+}
+
+/// As photons_and_shadow_rays_light_by_the_same_normals, under a lamp of triangles.
+TYPED_TEST_P(mesh_scenes, photons_and_shadow_rays_of_a_mesh_that_emits_agree)
+{
+    scene s;
+    s.materials = {{"white", material_kind::lambertian, dvec3(0.8)}, {"pane", material_kind::glass, dvec3(1), 1}};
+    s.polygons = {{{{-3, 0, -3}, {-3, 0, 3}, {3, 0, 3}, {3, 0, -3}}, 0}};
+    const mesh lamp{
+        {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {-0.2f, -0.1f, 0}, {0, -0.3f, 0.5f}}, {{0, 1, 2}, {0, 2, 3}, {3, 4, 2}}};
+    s.mesh_lights
+        = {{"lamp", {"", std::make_shared<const mesh>(lamp), glm::dmat3(0.5), {0.2, 1.2, 0.1}, 0}, dvec3(10)}};
+    s.camera = {{0.1, 2, 0}, {0, 0, 0}, {0, 0, 1}, 40};
+    s.render = {.map = {.photons = 60000, .grid = {60, 1, 60}},
+        .estimate = {.k = 200, .max_radius = 0.2},
+        .view = {.light_samples = 64},
+        .output = {.width = 16, .height = 16}};
+    s.render.output.only = light_part::direct;
+    const auto direct = this->picture(s);
+    s.polygons.push_back({{{-4, 0.3, -4}, {-4, 0.3, 4}, {4, 0.3, 4}, {4, 0.3, -4}}, 1});
+    s.render.output.only = light_part::caustic;
+    const auto through_pane = this->picture(s);
+    double sum = 0, known = 0;
+    for (std::size_t i = 0; i < direct.pixels.size(); ++i) {
+        sum += static_cast<double>(through_pane.pixels[i].x);
+        known += static_cast<double>(direct.pixels[i].x);
+    }
+    EXPECT_NEAR(sum, known, 0.015 * known);
+}
+
 TYPED_TEST_P(mesh_scenes, a_smooth_glass_ball_focuses_the_power_that_optics_predicts)
 {
     const ball_over_floor ball;
@@ -188,6 +247,7 @@ TYPED_TEST_P(mesh_scenes, a_smooth_glass_ball_focuses_the_power_that_optics_pred
 REGISTER_TYPED_TEST_SUITE_P(mesh_scenes, draw_what_their_polygons_draw, equal_the_serial_backends,
     rooms_of_meshes_equal_the_serial_backends, no_photon_leaves_a_closed_room,
     photons_and_shadow_rays_light_by_the_same_normals, smooth_glass_and_mirrors_amid_lamps_cannot_be_seen,
-    a_white_body_in_glass_amid_lamps_cannot_be_seen, a_smooth_glass_ball_focuses_the_power_that_optics_predicts);
+    a_white_body_in_glass_amid_lamps_cannot_be_seen, a_smooth_glass_ball_focuses_the_power_that_optics_predicts,
+    a_ball_amid_a_mesh_that_emits_has_the_known_radiance, photons_and_shadow_rays_of_a_mesh_that_emits_agree);
 
 } // namespace photongrid::testing

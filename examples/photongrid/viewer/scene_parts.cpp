@@ -121,7 +121,7 @@ std::optional<grip> pick(
         return std::nullopt;
 
     // The reference numbers shapes in the order of the lists, then rectangle lights, which are the next list, then the
-    // triangles of meshes.
+    // triangles of mesh lights and of meshes.
     std::size_t before = 0;
     std::optional<scene_item> hit_item;
     for_each_list(s, [&](const auto& list, auto, std::size_t number) {
@@ -129,6 +129,8 @@ std::optional<grip> pick(
         for (std::size_t i = 0; i < list.size() && !hit_item; ++i) {
             if constexpr (std::is_same_v<item, placed_mesh>)
                 before += list[i].surface->triangles.size();
+            else if constexpr (std::is_same_v<item, mesh_light>)
+                before += list[i].surface.surface->triangles.size();
             else if constexpr (!std::is_same_v<item, point_light>)
                 ++before;
             if (hit.shape < before)

@@ -222,6 +222,15 @@ namespace {
         // --- meshes ---
         void read_mesh(const json_value& v)
         {
+            placed_mesh m = surface_in(v);
+            m.material = material_of(v);
+            checked(v, m);
+            shape_places_.push_back({"meshes", scene_.meshes.size()});
+            scene_.meshes.push_back(std::move(m));
+        }
+
+        placed_mesh surface_in(const json_value& v)
+        {
             placed_mesh m;
             const auto *file = v.find("file"), *positions = v.find("positions"), *triangles = v.find("triangles"),
                        *normals = v.find("normals");
@@ -235,10 +244,7 @@ namespace {
                 m.surface = std::make_shared<const mesh>(inline_mesh(*positions, *triangles, normals));
             }
             read_placement(v, m);
-            m.material = material_of(v);
-            checked(v, m);
-            shape_places_.push_back({"meshes", scene_.meshes.size()});
-            scene_.meshes.push_back(std::move(m));
+            return m;
         }
 
         std::string file_name(const json_value& v) const
@@ -350,6 +356,8 @@ namespace {
                     return;
                 typename std::decay_t<decltype(list)>::value_type l;
                 l.name = name;
+                if constexpr (requires { l.surface; })
+                    l.surface = surface_in(v);
                 for_each_field(kind.fields, [&](const auto& f) { read_field(v, l, f, max_vertices); });
                 checked(v, l);
                 list.push_back(std::move(l));

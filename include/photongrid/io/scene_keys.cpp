@@ -12,8 +12,9 @@ namespace {
         {"camera", must}, {"materials", must}, {"shapes", must}, {"lights", must}, {"render", must}, {"as_paper", may}};
     constexpr scene_key units_keys[] = {{"length", must}, {"power", must}};
     constexpr scene_key camera_keys[] = {{"position", must}, {"look_at", must}, {"up", may}, {"vertical_fov", must}};
-    constexpr scene_key mesh_keys[] = {{"type", must}, {"file", may}, {"positions", may}, {"triangles", may},
-        {"normals", may}, {"scale", may}, {"rotate", may}, {"translate", may}, {"matrix", may}, {"material", must}};
+    /// Of meshes, as shapes and as lights.
+    constexpr scene_key surface_keys[] = {{"file", may}, {"positions", may}, {"triangles", may}, {"normals", may},
+        {"scale", may}, {"rotate", may}, {"translate", may}, {"matrix", may}};
     constexpr scene_key rotate_keys[] = {{"axis", must}, {"degrees", must}};
     constexpr scene_key leaks_keys[] = {{"side", may}, {"min_cosine", may}, {"flattening", may}};
     // The keys of materials, shapes and lights come from the tables in scene/ (material_kinds, shape_kind, light_kind).
@@ -54,7 +55,9 @@ namespace {
                     kinds.push_back({triangle_name, keys});
                 kinds.push_back({kind.name, keys});
             });
-            kinds.push_back({shape_kind<placed_mesh>::name, {std::begin(mesh_keys), std::end(mesh_keys)}});
+            std::vector<scene_key> of_meshes{{"type", must}, {"material", must}};
+            of_meshes.insert(of_meshes.end(), std::begin(surface_keys), std::end(surface_keys));
+            kinds.push_back({shape_kind<placed_mesh>::name, of_meshes});
             return kinds;
         }();
         return all;
@@ -64,8 +67,11 @@ namespace {
         static const auto all = [] {
             std::vector<kind_keys> kinds;
             const scene none;
-            for_each_light(none, [&](const auto&, auto kind) {
-                kinds.push_back({kind.name, keys_of(kind, {{"type", must}, {"name", may}}, {})});
+            for_each_light(none, [&](const auto& list, auto kind) {
+                auto keys = keys_of(kind, {{"type", must}, {"name", may}}, {});
+                if constexpr (std::is_same_v<std::decay_t<decltype(list)>, std::vector<mesh_light>>)
+                    keys.insert(keys.end(), std::begin(surface_keys), std::end(surface_keys));
+                kinds.push_back({kind.name, keys});
             });
             return kinds;
         }();

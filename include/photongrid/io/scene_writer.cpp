@@ -46,9 +46,9 @@ namespace {
         return all;
     }
 
-    json mesh_json(const placed_mesh& m, const std::string& material)
+    /// Adds the surface of a mesh to its object.
+    void add_surface(json& all, const placed_mesh& m)
     {
-        json all = {{"type", shape_kind<placed_mesh>::name}};
         if (!m.file.empty()) {
             all["file"] = m.file;
         } else {
@@ -68,8 +68,6 @@ namespace {
                 rows.push_back({m.linear[0][row], m.linear[1][row], m.linear[2][row], m.offset[row]});
             all["matrix"] = std::move(rows);
         }
-        all["material"] = material;
-        return all;
     }
 
     // Settings as in a scene file.
@@ -148,11 +146,18 @@ std::string scene_text(const scene& s, const render_settings& settings)
             shapes.push_back(std::move(shape));
         }
     });
-    for (const auto& m : s.meshes)
-        shapes.push_back(mesh_json(m, names.at(m.material)));
+    for (const auto& m : s.meshes) {
+        json shape = {{"type", shape_kind<placed_mesh>::name}};
+        add_surface(shape, m);
+        shape["material"] = names.at(m.material);
+        shapes.push_back(std::move(shape));
+    }
     for_each_light(s, [&](const auto& list, auto kind) {
-        for (const auto& x : list)
+        for (const auto& x : list) {
             lights.push_back(with_fields({{"type", kind.name}, {"name", x.name}}, x, kind.fields));
+            if constexpr (requires { x.surface; })
+                add_surface(lights.back(), x.surface);
+        }
     });
     for (auto& light : lights)
         if (light["name"] == "")

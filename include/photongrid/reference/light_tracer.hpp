@@ -96,6 +96,8 @@ private:
                     visit(x, number++, is_diffuse(s.materials[x.material]));
             });
             number = shapes.first_triangle();
+            for (const auto& l : s.mesh_lights)
+                number += static_cast<std::uint32_t>(l.surface.surface->triangles.size());
             for (const auto& m : s.meshes)
                 for (std::size_t t = 0; t < m.surface->triangles.size(); ++t) {
                     const auto c = corners_of(m, t);
@@ -178,16 +180,9 @@ private:
         }
         dvec3 power = light->power / light->probability;
         const double u = random(), v = random();
-        ray r;
-        if (light->is_area) {
-            r.direction = cosine_direction(light->normal, u, v);
-            const double across_u = random(), across_v = random();
-            r.origin = light->corner + across_u * light->edge_u + across_v * light->edge_v;
-        } else {
-            r.direction = uniform_direction(u, v);
-            r.origin = light->corner;
-        }
-        r.from = light->shape;
+        const auto start = shapes.point_of(*light, random);
+        ray r{start.position, light->is_area ? cosine_direction(start.normal, u, v) : uniform_direction(u, v),
+            start.shape};
         for (std::uint32_t surface = 1; surface <= settings.photon_depth; ++surface) {
             const hit h = shapes.nearest(r);
             if (h.shape == nothing || h.light != nothing)

@@ -93,19 +93,15 @@ private:
                     break;
             }
         }
-        dvec3 target = light->corner;
-        if (light->is_area) {
-            const double u = random(), v = random();
-            target += u * light->edge_u + v * light->edge_v;
-        }
-        const dvec3 towards = target - h.position;
+        const auto target = shapes_.point_of(*light, random);
+        const dvec3 towards = target.position - h.position;
         const double distance = glm::length(towards);
         if (!(distance > 0))
             return dvec3(0);
         const dvec3 d = towards / distance;
         const double cosine = glm::dot(normals.geometric, d) > 0 ? glm::dot(normals.shading, d) : 0;
-        const double leaving = light->is_area ? -glm::dot(light->normal, d) : 1;
-        if (!(cosine > 0) || !(leaving > 0) || shapes_.blocked({h.position, d, h.shape}, distance, light->shape))
+        const double leaving = light->is_area ? -glm::dot(target.normal, d) : 1;
+        if (!(cosine > 0) || !(leaving > 0) || shapes_.blocked({h.position, d, h.shape}, distance, target.shape))
             return dvec3(0);
         if (!light->is_area)
             return light->power * (cosine / (4 * M_PI * distance * distance * light->probability));

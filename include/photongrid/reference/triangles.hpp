@@ -17,26 +17,13 @@ namespace photongrid::reference {
 /// Triangles and the tree of their boxes.
 class triangle_set {
 public:
-    /// The triangles of all meshes of a scene, in their order.
+    /// The triangles of all mesh lights and of all meshes of a scene, in their order.
     explicit triangle_set(const scene& s)
     {
+        for (const auto& l : s.mesh_lights)
+            add(l.surface, nothing, false);
         for (const auto& m : s.meshes)
-            for (std::size_t t = 0; t < m.surface->triangles.size(); ++t) {
-                const auto c = corners_of(m, t);
-                const dvec3 n = glm::cross(c[1] - c[0], c[2] - c[0]);
-                const double area = glm::length(n);
-                triangles_.push_back({c[0], c[1] - c[0], c[2] - c[0], area > 0 ? n / area : dvec3(0, 0, 1)});
-                materials_.push_back(m.material);
-                if (const auto& normals = m.surface->normals; !normals.empty()) {
-                    const auto& v = m.surface->triangles[t];
-                    std::array<dvec3, 3> of{
-                        normal_of(m, normals[v.x]), normal_of(m, normals[v.y]), normal_of(m, normals[v.z])};
-                    if (glm::determinant(m.linear) < 0)
-                        std::swap(of[1], of[2]); // as corners_of does
-                    triangles_.back().smooth = static_cast<std::int64_t>(normals_.size());
-                    normals_.push_back(of);
-                }
-            }
+            add(m, m.material, true);
         order_.resize(triangles_.size());
         std::iota(order_.begin(), order_.end(), 0u);
         if (!order_.empty())
@@ -45,8 +32,22 @@ public:
 
     /// How many there are.
     std::uint32_t size() const { return static_cast<std::uint32_t>(triangles_.size()); }
-    /// The material of a triangle.
+    /// The material of a triangle; `nothing` for a light's.
     std::uint32_t material(std::uint32_t triangle) const { return materials_[triangle]; }
+    /// A point of a triangle, evenly for u and v from 0 to 1.
+    dvec3 point(std::uint32_t triangle, double u, double v) const
+    {
+        const auto& t = triangles_[triangle];
+        const double root = std::sqrt(u);
+        return t.corner + root * (1 - v) * t.edge_u + root * v * t.edge_v;
+    }
+    /// The normal of a triangle, unit.
+    const dvec3& normal(std::uint32_t triangle) const { return triangles_[triangle].normal; }
+    /// The area of a triangle, m^2.
+    double area(std::uint32_t triangle) const
+    {
+        return 0.5 * glm::length(glm::cross(triangles_[triangle].edge_u, triangles_[triangle].edge_v));
+    }
 
     /// Calls visit(triangle, t) for triangles that the ray hits at t < far, other than `from`, until it returns the
     /// distance up to which the rest matters; `far` is updated with it.
@@ -100,6 +101,26 @@ public:
     }
 
 private:
+    void add(const placed_mesh& m, std::uint32_t material, bool with_normals)
+    {
+        for (std::size_t t = 0; t < m.surface->triangles.size(); ++t) {
+            const auto c = corners_of(m, t);
+            const dvec3 n = glm::cross(c[1] - c[0], c[2] - c[0]);
+            const double area = glm::length(n);
+            triangles_.push_back({c[0], c[1] - c[0], c[2] - c[0], area > 0 ? n / area : dvec3(0, 0, 1)});
+            materials_.push_back(material);
+            if (const auto& normals = m.surface->normals; with_normals && !normals.empty()) {
+                const auto& v = m.surface->triangles[t];
+                std::array<dvec3, 3> of{
+                    normal_of(m, normals[v.x]), normal_of(m, normals[v.y]), normal_of(m, normals[v.z])};
+                if (glm::determinant(m.linear) < 0)
+                    std::swap(of[1], of[2]); // as corners_of does
+                triangles_.back().smooth = static_cast<std::int64_t>(normals_.size());
+                normals_.push_back(of);
+            }
+        }
+    }
+
     struct triangle {
         dvec3 corner, edge_u, edge_v, normal;
         std::int64_t smooth = -1; ///< index in normals_

@@ -46,8 +46,8 @@ template <class Shape>
 struct shape_kind;
 
 /// The properties of a kind of light that the library needs: `name`, `list`, `fields` (all members but the light's
-/// name) and `add_bounds` as in shape_kind; `write_record`, for trace/lights.glsl; `size` and `extent` if it has an
-/// extent.
+/// name, and the surface of a mesh) and `add_bounds` as in shape_kind; `form`, its number in kernels; `write_record`,
+/// for trace/lights.glsl; `size` and `extent` if it has an extent.
 template <class Light>
 struct light_kind;
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <photongrid/scene/bounds.hpp>
+#include <photongrid/scene/placed_mesh.hpp>
 #include <photongrid/scene/polygon.hpp>
 
 #include <array>
@@ -31,6 +32,16 @@ struct rectangle_light {
     bool operator==(const rectangle_light&) const = default;
 };
 
+/// A mesh that emits its power (W, rgb) diffusely and evenly over its area, on the outside of its triangles. It is
+/// black.
+struct mesh_light {
+    std::string name;    ///< for messages
+    placed_mesh surface; ///< its material and its vertices' normals have no meaning
+    dvec3 power{1};      ///< W, rgb; no channel is negative, at least one is positive
+
+    bool operator==(const mesh_light&) const = default;
+};
+
 /// \throws std::invalid_argument for a power (W, rgb) with a channel that is not finite or negative, or of 0.
 inline void check_power(const dvec3& power)
 {
@@ -57,6 +68,24 @@ inline void check(const rectangle_light& l)
     check_power(l.power);
 }
 
+/// The area of all triangles of a mesh, m^2.
+inline double area_of(const placed_mesh& m)
+{
+    double area = 0;
+    for (std::size_t t = 0; t < m.surface->triangles.size(); ++t) {
+        const auto c = corners_of(m, t);
+        area += 0.5 * glm::length(glm::cross(c[1] - c[0], c[2] - c[0]));
+    }
+    return area;
+}
+/// \throws std::invalid_argument for a surface that check() rejects or that has no area, or a power as in check_power.
+inline void check(const mesh_light& l)
+{
+    check(l.surface);
+    detail::require(area_of(l.surface) > 0, "triangles: the light has no area");
+    check_power(l.power);
+}
+
 /// The surface of a light.
 inline polygon surface_of(const rectangle_light& l)
 {
@@ -70,7 +99,7 @@ struct light_kind<point_light> {
     static constexpr const char* list = "point_lights"; ///< member of scene
     static constexpr std::tuple fields{field{"position", &point_light::position, quantity::point},
         field{"power", &point_light::power, quantity::power}}; ///< all fields but the name
-    static constexpr bool is_area = false;                     ///< Light::is_area in kernels
+    static constexpr std::uint32_t form = 0;                   ///< POINT_LIGHT in kernels
 
     /// \name See light_kind
     /// @{
@@ -95,7 +124,7 @@ struct light_kind<rectangle_light> {
         field{"edge_u", &rectangle_light::edge_u, quantity::edge},
         field{"edge_v", &rectangle_light::edge_v, quantity::edge},
         field{"power", &rectangle_light::power, quantity::power}}; ///< all fields but the name
-    static constexpr bool is_area = true;                          ///< Light::is_area in kernels
+    static constexpr std::uint32_t form = 1;                       ///< RECTANGLE_LIGHT in kernels
 
     /// \name See light_kind
     /// @{
@@ -113,6 +142,33 @@ struct light_kind<rectangle_light> {
         w.put(l.edge_u, 0);
         w.put(l.edge_v, 0);
         w.put(glm::normalize(normal), glm::length(normal));
+        w.put(l.power, 0);
+    }
+    /// @}
+};
+
+/// The light_kind of mesh lights.
+template <>
+struct light_kind<mesh_light> {
+    static constexpr const char* name = "mesh_light";                                        ///< in scene files
+    static constexpr const char* list = "mesh_lights";                                       ///< member of scene
+    static constexpr std::tuple fields{field{"power", &mesh_light::power, quantity::power}}; ///< but for the surface
+    static constexpr std::uint32_t form = 2;                                                 ///< MESH_LIGHT in kernels
+
+    /// \name See light_kind
+    /// @{
+    static void add_bounds(bounds& b, const mesh_light& l) { shape_kind<placed_mesh>::add_bounds(b, l.surface); }
+    static double size(const mesh_light& l) { return shape_kind<placed_mesh>::size(l.surface); }
+    /// `first`: the number of its first triangle, among all of the scene.
+    static void write_record(record_writer& w, const mesh_light& l, std::size_t first)
+    {
+        const std::size_t count = l.surface.surface->triangles.size();
+        const auto halves
+            = [](std::size_t n) { return glm::dvec2(static_cast<double>(n >> 16), static_cast<double>(n & 0xFFFFu)); };
+        w.put(dvec3(0), 1 / (std::numbers::pi * area_of(l.surface)));
+        w.put(dvec3(halves(first), 0), 0);
+        w.put(dvec3(halves(count), 0), 0);
+        w.put(dvec3(0), 0);
         w.put(l.power, 0);
     }
     /// @}

@@ -84,6 +84,13 @@ struct shape_kind<placed_mesh> {
             for (const auto& c : corners_of(m, t))
                 b.add(c);
     }
+    /// The diagonal of its box, m.
+    static double size(const placed_mesh& m)
+    {
+        bounds b;
+        add_bounds(b, m);
+        return glm::length(b.high - b.low);
+    }
 };
 
 } // namespace photongrid

@@ -39,8 +39,9 @@ struct scene {
     std::vector<box> boxes;                        ///< closed; those of glass must not overlap
     std::vector<polygon> polygons;                 ///< two-sided if Lambertian
     std::vector<placed_mesh> meshes;               ///< two-sided if Lambertian; closed if glass
-    std::vector<point_light> point_lights;         ///< a scene has at least one light of either kind
+    std::vector<point_light> point_lights;         ///< a scene has at least one light of any kind
     std::vector<rectangle_light> rectangle_lights; ///< visible to the camera
+    std::vector<mesh_light> mesh_lights;           ///< visible to the camera
     render_settings render;                        ///< the settings of the scene's file
     std::optional<render_settings> paper;          ///< settings for --as-paper; empty: as_paper(render)
 
@@ -69,7 +70,7 @@ constexpr auto shape_lists(Scene& s)
 template <class Scene>
 constexpr auto light_lists(Scene& s)
 {
-    return std::tie(s.rectangle_lights, s.point_lights);
+    return std::tie(s.rectangle_lights, s.point_lights, s.mesh_lights);
 }
 
 namespace detail {

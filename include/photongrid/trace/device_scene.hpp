@@ -25,10 +25,14 @@ enum scene_feature : uint {
     has_glass = detail::entry_of(material_kind::glass).switches,
     has_point_lights = 1u << 6,
     has_area_lights = 1u << 7,
-    has_meshes = 1u << 9,        ///< number 8 is that of boxes
-    has_smooth_meshes = 1u << 10 ///< meshes with normals
+    has_meshes = 1u << 9,         ///< number 8 is that of boxes
+    has_smooth_meshes = 1u << 10, ///< meshes with normals
+    has_mesh_lights = 1u << 11,
 };
 
+static_assert(light_kind<point_light>::form == kernels::POINT_LIGHT
+    && light_kind<rectangle_light>::form == kernels::RECTANGLE_LIGHT
+    && light_kind<mesh_light>::form == kernels::MESH_LIGHT);
 static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SURFACE
     && static_cast<uint>(surface_kind::reflecting) == kernels::MIRROR_SURFACE
     && static_cast<uint>(surface_kind::refracting) == kernels::GLASS_SURFACE);
@@ -39,6 +43,7 @@ struct mesh_layout {
     std::vector<glm::uvec4> faces;  ///< of each triangle: its vertices, its material, whether it has normals
     std::vector<glm::vec4> planes;  ///< of each triangle: unit normal; offset, m
     std::vector<glm::vec4> normals; ///< of each vertex; empty if no mesh has any
+    std::vector<uint> shares;       ///< of each triangle of mesh lights, which come first: see trace/mesh_light.glsl
     std::size_t without_area = 0;   ///< triangles that are lines or points: they only close cracks of a surface
 };
 
@@ -68,6 +73,8 @@ namespace detail {
         for_each_shape(s, move);
         for_each_light(s, move);
         move(s.meshes, shape_kind<placed_mesh>{});
+        for (auto& l : s.mesh_lights)
+            l.surface.offset -= by;
         s.camera.position -= by;
         s.camera.look_at -= by;
         return s;
@@ -84,7 +91,7 @@ namespace detail {
                         first = list[0].*f.member;
             });
         });
-        return first.value();
+        return first ? *first : corners_of(s.mesh_lights.at(0).surface, 0)[0];
     }
 
     /// \throws std::invalid_argument if a shape is so small, relative to the scene, that single precision cannot
@@ -101,6 +108,7 @@ namespace detail {
         };
         for_each_shape(s, all);
         for_each_light(s, all);
+        all(s.meshes, shape_kind<placed_mesh>{});
     }
 
     /// \throws std::invalid_argument for more records than single precision can number, as tables do.
@@ -174,7 +182,9 @@ namespace detail {
             for_each_light(s_, [&](const auto& list, auto kind) {
                 for (const auto& l : list)
                     kind.add_bounds(all, l);
-                out_.features |= list.empty() ? 0u : kind.is_area ? has_area_lights | has_polygons : has_point_lights;
+                constexpr uint features[]
+                    = {has_point_lights, has_area_lights | has_polygons, has_mesh_lights | has_meshes};
+                out_.features |= list.empty() ? 0u : features[kind.form];
             });
             for (const auto& l : s_.rectangle_lights) // their surfaces are polygons
                 out_.steps_per_ray += steps_of(shape_kind<polygon>{}, surface_of(l));
@@ -219,30 +229,56 @@ namespace detail {
             enter(number, first, s_.polygons.size() + s_.rectangle_lights.size(), 0);
         }
 
-        /// Appends the triangles of all meshes.
+        /// Appends the triangles of mesh lights and of all meshes.
         void write_meshes()
         {
-            auto& all = out_.meshes;
+            uint light = static_cast<uint>(s_.rectangle_lights.size() + s_.point_lights.size());
+            for (const auto& l : s_.mesh_lights) {
+                const std::size_t first = out_.meshes.faces.size();
+                write_mesh(l.surface, kernels::FACE_OF_LIGHT + light++, false);
+                write_shares(l.surface, first);
+            }
             for (const auto& m : s_.meshes) {
-                require_countable(all.triangles.triangles.size() + m.surface->triangles.size());
-                const auto vertices = static_cast<uint>(all.triangles.positions.size());
-                for (const auto& p : m.surface->positions)
-                    all.triangles.positions.emplace_back(place_of(m, p) - out_.center);
-                const uint smooth = m.surface->normals.empty() ? 0 : 1;
-                if ((out_.features & has_smooth_meshes) != 0) {
+                const bool smooth = !m.surface->normals.empty();
+                write_mesh(m, 2 * m.material + (smooth ? 1 : 0), smooth);
+            }
+        }
+
+        /// `code`: w of its faces (trace/mesh_surface.glsl).
+        void write_mesh(const placed_mesh& m, uint code, bool smooth)
+        {
+            auto& all = out_.meshes;
+            require_countable(all.triangles.triangles.size() + m.surface->triangles.size());
+            const auto vertices = static_cast<uint>(all.triangles.positions.size());
+            for (const auto& p : m.surface->positions)
+                all.triangles.positions.emplace_back(place_of(m, p) - out_.center);
+            if ((out_.features & has_smooth_meshes) != 0) {
+                if (smooth)
                     for (const auto& n : m.surface->normals)
                         all.normals.emplace_back(normal_of(m, n), 0.0f);
-                    all.normals.resize(all.triangles.positions.size(), glm::vec4(0));
-                }
-                const bool mirrored = glm::determinant(m.linear) < 0; // as corners_of(placed_mesh)
-                for (auto t : m.surface->triangles) {
-                    if (mirrored)
-                        std::swap(t.y, t.z);
-                    all.triangles.triangles.push_back(t + vertices);
-                    all.faces.emplace_back(t + vertices, 2 * m.material + smooth);
-                    write_plane(all.faces.size() - 1);
-                }
+                all.normals.resize(all.triangles.positions.size(), glm::vec4(0));
             }
+            const bool mirrored = glm::determinant(m.linear) < 0; // as corners_of(placed_mesh)
+            for (auto t : m.surface->triangles) {
+                if (mirrored)
+                    std::swap(t.y, t.z);
+                all.triangles.triangles.push_back(t + vertices);
+                all.faces.emplace_back(t + vertices, code);
+                write_plane(all.faces.size() - 1);
+            }
+        }
+
+        /// The shares of a light's area up to each of its triangles, which begin at `first`.
+        void write_shares(const placed_mesh& m, std::size_t first)
+        {
+            const double total = area_of(m);
+            double area = 0;
+            for (std::size_t t = first; t < out_.meshes.faces.size(); ++t) {
+                const auto c = corners_of(m, t - first);
+                area += 0.5 * glm::length(glm::cross(c[1] - c[0], c[2] - c[0]));
+                out_.meshes.shares.push_back(static_cast<uint>(std::min(area / total * 0x1p32, 0xFFFFFFFFp0)));
+            }
+            out_.meshes.shares.back() = 0xFFFFFFFFu;
         }
 
         /// The plane of a triangle as it is in single precision. A triangle without area has that of any that contains
@@ -279,12 +315,18 @@ namespace detail {
             const auto weight = [](const dvec3& power) { return power.x + power.y + power.z; };
             const double total = power_of_lights(s_);
             double below = 0;
+            std::size_t triangles = 0; // of mesh lights so far
             enter(kernels::LIGHT_TABLE, w.next(), count_lights(s_), 6);
             for_each_light(s_, [&](const auto& list, auto kind) {
                 for (const auto& l : list) {
                     below += weight(l.power);
-                    w.put(dvec3(kind.is_area ? 1 : 0, weight(l.power) / total, below / total), 0);
-                    kind.write_record(w, l);
+                    w.put(dvec3(kind.form, weight(l.power) / total, below / total), 0);
+                    if constexpr (requires { l.surface; }) {
+                        kind.write_record(w, l, triangles);
+                        triangles += l.surface.surface->triangles.size();
+                    } else {
+                        kind.write_record(w, l);
+                    }
                 }
             });
         }
@@ -323,6 +365,7 @@ struct device_scene {
     buffer_of<B, glm::vec4> planes;
     buffer_of<B, glm::vec4> vertices;
     buffer_of<B, glm::vec4> normals;
+    buffer_of<B, uint> shares;
     /// @}
 
     bool has_meshes() const { return (layout.features & photongrid::has_meshes) != 0; }
@@ -344,6 +387,7 @@ namespace detail {
         to.planes = upload_some(m.planes);
         to.vertices = upload_some(vertices);
         to.normals = upload_some(m.normals);
+        to.shares = upload_some(m.shares);
     }
 
     /// A bound on the loop iterations of one shadow ray to each light, the least that a pass takes.

@@ -11,6 +11,10 @@ PARAMS(Params)
 SWITCH(6, POINT_LIGHTS)
 SWITCH(7, AREA_LIGHTS)
 INPUT(0, vec4, scene)
+INPUT(1, uvec4, faces) // these four: see mesh_light.glsl
+INPUT(2, vec4, planes)
+INPUT(3, vec4, vertices)
+INPUT(4, uint, shares)
 OUTPUT(0, vec4, position)       // xyz, m; w: event, see photon_event.glsl
 OUTPUT(1, vec4, power)          // rgb, W, not yet divided by the number of paths
 OUTPUT(2, vec4, direction)      // of the photon
@@ -18,6 +22,7 @@ OUTPUT(3, vec4, next_origin)    // origin of the path's next ray ...
 OUTPUT(4, vec4, next_direction) // ... and its direction
 
 #include <photongrid/trace/lights.glsl>
+#include <photongrid/trace/mesh_light.glsl>
 
 void kernel(uint i)
 {
@@ -38,9 +43,15 @@ void kernel(uint i)
     power = vec4(light.power.x / probability, light.power.y / probability, light.power.z / probability, 0.0f);
     vec3 origin = light.position;
     vec3 d = vec3(0.0f, 0.0f, 1.0f);
-    if (POINT_LIGHTS && (!AREA_LIGHTS || !light.is_area))
+    bool of_mesh = is_mesh_light(at);
+    if (of_mesh) {
+        EmittingPoint e = emitting_point(at, s.y, r.z, r.w);
+        d = cosine_direction(e.normal, r.x, r.y);
+        origin = ray_at(e.position, e.normal, e.offset);
+    }
+    if (POINT_LIGHTS && !of_mesh && (!AREA_LIGHTS || !light.is_area))
         d = uniform_direction(r.x, r.y);
-    if (AREA_LIGHTS && (!POINT_LIGHTS || light.is_area)) {
+    if (AREA_LIGHTS && !of_mesh && (!POINT_LIGHTS || light.is_area)) {
         // The rounding error depends on the terms, which may be larger than their sum.
         float off = ray_offset(abs(origin) + abs(light.edge_u) + abs(light.edge_v), scene(SCENE_SIZES).x);
         origin = ray_at(ray_at(origin, light.edge_u, r.z), light.edge_v, r.w);

@@ -123,7 +123,8 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
     uint ray, launch pixels, buffer_of<B, glm::vec4>& light)
 {
     device.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
-    const uint samples = (s.layout.features & has_area_lights) != 0 ? settings.view.light_samples : 1u;
+    const uint samples
+        = (s.layout.features & (has_area_lights | has_mesh_lights)) != 0 ? settings.view.light_samples : 1u;
     if (s.has_meshes()) {
         mesh_rays<B> rays(device, pixels.elements);
         for (uint number = 0; number < s.layout.table(kernels::LIGHT_TABLE).count; ++number)
@@ -136,7 +137,8 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
                         .ray_id = ray,
                         .seed = settings.seed,
                         .first_pixel = hits.first_pixel},
-                    reads(s.records, hits.points, hits.surfaces), writes(rays.origins, rays.directions));
+                    reads(s.records, hits.points, hits.surfaces, s.faces, s.planes, s.vertices, s.shares),
+                    writes(rays.origins, rays.directions));
                 const auto found = rays.search(device, s, hit_kind::any);
                 device.template run<kernels::add_unblocked>(pixels, {.light = number, .first = pixels.first},
                     reads(s.records, rays.directions, found), writes(light));

@@ -1,19 +1,19 @@
 // Lights, read from the scene buffer. Included by kernels after their scene buffer.
 struct Light {
-    bool is_area;             // a rectangle; else a point light, which has a position and power only
+    bool is_area;             // a rectangle; else a point light, which has a position and power only, or a mesh light
     vec3 position;            // of a rectangle light: one corner, m
     vec3 edge_u;              // m
     vec3 edge_v;              // m
     vec3 normal;              // unit; light leaves on this side
     vec3 power;               // W
-    float radiance_per_power; // of a rectangle: 1 / (pi area), m^-2 sr^-1
+    float radiance_per_power; // of a rectangle or a mesh: 1 / (pi area), m^-2 sr^-1
 };
 
 Light light_at(uint at)
 {
     vec4 position_record = scene(at + 1u);
     Light l;
-    l.is_area = scene(at).x != 0.0f;
+    l.is_area = uint(scene(at).x) == RECTANGLE_LIGHT;
     l.position = vec3(position_record);
     l.edge_u = vec3(scene(at + 2u));
     l.edge_v = vec3(scene(at + 3u));

@@ -11,8 +11,12 @@ Hit closer_hit(Hit hit, uint number)
         return hit;
     vec4 normal = mesh_normals(number);
     hit.t = place.w;
-    hit.material = uint(normal.w);
+    hit.material = NO_MATERIAL;
     hit.light = 0u;
+    if (normal.w < 0.0f)
+        hit.light = uint(-normal.w) - 1u;
+    else
+        hit.material = uint(normal.w);
     hit.position = vec3(place);
     hit.normal = vec3(normal);
     hit.shading = vec3(mesh_shadings(number));

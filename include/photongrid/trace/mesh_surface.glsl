@@ -12,12 +12,13 @@ INPUT(0, vec4, scene)
 INPUT(1, vec4, origins)    // of the rays
 INPUT(2, vec4, directions)
 INPUT(3, uvec4, hits)      // see ray_state.glsl
-INPUT(4, uvec4, faces)     // of each triangle, xyz: its vertices; w: 2 x material + 1 if they have normals
+INPUT(4, uvec4, faces)     // of each triangle, xyz: its vertices; w: 2 x material + 1 if they have normals, or
+                           // FACE_OF_LIGHT + number of the light
 INPUT(5, vec4, planes)     // of each triangle, xyz: unit normal; w: offset
 INPUT(6, vec4, vertices)   // xyz, m
 INPUT(7, vec4, normals)    // of each vertex, xyz, of any length; only with SMOOTH
 OUTPUT(0, vec4, place)     // xyz: of the hit, m; w: its distance; -1: no hit
-OUTPUT(1, vec4, normal)    // xyz: geometric normal, unit; w: material
+OUTPUT(1, vec4, normal)    // xyz: geometric normal, unit; w: material, or of a light its number, times -1, less 1
 OUTPUT(2, vec4, shading)   // xyz: interpolated normal, unit, on the side of the geometric one; without normals that
 
 #include <photongrid/trace/intersect/plane.glsl>
@@ -95,9 +96,11 @@ void kernel(uint i)
     Weighted at = off_edges(ray_at(vec3(origins(i)), vec3(directions(i)), t), face, vec3(plane));
     vec3 p = onto_plane(plane, at.point);
     place = vec4(p.x, p.y, p.z, t);
-    normal = vec4(plane.x, plane.y, plane.z, float(face.w >> 1u));
+    bool of_light = face.w >= FACE_OF_LIGHT;
+    float code = of_light ? -1.0f - float(face.w - FACE_OF_LIGHT) : float(face.w >> 1u);
+    normal = vec4(plane.x, plane.y, plane.z, code);
     shading = normal;
-    if (SMOOTH && (face.w & 1u) != 0u) {
+    if (SMOOTH && !of_light && (face.w & 1u) != 0u) {
         vec3 n = shading_normal(face, at.weights, vec3(plane));
         shading = vec4(n.x, n.y, n.z, 0.0f);
     }

@@ -4,9 +4,13 @@
 
 const uint SCENE_TABLES = 16u;
 const uint MATERIAL_TABLE = 4u; // no kind of shape has the numbers 4 to 7, the SWITCHes of materials and lights, or 9
-                                // and 10, those of meshes
+                                // to 11, those of meshes
 const uint SCENE_SIZES = 5u;    // x: what ray_offset adds for curved shapes, m
 const uint LIGHT_TABLE = 6u;
+// Forms of lights.
+const uint POINT_LIGHT = 0u;
+const uint RECTANGLE_LIGHT = 1u;
+const uint MESH_LIGHT = 2u;
 const uint FIRST_MATERIAL = SCENE_TABLES; // materials come first, so that kernels need not look their table up
 const uint MATERIAL_RECORDS = 2u;
 
@@ -33,6 +37,8 @@ const uint GLASS_SURFACE = 2u;
 
 const uint NO_MATERIAL = 0xFFFFFFFFu; // of a light's surface
 const uint NO_SHAPE = 0xFFFFFFFFu;
+// Of a triangle's face: the others are the number of the light that it belongs to.
+const uint FACE_OF_LIGHT = 0x80000000u;
 
 // The closest shape so far.
 struct Closest {

@@ -19,12 +19,53 @@ SWITCH(7, AREA_LIGHTS)
 INPUT(0, vec4, scene)
 INPUT(1, vec4, points)     // w > 0: compute direct light
 INPUT(2, vec4, surfaces)   // xyz: normal
+INPUT(3, uvec4, faces)     // these four: see mesh_light.glsl
+INPUT(4, vec4, planes)
+INPUT(5, vec4, vertices)
+INPUT(6, uint, shares)
 OUTPUT(0, vec4, origin)    // xyz, m; w: length, m; 0 where nothing need be searched
 OUTPUT(1, vec4, direction) // xyz: unit vector; w: irradiance if no mesh blocks the ray, divided by the power, m^-2
 
 #include <photongrid/trace/intersect.glsl>
 #include <photongrid/trace/lights.glsl>
 #include <photongrid/trace/light_sample.glsl>
+#include <photongrid/trace/mesh_light.glsl>
+
+// A sample of a mesh light: a random point of the sample's own part of the area.
+LightSample mesh_light_sample(uint at, uint i, LitPoint lit)
+{
+    LightSample found;
+    found.per_power = 0.0f;
+    found.has_ray = false;
+    found.direction = lit.normal;
+    found.far = 0.0f;
+    vec4 r = random4(
+        uvec4(i + args.first_pixel, args.ray_id, 3000u + args.light, args.seed ^ (args.sample_id * 0x9E3779B1u)));
+    precise float share = 1.0f / float(args.strata.x * args.strata.y);
+    precise float u = (float(args.sample_id) + r.x) * share;
+    EmittingPoint e = emitting_point(at, min(u, 0.99999994f), r.y, r.z);
+    precise vec3 towards = e.position - lit.position;
+    float distance2 = dot3(towards, towards);
+    if (!(distance2 > 0.0f))
+        return found;
+    precise float inverse = 1.0f / sqrt(distance2);
+    precise vec3 d = towards * inverse;
+    float cosine = dot3(d, lit.normal);
+    float leaving = -dot3(d, e.normal);
+    precise vec3 ray = ray_at(e.position, e.normal, e.offset) - lit.origin;
+    float length2 = dot3(ray, ray);
+    if (!(cosine > 0.0f) || !(leaving > 0.0f) || !(length2 > 0.0f))
+        return found;
+    // Radiance times area is power / pi.
+    precise float per_power = cosine * leaving / distance2 * 3.18309886e-1f * share;
+    precise float far = sqrt(length2);
+    precise vec3 way = ray / far;
+    found.per_power = per_power;
+    found.has_ray = true;
+    found.direction = way;
+    found.far = far;
+    return found;
+}
 
 void kernel(uint i)
 {
@@ -35,10 +76,16 @@ void kernel(uint i)
         return;
     LitPoint lit = lit_point(vec3(point), vec3(surfaces(args.first + i)));
     Table lights = table_of(scene(LIGHT_TABLE));
-    SeenLight seen = seen_light(lights.first + lights.stride * args.light, lit);
-    if (!seen.area && args.sample_id > 0u)
-        return; // all samples of a point light are the same
-    LightSample found = light_sample(seen, args.light, args.sample_id, args.first + i, lit);
+    uint at = lights.first + lights.stride * args.light;
+    LightSample found;
+    if (is_mesh_light(at)) {
+        found = mesh_light_sample(at, args.first + i, lit);
+    } else {
+        SeenLight seen = seen_light(at, lit);
+        if (!seen.area && args.sample_id > 0u)
+            return; // all samples of a point light are the same
+        found = light_sample(seen, args.light, args.sample_id, args.first + i, lit);
+    }
     if (!(found.per_power > 0.0f)
         || (found.has_ray && occluded(lit.origin, found.direction, found.far, everything())))
         return;
