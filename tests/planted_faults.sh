@@ -224,9 +224,14 @@ faults=(
   "edges count once for loops|include/photongrid/scene/polygon.hpp|2 * std::uint64_t{p.vertices.size()} + 5|1 * std::uint64_t{p.vertices.size()} + 5|bad_scenes"
   "meshes are behind all shapes|include/photongrid/trace/mesh_hit.glsl|hit.t >= 0.0f && hit.t <= place.w|hit.t >= 0.0f"
   "points of meshes stay at edges|include/photongrid/trace/mesh_surface.glsl|onto_plane(plane, at.point)|onto_plane(plane, ray_at(vec3(origins(i)), vec3(directions(i)), t))"
-  "normals of a mesh are those of its first corner|include/photongrid/trace/mesh_surface.glsl|shading_normal(face, at.weights, vec3(plane))|shading_normal(face, vec3(1.0f, 0.0f, 0.0f), vec3(plane))"
+  "normals of a mesh are those of its first corner|include/photongrid/trace/mesh_surface.glsl|shading_normal(face, at.weights, vec3(plane))|shading_normal(face, vec3(1.0f, 0.0f, 0.0f), vec3(plane))|validation"
   "photons ignore shading normals where they land|include/photongrid/trace/bounce_photon.glsl|share < 8.0f ? share : 8.0f|1.0f"
-  "photons have no adjoint factor|include/photongrid/trace/shading_normals.glsl|factor < 8.0f ? factor : 8.0f|1.0f"
+  "photons have no adjoint factor|include/photongrid/trace/shading_normals.glsl|factor < 8.0f ? factor : 8.0f|1.0f|validation"
+  "a mesh light sends all light from its last triangle|include/photongrid/trace/mesh_light.glsl|if (shares(middle) > goal)|if (shares(middle) > 0xFFFFFFFFu - (goal - goal))"
+  "points of a mesh light crowd at a corner|include/photongrid/trace/mesh_light.glsl|precise float root = sqrt(v);|precise float root = v;"
+  "samples of a mesh light leave out its parts|include/photongrid/trace/shadow_ray.glsl|(float(args.sample_id) + r.x) * share|r.x * share"
+  "lights of meshes are one another|include/photongrid/trace/mesh_hit.glsl|uint(-normal.w) - 1u|uint(-normal.w)"
+  "a photon off a mirror may go where no eye ray does|include/photongrid/trace/shading_normals.glsl|if (by_shading && by_geometric) {|if (by_shading && by_geometric && u < -1.0f) {|validation"
   "radiance is not scaled at glass|include/photongrid/trace/eye_bounce.glsl|b.share * f.radiance_scale|b.share"
   "meshes cast no shadows|include/photongrid/trace/add_unblocked.glsl|triangle_of(mesh_hits(i - args.first)) != NO_TRIANGLE|false"
   "mirrored meshes turn inside out|include/photongrid/trace/device_scene.hpp|if (mirrored)|if (mirrored && m.material == 99)|on_serial_pictures"
@@ -292,7 +297,7 @@ tests_of() {
     backends/vulkan/*) echo on_vulkan ;;
     */film.hpp | */exact_sum.hpp) echo passes ;;
     */scene/scene.hpp | */render/*.hpp | */eye_ray*| */trace_photons.hpp) echo on_serial_pictures ;;
-    */bounce_photon.glsl | */covered_share.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */mesh_surface.glsl | */shading_normals.glsl | */eye_bounce.glsl | */add_unblocked.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
+    */bounce_photon.glsl | */covered_share.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */mesh_surface.glsl | */shading_normals.glsl | */shadow_ray.glsl | */mesh_light.glsl | */eye_bounce.glsl | */add_unblocked.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
     *) echo on_serial_algorithms ;;
   esac
 }
