@@ -263,7 +263,7 @@ namespace {
         EXPECT_EQ(s.mesh_lights[0].surface.surface->positions, square_positions);
         EXPECT_TRUE(parse_scene("again.json", scene_text(s, s.render)) == s);
         lines[11] = R"(  {"type": "mesh_light", "power": 1, "positions": [[0, 0, 0]], "triangles": [[0, 0, 0]]}],)";
-        expect_refusal(refusal(text(lines)), "12:3", {"no area"});
+        expect_refusal(refusal(text(lines)), "12:77", {"no area"});
     }
 
     TEST(mesh_in_a_scene, mirrored_by_a_negative_scale_keeps_its_outside)

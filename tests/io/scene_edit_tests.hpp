@@ -143,6 +143,25 @@ namespace {
         }
     }
 
+    TEST(scene_edit, moves_lights_of_meshes)
+    {
+        const std::string bulb = R"({"type": "point", "position")",
+                          ember
+            = R"({"type": "mesh_light", "power": 3, "positions": [[0, 0, 0], [9, 0, 0], [0, 9, 0]], )"
+              R"("triangles": [[0, 1, 2]])";
+        const auto text = with(by_hand, bulb, ember + "}, " + bulb);
+        auto s = parse_scene("s.json", text);
+        s.mesh_lights.at(0).surface.offset = {0, 0.25, 0};
+        s.mesh_lights[0].power = dvec3(0.005);
+        const auto changed = edited_scene_text("s.json", text, s, s.render);
+        EXPECT_EQ(changed,
+            with(with(text, "\"power\": 3,", "\"power\": 5,"), "[[0, 1, 2]]}",
+                "[[0, 1, 2]], \"translate\": [0, 250, 0]}"));
+        EXPECT_EQ(parse_scene("s.json", changed), s);
+        s.mesh_lights[0].surface.linear[0][0] *= 2;
+        EXPECT_THROW((void)edited_scene_text("s.json", text, s, s.render), std::invalid_argument);
+    }
+
     TEST(scene_edit, refuses_other_scenes)
     {
         const auto s = parse_scene("s.json", by_hand);

@@ -116,7 +116,8 @@ namespace {
             return meshes.size() == 1 ? meshes[0] - s.meshes.data() : -1;
         };
         EXPECT_EQ(seen_at(100, 195), 0);
-        EXPECT_EQ(seen_at(100, 20), 2);
+        EXPECT_EQ(seen_at(100, 20), 1);
+        EXPECT_EQ(seen_at(100, 60), 2);
         EXPECT_EQ(seen_at(3, 100) + seen_at(197, 100), 3 + 4);
         EXPECT_EQ(seen_at(60, 150), -1) << "a ball";
     }

@@ -137,8 +137,13 @@ namespace {
             if (were.size() != are.size())
                 throw_other(std::string("number of parts of the kind ") + kind.name);
             for (std::size_t i = 0; i < are.size(); ++i) {
-                if (!same_but_for_fields(were[i], are[i], kind))
-                    throw_other(std::string("name or material of a ") + kind.name);
+                auto was = were[i];
+                if constexpr (requires { was.surface.offset; }) {
+                    edit_place(*items[i], was.surface, are[i].surface);
+                    was.surface.offset = are[i].surface.offset;
+                }
+                if (!same_but_for_fields(was, are[i], kind))
+                    throw_other(std::string("name, surface or material of a ") + kind.name);
                 for_each_field(kind.fields, [&](const auto& f) {
                     const unit& u = f.of == quantity::direction ? none_ : f.of == quantity::power ? power_ : length_;
                     edit(at(*items[i], f.name), u, were[i].*f.member, are[i].*f.member);
@@ -169,17 +174,21 @@ namespace {
             if (meshes.size() != before_.meshes.size())
                 throw_other("number of meshes");
             for (std::size_t i = 0; i < meshes.size(); ++i) {
-                const auto &was = before_.meshes[i].offset, &is = meshes[i].offset;
                 if (!same_but_for_fields(before_.meshes[i], meshes[i], kind{}))
                     throw_other("mesh, or scale, rotation or material of one");
-                if (const auto* matrix = items[i]->find("matrix"))
-                    for (int row = 0; row < 3; ++row)
-                        edit(matrix->items[static_cast<std::size_t>(row)].items[3], length_, was[row], is[row]);
-                else if (const auto* translate = items[i]->find("translate"))
-                    edit(*translate, length_, was, is);
-                else if (was != is)
-                    add_member(*items[i], "translate", three_text(is, length_));
+                edit_place(*items[i], before_.meshes[i], meshes[i]);
             }
+        }
+        void edit_place(const json_value& of, const placed_mesh& before, const placed_mesh& after)
+        {
+            const auto &was = before.offset, &is = after.offset;
+            if (const auto* matrix = of.find("matrix"))
+                for (int row = 0; row < 3; ++row)
+                    edit(matrix->items[static_cast<std::size_t>(row)].items[3], length_, was[row], is[row]);
+            else if (const auto* translate = of.find("translate"))
+                edit(*translate, length_, was, is);
+            else if (was != is)
+                add_member(of, "translate", three_text(is, length_));
         }
 
         // --- settings ---
