@@ -121,7 +121,7 @@ private:
         }
     }
 
-    struct triangle {
+    struct face {
         dvec3 corner, edge_u, edge_v, normal;
         std::int64_t smooth = -1; ///< index in normals_
     };
@@ -133,7 +133,7 @@ private:
 
     /// By Cramer's rule (Möller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection, 1997), a little larger
     /// than the triangle, so that rounding opens no gap between neighbours.
-    static double distance(const triangle& t, const ray& r)
+    static double distance(const face& t, const ray& r)
     {
         constexpr double margin = 1e-12;
         const dvec3 p = glm::cross(r.direction, t.edge_v), from = r.origin - t.corner, q = glm::cross(from, t.edge_u);
@@ -191,7 +191,7 @@ private:
         build(half, past);
     }
 
-    std::vector<triangle> triangles_;
+    std::vector<face> triangles_;
     std::vector<std::array<dvec3, 3>> normals_; ///< of the corners of triangles that have any
     std::vector<std::uint32_t> materials_;
     std::vector<std::uint32_t> order_; ///< of the triangles in the leaves
