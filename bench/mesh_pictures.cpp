@@ -44,7 +44,7 @@ scene room_with_ball(uint triangles)
     s.meshes = {{"", std::make_shared<const mesh>(std::move(ball)), glm::dmat3(1), {0, 0.85, 0}, 1}};
     s.rectangle_lights = {{"lamp", {-0.5, 2.9, -0.5}, {1, 0, 0}, {0, 0, 1}, dvec3(40)}};
     s.camera = {{0, 1.6, -4.2}, {0, 0.75, 0}, {0, 1, 0}, 45};
-    s.render = {.map = {.photons = 200000, .grid = glm::uvec3(0), .builder = map_builder::automatic},
+    s.render = {.map = {.photons = 200000, .builder = map_builder::automatic, .grid = glm::uvec3(0)},
         .estimate = {.k = 100, .max_radius = 0.3},
         .view = {.spp = 1, .light_samples = 4},
         .output = {.width = 512, .height = 512}};
