@@ -91,7 +91,7 @@ faults=(
   "samples share out a pixel's width in no order|include/photongrid/trace/eye_ray.glsl|(row + first_x) % args.strata.y|first_x|optics"
   "samples share out a pixel's height in one order|include/photongrid/trace/eye_ray.glsl|(column + first_y)|(column + 0u * first_y)|optics"
   "edges of estimates not corrected|include/photongrid/render/view_pass.hpp|settings_.estimate.edges != edge_correction::none|settings_.estimate.edges == edge_correction::none"
-  "lamp twice as bright|include/photongrid/trace/light_sample.glsl|3.18309886e-1f * share|6.36619772e-1f * share"
+  "lamp twice as bright|include/photongrid/trace/light_sample.glsl|3.18309886e-1f * seen.share|6.36619772e-1f * seen.share"
   'shafts forget the margin of the light|include/photongrid/trace/intersect/sphere.glsl|precise float both = (s.w + radius) * 1.00001f;|precise float both = s.w * 1.00001f;'
   'shafts look at one corner|include/photongrid/trace/intersect/polygon.glsl|+ (by_u < 0.0f ? by_u : 0.0f) + (by_v < 0.0f ? by_v : 0.0f);|+ 0.0f;'
   "lists forget ties|include/photongrid/estimate/list_neighbours.glsl|list(at) <= last_id|list(at) < last_id"

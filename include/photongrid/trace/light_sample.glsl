@@ -28,6 +28,7 @@ struct SeenLight {
     vec3 edge_u;      // of a stratum
     vec3 edge_v;
     float size2;      // of a stratum's diagonal, squared, m^2
+    float share;      // of a sample among all samples
     bool some_close;  // some strata may be close (LightSample)
     vec3 off_light;   // from a point of the light to where shadow rays end
 };
@@ -45,6 +46,8 @@ SeenLight seen_light(uint at, LitPoint lit)
     seen.edge_u = edge_u;
     seen.edge_v = edge_v;
     seen.size2 = size2;
+    precise float share = 1.0f / float(args.strata.x * args.strata.y);
+    seen.share = share;
     seen.some_close = false;
     seen.off_light = vec3(0.0f, 0.0f, 0.0f);
     if (seen.area) {
@@ -161,8 +164,7 @@ LightSample light_sample(SeenLight seen, uint number, uint s, uint i, LitPoint l
     precise vec3 end = target;
     if (seen.area) {
         // Radiance times area is power / pi.
-        precise float share = 1.0f / float(args.strata.x * args.strata.y);
-        precise float diffuse = cosine * leaving / distance2 * 3.18309886e-1f * share;
+        precise float diffuse = cosine * leaving / distance2 * 3.18309886e-1f * seen.share;
         if (close) {
             precise vec3 f = stratum - lit.position;
             // The stratum's part of the irradiance.
