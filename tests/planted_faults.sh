@@ -231,7 +231,7 @@ faults=(
   "points of a mesh light crowd at a corner|include/photongrid/trace/mesh_light.glsl|precise float root = sqrt(v);|precise float root = v;"
   "samples of a mesh light leave out its parts|include/photongrid/trace/shadow_ray.glsl|(float(args.sample_id) + r.x) * share|r.x * share"
   "lights of meshes are one another|include/photongrid/trace/mesh_hit.glsl|uint(-normal.w) - 1u|uint(-normal.w)"
-  "a photon off a mirror may go where no eye ray does|include/photongrid/trace/shading_normals.glsl|if (by_shading && by_geometric) {|if (by_shading && by_geometric && u < -1.0f) {|validation"
+  "a photon off a mirror may go where no eye ray does|include/photongrid/trace/shading_normals.glsl|} else if (!by_shading && !by_geometric) {|} else if (!by_shading && !by_geometric && u < -1.0f) {|validation"
   "radiance is not scaled at glass|include/photongrid/trace/eye_bounce.glsl|b.share * f.radiance_scale|b.share"
   "meshes cast no shadows|include/photongrid/trace/add_unblocked.glsl|triangle_of(mesh_hits(i - args.first)) != NO_TRIANGLE|false"
   "mirrored meshes turn inside out|include/photongrid/trace/device_scene.hpp|if (mirrored)|if (mirrored && m.material == 99)|on_serial_pictures"
