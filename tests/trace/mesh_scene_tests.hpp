@@ -5,9 +5,6 @@
 #include "../render/known_energy_tests.hpp"
 #include "../render/known_picture_tests.hpp"
 #include "mesh_sets.hpp"
-#include "probe_rays.hpp"
-
-#include <photongrid/reference/intersect.hpp>
 
 namespace photongrid::testing {
 
@@ -85,52 +82,6 @@ TYPED_TEST_P(mesh_scenes, rooms_of_meshes_equal_the_serial_backends)
     auto s = bumpy_room_with_glass();
     s.render.view.spp = 3;
     this->expect_serial(s, s.render);
-}
-
-/// Places, normals and materials at hits, against the reference's in double precision.
-TYPED_TEST_P(mesh_scenes, surfaces_are_where_the_reference_has_them)
-{
-    auto s = bumpy_room(600, 2, {0.5, 0.25, -3});
-    s.materials.push_back({"grey", material_kind::lambertian, dvec3(0.5)});
-    s.meshes.push_back({"", std::make_shared<const mesh>(smooth_ball(5)),
-        glm::dmat3(0.4, 0, 0, 0.1, -0.3, 0, 0, 0, 0.5), {0.9, 0.25, -3}, 1});
-    auto& b = this->b();
-    const auto device = upload_scene(b, s);
-    const reference::geometry exact(s);
-    random_source u(91);
-    std::vector<glm::vec4> origins, directions;
-    for (int i = 0; i < 4000; ++i) {
-        origins.emplace_back(
-            glm::vec3(dvec3(0.5, 0.25, -3) + 0.3 * dvec3(random_direction(u)) - device.layout.center), 3e38f);
-        const dvec3 at = dvec3(0.9, 0.25, -3) + (i % 2 == 0 ? 0.5 : 3.0) * dvec3(random_direction(u))
-            - device.layout.center - dvec3(glm::vec3(origins.back()));
-        directions.emplace_back(glm::vec3(glm::normalize(at)), 0.0f);
-    }
-    detail::mesh_rays<typename TestFixture::B> rays(b, 0);
-    rays.origins = upload(b, origins);
-    rays.directions = upload(b, directions);
-    detail::mesh_hits<typename TestFixture::B> hits(b, device, origins.size());
-    rays.find(b, device, hits);
-    const auto places = b.download(hits.places), normals = b.download(hits.normals),
-               shadings = b.download(hits.shadings);
-    std::size_t smooth = 0, other = 0;
-    for (std::size_t i = 0; i < origins.size(); ++i) {
-        const auto h = exact.nearest(
-            {dvec3(glm::vec3(origins[i])) + device.layout.center, glm::normalize(dvec3(glm::vec3(directions[i])))});
-        ASSERT_NE(h.shape, reference::nothing);
-        const dvec3 p = dvec3(glm::vec3(places[i])) + device.layout.center;
-        // At an edge it may be the neighbour's, at the outline of the ball the wall's.
-        if (glm::length(p - h.position) > 1e-4 || glm::dot(dvec3(glm::vec3(normals[i])), h.normal) < 1 - 1e-5) {
-            ++other;
-            continue;
-        }
-        EXPECT_EQ(normals[i].w, static_cast<float>(h.material));
-        EXPECT_NEAR(static_cast<double>(places[i].w), h.t, 1e-4);
-        EXPECT_LT(glm::length(dvec3(glm::vec3(shadings[i])) - h.shading), 1e-3) << i;
-        smooth += glm::length(h.shading - h.normal) > 0.02 ? 1 : 0;
-    }
-    EXPECT_LE(other, 8u);
-    EXPECT_GT(smooth, 500u);
 }
 
 TYPED_TEST_P(mesh_scenes, no_photon_leaves_a_closed_room)
@@ -294,10 +245,9 @@ TYPED_TEST_P(mesh_scenes, a_smooth_glass_ball_focuses_the_power_that_optics_pred
 }
 
 REGISTER_TYPED_TEST_SUITE_P(mesh_scenes, draw_what_their_polygons_draw, equal_the_serial_backends,
-    rooms_of_meshes_equal_the_serial_backends, surfaces_are_where_the_reference_has_them,
-    no_photon_leaves_a_closed_room, photons_and_shadow_rays_light_by_the_same_normals,
-    smooth_glass_and_mirrors_amid_lamps_cannot_be_seen, a_white_body_in_glass_amid_lamps_cannot_be_seen,
-    a_smooth_glass_ball_focuses_the_power_that_optics_predicts, a_ball_amid_a_mesh_that_emits_has_the_known_radiance,
-    photons_and_shadow_rays_of_a_mesh_that_emits_agree);
+    rooms_of_meshes_equal_the_serial_backends, no_photon_leaves_a_closed_room,
+    photons_and_shadow_rays_light_by_the_same_normals, smooth_glass_and_mirrors_amid_lamps_cannot_be_seen,
+    a_white_body_in_glass_amid_lamps_cannot_be_seen, a_smooth_glass_ball_focuses_the_power_that_optics_predicts,
+    a_ball_amid_a_mesh_that_emits_has_the_known_radiance, photons_and_shadow_rays_of_a_mesh_that_emits_agree);
 
 } // namespace photongrid::testing

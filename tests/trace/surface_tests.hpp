@@ -2,10 +2,12 @@
 // precision, rays at each edge of polygons, and how far off a surface its rays start.
 #pragma once
 
+#include "mesh_sets.hpp"
 #include "probe_rays.hpp"
 
 #include <photongrid/io/scene_file.hpp>
 #include <photongrid/reference/intersect.hpp>
+#include <photongrid/trace/mesh_search.hpp>
 
 #include <numbers>
 
@@ -97,6 +99,55 @@ namespace {
             }
         });
         EXPECT_GE(kinds, 10);
+    }
+
+    /// Places, normals and materials at hits, against the reference's in double precision.
+    TEST(surfaces, of_meshes_are_where_the_reference_has_them)
+    {
+        auto s = empty_scene({0.5, 0.25, -3});
+        s.materials.push_back({"grey", material_kind::lambertian, dvec3(0.5)});
+        s.meshes.push_back(
+            {"", std::make_shared<const mesh>(bumpy_ball(12, 1, 0.2f)), glm::dmat3(2), {0.5, 0.25, -3}, 0});
+        s.meshes.push_back(
+            {"", std::make_shared<const mesh>(smooth_ball(5)), glm::dmat3(0.4, 0, 0, 0.1, -0.3, 0, 0, 0, 0.5),
+                {0.9, 0.25, -3}, static_cast<std::uint32_t>(s.materials.size() - 1)});
+        serial_backend b;
+        const auto device = upload_scene(b, s);
+        const reference::geometry exact(s);
+        random_source u(91);
+        std::vector<glm::vec4> origins, directions;
+        for (int i = 0; i < 4000; ++i) {
+            origins.emplace_back(
+                glm::vec3(dvec3(0.5, 0.25, -3) + 0.3 * dvec3(random_direction(u)) - device.layout.center), 3e38f);
+            const dvec3 at = dvec3(0.9, 0.25, -3) + (i % 2 == 0 ? 0.5 : 3.0) * dvec3(random_direction(u))
+                - device.layout.center - dvec3(glm::vec3(origins.back()));
+            directions.emplace_back(glm::vec3(glm::normalize(at)), 0.0f);
+        }
+        detail::mesh_rays<serial_backend> rays(b, 0);
+        rays.origins = upload(b, origins);
+        rays.directions = upload(b, directions);
+        detail::mesh_hits<serial_backend> hits(b, device, origins.size());
+        rays.find(b, device, hits);
+        const auto places = b.download(hits.places), normals = b.download(hits.normals),
+                   shadings = b.download(hits.shadings);
+        std::size_t smooth = 0, other = 0;
+        for (std::size_t i = 0; i < origins.size(); ++i) {
+            const auto h = exact.nearest(
+                {dvec3(glm::vec3(origins[i])) + device.layout.center, glm::normalize(dvec3(glm::vec3(directions[i])))});
+            ASSERT_NE(h.shape, reference::nothing);
+            const dvec3 p = dvec3(glm::vec3(places[i])) + device.layout.center;
+            // At an edge it may be the neighbour's, at the outline of the ball the wall's.
+            if (glm::length(p - h.position) > 1e-4 || glm::dot(dvec3(glm::vec3(normals[i])), h.normal) < 1 - 1e-5) {
+                ++other;
+                continue;
+            }
+            EXPECT_EQ(normals[i].w, static_cast<float>(h.material));
+            EXPECT_NEAR(static_cast<double>(places[i].w), h.t, 1e-4);
+            EXPECT_LT(glm::length(dvec3(glm::vec3(shadings[i])) - h.shading), 1e-3) << i;
+            smooth += glm::length(h.shading - h.normal) > 0.02 ? 1 : 0;
+        }
+        EXPECT_LE(other, 8u);
+        EXPECT_GT(smooth, 500u);
     }
 
     /// A polygon ends at each of its edges alike: rays 10^-6 of its size inside hit it, and those as far outside miss,
