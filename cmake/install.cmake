@@ -98,7 +98,8 @@ if(TARGET photongrid_program)
   foreach(module IN LISTS modules)
     install(TARGETS ${module} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/photongrid COMPONENT program)
   endforeach()
-  install(DIRECTORY examples/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/photongrid COMPONENT program FILES_MATCHING PATTERN "*.json" PATTERN "*.ply")
+  install(DIRECTORY examples/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/photongrid COMPONENT program
+    FILES_MATCHING PATTERN "*.json" PATTERN "*.ply")
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/photongrid RENAME copyright COMPONENT program)
 endif()
 

@@ -235,7 +235,7 @@ faults=(
   "radiance is not scaled at glass|include/photongrid/trace/eye_bounce.glsl|b.share * f.radiance_scale|b.share"
   "meshes cast no shadows|include/photongrid/trace/add_unblocked.glsl|triangle_of(mesh_hits(i - args.first)) != NO_TRIANGLE|false"
   "mirrored meshes turn inside out|include/photongrid/trace/device_scene.hpp|if (mirrored)|if (mirrored && m.material == 99)|on_serial_pictures"
-  "placed meshes turn inside out|include/photongrid/scene/placed_mesh.hpp|glm::determinant(m.linear) < 0|false|scene_file"
+  "placed meshes turn inside out|include/photongrid/scene/placed_mesh.hpp|return glm::determinant(m.linear) < 0|return false && glm::determinant(m.linear) < 0|scene_file"
   "big-endian files are read as little-endian|include/photongrid/io/ply_file.cpp|format_ == format::big_endian)|false)|scene_file"
   "faces' indices are not looked at|include/photongrid/io/ply_file.cpp|>= made_.positions.size())|> made_.positions.size())|scene_file"
   "meshes lie outside the scene's folder|include/photongrid/io/scene_file.cpp|std::find(path.begin(), path.end(), \"..\") == path.end()|true|scene_file"

@@ -56,12 +56,7 @@ namespace {
 
     std::string ply_refusal(const std::string& bytes)
     {
-        try {
-            parse_ply("m.ply", bytes);
-            return "";
-        } catch (const scene_error& e) {
-            return e.what();
-        }
+        return refusal_by([&] { return parse_ply("m.ply", bytes); });
     }
     std::string replaced(std::string in, const std::string& from, const std::string& to)
     {
@@ -135,14 +130,9 @@ namespace {
                 (void)ply_refusal(whole.substr(0, n));
             std::uint32_t state = 1;
             for (int i = 0; i < 20'000; ++i) {
-                auto damaged = whole;
-                for (int changes = 0; changes < 3; ++changes) {
-                    state = state * 1664525u + 1013904223u;
-                    damaged[(state >> 8) % damaged.size()] = "0-9e. \nlistx\x00\xff\x7f"[(state >> 4) % 15];
-                }
                 mesh m;
                 try {
-                    m = parse_ply("m.ply", damaged);
+                    m = parse_ply("m.ply", damaged(whole, {"0-9e. \nlistx\x00\xff\x7f", 15}, state));
                 } catch (const scene_error&) {
                     continue;
                 }

@@ -44,15 +44,32 @@ namespace {
         return all;
     }
 
-    /// The reader's error for `content`, or "" if it accepts it.
-    std::string refusal(const std::string& content)
+    /// The error of a reader, or "" if it throws none.
+    template <class Read>
+    std::string refusal_by(const Read& read)
     {
         try {
-            parse_scene("s.json", content);
+            (void)read();
             return "";
         } catch (const scene_error& e) {
             return e.what();
         }
+    }
+
+    /// The reader's error for `content`, or "" if it accepts it.
+    std::string refusal(const std::string& content)
+    {
+        return refusal_by([&] { return parse_scene("s.json", content); });
+    }
+
+    /// `text` with three of its bytes replaced by some of `bytes`.
+    std::string damaged(std::string text, std::string_view bytes, std::uint32_t& state)
+    {
+        for (int changes = 0; changes < 3; ++changes) {
+            state = state * 1664525u + 1013904223u;
+            text[(state >> 8) % text.size()] = bytes[(state >> 4) % bytes.size()];
+        }
+        return text;
     }
 
     /// The reader's error for `good` with `from` replaced by `to` in one line (counted from 1).

@@ -89,11 +89,7 @@ std::vector<scene_part> parts_of(const scene& s)
 
 void move(scene& s, const scene_part& part, const dvec3& by)
 {
-    for_each_item(s, part, [&](auto& item, auto kind) {
-        photongrid::detail::move_points(item, kind.fields, by);
-        if constexpr (requires { item.surface.offset; })
-            item.surface.offset += by; // of a light
-    });
+    for_each_item(s, part, [&](auto& item, auto kind) { photongrid::detail::move_points(item, kind.fields, by); });
 }
 
 sight_line sight_line_at(const camera& c, double width, double height, double x, double y)

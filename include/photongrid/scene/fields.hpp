@@ -59,7 +59,7 @@ void for_each_field(const Fields& fields, F&& f)
 }
 
 namespace detail {
-    /// Moves a shape or light with these fields.
+    /// Moves a shape or light with these fields, and the mesh that is its surface if it has one.
     template <class Part, class Fields>
     void move_points(Part& part, const Fields& fields, const dvec3& by)
     {
@@ -73,6 +73,8 @@ namespace detail {
                     value += by;
             }
         });
+        if constexpr (requires { part.surface.offset; })
+            part.surface.offset += by;
     }
 } // namespace detail
 

@@ -68,16 +68,6 @@ inline void check(const rectangle_light& l)
     check_power(l.power);
 }
 
-/// The area of all triangles of a mesh, m^2.
-inline double area_of(const placed_mesh& m)
-{
-    double area = 0;
-    for (std::size_t t = 0; t < m.surface->triangles.size(); ++t) {
-        const auto c = corners_of(m, t);
-        area += 0.5 * glm::length(glm::cross(c[1] - c[0], c[2] - c[0]));
-    }
-    return area;
-}
 /// \throws std::invalid_argument for a surface that check() rejects or that has no area, or a power as in check_power.
 inline void check(const mesh_light& l)
 {

@@ -33,15 +33,32 @@ struct placed_mesh {
 /// The place of a vertex of the surface in the scene, m.
 inline dvec3 place_of(const placed_mesh& m, const glm::vec3& vertex) { return m.linear * dvec3(vertex) + m.offset; }
 
+/// Whether the placement exchanges inside and outside, as a mirror does.
+inline bool is_mirrored(const placed_mesh& m) { return glm::determinant(m.linear) < 0; }
+
 /// The corners of a triangle in the scene, m. Where `linear` mirrors the surface, the last two are exchanged, so that
 /// its outside stays outside.
 inline std::array<dvec3, 3> corners_of(const placed_mesh& m, std::size_t triangle)
 {
     const auto of = corners_of(*m.surface, triangle);
     std::array<dvec3, 3> placed{place_of(m, of[0]), place_of(m, of[1]), place_of(m, of[2])};
-    if (glm::determinant(m.linear) < 0)
+    if (is_mirrored(m))
         std::swap(placed[1], placed[2]);
     return placed;
+}
+
+/// The area of a triangle, m^2.
+inline double area_of(const std::array<dvec3, 3>& corners)
+{
+    return 0.5 * glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+}
+/// The area of all triangles of a mesh, m^2.
+inline double area_of(const placed_mesh& m)
+{
+    double area = 0;
+    for (std::size_t t = 0; t < m.surface->triangles.size(); ++t)
+        area += area_of(corners_of(m, t));
+    return area;
 }
 
 /// The direction of a vertex's normal in the scene: a unit vector, or 0 for a normal of length 0.
@@ -50,7 +67,7 @@ inline dvec3 normal_of(const placed_mesh& m, const glm::vec3& normal)
     // The cofactors of `linear`: its inverse transposed, times the determinant, whose sign is that of mirroring.
     const auto& l = m.linear;
     const glm::dmat3 cofactors(glm::cross(l[1], l[2]), glm::cross(l[2], l[0]), glm::cross(l[0], l[1]));
-    const dvec3 n = cofactors * dvec3(normal) * (glm::determinant(l) < 0 ? -1.0 : 1.0);
+    const dvec3 n = cofactors * dvec3(normal) * (is_mirrored(m) ? -1.0 : 1.0);
     const double length = glm::length(n);
     return length > 0 ? n / length : dvec3(0);
 }

@@ -44,7 +44,6 @@ struct mesh_layout {
     std::vector<glm::vec4> planes;  ///< of each triangle: unit normal; offset, m
     std::vector<glm::vec4> normals; ///< of each vertex; empty if no mesh has any
     std::vector<uint> shares;       ///< of each triangle of mesh lights, which come first: see trace/mesh_light.glsl
-    std::size_t without_area = 0;   ///< triangles that are lines or points: they only close cracks of a surface
 };
 
 /// The records of a scene, and their layout.
@@ -73,8 +72,6 @@ namespace detail {
         for_each_shape(s, move);
         for_each_light(s, move);
         move(s.meshes, shape_kind<placed_mesh>{});
-        for (auto& l : s.mesh_lights)
-            l.surface.offset -= by;
         s.camera.position -= by;
         s.camera.look_at -= by;
         return s;
@@ -258,7 +255,7 @@ namespace detail {
                         all.normals.emplace_back(normal_of(m, n), 0.0f);
                 all.normals.resize(all.triangles.positions.size(), glm::vec4(0));
             }
-            const bool mirrored = glm::determinant(m.linear) < 0; // as corners_of(placed_mesh)
+            const bool mirrored = is_mirrored(m); // as corners_of(placed_mesh)
             for (auto t : m.surface->triangles) {
                 if (mirrored)
                     std::swap(t.y, t.z);
@@ -274,8 +271,7 @@ namespace detail {
             const double total = area_of(m);
             double area = 0;
             for (std::size_t t = first; t < out_.meshes.faces.size(); ++t) {
-                const auto c = corners_of(m, t - first);
-                area += 0.5 * glm::length(glm::cross(c[1] - c[0], c[2] - c[0]));
+                area += area_of(corners_of(m, t - first));
                 out_.meshes.shares.push_back(static_cast<uint>(std::min(area / total * 0x1p32, 0xFFFFFFFFp0)));
             }
             out_.meshes.shares.back() = 0xFFFFFFFFu;
@@ -289,7 +285,6 @@ namespace detail {
             const dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
             dvec3 n = glm::cross(b - a, c - a);
             if (!(glm::length(n) > 0)) {
-                ++out_.meshes.without_area;
                 const dvec3 ab = b - a, ac = c - a, edge = glm::dot(ab, ab) > glm::dot(ac, ac) ? ab : ac;
                 const dvec3 other = std::abs(edge.x) < std::abs(edge.y) ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
                 n = glm::cross(edge, other);

@@ -123,15 +123,37 @@ struct LightSample {
     float far;       // length of the shadow ray, m
 };
 
-// Sample s of light `number`, for element i. The sample of an area light is a random point of its stratum. A stratum
-// closer than four times its size is close: one of its points does not represent the rest, so its form factor is taken.
-LightSample light_sample(SeenLight seen, uint number, uint s, uint i, LitPoint lit)
+LightSample no_light(LitPoint lit)
 {
     LightSample none;
     none.per_power = 0.0f;
     none.has_ray = false;
     none.direction = lit.normal;
     none.far = 0.0f;
+    return none;
+}
+
+// A sample whose shadow ray goes to `end`; no light from a point without distance.
+LightSample lit_from(vec3 end, float per_power, LitPoint lit)
+{
+    LightSample found = no_light(lit);
+    precise vec3 ray = end - lit.origin;
+    float length2 = dot3(ray, ray);
+    if (!(length2 > 0.0f))
+        return found;
+    precise float far = sqrt(length2);
+    precise vec3 way = ray / far;
+    found.per_power = per_power;
+    found.has_ray = true;
+    found.direction = way;
+    found.far = far;
+    return found;
+}
+
+// Sample s of light `number`, for element i. The sample of an area light is a random point of its stratum. A stratum
+// closer than four times its size is close: one of its points does not represent the rest, so its form factor is taken.
+LightSample light_sample(SeenLight seen, uint number, uint s, uint i, LitPoint lit)
+{
     vec3 corner = seen.light.position;
     vec3 target = corner;
     vec3 stratum = corner;
@@ -151,13 +173,13 @@ LightSample light_sample(SeenLight seen, uint number, uint s, uint i, LitPoint l
     precise vec3 towards = target - lit.position;
     float distance2 = dot3(towards, towards);
     if (!(distance2 > 0.0f))
-        return none;
+        return no_light(lit);
     precise float inverse = 1.0f / sqrt(distance2);
     precise vec3 d = towards * inverse;
     float cosine = dot3(d, lit.normal);
     float leaving = seen.area ? -dot3(d, seen.light.normal) : 1.0f;
     if (!(leaving > 0.0f) || (!close && !(cosine > 0.0f)))
-        return none;
+        return no_light(lit);
     // 1 / (4 pi): intensity of a point light. The distance is at least the ray offset.
     float least2 = lit.offset * lit.offset;
     precise float factor = cosine / (distance2 > least2 ? distance2 : least2) * 7.95774715e-2f;
@@ -175,17 +197,12 @@ LightSample light_sample(SeenLight seen, uint number, uint s, uint i, LitPoint l
         factor = diffuse;
         end = target + seen.off_light;
     }
-    precise vec3 ray = end - lit.origin;
-    float length2 = dot3(ray, ray);
-    if (!(length2 > 0.0f))
-        return none;
-    precise float far = sqrt(length2);
-    precise vec3 way = ray / far;
-    LightSample found;
-    found.per_power = factor;
+    LightSample found = lit_from(end, factor, lit);
     // For a stratum partly below the horizon, samples below it count as visible.
-    found.has_ray = cosine > 0.0f;
-    found.direction = way;
-    found.far = seen.area ? far : far * 0.9999f; // a point light may touch a surface
+    found.has_ray = found.has_ray && cosine > 0.0f;
+    if (!seen.area) {
+        precise float short_of = found.far * 0.9999f; // a point light may touch a surface
+        found.far = short_of;
+    }
     return found;
 }

@@ -1,6 +1,6 @@
 // Points of meshes that are lights. Included by kernels after trace/lights.glsl and after the INPUTs faces, planes and
-// vertices (mesh_surface.glsl) and `shares`: of each triangle of a light the share of the light's area that is in it and
-// in those of the light before it, times 2^32.
+// vertices (mesh_surface.glsl) and `shares`: of each triangle of a light the share of the light's area that is in it
+// and in those of the light before it, times 2^32.
 SWITCH(11, MESH_LIGHTS)
 
 bool is_mesh_light(uint at)

@@ -67,9 +67,9 @@ Leaving leave_specular(Hit hit, FacingNormals sides, Fresnel f, bool reflected, 
     return l;
 }
 
-// The same for a photon, which must go where an eye ray comes from. Reflected by the shading normal it does, if that leads
-// out of the surface; and along the geometric reflection `other`, if an eye ray that comes from there falls back to the
-// geometric normal. Where both are possible, `u` chooses; where neither is, adjoint is 0.
+// The same for a photon, which must go where an eye ray comes from. Reflected by the shading normal it does, if that
+// leads out of the surface; and along the geometric reflection `other`, if an eye ray that comes from there falls back
+// to the geometric normal. Where both are possible, `u` chooses; where neither is, adjoint is 0.
 Leaving photon_leaves(Hit hit, FacingNormals sides, Fresnel f, bool reflected, float index, vec3 d, float u)
 {
     Leaving l = leave_specular(hit, sides, f, reflected, index, d);

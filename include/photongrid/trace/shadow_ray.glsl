@@ -34,11 +34,6 @@ OUTPUT(1, vec4, direction) // xyz: unit vector; w: irradiance if no mesh blocks 
 // A sample of a mesh light: a random point of the sample's own part of the area.
 LightSample mesh_light_sample(uint at, uint i, LitPoint lit)
 {
-    LightSample found;
-    found.per_power = 0.0f;
-    found.has_ray = false;
-    found.direction = lit.normal;
-    found.far = 0.0f;
     vec4 r = random4(
         uvec4(i + args.first_pixel, args.ray_id, 3000u + args.light, args.seed ^ (args.sample_id * 0x9E3779B1u)));
     precise float share = 1.0f / float(args.strata.x * args.strata.y);
@@ -47,24 +42,16 @@ LightSample mesh_light_sample(uint at, uint i, LitPoint lit)
     precise vec3 towards = e.position - lit.position;
     float distance2 = dot3(towards, towards);
     if (!(distance2 > 0.0f))
-        return found;
+        return no_light(lit);
     precise float inverse = 1.0f / sqrt(distance2);
     precise vec3 d = towards * inverse;
     float cosine = dot3(d, lit.normal);
     float leaving = -dot3(d, e.normal);
-    precise vec3 ray = ray_at(e.position, e.normal, e.offset) - lit.origin;
-    float length2 = dot3(ray, ray);
-    if (!(cosine > 0.0f) || !(leaving > 0.0f) || !(length2 > 0.0f))
-        return found;
+    if (!(cosine > 0.0f) || !(leaving > 0.0f))
+        return no_light(lit);
     // Radiance times area is power / pi.
     precise float per_power = cosine * leaving / distance2 * 3.18309886e-1f * share;
-    precise float far = sqrt(length2);
-    precise vec3 way = ray / far;
-    found.per_power = per_power;
-    found.has_ray = true;
-    found.direction = way;
-    found.far = far;
-    return found;
+    return lit_from(ray_at(e.position, e.normal, e.offset), per_power, lit);
 }
 
 void kernel(uint i)
