@@ -4,6 +4,7 @@
 
 #include <photongrid/backend/backend.hpp>
 #include <photongrid/scene/scene.hpp>
+#include <photongrid/trace/mesh_layout.hpp>
 #include <photongrid/trace/ray_search.hpp>
 #include <photongrid/trace/scene_layout.kernel.hpp>
 
@@ -36,15 +37,6 @@ static_assert(light_kind<point_light>::form == kernels::POINT_LIGHT
 static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SURFACE
     && static_cast<uint>(surface_kind::reflecting) == kernels::MIRROR_SURFACE
     && static_cast<uint>(surface_kind::refracting) == kernels::GLASS_SURFACE);
-
-/// The triangles of all meshes of a scene, in the meshes' order, as trace/mesh_surface.glsl describes them.
-struct mesh_layout {
-    mesh triangles;                 ///< recentred; without normals
-    std::vector<glm::uvec4> faces;  ///< of each triangle: its vertices, its material, whether it has normals
-    std::vector<glm::vec4> planes;  ///< of each triangle: unit normal; offset, m
-    std::vector<glm::vec4> normals; ///< of each vertex; empty if no mesh has any
-    std::vector<uint> shares;       ///< of each triangle of mesh lights, which come first: see trace/mesh_light.glsl
-};
 
 /// The records of a scene, and their layout.
 struct scene_layout {
@@ -229,70 +221,17 @@ namespace detail {
         /// Appends the triangles of mesh lights and of all meshes.
         void write_meshes()
         {
+            mesh_writer w(out_.meshes, out_.center, (out_.features & has_smooth_meshes) != 0);
             uint light = static_cast<uint>(s_.rectangle_lights.size() + s_.point_lights.size());
             for (const auto& l : s_.mesh_lights) {
                 const std::size_t first = out_.meshes.faces.size();
-                write_mesh(l.surface, kernels::FACE_OF_LIGHT + light++, false);
-                write_shares(l.surface, first);
+                w.write(l.surface, kernels::FACE_OF_LIGHT + light++, false);
+                w.write_shares(l.surface, first);
             }
             for (const auto& m : s_.meshes) {
                 const bool smooth = !m.surface->normals.empty();
-                write_mesh(m, 2 * m.material + (smooth ? 1 : 0), smooth);
+                w.write(m, 2 * m.material + (smooth ? 1 : 0), smooth);
             }
-        }
-
-        /// `code`: w of its faces (trace/mesh_surface.glsl).
-        void write_mesh(const placed_mesh& m, uint code, bool smooth)
-        {
-            auto& all = out_.meshes;
-            require_countable(all.triangles.triangles.size() + m.surface->triangles.size());
-            const auto vertices = static_cast<uint>(all.triangles.positions.size());
-            for (const auto& p : m.surface->positions)
-                all.triangles.positions.emplace_back(place_of(m, p) - out_.center);
-            if ((out_.features & has_smooth_meshes) != 0) {
-                if (smooth)
-                    for (const auto& n : m.surface->normals)
-                        all.normals.emplace_back(normal_of(m, n), 0.0f);
-                all.normals.resize(all.triangles.positions.size(), glm::vec4(0));
-            }
-            const bool mirrored = is_mirrored(m); // as corners_of(placed_mesh)
-            for (auto t : m.surface->triangles) {
-                if (mirrored)
-                    std::swap(t.y, t.z);
-                all.triangles.triangles.push_back(t + vertices);
-                all.faces.emplace_back(t + vertices, code);
-                write_plane(all.faces.size() - 1);
-            }
-        }
-
-        /// The shares of a light's area up to each of its triangles, which begin at `first`.
-        void write_shares(const placed_mesh& m, std::size_t first)
-        {
-            const double total = area_of(m);
-            double area = 0;
-            for (std::size_t t = first; t < out_.meshes.faces.size(); ++t) {
-                area += area_of(corners_of(m, t - first));
-                out_.meshes.shares.push_back(static_cast<uint>(std::min(area / total * 0x1p32, 0xFFFFFFFFp0)));
-            }
-            out_.meshes.shares.back() = 0xFFFFFFFFu;
-        }
-
-        /// The plane of a triangle as it is in single precision. A triangle without area has that of any that contains
-        /// its longest edge.
-        void write_plane(std::size_t triangle)
-        {
-            const auto corners = corners_of(out_.meshes.triangles, triangle);
-            const dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
-            dvec3 n = glm::cross(b - a, c - a);
-            if (!(glm::length(n) > 0)) {
-                const dvec3 ab = b - a, ac = c - a, edge = glm::dot(ab, ab) > glm::dot(ac, ac) ? ab : ac;
-                const dvec3 other = std::abs(edge.x) < std::abs(edge.y) ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-                n = glm::cross(edge, other);
-                if (!(glm::length(n) > 0))
-                    n = dvec3(0, 0, 1);
-            }
-            n = glm::normalize(n);
-            out_.meshes.planes.emplace_back(glm::vec3(n), static_cast<float>(glm::dot(n, a)));
         }
 
         void write_materials(record_writer& w)

@@ -1,0 +1,152 @@
+// Reads the surfaces of meshes in a scene file: from PLY files beside it or listed there, and where they are placed.
+#pragma once
+
+#include <photongrid/io/ply_file.hpp>
+#include <photongrid/io/scene_values.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+namespace photongrid {
+
+/// Whether `path` leads to a file in the scene's folder or below it.
+inline bool stays_inside(const std::filesystem::path& path)
+{
+    return !path.empty() && path.is_relative() && !path.has_root_path()
+        && std::find(path.begin(), path.end(), "..") == path.end();
+}
+
+/// A scene file's values, and those that make a mesh. Files of meshes are sought in the scene file's folder.
+class surface_reader : public scene_values {
+public:
+    surface_reader(const std::string& file, std::string text)
+        : scene_values(file, std::move(text)), folder_(std::filesystem::path(file).parent_path())
+    {
+    }
+
+    /// The surface that an object describes, without a material.
+    placed_mesh surface_in(const json_value& v)
+    {
+        placed_mesh m;
+        const auto *file = v.find("file"), *positions = v.find("positions"), *triangles = v.find("triangles"),
+                   *normals = v.find("normals");
+        if (file != nullptr ? positions != nullptr || triangles != nullptr || normals != nullptr
+                            : positions == nullptr || triangles == nullptr)
+            fail(v.place, "a mesh has either a \"file\" or \"positions\" and \"triangles\"");
+        if (file != nullptr) {
+            m.file = file_name(*file);
+            m.surface = mesh_in(m.file, *file);
+        } else {
+            m.surface = std::make_shared<const mesh>(inline_mesh(*positions, *triangles, normals));
+        }
+        read_placement(v, m);
+        return m;
+    }
+
+private:
+    std::string file_name(const json_value& v) const
+    {
+        if (v.kind != json_kind::string || !is_name(v.text) || !stays_inside(v.text))
+            wrong(v, "a file's name, relative to the scene's folder and without \"..\", of 1 to 100 bytes");
+        return v.text;
+    }
+
+    /// The surface in a file. A file that several meshes name is read once.
+    std::shared_ptr<const mesh> mesh_in(const std::string& name, const json_value& v)
+    {
+        auto& surface = surfaces_[name];
+        if (!surface) {
+            try {
+                surface = std::make_shared<const mesh>(read_ply((folder_ / name).string()));
+            } catch (const scene_error& e) {
+                fail(v.place, e.what());
+            }
+            if (surface->triangles.empty())
+                fail(v.place, (folder_ / name).string() + ": has no face");
+        }
+        return surface;
+    }
+
+    mesh inline_mesh(const json_value& positions, const json_value& triangles, const json_value* normals) const
+    {
+        mesh m;
+        read_list(positions, json_tree::max_values, "positions", [&](const json_value& p) {
+            m.positions.emplace_back(three(p, "a position: [x, y, z]",
+                [&](const json_value& c) { return number(c, -1e9, 1e9, "a coordinate from -1e9 to 1e9"); }));
+        });
+        if (m.positions.empty())
+            wrong(positions, "at least one position");
+        read_list(triangles, json_tree::max_values, "triangles", [&](const json_value& t) {
+            m.triangles.emplace_back(
+                three(t, "a triangle: the numbers of 3 positions, counted from 0", [&](const json_value& c) {
+                    return static_cast<double>(whole(c, 0, static_cast<std::uint32_t>(m.positions.size() - 1)));
+                }));
+        });
+        if (m.triangles.empty())
+            wrong(triangles, "at least one triangle");
+        if (normals != nullptr) {
+            read_list(*normals, json_tree::max_values, "normals",
+                [&](const json_value& n) { m.normals.emplace_back(direction(n)); });
+            if (m.normals.size() != m.positions.size())
+                wrong(*normals, "a normal for each of the " + std::to_string(m.positions.size()) + " positions");
+        }
+        return m;
+    }
+
+    /// Positions are in the file's unit of length.
+    void read_placement(const json_value& v, placed_mesh& m) const
+    {
+        const auto *matrix = v.find("matrix"), *scale = v.find("scale"), *rotate = v.find("rotate"),
+                   *translate = v.find("translate");
+        if (matrix != nullptr && (scale != nullptr || rotate != nullptr || translate != nullptr))
+            fail(matrix->place, "a mesh has either a \"matrix\" or \"scale\", \"rotate\" and \"translate\"");
+        if (matrix != nullptr) {
+            read_matrix(*matrix, m);
+        } else {
+            if (scale != nullptr) {
+                const auto s = rgb(*scale, "[x, y, z] or one number: scale",
+                    [&](const json_value& c) { return number(c, -1e9, 1e9, "a factor from -1e9 to 1e9"); });
+                m.linear = glm::dmat3(s.x, 0, 0, 0, s.y, 0, 0, 0, s.z);
+            }
+            if (rotate != nullptr)
+                m.linear = rotation(*rotate) * m.linear;
+            if (translate != nullptr)
+                m.offset = point(*translate);
+        }
+        m.linear = m.linear * length_.multiply / length_.divide;
+    }
+    /// Rodrigues' formula.
+    glm::dmat3 rotation(const json_value& v) const
+    {
+        if (v.kind != json_kind::object)
+            wrong(v, "an object with the keys \"axis\" and \"degrees\"");
+        open(v, "rotate");
+        const dvec3 a = glm::normalize(direction(at(v, "axis")));
+        const double angle = glm::radians(number(at(v, "degrees"), -360, 360, "an angle from -360 to 360 degrees"));
+        const glm::dmat3 cross(0, a.z, -a.y, -a.z, 0, a.x, a.y, -a.x, 0);
+        return std::cos(angle) * glm::dmat3(1) + std::sin(angle) * cross
+            + (1 - std::cos(angle)) * glm::outerProduct(a, a);
+    }
+    void read_matrix(const json_value& v, placed_mesh& m) const
+    {
+        if (v.kind != json_kind::array || v.items.size() != 3)
+            wrong(v, "3 rows of 4 numbers");
+        for (int row = 0; row < 3; ++row) {
+            const auto& r = v.items[static_cast<std::size_t>(row)];
+            if (r.kind != json_kind::array || r.items.size() != 4)
+                wrong(r, "a row of 4 numbers");
+            for (int column = 0; column < 3; ++column)
+                m.linear[column][row]
+                    = number(r.items[static_cast<std::size_t>(column)], -1e9, 1e9, "a number from -1e9 to 1e9");
+            m.offset[row] = length(r.items[3]);
+        }
+    }
+
+    std::filesystem::path folder_;                                ///< of the scene's file
+    std::map<std::string, std::shared_ptr<const mesh>> surfaces_; ///< by the names of their files
+};
+
+} // namespace photongrid
