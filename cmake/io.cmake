@@ -2,8 +2,11 @@
 find_package(nlohmann_json QUIET)
 find_package(OpenEXR QUIET)
 find_package(PNG QUIET)
-if(NOT TARGET nlohmann_json::nlohmann_json OR NOT TARGET OpenEXR::OpenEXR OR NOT TARGET PNG::PNG)
-  message(STATUS "photongrid: no scene files or pictures, and no program (Debian packages nlohmann-json3-dev, libopenexr-dev, libpng-dev)")
+find_path(PHOTONGRID_STB_INCLUDE_DIR stb/stb_image.h)
+mark_as_advanced(PHOTONGRID_STB_INCLUDE_DIR)
+if(NOT TARGET nlohmann_json::nlohmann_json OR NOT TARGET OpenEXR::OpenEXR OR NOT TARGET PNG::PNG
+    OR NOT PHOTONGRID_STB_INCLUDE_DIR)
+  message(STATUS "photongrid: no scene files or pictures, and no program (Debian packages nlohmann-json3-dev, libopenexr-dev, libpng-dev, libstb-dev)")
   return()
 endif()
 file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/photongrid/io/*.cpp)
@@ -16,6 +19,7 @@ target_sources(photongrid_io PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_
   ${folder}/scene_error.hpp ${folder}/scene_file.hpp ${folder}/scene_writer.hpp ${folder}/structural_similarity.hpp ${folder}/tone_map.hpp)
 target_link_libraries(photongrid_io PUBLIC photongrid PRIVATE $<BUILD_INTERFACE:photongrid_warnings>
   $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> OpenEXR::OpenEXR PNG::PNG)
+target_include_directories(photongrid_io SYSTEM PRIVATE $<BUILD_INTERFACE:${PHOTONGRID_STB_INCLUDE_DIR}>)
 if(PHOTONGRID_SANITIZE)
   set(together 0) # all
   if(PHOTONGRID_FUZZ)

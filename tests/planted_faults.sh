@@ -169,7 +169,7 @@ faults=(
   "a lamp with a dark edge|include/photongrid/trace/emit_photon.glsl|light.edge_u, r.z)|light.edge_u, 0.99f * r.z)|optics"
   "a bulb dimmer below|include/photongrid/trace/emit_photon.glsl|d = uniform_direction(r.x, r.y)|d = uniform_direction(0.98f * r.x, r.y)|optics"
   "a bulb 1 % too bright|include/photongrid/trace/emit_photon.glsl|light.power.x / probability|light.power.x * (light.is_area ? 1.0f : 1.01f) / probability|optics"
-  "a lamp chosen too often|include/photongrid/trace/device_scene.hpp|weight(l.power) / total, below / total|weight(l.power) / total, std::min(1.0, 1.01 * below / total)|optics"
+  "a lamp chosen too often|include/photongrid/trace/device_scene.hpp|weight / total, below / total|weight / total, std::min(1.0, 1.01 * below / total)|optics"
   "a batch repeats 64 paths|include/photongrid/trace/trace_photons.hpp|static_cast<uint>(t_.emitted), settings_)|static_cast<uint>(t_.emitted) - (t_.emitted > 0 ? 64u : 0u), settings_)|optics"
   "eye rays through the corner|include/photongrid/trace/eye_ray.glsl|float dx = 0.5f;|float dx = 0.0f;|optics"
   "eye rays without the seed|include/photongrid/trace/eye_ray.glsl|1000u, args.seed|1000u, 1u|optics"
@@ -229,6 +229,13 @@ faults=(
   "photons have no adjoint factor|include/photongrid/trace/shading_normals.glsl|factor < 8.0f ? factor : 8.0f|1.0f|validation"
   "a mesh light sends all light from its last triangle|include/photongrid/trace/mesh_light.glsl|if (shares(middle) > goal)|if (shares(middle) > 0xFFFFFFFFu - (goal - goal))"
   "points of a mesh light crowd at a corner|include/photongrid/trace/mesh_light.glsl|precise float root = sqrt(v);|precise float root = v;"
+  "spotlights fall off linearly|include/photongrid/trace/spot_light.glsl|axis.w * t * t * (3.0f - 2.0f * t)|axis.w * t"
+  "photons of spotlights fall off linearly|include/photongrid/trace/spot_light.glsl|max(min(three.x, three.y), min(max(three.x, three.y), three.z))|three.x"
+  "a sphere light's cone is as wide as its radius|include/photongrid/trace/shadow_ray.glsl|sine2 / (1.0f + sqrt(1.0f - sine2))|0.5f * sine2"
+  "distant light enters by the first face alone|include/photongrid/trace/distant_light.glsl|if (goal < areas.x)|if (goal < 2.0f * areas.x)"
+  "the power of environments ignores the box|include/photongrid/trace/emit_photon.glsl|(outline_area(at, d) / probability)|(1.0f / probability)"
+  "an environment is seen mirrored|include/photongrid/trace/environment.glsl|m.x < 0.0f ? 6.28318531f - half_turn : half_turn|m.x < 0.0f ? half_turn : 6.28318531f - half_turn"
+  "texels of an environment are sampled without their solid angle|include/photongrid/trace/environment_sample.glsl|precise float scale = sine / texel.w;|precise float scale = 0.6f / texel.w;"
   "samples of a mesh light leave out its parts|include/photongrid/trace/shadow_ray.glsl|(float(args.sample_id) + r.x) * share|r.x * share"
   "lights of meshes are one another|include/photongrid/trace/mesh_hit.glsl|uint(-normal.w) - 1u|uint(-normal.w)"
   "a photon off a mirror may go where no eye ray does|include/photongrid/trace/shading_normals.glsl|} else if (!by_shading && !by_geometric) {|} else if (!by_shading && !by_geometric && u < -1.0f) {|validation"
@@ -297,7 +304,7 @@ tests_of() {
     backends/vulkan/*) echo on_vulkan ;;
     */film.hpp | */exact_sum.hpp) echo passes ;;
     */scene/scene.hpp | */render/*.hpp | */eye_ray*| */trace_photons.hpp) echo on_serial_pictures ;;
-    */bounce_photon.glsl | */covered_share.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */mesh_surface.glsl | */shading_normals.glsl | */shadow_ray.glsl | */mesh_light.glsl | */eye_bounce.glsl | */add_unblocked.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
+    */bounce_photon.glsl | */covered_share.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */mesh_surface.glsl | */shading_normals.glsl | */shadow_ray.glsl | */mesh_light.glsl | */eye_bounce.glsl | */add_unblocked.glsl | */spot_light.glsl | */distant_light.glsl | */environment*.glsl | */emit_photon.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
     *) echo on_serial_algorithms ;;
   esac
 }

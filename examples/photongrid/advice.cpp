@@ -22,19 +22,6 @@ namespace {
 
     std::string count(std::size_t n, const char* what) { return text(n, ' ', what, n == 1 ? "" : "s"); }
 
-    bounds bounds_of(const scene& s)
-    {
-        bounds b;
-        const auto add = [&](const auto& list, auto kind) {
-            for (const auto& x : list)
-                kind.add_bounds(b, x);
-        };
-        for_each_shape(s, add);
-        add(s.meshes, shape_kind<placed_mesh>{});
-        for_each_light(s, add);
-        return b;
-    }
-
     /// Whether everything is behind the camera.
     bool looks_away(const camera& c, const bounds& b)
     {

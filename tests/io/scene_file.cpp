@@ -1,4 +1,5 @@
 // The reader of scene files: accepted files, and the line and text of every kind of error.
+#include "light_file_tests.hpp"
 #include "mesh_file_tests.hpp"
 #include "scene_edit_tests.hpp"
 #include "scene_reading_tests.hpp"

@@ -4,5 +4,6 @@
 #include "form_factor_tests.hpp"
 #include "glass_ball_tests.hpp"
 #include "mirror_tests.hpp"
+#include "mixed_light_tests.hpp"
 #include "nearest_tests.hpp"
 #include "shading_normal_tests.hpp"

@@ -98,7 +98,7 @@ namespace {
 
     TEST(bad_scenes, no_number_may_be_nan_or_infinite)
     {
-        auto s = all_shapes();
+        auto s = all_lights();
         ASSERT_EQ(refusal_of(s), "");
         const auto numbers = numbers_of(s);
         EXPECT_GE(numbers.size(), 100u);
@@ -109,8 +109,8 @@ namespace {
 
     TEST(bad_scenes, lengths_are_positive_and_powers_not_negative)
     {
-        auto s = all_shapes();
-        int lengths = 0, powers = 0;
+        auto s = all_lights();
+        int lengths = 0, powers = 0, emissions = 0, angles = 0;
         for (const auto& n : numbers_of(s)) {
             if (n.of == quantity::length) {
                 ++lengths;
@@ -120,10 +120,24 @@ namespace {
                 ++powers;
                 expect_refused(s, n, -1e-300);
                 expect_refused(s, n, -1.0);
+            } else if (n.of == quantity::emission) {
+                ++emissions;
+                expect_refused(s, n, -1e-300);
+            } else if (n.of == quantity::angle) {
+                ++angles;
+                expect_refused(s, n, -1e-300);
+                expect_refused(s, n, 180.0001);
             }
         }
-        EXPECT_GE(lengths, 6);
-        EXPECT_EQ(powers, 6);
+        EXPECT_GE(lengths, 7);
+        EXPECT_EQ(powers, 15);
+        EXPECT_EQ(emissions, 6);
+        EXPECT_EQ(angles, 2);
+    }
+
+    void spoil_map(scene& s, environment_map m)
+    {
+        s.environment_lights[0].map = std::make_shared<const environment_map>(std::move(m));
     }
 
     /// A change that makes a scene bad, and what the message says.
@@ -146,8 +160,60 @@ namespace {
                     x.point_lights.clear();
                     x.rectangle_lights.clear();
                     x.mesh_lights.clear();
+                    x.sphere_lights.clear();
+                    x.spot_lights.clear();
+                    x.directional_lights.clear();
+                    x.environment_lights.clear();
                 },
                 "lights:"},
+            {"two skies", [](scene& x) { x.environment_lights.push_back(x.environment_lights[0]); },
+                "environment_lights:"},
+            {"spotlight without an axis", [](scene& x) { x.spot_lights[0].direction = dvec3(0); },
+                "spot_lights[0].direction"},
+            {"spotlight inside out", [](scene& x) { x.spot_lights[0].inner_angle = 36; }, "spot_lights[0].inner_angle"},
+            {"spotlight of no width",
+                [](scene& x) { x.spot_lights[0].inner_angle = x.spot_lights[0].outer_angle = 0.009; },
+                "spot_lights[0].outer_angle"},
+            {"sun without a direction", [](scene& x) { x.directional_lights[0].direction = dvec3(0); },
+                "directional_lights[0].direction"},
+            {"dark sun", [](scene& x) { x.directional_lights[0].irradiance = dvec3(0); },
+                "directional_lights[0].irradiance"},
+            {"dark sky", [](scene& x) { x.environment_lights[0].radiance = dvec3(0); },
+                "environment_lights[0].radiance"},
+            {"sky without an axis", [](scene& x) { x.environment_lights[0].axis = dvec3(0); },
+                "environment_lights[0].axis"},
+            {"sky turned nowhere", [](scene& x) { x.environment_lights[0].degrees = nan; },
+                "environment_lights[0].degrees"},
+            {"sky with too few texels",
+                [](scene& x) {
+                    spoil_map(x, {2, 1, {glm::vec3(1)}});
+                },
+                "environment_lights[0].map"},
+            {"sky of nothing",
+                [](scene& x) {
+                    spoil_map(x, {0, 0, {}});
+                },
+                "environment_lights[0].map"},
+            {"sky of too many texels",
+                [](scene& x) {
+                    spoil_map(x, {1u << 13, 1u << 13, {glm::vec3(1)}});
+                },
+                "environment_lights[0].map"},
+            {"sky that is not finite",
+                [](scene& x) {
+                    spoil_map(x, {1, 1, {{1, static_cast<float>(infinity), 1}}});
+                },
+                "environment_lights[0].map"},
+            {"sky below 0",
+                [](scene& x) {
+                    spoil_map(x, {1, 1, {{1, 1, -1}}});
+                },
+                "environment_lights[0].map"},
+            {"black sky",
+                [](scene& x) {
+                    spoil_map(x, {1, 1, {glm::vec3(0)}});
+                },
+                "environment_lights[0].map"},
             {"disk without a normal", [](scene& x) { x.disks[0].normal = dvec3(0); }, "disks[0]"},
             {"polygon of two corners", [](scene& x) { x.polygons[1].vertices.pop_back(); }, "polygons[1]"},
             {"polygon that is not flat", [](scene& x) { x.polygons[0].vertices[2].y += 0.5; }, "polygons[0]"},
@@ -263,7 +329,7 @@ namespace {
 
     TEST(bad_scenes, spoiled_ones_are_refused)
     {
-        const auto good = all_shapes_and_meshes();
+        const auto good = all_lights();
         ASSERT_EQ(refusal_of(good), "");
         for (const auto& each : spoiled_scenes()) {
             auto bad = good;
@@ -293,7 +359,7 @@ namespace {
 
     TEST(bad_scenes, every_check_of_the_headers_refuses_one)
     {
-        const auto good = all_shapes_and_meshes();
+        const auto good = all_lights();
         std::string said;
         for (const auto& each : spoiled_scenes()) {
             auto bad = good;

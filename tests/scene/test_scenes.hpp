@@ -113,4 +113,61 @@ inline scene all_shapes_and_meshes()
     return s;
 }
 
+/// A picture of 24 x 12 directions, with a sun, a bright texel at each pole, and black ones.
+inline std::shared_ptr<const environment_map> sky_with_a_sun()
+{
+    environment_map m{24, 12, {}};
+    for (std::uint32_t row = 0; row < m.height; ++row)
+        for (std::uint32_t column = 0; column < m.width; ++column) {
+            const auto x = static_cast<float>(column) / 24, y = static_cast<float>(row) / 12;
+            m.radiance.emplace_back(0.2f + 0.5f * x, 0.4f * y, row == 9 ? 0.0f : 0.3f);
+            if (column % 7 == 3)
+                m.radiance.back() = glm::vec3(0);
+        }
+    m.radiance[3 * 24 + 17] = {60, 50, 40};
+    m.radiance[5] = {3, 1, 1};
+    m.radiance[11 * 24 + 8] = {1, 1, 4};
+    return std::make_shared<const environment_map>(m);
+}
+
+/// A white floor of 6 m x 6 m without lights, and what a picture of its middle needs.
+inline scene bare_floor()
+{
+    scene s;
+    s.name = "floor";
+    s.materials = {{"white", material_kind::lambertian, dvec3(0.8)}, {"pane", material_kind::glass, dvec3(1), 1}};
+    s.polygons = {{{{-3, 0, -3}, {-3, 0, 3}, {3, 0, 3}, {3, 0, -3}}, 0}};
+    s.camera = {{0.1, 4.5, 0}, {0, 0, 0}, {0, 0, 1}, 50};
+    s.render = {.map = {.photons = 60000, .grid = {60, 1, 60}},
+        .estimate = {.k = 200, .max_radius = 0.2},
+        .view = {.light_samples = 64},
+        .output = {.width = 16, .height = 16}};
+    return s;
+}
+
+/// A spotlight, a sphere light, directional light and two environments over that floor, one each.
+inline std::vector<scene> floors_under_each_light()
+{
+    std::vector<scene> all(5, bare_floor());
+    all[0].spot_lights = {{"spot", {0.2, 1.1, 0.1}, {0.1, -1, 0}, 15, 40, dvec3(10, 5, 2)}};
+    all[1].sphere_lights = {{"globe", {0.3, 1.5, -0.2}, 0.25, dvec3(10, 5, 2)}};
+    all[1].camera = {{0.1, 1, 0}, {0, 0, 0}, {0, 0, 1}, 100}; // below it
+    all[2].directional_lights = {{"sun", {0.3, -2, 0.5}, dvec3(3, 2, 1)}};
+    all[3].environment_lights = {{"sky", "", sky_with_a_sun(), dvec3(1, 2, 3), {1, 0.5, 0.25}, 35}};
+    all[4].environment_lights = {{"white", "", nullptr, dvec3(1)}};
+    return all;
+}
+
+/// all_shapes_and_meshes() under every kind of light.
+inline scene all_lights()
+{
+    auto s = all_shapes_and_meshes();
+    s.name = "all_lights";
+    s.sphere_lights = {{"globe", {-1.2, 1.3, 0.8}, 0.15, dvec3(6, 7, 8)}};
+    s.spot_lights = {{"spot", {1.5, 1.6, -1}, {-1, -1.5, 0.6}, 10, 35, dvec3(8, 4, 4)}};
+    s.directional_lights = {{"sun", {0.4, -1, 0.6}, dvec3(0.8, 0.7, 0.4)}};
+    s.environment_lights = {{"sky", "", sky_with_a_sun(), dvec3(0.2), {0, 1, 0}, 70}};
+    return s;
+}
+
 } // namespace photongrid::testing

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../render/pictures.hpp"
+#include "direct_light_at.hpp"
 #include "probe_rays.hpp"
 #include <photongrid/io/scene_file.hpp>
 
@@ -28,25 +29,10 @@ protected:
 
     bool exact() { return this->b().caps().exact_division && this->b().caps().exact_sqrt; }
 
-    /// Irradiance of the scene's lights at points (recentred) with normals.
     std::vector<glm::vec4> direct_light_at(
         const scene& s, const std::vector<dvec3>& points, const std::vector<dvec3>& normals, uint samples)
     {
-        auto& b = this->b();
-        const auto device = upload_scene(b, s);
-        std::vector<glm::vec4> p, n;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            p.emplace_back(glm::vec3(points[i] - device.layout.center), 1.0f);
-            n.emplace_back(glm::vec3(normals[i]), 0.0f);
-        }
-        detail::eye_hits<B> hits(b, p.size());
-        hits.points = b.upload(std::span<const glm::vec4>(p));
-        hits.surfaces = b.upload(std::span<const glm::vec4>(n));
-        auto settings = s.render;
-        settings.view.light_samples = samples;
-        auto irradiance = b.template make<glm::vec4>(p.size());
-        detail::direct_light(b, device, hits, settings, 0, p.size(), irradiance);
-        return b.download(irradiance);
+        return testing::direct_light_at(this->b(), s, points, normals, samples);
     }
 };
 TYPED_TEST_SUITE_P(hard_cases);

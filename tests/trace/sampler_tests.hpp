@@ -114,7 +114,7 @@ namespace {
         const auto device = upload_scene(b, s);
         detail::photon_frames<serial_backend> f(b, paths);
         b.run<kernels::emit_photon>({paths, 0u, device.layout.features}, {.first_path = first, .seed = s.render.seed},
-            reads(device.records, device.faces, device.planes, device.vertices, device.shares),
+            detail::inputs_of_emission(device),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
         emission e{{}, {}, b.download(f.powers)};
         for (const auto& p : b.download(f.positions))

@@ -20,7 +20,7 @@ requires std::same_as<B, vulkan_backend> uint trace_batch(B& device, const devic
         return detail::trace_batch_by_passes(device, s, f, paths, first, settings);
     const detail::mesh_hits<B> none(device, s, 0);
     device.template run<kernels::emit_photon>({paths, 0u, layout.features},
-        {.first_path = first, .seed = settings.seed}, reads(s.records, s.faces, s.planes, s.vertices, s.shares),
+        {.first_path = first, .seed = settings.seed}, detail::inputs_of_emission(s),
         writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
     constexpr uint together = 8;
     uint frame = 1;

@@ -108,20 +108,26 @@ std::optional<grip> pick(
     const auto line = sight_line_at(s.camera, width, height, x, y);
     const auto hit = shapes.nearest({line.origin, line.direction});
 
-    // Point lights, by the distance of their position in the picture.
+    // Lights at a point, by the distance of their position in the picture.
     const double pixel = 2 * std::tan(glm::radians(s.camera.vertical_fov) / 2) / height; // at 1 m
-    for (std::size_t p = 0; p < parts.size(); ++p)
-        for (const auto* light : items_of<point_light>(s, parts[p])) {
-            const dvec3 to = light->position - line.origin;
-            const double along = glm::dot(to, line.direction);
-            if (along > 0 && glm::length(to - along * line.direction) <= 12 * pixel * along && along < hit.t)
+    const auto is_near = [&](const dvec3& position) {
+        const dvec3 to = position - line.origin;
+        const double along = glm::dot(to, line.direction);
+        return along > 0 && glm::length(to - along * line.direction) <= 12 * pixel * along && along < hit.t;
+    };
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        for (const auto* light : items_of<point_light>(s, parts[p]))
+            if (is_near(light->position))
                 return grip{p, light->position};
-        }
+        for (const auto* light : items_of<spot_light>(s, parts[p]))
+            if (is_near(light->position))
+                return grip{p, light->position};
+    }
     if (hit.shape == reference::nothing)
         return std::nullopt;
 
-    // The reference numbers shapes in the order of the lists, then rectangle lights, which are the next list, then the
-    // triangles of mesh lights and of meshes.
+    // The reference numbers shapes and the surfaces of lights in the order of the lists; of meshes it numbers
+    // triangles.
     std::size_t before = 0;
     std::optional<scene_item> hit_item;
     for_each_list(s, [&](const auto& list, auto, std::size_t number) {
@@ -131,7 +137,8 @@ std::optional<grip> pick(
                 before += list[i].surface->triangles.size();
             else if constexpr (std::is_same_v<item, mesh_light>)
                 before += list[i].surface.surface->triangles.size();
-            else if constexpr (!std::is_same_v<item, point_light>)
+            else if constexpr (
+                requires { list[i].material; } || requires { surface_of(list[i]); })
                 ++before;
             if (hit.shape < before)
                 hit_item = scene_item{number, i};
@@ -161,6 +168,8 @@ std::optional<picture_box> box_of(const scene& s, const scene_part& part, double
 {
     bounds b;
     for_each_item(s, part, [&](const auto& item, auto kind) { kind.add_bounds(b, item); });
+    if (b.empty())
+        return std::nullopt; // light from outside of the scene
     const auto& c = s.camera;
     const auto [forward, right, up] = photongrid::detail::camera_axes(c);
     const double half_height = std::tan(glm::radians(c.vertical_fov) / 2);

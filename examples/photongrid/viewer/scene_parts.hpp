@@ -77,8 +77,8 @@ struct picture_box {
     double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
 };
 
-/// The outline of a part of the scene in a picture of width x height pixels; empty if some of it is behind the
-/// camera.
+/// The outline of a part of the scene in a picture of width x height pixels; empty if some of it is behind the camera,
+/// and for light from outside of the scene.
 std::optional<picture_box> box_of(const scene& s, const scene_part& part, double width, double height);
 
 /// A camera ray through a point of a picture.
@@ -90,7 +90,7 @@ struct sight_line {
 /// Through (x, y) of a picture of width x height: 0, 0 is its top left corner, width, height the other one.
 sight_line sight_line_at(const camera& c, double width, double height, double x, double y);
 
-/// The part visible at (x, y). Point lights, which no ray can hit, count if they are visible and within 12 pixels.
+/// The part visible at (x, y). Lights at a point, which no ray can hit, count if they are visible and within 12 pixels.
 /// Empty if there is nothing.
 std::optional<grip> pick(
     const scene& s, const std::vector<scene_part>& parts, double width, double height, double x, double y);

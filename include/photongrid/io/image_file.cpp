@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <span>
+#include <string_view>
 
 namespace photongrid {
 
@@ -57,22 +59,45 @@ void write_image(const std::string& path, const image& picture, double exposure,
     write_file(path, bytes);
 }
 
+namespace {
+    /// A format that can be read, by the ending of its files.
+    struct readable {
+        std::string_view ending;
+        image (*read)(const std::string& path);
+    };
+
+    /// \throws file_error, for another ending with `expected`.
+    image read_as(std::span<const readable> formats, const std::string& path, const char* expected)
+    {
+        const auto e = ending(path);
+        const auto* format = std::find_if(
+            formats.data(), formats.data() + formats.size(), [&](const auto& f) { return f.ending == e; });
+        if (format == formats.data() + formats.size())
+            fail_file(path, std::string("has no known extension; expected ") + expected);
+        if (std::error_code none; fs::is_directory(path, none))
+            fail_file(path, "is a folder");
+        try {
+            return format->read(path);
+        } catch (const file_error&) {
+            throw;
+        } catch (const std::exception& what) {
+            fail_file(path, std::string("cannot be read: ") + what.what());
+        }
+    }
+} // namespace
+
 image read_image(const std::string& path)
 {
-    const auto e = ending(path);
-    if (e != ".exr" && e != ".pfm")
-        fail_file(path,
-            "has no known extension; expected .exr or .pfm (a PNG is tone-mapped and clamped, so it cannot be "
-            "measured)");
-    if (std::error_code none; fs::is_directory(path, none))
-        fail_file(path, "is a folder");
-    try {
-        return e == ".exr" ? image_formats::read_exr(path) : image_formats::read_pfm(path);
-    } catch (const file_error&) {
-        throw;
-    } catch (const std::exception& what) {
-        fail_file(path, std::string("cannot be read: ") + what.what());
-    }
+    static constexpr readable formats[] = {{".exr", image_formats::read_exr}, {".pfm", image_formats::read_pfm}};
+    return read_as(formats, path, ".exr or .pfm (a PNG is tone-mapped and clamped, so it cannot be measured)");
+}
+
+image read_linear_image(const std::string& path)
+{
+    static constexpr readable formats[]
+        = {{".exr", image_formats::read_exr}, {".pfm", image_formats::read_pfm}, {".hdr", image_formats::read_hdr},
+            {".png", image_formats::read_png}, {".jpg", image_formats::read_jpeg}, {".jpeg", image_formats::read_jpeg}};
+    return read_as(formats, path, ".exr, .hdr, .pfm, .png or .jpg");
 }
 
 } // namespace photongrid

@@ -29,4 +29,9 @@ void write_image(const std::string& path, const image& picture, double exposure 
 /// \throws file_error.
 image read_image(const std::string& path);
 
+/// Reads a picture of a scene, such as an environment: EXR, PFM, Radiance HDR, PNG or JPEG. The pixels of PNG and JPEG
+/// files are decoded to linear values from 0 to 1; transparency is ignored.
+/// \throws file_error.
+image read_linear_image(const std::string& path);
+
 } // namespace photongrid

@@ -3,6 +3,7 @@
 
 #include <png.h>
 
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -27,6 +28,25 @@ std::string png_bytes(const image& picture, double exposure)
         throw std::runtime_error(png.message);
     bytes.resize(size);
     return bytes;
+}
+
+image read_png(const std::string& path)
+{
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    const std::unique_ptr<png_image, decltype(&png_image_free)> freed(&png, png_image_free);
+    if (!png_image_begin_read_from_file(&png, path.c_str()))
+        throw std::runtime_error(png.message);
+    check_read_size(path, png.width, png.height);
+    png.format = PNG_FORMAT_RGBA; // 8 bits, sRGB; libpng's own linear format is decoded through 8 bits
+    std::vector<png_byte> rgba(std::size_t{png.width} * png.height * 4);
+    if (!png_image_finish_read(&png, nullptr, rgba.data(), 0, nullptr))
+        throw std::runtime_error(png.message);
+    image picture{.width = png.width, .height = png.height, .pixels = {}};
+    picture.pixels.reserve(rgba.size() / 4);
+    for (std::size_t i = 0; i < rgba.size(); i += 4)
+        picture.pixels.emplace_back(linear_value(rgba[i]), linear_value(rgba[i + 1]), linear_value(rgba[i + 2]));
+    return picture;
 }
 
 } // namespace photongrid::image_formats

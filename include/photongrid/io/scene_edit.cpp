@@ -145,9 +145,24 @@ namespace {
                 if (!same_but_for_fields(was, are[i], kind))
                     throw_other(std::string("name, surface or material of a ") + kind.name);
                 for_each_field(kind.fields, [&](const auto& f) {
-                    const unit& u = f.of == quantity::direction ? none_ : f.of == quantity::power ? power_ : length_;
-                    edit(at(*items[i], f.name), u, were[i].*f.member, are[i].*f.member);
+                    const unit& u = unit_of(f.of);
+                    const auto &before = were[i].*f.member, &after = are[i].*f.member;
+                    if (const auto* given = items[i]->find(f.name))
+                        edit(*given, u, before, after);
+                    else if constexpr (std::is_same_v<std::decay_t<decltype(after)>, dvec3>)
+                        if (before != after)
+                            add_member(*items[i], f.name, three_text(after, u));
                 });
+            }
+        }
+        const unit& unit_of(quantity q) const
+        {
+            switch (q) {
+            case quantity::direction:
+            case quantity::angle:
+            case quantity::emission: return none_;
+            case quantity::power: return power_;
+            default: return length_;
             }
         }
         template <class Part, class Kind>

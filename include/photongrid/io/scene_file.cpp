@@ -1,7 +1,7 @@
 // The reader of scene files. The file is long because each part of a scene has a function here, and they share the
 // readers of values and their messages.
+#include <photongrid/io/environment_reader.hpp>
 #include <photongrid/io/scene_file.hpp>
-#include <photongrid/io/surface_reader.hpp>
 
 #include <algorithm>
 #include <array>
@@ -29,9 +29,9 @@ namespace {
             return scene_values::min_length;
     }
 
-    class reader : surface_reader {
+    class reader : environment_reader {
     public:
-        using surface_reader::surface_reader;
+        using environment_reader::environment_reader;
 
         scene read(const std::string& default_name)
         {
@@ -168,10 +168,11 @@ namespace {
             if constexpr (requires { (part.*f.member).push_back({}); })
                 part.*f.member = points(value, most);
             else if constexpr (std::is_same_v<std::decay_t<decltype(part.*f.member)>, double>)
-                part.*f.member = radius(value);
+                part.*f.member = f.of == quantity::angle ? angle(value) : radius(value);
             else
                 part.*f.member = f.of == quantity::direction ? direction(value)
                     : f.of == quantity::power                ? power(value)
+                    : f.of == quantity::emission             ? emission(value)
                                                              : point(value);
         }
 
@@ -230,8 +231,16 @@ namespace {
                 l.name = name;
                 if constexpr (requires { l.surface; })
                     l.surface = surface_in(v);
-                for_each_field(kind.fields, [&](const auto& f) { read_field(v, l, f, max_vertices); });
+                if constexpr (requires { l.map; })
+                    read_environment(v, l);
+                for_each_field(kind.fields, [&](const auto& f) {
+                    if (v.find(f.name) != nullptr) // open() has seen to those that must be there
+                        read_field(v, l, f, max_vertices);
+                });
                 checked(v, l);
+                if constexpr (requires { l.map; })
+                    if (!list.empty())
+                        fail(v.place, "is the second environment; a scene has at most one");
                 list.push_back(std::move(l));
             });
         }

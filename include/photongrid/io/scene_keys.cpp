@@ -15,6 +15,8 @@ namespace {
     /// Of meshes, as shapes and as lights.
     constexpr scene_key surface_keys[] = {{"file", may}, {"positions", may}, {"triangles", may}, {"normals", may},
         {"scale", may}, {"rotate", may}, {"translate", may}, {"matrix", may}};
+    /// Of environments, but for their fields.
+    constexpr scene_key environment_keys[] = {{"file", may}, {"rotate", may}};
     constexpr scene_key rotate_keys[] = {{"axis", must}, {"degrees", must}};
     constexpr scene_key leaks_keys[] = {{"side", may}, {"min_cosine", may}, {"flattening", may}};
     // The keys of materials, shapes and lights come from the tables in scene/ (material_kinds, shape_kind, light_kind).
@@ -71,6 +73,11 @@ namespace {
                 auto keys = keys_of(kind, {{"type", must}, {"name", may}}, {});
                 if constexpr (std::is_same_v<std::decay_t<decltype(list)>, std::vector<mesh_light>>)
                     keys.insert(keys.end(), std::begin(surface_keys), std::end(surface_keys));
+                if constexpr (std::is_same_v<std::decay_t<decltype(list)>, std::vector<environment_light>>) {
+                    for (auto& k : keys)
+                        k.required = k.name == std::string_view("type"); // a factor of 1 is the default
+                    keys.insert(keys.end(), std::begin(environment_keys), std::end(environment_keys));
+                }
                 kinds.push_back({kind.name, keys});
             });
             return kinds;

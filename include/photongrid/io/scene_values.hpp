@@ -167,6 +167,15 @@ public:
             [&](const json_value& c) { return in_units(c, power_, 0, max_power, "a power from 0 to 1e15 W"); });
     }
 
+    /// Of distant light, in SI units in every file.
+    dvec3 emission(const json_value& v) const
+    {
+        return rgb(v, "[red, green, blue] or one number: W/m^2 or W/(m^2 sr)",
+            [&](const json_value& c) { return number(c, 0, max_power, "a number from 0 to 1e15"); });
+    }
+
+    double angle(const json_value& v) const { return number(v, 0, 180, "an angle from 0 to 180 degrees"); }
+
     /// Names appear in messages, so control characters are not allowed.
     static bool is_name(const std::string& text)
     {

@@ -70,6 +70,18 @@ namespace {
         }
     }
 
+    /// Adds the map of an environment and its rotation to its object.
+    void add_map(json& all, const environment_light& l)
+    {
+        if (l.map && l.file.empty())
+            throw std::invalid_argument("scene_text: environment_lights[0].map: was not read from a file; write it to "
+                                        "one, and set `file` to its name");
+        if (l.map)
+            all["file"] = l.file;
+        if (l.degrees != 0)
+            all["rotate"] = {{"axis", three(l.axis)}, {"degrees", l.degrees}};
+    }
+
     // Settings as in a scene file.
     json written(const setting_table::pixels&, const output_settings& s) { return {s.width, s.height}; }
     json written(const setting_table::whole_range&, std::uint32_t v) { return v; }
@@ -157,6 +169,8 @@ std::string scene_text(const scene& s, const render_settings& settings)
             lights.push_back(with_fields({{"type", kind.name}, {"name", x.name}}, x, kind.fields));
             if constexpr (requires { x.surface; })
                 add_surface(lights.back(), x.surface);
+            if constexpr (requires { x.map; })
+                add_map(lights.back(), x);
         }
     });
     for (auto& light : lights)

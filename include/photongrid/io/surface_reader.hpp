@@ -46,26 +46,41 @@ public:
         return m;
     }
 
-private:
+protected:
+    /// The name of a file beside the scene's.
     std::string file_name(const json_value& v) const
     {
         if (v.kind != json_kind::string || !is_name(v.text) || !stays_inside(v.text))
             wrong(v, "a file's name, relative to the scene's folder and without \"..\", of 1 to 100 bytes");
         return v.text;
     }
+    std::string path_of(const std::string& name) const { return (folder_ / name).string(); }
 
+    struct turn {
+        dvec3 axis;
+        double degrees;
+    };
+    turn turn_in(const json_value& v) const
+    {
+        if (v.kind != json_kind::object)
+            wrong(v, "an object with the keys \"axis\" and \"degrees\"");
+        open(v, "rotate");
+        return {direction(at(v, "axis")), number(at(v, "degrees"), -360, 360, "an angle from -360 to 360 degrees")};
+    }
+
+private:
     /// The surface in a file. A file that several meshes name is read once.
     std::shared_ptr<const mesh> mesh_in(const std::string& name, const json_value& v)
     {
         auto& surface = surfaces_[name];
         if (!surface) {
             try {
-                surface = std::make_shared<const mesh>(read_ply((folder_ / name).string()));
+                surface = std::make_shared<const mesh>(read_ply(path_of(name)));
             } catch (const scene_error& e) {
                 fail(v.place, e.what());
             }
             if (surface->triangles.empty())
-                fail(v.place, (folder_ / name).string() + ": has no face");
+                fail(v.place, path_of(name) + ": has no face");
         }
         return surface;
     }
@@ -112,23 +127,11 @@ private:
                 m.linear = glm::dmat3(s.x, 0, 0, 0, s.y, 0, 0, 0, s.z);
             }
             if (rotate != nullptr)
-                m.linear = rotation(*rotate) * m.linear;
+                m.linear = rotation_about(turn_in(*rotate).axis, turn_in(*rotate).degrees) * m.linear;
             if (translate != nullptr)
                 m.offset = point(*translate);
         }
         m.linear = m.linear * length_.multiply / length_.divide;
-    }
-    /// Rodrigues' formula.
-    glm::dmat3 rotation(const json_value& v) const
-    {
-        if (v.kind != json_kind::object)
-            wrong(v, "an object with the keys \"axis\" and \"degrees\"");
-        open(v, "rotate");
-        const dvec3 a = glm::normalize(direction(at(v, "axis")));
-        const double angle = glm::radians(number(at(v, "degrees"), -360, 360, "an angle from -360 to 360 degrees"));
-        const glm::dmat3 cross(0, a.z, -a.y, -a.z, 0, a.x, a.y, -a.x, 0);
-        return std::cos(angle) * glm::dmat3(1) + std::sin(angle) * cross
-            + (1 - std::cos(angle)) * glm::outerProduct(a, a);
     }
     void read_matrix(const json_value& v, placed_mesh& m) const
     {

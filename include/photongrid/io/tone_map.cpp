@@ -37,6 +37,19 @@ unsigned char tone_mapped(float linear, double exposure)
     return static_cast<unsigned char>(std::lround(255 * encoded));
 }
 
+float linear_value(unsigned char encoded)
+{
+    static const auto all = [] {
+        std::array<float, 256> values{};
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const double v = static_cast<double>(i) / 255;
+            values[i] = static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+        }
+        return values;
+    }();
+    return all[encoded];
+}
+
 tone_map::tone_map(double exposure)
 {
     // Positive floats have the order of their bits.

@@ -19,7 +19,10 @@ double exposure_for(const image& picture, std::optional<double> set);
 /// (IEC 61966-2-1).
 unsigned char tone_mapped(float linear, double exposure);
 
-/// The same function for many values at one exposure, about twenty times as fast, by a table of the values at which the
+/// The linear value, 0 to 1, of an 8-bit sRGB value.
+float linear_value(unsigned char encoded);
+
+/// tone_mapped() for many values at one exposure, about twenty times as fast, by a table of the values at which the
 /// result changes.
 class tone_map {
 public:

@@ -2,27 +2,13 @@
 // (docs/reference/reference_renderer.md).
 #pragma once
 
+#include <photongrid/reference/directions.hpp>
 #include <photongrid/reference/intersect.hpp>
 #include <photongrid/reference/random_stream.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid::reference {
-
-/// A direction in the hemisphere about the unit vector n with density cos / pi, for u and v in [0, 1).
-inline dvec3 cosine_direction(const dvec3& n, double u, double v)
-{
-    const double r = std::sqrt(u), phi = 2 * M_PI * v;
-    const dvec3 x = across(n), y = glm::cross(n, x);
-    return glm::normalize(r * std::cos(phi) * x + r * std::sin(phi) * y + std::sqrt(1 - u) * n);
-}
-
-/// A direction with density 1 / (4 pi), for u and v in [0, 1).
-inline dvec3 uniform_direction(double u, double v)
-{
-    const double z = 1 - 2 * u, r = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * M_PI * v;
-    return {r * std::cos(phi), r * std::sin(phi), z};
-}
 
 /// Fresnel's reflectance of a smooth surface between two dielectrics, for unpolarised light.
 inline double fresnel_reflectance(double cos_i, double n_i, double cos_t, double n_t)

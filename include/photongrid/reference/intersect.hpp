@@ -2,8 +2,8 @@
 // triangles of meshes.
 #pragma once
 
+#include <photongrid/reference/light_sources.hpp>
 #include <photongrid/reference/shapes.hpp>
-#include <photongrid/reference/triangles.hpp>
 
 #include <numbers>
 #include <span>
@@ -12,32 +12,8 @@
 
 namespace photongrid::reference {
 
-/// A light, prepared for sampling. Lights are chosen with probabilities proportional to their power (sum of rgb).
-struct light_source {
-    bool is_area = false;          ///< a rectangle or a mesh, else a point
-    dvec3 corner{0};               ///< m; a point light's position
-    dvec3 edge_u{0};               ///< m
-    dvec3 edge_v{0};               ///< m
-    dvec3 normal{0};               ///< unit; a rectangle emits on this side
-    dvec3 power{0};                ///< W, rgb
-    double area = 0;               ///< m^2
-    double probability = 0;        ///< probability of being chosen
-    std::uint32_t shape = nothing; ///< its surface's number in geometry; of a mesh its first triangle's
-    std::vector<double> areas{};   ///< of a mesh's triangles, each added to those before it, m^2
-
-    /// The radiance of an area light's front, W/(m^2 sr).
-    dvec3 radiance() const { return power / (std::numbers::pi * area); }
-};
-
-/// A point of a light.
-struct light_point {
-    dvec3 position{0};     ///< m
-    dvec3 normal{0};       ///< unit; it emits on this side; 0 of a point light
-    std::uint32_t shape{}; ///< the number of its surface in geometry, or `nothing`
-};
-
-/// The shapes of a scene, numbered in the order of shape_lists(), followed by the surfaces of rectangle lights and the
-/// triangles of meshes.
+/// The shapes of a scene, numbered in the order of shape_lists(), followed by the surfaces of rectangle and sphere
+/// lights and the triangles of meshes.
 class geometry {
 public:
     /// The scene must pass check(). It is copied.
@@ -48,7 +24,10 @@ public:
                 add(shape_of(x), x.material);
         });
         first_light_ = static_cast<std::uint32_t>(materials_.size());
-        first_triangle_ = first_light_ + static_cast<std::uint32_t>(s.rectangle_lights.size());
+        first_triangle_ = first_light_ + static_cast<std::uint32_t>(s.rectangle_lights.size() + s.sphere_lights.size());
+        const bounds all = bounds_of(s);
+        middle_ = 0.5 * (all.low + all.high);
+        radius_ = 0.5 * glm::length(all.high - all.low);
         double total = 0;
         for_each_light(s, [&](const auto& list, auto) {
             for (const auto& l : list)
@@ -95,7 +74,7 @@ public:
         if (!detail::finite(h.position) || !detail::finite(h.normal))
             return {}; // the shape is too small for double precision at this distance from the origin
         h.material = materials_[h.shape];
-        h.light = h.shape >= first_light_ ? h.shape - first_light_ : nothing;
+        h.light = h.shape >= first_light_ ? lights_of_shapes_[h.shape - first_light_] : nothing;
         return h;
     }
 
@@ -115,25 +94,22 @@ public:
         return found;
     }
 
-    /// A point of a light, evenly over its area; `random()` gives numbers from 0 to 1.
+    /// How a point sees a light, by one sample; `random()` gives numbers from 0 to 1.
     template <class Random>
-    light_point point_of(const light_source& l, Random& random) const
+    light_view seen_from(const light_source& l, const dvec3& point, Random& random) const
     {
-        if (l.areas.empty() && l.is_area) {
-            const double u = random(), v = random();
-            return {l.corner + u * l.edge_u + v * l.edge_v, l.normal, l.shape};
-        }
-        if (l.areas.empty())
-            return {l.corner, dvec3(0), nothing};
-        const double goal = random() * l.areas.back();
-        const auto found = std::min(std::upper_bound(l.areas.begin(), l.areas.end(), goal) - l.areas.begin(),
-            static_cast<std::ptrdiff_t>(l.areas.size()) - 1);
-        const std::uint32_t shape = l.shape + static_cast<std::uint32_t>(found), triangle = shape - first_triangle_;
-        const double u = random(), v = random();
-        return {triangles_.point(triangle, u, v), triangles_.normal(triangle), shape};
+        return light_sampler(triangles_, first_triangle_).seen_from(l, point, random);
     }
+    /// A ray that leaves a light.
+    template <class Random>
+    emitted_ray emit(const light_source& l, Random& random) const
+    {
+        return light_sampler(triangles_, first_triangle_).emit(l, random);
+    }
+    /// The light that surrounds the scene, or null.
+    const light_source* sky() const { return !lights_.empty() && lights_.back().sky ? &lights_.back() : nullptr; }
 
-    /// Rectangle lights, point lights, then mesh lights, each in the scene's order.
+    /// In the order of light_lists().
     std::span<const light_source> lights() const { return lights_; }
 
 private:
@@ -143,21 +119,46 @@ private:
         std::get<std::vector<Shape>>(shapes_).push_back(std::move(shape));
         materials_.push_back(material);
     }
+    /// The surface of a light, which was added last, belongs to the light that is added next. Returns its number.
+    std::uint32_t surface_of_next_light()
+    {
+        const auto number = first_light_ + static_cast<std::uint32_t>(lights_of_shapes_.size());
+        lights_of_shapes_.push_back(static_cast<std::uint32_t>(lights_.size()));
+        return number;
+    }
     void add(const rectangle_light& l)
     {
-        light_source source{
-            .is_area = true, .corner = l.corner, .edge_u = l.edge_u, .edge_v = l.edge_v, .power = l.power};
+        light_source source{.form = light_form::rectangle,
+            .position = l.corner,
+            .edge_u = l.edge_u,
+            .edge_v = l.edge_v,
+            .power = l.power};
         const dvec3 area = glm::cross(l.edge_u, l.edge_v);
         source.area = glm::length(area);
         source.normal = area / source.area;
-        source.shape = static_cast<std::uint32_t>(materials_.size());
         add(shape_of(surface_of(l)), nothing);
+        source.shape = surface_of_next_light();
         lights_.push_back(source);
     }
-    void add(const point_light& l) { lights_.push_back({.corner = l.position, .power = l.power}); }
+    void add(const point_light& l)
+    {
+        lights_.push_back({.position = l.position, .power = l.power, .brightest = l.power / (4 * std::numbers::pi)});
+    }
+    void add(const sphere_light& l)
+    {
+        light_spheres_.push_back(shape_of(surface_of(l)));
+        materials_.push_back(nothing);
+        const std::uint32_t shape = surface_of_next_light();
+        lights_.push_back({.form = light_form::sphere,
+            .position = l.center,
+            .radius = l.radius,
+            .power = l.power,
+            .area = 4 * std::numbers::pi * l.radius * l.radius,
+            .shape = shape});
+    }
     void add(const mesh_light& l)
     {
-        light_source source{.is_area = true, .power = l.power};
+        light_source source{.form = light_form::mesh, .power = l.power};
         const auto first = static_cast<std::uint32_t>(lights_of_triangles_.size());
         for (std::uint32_t t = 0; t < l.surface.surface->triangles.size(); ++t) {
             source.area += triangles_.area(first + t);
@@ -165,6 +166,35 @@ private:
             lights_of_triangles_.push_back(static_cast<std::uint32_t>(lights_.size()));
         }
         source.shape = first_triangle_ + first;
+        lights_.push_back(std::move(source));
+    }
+    void add(const spot_light& l)
+    {
+        const double inner = std::cos(glm::radians(l.inner_angle)), outer = std::cos(glm::radians(l.outer_angle));
+        // The power of an intensity of 1: that of the whole cone, less half of the part that fades.
+        const double of_one = std::numbers::pi * ((1 - inner) + (1 - outer));
+        lights_.push_back({.form = light_form::spot,
+            .position = l.position,
+            .normal = glm::normalize(l.direction),
+            .inner_cosine = inner,
+            .outer_cosine = outer,
+            .power = l.power,
+            .brightest = l.power / of_one});
+    }
+    void add(const directional_light& l)
+    {
+        lights_.push_back({.form = light_form::directional,
+            .position = middle_,
+            .normal = glm::normalize(l.direction),
+            .radius = radius_,
+            .power = l.irradiance * (std::numbers::pi * radius_ * radius_),
+            .brightest = l.irradiance});
+    }
+    void add(const environment_light& l)
+    {
+        light_source source{.form = light_form::environment, .position = middle_, .radius = radius_};
+        source.sky.emplace(l);
+        source.power = source.sky->irradiance_everywhere() * (std::numbers::pi * radius_ * radius_);
         lights_.push_back(std::move(source));
     }
     /// The triangle that the ray starts on, or none.
@@ -183,7 +213,8 @@ private:
                     return false;
             return true;
         };
-        std::apply([&](const auto&... shapes) { (all(shapes) && ...); }, shapes_);
+        if (std::apply([&](const auto&... shapes) { return (all(shapes) && ...); }, shapes_))
+            all(light_spheres_);
     }
     template <class Visit>
     void with(std::size_t number, Visit visit) const
@@ -196,16 +227,21 @@ private:
             number -= shapes.size();
             return false;
         };
-        std::apply([&](const auto&... shapes) { (in(shapes) || ...); }, shapes_);
+        if (!std::apply([&](const auto&... shapes) { return (in(shapes) || ...); }, shapes_))
+            in(light_spheres_);
     }
 
     shape_vectors shapes_;
+    std::vector<decltype(shape_of(sphere{}))> light_spheres_; ///< after all shapes_
     triangle_set triangles_;
     std::uint32_t first_triangle_ = 0;
+    std::vector<std::uint32_t> lights_of_shapes_;    ///< of the surfaces of rectangle and sphere lights
     std::vector<std::uint32_t> lights_of_triangles_; ///< those of mesh lights come first
     std::vector<std::uint32_t> materials_;           ///< per shape, but for triangles
     std::uint32_t first_light_ = 0;
-    std::vector<light_source> lights_; ///< rectangles first, in the order of their shapes
+    std::vector<light_source> lights_;
+    dvec3 middle_{0};   ///< of the scene, m
+    double radius_ = 0; ///< of a sphere about it that holds the scene, m
 };
 
 } // namespace photongrid::reference

@@ -33,7 +33,7 @@ public:
     {
         lights_.reserve(shapes.lights().size());
         for (const auto& l : shapes.lights())
-            if (!l.is_area || settings.area_light_caustics == caustics_by::bins)
+            if (!l.is_visible() || settings.area_light_caustics == caustics_by::bins)
                 lights_.push_back(l);
         if (lights_.empty())
             return;
@@ -178,11 +178,9 @@ private:
                     break;
             }
         }
-        dvec3 power = light->power / light->probability;
-        const double u = random(), v = random();
-        const auto start = shapes.point_of(*light, random);
-        ray r{start.position, light->is_area ? cosine_direction(start.normal, u, v) : uniform_direction(u, v),
-            start.shape};
+        const auto emitted = shapes.emit(*light, random);
+        dvec3 power = emitted.power / light->probability;
+        ray r = emitted.from;
         for (std::uint32_t surface = 1; surface <= settings.photon_depth; ++surface) {
             const hit h = shapes.nearest(r);
             if (h.shape == nothing || h.light != nothing)

@@ -27,19 +27,16 @@ public:
         double density = 0;                // of the ray's direction at the last diffuse surface
         for (;;) {
             const hit h = shapes_.nearest(r);
-            if (h.shape == nothing)
-                return sum;
-            if (h.light != nothing) {
-                const auto& light = shapes_.lights()[h.light];
-                const double cosine = -glm::dot(h.normal, r.direction);
-                if (!(cosine > 0))
+            if (h.shape == nothing || h.light != nothing) {
+                const auto light = light_at(h, r.direction);
+                if (!(light.density > 0))
                     return sum;
                 double share = 1;
                 if (surfaces > 0 && through_specular) // a caustic
                     share = settings_.area_light_caustics == caustics_by::paths ? 1 : 0;
                 else if (surfaces > 0) // a shadow ray could have sampled it too: balance heuristic (Veach 1997)
-                    share = density / (density + light_density(light, h.t, cosine));
-                return sum + share * throughput * light.radiance();
+                    share = density / (density + light.density);
+                return sum + share * throughput * light.radiance;
             }
             const auto& m = scene_.materials[h.material];
             if (is_diffuse(m)) {
@@ -74,10 +71,25 @@ public:
     }
 
 private:
-    /// The density, per sr, of the direction of a shadow ray to a uniformly distributed point of this light.
-    static double light_density(const light_source& light, double distance, double cosine)
+    struct found_light {
+        dvec3 radiance{0};  ///< W/(m^2 sr)
+        double density = 0; ///< of shadow rays in this direction, per sr; 0: no light
+    };
+    /// The light on which a ray ends.
+    found_light light_at(const hit& h, const dvec3& d) const
     {
-        return light.probability * distance * distance / (light.area * cosine);
+        if (h.shape == nothing) {
+            const auto* sky = shapes_.sky();
+            if (sky == nullptr)
+                return {};
+            const auto s = sky->sky->at(d);
+            return {s.radiance, sky->probability * s.density};
+        }
+        const auto& light = shapes_.lights()[h.light];
+        const double cosine = -glm::dot(h.normal, d);
+        if (!(cosine > 0))
+            return {};
+        return {light.radiance(), light.probability * h.t * h.t / (light.area * cosine)};
     }
 
     /// The irradiance of direct light, by one shadow ray to a light chosen by power.
@@ -93,20 +105,16 @@ private:
                     break;
             }
         }
-        const auto target = shapes_.point_of(*light, random);
-        const dvec3 towards = target.position - h.position;
-        const double distance = glm::length(towards);
-        if (!(distance > 0))
-            return dvec3(0);
-        const dvec3 d = towards / distance;
+        const auto seen = shapes_.seen_from(*light, h.position, random);
+        const dvec3& d = seen.towards;
         const double cosine = glm::dot(normals.geometric, d) > 0 ? glm::dot(normals.shading, d) : 0;
-        const double leaving = light->is_area ? -glm::dot(target.normal, d) : 1;
-        if (!(cosine > 0) || !(leaving > 0) || shapes_.blocked({h.position, d, h.shape}, distance, target.shape))
+        if (!(cosine > 0) || seen.arriving == dvec3(0)
+            || shapes_.blocked({h.position, d, h.shape}, seen.distance, seen.shape))
             return dvec3(0);
-        if (!light->is_area)
-            return light->power * (cosine / (4 * M_PI * distance * distance * light->probability));
-        const double by_light = light_density(*light, distance, leaving), by_surface = cosine / M_PI;
-        return light->radiance() * (cosine / (by_light + by_surface));
+        if (!(seen.density > 0))
+            return seen.arriving * (cosine / light->probability);
+        const double by_light = light->probability * seen.density, by_surface = cosine / M_PI;
+        return seen.arriving * (cosine / (by_light + by_surface));
     }
 
     const scene& scene_;

@@ -24,6 +24,13 @@ struct bounds {
     bool empty() const { return !(low.x <= high.x); }
 };
 
+/// The area of a box's outline as seen along `direction`, a unit vector, m^2.
+inline double projected_area(const bounds& box, const dvec3& direction)
+{
+    const dvec3 size = box.high - box.low, d = glm::abs(direction);
+    return d.x * size.y * size.z + d.y * size.z * size.x + d.z * size.x * size.y;
+}
+
 namespace detail {
     /// Half the extent of a disc of radius r, whose normal is `axis`, along x, y and z.
     inline dvec3 disc_extent(const dvec3& axis, double r)

@@ -23,6 +23,10 @@ namespace detail {
     inline bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
     inline bool finite(double v) { return std::isfinite(v); }
     inline void require_radius(double r) { require(finite(r) && r > 0, "radius: must be finite and greater than 0"); }
+    inline void require_direction(const dvec3& d)
+    {
+        require(finite(d) && glm::length(d) > 0, "direction: must be finite and not 0");
+    }
     inline void require_axis(const dvec3& a, const dvec3& b, const char* what)
     {
         require(finite(a) && finite(b), std::string(what) + ": must be finite");

@@ -19,6 +19,8 @@ enum class quantity {
     direction, ///< of any length above 0
     length,    ///< m, above 0
     power,     ///< W, rgb
+    angle,     ///< degrees
+    emission,  ///< rgb; W/m^2 or W/(m^2 sr), in scene files too, whatever their units
 };
 
 /// A member of Part.
@@ -46,8 +48,9 @@ template <class Shape>
 struct shape_kind;
 
 /// The properties of a kind of light that the library needs: `name`, `list`, `fields` (all members but the light's
-/// name, and the surface of a mesh) and `add_bounds` as in shape_kind; `form`, its number in kernels; `write_record`,
-/// for trace/lights.glsl; `size` and `extent` if it has an extent.
+/// name, the surface of a mesh, and the picture of an environment) and `add_bounds` as in shape_kind; `form`, its
+/// number in kernels; `write_record`, for trace/lights.glsl; `size` and `extent` if it has an extent; `power_into(box,
+/// light)`, W, rgb, if it is outside of the scene and has no `power`.
 template <class Light>
 struct light_kind;
 

@@ -1,7 +1,8 @@
-// Lights.
+// Lights at a point, and of rectangles and meshes.
 #pragma once
 
 #include <photongrid/scene/bounds.hpp>
+#include <photongrid/scene/light_power.hpp>
 #include <photongrid/scene/placed_mesh.hpp>
 #include <photongrid/scene/polygon.hpp>
 
@@ -42,21 +43,14 @@ struct mesh_light {
     bool operator==(const mesh_light&) const = default;
 };
 
-/// \throws std::invalid_argument for a power (W, rgb) with a channel that is not finite or negative, or of 0.
-inline void check_power(const dvec3& power)
-{
-    detail::require(detail::finite(power) && power.x >= 0 && power.y >= 0 && power.z >= 0,
-        "power: each channel must be finite and not negative");
-    detail::require(power.x + power.y + power.z > 0, "power: is 0; a light needs a channel above 0");
-}
-/// \throws std::invalid_argument for a position that is not finite, or a power as in check_power.
+/// \throws std::invalid_argument for a position that is not finite, or a power as in check_emission.
 inline void check(const point_light& l)
 {
     detail::require(detail::finite(l.position), "position: must be finite");
-    check_power(l.power);
+    check_emission("power", l.power);
 }
 /// \throws std::invalid_argument for members that are not finite, edges without area or not at right angles, or a power
-///         as in check_power.
+///         as in check_emission.
 inline void check(const rectangle_light& l)
 {
     detail::require(detail::finite(l.corner) && detail::finite(l.edge_u) && detail::finite(l.edge_v),
@@ -65,15 +59,15 @@ inline void check(const rectangle_light& l)
     detail::require(u > 0 && v > 0 && glm::length(glm::cross(l.edge_u, l.edge_v)) > 1e-9 * u * v,
         "edge_u, edge_v: the rectangle has no area");
     detail::require(std::abs(glm::dot(l.edge_u, l.edge_v)) <= 1e-6 * u * v, "edge_u, edge_v: must be at right angles");
-    check_power(l.power);
+    check_emission("power", l.power);
 }
 
-/// \throws std::invalid_argument for a surface that check() rejects or that has no area, or a power as in check_power.
+/// \throws std::invalid_argument for a surface that check() rejects or that has no area, or a power as in check_emission.
 inline void check(const mesh_light& l)
 {
     check(l.surface);
     detail::require(area_of(l.surface) > 0, "triangles: the light has no area");
-    check_power(l.power);
+    check_emission("power", l.power);
 }
 
 /// The surface of a light.

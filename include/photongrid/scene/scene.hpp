@@ -7,6 +7,7 @@
 #include <photongrid/scene/cone.hpp>
 #include <photongrid/scene/cylinder.hpp>
 #include <photongrid/scene/disk.hpp>
+#include <photongrid/scene/distant_lights.hpp>
 #include <photongrid/scene/lights.hpp>
 #include <photongrid/scene/material.hpp>
 #include <photongrid/scene/paraboloid.hpp>
@@ -14,6 +15,8 @@
 #include <photongrid/scene/polygon.hpp>
 #include <photongrid/scene/setting_table.hpp>
 #include <photongrid/scene/sphere.hpp>
+#include <photongrid/scene/sphere_light.hpp>
+#include <photongrid/scene/spot_light.hpp>
 
 #include <algorithm>
 #include <array>
@@ -42,8 +45,12 @@ struct scene {
     std::vector<point_light> point_lights;         ///< a scene has at least one light of any kind
     std::vector<rectangle_light> rectangle_lights; ///< visible to the camera
     std::vector<mesh_light> mesh_lights;           ///< visible to the camera
-    render_settings render;                        ///< the settings of the scene's file
-    std::optional<render_settings> paper;          ///< settings for --as-paper; empty: as_paper(render)
+    std::vector<sphere_light> sphere_lights;       ///< visible to the camera
+    std::vector<spot_light> spot_lights;
+    std::vector<directional_light> directional_lights;
+    std::vector<environment_light> environment_lights; ///< at most one; visible to the camera
+    render_settings render;                            ///< the settings of the scene's file
+    std::optional<render_settings> paper;              ///< settings for --as-paper; empty: as_paper(render)
 
     bool operator==(const scene&) const = default;
 };
@@ -66,11 +73,17 @@ constexpr auto shape_lists(Scene& s)
 }
 
 /// The lists of lights of a scene, one per kind (light_kind). Lights are numbered in this order; rectangles come first,
-/// so that the n-th rectangle is light n.
+/// so that the n-th rectangle is light n. The environment comes last.
 template <class Scene>
 constexpr auto light_lists(Scene& s)
 {
-    return std::tie(s.rectangle_lights, s.point_lights, s.mesh_lights);
+    return std::tie(s.rectangle_lights, // clang-format off
+        s.point_lights,
+        s.sphere_lights,
+        s.mesh_lights,
+        s.spot_lights,
+        s.directional_lights,
+        s.environment_lights); // clang-format on
 }
 
 namespace detail {
@@ -118,16 +131,43 @@ inline bool same_light_paths(const scene& a, const scene& b)
         && light_lists(a) == light_lists(b);
 }
 
+/// The bounding box of all shapes and lights of a scene, m.
+inline bounds bounds_of(const scene& s)
+{
+    bounds b;
+    const auto add = [&](const auto& list, auto kind) {
+        for (const auto& x : list)
+            kind.add_bounds(b, x);
+    };
+    for_each_shape(s, add);
+    add(s.meshes, shape_kind<placed_mesh>{});
+    for_each_light(s, add);
+    return b;
+}
+
+/// The box through whose faces distant light enters the scene: its bounds, with a margin around all surfaces.
+inline bounds entry_box(const scene& s)
+{
+    bounds b = bounds_of(s);
+    const dvec3 margin(0x1p-11 * glm::length(b.high - b.low));
+    b.low -= margin;
+    b.high += margin;
+    return b;
+}
+
 namespace detail {
     /// The power of all lights, the sum of the channels, W.
     inline double power_of_lights(const scene& s)
     {
-        double power = 0;
-        for_each_light(s, [&](const auto& lights, auto) {
-            for (const auto& l : lights)
-                power += l.power.x + l.power.y + l.power.z;
+        const bounds box = entry_box(s);
+        double sum = 0;
+        for_each_light(s, [&](const auto& lights, auto kind) {
+            for (const auto& l : lights) {
+                const dvec3 power = power_of(kind, l, box);
+                sum += power.x + power.y + power.z;
+            }
         });
-        return power;
+        return sum;
     }
 
     /// The names of a scene's lights, for messages: "'lamp', 'bulb'".
@@ -245,6 +285,7 @@ inline void check(const scene& s)
     detail::check_all("meshes", s.meshes, s.materials.size());
     for_each_light(s, all);
     detail::require(count_lights(s) > 0, "lights: the scene has none; add at least one");
+    detail::require(s.environment_lights.size() <= 1, "environment_lights: the scene has several; keep one");
     if (const auto pair = detail::overlapping_glass(s))
         throw std::invalid_argument((*pair)[1].text() + ": overlaps " + (*pair)[0].text()
             + ", and both are glass; the outside of glass must be air, so move them apart");

@@ -45,10 +45,11 @@ struct shape_kind<sphere> {
     static void add_bounds(bounds& b, const sphere& s) { b.add(s.center, dvec3(s.radius)); }
     static double size(const sphere& s) { return s.radius; }
     static double round_size(const sphere& s) { return 2 * s.radius; }
-    static void write(record_writer& w, const sphere& s)
+    /// `light`: 1 + number of the light whose surface it is, or 0.
+    static void write(record_writer& w, const sphere& s, std::size_t light = 0)
     {
         w.put_position(s.center, s.radius);
-        w.put_number(s.material);
+        w.put(dvec3(s.material, static_cast<double>(light), 0), 0);
     }
     /// @}
 };

@@ -4,6 +4,7 @@
 
 #include <photongrid/backend/backend.hpp>
 #include <photongrid/scene/scene.hpp>
+#include <photongrid/trace/environment_layout.hpp>
 #include <photongrid/trace/mesh_layout.hpp>
 #include <photongrid/trace/ray_search.hpp>
 #include <photongrid/trace/scene_layout.kernel.hpp>
@@ -29,11 +30,18 @@ enum scene_feature : uint {
     has_meshes = 1u << 9,         ///< number 8 is that of boxes
     has_smooth_meshes = 1u << 10, ///< meshes with normals
     has_mesh_lights = 1u << 11,
+    has_sphere_lights = 1u << 12,
+    has_spot_lights = 1u << 13,
+    has_directional_lights = 1u << 14,
+    has_environment = 1u << 15,
 };
 
 static_assert(light_kind<point_light>::form == kernels::POINT_LIGHT
     && light_kind<rectangle_light>::form == kernels::RECTANGLE_LIGHT
-    && light_kind<mesh_light>::form == kernels::MESH_LIGHT);
+    && light_kind<mesh_light>::form == kernels::MESH_LIGHT && light_kind<sphere_light>::form == kernels::SPHERE_LIGHT
+    && light_kind<spot_light>::form == kernels::SPOT_LIGHT
+    && light_kind<directional_light>::form == kernels::DIRECTIONAL_LIGHT
+    && light_kind<environment_light>::form == kernels::ENVIRONMENT_LIGHT);
 static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SURFACE
     && static_cast<uint>(surface_kind::reflecting) == kernels::MIRROR_SURFACE
     && static_cast<uint>(surface_kind::refracting) == kernels::GLASS_SURFACE);
@@ -47,6 +55,7 @@ struct scene_layout {
     glm::vec3 low{0};                ///< m; box of the Lambertian surfaces, recentred: where photons can be stored
     glm::vec3 high{0};               ///< m; its other corner
     mesh_layout meshes;
+    environment_layout environment;
 
     /// The records of a table's items; `number` is a shape_kind::number, kernels::MATERIAL_TABLE or
     /// kernels::LIGHT_TABLE.
@@ -69,18 +78,31 @@ namespace detail {
         return s;
     }
 
-    /// Reference point for recentring: the first light's first point, so a translated scene yields the same records.
+    /// Reference point for recentring: the first light's first point, or else the first shape's, so a translated scene
+    /// yields the same records.
     inline dvec3 anchor(const scene& s)
     {
         std::optional<dvec3> first;
-        for_each_light(s, [&](const auto& list, auto kind) {
-            for_each_field(kind.fields, [&](const auto& f) {
-                if constexpr (requires { first = list[0].*f.member; })
-                    if (f.of == quantity::point && !first && !list.empty())
-                        first = list[0].*f.member;
-            });
-        });
-        return first ? *first : corners_of(s.mesh_lights.at(0).surface, 0)[0];
+        const auto look = [&](const auto& list, auto kind) {
+            if (list.empty() || first)
+                return;
+            if constexpr (requires { corners_of(list[0], 0); })
+                first = corners_of(list[0], 0)[0];
+            else if constexpr (requires { list[0].surface; })
+                first = corners_of(list[0].surface, 0)[0];
+            else
+                for_each_field(kind.fields, [&](const auto& f) {
+                    const auto& value = list[0].*f.member;
+                    if constexpr (requires { first = value; })
+                        first = f.of == quantity::point && !first ? value : first;
+                    else if constexpr (requires { first = value.front(); })
+                        first = value.front();
+                });
+        };
+        for_each_light(s, look);
+        for_each_shape(s, look);
+        look(s.meshes, shape_kind<placed_mesh>{});
+        return first.value_or(dvec3(0));
     }
 
     /// \throws std::invalid_argument if a shape is so small, relative to the scene, that single precision cannot
@@ -172,11 +194,16 @@ namespace detail {
                 for (const auto& l : list)
                     kind.add_bounds(all, l);
                 constexpr uint features[]
-                    = {has_point_lights, has_area_lights | has_polygons, has_mesh_lights | has_meshes};
+                    = {has_point_lights, has_area_lights | has_polygons, has_mesh_lights | has_meshes,
+                        has_sphere_lights | has_spheres, has_spot_lights, has_directional_lights, has_environment};
                 out_.features |= list.empty() ? 0u : features[kind.form];
             });
             for (const auto& l : s_.rectangle_lights) // their surfaces are polygons
                 out_.steps_per_ray += steps_of(shape_kind<polygon>{}, surface_of(l));
+            for (const auto& l : s_.sphere_lights) {
+                out_.steps_per_ray += steps_of(shape_kind<sphere>{}, surface_of(l));
+                round_size_ = std::max(round_size_, shape_kind<sphere>::round_size(surface_of(l)));
+            }
             // Of loops over kinds, lights and faces, the corners of a lamp, and a last round of each loop: about 20.
             out_.steps_per_ray += 32;
             scale_ = 0.5 * glm::length(all.high - all.low);
@@ -208,9 +235,12 @@ namespace detail {
                 const uint begin = w.next();
                 for (const auto& x : list)
                     kind.write(w, x);
-                count += list.size();
-                if (!list.empty())
-                    enter(number, first, count, (w.next() - begin) / static_cast<uint>(list.size()));
+                std::size_t written = list.size();
+                if constexpr (std::is_same_v<decltype(kind), shape_kind<sphere>>)
+                    written += write_spheres_of_lights(w);
+                count += written;
+                if (written > 0)
+                    enter(number, first, count, (w.next() - begin) / static_cast<uint>(written));
             });
             // Polygons come last, because the surfaces of lights belong to the same table.
             for (std::size_t i = 0; i < s_.rectangle_lights.size(); ++i)
@@ -218,11 +248,21 @@ namespace detail {
             enter(number, first, s_.polygons.size() + s_.rectangle_lights.size(), 0);
         }
 
+        /// Returns how many.
+        std::size_t write_spheres_of_lights(record_writer& w)
+        {
+            const std::size_t first = s_.rectangle_lights.size() + s_.point_lights.size();
+            for (std::size_t i = 0; i < s_.sphere_lights.size(); ++i)
+                shape_kind<sphere>::write(w, surface_of(s_.sphere_lights[i]), first + i + 1);
+            return s_.sphere_lights.size();
+        }
+
         /// Appends the triangles of mesh lights and of all meshes.
         void write_meshes()
         {
             mesh_writer w(out_.meshes, out_.center, (out_.features & has_smooth_meshes) != 0);
-            uint light = static_cast<uint>(s_.rectangle_lights.size() + s_.point_lights.size());
+            uint light
+                = static_cast<uint>(s_.rectangle_lights.size() + s_.point_lights.size() + s_.sphere_lights.size());
             for (const auto& l : s_.mesh_lights) {
                 const std::size_t first = out_.meshes.faces.size();
                 w.write(l.surface, kernels::FACE_OF_LIGHT + light++, false);
@@ -246,23 +286,29 @@ namespace detail {
         /// Lights are chosen with probabilities proportional to their power.
         void write_lights(record_writer& w)
         {
-            const auto weight = [](const dvec3& power) { return power.x + power.y + power.z; };
             const double total = power_of_lights(s_);
+            const bounds box = entry_box(s_);
             double below = 0;
             std::size_t triangles = 0; // of mesh lights so far
             enter(kernels::LIGHT_TABLE, w.next(), count_lights(s_), 6);
             for_each_light(s_, [&](const auto& list, auto kind) {
                 for (const auto& l : list) {
-                    below += weight(l.power);
-                    w.put(dvec3(kind.form, weight(l.power) / total, below / total), 0);
+                    const dvec3 power = power_of(kind, l, box);
+                    const double weight = power.x + power.y + power.z;
+                    below += weight;
+                    w.put(dvec3(kind.form, weight / total, below / total), 0);
                     if constexpr (requires { l.surface; }) {
                         kind.write_record(w, l, triangles);
                         triangles += l.surface.surface->triangles.size();
+                    } else if constexpr (requires { kind.write_record(w, l, box); }) {
+                        kind.write_record(w, l, box);
                     } else {
                         kind.write_record(w, l);
                     }
                 }
             });
+            for (const auto& l : s_.environment_lights)
+                out_.environment = lay_out(l);
         }
 
         const scene& s_;
@@ -290,7 +336,7 @@ inline scene_layout lay_out(const scene& original)
 /// A scene on a device.
 template <backend B>
 struct device_scene {
-    scene_layout layout;             ///< with the records on the host, but without the triangles of meshes
+    scene_layout layout;             ///< with the records on the host, but without meshes and environment
     buffer_of<B, glm::vec4> records; ///< as trace/scene_layout.glsl describes them
     /// \name Of meshes, as trace/mesh_surface.glsl describes them; an element each if there is nothing
     /// @{
@@ -301,11 +347,24 @@ struct device_scene {
     buffer_of<B, glm::vec4> normals;
     buffer_of<B, uint> shares;
     /// @}
+    /// \name Of the environment, as trace/environment.glsl describes it; an element each if there is none
+    /// @{
+    buffer_of<B, glm::vec4> environment;
+    buffer_of<B, uint> environment_shares;
+    /// @}
 
     bool has_meshes() const { return (layout.features & photongrid::has_meshes) != 0; }
 };
 
 namespace detail {
+    /// Uploads elements, or one if there are none: kernels need a buffer for each INPUT, even if they do not read it.
+    template <backend B, class Element>
+    buffer_of<B, Element> upload_some(B& device, std::vector<Element>& elements)
+    {
+        elements.resize(std::max<std::size_t>(elements.size(), 1));
+        return upload(device, elements);
+    }
+
     template <backend B>
     void upload_meshes(B& device, mesh_layout m, device_scene<B>& to)
     {
@@ -313,15 +372,25 @@ namespace detail {
         std::vector<glm::vec4> vertices;
         for (const auto& p : m.triangles.positions)
             vertices.emplace_back(p, 0.0f);
-        const auto upload_some = [&](auto& elements) {
-            elements.resize(std::max<std::size_t>(elements.size(), 1)); // kernels need a buffer, even if none is read
-            return upload(device, elements);
-        };
-        to.faces = upload_some(m.faces);
-        to.planes = upload_some(m.planes);
-        to.vertices = upload_some(vertices);
-        to.normals = upload_some(m.normals);
-        to.shares = upload_some(m.shares);
+        to.faces = upload_some(device, m.faces);
+        to.planes = upload_some(device, m.planes);
+        to.vertices = upload_some(device, vertices);
+        to.normals = upload_some(device, m.normals);
+        to.shares = upload_some(device, m.shares);
+    }
+
+    template <backend B>
+    void upload_environment(B& device, environment_layout e, device_scene<B>& to)
+    {
+        to.environment = upload_some(device, e.texels);
+        to.environment_shares = upload_some(device, e.shares);
+    }
+
+    /// What kernels read that choose points of lights: the INPUTs of emit_photon.
+    template <backend B>
+    auto inputs_of_emission(const device_scene<B>& s)
+    {
+        return reads(s.records, s.faces, s.planes, s.vertices, s.shares, s.environment, s.environment_shares);
     }
 
     /// A bound on the loop iterations of one shadow ray to each light, the least that a pass takes.
@@ -353,6 +422,7 @@ device_scene<B> upload_scene(B& device, const scene& s)
     detail::check_loops(d.layout, device.caps());
     d.records = device.upload(std::span<const glm::vec4>(d.layout.records));
     detail::upload_meshes(device, std::exchange(d.layout.meshes, {}), d);
+    detail::upload_environment(device, std::exchange(d.layout.environment, {}), d);
     return d;
 }
 

@@ -1,5 +1,5 @@
 // Traces an eye ray to the next surface (2.4), through mirrors and glass until it ends on a diffuse surface, on a
-// light, or in empty space. At the first `splits` glass surfaces a ray splits into its two Fresnel branches: the bits
+// light, or in the environment. At the first `splits` glass surfaces a ray splits into its two Fresnel branches: the bits
 // of `branch` select the one that this pass follows at each. At later ones a random number selects it, stratified over
 // the eye rays of a pixel.
 #include <photongrid/backend/vector.glsl>
@@ -19,10 +19,12 @@ PARAMS(Params)
 SWITCH(4, MIRRORS)
 SWITCH(5, GLASS)
 SWITCH(7, AREA_LIGHTS)
+SWITCH(15, ENVIRONMENT_LIGHTS)
 INPUT(0, vec4, scene)
 INPUT(1, vec4, mesh_places) // these three: see mesh_surface.glsl
 INPUT(2, vec4, mesh_normals)
 INPUT(3, vec4, mesh_shadings)
+INPUT(4, vec4, environment) // see environment.glsl
 STATE(0, vec4, point)      // xyz: origin, at the end the point hit, m; w: 0 in flight, 1 on a diffuse surface, else -1
 STATE(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
 STATE(2, vec4, throughput) // rgb: factor between radiance here and at the eye; w: splits so far
@@ -33,6 +35,7 @@ STATE(5, uint, branches)   // bit b: branch b must be traced for this pixel; bra
 #include <photongrid/trace/intersect.glsl>
 #include <photongrid/trace/mesh_hit.glsl>
 #include <photongrid/trace/lights.glsl>
+#include <photongrid/trace/environment.glsl>
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/optics.glsl>
 #include <photongrid/trace/shading_normals.glsl>
@@ -101,6 +104,10 @@ void kernel(uint i)
     bool counted = args.branch >> min(splits, 31u) == 0u; // a device that computes garbage may shift by anything
     if (hit.t < 0.0f) {
         point.w = -1.0f;
+        if (ENVIRONMENT_LIGHTS && counted) {
+            vec3 seen = environment_radiance(environment_light(), d);
+            emitted = vec4(throughput.x * seen.x, throughput.y * seen.y, throughput.z * seen.z, 0.0f);
+        }
         return;
     }
     if (hit.material == NO_MATERIAL) {

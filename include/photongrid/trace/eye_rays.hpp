@@ -109,11 +109,18 @@ void trace_eye_rays(B& device, const device_scene<B>& s, const camera& view, con
                           .seed = settings.seed,
                           .first_pixel = hits.first_pixel,
                           .first = pixels.first},
-                      reads(s.records, on_meshes.places, on_meshes.normals, on_meshes.shadings),
+                      reads(s.records, on_meshes.places, on_meshes.normals, on_meshes.shadings, s.environment),
                       writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches),
                       s.has_meshes() ? 1u : all_passes)
                   .finished;
     }
+}
+
+/// Whether a kind of light is sampled at several points; all samples of the others are the same.
+inline bool is_sampled(uint form)
+{
+    return form == kernels::RECTANGLE_LIGHT || form == kernels::MESH_LIGHT || form == kernels::SPHERE_LIGHT
+        || form == kernels::ENVIRONMENT_LIGHT;
 }
 
 /// Computes the irradiance of direct light at the hits of `pixels` into `light`, with a bounded number of shadow rays
@@ -123,12 +130,17 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
     uint ray, launch pixels, buffer_of<B, glm::vec4>& light)
 {
     device.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
-    const uint samples
-        = (s.layout.features & (has_area_lights | has_mesh_lights)) != 0 ? settings.view.light_samples : 1u;
-    if (s.has_meshes()) {
+    constexpr uint sampled = has_area_lights | has_mesh_lights | has_sphere_lights | has_environment;
+    const uint samples = (s.layout.features & sampled) != 0 ? settings.view.light_samples : 1u;
+    // What direct_light.glsl does not know.
+    constexpr uint others = has_meshes | has_sphere_lights | has_spot_lights | has_directional_lights | has_environment;
+    if ((s.layout.features & others) != 0) {
         mesh_rays<B> rays(device, pixels.elements);
-        for (uint number = 0; number < s.layout.table(kernels::LIGHT_TABLE).count; ++number)
-            for (uint sample = 0; sample < samples; ++sample) {
+        auto arriving = device.template make<glm::vec4>(pixels.elements);
+        const auto lights = s.layout.table(kernels::LIGHT_TABLE);
+        for (uint number = 0; number < lights.count; ++number) {
+            const auto form = static_cast<uint>(s.layout.records[lights.first + lights.stride * number].x);
+            for (uint sample = 0; sample < (is_sampled(form) ? samples : 1u); ++sample) {
                 device.template run<kernels::shadow_ray>({pixels.elements, 0u, s.layout.features},
                     {.strata = strata_of(samples),
                         .light = number,
@@ -137,12 +149,14 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
                         .ray_id = ray,
                         .seed = settings.seed,
                         .first_pixel = hits.first_pixel},
-                    reads(s.records, hits.points, hits.surfaces, s.faces, s.planes, s.vertices, s.shares),
-                    writes(rays.origins, rays.directions));
+                    reads(s.records, hits.points, hits.surfaces, s.faces, s.planes, s.vertices, s.shares, s.environment,
+                        s.environment_shares),
+                    writes(rays.origins, rays.directions, arriving));
                 const auto found = rays.search(device, s, hit_kind::any);
-                device.template run<kernels::add_unblocked>(pixels, {.light = number, .first = pixels.first},
-                    reads(s.records, rays.directions, found), writes(light));
+                device.template run<kernels::add_unblocked>(
+                    pixels, {.first = pixels.first}, reads(arriving, found), writes(light));
             }
+        }
         return;
     }
     // Well below the 65,535 iterations, of all loops of an invocation, after which some drivers end loops

@@ -1,12 +1,12 @@
 // Lights, read from the scene buffer. Included by kernels after their scene buffer.
 struct Light {
-    bool is_area;             // a rectangle; else a point light, which has a position and power only, or a mesh light
+    bool is_area;             // a rectangle; other kinds have some of these members only
     vec3 position;            // of a rectangle light: one corner, m
     vec3 edge_u;              // m
     vec3 edge_v;              // m
     vec3 normal;              // unit; light leaves on this side
     vec3 power;               // W
-    float radiance_per_power; // of a rectangle or a mesh: 1 / (pi area), m^-2 sr^-1
+    float radiance_per_power; // of a rectangle, mesh or sphere: 1 / (pi area), m^-2 sr^-1
 };
 
 Light light_at(uint at)
@@ -27,6 +27,13 @@ Light light_of(uint number)
 {
     Table table = table_of(scene(LIGHT_TABLE));
     return light_at(table.first + table.stride * number);
+}
+
+// The scene's environment, its last light.
+uint environment_light()
+{
+    Table table = table_of(scene(LIGHT_TABLE));
+    return table.first + table.stride * (table.count - 1u);
 }
 
 // Probabilities, in proportion to power: that this light is chosen; that this light or one before it is.

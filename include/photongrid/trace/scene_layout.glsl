@@ -3,14 +3,18 @@
 #ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
 
 const uint SCENE_TABLES = 16u;
-const uint MATERIAL_TABLE = 4u; // no kind of shape has the numbers 4 to 7, the SWITCHes of materials and lights, or 9
-                                // to 11, those of meshes
+const uint MATERIAL_TABLE = 4u; // no kind of shape has the numbers 4 to 7 or 12 to 15, the SWITCHes of materials and
+                                // lights, or 9 to 11, those of meshes
 const uint SCENE_SIZES = 5u;    // x: what ray_offset adds for curved shapes, m
 const uint LIGHT_TABLE = 6u;
 // Forms of lights.
 const uint POINT_LIGHT = 0u;
 const uint RECTANGLE_LIGHT = 1u;
 const uint MESH_LIGHT = 2u;
+const uint SPHERE_LIGHT = 3u;
+const uint SPOT_LIGHT = 4u;
+const uint DIRECTIONAL_LIGHT = 5u;
+const uint ENVIRONMENT_LIGHT = 6u; // the last light of a scene that has one
 const uint FIRST_MATERIAL = SCENE_TABLES; // materials come first, so that kernels need not look their table up
 const uint MATERIAL_RECORDS = 2u;
 

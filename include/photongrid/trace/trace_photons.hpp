@@ -81,7 +81,7 @@ namespace detail {
         mesh_hits<B> hits(device, s, paths);
         mesh_rays<B> rays(device, s.has_meshes() ? paths : 0);
         device.template run<kernels::emit_photon>({paths, 0u, layout.features},
-            {.first_path = first, .seed = settings.seed}, reads(s.records, s.faces, s.planes, s.vertices, s.shares),
+            {.first_path = first, .seed = settings.seed}, inputs_of_emission(s),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
         uint frame = 1;
         for (; frame <= settings.map.photon_depth; ++frame) {

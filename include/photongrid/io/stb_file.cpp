@@ -1,0 +1,107 @@
+// Radiance HDR and JPEG, by stb_image.
+#include <photongrid/io/image_formats.hpp>
+#include <photongrid/io/tone_map.hpp>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wdouble-promotion"
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#endif
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_HDR
+#define STBI_ONLY_JPEG
+#define STBI_NO_STDIO
+#define STBI_MAX_DIMENSIONS 65536
+#include <stb/stb_image.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+namespace photongrid::image_formats {
+
+namespace {
+    std::vector<stbi_uc> bytes_of(const std::string& path)
+    {
+        std::ifstream file(path, std::ios::binary);
+        std::vector<stbi_uc> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+        if (!file)
+            throw std::runtime_error(std::strerror(errno));
+        if (bytes.size() > (std::size_t{1} << 30))
+            fail_file(path, "is larger than 2^30 bytes");
+        return bytes;
+    }
+
+    /// The bytes of a file as stb_image reads them. It takes what is missing at the end of a file for zeros.
+    struct source {
+        const std::vector<stbi_uc>& bytes;
+        std::size_t at = 0;
+        bool past_end = false;
+    };
+    constexpr stbi_io_callbacks from_source{[](void* user, char* to, int size) {
+                                                auto& s = *static_cast<source*>(user);
+                                                const auto n
+                                                    = std::min(static_cast<std::size_t>(size), s.bytes.size() - s.at);
+                                                std::memcpy(to, s.bytes.data() + s.at, n);
+                                                s.at += n;
+                                                s.past_end = s.past_end || n == 0;
+                                                return static_cast<int>(n);
+                                            },
+        [](void* user, int n) {
+            auto& s = *static_cast<source*>(user);
+            const auto to = static_cast<std::int64_t>(s.at) + n, end = static_cast<std::int64_t>(s.bytes.size());
+            s.past_end = s.past_end || to > end;
+            s.at = static_cast<std::size_t>(std::clamp<std::int64_t>(to, 0, end));
+        },
+        [](void* user) {
+            const auto& s = *static_cast<source*>(user);
+            return s.at == s.bytes.size() ? 1 : 0;
+        }};
+
+    /// `load` returns three channels a pixel, `value` the linear value of one.
+    template <class Load, class Value>
+    image read(const std::string& path, Load load, Value value)
+    {
+        const auto bytes = bytes_of(path);
+        int width = 0, height = 0, channels = 0;
+        source begin{bytes}, whole{bytes};
+        if (!stbi_info_from_callbacks(&from_source, &begin, &width, &height, &channels))
+            throw std::runtime_error(stbi_failure_reason());
+        check_read_size(path, width, height);
+        const auto data = load(&from_source, &whole, &width, &height, &channels, 3);
+        const std::unique_ptr<void, decltype(&stbi_image_free)> freed(data, stbi_image_free);
+        if (data == nullptr)
+            throw std::runtime_error(stbi_failure_reason());
+        if (whole.past_end)
+            throw std::runtime_error("the file ends within the picture");
+        image picture{
+            .width = static_cast<std::uint32_t>(width), .height = static_cast<std::uint32_t>(height), .pixels = {}};
+        const std::size_t pixels = std::size_t{picture.width} * picture.height;
+        picture.pixels.reserve(pixels);
+        for (std::size_t i = 0; i < pixels; ++i)
+            picture.pixels.emplace_back(value(data[3 * i]), value(data[3 * i + 1]), value(data[3 * i + 2]));
+        return picture;
+    }
+
+} // namespace
+
+image read_hdr(const std::string& path)
+{
+    return read(path, stbi_loadf_from_callbacks, [](float v) { return v; });
+}
+
+image read_jpeg(const std::string& path) { return read(path, stbi_load_from_callbacks, linear_value); }
+
+} // namespace photongrid::image_formats

@@ -1,0 +1,35 @@
+// What lights emit: its check, and the power that reaches a scene.
+#pragma once
+
+#include <photongrid/scene/bounds.hpp>
+
+#include <string>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// \throws std::invalid_argument for an emission (power, irradiance or radiance, rgb) with a channel that is not finite
+///         or negative, or of 0. `name`: the member's, for the message.
+inline void check_emission(const std::string& name, const dvec3& emission)
+{
+    detail::require(detail::finite(emission) && emission.x >= 0 && emission.y >= 0 && emission.z >= 0,
+        name + ": each channel must be finite and not negative");
+    detail::require(emission.x + emission.y + emission.z > 0, name + ": is 0; a light needs a channel above 0");
+}
+
+namespace detail {
+    /// The power of a light, W, rgb. Of a light outside of the scene, which has none of its own: what enters `box`.
+    template <class Kind, class Light>
+    dvec3 power_of(Kind, const Light& l, const bounds& box)
+    {
+        if constexpr (requires { Kind::power_into(box, l); })
+            return Kind::power_into(box, l);
+        else
+            return l.power;
+    }
+} // namespace detail
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

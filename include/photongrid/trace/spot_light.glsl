@@ -1,0 +1,38 @@
+// Spotlights (scene/spot_light.hpp). Included by kernels after trace/lights.glsl and the SWITCH SPOT_LIGHTS. Records: at
+// + 1: position; at + 2: unit vector of the axis; w: greatest intensity divided by the power, sr^-1; at + 3: 1 - cosine
+// of the inner angle; that of the outer angle less that of the inner one; share of the power within the inner angle.
+
+// The intensity in direction d, divided by the power, sr^-1.
+float spot_intensity(uint at, vec3 d)
+{
+    vec4 axis = scene(at + 2u);
+    vec4 cone = scene(at + 3u);
+    // 1 - the cosine of the angle of two unit vectors is half the square of their distance.
+    precise vec3 apart = d - vec3(axis);
+    precise float beyond = 0.5f * dot3(apart, apart) - cone.x;
+    if (beyond <= 0.0f)
+        return axis.w;
+    if (!(beyond < cone.y))
+        return 0.0f;
+    precise float t = 1.0f - beyond / cone.y;
+    precise float intensity = axis.w * t * t * (3.0f - 2.0f * t);
+    return intensity;
+}
+
+// A direction with a density in proportion to the intensity, for numbers from 0 to 1.
+vec3 spot_direction(uint at, float part, float u, float turn, vec3 three)
+{
+    vec4 cone = scene(at + 3u);
+    precise float below = cone.x * u; // 1 - cosine
+    if (!(part < cone.z)) {
+        // The median of three numbers is at most t with probability 3 t^2 - 2 t^3. Where it is not, 1 - t has the same
+        // density as t has where it is, so that none is in vain.
+        float median = max(min(three.x, three.y), min(max(three.x, three.y), three.z));
+        float t = median > u ? 1.0f - u : u;
+        precise float outside = cone.x + cone.y * (1.0f - t);
+        below = outside;
+    }
+    precise float sine = sqrt(below * (2.0f - below));
+    vec2 circle = unit_circle(turn);
+    return from_basis(vec3(sine * circle.x, sine * circle.y, 1.0f - below), vec3(scene(at + 2u)));
+}

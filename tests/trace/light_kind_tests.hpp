@@ -1,0 +1,231 @@
+// Spotlights, sphere lights, directional light and environments, on any backend: their direct light against formulas
+// and brute force, their photons against their direct light, and the serial backend's pictures. Included by each
+// on_<backend>.cpp.
+#pragma once
+
+#include "direct_light_at.hpp"
+#include "mesh_scene_tests.hpp"
+
+namespace photongrid::testing {
+
+template <class Tag>
+class light_kinds : public mesh_scenes<Tag> {
+protected:
+    std::vector<glm::vec4> light_at(const scene& s, const std::vector<dvec3>& points, const dvec3& normal, uint samples)
+    {
+        return direct_light_at(
+            this->b(), s, points, std::vector<dvec3>(points.size(), glm::normalize(normal)), samples);
+    }
+    /// The mean over samples at many equal points, and the largest deviation of a channel from `known`, as a share.
+    double mean_error(const scene& s, const dvec3& point, const dvec3& normal, uint samples, const dvec3& known)
+    {
+        const auto all = light_at(s, std::vector<dvec3>(4096, point), normal, samples);
+        dvec3 mean(0);
+        for (const auto& e : all)
+            mean += dvec3(e) / 4096.0;
+        const dvec3 off = glm::abs(mean / known - 1.0);
+        return std::max({off.x, off.y, off.z});
+    }
+};
+TYPED_TEST_SUITE_P(light_kinds);
+
+TYPED_TEST_P(light_kinds, a_spotlight_has_its_intensity)
+{
+    for (const auto& [inner, outer] : {std::pair{0.0, 0.5}, {15.0, 40.0}, {60.0, 60.0}, {30.0, 179.0}, {90.0, 180.0}}) {
+        auto s = bare_floor();
+        s.spot_lights = {{"spot", {0.25, 2, -0.5}, {0.3, -1, 0.1}, inner, outer, dvec3(7)}};
+        const dvec3 axis = glm::normalize(s.spot_lights[0].direction);
+        // Its power, from a Riemann sum over the cone.
+        const double from = std::cos(glm::radians(outer)), full = std::cos(glm::radians(inner));
+        const auto falloff = [&](double cosine) {
+            const double t = (cosine - from) / (full - from);
+            return cosine >= full ? 1.0 : cosine <= from ? 0.0 : t * t * (3 - 2 * t);
+        };
+        double of_one = 0;
+        for (int i = 0; i < 100000; ++i)
+            of_one += falloff(from + (1 - from) * (i + 0.5) / 100000) * (1 - from) / 100000 * 2 * M_PI;
+        std::vector<dvec3> points;
+        for (int i = 0; i < 200; ++i)
+            points.emplace_back(0.25 + 0.6 - 2.8 * i / 199, 0, -0.3);
+        const auto found = this->light_at(s, points, {0, 1, 0}, 1);
+        double largest = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const dvec3 d = points[i] - s.spot_lights[0].position;
+            const double r = glm::length(d), cosine = glm::dot(d, axis) / r;
+            const double known = 7 / of_one * falloff(cosine) * -d.y / (r * r * r), most = 7 / of_one / (r * r);
+            // A narrow cone's edge is as sharp as single precision: 1e-6 of a cosine.
+            const double slack = (1e-4 + 2e-6 / (1 - from)) * most;
+            largest = std::max(largest, static_cast<double>(found[i].x));
+            EXPECT_NEAR(static_cast<double>(found[i].x), known, slack) << inner << ' ' << outer << " at " << i;
+        }
+        EXPECT_GT(largest, 0.0) << inner;
+    }
+}
+
+TYPED_TEST_P(light_kinds, a_sphere_lights_as_its_middle_does)
+{
+    // Wherever all of a sphere is above the horizon, its irradiance is that of a point light.
+    auto s = bare_floor();
+    s.sphere_lights = {{"globe", {0.5, 1.5, 0}, 0.4, dvec3(7)}};
+    for (const dvec3& p : {dvec3(0.5, 0, 0), dvec3(-1, 0, 0.3), dvec3(0.5, 1.0999, 0), dvec3(2.5, 0, 2)}) {
+        const dvec3 to = s.sphere_lights[0].center - p;
+        const double known = 7 / (4 * M_PI) * to.y / std::pow(glm::length(to), 3);
+        EXPECT_LE(this->mean_error(s, p, {0, 1, 0}, 16, dvec3(known)), 0.004) << p.x;
+    }
+    // Halfway below the horizon: the sum over a fine grid of directions.
+    const dvec3 p(-1, 0.2, 0), normal = glm::normalize(dvec3(1, -1, 0)), to = s.sphere_lights[0].center - p;
+    double known = 0;
+    for (int i = 0; i < 2000; ++i)
+        for (int j = 0; j < 2000; ++j) {
+            const double z = 1 - 2 * (i + 0.5) / 2000, turn = 2 * M_PI * (j + 0.5) / 2000, r = std::sqrt(1 - z * z);
+            const dvec3 d(r * std::cos(turn), r * std::sin(turn), z);
+            const double along = glm::dot(d, to), off2 = glm::dot(to, to) - along * along;
+            if (along > 0 && off2 < 0.16)
+                known += std::max(0.0, glm::dot(d, normal)) * 4 * M_PI / 4e6;
+        }
+    known *= 7 / (4 * M_PI * M_PI * 0.16);
+    ASSERT_GT(known, 0.01);
+    EXPECT_LE(this->mean_error(s, p, normal, 16, dvec3(known)), 0.01);
+    for (const auto& e : this->light_at(s, {s.sphere_lights[0].center + dvec3(0.1, 0, 0)}, {0, 1, 0}, 16))
+        EXPECT_EQ(e.x, 0.0f) << "inside";
+}
+
+TYPED_TEST_P(light_kinds, directional_light_is_even_and_casts_shadows)
+{
+    auto s = bare_floor();
+    s.directional_lights = {{"sun", {1, -2, 0.5}, dvec3(3, 2, 1)}};
+    s.spheres = {{{0, 1, 0}, 0.25, 0}};
+    const double cosine = 2 / std::sqrt(1 + 4 + 0.25);
+    const auto lit = this->light_at(s, {{-1, 0, 0}, {2.9, 0, -2.9}, {0, 0, 0}}, {0, 1, 0}, 1);
+    for (const auto& e : lit)
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(static_cast<double>(e[c]), (3 - c) * cosine, 1e-5);
+    for (const auto& e : this->light_at(s, {{0.5, 0, 0.25}, {0.6, 0, 0.3}}, {0, 1, 0}, 1))
+        EXPECT_EQ(e.x, 0.0f) << "in the shadow";
+    EXPECT_EQ(this->light_at(s, {{-1, 0, 0}}, {0, -1, 0}, 1)[0].x, 0.0f) << "from below";
+}
+
+TYPED_TEST_P(light_kinds, an_environment_has_the_light_of_its_texels)
+{
+    const auto s = floors_under_each_light()[3];
+    const auto& sky = s.environment_lights[0];
+    const auto turned = rotation_about(sky.axis, sky.degrees);
+    for (const dvec3& normal : {dvec3(0, 1, 0), dvec3(0.6, 0.64, 0.48)}) {
+        dvec3 known(0);
+        const int fine = 40;
+        const auto& m = *sky.map;
+        for (std::uint32_t row = 0; row < m.height * fine; ++row)
+            for (std::uint32_t column = 0; column < m.width * fine; ++column) {
+                const double v = (row + 0.5) / (m.height * fine), u = (column + 0.5) / (m.width * fine);
+                const dvec3 d = turned * environment_direction(u, v);
+                if (d.y > 0) // above the floor
+                    known += sky.radiance * dvec3(m.radiance[std::size_t{row / fine} * m.width + column / fine])
+                        * std::max(0.0, glm::dot(d, normal)) * std::sin(M_PI * v)
+                        * (2 * M_PI * M_PI / (m.height * fine * m.width * fine));
+            }
+        EXPECT_LE(this->mean_error(s, {0, 1e-3, 0}, normal, 64, known), 0.01);
+    }
+    const auto white = floors_under_each_light()[4];
+    EXPECT_LE(this->mean_error(white, {0.5, 0, 0.5}, {0, 1, 0}, 64, dvec3(M_PI)), 0.003);
+}
+
+TYPED_TEST_P(light_kinds, the_camera_sees_the_environment)
+{
+    auto s = floors_under_each_light()[3];
+    const auto& sky = s.environment_lights[0];
+    s.render.output.width = 64, s.render.output.height = 48;
+    s.render.view.spp = 1;
+    s.render.output.only = light_part::direct;
+    s.camera = {{0, 5, 0}, {1, 9, 2}, {0, 1, 0}, 120};
+    const auto seen = this->picture(s);
+    const auto [forward, right, up] = detail::camera_axes(s.camera);
+    const double half = std::tan(glm::radians(60.0));
+    std::size_t off = 0;
+    for (std::uint32_t y = 0; y < 48; ++y)
+        for (std::uint32_t x = 0; x < 64; ++x) {
+            const dvec3 d = glm::transpose(rotation_about(sky.axis, sky.degrees))
+                * glm::normalize(
+                    forward + ((x + 0.5) / 32 - 1) * half * 64 / 48 * right + (1 - (y + 0.5) / 24) * half * up);
+            const double u = std::atan2(d.x, -d.z) / (2 * M_PI), v = std::acos(d.y) / M_PI;
+            const auto column = static_cast<std::size_t>((u < 0 ? u + 1 : u) * 24),
+                       row = static_cast<std::size_t>(v * 12);
+            const dvec3 known = sky.radiance * dvec3(sky.map->radiance[row * 24 + column]);
+            off += glm::length(dvec3(seen.pixels[y * 64 + x]) - known) > 1e-5 * glm::length(known) ? 1 : 0;
+        }
+    EXPECT_LE(off, 5u) << "pixels at the edges of texels";
+}
+
+/// Photons through glass that refracts nothing land as shadow rays say.
+TYPED_TEST_P(light_kinds, photons_and_shadow_rays_agree)
+{
+    for (auto s : floors_under_each_light()) {
+        SCOPED_TRACE(s.spot_lights.empty() ? s.sphere_lights.empty() ? "distant" : "sphere" : "spot");
+        const bool outside = s.spot_lights.empty() && s.sphere_lights.empty();
+        s.render.output.only = light_part::direct;
+        const auto direct = this->picture(s);
+        if (outside) {
+            s.spheres = {{{0, 0.5, 0}, 5, 1}}; // around all, and the camera
+        } else {
+            s.polygons.push_back({{{-4, 0.3, -4}, {-4, 0.3, 4}, {4, 0.3, 4}, {4, 0.3, -4}}, 1});
+        }
+        s.render.output.only = light_part::caustic;
+        const auto through_glass = this->picture(s);
+        dvec3 sum(0), known(0);
+        for (std::size_t i = 0; i < direct.pixels.size(); ++i) {
+            sum += dvec3(through_glass.pixels[i]);
+            known += dvec3(direct.pixels[i]);
+        }
+        ASSERT_GT(known.x, 0);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(sum[c] / known[c], 1, 0.02) << c;
+    }
+}
+
+/// In light that is the same from everywhere, whatever absorbs nothing cannot be seen.
+TYPED_TEST_P(light_kinds, what_absorbs_nothing_in_a_white_environment_cannot_be_seen)
+{
+    scene s;
+    s.materials = {{"white", material_kind::lambertian, dvec3(1)}, {"mirror", material_kind::mirror, dvec3(1)},
+        {"glass", material_kind::glass, dvec3(1), 1.5}};
+    s.spheres = {{{-1, 0, 0}, 0.7, 1}, {{1, 0, 0}, 0.7, 2}, {{0, 1.3, 0}, 0.5, 0}};
+    s.environment_lights = {{"white", "", nullptr, dvec3(1, 2, 4)}};
+    s.camera = {{0, 0.3, 5}, {0, 0.3, 0}, {0, 1, 0}, 40};
+    s.render = {.map = {.photons = 60000, .grid = {20, 20, 20}},
+        .estimate = {.k = 150, .max_radius = 0.2},
+        .view = {.spp = 2, .light_samples = 36},
+        .output = {.width = 32, .height = 24}};
+    const auto seen = this->picture(s);
+    dvec3 mean(0);
+    for (const auto& p : seen.pixels) {
+        mean += dvec3(p) / double(seen.pixels.size());
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(static_cast<double>(p[c]) / (1 << c), 1, 0.2);
+    }
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(mean[c] / (1 << c), 1, 0.004);
+}
+
+TYPED_TEST_P(light_kinds, equal_the_serial_backends)
+{
+    const auto s = all_lights();
+    this->expect_serial(s, s.render);
+}
+
+TYPED_TEST_P(light_kinds, account_for_every_path)
+{
+    auto s = all_lights();
+    s.render.map.photons = 20000;
+    expect_an_exact_account(this->traced(s), 20000);
+    for (auto f : floors_under_each_light()) {
+        f.spheres = {{{0, 0.5, 0}, 0.3, 0}};
+        f.render.map.photons = 3000;
+        expect_an_exact_account(this->traced(f), 3000);
+    }
+}
+
+REGISTER_TYPED_TEST_SUITE_P(light_kinds, a_spotlight_has_its_intensity, a_sphere_lights_as_its_middle_does,
+    directional_light_is_even_and_casts_shadows, an_environment_has_the_light_of_its_texels,
+    the_camera_sees_the_environment, photons_and_shadow_rays_agree,
+    what_absorbs_nothing_in_a_white_environment_cannot_be_seen, equal_the_serial_backends, account_for_every_path);
+
+} // namespace photongrid::testing
