@@ -7,5 +7,5 @@
 // makes legal (OpenGL 4.5 core, 9.3.1).
 #define STATE(B, T, NAME) \
     layout(location = B) precise out T NAME; \
-    layout(binding = 9 + B) uniform SAMPLER_##T NAME##_texture_; \
+    layout(binding = STATE_UNIT_ + B) uniform SAMPLER_##T NAME##_texture_; \
     void load_state_##B(ivec2 at) { NAME = ELEMENT_##T(texelFetch(NAME##_texture_, at, 0)); }

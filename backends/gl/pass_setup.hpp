@@ -8,7 +8,7 @@
 namespace photongrid::gl {
 
 /// The render targets of a pass, and the texture units of inputs and states (textures.glsl, fragment_prelude.glsl).
-inline constexpr GLuint max_outputs = 8, max_inputs = 9, state_unit = max_inputs, units = state_unit + max_outputs;
+inline constexpr GLuint max_outputs = 8, max_inputs = 10, state_unit = max_inputs, units = state_unit + max_outputs;
 
 /// Capabilities that are disabled in passes. Blending, which is per draw buffer, and the scissor test, which is per
 /// viewport, are disabled separately; a pass uses the first viewport only.

@@ -13,7 +13,7 @@ void bind(device& on, const typename K::Params& args, const std::array<GLuint, R
     const std::array<GLuint, Writes>& writes)
 {
     static_assert(input_count<K> <= max_inputs && output_count<K> <= max_outputs,
-        "OpenGL passes have at most 9 inputs and 8 outputs");
+        "OpenGL passes have at most 10 inputs and 8 outputs");
     on.prepare_passes();
     on.set_uniforms(&args, sizeof args);
     for (std::size_t i = 0; i < Reads; ++i)

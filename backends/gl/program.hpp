@@ -102,8 +102,8 @@ public:
                 what);
         } else {
             constexpr std::array verbs{"RUN_", "UNTIL_DONE_", "NOT_DONE_", "HOLDS_"};
-            defines += std::string("#define ") + verbs[static_cast<std::size_t>(v)] + "\n#define LOAD_STATES_(at) "
-                + load_states<K>() + "\n";
+            defines += std::string("#define ") + verbs[static_cast<std::size_t>(v)] + "\n#define STATE_UNIT_ "
+                + std::to_string(state_unit) + "\n#define LOAD_STATES_(at) " + load_states<K>() + "\n";
             const GLuint fragment = gl::compile(*device_, GL_FRAGMENT_SHADER,
                 splice(text("fragment_prelude.glsl"), defines, kernel, text("fragment_epilogue.glsl"), texts),
                 what + " (fragment stage)");

@@ -12,8 +12,7 @@ namespace photongrid::vulkan {
 
 /// A batch has room for so many passes of so many buffers.
 inline constexpr std::uint32_t passes_per_batch = 64;
-inline constexpr std::uint32_t buffers_per_pass = 21; // 9 inputs, 8 outputs, 4 for verbs
-inline constexpr std::uint32_t inputs_per_pass = 9;
+inline constexpr std::uint32_t buffers_per_pass = first_own + 4; // 4 for verbs
 
 /// A batch of at most passes_per_batch passes.
 struct batch {
@@ -135,7 +134,7 @@ private:
         check(vkCreateFence(context_->device(), &fence, nullptr, &b.fence), "vkCreateFence");
         constexpr VkDescriptorPoolSize sizes[]
             = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, passes_per_batch * buffers_per_pass},
-                {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, passes_per_batch * inputs_per_pass}};
+                {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, passes_per_batch * max_inputs}};
         VkDescriptorPoolCreateInfo pool{};
         pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
         pool.maxSets = passes_per_batch;

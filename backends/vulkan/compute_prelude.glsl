@@ -6,8 +6,9 @@
 //   LANES      elements per group in kernels that are IN_GROUPS: a subgroup's invocations, or 1
 //   LANE_LOOPS 1: EACH_LANE is a loop; 0: it is unrolled, so that lanes are constants for lavapipe
 //   TEXELS     1: inputs are read as texel buffers, 0: as storage buffers
-// Bindings: 0 to 8 inputs, 9 to 16 outputs and states, from 17 on the verb's own. No buffer is `restrict`, because a
-// pass may read one frame of a buffer and write another.
+//   FIRST_OUTPUT, FIRST_OWN: see Bindings
+// Bindings: inputs from 0, outputs and states from FIRST_OUTPUT, the verb's own from FIRST_OWN. No buffer is
+// `restrict`, because a pass may read one frame of a buffer and write another.
 #if LANES > 1
 #extension GL_KHR_shader_subgroup_shuffle : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
@@ -41,13 +42,13 @@ layout(local_size_x = GROUP) in;
 
 #define OUTPUT(B, T, NAME)                                                                   \
     T NAME;                                                                                  \
-    layout(std430, binding = 9 + B) buffer NAME##_block_ { T NAME##_data_[]; };              \
+    layout(std430, binding = FIRST_OUTPUT + B) buffer NAME##_block_ { T NAME##_data_[]; };              \
     void load_##B(uint i) { NAME = T(0); }                                                   \
     void store_##B(uint i) { NAME##_data_[i] = NAME; }
 
 #define STATE(B, T, NAME)                                                                    \
     T NAME;                                                                                  \
-    layout(std430, binding = 9 + B) buffer NAME##_block_ { T NAME##_data_[]; };              \
+    layout(std430, binding = FIRST_OUTPUT + B) buffer NAME##_block_ { T NAME##_data_[]; };              \
     void load_##B(uint i) { NAME = NAME##_data_[i]; }                                        \
     void store_##B(uint i) { NAME##_data_[i] = NAME; }
 

@@ -1,5 +1,5 @@
 // Counts the elements for which `holds` is true: a sum per workgroup, then one atomic addition.
-layout(std430, binding = 17) buffer held_block_ { uint held_; };
+layout(std430, binding = FIRST_OWN) buffer held_block_ { uint held_; };
 shared uint group_held_;
 
 void main()

@@ -7,9 +7,9 @@
 // number of elements that are not done. launch_.z: this pass; launch_.w: offset of its elements from those of the list.
 //
 // main() is one function, because its steps, from barrier to barrier, share what is known of the invocation's element.
-layout(std430, binding = 17) readonly buffer listed_block_ { uint listed_[]; };
-layout(std430, binding = 18) buffer next_block_ { uint next_[]; };
-layout(std430, binding = 19) buffer control_block_ { uint control_[]; };
+layout(std430, binding = FIRST_OWN) readonly buffer listed_block_ { uint listed_[]; };
+layout(std430, binding = FIRST_OWN + 1) buffer next_block_ { uint next_[]; };
+layout(std430, binding = FIRST_OWN + 2) buffer control_block_ { uint control_[]; };
 
 const uint words_ = (uint(GROUP) + 31u) / 32u;
 const uint NOBODY = 0xFFFFFFFFu; // an entry without an element, so that groups stay together

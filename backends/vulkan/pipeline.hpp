@@ -10,6 +10,10 @@
 
 namespace photongrid::vulkan {
 
+/// Bindings of a kernel: its inputs, its outputs and states, and what a verb has of its own (compute_prelude.glsl).
+inline constexpr std::uint32_t max_inputs = 10, max_outputs = 8, first_output = max_inputs,
+                               first_own = first_output + max_outputs;
+
 /// A binding of a buffer, and its type.
 struct binding {
     std::uint32_t number = 0;

@@ -64,12 +64,12 @@ public:
             bindings.push_back(
                 {i, texels ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
         for (std::uint32_t o = 0; v != verb::count && o < output_count<K>; ++o)
-            bindings.push_back({9 + o});
-        static_assert(
-            input_count<K> <= 9 && output_count<K> <= 8, "a kernel has at most 9 inputs and 8 outputs and states");
+            bindings.push_back({first_output + o});
+        static_assert(input_count<K> <= max_inputs && output_count<K> <= max_outputs,
+            "a kernel has at most 10 inputs and 8 outputs and states");
         const std::uint32_t own = v == verb::count ? 1 : v == verb::run ? 0 : 3;
         for (std::uint32_t e = 0; e < own; ++e)
-            bindings.push_back({17 + e});
+            bindings.push_back({first_own + e});
         const auto words = compile<K>(v, switches, texels);
         const auto begin = std::chrono::steady_clock::now();
         p = std::make_unique<pipeline>(
@@ -106,7 +106,8 @@ private:
         return "#define GROUP " + std::to_string(group_) + "\n#define LANES " + std::to_string(lanes)
             + "\n#define LANE_LOOPS " + (lanes > 8 || context_->staging() ? "1" : "0") + "\n#define OUTPUTS "
             + std::to_string(outputs) + "\n#define SWITCHES " + std::to_string(switches) + "u\n#define LISTING "
-            + (listing ? "1" : "0") + "\n#define TEXELS " + (texels ? "1" : "0") + "\n";
+            + (listing ? "1" : "0") + "\n#define TEXELS " + (texels ? "1" : "0") + "\n#define FIRST_OUTPUT "
+            + std::to_string(first_output) + "\n#define FIRST_OWN " + std::to_string(first_own) + "\n";
     }
 
     static const text_file& own_text(const std::string& name) { return find_kernel_text(name + ".glsl", vulkan_texts); }

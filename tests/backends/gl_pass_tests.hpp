@@ -58,6 +58,7 @@ namespace {
         const auto in6 = b.upload(view(noise<uint>(n, 4)));
         const auto in7 = b.upload(view(noise<uint>(n, 5)));
         const auto in8 = b.upload(view(noise<uint>(n, 6)));
+        const auto in9 = b.upload(view(noise<uint>(n, 7)));
         auto s0 = b.upload(view(ints(0)));
         auto s1 = b.upload(view(std::vector<glm::vec2>(n)));
         auto s2 = b.upload(view(std::vector<glm::vec4>(n)));
@@ -68,7 +69,7 @@ namespace {
         auto s7 = b.upload(view(left));
         for (uint most : max_passes)
             steps.push_back(b.template run_until_done<test_kernels::eight>(l, {.add = 5u},
-                reads(in0, in1, in2, in3, in4, in5, in6, in7, in8), writes(s0, s1, s2, s3, s4, s5, s6, s7), most));
+                reads(in0, in1, in2, in3, in4, in5, in6, in7, in8, in9), writes(s0, s1, s2, s3, s4, s5, s6, s7), most));
         return std::tuple(b.download(s0), b.download(s1), b.download(s2), b.download(s3), b.download(s4),
             b.download(s5), b.download(s6), b.download(s7));
     }

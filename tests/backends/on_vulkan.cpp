@@ -17,6 +17,7 @@
 #include "../trace/mesh_ray_tests.hpp"
 #include "../trace/mesh_scene_tests.hpp"
 #include "../trace/ray_tests.hpp"
+#include "../trace/texture_tests.hpp"
 
 #include <photongrid/trace/bounce_photon.kernel.hpp>
 
@@ -28,6 +29,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, estimators, ::testing::Types<vulkan_tag>,
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, pictures, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, mesh_scenes, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, light_kinds, ::testing::Types<vulkan_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, textures, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases_of_pictures, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, progressive, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases, ::testing::Types<vulkan_tag>, tag_names);
@@ -77,7 +79,7 @@ TEST(specialisation, a_scene_without_glass_and_lamps_has_smaller_kernels)
         fresh.run<kernels::bounce_photon>({32, 32u, device.layout.features},
             {.paths = 32, .first_path = 0, .last_frame = 1, .seed = 1},
             reads(device.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, none.places,
-                none.normals, none.shadings),
+                none.normals, none.shadings, none.colors),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
         fresh.finish();
         return fresh.costs().at("bounce_photon").instructions;

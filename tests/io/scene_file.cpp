@@ -5,3 +5,4 @@
 #include "scene_reading_tests.hpp"
 #include "scene_refusal_tests.hpp"
 #include "scene_schema_tests.hpp"
+#include "texture_file_tests.hpp"

@@ -135,6 +135,14 @@ namespace {
         EXPECT_EQ(angles, 2);
     }
 
+    /// The first mesh's surface, to be changed.
+    mesh& spoil_mesh(scene& s)
+    {
+        auto copy = std::make_shared<mesh>(*s.meshes[0].surface);
+        s.meshes[0].surface = copy;
+        return *copy;
+    }
+
     void spoil_map(scene& s, environment_map m)
     {
         s.environment_lights[0].map = std::make_shared<const environment_map>(std::move(m));
@@ -166,6 +174,47 @@ namespace {
                     x.environment_lights.clear();
                 },
                 "lights:"},
+            {"texture on a sphere", [](scene& x) { x.materials[0].texture.map = std::make_shared<const texture>(); },
+                "spheres[1].material"},
+            {"texture without coordinates",
+                [](scene& x) {
+                    x.materials.push_back(x.materials[0]);
+                    x.materials.back().texture.map = std::make_shared<const texture>();
+                    x.meshes[1].material = static_cast<std::uint32_t>(x.materials.size() - 1);
+                },
+                "meshes[1].material"},
+            {"texture with too few texels",
+                [](scene& x) {
+                    x.materials[0].texture.map = std::make_shared<const texture>(texture{2, 1});
+                },
+                "materials[0].texture"},
+            {"texture of too many texels",
+                [](scene& x) {
+                    texture t{65537, 1};
+                    t.texels.resize(65537);
+                    x.materials[0].texture.map = std::make_shared<const texture>(std::move(t));
+                },
+                "materials[0].texture"},
+            {"texture moved nowhere",
+                [](scene& x) {
+                    x.materials[0].texture.map = std::make_shared<const texture>();
+                    x.materials[0].texture.offset.y = nan;
+                },
+                "materials[0].texture"},
+            {"mesh with too few colors", [](scene& x) { spoil_mesh(x).colors = {glm::vec3(1)}; },
+                "meshes[0].mesh: colors"},
+            {"mesh with a color above 1",
+                [](scene& x) {
+                    auto& m = spoil_mesh(x);
+                    m.colors.assign(m.positions.size(), glm::vec3(1, 1.5f, 1));
+                },
+                "meshes[0].mesh: colors[0]"},
+            {"mesh with a texture coordinate nowhere",
+                [](scene& x) {
+                    auto& m = spoil_mesh(x);
+                    m.texture_coordinates.assign(m.positions.size(), {0, static_cast<float>(nan)});
+                },
+                "meshes[0].mesh: texture_coordinates[0]"},
             {"two skies", [](scene& x) { x.environment_lights.push_back(x.environment_lights[0]); },
                 "environment_lights:"},
             {"spotlight without an axis", [](scene& x) { x.spot_lights[0].direction = dvec3(0); },

@@ -171,7 +171,7 @@ namespace {
                 .seed = 1,
                 .first_pixel = 0,
                 .first = 0},
-            reads(device.records, none.places, none.normals, none.shadings, device.environment),
+            reads(device.records, none.places, none.normals, none.shadings, device.environment, none.colors),
             writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
         return {b.download(hits.points), b.download(hits.directions), b.download(hits.throughputs)};
     }

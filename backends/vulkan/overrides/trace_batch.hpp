@@ -34,7 +34,7 @@ requires std::same_as<B, vulkan_backend> uint trace_batch(B& device, const devic
             = device.template run_frames<kernels::bounce_photon>({paths, frame * paths, layout.features}, paths,
                 {.paths = paths, .first_path = first, .last_frame = settings.map.photon_depth, .seed = settings.seed},
                 reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, none.places,
-                    none.normals, none.shadings),
+                    none.normals, none.shadings, none.colors),
                 writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions), passes);
         frame += p.passes;
         finished = p.finished;

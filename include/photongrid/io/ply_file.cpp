@@ -1,4 +1,5 @@
 #include <photongrid/io/ply_file.hpp>
+#include <photongrid/io/tone_map.hpp>
 
 #include <algorithm>
 #include <array>
@@ -39,8 +40,17 @@ namespace {
     }
 
     /// What a property is for.
-    enum class role { x, y, z, nx, ny, nz, corners, none };
-    constexpr std::array coordinate_names{"x", "y", "z", "nx", "ny", "nz"}; // in the order of their roles
+    enum class role { x, y, z, nx, ny, nz, u, v, red, green, blue, corners, none };
+    /// The names of numbers of a vertex.
+    struct role_name {
+        std::string_view name;
+        role use;
+    };
+    constexpr std::array role_names{role_name{"x", role::x}, role_name{"y", role::y}, role_name{"z", role::z},
+        role_name{"nx", role::nx}, role_name{"ny", role::ny}, role_name{"nz", role::nz}, role_name{"u", role::u},
+        role_name{"v", role::v}, role_name{"s", role::u}, role_name{"t", role::v}, role_name{"texture_u", role::u},
+        role_name{"texture_v", role::v}, role_name{"red", role::red}, role_name{"green", role::green},
+        role_name{"blue", role::blue}};
 
     struct property {
         role use = role::none;
@@ -199,9 +209,9 @@ namespace {
                 if (e.name == "face" && (name == "vertex_indices" || name == "vertex_index"))
                     p.use = role::corners;
             } else if (e.name == "vertex") {
-                const auto known = std::find(coordinate_names.begin(), coordinate_names.end(), name);
-                if (known != coordinate_names.end())
-                    p.use = static_cast<role>(known - coordinate_names.begin());
+                for (const auto& r : role_names)
+                    if (r.name == name)
+                        p.use = r.use;
             }
             e.properties.push_back(p);
         }
@@ -218,24 +228,53 @@ namespace {
                     + ", which need more bytes than the file has");
             if (least == 0)
                 return;
-            const bool is_vertex = e.name == "vertex", is_smooth = has(role::nx) && has(role::ny) && has(role::nz);
+            const bool is_vertex = e.name == "vertex", is_smooth = has(role::nx) && has(role::ny) && has(role::nz),
+                       is_mapped = has(role::u) && has(role::v),
+                       is_colored = has(role::red) && has(role::green) && has(role::blue);
             if (is_vertex)
                 made_.positions.reserve(made_.positions.size() + e.count);
             for (std::uint64_t i = 0; i < e.count; ++i) {
-                std::array<float, 6> v{};
+                std::array<float, static_cast<std::size_t>(role::corners)> v{};
                 for (const auto& p : e.properties) {
                     if (p.count)
                         read_list(p);
                     else if (p.use == role::none)
                         (void)next(p.type);
                     else
-                        v[static_cast<std::size_t>(p.use)] = coordinate(p.type);
+                        v[static_cast<std::size_t>(p.use)] = number_for(p);
                 }
                 if (is_vertex)
                     made_.positions.emplace_back(v[0], v[1], v[2]);
                 if (is_vertex && is_smooth)
                     made_.normals.emplace_back(v[3], v[4], v[5]);
+                if (is_vertex && is_mapped)
+                    made_.texture_coordinates.emplace_back(v[6], v[7]);
+                if (is_vertex && is_colored)
+                    made_.colors.emplace_back(v[8], v[9], v[10]);
             }
+        }
+        float number_for(const property& p)
+        {
+            switch (p.use) {
+            case role::u:
+            case role::v: return limited(p.type, -1e6, 1e6, "a texture coordinate that is not from -10^6 to 10^6");
+            case role::red:
+            case role::green:
+            case role::blue:
+                if (p.type == scalar::u8) {
+                    const auto code = limited(p.type, 0, 255, "a colour that is not from 0 to 255");
+                    return linear_value(static_cast<unsigned char>(code));
+                }
+                return limited(p.type, 0, 1, "a colour that is neither a byte nor a number from 0 to 1");
+            default: return coordinate(p.type);
+            }
+        }
+        float limited(scalar type, double least, double most, const char* otherwise)
+        {
+            const double d = next(type);
+            if (!(d >= least && d <= most))
+                fail(otherwise);
+            return static_cast<float>(d);
         }
         float coordinate(scalar type)
         {

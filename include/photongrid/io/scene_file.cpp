@@ -1,6 +1,6 @@
 // The reader of scene files. The file is long because each part of a scene has a function here, and they share the
 // readers of values and their messages.
-#include <photongrid/io/environment_reader.hpp>
+#include <photongrid/io/picture_reader.hpp>
 #include <photongrid/io/scene_file.hpp>
 
 #include <algorithm>
@@ -29,9 +29,9 @@ namespace {
             return scene_values::min_length;
     }
 
-    class reader : environment_reader {
+    class reader : picture_reader {
     public:
-        using environment_reader::environment_reader;
+        using picture_reader::picture_reader;
 
         scene read(const std::string& default_name)
         {
@@ -124,7 +124,7 @@ namespace {
                 }
         }
 
-        material read_material(const json_value& v) const
+        material read_material(const json_value& v)
         {
             const auto& type = type_of(v, "material", material_names());
             open(v, type);
@@ -133,6 +133,8 @@ namespace {
             material made{.name = v.key, .kind = row.kind};
             for (const auto& f : row.fields)
                 std::visit([&](auto member) { read_field(v.find(f.key), f, made.*member); }, f.member);
+            if (const auto* texture = v.find("texture"))
+                made.texture = texture_in(*texture);
             checked(v, made);
             return made;
         }
@@ -203,9 +205,20 @@ namespace {
                     kind.fields, [&](const auto& f) { read_field(v, x, f, is_triangle ? 3 : max_vertices); });
                 x.material = material_of(v);
                 checked(v, x);
+                check_has_coordinates(v, x);
                 shape_places_.push_back({kind.list, list.size()});
                 list.push_back(std::move(x));
             });
+        }
+
+        template <class Shape>
+        void check_has_coordinates(const json_value& v, const Shape& shape) const
+        {
+            try {
+                detail::check_texture(shape, scene_.materials);
+            } catch (const std::invalid_argument& e) {
+                fail(at(v, "material").place, e.what());
+            }
         }
 
         // --- meshes ---
@@ -214,6 +227,7 @@ namespace {
             placed_mesh m = surface_in(v);
             m.material = material_of(v);
             checked(v, m);
+            check_has_coordinates(v, m);
             shape_places_.push_back({"meshes", scene_.meshes.size()});
             scene_.meshes.push_back(std::move(m));
         }

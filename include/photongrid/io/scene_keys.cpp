@@ -13,10 +13,12 @@ namespace {
     constexpr scene_key units_keys[] = {{"length", must}, {"power", must}};
     constexpr scene_key camera_keys[] = {{"position", must}, {"look_at", must}, {"up", may}, {"vertical_fov", must}};
     /// Of meshes, as shapes and as lights.
-    constexpr scene_key surface_keys[] = {{"file", may}, {"positions", may}, {"triangles", may}, {"normals", may},
-        {"scale", may}, {"rotate", may}, {"translate", may}, {"matrix", may}};
+    constexpr scene_key surface_keys[]
+        = {{"file", may}, {"positions", may}, {"triangles", may}, {"normals", may}, {"texture_coordinates", may},
+            {"colors", may}, {"scale", may}, {"rotate", may}, {"translate", may}, {"matrix", may}};
     /// Of environments, but for their fields.
     constexpr scene_key environment_keys[] = {{"file", may}, {"rotate", may}};
+    constexpr scene_key texture_keys[] = {{"file", must}, {"wrap", may}, {"scale", may}, {"offset", may}};
     constexpr scene_key rotate_keys[] = {{"axis", must}, {"degrees", must}};
     constexpr scene_key leaks_keys[] = {{"side", may}, {"min_cosine", may}, {"flattening", may}};
     // The keys of materials, shapes and lights come from the tables in scene/ (material_kinds, shape_kind, light_kind).
@@ -41,6 +43,7 @@ namespace {
                 kinds.push_back({m.name, {{"type", must}}});
                 for (const auto& f : m.fields)
                     kinds.back().keys.push_back({f.key, f.if_absent ? may : must});
+                kinds.back().keys.push_back({"texture", may});
             }
             return kinds;
         }();
@@ -124,7 +127,8 @@ std::span<const object_keys> known_objects()
 {
     static const auto all = [] {
         std::vector<object_keys> objects{{"scene", scene_keys}, {"units", units_keys}, {"camera", camera_keys},
-            {"render", render_keys()}, {"as_paper", as_paper_keys()}, {"leaks", leaks_keys}, {"rotate", rotate_keys}};
+            {"render", render_keys()}, {"as_paper", as_paper_keys()}, {"leaks", leaks_keys}, {"rotate", rotate_keys},
+            {"texture", texture_keys}};
         for (const auto* kinds : {&material_keys(), &shape_keys(), &light_keys()})
             for (const auto& k : *kinds)
                 objects.push_back({k.name, k.keys});

@@ -61,6 +61,10 @@ namespace {
             all["triangles"] = std::move(triangles);
             for (const auto& n : m.surface->normals)
                 all["normals"].push_back({as_written(n.x), as_written(n.y), as_written(n.z)});
+            for (const auto& t : m.surface->texture_coordinates)
+                all["texture_coordinates"].push_back({as_written(t.x), as_written(t.y)});
+            for (const auto& c : m.surface->colors)
+                all["colors"].push_back({as_written(c.x), as_written(c.y), as_written(c.z)});
         }
         if (m.linear != glm::dmat3(1) || m.offset != dvec3(0)) {
             json rows = json::array();
@@ -128,6 +132,22 @@ namespace {
         return names;
     }
 
+    json texture_json(const material& m)
+    {
+        const auto& t = m.texture;
+        if (t.file.empty())
+            throw std::invalid_argument("scene_text: material '" + m.name
+                + "': its texture was not read from a file; write it to one, and set `file` to its name");
+        json all = {{"file", t.file}};
+        if (t.wrap == texture_wrap::clamp)
+            all["wrap"] = "clamp";
+        if (t.scale != glm::dvec2(1))
+            all["scale"] = {t.scale.x, t.scale.y};
+        if (t.offset != glm::dvec2(0))
+            all["offset"] = {t.offset.x, t.offset.y};
+        return all;
+    }
+
     json material_json(const material& m)
     {
         const auto& row = detail::entry_of(m.kind);
@@ -135,6 +155,8 @@ namespace {
         all["type"] = row.name;
         for (const auto& f : row.fields)
             std::visit([&](auto member) { all[f.key] = written(m.*member); }, f.member);
+        if (m.texture.map)
+            all["texture"] = texture_json(m);
         return all;
     }
 } // namespace

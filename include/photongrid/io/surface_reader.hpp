@@ -32,15 +32,25 @@ public:
     {
         placed_mesh m;
         const auto *file = v.find("file"), *positions = v.find("positions"), *triangles = v.find("triangles"),
-                   *normals = v.find("normals");
+                   *normals = v.find("normals"), *coordinates = v.find("texture_coordinates"),
+                   *colors = v.find("colors");
         if (file != nullptr ? positions != nullptr || triangles != nullptr || normals != nullptr
+                    || coordinates != nullptr || colors != nullptr
                             : positions == nullptr || triangles == nullptr)
             fail(v.place, "a mesh has either a \"file\" or \"positions\" and \"triangles\"");
         if (file != nullptr) {
             m.file = file_name(*file);
             m.surface = mesh_in(m.file, *file);
         } else {
-            m.surface = std::make_shared<const mesh>(inline_mesh(*positions, *triangles, normals));
+            auto listed = inline_mesh(*positions, *triangles, normals);
+            if (coordinates != nullptr)
+                read_for_each_position(*coordinates, "texture coordinates", listed, listed.texture_coordinates,
+                    [&](const json_value& c) { return glm::vec2(two(c)); });
+            if (colors != nullptr)
+                read_for_each_position(*colors, "colors", listed, listed.colors, [&](const json_value& c) {
+                    return glm::vec3(rgb_in_range(c, {0, 1, ""}));
+                });
+            m.surface = std::make_shared<const mesh>(std::move(listed));
         }
         read_placement(v, m);
         return m;
@@ -55,6 +65,15 @@ protected:
         return v.text;
     }
     std::string path_of(const std::string& name) const { return (folder_ / name).string(); }
+
+    /// A scale or a place of a texture.
+    glm::dvec2 two(const json_value& v) const
+    {
+        const auto number_in = [&](const json_value& n) { return number(n, -1e6, 1e6, "a number from -10^6 to 10^6"); };
+        if (v.kind != json_kind::array || v.items.size() != 2)
+            wrong(v, "two numbers: [u, v]");
+        return {number_in(v.items[0]), number_in(v.items[1])};
+    }
 
     struct turn {
         dvec3 axis;
@@ -102,13 +121,19 @@ private:
         });
         if (m.triangles.empty())
             wrong(triangles, "at least one triangle");
-        if (normals != nullptr) {
-            read_list(*normals, json_tree::max_values, "normals",
-                [&](const json_value& n) { m.normals.emplace_back(direction(n)); });
-            if (m.normals.size() != m.positions.size())
-                wrong(*normals, "a normal for each of the " + std::to_string(m.positions.size()) + " positions");
-        }
+        if (normals != nullptr)
+            read_for_each_position(
+                *normals, "normals", m, m.normals, [&](const json_value& n) { return glm::vec3(direction(n)); });
         return m;
+    }
+    /// Reads a list that must have an element for each position of a mesh.
+    template <class Element, class Read>
+    void read_for_each_position(
+        const json_value& v, const char* what, const mesh& m, std::vector<Element>& to, Read&& read) const
+    {
+        read_list(v, json_tree::max_values, what, [&](const json_value& e) { to.push_back(read(e)); });
+        if (to.size() != m.positions.size())
+            wrong(v, std::string(what) + " for each of the " + std::to_string(m.positions.size()) + " positions");
     }
 
     /// Positions are in the file's unit of length.

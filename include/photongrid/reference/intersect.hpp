@@ -16,7 +16,7 @@ namespace photongrid::reference {
 /// lights and the triangles of meshes.
 class geometry {
 public:
-    /// The scene must pass check(). It is copied.
+    /// The scene must pass check(). It is copied, but for its materials, which must outlive the geometry.
     explicit geometry(const scene& s) : triangles_(s)
     {
         for_each_shape(s, [&](const auto& list, auto) {
@@ -65,6 +65,7 @@ public:
             h.normal = triangles_.settle(h.shape - first_triangle_, h.position);
             h.shading = triangles_.shading(h.shape - first_triangle_, h.position, h.normal);
             h.material = triangles_.material(h.shape - first_triangle_);
+            h.color = triangles_.color(h.shape - first_triangle_, h.position);
             if (h.shape - first_triangle_ < lights_of_triangles_.size())
                 h.light = lights_of_triangles_[h.shape - first_triangle_];
             return h;

@@ -195,7 +195,7 @@ private:
             const auto bounce = specular_of_light(m, h, r.direction, random);
             if (bounce.adjoint == 0)
                 return 0;
-            power *= m.reflectance * bounce.adjoint;
+            power *= m.reflectance * h.color * bounce.adjoint;
             r = {h.position, bounce.direction, h.shape};
         }
         return 0;

@@ -43,7 +43,7 @@ public:
                 if (++surfaces > settings_.photon_depth)
                     return sum;
                 const facing_normals normals(h, r.direction);
-                throughput *= m.reflectance;
+                throughput *= m.reflectance * h.color;
                 sum += throughput / M_PI * (caustics_.irradiance(h, r.direction, group) + direct(h, normals, random));
                 if (surfaces >= 3) { // Russian roulette
                     const double survival = std::min(1.0, std::max({throughput.x, throughput.y, throughput.z}));
@@ -61,7 +61,7 @@ public:
                 if (surfaces == 0 ? ++specular_before > settings_.depth : ++surfaces > settings_.photon_depth)
                     return sum;
                 const auto bounce = specular(m, h, r.direction, random);
-                throughput *= m.reflectance * bounce.radiance_scale;
+                throughput *= m.reflectance * h.color * bounce.radiance_scale;
                 r = {h.position, bounce.direction, h.shape};
                 through_specular = true;
             }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <photongrid/reference/ray.hpp>
+#include <photongrid/reference/texture.hpp>
 
 #include <algorithm>
 #include <array>
@@ -17,13 +18,14 @@ namespace photongrid::reference {
 /// Triangles and the tree of their boxes.
 class triangle_set {
 public:
-    /// The triangles of all mesh lights and of all meshes of a scene, in their order.
+    /// The triangles of all mesh lights and of all meshes of a scene, in their order. The scene's textures must outlive
+    /// it.
     explicit triangle_set(const scene& s)
     {
         for (const auto& l : s.mesh_lights)
             add(l.surface, nothing, false);
         for (const auto& m : s.meshes)
-            add(m, m.material, true);
+            add(m, m.material, true, &s.materials[m.material].texture);
         order_.resize(triangles_.size());
         std::iota(order_.begin(), order_.end(), 0u);
         if (!order_.empty())
@@ -90,19 +92,33 @@ public:
         if (t.smooth < 0)
             return normal;
         const auto& of = normals_[static_cast<std::size_t>(t.smooth)];
-        const dvec3 from = p - t.corner, area = glm::cross(t.edge_u, t.edge_v);
-        const double area2 = glm::dot(area, area), v = glm::dot(glm::cross(from, t.edge_v), area) / area2,
-                     w = glm::dot(glm::cross(t.edge_u, from), area) / area2;
-        const dvec3 sum = (1 - v - w) * of[0] + v * of[1] + w * of[2];
+        const dvec3 weights = weights_at(t, p), sum = weights[0] * of[0] + weights[1] * of[1] + weights[2] * of[2];
         const double length = glm::length(sum);
         if (!(length > 0) || !std::isfinite(length))
             return normal;
         return glm::dot(sum, normal) < 0 ? -sum / length : sum / length;
     }
 
-private:
-    void add(const placed_mesh& m, std::uint32_t material, bool with_normals)
+    /// The colour at a point of a triangle: that of its vertices times that of its texture.
+    dvec3 color(std::uint32_t triangle, const dvec3& p) const
     {
+        const auto& t = triangles_[triangle];
+        if (t.colored < 0)
+            return dvec3(1);
+        const auto& of = colored_[static_cast<std::size_t>(t.colored)];
+        const dvec3 w = weights_at(t, p);
+        const auto mixed
+            = [&](const auto& corners) { return w[0] * corners[0] + w[1] * corners[1] + w[2] * corners[2]; };
+        const dvec3 color = mixed(of.colors);
+        return of.texture->map ? color * color_at(*of.texture, mixed(of.coordinates)) : color;
+    }
+
+private:
+    void add(const placed_mesh& m, std::uint32_t material, bool with_normals, const texture_use* texture = nullptr)
+    {
+        const auto& coordinates = m.surface->texture_coordinates;
+        const auto& colors = m.surface->colors;
+        const bool colored = texture != nullptr && (texture->map || !colors.empty());
         for (std::size_t t = 0; t < m.surface->triangles.size(); ++t) {
             const auto c = corners_of(m, t);
             const dvec3 n = glm::cross(c[1] - c[0], c[2] - c[0]);
@@ -118,13 +134,42 @@ private:
                 triangles_.back().smooth = static_cast<std::int64_t>(normals_.size());
                 normals_.push_back(of);
             }
+            if (colored) {
+                triangles_.back().colored = static_cast<std::int64_t>(colored_.size());
+                auto& of = colored_.emplace_back();
+                of.texture = texture;
+                for (int c = 0; c < 3; ++c) {
+                    const int corner = c > 0 && glm::determinant(m.linear) < 0 ? 3 - c : c; // as corners_of does
+                    const auto v = m.surface->triangles[t][corner];
+                    const auto at = static_cast<std::size_t>(c);
+                    of.coordinates[at] = coordinates.empty() ? glm::dvec2(0) : glm::dvec2(coordinates[v]);
+                    of.colors[at] = colors.empty() ? dvec3(1) : dvec3(colors[v]);
+                }
+            }
         }
     }
 
     struct face {
         dvec3 corner, edge_u, edge_v, normal;
-        std::int64_t smooth = -1; ///< index in normals_
+        std::int64_t smooth = -1;  ///< index in normals_
+        std::int64_t colored = -1; ///< index in colored_
     };
+    /// Of a triangle's corners.
+    struct corner_colors {
+        const texture_use* texture = nullptr;
+        std::array<glm::dvec2, 3> coordinates{};
+        std::array<dvec3, 3> colors{};
+    };
+
+    /// The weights of a triangle's corners at a point, whose sum is 1.
+    static dvec3 weights_at(const face& t, const dvec3& p)
+    {
+        const dvec3 from = p - t.corner, area = glm::cross(t.edge_u, t.edge_v);
+        const double area2 = glm::dot(area, area), v = glm::dot(glm::cross(from, t.edge_v), area) / area2,
+                     w = glm::dot(glm::cross(t.edge_u, from), area) / area2;
+        return {1 - v - w, v, w};
+    }
+
     struct node {
         dvec3 low{infinity}, high{-infinity};
         std::uint32_t right = 0;           ///< its second child; the first one follows it; 0: a leaf
@@ -193,6 +238,7 @@ private:
 
     std::vector<face> triangles_;
     std::vector<std::array<dvec3, 3>> normals_; ///< of the corners of triangles that have any
+    std::vector<corner_colors> colored_;
     std::vector<std::uint32_t> materials_;
     std::vector<std::uint32_t> order_; ///< of the triangles in the leaves
     std::vector<node> nodes_;          ///< the root first

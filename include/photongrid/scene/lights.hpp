@@ -147,11 +147,9 @@ struct light_kind<mesh_light> {
     static void write_record(record_writer& w, const mesh_light& l, std::size_t first)
     {
         const std::size_t count = l.surface.surface->triangles.size();
-        const auto halves
-            = [](std::size_t n) { return glm::dvec2(static_cast<double>(n >> 16), static_cast<double>(n & 0xFFFFu)); };
         w.put(dvec3(0), 1 / (std::numbers::pi * area_of(l.surface)));
-        w.put(dvec3(halves(first), 0), 0);
-        w.put(dvec3(halves(count), 0), 0);
+        w.put(dvec3(halves_of(first), 0), 0);
+        w.put(dvec3(halves_of(count), 0), 0);
         w.put(dvec3(0), 0);
         w.put(l.power, 0);
     }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <photongrid/scene/check.hpp>
+#include <photongrid/scene/texture.hpp>
 
 #include <array>
 #include <cstdint>
@@ -24,6 +25,7 @@ struct material {
     material_kind kind = material_kind::lambertian; ///< how it scatters light
     dvec3 reflectance{0.5};                         ///< rgb, 0 to 1; of glass, the transmittance per crossing
     double index_of_refraction = 1.5;               ///< of glass, 1 to 10; outside is air, 1
+    texture_use texture{};                          ///< factor on the reflectance; on meshes with texture coordinates
 
     bool operator==(const material&) const = default;
 };
@@ -104,7 +106,7 @@ inline bool is_diffuse(const material& m) { return detail::entry_of(m.kind).surf
 inline bool refracts(const material& m) { return detail::entry_of(m.kind).surface == surface_kind::refracting; }
 
 /// \throws std::invalid_argument for a member that the kind has and that is out of its range: a reflectance outside 0
-/// to 1, or glass with an index of refraction outside 1 to 10.
+/// to 1, or glass with an index of refraction outside 1 to 10; or a texture that check() rejects.
 inline void check(const material& m)
 {
     for (const auto& f : detail::entry_of(m.kind).fields)
@@ -118,6 +120,7 @@ inline void check(const material& m)
                     f.range.check(f.name, v);
             },
             f.member);
+    check(m.texture);
 }
 
 } // namespace photongrid

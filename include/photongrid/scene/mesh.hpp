@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <stdexcept>
 #include <string>
@@ -20,6 +21,9 @@ struct mesh {
     std::vector<glm::vec3> positions;  ///< of the vertices, m
     std::vector<glm::uvec3> triangles; ///< the indices of each one's corners
     std::vector<glm::vec3> normals{};  ///< for shading, of the vertices, of any length; empty: triangles look flat
+    std::vector<glm::vec2>
+        texture_coordinates{};       ///< of the vertices; (0, 0) is a texture's lower left corner; or empty
+    std::vector<glm::vec3> colors{}; ///< of the vertices, linear rgb, 0 to 1: factors on the reflectance; or empty
 
     bool operator==(const mesh&) const = default;
 };
@@ -32,7 +36,8 @@ inline std::array<glm::vec3, 3> corners_of(const mesh& m, std::size_t triangle)
 }
 
 /// \throws std::invalid_argument for an index of a vertex that does not exist, a coordinate that is not finite or above
-///         10^18 m, or normals that are not finite or not as many as positions.
+///         10^18 m, normals that are not finite, texture coordinates above 10^6, colors outside of 0 to 1, or not as
+///         many of these as positions.
 inline void check(const mesh& m)
 {
     constexpr float most = 1e18f; // m; squares of distances must be finite
@@ -42,9 +47,22 @@ inline void check(const mesh& m)
                 throw std::invalid_argument("mesh: positions[" + std::to_string(v) + "]: coordinate "
                     + std::to_string(axis) + " is " + std::to_string(m.positions[v][axis])
                     + "; expected a number between -10^18 and 10^18");
-    if (!m.normals.empty() && m.normals.size() != m.positions.size())
-        throw std::invalid_argument("mesh: normals: there are " + std::to_string(m.normals.size()) + " of them and "
-            + std::to_string(m.positions.size()) + " positions; expected one for each, or none");
+    const auto require_as_many = [&](const char* name, std::size_t size) {
+        if (size != 0 && size != m.positions.size())
+            throw std::invalid_argument(std::string("mesh: ") + name + ": there are " + std::to_string(size)
+                + " of them and " + std::to_string(m.positions.size()) + " positions; expected one for each, or none");
+    };
+    require_as_many("normals", m.normals.size());
+    require_as_many("texture_coordinates", m.texture_coordinates.size());
+    require_as_many("colors", m.colors.size());
+    for (std::size_t v = 0; v < m.texture_coordinates.size(); ++v)
+        if (const auto& at = m.texture_coordinates[v]; !(std::abs(at.x) <= 1e6f && std::abs(at.y) <= 1e6f))
+            throw std::invalid_argument(
+                "mesh: texture_coordinates[" + std::to_string(v) + "]: must be from -10^6 to 10^6");
+    for (std::size_t v = 0; v < m.colors.size(); ++v)
+        for (int c = 0; c < 3; ++c)
+            if (!(m.colors[v][c] >= 0 && m.colors[v][c] <= 1))
+                throw std::invalid_argument("mesh: colors[" + std::to_string(v) + "]: must be from 0 to 1");
     for (std::size_t v = 0; v < m.normals.size(); ++v)
         if (!std::isfinite(m.normals[v].x) || !std::isfinite(m.normals[v].y) || !std::isfinite(m.normals[v].z))
             throw std::invalid_argument("mesh: normals[" + std::to_string(v) + "]: is not finite");

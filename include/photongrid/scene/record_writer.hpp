@@ -10,6 +10,9 @@
 
 namespace photongrid {
 
+/// A number in two parts, the higher and the lower 16 bits, which single precision can hold.
+inline glm::dvec2 halves_of(std::size_t n) { return {static_cast<double>(n >> 16), static_cast<double>(n & 0xFFFFu)}; }
+
 /// Writes the records of shapes and lights. The kernel files that read them describe their layouts.
 class record_writer {
 public:

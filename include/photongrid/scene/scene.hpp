@@ -258,14 +258,28 @@ namespace detail {
         return has;
     }
 
+    /// Textures need coordinates, which only meshes have.
+    template <class Part>
+    void check_texture(const Part& part, const std::vector<material>& materials)
+    {
+        if constexpr (requires { part.surface->texture_coordinates; })
+            if (!part.surface->texture_coordinates.empty())
+                return;
+        require(!materials[part.material].texture.map,
+            "material: has a texture, which needs a mesh with texture coordinates");
+    }
+
     template <class Parts>
-    void check_all(const char* list, const Parts& parts, std::size_t materials)
+    void check_all(const char* list, const Parts& parts, const std::vector<material>& materials)
     {
         for (std::size_t i = 0; i < parts.size(); ++i) {
             try {
                 check(parts[i]);
-                if constexpr (requires { parts[i].material; })
-                    require(parts[i].material < materials, "material: is not an index into the scene's materials");
+                if constexpr (requires { parts[i].material; }) {
+                    require(
+                        parts[i].material < materials.size(), "material: is not an index into the scene's materials");
+                    check_texture(parts[i], materials);
+                }
             } catch (const std::invalid_argument& e) {
                 throw std::invalid_argument(std::string(list) + "[" + std::to_string(i) + "]." + e.what());
             }
@@ -279,10 +293,10 @@ namespace detail {
 ///         scene files).
 inline void check(const scene& s)
 {
-    detail::check_all("materials", s.materials, s.materials.size());
-    const auto all = [&](const auto& list, auto kind) { detail::check_all(kind.list, list, s.materials.size()); };
+    detail::check_all("materials", s.materials, s.materials);
+    const auto all = [&](const auto& list, auto kind) { detail::check_all(kind.list, list, s.materials); };
     for_each_shape(s, all);
-    detail::check_all("meshes", s.meshes, s.materials.size());
+    detail::check_all("meshes", s.meshes, s.materials);
     for_each_light(s, all);
     detail::require(count_lights(s) > 0, "lights: the scene has none; add at least one");
     detail::require(s.environment_lights.size() <= 1, "environment_lights: the scene has several; keep one");

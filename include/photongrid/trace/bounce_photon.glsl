@@ -27,10 +27,11 @@ INPUT(5, vec4, next_directions)
 INPUT(6, vec4, mesh_places) // these three: see mesh_surface.glsl
 INPUT(7, vec4, mesh_normals)
 INPUT(8, vec4, mesh_shadings)
+INPUT(9, vec4, mesh_colors) // see mesh_color.glsl
 OUTPUT(0, vec4, position)       // xyz, m; w: event
 // w of power, next_origin and next_direction: x, y and z of the normal.
 OUTPUT(1, vec4, power)          // rgb of the incoming photon, W, not yet divided by the number of paths
-OUTPUT(2, vec4, direction)      // xyz: direction of the incoming photon; w: material
+OUTPUT(2, vec4, direction)      // xyz: direction of the incoming photon; w: material; with TEXTURES a color_code
 OUTPUT(3, vec4, next_origin)
 OUTPUT(4, vec4, next_direction)
 
@@ -39,6 +40,7 @@ OUTPUT(4, vec4, next_direction)
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/optics.glsl>
 #include <photongrid/trace/shading_normals.glsl>
+#include <photongrid/trace/color_code.glsl>
 
 void kernel(uint i)
 {
@@ -64,7 +66,11 @@ void kernel(uint i)
     // the absorbed part.
     vec4 arrived = powers(before);
     if (frame > 1u) {
-        vec3 colour = material_of(uint(directions(before).w)).reflectance;
+        vec3 colour;
+        if (TEXTURES)
+            colour = color_of_code(directions(before).w);
+        else
+            colour = material_of(uint(directions(before).w)).reflectance;
         float survival = largest3(colour);
         precise vec4 tinted = vec4(arrived.x * (colour.x / survival), arrived.y * (colour.y / survival),
             arrived.z * (colour.z / survival), 0.0f);
@@ -80,8 +86,9 @@ void kernel(uint i)
         return;
     }
     Hit hit = intersect_closest(o, d);
-    if (MESHES)
-        hit = closer_hit(hit, i - frame * args.paths);
+    bool on_mesh = MESHES && mesh_is_closer(hit, i - frame * args.paths);
+    if (on_mesh)
+        hit = mesh_hit(i - frame * args.paths);
     if (hit.t < 0.0f) {
         position.w = event_code(NO_SURFACE, ESCAPED, NOTHING_BEFORE);
         return;
@@ -96,6 +103,13 @@ void kernel(uint i)
 
     Material material = material_of(hit.material);
     direction.w = float(hit.material);
+    if (TEXTURES) {
+        if (on_mesh) {
+            precise vec3 colored = material.reflectance * vec3(mesh_colors(i - frame * args.paths));
+            material.reflectance = colored;
+        }
+        direction.w = largest3(material.reflectance) > 0.0f ? color_code(material.reflectance) : 0.0f;
+    }
     vec4 r = random4(uvec4(id, frame, 0u, args.seed));
     uint surface = material.kind == LAMBERTIAN_SURFACE ? DIFFUSE_SURFACE : SPECULAR_SURFACE;
     FacingNormals sides = facing_normals(hit, d);

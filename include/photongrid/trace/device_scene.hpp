@@ -10,6 +10,7 @@
 #include <photongrid/trace/scene_layout.kernel.hpp>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -34,6 +35,7 @@ enum scene_feature : uint {
     has_spot_lights = 1u << 13,
     has_directional_lights = 1u << 14,
     has_environment = 1u << 15,
+    has_textures = 1u << 16, ///< or colours of vertices
 };
 
 static_assert(light_kind<point_light>::form == kernels::POINT_LIGHT
@@ -188,6 +190,7 @@ namespace detail {
                     shape_kind<placed_mesh>::add_bounds(diffuse, m);
                 out_.features |= has_meshes | entry_of(of.kind).switches;
                 out_.features |= m.surface->normals.empty() ? 0u : has_smooth_meshes;
+                out_.features |= m.surface->colors.empty() && !of.texture.map ? 0u : has_textures;
             }
             require(!diffuse.empty(), no_matte_shape);
             for_each_light(s_, [&](const auto& list, auto kind) {
@@ -260,7 +263,8 @@ namespace detail {
         /// Appends the triangles of mesh lights and of all meshes.
         void write_meshes()
         {
-            mesh_writer w(out_.meshes, out_.center, (out_.features & has_smooth_meshes) != 0);
+            mesh_writer w(out_.meshes, out_.center, (out_.features & has_smooth_meshes) != 0,
+                (out_.features & has_textures) != 0);
             uint light
                 = static_cast<uint>(s_.rectangle_lights.size() + s_.point_lights.size() + s_.sphere_lights.size());
             for (const auto& l : s_.mesh_lights) {
@@ -277,9 +281,31 @@ namespace detail {
         void write_materials(record_writer& w)
         {
             enter(kernels::MATERIAL_TABLE, w.next(), s_.materials.size(), kernels::MATERIAL_RECORDS);
+            std::size_t textures = 0;
             for (const auto& m : s_.materials) {
                 w.put(m.reflectance, static_cast<uint>(entry_of(m.kind).surface));
-                w.put(dvec3(m.index_of_refraction, 0, 0), 0);
+                w.put(dvec3(m.index_of_refraction, static_cast<double>(m.texture.map ? ++textures : 0), 0), 0);
+            }
+            write_textures(w, textures);
+        }
+
+        /// Materials may share the texels of a texture.
+        void write_textures(record_writer& w, std::size_t textures)
+        {
+            enter(kernels::TEXTURE_TABLE, w.next(), textures, 3);
+            std::map<const texture*, std::size_t> firsts;
+            auto& texels = out_.meshes.texels;
+            for (const auto& m : s_.materials) {
+                if (!m.texture.map)
+                    continue;
+                const auto [found, is_new] = firsts.emplace(m.texture.map.get(), texels.size());
+                if (is_new)
+                    for (const auto& t : m.texture.map->texels)
+                        texels.emplace_back(uint{t.x} | uint{t.y} << 16, uint{t.z});
+                require(texels.size() <= max_texels, "materials: their textures have more than 2^28 texels together");
+                w.put(dvec3(halves_of(found->second), m.texture.map->width), m.texture.map->height);
+                w.put(dvec3(m.texture.scale, m.texture.offset.x), m.texture.offset.y);
+                w.put(dvec3(m.texture.wrap == texture_wrap::repeat ? 1 : 0, 0, 0), 0);
             }
         }
 
@@ -346,6 +372,8 @@ struct device_scene {
     buffer_of<B, glm::vec4> vertices;
     buffer_of<B, glm::vec4> normals;
     buffer_of<B, uint> shares;
+    buffer_of<B, glm::vec4> attributes;
+    buffer_of<B, glm::uvec2> texels;
     /// @}
     /// \name Of the environment, as trace/environment.glsl describes it; an element each if there is none
     /// @{
@@ -354,6 +382,7 @@ struct device_scene {
     /// @}
 
     bool has_meshes() const { return (layout.features & photongrid::has_meshes) != 0; }
+    bool has_textures() const { return (layout.features & photongrid::has_textures) != 0; }
 };
 
 namespace detail {
@@ -377,6 +406,8 @@ namespace detail {
         to.vertices = upload_some(device, vertices);
         to.normals = upload_some(device, m.normals);
         to.shares = upload_some(device, m.shares);
+        to.attributes = upload_some(device, m.attributes);
+        to.texels = upload_some(device, m.texels);
     }
 
     template <backend B>

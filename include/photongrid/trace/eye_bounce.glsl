@@ -25,6 +25,7 @@ INPUT(1, vec4, mesh_places) // these three: see mesh_surface.glsl
 INPUT(2, vec4, mesh_normals)
 INPUT(3, vec4, mesh_shadings)
 INPUT(4, vec4, environment) // see environment.glsl
+INPUT(5, vec4, mesh_colors) // see mesh_color.glsl
 STATE(0, vec4, point)      // xyz: origin, at the end the point hit, m; w: 0 in flight, 1 on a diffuse surface, else -1
 STATE(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
 STATE(2, vec4, throughput) // rgb: factor between radiance here and at the eye; w: splits so far
@@ -95,8 +96,9 @@ void kernel(uint i)
 {
     vec3 d = vec3(direction);
     Hit hit = intersect_closest(vec3(point), d);
-    if (MESHES)
-        hit = closer_hit(hit, i - args.first);
+    bool on_mesh = MESHES && mesh_is_closer(hit, i - args.first);
+    if (on_mesh)
+        hit = mesh_hit(i - args.first);
     uint hits = uint(direction.w);
     uint splits = uint(throughput.w);
     // A ray that has split fewer than `splits` times is the same in several passes. Count it in one of them, the one
@@ -117,6 +119,10 @@ void kernel(uint i)
         return;
     }
     Material material = material_of(hit.material);
+    if (TEXTURES && on_mesh) {
+        precise vec3 colored = vec3(throughput) * vec3(mesh_colors(i - args.first));
+        throughput = vec4(colored.x, colored.y, colored.z, throughput.w);
+    }
     FacingNormals sides = facing_normals(hit, d);
     if (material.kind == LAMBERTIAN_SURFACE) {
         vec3 p = hit.position;

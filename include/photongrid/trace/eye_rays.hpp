@@ -109,7 +109,8 @@ void trace_eye_rays(B& device, const device_scene<B>& s, const camera& view, con
                           .seed = settings.seed,
                           .first_pixel = hits.first_pixel,
                           .first = pixels.first},
-                      reads(s.records, on_meshes.places, on_meshes.normals, on_meshes.shadings, s.environment),
+                      reads(s.records, on_meshes.places, on_meshes.normals, on_meshes.shadings, s.environment,
+                          on_meshes.colors),
                       writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches),
                       s.has_meshes() ? 1u : all_passes)
                   .finished;

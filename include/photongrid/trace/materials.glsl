@@ -6,6 +6,12 @@ struct Material {
     float index_of_refraction; // glass only
 };
 
+// 1 + the number of the material's texture, or 0.
+uint texture_of(uint number)
+{
+    return uint(scene(FIRST_MATERIAL + MATERIAL_RECORDS * number + 1u).y);
+}
+
 Material material_of(uint number)
 {
     uint at = FIRST_MATERIAL + MATERIAL_RECORDS * number;

@@ -19,15 +19,19 @@ struct mesh_layout {
     std::vector<glm::vec4> planes;  ///< of each triangle: unit normal; offset, m
     std::vector<glm::vec4> normals; ///< of each vertex; empty if no mesh has any
     std::vector<uint> shares;       ///< of each triangle of mesh lights, which come first: see trace/mesh_light.glsl
+    /// Of each vertex two: texture coordinates and colour; empty if no mesh has any (trace/mesh_color.glsl).
+    std::vector<glm::vec4> attributes;
+    std::vector<glm::uvec2> texels; ///< of all textures
 };
 
 namespace detail {
     /// Appends meshes to a layout.
     class mesh_writer {
     public:
-        /// `center` is subtracted from positions; `any_smooth`: some mesh of the scene has normals.
-        mesh_writer(mesh_layout& out, const dvec3& center, bool any_smooth)
-            : out_(out), center_(center), any_smooth_(any_smooth)
+        /// `center` is subtracted from positions; `any_smooth`, `any_colored`: some mesh of the scene has normals,
+        /// colours or texture coordinates.
+        mesh_writer(mesh_layout& out, const dvec3& center, bool any_smooth, bool any_colored)
+            : out_(out), center_(center), any_smooth_(any_smooth), any_colored_(any_colored)
         {
         }
 
@@ -45,6 +49,12 @@ namespace detail {
                         all.normals.emplace_back(normal_of(m, n), 0.0f);
                 all.normals.resize(all.triangles.positions.size(), glm::vec4(0));
             }
+            if (any_colored_)
+                for (std::size_t v = 0; v < m.surface->positions.size(); ++v) {
+                    const auto& places = m.surface->texture_coordinates;
+                    out_.attributes.emplace_back(places.empty() ? glm::vec2(0) : places[v], 0.0f, 0.0f);
+                    out_.attributes.emplace_back(m.surface->colors.empty() ? glm::vec3(1) : m.surface->colors[v], 0.0f);
+                }
             const bool mirrored = is_mirrored(m); // as corners_of(placed_mesh)
             for (auto t : m.surface->triangles) {
                 if (mirrored)
@@ -88,7 +98,7 @@ namespace detail {
 
         mesh_layout& out_;
         dvec3 center_;
-        bool any_smooth_;
+        bool any_smooth_, any_colored_;
     };
 } // namespace detail
 

@@ -1,9 +1,10 @@
 // The hits of rays on a scene's meshes, between the passes of the kernels that follow paths.
 //
-//     write rays -> search -> mesh_surface -> a kernel that includes trace/mesh_hit.glsl
+//     write rays -> search -> mesh_surface (-> mesh_color) -> a kernel that includes trace/mesh_hit.glsl
 #pragma once
 
 #include <photongrid/trace/device_scene.hpp>
+#include <photongrid/trace/mesh_color.kernel.hpp>
 #include <photongrid/trace/mesh_surface.kernel.hpp>
 #include <photongrid/trace/ray_search.hpp>
 
@@ -16,11 +17,13 @@ namespace photongrid::detail {
 template <backend B>
 struct mesh_hits {
     buffer_of<B, glm::vec4> places, normals, shadings; ///< see trace/mesh_surface.glsl
+    buffer_of<B, glm::vec4> colors;                    ///< see trace/mesh_color.glsl
 
     mesh_hits(B& device, const device_scene<B>& s, std::size_t rays)
         : places(device.template make<glm::vec4>(s.has_meshes() ? rays : 1)),
           normals(device.template make<glm::vec4>(places.size())),
-          shadings(device.template make<glm::vec4>(places.size()))
+          shadings(device.template make<glm::vec4>(places.size())),
+          colors(device.template make<glm::vec4>(s.has_textures() ? rays : 1))
     {
     }
 };
@@ -50,6 +53,10 @@ struct mesh_rays {
         device.template run<kernels::mesh_surface>({origins.size(), 0u, s.layout.features}, {},
             reads(s.records, origins, directions, found, s.faces, s.planes, s.vertices, s.normals),
             writes(hits.places, hits.normals, hits.shadings));
+        if (s.has_textures())
+            device.template run<kernels::mesh_color>(origins.size(), {},
+                reads(s.records, found, hits.places, hits.normals, s.faces, s.vertices, s.attributes, s.texels),
+                writes(hits.colors));
     }
 };
 

@@ -22,14 +22,7 @@ OUTPUT(1, vec4, normal)    // xyz: geometric normal, unit; w: material, or of a 
 OUTPUT(2, vec4, shading)   // xyz: interpolated normal, unit, on the side of the geometric one; without normals that
 
 #include <photongrid/trace/intersect/plane.glsl>
-
-// Twice the area of the triangle of p and an edge, negative where p is on the edge's other side.
-float area_at_edge(vec3 p, vec3 from, vec3 to, vec3 n)
-{
-    precise vec3 edge = to - from;
-    precise vec3 way = p - from;
-    return dot3(cross3(edge, way), n);
-}
+#include <photongrid/trace/triangle_weights.glsl>
 
 // A point of a triangle by the weights of its corners: their sum is not 1.
 struct Weighted {
@@ -46,7 +39,7 @@ Weighted off_edges(vec3 p, uvec4 face, vec3 n)
     vec3 c = vec3(vertices(face.z));
     float off = ray_offset(p, scene(SCENE_SIZES).x);
     Weighted at;
-    at.weights = vec3(area_at_edge(p, b, c, n), area_at_edge(p, c, a, n), area_at_edge(p, a, b, n));
+    at.weights = triangle_weights(p, a, b, c, n);
     at.point = p;
     precise vec3 opposite_a = c - b;
     precise vec3 opposite_b = a - c;

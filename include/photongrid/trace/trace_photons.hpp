@@ -93,7 +93,7 @@ namespace detail {
             device.template run<kernels::bounce_photon>({paths, frame * paths, layout.features},
                 {.paths = paths, .first_path = first, .last_frame = settings.map.photon_depth, .seed = settings.seed},
                 reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, hits.places,
-                    hits.normals, hits.shadings),
+                    hits.normals, hits.shadings, hits.colors),
                 writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
             if (frame % 8 == 0
                 && checked_count<kernels::path_goes_on>(device, {paths, frame * paths}, {}, reads(f.positions)) == 0)

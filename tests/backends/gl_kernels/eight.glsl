@@ -1,4 +1,4 @@
-// Eight states and nine inputs, as many as a kernel may have; element i takes as many passes as `left` says.
+// Eight states and ten inputs, as many as a kernel may have; element i takes as many passes as `left` says.
 struct Params {
     uint add;
 };
@@ -13,6 +13,7 @@ INPUT(5, uvec4, in5)
 INPUT(6, uint, in6)
 INPUT(7, uint, in7)
 INPUT(8, uint, in8)
+INPUT(9, uint, in9)
 STATE(0, float, s0)
 STATE(1, vec2, s1)
 STATE(2, vec4, s2)
@@ -31,7 +32,7 @@ void kernel(uint i)
     s3 += in3(i) + args.add;
     s4 += in4(i);
     s5 += in5(i);
-    s6 += in6(i) + in7(i) + in8(i);
+    s6 += in6(i) + in7(i) + in8(i) + in9(i);
     left -= 1u;
     if (DOUBLED)
         s6 += 1000u;

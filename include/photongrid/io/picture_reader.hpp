@@ -1,0 +1,91 @@
+// Reads the pictures of a scene file: environments and textures.
+#pragma once
+
+#include <photongrid/io/image_file.hpp>
+#include <photongrid/io/surface_reader.hpp>
+
+namespace photongrid {
+
+/// A scene file's values, and those that make a mesh, an environment or a texture.
+class picture_reader : public surface_reader {
+public:
+    using surface_reader::surface_reader;
+
+    /// The map and the rotation of an environment.
+    void read_environment(const json_value& v, environment_light& l) const
+    {
+        if (const auto* file = v.find("file")) {
+            l.file = file_name(*file);
+            l.map = map_in(l.file, *file);
+        }
+        if (const auto* rotate = v.find("rotate")) {
+            const auto turn = turn_in(*rotate);
+            l.axis = turn.axis;
+            l.degrees = turn.degrees;
+        }
+    }
+
+    /// A texture: the name of its file, or an object. A file that several materials name is read once.
+    texture_use texture_in(const json_value& v)
+    {
+        texture_use t;
+        if (v.kind != json_kind::object) {
+            t.file = file_name(v);
+            t.map = texels_in(t.file, v);
+            return t;
+        }
+        open(v, "texture");
+        t.file = file_name(at(v, "file"));
+        t.map = texels_in(t.file, at(v, "file"));
+        if (const auto* wrap = v.find("wrap"))
+            t.wrap = one_of(*wrap, {"repeat", "clamp"}) == "clamp" ? texture_wrap::clamp : texture_wrap::repeat;
+        if (const auto* scale = v.find("scale"))
+            t.scale = two(*scale);
+        if (const auto* offset = v.find("offset"))
+            t.offset = two(*offset);
+        return t;
+    }
+
+private:
+    std::shared_ptr<const texture> texels_in(const std::string& name, const json_value& v)
+    {
+        auto& map = textures_[name];
+        if (!map) {
+            try {
+                const auto picture = read_linear_image(path_of(name));
+                texture made{picture.width, picture.height, {}};
+                made.texels.reserve(picture.pixels.size());
+                for (const auto& p : picture.pixels) {
+                    const glm::vec3 inside = glm::min(glm::max(p, glm::vec3(0)), glm::vec3(1)); // NaN becomes 0
+                    made.texels.emplace_back(glm::vec3(0.5f) + inside * 65535.0f, 65535);
+                }
+                texture_use use;
+                use.map = map = std::make_shared<const texture>(std::move(made));
+                check(use);
+            } catch (const file_error& e) {
+                fail(v.place, e.what());
+            } catch (const std::invalid_argument& e) {
+                fail(v.place, path_of(name) + ": " + e.what());
+            }
+        }
+        return map;
+    }
+
+    std::shared_ptr<const environment_map> map_in(const std::string& name, const json_value& v) const
+    {
+        try {
+            auto picture = read_linear_image(path_of(name));
+            environment_map map{picture.width, picture.height, std::move(picture.pixels)};
+            check(map);
+            return std::make_shared<const environment_map>(std::move(map));
+        } catch (const file_error& e) {
+            fail(v.place, e.what());
+        } catch (const std::invalid_argument& e) {
+            fail(v.place, path_of(name) + ": " + std::string(e.what()).substr(5)); // without "map: "
+        }
+    }
+
+    std::map<std::string, std::shared_ptr<const texture>> textures_; ///< by the names of their files
+};
+
+} // namespace photongrid

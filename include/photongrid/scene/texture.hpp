@@ -1,0 +1,66 @@
+// Pictures on surfaces.
+#pragma once
+
+#include <photongrid/scene/check.hpp>
+
+#include <glm/ext/vector_uint4_sized.hpp>
+#include <glm/vec2.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// A picture that is laid on surfaces. Its first row is at the top, v = 1.
+struct texture {
+    std::uint32_t width = 1, height = 1;
+    std::vector<glm::u16vec4> texels{
+        glm::u16vec4(65535)}; ///< width x height, row by row; linear rgb, 65535 is 1; w: 65535
+
+    bool operator==(const texture&) const = default;
+};
+
+/// The most texels of all textures of a scene.
+inline constexpr std::size_t max_texels = std::size_t{1} << 28;
+
+/// What is beyond the edges of a texture: the same again, or its outermost texels.
+enum class texture_wrap { repeat, clamp };
+
+/// A texture as a material uses it. A point of a surface has the texture's colour at
+/// scale * (texture coordinates) + offset, interpolated between the four nearest texels.
+struct texture_use {
+    std::string file;                         ///< that it was read from; empty: none
+    std::shared_ptr<const texture> map;       ///< null: none; it must not change any more
+    texture_wrap wrap = texture_wrap::repeat; ///< beyond its edges
+    glm::dvec2 scale{1};                      ///< of coordinates
+    glm::dvec2 offset{0};                     ///< added to them then
+
+    bool operator==(const texture_use& o) const
+    {
+        return file == o.file && wrap == o.wrap && scale == o.scale && offset == o.offset
+            && (map == o.map || (map && o.map && *map == *o.map));
+    }
+};
+
+/// \throws std::invalid_argument for a size that is 0, or not that of `texels`, or above the limit; or for a scale or
+///         an offset that is not finite or above 10^6.
+inline void check(const texture_use& t)
+{
+    if (!t.map)
+        return;
+    const std::size_t texels = std::size_t{t.map->width} * t.map->height;
+    detail::require(texels > 0 && t.map->texels.size() == texels, "texture: must have width x height texels");
+    detail::require(texels <= max_texels && t.map->width <= 65536 && t.map->height <= 65536,
+        "texture: is too large; at most 65536 texels a side and 2^28 in all");
+    for (const double v : {t.scale.x, t.scale.y, t.offset.x, t.offset.y})
+        detail::require(std::abs(v) <= 1e6, "texture: scale and offset must be from -10^6 to 10^6");
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,101 @@
+// The colour at a ray's hit on a triangle: that of its vertices times that of its material's texture. It is a factor on
+// the material's reflectance. Only in scenes with textures or colours of vertices.
+//
+// Records of TEXTURE_TABLE: first texel in two parts (high and low 16 bits), width, height; scale and offset of
+// coordinates; x: 1: the texture repeats.
+#include <photongrid/backend/vector.glsl>
+#include <photongrid/trace/ray_state.glsl>
+#include <photongrid/trace/scene_layout.glsl>
+
+struct Params {
+    uint unused;
+};
+PARAMS(Params)
+INPUT(0, vec4, scene)
+INPUT(1, uvec4, hits)       // see ray_state.glsl
+INPUT(2, vec4, places)      // these two: see mesh_surface.glsl
+INPUT(3, vec4, normals)
+INPUT(4, uvec4, faces)      // see mesh_surface.glsl
+INPUT(5, vec4, vertices)    // xyz, m
+INPUT(6, vec4, attributes)  // of each vertex, two: xy: texture coordinates; rgb
+INPUT(7, uvec2, texels)     // linear rgb in 16 bits each: red | green << 16, blue
+OUTPUT(0, vec4, color)      // rgb
+
+#include <photongrid/trace/materials.glsl>
+#include <photongrid/trace/triangle_weights.glsl>
+
+// A texel's place along an edge of `size` texels, for a whole number.
+uint wrapped(float at, float size, bool repeats)
+{
+    precise float turns = floor(at / size);
+    precise float rest = at - turns * size;
+    float inside = repeats ? rest : at;
+    inside = inside > 0.0f ? inside : 0.0f;
+    precise float last = size - 1.0f;
+    return uint(inside < last ? inside : last);
+}
+
+vec3 texel(uint first, uint width, uint column, uint row)
+{
+    uvec2 t = texels(first + row * width + column);
+    precise vec3 rgb = vec3(float(t.x & 0xFFFFu), float(t.x >> 16u), float(t.y & 0xFFFFu)) * 1.52590219e-5f;
+    return rgb;
+}
+
+// The colour of a texture, by its record, at texture coordinates; bilinear.
+vec3 texture_color(uint at, vec4 coordinates)
+{
+    vec4 size = scene(at);
+    vec4 moved = scene(at + 1u);
+    bool repeats = scene(at + 2u).x > 0.0f;
+    uint first = uint(size.x) * 65536u + uint(size.y);
+    uint width = uint(size.z);
+    // Texels' middles are at whole numbers; rows go down.
+    precise float u = (coordinates.x * moved.x + moved.z) * size.z - 0.5f;
+    precise float v = size.w - (coordinates.y * moved.y + moved.w) * size.w - 0.5f;
+    float left = floor(u);
+    float upper = floor(v);
+    precise float right_share = u - left;
+    precise float lower_share = v - upper;
+    uint column = wrapped(left, size.z, repeats);
+    uint next_column = wrapped(left + 1.0f, size.z, repeats);
+    uint row = wrapped(upper, size.w, repeats);
+    uint next_row = wrapped(upper + 1.0f, size.w, repeats);
+    precise vec3 above = texel(first, width, column, row) * (1.0f - right_share)
+        + texel(first, width, next_column, row) * right_share;
+    precise vec3 below = texel(first, width, column, next_row) * (1.0f - right_share)
+        + texel(first, width, next_column, next_row) * right_share;
+    precise vec3 all = above * (1.0f - lower_share) + below * lower_share;
+    return all;
+}
+
+void kernel(uint i)
+{
+    color = vec4(1.0f, 1.0f, 1.0f, 0.0f);
+    uint triangle = triangle_of(hits(i));
+    vec4 normal = normals(i);
+    if (triangle == NO_TRIANGLE || normal.w < 0.0f)
+        return; // nothing, or a light
+    uvec4 face = faces(triangle);
+    vec3 w = triangle_weights(
+        vec3(places(i)), vec3(vertices(face.x)), vec3(vertices(face.y)), vec3(vertices(face.z)), vec3(normal));
+    precise float sum = w.x + w.y + w.z;
+    if (!(sum > 0.0f)) {
+        w = vec3(1.0f, 1.0f, 1.0f); // a line or a point
+        sum = 3.0f;
+    }
+    precise vec4 coordinates = (attributes(2u * face.x) * w.x + attributes(2u * face.y) * w.y
+                                   + attributes(2u * face.z) * w.z)
+        / sum;
+    precise vec4 of_vertices = (attributes(2u * face.x + 1u) * w.x + attributes(2u * face.y + 1u) * w.y
+                                   + attributes(2u * face.z + 1u) * w.z)
+        / sum;
+    vec3 found = vec3(of_vertices);
+    uint number = texture_of(uint(normal.w));
+    if (number > 0u) {
+        Table table = table_of(scene(TEXTURE_TABLE));
+        precise vec3 both = found * texture_color(table.first + table.stride * (number - 1u), coordinates);
+        found = both;
+    }
+    color = vec4(found.x, found.y, found.z, 0.0f);
+}
