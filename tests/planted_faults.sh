@@ -222,7 +222,7 @@ faults=(
   "auto picks cpu where it was not built|backends/any/any.cpp|any::find(\"cpu\") ? \"cpu\" : \"serial\"|\"cpu\"|program"
   "a missing root is a hit|include/photongrid/trace/intersect/quadric.glsl|float nearest = far;|float nearest = abs(a) > 1e-12f \|\| shift > 0.0f ? far : far + shift;"
   "edges count once for loops|include/photongrid/scene/polygon.hpp|2 * std::uint64_t{p.vertices.size()} + 5|1 * std::uint64_t{p.vertices.size()} + 5|bad_scenes"
-  "meshes are behind all shapes|include/photongrid/trace/mesh_hit.glsl|hit.t >= 0.0f && hit.t <= place.w|hit.t >= 0.0f"
+  "meshes are behind all shapes|include/photongrid/trace/mesh_hit.glsl|hit.t >= 0.0f && hit.t <= t|hit.t >= 0.0f"
   "points of meshes stay at edges|include/photongrid/trace/mesh_surface.glsl|onto_plane(plane, at.point)|onto_plane(plane, ray_at(vec3(origins(i)), vec3(directions(i)), t))"
   "normals of a mesh are those of its first corner|include/photongrid/trace/mesh_surface.glsl|shading_normal(face, at.weights, vec3(plane))|shading_normal(face, vec3(1.0f, 0.0f, 0.0f), vec3(plane))|validation"
   "photons ignore shading normals where they land|include/photongrid/trace/bounce_photon.glsl|share < 8.0f ? share : 8.0f|1.0f"

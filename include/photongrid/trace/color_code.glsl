@@ -1,12 +1,12 @@
-// The colour of the surface that a photon left, in one number: what the next frame of bounce_photon.glsl needs of it,
-// and a frame has room for. Which channel is largest, and the others divided by it, in 11 bits each. Included by kernels
-// after backend/vector.glsl.
+// The colour of the surface that a photon left, in one number: what the next frame of bounce_photon.glsl needs of it
+// and a frame has room for. It says which channel is largest, and has the others divided by it, in 11 bits each.
+// Included by kernels after backend/vector.glsl.
 
 float color_code(vec3 color)
 {
     float most = largest3(color);
     uint which = color.x == most ? 0u : (color.y == most ? 1u : 2u);
-    vec2 others = which == 0u ? vec2(color.y, color.z) : (which == 1u ? vec2(color.x, color.z) : vec2(color.x, color.y));
+    vec2 others = vec2(which == 0u ? color.y : color.x, which == 2u ? color.y : color.z);
     precise vec2 scaled = others / most;
     precise vec2 rounded = vec2(scaled.x * 2047.0f + 0.5f, scaled.y * 2047.0f + 0.5f);
     return float(which * 4194304u + uint(rounded.x) * 2048u + uint(rounded.y));
