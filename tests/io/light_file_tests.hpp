@@ -107,6 +107,37 @@ namespace {
         }
     }
 
+    /// A grey JPEG of 8 x 8 pixels of 188: tables of 1, and one block of a constant, 8 (188 - 128).
+    std::string grey_jpeg()
+    {
+        std::string bytes("\xFF\xD8\xFF\xDB\x00\x43\x00", 7);
+        bytes.append(64, '\x01');
+        bytes += std::string("\xFF\xC0\x00\x0B\x08\x00\x08\x00\x08\x01\x01\x11\x00", 13);
+        for (const char* table : {"\x00\x09", "\x10\x00"}) { // one code of one bit each
+            bytes += std::string("\xFF\xC4\x00\x14", 4) + table[0] + '\x01';
+            bytes.append(15, '\0');
+            bytes += table[1];
+        }
+        return bytes + std::string("\xFF\xDA\x00\x08\x01\x01\x00\x00\x3F\x00\x78\x1F\xFF\xD9", 14);
+    }
+
+    TEST(lights_in_a_scene, take_jpeg_files_too)
+    {
+        const auto path = (picture_folder() / "grey.jpg").string();
+        const auto whole = grey_jpeg();
+        std::ofstream(path, std::ios::binary) << whole;
+        const auto grey = read_linear_image(path);
+        ASSERT_EQ(grey.width, 8u);
+        ASSERT_EQ(grey.pixels.size(), 64u);
+        for (const auto& p : grey.pixels)
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(p[c], 0.5028865f, 1e-6f);
+        for (std::size_t n = 0; n + 4 < whole.size(); ++n) {
+            std::ofstream(path, std::ios::binary) << whole.substr(0, n);
+            EXPECT_THROW(read_linear_image(path), file_error) << n;
+        }
+    }
+
     TEST(lights_in_a_scene, that_are_wrong_are_refused_with_their_place)
     {
         const auto folder = picture_folder();

@@ -55,6 +55,8 @@ namespace {
         const auto folder = picture_folder();
         write_png(folder / "wood.png", PNG_FORMAT_RGB, {255, 188, 0, 55, 0, 255});
         std::ofstream(folder / "no.png", std::ios::binary) << "no picture";
+        write_image((folder / "nan.pfm").string(),
+            {.width = 1, .height = 1, .pixels = {glm::vec3(std::numeric_limits<float>::quiet_NaN())}});
         struct bad {
             std::string keys, mesh, what;
             int line;
@@ -62,6 +64,7 @@ namespace {
         const std::string wood = R"("texture": "wood.png")";
         for (const auto& b : {bad{R"("texture": "none.png")", with_coordinates, "none.png", 6},
                  {R"("texture": "no.png")", with_coordinates, "cannot be read", 6},
+                 {R"("texture": "nan.pfm")", with_coordinates, "not a number", 6},
                  {R"("texture": "../wood.png")", with_coordinates, "without \"..\"", 6},
                  {R"("texture": 3)", with_coordinates, "a file's name", 6},
                  {R"("texture": {"wrap": "clamp"})", with_coordinates, "\"file\"", 6},

@@ -376,6 +376,16 @@ namespace {
         };
     }
 
+    TEST(bad_scenes, radiance_that_single_precision_cannot_hold_is_refused)
+    {
+        auto s = all_lights();
+        spoil_map(s, {2, 1, {glm::vec3(1), glm::vec3(1e30f)}});
+        EXPECT_NO_THROW(lay_out(s));
+        s.environment_lights[0].radiance = dvec3(1e12);
+        EXPECT_EQ(refusal_of(s), "");
+        EXPECT_THROW(lay_out(s), std::invalid_argument);
+    }
+
     TEST(bad_scenes, spoiled_ones_are_refused)
     {
         const auto good = all_lights();

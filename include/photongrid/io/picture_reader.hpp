@@ -56,7 +56,9 @@ private:
                 texture made{picture.width, picture.height, {}};
                 made.texels.reserve(picture.pixels.size());
                 for (const auto& p : picture.pixels) {
-                    const glm::vec3 inside = glm::min(glm::max(p, glm::vec3(0)), glm::vec3(1)); // NaN becomes 0
+                    if (std::isnan(p.x) || std::isnan(p.y) || std::isnan(p.z))
+                        throw std::invalid_argument("a pixel is not a number");
+                    const glm::vec3 inside = glm::clamp(p, 0.0f, 1.0f);
                     made.texels.emplace_back(glm::vec3(0.5f) + inside * 65535.0f, 65535);
                 }
                 texture_use use;

@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <vector>
@@ -35,12 +34,16 @@ namespace photongrid::image_formats {
 namespace {
     std::vector<stbi_uc> bytes_of(const std::string& path)
     {
-        std::ifstream file(path, std::ios::binary);
-        std::vector<stbi_uc> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+        std::ifstream file(path, std::ios::binary | std::ios::ate);
+        const auto size = file.tellg();
         if (!file)
             throw std::runtime_error(std::strerror(errno));
-        if (bytes.size() > (std::size_t{1} << 30))
+        if (size > (std::streamoff{1} << 30))
             fail_file(path, "is larger than 2^30 bytes");
+        std::vector<stbi_uc> bytes(static_cast<std::size_t>(size));
+        file.seekg(0);
+        if (!file.read(reinterpret_cast<char*>(bytes.data()), size))
+            throw std::runtime_error(std::strerror(errno));
         return bytes;
     }
 

@@ -50,6 +50,7 @@ namespace detail {
 } // namespace detail
 
 /// Texels are sampled in proportion to their radiance (sum of rgb) and to their solid angle.
+/// \throws std::invalid_argument for a radiance that does not fit single precision.
 inline environment_layout lay_out(const environment_light& light)
 {
     const environment_texels texels(light);
@@ -81,7 +82,10 @@ inline environment_layout lay_out(const environment_light& light)
             // A texel is pi / height times 2 pi / width; its solid angle at a colatitude is that times the sine.
             const double density = of_row * detail::share_at(out.shares, first, column) * static_cast<double>(width)
                 * static_cast<double>(height) / (2 * std::numbers::pi * std::numbers::pi);
-            out.texels.emplace_back(glm::vec3(radiance(column, row)), static_cast<float>(density));
+            const glm::vec3 l(radiance(column, row));
+            detail::require(std::isfinite(l.x) && std::isfinite(l.y) && std::isfinite(l.z),
+                "environment_lights[0]: its radiance is too large for single precision; use smaller values");
+            out.texels.emplace_back(l, static_cast<float>(density));
         }
     }
     return out;
