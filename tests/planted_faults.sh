@@ -235,6 +235,8 @@ faults=(
   "photons forget colours of textures|include/photongrid/trace/color_code.glsl|vec3(1.0f, others.x, others.y)|vec3(1.0f, 1.0f, 1.0f)|validation"
   "the largest channel of a colour is always red|include/photongrid/trace/color_code.glsl|uint which = bits >> 22u;|uint which = 0u * bits;|validation"
   "the eye sees no textures in mirrors|include/photongrid/trace/eye_bounce.glsl|if (TEXTURES && on_mesh) {|if (TEXTURES && on_mesh && material.kind == LAMBERTIAN_SURFACE) {"
+  "a chosen light counts as if all were as likely|include/photongrid/trace/chosen_light.glsl|precise float share = importance / total;|precise float share = 1.0f / float(lights.count);"
+  "lights around the horizon are never chosen|include/photongrid/trace/chosen_light.glsl|(dot3(to, lit.normal) + least) / distance|dot3(to, lit.normal) / distance"
   "spotlights fall off linearly|include/photongrid/trace/spot_light.glsl|axis.w * t * t * (3.0f - 2.0f * t)|axis.w * t"
   "photons of spotlights fall off linearly|include/photongrid/trace/spot_light.glsl|max(min(three.x, three.y), min(max(three.x, three.y), three.z))|three.x"
   "a sphere light's cone is as wide as its radius|include/photongrid/trace/shadow_ray.glsl|sine2 / (1.0f + sqrt(1.0f - sine2))|0.5f * sine2"
@@ -310,7 +312,7 @@ tests_of() {
     backends/vulkan/*) echo on_vulkan ;;
     */film.hpp | */exact_sum.hpp) echo passes ;;
     */scene/scene.hpp | */render/*.hpp | */eye_ray*| */trace_photons.hpp) echo on_serial_pictures ;;
-    */bounce_photon.glsl | */covered_share.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */mesh_surface.glsl | */shading_normals.glsl | */shadow_ray.glsl | */mesh_light.glsl | */eye_bounce.glsl | */add_unblocked.glsl | */spot_light.glsl | */distant_light.glsl | */environment*.glsl | */mesh_color.glsl | */emit_photon.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
+    */bounce_photon.glsl | */covered_share.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */mesh_surface.glsl | */shading_normals.glsl | */shadow_ray.glsl | */mesh_light.glsl | */eye_bounce.glsl | */add_unblocked.glsl | */spot_light.glsl | */distant_light.glsl | */environment*.glsl | */mesh_color.glsl | */chosen_light.glsl | */emit_photon.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
     *) echo on_serial_algorithms ;;
   esac
 }

@@ -158,6 +158,36 @@ inline std::vector<scene> floors_under_each_light()
     return all;
 }
 
+/// A floor with a ball under 100 lights of six kinds, most of them far from any point.
+inline scene many_lights()
+{
+    auto s = bare_floor();
+    s.name = "many_lights";
+    s.spheres = {{{0.5, 0.4, 0.3}, 0.4, 0}};
+    const auto pyramid = std::make_shared<const mesh>(
+        mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}});
+    for (int i = 0; i < 98; ++i) {
+        const double x = -2.8 + 0.6 * (i % 10), z = -2.8 + 0.6 * (i / 10), y = 0.3 + 0.1 * (i * 7 % 11);
+        const dvec3 power(0.2 + 0.1 * (i % 5), 0.3, 0.1 + 0.05 * (i % 7));
+        if (i % 5 == 0)
+            s.point_lights.push_back({"bulb", {x, y, z}, power});
+        else if (i % 5 == 1)
+            s.rectangle_lights.push_back({"lamp", {x, y, z}, {0.1, 0.05, 0}, {0, 0, 0.1}, power}); // upside down
+        else if (i % 5 == 2)
+            s.sphere_lights.push_back({"globe", {x, y, z}, 0.05, power});
+        else if (i % 5 == 3)
+            s.spot_lights.push_back({"spot", {x, y, z}, {0.2, -1, 0.1}, 10, 50, power});
+        else
+            s.mesh_lights.push_back({"ember", {"", pyramid, glm::dmat3(0.1), {x, y, z}, 0}, power});
+    }
+    for (int i = 0; i < 5; ++i)
+        s.rectangle_lights.push_back({"lamp", {-2.0 + i, 1.5, 0}, {0.1, 0, 0}, {0, 0, 0.1}, dvec3(0.5)});
+    s.directional_lights = {{"sun", {0.3, -1, 0.2}, dvec3(0.05)}};
+    s.environment_lights = {{"sky", "", nullptr, dvec3(0.02)}};
+    s.render.view.light_samples = 8;
+    return s;
+}
+
 /// all_shapes_and_meshes() under every kind of light.
 inline scene all_lights()
 {

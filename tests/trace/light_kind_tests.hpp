@@ -205,10 +205,55 @@ TYPED_TEST_P(light_kinds, what_absorbs_nothing_in_a_white_environment_cannot_be_
         EXPECT_NEAR(mean[c] / (1 << c), 1, 0.004);
 }
 
+/// Only light `number` of a scene; the surfaces of the others are black shapes.
+inline scene with_one_light(scene s, std::size_t number)
+{
+    const auto black = static_cast<std::uint32_t>(s.materials.size());
+    s.materials.push_back({"black", material_kind::lambertian, dvec3(0)});
+    std::size_t n = 0;
+    for_each_light(s, [&](auto& list, auto) {
+        std::decay_t<decltype(list)> kept;
+        for (const auto& l : list) {
+            if (n++ == number) {
+                kept.push_back(l);
+            } else if constexpr (requires { l.edge_u; }) {
+                s.polygons.push_back(surface_of(l));
+                s.polygons.back().material = black;
+            } else if constexpr (requires { l.radius; }) {
+                s.spheres.push_back({l.center, l.radius, black});
+            } else if constexpr (requires { l.surface; }) {
+                s.meshes.push_back(l.surface);
+                s.meshes.back().material = black;
+            }
+        }
+        list = kept;
+    });
+    return s;
+}
+
+/// Where each sample chooses one of many lights, their mean is the sum of all lights, one by one.
+TYPED_TEST_P(light_kinds, of_which_samples_choose_add_up)
+{
+    const auto s = many_lights();
+    ASSERT_GT(count_lights(s), detail::most_lights_sampled_each);
+    for (const auto& [point, normal] : {std::pair{dvec3(-1, 0, -1), dvec3(0, 1, 0)},
+             {dvec3(0.1, 0.3, 0.2), dvec3(1, 2, -3)}, {dvec3(-2.3, 0.1, -2.2), dvec3(1, 0.5, 0.2)}}) {
+        dvec3 known(0);
+        for (std::size_t n = 0; n < count_lights(s); ++n)
+            for (const auto& e : this->light_at(with_one_light(s, n), std::vector<dvec3>(256, point), normal, 16))
+                known += dvec3(e) / 256.0;
+        ASSERT_GT(known.x, 0.01);
+        EXPECT_LE(this->mean_error(s, point, normal, 32, known), 0.02) << point.x;
+    }
+}
+
 TYPED_TEST_P(light_kinds, equal_the_serial_backends)
 {
     const auto s = all_lights();
     this->expect_serial(s, s.render);
+    auto many = many_lights();
+    many.render.map.photons = 2000;
+    this->expect_serial(many, many.render);
 }
 
 TYPED_TEST_P(light_kinds, account_for_every_path)
@@ -225,7 +270,7 @@ TYPED_TEST_P(light_kinds, account_for_every_path)
 
 REGISTER_TYPED_TEST_SUITE_P(light_kinds, a_spotlight_has_its_intensity, a_sphere_lights_as_its_middle_does,
     directional_light_is_even_and_casts_shadows, an_environment_has_the_light_of_its_texels,
-    the_camera_sees_the_environment, photons_and_shadow_rays_agree,
+    the_camera_sees_the_environment, photons_and_shadow_rays_agree, of_which_samples_choose_add_up,
     what_absorbs_nothing_in_a_white_environment_cannot_be_seen, equal_the_serial_backends, account_for_every_path);
 
 } // namespace photongrid::testing

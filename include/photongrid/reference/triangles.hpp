@@ -138,10 +138,10 @@ private:
                 triangles_.back().colored = static_cast<std::int64_t>(colored_.size());
                 auto& of = colored_.emplace_back();
                 of.texture = texture;
-                for (int c = 0; c < 3; ++c) {
-                    const int corner = c > 0 && glm::determinant(m.linear) < 0 ? 3 - c : c; // as corners_of does
+                for (int i = 0; i < 3; ++i) {
+                    const int corner = i > 0 && glm::determinant(m.linear) < 0 ? 3 - i : i; // as corners_of does
                     const auto v = m.surface->triangles[t][corner];
-                    const auto at = static_cast<std::size_t>(c);
+                    const auto at = static_cast<std::size_t>(i);
                     of.coordinates[at] = coordinates.empty() ? glm::dvec2(0) : glm::dvec2(coordinates[v]);
                     of.colors[at] = colors.empty() ? dvec3(1) : dvec3(colors[v]);
                 }

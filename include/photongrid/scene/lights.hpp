@@ -147,10 +147,12 @@ struct light_kind<mesh_light> {
     static void write_record(record_writer& w, const mesh_light& l, std::size_t first)
     {
         const std::size_t count = l.surface.surface->triangles.size();
-        w.put(dvec3(0), 1 / (std::numbers::pi * area_of(l.surface)));
+        bounds box;
+        add_bounds(box, l);
+        w.put_position(0.5 * (box.low + box.high), 1 / (std::numbers::pi * area_of(l.surface)));
         w.put(dvec3(halves_of(first), 0), 0);
         w.put(dvec3(halves_of(count), 0), 0);
-        w.put(dvec3(0), 0);
+        w.put(dvec3(0.5 * glm::length(box.high - box.low), 0, 0), 0); // of a ball that holds it
         w.put(l.power, 0);
     }
     /// @}

@@ -124,6 +124,9 @@ inline bool is_sampled(uint form)
         || form == kernels::ENVIRONMENT_LIGHT;
 }
 
+/// Of more lights than these each sample of direct light chooses one.
+inline constexpr uint most_lights_sampled_each = 16;
+
 /// Computes the irradiance of direct light at the hits of `pixels` into `light`, with a bounded number of shadow rays
 /// per pass.
 template <backend B>
@@ -135,28 +138,48 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
     const uint samples = (s.layout.features & sampled) != 0 ? settings.view.light_samples : 1u;
     // What direct_light.glsl does not know.
     constexpr uint others = has_meshes | has_sphere_lights | has_spot_lights | has_directional_lights | has_environment;
-    if ((s.layout.features & others) != 0) {
+    const auto lights = s.layout.table(kernels::LIGHT_TABLE);
+    if ((s.layout.features & others) != 0 || lights.count > most_lights_sampled_each) {
         mesh_rays<B> rays(device, pixels.elements);
         auto arriving = device.template make<glm::vec4>(pixels.elements);
-        const auto lights = s.layout.table(kernels::LIGHT_TABLE);
+        const auto add_sample = [&](kernels::shadow_ray::Params p) {
+            p.first = pixels.first;
+            p.ray_id = ray;
+            p.first_pixel = hits.first_pixel;
+            device.template run<kernels::shadow_ray>({pixels.elements, 0u, s.layout.features}, p,
+                reads(s.records, hits.points, hits.surfaces, s.faces, s.planes, s.vertices, s.shares, s.environment,
+                    s.environment_shares),
+                writes(rays.origins, rays.directions, arriving));
+            const auto found = rays.search(device, s, hit_kind::any);
+            device.template run<kernels::add_unblocked>(
+                pixels, {.first = pixels.first}, reads(arriving, found), writes(light));
+        };
+        if (lights.count > most_lights_sampled_each) {
+            // Each sample is the only one of its light, so it may be anywhere on it.
+            for (uint choice = 0; choice < settings.view.light_samples; ++choice)
+                add_sample({.strata = {1, 1},
+                    .light = 0,
+                    .sample_id = 0,
+                    .first = 0,
+                    .ray_id = 0,
+                    .seed = settings.seed ^ (choice + 1) * 0x9E3779B1u,
+                    .first_pixel = 0,
+                    .choice = choice,
+                    .choices = settings.view.light_samples});
+            return;
+        }
         for (uint number = 0; number < lights.count; ++number) {
             const auto form = static_cast<uint>(s.layout.records[lights.first + lights.stride * number].x);
-            for (uint sample = 0; sample < (is_sampled(form) ? samples : 1u); ++sample) {
-                device.template run<kernels::shadow_ray>({pixels.elements, 0u, s.layout.features},
-                    {.strata = strata_of(samples),
-                        .light = number,
-                        .sample_id = sample,
-                        .first = pixels.first,
-                        .ray_id = ray,
-                        .seed = settings.seed,
-                        .first_pixel = hits.first_pixel},
-                    reads(s.records, hits.points, hits.surfaces, s.faces, s.planes, s.vertices, s.shares, s.environment,
-                        s.environment_shares),
-                    writes(rays.origins, rays.directions, arriving));
-                const auto found = rays.search(device, s, hit_kind::any);
-                device.template run<kernels::add_unblocked>(
-                    pixels, {.first = pixels.first}, reads(arriving, found), writes(light));
-            }
+            for (uint sample = 0; sample < (is_sampled(form) ? samples : 1u); ++sample)
+                add_sample({.strata = strata_of(samples),
+                    .light = number,
+                    .sample_id = sample,
+                    .first = 0,
+                    .ray_id = 0,
+                    .seed = settings.seed,
+                    .first_pixel = 0,
+                    .choice = 0,
+                    .choices = 0});
         }
         return;
     }

@@ -1,4 +1,4 @@
-// The shadow rays of one sample of one light, at the ends of eye rays, for a search among meshes: rays that no shape
+// The shadow rays of one sample of a light, at the ends of eye rays, for a search among meshes: rays that no shape
 // blocks. It knows all kinds of lights; direct_light.glsl, which is like it otherwise, knows points and rectangles.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
@@ -12,6 +12,8 @@ struct Params {
     uint ray_id;      // sample x branches + branch
     uint seed;
     uint first_pixel; // pixel of eye ray 0
+    uint choice;      // with `choices` the number of a sample, whose light is chosen (chosen_light.glsl)
+    uint choices;     // 0: none is chosen
 };
 PARAMS(Params)
 SWITCH(6, POINT_LIGHTS)
@@ -141,7 +143,9 @@ LightSample spot_light_sample(uint at, LitPoint lit)
     return found;
 }
 
-// Light from outside of the scene, from direction -d.
+#include <photongrid/trace/chosen_light.glsl>
+
+// Light from outside of the scene.
 LightSample distant_sample(vec3 towards, float per_power, LitPoint lit)
 {
     LightSample found = no_light(lit);
@@ -165,8 +169,20 @@ void kernel(uint i)
     if (!(point.w > 0.0f))
         return;
     LitPoint lit = lit_point(vec3(point), vec3(surfaces(args.first + i)));
+    uint number = args.light;
+    float scale = 1.0f;
+    if (args.choices > 0u) {
+        vec4 r = random4(uvec4(args.first + i + args.first_pixel, args.ray_id, 2999u, args.seed));
+        precise float u = (float(args.choice) + r.x) / float(args.choices);
+        ChosenLight c = chosen_light(lit, u);
+        if (!(c.probability > 0.0f))
+            return;
+        number = c.number;
+        precise float weight = 1.0f / (c.probability * float(args.choices));
+        scale = weight;
+    }
     Table lights = table_of(scene(LIGHT_TABLE));
-    uint at = lights.first + lights.stride * args.light;
+    uint at = lights.first + lights.stride * number;
     uint form = uint(scene(at).x);
     vec3 power = vec3(scene(at + 5u));
     LightSample found = no_light(lit);
@@ -185,12 +201,13 @@ void kernel(uint i)
         vec4 light = scene(at + 1u);
         found = distant_sample(-vec3(light), light.w, lit);
     } else if (POINT_LIGHTS || AREA_LIGHTS) {
-        found = light_sample(seen_light(at, lit), args.light, args.sample_id, args.first + i, lit);
+        found = light_sample(seen_light(at, lit), number, args.sample_id, args.first + i, lit);
     }
     if (!(found.per_power > 0.0f)
         || (found.has_ray && occluded(lit.origin, found.direction, found.far, everything())))
         return;
     origin = vec4(lit.origin.x, lit.origin.y, lit.origin.z, found.has_ray ? found.far : 0.0f);
     direction = vec4(found.direction.x, found.direction.y, found.direction.z, 0.0f);
-    arriving = vec4(power.x * found.per_power, power.y * found.per_power, power.z * found.per_power, 0.0f);
+    precise float received = found.per_power * scale;
+    arriving = vec4(power.x * received, power.y * received, power.z * received, 0.0f);
 }
