@@ -169,7 +169,7 @@ faults=(
   "a lamp with a dark edge|include/photongrid/trace/emit_photon.glsl|light.edge_u, r.z)|light.edge_u, 0.99f * r.z)|optics"
   "a bulb dimmer below|include/photongrid/trace/emit_photon.glsl|d = uniform_direction(r.x, r.y)|d = uniform_direction(0.98f * r.x, r.y)|optics"
   "a bulb 1 % too bright|include/photongrid/trace/emit_photon.glsl|light.power.x / probability|light.power.x * (light.is_area ? 1.0f : 1.01f) / probability|optics"
-  "a lamp chosen too often|include/photongrid/trace/device_scene.hpp|weight / total, below / total|weight / total, std::min(1.0, 1.01 * below / total)|optics"
+  "a lamp chosen too often|include/photongrid/trace/scene_records.hpp|weight / total, below / total|weight / total, std::min(1.0, 1.01 * below / total)|optics"
   "a batch repeats 64 paths|include/photongrid/trace/trace_photons.hpp|static_cast<uint>(t_.emitted), settings_)|static_cast<uint>(t_.emitted) - (t_.emitted > 0 ? 64u : 0u), settings_)|optics"
   "eye rays through the corner|include/photongrid/trace/eye_ray.glsl|float dx = 0.5f;|float dx = 0.0f;|optics"
   "eye rays without the seed|include/photongrid/trace/eye_ray.glsl|1000u, args.seed|1000u, 1u|optics"

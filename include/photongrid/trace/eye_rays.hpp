@@ -124,6 +124,16 @@ inline bool is_sampled(uint form)
         || form == kernels::ENVIRONMENT_LIGHT;
 }
 
+/// One sample of the light at each of some points: see the Params of shadow_ray.glsl.
+struct light_sampling {
+    glm::uvec2 strata{1};
+    uint light = 0;
+    uint sample_id = 0;
+    uint seed = 0;
+    uint choice = 0;
+    uint choices = 0;
+};
+
 /// Of more lights than these each sample of direct light chooses one.
 inline constexpr uint most_lights_sampled_each = 16;
 
@@ -142,11 +152,17 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
     if ((s.layout.features & others) != 0 || lights.count > most_lights_sampled_each) {
         mesh_rays<B> rays(device, pixels.elements);
         auto arriving = device.template make<glm::vec4>(pixels.elements);
-        const auto add_sample = [&](kernels::shadow_ray::Params p) {
-            p.first = pixels.first;
-            p.ray_id = ray;
-            p.first_pixel = hits.first_pixel;
-            device.template run<kernels::shadow_ray>({pixels.elements, 0u, s.layout.features}, p,
+        const auto add_sample = [&](const light_sampling& how) {
+            device.template run<kernels::shadow_ray>({pixels.elements, 0u, s.layout.features},
+                {.strata = how.strata,
+                    .light = how.light,
+                    .sample_id = how.sample_id,
+                    .first = pixels.first,
+                    .ray_id = ray,
+                    .seed = how.seed,
+                    .first_pixel = hits.first_pixel,
+                    .choice = how.choice,
+                    .choices = how.choices},
                 reads(s.records, hits.points, hits.surfaces, s.faces, s.planes, s.vertices, s.shares, s.environment,
                     s.environment_shares),
                 writes(rays.origins, rays.directions, arriving));
@@ -157,13 +173,7 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
         if (lights.count > most_lights_sampled_each) {
             // Each sample is the only one of its light, so it may be anywhere on it.
             for (uint choice = 0; choice < settings.view.light_samples; ++choice)
-                add_sample({.strata = {1, 1},
-                    .light = 0,
-                    .sample_id = 0,
-                    .first = 0,
-                    .ray_id = 0,
-                    .seed = settings.seed ^ (choice + 1) * 0x9E3779B1u,
-                    .first_pixel = 0,
+                add_sample({.seed = settings.seed ^ (choice + 1) * 0x9E3779B1u,
                     .choice = choice,
                     .choices = settings.view.light_samples});
             return;
@@ -171,15 +181,7 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
         for (uint number = 0; number < lights.count; ++number) {
             const auto form = static_cast<uint>(s.layout.records[lights.first + lights.stride * number].x);
             for (uint sample = 0; sample < (is_sampled(form) ? samples : 1u); ++sample)
-                add_sample({.strata = strata_of(samples),
-                    .light = number,
-                    .sample_id = sample,
-                    .first = 0,
-                    .ray_id = 0,
-                    .seed = settings.seed,
-                    .first_pixel = 0,
-                    .choice = 0,
-                    .choices = 0});
+                add_sample({.strata = strata_of(samples), .light = number, .sample_id = sample, .seed = settings.seed});
         }
         return;
     }

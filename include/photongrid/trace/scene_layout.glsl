@@ -1,4 +1,4 @@
-// The layout of the scene buffer, which trace/device_scene.hpp writes. It begins with SCENE_TABLES records. Each kind
+// The layout of the scene buffer, which trace/scene_records.hpp writes. It begins with SCENE_TABLES records. Each kind
 // of shape has a number below that: its SWITCH in kernels, the record of its table, and Closest::kind.
 #ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
 

@@ -1,0 +1,363 @@
+// The records of a scene for kernels: one buffer of vec4, recentred so that single precision suffices far from the
+// origin. trace/scene_layout.glsl describes its layout.
+#pragma once
+
+#include <photongrid/backend/backend.hpp>
+#include <photongrid/scene/scene.hpp>
+#include <photongrid/trace/environment_layout.hpp>
+#include <photongrid/trace/mesh_layout.hpp>
+#include <photongrid/trace/scene_layout.kernel.hpp>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// The features of a scene, as SWITCHes of the tracing kernels, which compile only the code that the scene needs. The
+/// bits of shapes are those of shape_kind::number, those of materials material_entry::switches.
+enum scene_feature : uint {
+    has_spheres = 1u << shape_kind<sphere>::number,
+    has_quadrics = 1u << detail::quadric_number, ///< cylinders, cones and others
+    has_polygons = 1u << shape_kind<polygon>::number,
+    has_mirrors = detail::entry_of(material_kind::mirror).switches,
+    has_glass = detail::entry_of(material_kind::glass).switches,
+    has_point_lights = 1u << 6,
+    has_area_lights = 1u << 7,
+    has_meshes = 1u << 9,         ///< number 8 is that of boxes
+    has_smooth_meshes = 1u << 10, ///< meshes with normals
+    has_mesh_lights = 1u << 11,
+    has_sphere_lights = 1u << 12,
+    has_spot_lights = 1u << 13,
+    has_directional_lights = 1u << 14,
+    has_environment = 1u << 15,
+    has_textures = 1u << 16, ///< or colours of vertices
+};
+
+static_assert(light_kind<point_light>::form == kernels::POINT_LIGHT
+    && light_kind<rectangle_light>::form == kernels::RECTANGLE_LIGHT
+    && light_kind<mesh_light>::form == kernels::MESH_LIGHT && light_kind<sphere_light>::form == kernels::SPHERE_LIGHT
+    && light_kind<spot_light>::form == kernels::SPOT_LIGHT
+    && light_kind<directional_light>::form == kernels::DIRECTIONAL_LIGHT
+    && light_kind<environment_light>::form == kernels::ENVIRONMENT_LIGHT);
+static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SURFACE
+    && static_cast<uint>(surface_kind::reflecting) == kernels::MIRROR_SURFACE
+    && static_cast<uint>(surface_kind::refracting) == kernels::GLASS_SURFACE);
+
+/// The records of a scene, and their layout.
+struct scene_layout {
+    std::vector<glm::vec4> records;  ///< as trace/scene_layout.glsl describes them; positions are recentred
+    uint features = 0;               ///< scene_feature bits of the shapes, materials and lights in use
+    std::uint64_t steps_per_ray = 0; ///< bound on the loop iterations of a ray, its shaft included (shape_kind::steps)
+    dvec3 center{0};                 ///< subtracted from every position, m
+    glm::vec3 low{0};                ///< m; box of the Lambertian surfaces, recentred: where photons can be stored
+    glm::vec3 high{0};               ///< m; its other corner
+    mesh_layout meshes;
+    environment_layout environment;
+
+    /// The records of a table's items; `number` is a shape_kind::number, kernels::MATERIAL_TABLE or
+    /// kernels::LIGHT_TABLE.
+    kernels::Table table(uint number) const { return kernels::table_of(records[number]); }
+};
+
+namespace detail {
+    /// The scene moved by -by.
+    inline scene moved_back(scene s, const dvec3& by)
+    {
+        const auto move = [&](auto& list, auto kind) {
+            for (auto& x : list)
+                move_points(x, kind.fields, -by);
+        };
+        for_each_shape(s, move);
+        for_each_light(s, move);
+        move(s.meshes, shape_kind<placed_mesh>{});
+        s.camera.position -= by;
+        s.camera.look_at -= by;
+        return s;
+    }
+
+    /// Reference point for recentring: the first light's first point, or else the first shape's, so a translated scene
+    /// yields the same records.
+    inline dvec3 anchor(const scene& s)
+    {
+        std::optional<dvec3> first;
+        const auto look = [&](const auto& list, auto kind) {
+            if (list.empty() || first)
+                return;
+            if constexpr (requires { corners_of(list[0], 0); })
+                first = corners_of(list[0], 0)[0];
+            else if constexpr (requires { list[0].surface; })
+                first = corners_of(list[0].surface, 0)[0];
+            else
+                for_each_field(kind.fields, [&](const auto& f) {
+                    const auto& value = list[0].*f.member;
+                    if constexpr (requires { first = value; })
+                        first = f.of == quantity::point && !first ? value : first;
+                    else if constexpr (requires { first = value.front(); })
+                        first = value.front();
+                });
+        };
+        for_each_light(s, look);
+        for_each_shape(s, look);
+        look(s.meshes, shape_kind<placed_mesh>{});
+        return first.value_or(dvec3(0));
+    }
+
+    /// \throws std::invalid_argument if a shape is so small, relative to the scene, that single precision cannot
+    ///         resolve it.
+    inline void require_resolvable(const scene& s, double scale)
+    {
+        const auto all = [&](const auto& list, auto kind) {
+            if constexpr (requires { kind.size(list[0]); })
+                for (std::size_t i = 0; i < list.size(); ++i)
+                    require(kind.size(list[i]) >= scale * 0x1p-18,
+                        std::string(kind.list) + '[' + std::to_string(i)
+                            + "]: is smaller than 2^-18 of the scene, which single precision cannot resolve; leave it "
+                              "out, or make the large shapes smaller");
+        };
+        for_each_shape(s, all);
+        for_each_light(s, all);
+        all(s.meshes, shape_kind<placed_mesh>{});
+    }
+
+    /// \throws std::invalid_argument for more records than single precision can number, as tables do.
+    inline void require_numbered(std::size_t records)
+    {
+        require(records <= 1u << 24,
+            "scene: takes " + std::to_string(records)
+                + " records; at most 2^24 are possible. A vertex takes 2, so use fewer vertices");
+    }
+
+    /// The most iterations of the kernels' loops over a shape of this kind, per ray.
+    template <class Kind, class Shape>
+    std::uint64_t steps_of(Kind kind, const Shape& x)
+    {
+        if constexpr (requires { kind.steps(x); })
+            return kind.steps(x);
+        else
+            return 2; // the shaft; the closest hit, or occlusion
+    }
+
+    /// Lays a scene out. Each member function writes one part.
+    class layout_writer {
+    public:
+        /// `s` must be relative to its anchor.
+        explicit layout_writer(const scene& s) : s_(s) {}
+
+        scene_layout write()
+        {
+            measure();
+            record_writer w(out_.records, out_.center, scale_);
+            out_.records.resize(kernels::SCENE_TABLES, glm::vec4(0));
+            out_.records[kernels::SCENE_SIZES].x
+                = static_cast<float>(std::max(round_size_ * 0x1p-19, scale_ * 0x1p-26));
+            write_materials(w);
+            write_shapes(w);
+            write_meshes();
+            write_lights(w);
+            for (const auto& r : out_.records)
+                require(std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z) && std::isfinite(r.w),
+                    "scene: a size or a power is too large for single precision; use smaller values");
+            require_numbered(out_.records.size());
+            return std::move(out_);
+        }
+
+    private:
+        /// Computes the bounds, the centre and the features.
+        void measure()
+        {
+            bounds all, diffuse;
+            for_each_shape(s_, [&](const auto& list, auto kind) {
+                for (const auto& x : list) {
+                    const auto& m = s_.materials[x.material];
+                    kind.add_bounds(all, x);
+                    if (is_diffuse(m))
+                        kind.add_bounds(diffuse, x);
+                    out_.features |= entry_of(m.kind).switches;
+                    round_size_ = std::max(round_size_, kind.round_size(x));
+                    out_.steps_per_ray += steps_of(kind, x);
+                }
+                out_.features |= list.empty() ? 0u : 1u << kind.number;
+            });
+            for (const auto& m : s_.meshes) {
+                const auto& of = s_.materials[m.material];
+                shape_kind<placed_mesh>::add_bounds(all, m);
+                if (is_diffuse(of))
+                    shape_kind<placed_mesh>::add_bounds(diffuse, m);
+                out_.features |= has_meshes | entry_of(of.kind).switches;
+                out_.features |= m.surface->normals.empty() ? 0u : has_smooth_meshes;
+                out_.features |= m.surface->colors.empty() && !of.texture.map ? 0u : has_textures;
+            }
+            require(!diffuse.empty(), no_matte_shape);
+            for_each_light(s_, [&](const auto& list, auto kind) {
+                for (const auto& l : list)
+                    kind.add_bounds(all, l);
+                constexpr uint features[]
+                    = {has_point_lights, has_area_lights | has_polygons, has_mesh_lights | has_meshes,
+                        has_sphere_lights | has_spheres, has_spot_lights, has_directional_lights, has_environment};
+                out_.features |= list.empty() ? 0u : features[kind.form];
+            });
+            for (const auto& l : s_.rectangle_lights) // their surfaces are polygons
+                out_.steps_per_ray += steps_of(shape_kind<polygon>{}, surface_of(l));
+            for (const auto& l : s_.sphere_lights) {
+                out_.steps_per_ray += steps_of(shape_kind<sphere>{}, surface_of(l));
+                round_size_ = std::max(round_size_, shape_kind<sphere>::round_size(surface_of(l)));
+            }
+            // Of loops over kinds, lights and faces, the corners of a lamp, and a last round of each loop: about 20.
+            out_.steps_per_ray += 32;
+            scale_ = 0.5 * glm::length(all.high - all.low);
+            require_resolvable(s_, scale_);
+            // The centre, rounded to few bits, so that adding it to the anchor is exact.
+            const double step = std::exp2(std::floor(std::log2(scale_)) - 8);
+            out_.center = glm::round(0.5 * (all.low + all.high) / step) * step;
+            out_.low = glm::vec3(diffuse.low - out_.center);
+            out_.high = glm::vec3(diffuse.high - out_.center);
+        }
+
+        /// Writes a table of `count` items from record `first` on; `stride` is 0 if their lengths differ.
+        void enter(uint number, uint first, std::size_t count, uint stride)
+        {
+            out_.records[number]
+                = glm::vec4(static_cast<float>(first), static_cast<float>(count), static_cast<float>(stride), 0.0f);
+        }
+
+        void write_shapes(record_writer& w)
+        {
+            uint number = kernels::NO_SHAPE, first = 0;
+            std::size_t count = 0;
+            for_each_shape(s_, [&](const auto& list, auto kind) {
+                if (kind.number != number) {
+                    number = kind.number;
+                    first = w.next();
+                    count = 0;
+                }
+                const uint begin = w.next();
+                for (const auto& x : list)
+                    kind.write(w, x);
+                std::size_t written = list.size();
+                if constexpr (std::is_same_v<decltype(kind), shape_kind<sphere>>)
+                    written += write_spheres_of_lights(w);
+                count += written;
+                if (written > 0)
+                    enter(number, first, count, (w.next() - begin) / static_cast<uint>(written));
+            });
+            // Polygons come last, because the surfaces of lights belong to the same table.
+            for (std::size_t i = 0; i < s_.rectangle_lights.size(); ++i)
+                put_polygon(w, surface_of(s_.rectangle_lights[i]), i + 1);
+            enter(number, first, s_.polygons.size() + s_.rectangle_lights.size(), 0);
+        }
+
+        /// Returns how many.
+        std::size_t write_spheres_of_lights(record_writer& w)
+        {
+            const std::size_t first = s_.rectangle_lights.size() + s_.point_lights.size();
+            for (std::size_t i = 0; i < s_.sphere_lights.size(); ++i)
+                shape_kind<sphere>::write(w, surface_of(s_.sphere_lights[i]), first + i + 1);
+            return s_.sphere_lights.size();
+        }
+
+        /// Appends the triangles of mesh lights and of all meshes.
+        void write_meshes()
+        {
+            mesh_writer w(out_.meshes, out_.center, (out_.features & has_smooth_meshes) != 0,
+                (out_.features & has_textures) != 0);
+            uint light
+                = static_cast<uint>(s_.rectangle_lights.size() + s_.point_lights.size() + s_.sphere_lights.size());
+            for (const auto& l : s_.mesh_lights) {
+                const std::size_t first = out_.meshes.faces.size();
+                w.write(l.surface, kernels::FACE_OF_LIGHT + light++, false);
+                w.write_shares(l.surface, first);
+            }
+            for (const auto& m : s_.meshes) {
+                const bool smooth = !m.surface->normals.empty();
+                w.write(m, 2 * m.material + (smooth ? 1 : 0), smooth);
+            }
+        }
+
+        void write_materials(record_writer& w)
+        {
+            enter(kernels::MATERIAL_TABLE, w.next(), s_.materials.size(), kernels::MATERIAL_RECORDS);
+            std::size_t textures = 0;
+            for (const auto& m : s_.materials) {
+                w.put(m.reflectance, static_cast<uint>(entry_of(m.kind).surface));
+                w.put(dvec3(m.index_of_refraction, static_cast<double>(m.texture.map ? ++textures : 0), 0), 0);
+            }
+            write_textures(w, textures);
+        }
+
+        /// Materials may share the texels of a texture.
+        void write_textures(record_writer& w, std::size_t textures)
+        {
+            enter(kernels::TEXTURE_TABLE, w.next(), textures, 3);
+            std::map<const texture*, std::size_t> firsts;
+            auto& texels = out_.meshes.texels;
+            for (const auto& m : s_.materials) {
+                if (!m.texture.map)
+                    continue;
+                const auto [found, is_new] = firsts.emplace(m.texture.map.get(), texels.size());
+                if (is_new)
+                    for (const auto& t : m.texture.map->texels)
+                        texels.emplace_back(uint{t.x} | uint{t.y} << 16, uint{t.z});
+                require(texels.size() <= max_texels, "materials: their textures have more than 2^28 texels together");
+                w.put(dvec3(halves_of(found->second), m.texture.map->width), m.texture.map->height);
+                w.put(dvec3(m.texture.scale, m.texture.offset.x), m.texture.offset.y);
+                w.put(dvec3(m.texture.wrap == texture_wrap::repeat ? 1 : 0, 0, 0), 0);
+            }
+        }
+
+        /// Lights are chosen with probabilities proportional to their power.
+        void write_lights(record_writer& w)
+        {
+            const double total = power_of_lights(s_);
+            const bounds box = entry_box(s_);
+            double below = 0;
+            std::size_t triangles = 0; // of mesh lights so far
+            enter(kernels::LIGHT_TABLE, w.next(), count_lights(s_), 6);
+            for_each_light(s_, [&](const auto& list, auto kind) {
+                for (const auto& l : list) {
+                    const dvec3 power = power_of(kind, l, box);
+                    const double weight = power.x + power.y + power.z;
+                    below += weight;
+                    w.put(dvec3(kind.form, weight / total, below / total), 0);
+                    if constexpr (requires { l.surface; }) {
+                        kind.write_record(w, l, triangles);
+                        triangles += l.surface.surface->triangles.size();
+                    } else if constexpr (requires { kind.write_record(w, l, box); }) {
+                        kind.write_record(w, l, box);
+                    } else {
+                        kind.write_record(w, l);
+                    }
+                }
+            });
+            for (const auto& l : s_.environment_lights)
+                out_.environment = lay_out(l);
+        }
+
+        const scene& s_;
+        scene_layout out_;
+        double scale_ = 0;      ///< half the scene's diagonal, m
+        double round_size_ = 0; ///< the largest shape_kind::round_size, m
+    };
+} // namespace detail
+
+/// Lays a scene out for kernels.
+/// \throws std::invalid_argument as check(scene) does, if no surface is Lambertian, or if a size or a power does not
+///         fit single precision.
+inline scene_layout lay_out(const scene& original)
+{
+    check(original);
+    // All coordinates are relative to a point of the scene, so that a scene that is moved by an exactly representable
+    // vector has the same records, bit for bit.
+    const dvec3 anchor = detail::anchor(original);
+    const scene s = detail::moved_back(original, anchor);
+    auto layout = detail::layout_writer(s).write();
+    layout.center += anchor;
+    return layout;
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>
