@@ -151,8 +151,10 @@ private:
                     [&](const json_value& c) { return number(c, -1e9, 1e9, "a factor from -1e9 to 1e9"); });
                 m.linear = glm::dmat3(s.x, 0, 0, 0, s.y, 0, 0, 0, s.z);
             }
-            if (rotate != nullptr)
-                m.linear = rotation_about(turn_in(*rotate).axis, turn_in(*rotate).degrees) * m.linear;
+            if (rotate != nullptr) {
+                const auto turned = turn_in(*rotate);
+                m.linear = rotation_about(turned.axis, turned.degrees) * m.linear;
+            }
             if (translate != nullptr)
                 m.offset = point(*translate);
         }

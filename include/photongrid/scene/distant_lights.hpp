@@ -126,14 +126,14 @@ struct light_kind<directional_light> {
         return l.irradiance * projected_area(box, glm::normalize(l.direction));
     }
     /// See trace/distant_light.glsl.
-    static void write_record(record_writer& w, const directional_light& l, const bounds& box)
+    static void write_record(record_writer& w, const directional_light& l, const bounds& box, const dvec3& power)
     {
         const dvec3 d = glm::normalize(l.direction);
         w.put(d, 1 / projected_area(box, d));
         w.put_position(box.low, 0);
         w.put_position(box.high, 0);
         w.put(dvec3(0), 0);
-        w.put(power_into(box, l), 0);
+        w.put(power, 0);
     }
     /// @}
 };
@@ -161,7 +161,7 @@ struct light_kind<environment_light> {
         return power;
     }
     /// See trace/environment.glsl.
-    static void write_record(record_writer& w, const environment_light& l, const bounds& box)
+    static void write_record(record_writer& w, const environment_light& l, const bounds& box, const dvec3& power)
     {
         const environment_texels texels(l);
         const double half = glm::radians(l.degrees) / 2;
@@ -169,7 +169,7 @@ struct light_kind<environment_light> {
         w.put_position(box.low, 0);
         w.put_position(box.high, 0);
         w.put(std::sin(half) * glm::normalize(l.axis), std::cos(half));
-        w.put(power_into(box, l), 0);
+        w.put(power, 0);
     }
     /// @}
 };

@@ -27,8 +27,8 @@ struct environment_map {
 /// The most texels of an environment_map.
 inline constexpr std::uint32_t max_environment_texels = 1u << 25;
 
-/// \throws std::invalid_argument for a size that is not that of `radiance`, or 0, or above the limit; for a radiance that
-///         is not finite or negative; or if all are 0.
+/// \throws std::invalid_argument for a size that is not that of `radiance`, or 0, or above the limit; for a radiance
+///         that is not finite or negative; or if all are 0.
 inline void check(const environment_map& m)
 {
     const std::size_t texels = std::size_t{m.width} * m.height;

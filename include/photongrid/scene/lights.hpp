@@ -62,7 +62,8 @@ inline void check(const rectangle_light& l)
     check_emission("power", l.power);
 }
 
-/// \throws std::invalid_argument for a surface that check() rejects or that has no area, or a power as in check_emission.
+/// \throws std::invalid_argument for a surface that check() rejects or that has no area, or a power as in
+///         check_emission.
 inline void check(const mesh_light& l)
 {
     check(l.surface);

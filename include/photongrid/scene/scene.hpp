@@ -156,10 +156,16 @@ inline bounds entry_box(const scene& s)
 }
 
 namespace detail {
+    /// entry_box, which goes over all triangles, if a light of the scene needs it; else nothing.
+    inline bounds box_for_lights(const scene& s)
+    {
+        return s.directional_lights.empty() && s.environment_lights.empty() ? bounds{} : entry_box(s);
+    }
+
     /// The power of all lights, the sum of the channels, W.
     inline double power_of_lights(const scene& s)
     {
-        const bounds box = entry_box(s);
+        const bounds box = box_for_lights(s);
         double sum = 0;
         for_each_light(s, [&](const auto& lights, auto kind) {
             for (const auto& l : lights) {

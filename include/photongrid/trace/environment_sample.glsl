@@ -1,6 +1,6 @@
 // Directions from which the environment's light comes. Included by kernels after trace/environment.glsl and the INPUT
-// environment_shares: of each row, then of each texel of each row, the share of the light, times 2^24, that is in it and
-// in those before it.
+// environment_shares: of each row, then of each texel of each row, the share of the light, times 2^24, that is in it
+// and in those before it.
 
 // The first of `count` elements from `first` on whose share is above a number from 0 to 1, counted from `first`.
 uint chosen_share(uint first, uint count, float u)

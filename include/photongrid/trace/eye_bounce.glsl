@@ -1,7 +1,7 @@
-// Traces an eye ray to the next surface (2.4), through mirrors and glass until it ends on a diffuse surface, on a light,
-// or in the environment. At the first `splits` glass surfaces a ray splits into its two Fresnel branches: the bits of
-// `branch` select the one that this pass follows at each. At later ones a random number selects it, stratified over the
-// eye rays of a pixel.
+// Traces an eye ray to the next surface (2.4), through mirrors and glass until it ends on a diffuse surface, on a
+// light, or in the environment. At the first `splits` glass surfaces a ray splits into its two Fresnel branches: the
+// bits of `branch` select the one that this pass follows at each. At later ones a random number selects it, stratified
+// over the eye rays of a pixel.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>

@@ -116,6 +116,25 @@ float form_factor(vec3 corner, vec3 edge_u, vec3 edge_v, vec3 n)
     return factor;
 }
 
+// The way from a lit point to a point of a light.
+struct LightWay {
+    vec3 direction;  // unit
+    float distance2; // m^2; 0: the points are the same
+    float cosine;    // with the lit point's normal
+};
+
+LightWay way_to(vec3 target, LitPoint lit)
+{
+    LightWay way;
+    precise vec3 towards = target - lit.position;
+    way.distance2 = dot3(towards, towards);
+    precise float inverse = 1.0f / sqrt(way.distance2);
+    precise vec3 d = towards * inverse;
+    way.direction = d;
+    way.cosine = dot3(d, lit.normal);
+    return way;
+}
+
 struct LightSample {
     float per_power; // irradiance if it is visible, divided by the light's power, m^-2
     bool has_ray;    // else it counts as visible
@@ -170,14 +189,12 @@ LightSample light_sample(SeenLight seen, uint number, uint s, uint i, LitPoint l
             close = dot3(middle, middle) < 16.0f * seen.size2;
         }
     }
-    precise vec3 towards = target - lit.position;
-    float distance2 = dot3(towards, towards);
+    LightWay way = way_to(target, lit);
+    float distance2 = way.distance2;
     if (!(distance2 > 0.0f))
         return no_light(lit);
-    precise float inverse = 1.0f / sqrt(distance2);
-    precise vec3 d = towards * inverse;
-    float cosine = dot3(d, lit.normal);
-    float leaving = seen.area ? -dot3(d, seen.light.normal) : 1.0f;
+    float cosine = way.cosine;
+    float leaving = seen.area ? -dot3(way.direction, seen.light.normal) : 1.0f;
     if (!(leaving > 0.0f) || (!close && !(cosine > 0.0f)))
         return no_light(lit);
     // 1 / (4 pi): intensity of a point light. The distance is at least the ray offset.

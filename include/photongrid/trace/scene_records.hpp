@@ -311,22 +311,30 @@ namespace detail {
         /// Lights are chosen with probabilities proportional to their power.
         void write_lights(record_writer& w)
         {
-            const double total = power_of_lights(s_);
-            const bounds box = entry_box(s_);
-            double below = 0;
-            std::size_t triangles = 0; // of mesh lights so far
-            enter(kernels::LIGHT_TABLE, w.next(), count_lights(s_), 6);
+            const bounds box = box_for_lights(s_);
+            std::vector<dvec3> powers; // W
+            double total = 0;
             for_each_light(s_, [&](const auto& list, auto kind) {
                 for (const auto& l : list) {
-                    const dvec3 power = power_of(kind, l, box);
+                    powers.push_back(power_of(kind, l, box));
+                    total += powers.back().x + powers.back().y + powers.back().z;
+                }
+            });
+            double below = 0;
+            std::size_t triangles = 0; // of mesh lights so far
+            auto next = powers.begin();
+            enter(kernels::LIGHT_TABLE, w.next(), powers.size(), 6);
+            for_each_light(s_, [&](const auto& list, auto kind) {
+                for (const auto& l : list) {
+                    const dvec3& power = *next++;
                     const double weight = power.x + power.y + power.z;
                     below += weight;
                     w.put(dvec3(kind.form, weight / total, below / total), 0);
                     if constexpr (requires { l.surface; }) {
                         kind.write_record(w, l, triangles);
                         triangles += l.surface.surface->triangles.size();
-                    } else if constexpr (requires { kind.write_record(w, l, box); }) {
-                        kind.write_record(w, l, box);
+                    } else if constexpr (requires { kind.write_record(w, l, box, power); }) {
+                        kind.write_record(w, l, box, power);
                     } else {
                         kind.write_record(w, l);
                     }

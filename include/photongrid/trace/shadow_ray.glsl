@@ -75,18 +75,12 @@ LightSample mesh_light_sample(uint at, uint i, LitPoint lit)
     float share = sample_share();
     precise float u = (float(args.sample_id) + r.x) * share;
     EmittingPoint e = emitting_point(at, min(u, 0.99999994f), r.y, r.z);
-    precise vec3 towards = e.position - lit.position;
-    float distance2 = dot3(towards, towards);
-    if (!(distance2 > 0.0f))
-        return no_light(lit);
-    precise float inverse = 1.0f / sqrt(distance2);
-    precise vec3 d = towards * inverse;
-    float cosine = dot3(d, lit.normal);
-    float leaving = -dot3(d, e.normal);
-    if (!(cosine > 0.0f) || !(leaving > 0.0f))
+    LightWay way = way_to(e.position, lit);
+    float leaving = -dot3(way.direction, e.normal);
+    if (!(way.distance2 > 0.0f) || !(way.cosine > 0.0f) || !(leaving > 0.0f))
         return no_light(lit);
     // Radiance times area is power / pi.
-    precise float per_power = cosine * leaving / distance2 * 3.18309886e-1f * share;
+    precise float per_power = way.cosine * leaving / way.distance2 * 3.18309886e-1f * share;
     return lit_from(ray_at(e.position, e.normal, e.offset), per_power, lit);
 }
 
@@ -125,18 +119,12 @@ LightSample sphere_light_sample(uint at, uint i, LitPoint lit)
 LightSample spot_light_sample(uint at, LitPoint lit)
 {
     vec3 position = vec3(scene(at + 1u));
-    precise vec3 towards = position - lit.position;
-    float distance2 = dot3(towards, towards);
-    if (!(distance2 > 0.0f))
-        return no_light(lit);
-    precise float inverse = 1.0f / sqrt(distance2);
-    precise vec3 d = towards * inverse;
-    float cosine = dot3(d, lit.normal);
-    float intensity = spot_intensity(at, -d);
-    if (!(cosine > 0.0f) || !(intensity > 0.0f))
+    LightWay way = way_to(position, lit);
+    float intensity = spot_intensity(at, -way.direction);
+    if (!(way.distance2 > 0.0f) || !(way.cosine > 0.0f) || !(intensity > 0.0f))
         return no_light(lit);
     float least2 = lit.offset * lit.offset; // as for a point light
-    precise float per_power = cosine * intensity / (distance2 > least2 ? distance2 : least2);
+    precise float per_power = way.cosine * intensity / (way.distance2 > least2 ? way.distance2 : least2);
     LightSample found = lit_from(position, per_power, lit);
     precise float short_of = found.far * 0.9999f; // it may touch a surface
     found.far = short_of;

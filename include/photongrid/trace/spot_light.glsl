@@ -1,6 +1,7 @@
-// Spotlights (scene/spot_light.hpp). Included by kernels after trace/lights.glsl and the SWITCH SPOT_LIGHTS. Records: at
-// + 1: position; at + 2: unit vector of the axis; w: greatest intensity divided by the power, sr^-1; at + 3: 1 - cosine
-// of the inner angle; that of the outer angle less that of the inner one; share of the power within the inner angle.
+// Spotlights (scene/spot_light.hpp). Included by kernels after trace/lights.glsl and the SWITCH SPOT_LIGHTS. Records:
+// at + 1: position; at + 2: unit vector of the axis; w: greatest intensity divided by the power, sr^-1; at + 3: 1 -
+// cosine of the inner angle; that of the outer angle less that of the inner one; share of the power within the inner
+// angle.
 
 // The intensity in direction d, divided by the power, sr^-1.
 float spot_intensity(uint at, vec3 d)
