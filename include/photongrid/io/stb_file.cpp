@@ -53,25 +53,32 @@ namespace {
         std::size_t at = 0;
         bool past_end = false;
     };
-    constexpr stbi_io_callbacks from_source{[](void* user, char* to, int size) {
-                                                auto& s = *static_cast<source*>(user);
-                                                const auto n
-                                                    = std::min(static_cast<std::size_t>(size), s.bytes.size() - s.at);
-                                                std::memcpy(to, s.bytes.data() + s.at, n);
-                                                s.at += n;
-                                                s.past_end = s.past_end || n == 0;
-                                                return static_cast<int>(n);
-                                            },
-        [](void* user, int n) {
-            auto& s = *static_cast<source*>(user);
-            const auto to = static_cast<std::int64_t>(s.at) + n, end = static_cast<std::int64_t>(s.bytes.size());
-            s.past_end = s.past_end || to > end;
-            s.at = static_cast<std::size_t>(std::clamp<std::int64_t>(to, 0, end));
-        },
-        [](void* user) {
-            const auto& s = *static_cast<source*>(user);
-            return s.at == s.bytes.size() ? 1 : 0;
-        }};
+    /// Reads up to `size` bytes and returns how many there were.
+    int read_bytes(void* user, char* to, int size)
+    {
+        auto& s = *static_cast<source*>(user);
+        const auto n = std::min(static_cast<std::size_t>(size), s.bytes.size() - s.at);
+        std::copy_n(s.bytes.begin() + static_cast<std::ptrdiff_t>(s.at), n, to);
+        s.at += n;
+        s.past_end = s.past_end || n == 0;
+        return static_cast<int>(n);
+    }
+
+    void skip_bytes(void* user, int n)
+    {
+        auto& s = *static_cast<source*>(user);
+        const auto to = static_cast<std::int64_t>(s.at) + n, end = static_cast<std::int64_t>(s.bytes.size());
+        s.past_end = s.past_end || to > end;
+        s.at = static_cast<std::size_t>(std::clamp<std::int64_t>(to, 0, end));
+    }
+
+    int is_at_end(void* user)
+    {
+        const auto& s = *static_cast<source*>(user);
+        return s.at == s.bytes.size() ? 1 : 0;
+    }
+
+    constexpr stbi_io_callbacks from_source{read_bytes, skip_bytes, is_at_end};
 
     /// `load` returns three channels a pixel, `value` the linear value of one.
     template <class Load, class Value>
