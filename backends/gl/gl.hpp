@@ -95,7 +95,8 @@ public:
         caps_.max_route_slots = std::min(16u, device_->max_point);
         // llvmpipe ends loops silently after so many iterations of an invocation group (lp_bld_limits.h).
         caps_.loop_limit = renderer.find("llvmpipe") != std::string::npos ? 65535u : 0u;
-        std::tie(caps_.exact_division, caps_.exact_sqrt) = test_arithmetic(*this);
+        std::tie(caps_.exact_division, caps_.exact_sqrt)
+            = choose_arithmetic(*this, options.arithmetic, [&](bool rewrite) { made_->rewrite_arithmetic(rewrite); });
         made_->costs.clear();
         device_->peak_bytes = device_->bytes;
     }

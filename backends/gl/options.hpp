@@ -1,6 +1,7 @@
 // Options of the OpenGL backend.
 #pragma once
 
+#include <photongrid/backend/exact_arithmetic.hpp>
 #include <photongrid/backends/gl/functions.hpp>
 
 namespace photongrid {
@@ -20,7 +21,8 @@ struct gl_options {
     gl::loader find = nullptr; ///< for gl_context_kind::current: function loader; null: EGL's or OSMesa's
     uint tile = 64;            ///< run_until_done skips finished tiles of tile x tile elements (3.3); 1 to 2048
     bool time_passes = false;  ///< measure verbs by the device's clock, for costs(), and wait for each; slower
-    bool debug = false;        ///< check for errors after every pass, with the driver's own messages; slow
+    arithmetic_kind arithmetic = arithmetic_kind::automatic; ///< how kernels compute quotients and square roots
+    bool debug = false; ///< check for errors after every pass, with the driver's own messages; slow
 };
 
 } // namespace photongrid

@@ -78,6 +78,15 @@ public:
     /// More kernel texts, in addition to the library's. They must outlive the backend.
     void add_texts(std::span<const text_file> texts) { library_.insert(library_.end(), texts.begin(), texts.end()); }
 
+    /// Kernels that are compiled from now on take quotients and square roots from exact_arithmetic.glsl, or do not.
+    void rewrite_arithmetic(bool rewrite)
+    {
+        for (const auto& [key, id] : kernels_)
+            device_->call.DeleteProgram(id);
+        kernels_.clear();
+        exact_arithmetic_ = rewrite ? &text("exact_arithmetic.glsl") : nullptr;
+    }
+
     /// The program of kernel K for verb `v` with these switches.
     template <kernel_struct K>
     GLuint get(verb v, uint switches)
@@ -95,7 +104,8 @@ public:
         GLuint program = 0;
         if (v == verb::route_payload || v == verb::route_amount) {
             const GLuint vertex = gl::compile(*device_, GL_VERTEX_SHADER,
-                splice(text("vertex_prelude.glsl"), defines, kernel, text("vertex_epilogue.glsl"), texts),
+                splice(text("vertex_prelude.glsl"), defines, kernel, text("vertex_epilogue.glsl"), texts,
+                    exact_arithmetic_),
                 what + " (vertex stage)");
             program = link(*device_, vertex,
                 compile_own(GL_FRAGMENT_SHADER, v == verb::route_payload ? "route_payload.glsl" : "route_amount.glsl"),
@@ -105,7 +115,8 @@ public:
             defines += std::string("#define ") + verbs[static_cast<std::size_t>(v)] + "\n#define STATE_UNIT_ "
                 + std::to_string(state_unit) + "\n#define LOAD_STATES_(at) " + load_states<K>() + "\n";
             const GLuint fragment = gl::compile(*device_, GL_FRAGMENT_SHADER,
-                splice(text("fragment_prelude.glsl"), defines, kernel, text("fragment_epilogue.glsl"), texts),
+                splice(text("fragment_prelude.glsl"), defines, kernel, text("fragment_epilogue.glsl"), texts,
+                    exact_arithmetic_),
                 what + " (fragment stage)");
             program = link(*device_, compile_own(GL_VERTEX_SHADER, "screen.glsl"), fragment, what);
         }
@@ -162,6 +173,7 @@ private:
     }
 
     std::shared_ptr<device> device_;
+    const text_file* exact_arithmetic_ = nullptr; ///< where kernels are rewritten
     std::vector<text_file> library_;
     std::map<std::tuple<const char*, verb, uint>, GLuint> kernels_;
     std::map<std::string, GLuint> own_;

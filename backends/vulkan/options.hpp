@@ -1,6 +1,8 @@
 // Options of the Vulkan backend, and the devices that it may use: the caller's handles, and the list of all.
 #pragma once
 
+#include <photongrid/backend/exact_arithmetic.hpp>
+
 #include <cstdint>
 #include <string>
 #include <vulkan/vulkan.h>
@@ -19,7 +21,8 @@ struct vulkan_options {
                                ///< storage buffers
     bool subgroups = true;     ///< let neighbouring points search in a subgroup, if the device supports it
     bool time_passes = false;  ///< measure passes by the device's clock, for costs(); a little slower
-    std::string cache_folder{}; ///< folder in which compiled kernels are cached; "": none
+    arithmetic_kind arithmetic = arithmetic_kind::automatic; ///< how kernels compute quotients and square roots
+    std::string cache_folder{};                              ///< folder in which compiled kernels are cached; "": none
 };
 
 /// A device that the caller has opened and continues to own. The instance must be for Vulkan 1.1 or later, and the

@@ -30,6 +30,13 @@ public:
     /// More kernel texts, in addition to the library's. They must outlive the backend.
     void add_texts(std::span<const text_file> texts) { texts_.insert(texts_.end(), texts.begin(), texts.end()); }
 
+    /// Kernels that are compiled from now on take quotients and square roots from exact_arithmetic.glsl, or do not.
+    void rewrite_arithmetic(bool rewrite)
+    {
+        pipelines_.clear();
+        rewrites_ = rewrite;
+    }
+
     /// The elements per workgroup, and the workgroups for so many elements.
     uint group() const { return group_; }
     std::uint64_t groups(std::uint64_t elements) const { return (elements + group_ - 1) / group_; }
@@ -125,7 +132,8 @@ private:
         const auto texts = texts_of<K>(texts_);
         const auto source = splice(own_text("compute_prelude"),
             defines(output_count<K>, switches & known_switches<K>(), v == verb::list, texels, lanes),
-            find_kernel_text(K::path, texts), own_text(epilogues[static_cast<int>(v)]), texts);
+            find_kernel_text(K::path, texts), own_text(epilogues[static_cast<int>(v)]), texts,
+            rewrites_ ? &own_text("exact_arithmetic") : nullptr);
         auto words = kernels_.compile(source, name);
         auto& c = costs[name];
         if (v != verb::list)
@@ -137,6 +145,7 @@ private:
     std::shared_ptr<context> context_;
     compiled_kernels kernels_;
     std::vector<text_file> texts_;
+    bool rewrites_ = false;
     uint group_ = 64;
     uint lanes_ = 1;                ///< elements per group in kernels that are IN_GROUPS
     std::uint64_t texel_limit_ = 0; ///< bytes of the largest buffer that is read as texels; 0: none

@@ -318,7 +318,8 @@ private:
         caps_.max_route_slots = 16;
         // lavapipe ends loops silently after so many iterations, counted over a group of invocations.
         caps_.loop_limit = info.name.find("llvmpipe") != std::string::npos ? 65535u : 0u;
-        std::tie(caps_.exact_division, caps_.exact_sqrt) = test_arithmetic(*this);
+        std::tie(caps_.exact_division, caps_.exact_sqrt) = choose_arithmetic(
+            *this, options.arithmetic, [&](bool rewrite) { passes_.made.rewrite_arithmetic(rewrite); });
     }
 
     /// The buffers of a call in the order of the kernel's bindings. A buffer without memory is replaced by an empty

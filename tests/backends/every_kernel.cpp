@@ -67,6 +67,15 @@ TEST(kernels_on_vulkan, every_kernel_compiles_to_valid_spirv_without_contraction
     expect_valid(*b, all_kernels<kernel_list>{});
 }
 
+TEST(kernels_on_vulkan, every_kernel_compiles_with_rewritten_arithmetic)
+{
+    std::string reason;
+    if (shared_backend<vulkan_tag>(reason) == nullptr)
+        GTEST_SKIP() << reason;
+    vulkan_backend rewriting({.arithmetic = arithmetic_kind::rewritten});
+    expect_valid(rewriting, all_kernels<kernel_list>{});
+}
+
 TEST(kernels_on_vulkan, parameters_stand_where_cpp_has_them)
 {
     std::string reason;

@@ -17,14 +17,16 @@ namespace {
         gl::functions call; // those of the context that the backend left current
         call.load(TypeParam::kind == gl_context_kind::osmesa ? gl::find_by_osmesa : gl::find_by_egl);
         call.Enable(0xDEAD);
-        EXPECT_NE(b.take_debug_messages().find("glEnable"), std::string::npos);
+        const bool mesa = b.caps().software; // it names the function, others may not
+        const auto message = b.take_debug_messages();
+        EXPECT_NE(message.find(mesa ? "glEnable" : "GL_INVALID_ENUM"), std::string::npos) << message;
         call.Enable(0xDEAD);
         try { // the next pass tells
             b.template run<test_kernels::next_frame>(4, {.stride = 0u}, reads(before), writes(after));
             FAIL();
         } catch (const backend_error& e) {
             EXPECT_NE(std::string_view(e.what()).find("GL_INVALID_ENUM"), std::string_view::npos) << e.what();
-            EXPECT_NE(std::string_view(e.what()).find("glEnable"), std::string_view::npos) << e.what();
+            EXPECT_TRUE(!mesa || std::string_view(e.what()).find("glEnable") != std::string_view::npos) << e.what();
         }
         EXPECT_EQ(b.take_debug_messages(), "");
     }
@@ -116,7 +118,8 @@ namespace {
         EXPECT_NE(syntax.find("tests/misspelt.glsl:7: error:"), std::string::npos) << syntax;
         const std::string layout = message(std::type_identity<test_kernels::wrongly_laid_out>{});
         EXPECT_NE(layout.find("std140"), std::string::npos) << layout;
-        EXPECT_NE(this->gpu().take_debug_messages(), "") << "the compiler's errors are messages too";
+        const auto messages = this->gpu().take_debug_messages();
+        EXPECT_TRUE(messages != "" || !this->gpu().caps().software) << "Mesa's compiler errors are messages too";
         // And goes on as if nothing had happened.
         EXPECT_EQ(this->gpu().template count<test_kernels::is_odd>(
                       1, {}, reads(this->gpu().upload(view(std::vector<uint>{3u})))),

@@ -58,7 +58,13 @@ TEST_F(vulkan, float_arithmetic_is_neither_fused_nor_folded)
         backend.template run<test_kernels::contracts>(host.size(), {}, reads(in), writes(out));
         return backend.download(out);
     };
-    EXPECT_EQ(count_different_bits(run(b()), run(serial)), 0u);
+    auto computed = run(b()), expected = run(serial);
+    if (!b().caps().exact_division) // w is a quotient and a number
+        for (std::size_t i = 0; i < host.size(); ++i) {
+            ASSERT_NEAR(computed[i].w, expected[i].w, 4 * 0x1p-24f * (std::abs(host[i].z / 3.3f) + 1)) << i;
+            computed[i].w = expected[i].w = 0;
+        }
+    EXPECT_EQ(count_different_bits(computed, expected), 0u);
 }
 
 TEST_F(vulkan, passes_over_unfinished_elements_fall_and_can_be_resumed)

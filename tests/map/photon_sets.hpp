@@ -4,8 +4,10 @@
 #include <photongrid/map/map_builders.hpp>
 
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace photongrid::testing {
@@ -169,6 +171,20 @@ std::size_t count_different_bits(const std::vector<T>& a, const std::vector<T>& 
     for (std::size_t i = 0; i < a.size(); ++i)
         n += std::memcmp(&a[i], &b[i], sizeof(T)) != 0 ? 1u : 0u;
     return n;
+}
+
+/// The first element that differs in any bit, of both, in hexadecimal; for messages.
+inline std::string first_difference(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b)
+{
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        if (std::memcmp(&a[i], &b[i], sizeof(glm::vec4)) != 0) {
+            char text[200];
+            const auto d = [](float v) { return static_cast<double>(v); };
+            std::snprintf(text, sizeof text, "element %zu: %a %a %a %a, not %a %a %a %a", i, d(a[i].x), d(a[i].y),
+                d(a[i].z), d(a[i].w), d(b[i].x), d(b[i].y), d(b[i].z), d(b[i].w));
+            return text;
+        }
+    return "none of those that both have";
 }
 
 } // namespace photongrid::testing

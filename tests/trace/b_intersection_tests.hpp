@@ -49,7 +49,10 @@ TYPED_TEST_P(hard_cases, b2_a_large_sphere_is_hit_from_close_above)
     const real t = (b - std::sqrt(b * b - a * 2000001.0L)) / a;
     this->report("B2", "relative error of t, 1 m above a sphere of 1000 km:",
         static_cast<double>(std::abs(static_cast<real>(hits.places[0].w) / t - 1)));
-    EXPECT_NEAR(static_cast<double>(hits.places[0].w), 1.666668, 2e-6);
+    // A square root of 1000 km that is off by 2.5 units of 1/16 m, which GPUs may be, moves the height above the
+    // sphere.
+    const double height_error = this->exact() ? 0 : 2.5 / 16;
+    EXPECT_NEAR(static_cast<double>(hits.places[0].w), 1.666668, 2e-6 + height_error / 0.6);
 
     // Things that float coordinates cannot resolve beside it are refused.
     s.spheres.push_back({{0, 1e6 + 1, 0}, 1, 0});

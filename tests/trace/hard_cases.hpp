@@ -20,9 +20,12 @@ protected:
         if (exact()) {
             serial_backend serial;
             const auto theirs = trace_rays(serial, s, r);
-            EXPECT_EQ(count_different_bits(mine.places, theirs.places), 0u) << "of " << r.size();
-            EXPECT_EQ(count_different_bits(mine.facings, theirs.facings), 0u) << "of " << r.size();
-            EXPECT_EQ(count_different_bits(mine.starts, theirs.starts), 0u) << "of " << r.size();
+            EXPECT_EQ(count_different_bits(mine.places, theirs.places), 0u)
+                << "of " << r.size() << ", " << first_difference(mine.places, theirs.places);
+            EXPECT_EQ(count_different_bits(mine.facings, theirs.facings), 0u)
+                << "of " << r.size() << ", " << first_difference(mine.facings, theirs.facings);
+            EXPECT_EQ(count_different_bits(mine.starts, theirs.starts), 0u)
+                << "of " << r.size() << ", " << first_difference(mine.starts, theirs.starts);
         }
         return mine;
     }

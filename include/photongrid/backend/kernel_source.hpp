@@ -2,6 +2,7 @@
 // back to the kernel's own file and line.
 #pragma once
 
+#include <photongrid/backend/exact_arithmetic.hpp>
 #include <photongrid/backend/text_file.hpp>
 
 #include <algorithm>
@@ -63,7 +64,17 @@ namespace detail {
                 }
             }
         }
-        spliced_source take() { return std::move(out_); }
+        /// What is appended after this call goes through with_exact_arithmetic().
+        void rewrite_from_here() { rewritten_ = out_.text.size(); }
+        spliced_source take()
+        {
+            if (rewritten_ < out_.text.size()) {
+                const auto exact = with_exact_arithmetic(std::string_view(out_.text).substr(rewritten_));
+                out_.text.resize(rewritten_);
+                out_.text += exact;
+            }
+            return std::move(out_);
+        }
 
     private:
         /// Where C++ finds a file, finds the same: for "path" first the one beside the including file, then, as for
@@ -99,17 +110,24 @@ namespace detail {
         std::span<const text_file> library_;
         std::set<std::string_view> once_;
         spliced_source out_;
+        std::size_t rewritten_ = std::string::npos;
     };
 } // namespace detail
 
 /// Joins `prelude`, `kernel` and `epilogue` (which has main), and replaces each `#include` of an x.glsl by that file of
 /// `library`, once per file. `defines` are inserted unchanged after the prelude's `#version` line.
+/// With `exact_arithmetic`, the text of exact_arithmetic.glsl, quotients and square roots of the kernel are that
+/// file's.
 /// \throws std::runtime_error, with file and line, if an included file is not in `library`, or if its path may mean two.
 inline spliced_source splice(const text_file& prelude, std::string_view defines, const text_file& kernel,
-    const text_file& epilogue, std::span<const text_file> library)
+    const text_file& epilogue, std::span<const text_file> library, const text_file* exact_arithmetic = nullptr)
 {
     detail::splicer s(library);
     s.append(prelude, defines);
+    if (exact_arithmetic != nullptr) {
+        s.append(*exact_arithmetic);
+        s.rewrite_from_here();
+    }
     s.append(kernel);
     s.append(epilogue);
     return s.take();

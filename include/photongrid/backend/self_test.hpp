@@ -4,6 +4,7 @@
 
 #include <photongrid/backend/arithmetic_probe.kernel.hpp>
 #include <photongrid/backend/backend.hpp>
+#include <photongrid/backend/exact_arithmetic.hpp>
 
 #include <cmath>
 
@@ -25,6 +26,25 @@ std::pair<bool, bool> test_arithmetic(B& device)
         square_root = square_root && std::sqrt(r.x) == r.w;
     }
     return {division, square_root};
+}
+
+/// Tests the arithmetic of kernels on `device`, as it is or rewritten: rewrite(true) makes kernels take quotients and
+/// square roots from exact_arithmetic.glsl, rewrite(false) undoes that. Returns what test_arithmetic() found of the one
+/// chosen.
+template <class B, class Rewrite>
+std::pair<bool, bool> choose_arithmetic(B& device, arithmetic_kind kind, Rewrite rewrite)
+{
+    constexpr std::pair all_exact(true, true);
+    if (kind == arithmetic_kind::rewritten)
+        rewrite(true);
+    const auto found = test_arithmetic(device);
+    if (kind != arithmetic_kind::automatic || found == all_exact)
+        return found;
+    rewrite(true);
+    if (test_arithmetic(device) == all_exact)
+        return all_exact;
+    rewrite(false); // its fma rounds twice
+    return found;
 }
 
 } // namespace photongrid

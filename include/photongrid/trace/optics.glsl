@@ -38,7 +38,7 @@ Fresnel fresnel(vec3 d, vec3 normal, float index)
     precise float parallel = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
     precise float perpendicular = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     precise float reflected = 0.5f * (parallel * parallel + perpendicular * perpendicular);
-    f.reflected = reflected;
+    f.reflected = reflected < 1.0f ? reflected : 1.0f; // a device may round quotients up
     vec3 facing = entering ? normal : -normal;
     precise vec3 r = d * eta + facing * (eta * cos_i - cos_t);
     f.refracted = normalized3(r);
