@@ -128,7 +128,7 @@ if [[ $gpu == yes ]]; then
   must bench/table1.sh "${backends[@]}"
   title "Whole pictures, by stage, as the device's clock has them"
   for backend in "${backends[@]}"; do
-    for scene in cornell_box ring glass_ball; do
+    for scene in cornell_box ring glass_ball terrace; do
       for run in first second third; do
         $build/photongrid render "examples/scenes/$scene.json" --backend "$backend" --time-passes --stats $build/stats.json -o $build/picture.pfm --quiet >/dev/null
         echo "$scene, $backend, $run run: $(awk '/"(trace_photons|build_map|trace_rays|radiance_estimate)":/ { name = $1 } $1 == "\"ms\":" && name != "" { gsub(",", "", $2); printf "%s %.2f ms; ", name, $2; name = "" }' $build/stats.json)"
@@ -152,6 +152,7 @@ if [[ $smoke == yes ]]; then
   must $build/bench/hashed_routing --quick
   must bench/convergence.sh --quick cpu
   must bench/defaults.sh --quick
+  must bench/lamps.sh --quick
   must bench/inclusion.sh --smoke
   must $build/bench/interactive examples/scenes/cornell_box.json 1 cpu
   must bench/window.sh cpu

@@ -54,6 +54,11 @@ namespace {
             const float x = std::bit_cast<float>(bits), root = std::sqrt(x);
             ASSERT_EQ(exact_functions::refined_root(x, off(root, static_cast<int>(bits % 7u) - 3)), root) << x;
         }
+        // Where a step from a neighbour rounds to the wrong side.
+        for (const float x : {0x1.000002p+0f, 0x1.000006p+0f, 0x1.aa3b7ep+1f, 0x1.fffffap+1f, 0x1.fffffep+1f})
+            for (const int units : {-1, 0, 1})
+                EXPECT_EQ(exact_functions::refined_root(x, off(std::sqrt(x), units)), std::sqrt(x))
+                    << x << ", " << units;
         for (const float scale : {0x1p-78f, 0x1p-40f, 0x1p60f, 0x1p98f})
             for (std::uint32_t bits = std::bit_cast<std::uint32_t>(1.0f); bits < std::bit_cast<std::uint32_t>(4.0f);
                  bits += 997) {

@@ -20,16 +20,15 @@ inline float refined_quotient(float a, float b, float reciprocal)
     return abs(its_residual) < abs(residual) ? neighbour : quotient;
 }
 
-// The square root of x, from an approximate one. Of three neighbouring numbers it is the one whose products with its
-// two neighbours enclose x (Tuckerman's test; Cody and Waite, Software Manual for the Elementary Functions, 1980).
+// The square root of x, from an approximate one. A step of Newton's iteration does not end below the root, so that it is
+// the right number or the one above that: x lies between the products of the right one with its two neighbours
+// (Tuckerman's test; Markstein, as above).
 inline float refined_root(float x, float approximate)
 {
     precise float root = fma(fma(-approximate, approximate, x), 0.5f / approximate, approximate);
     float below = uintBitsToFloat(floatBitsToUint(root) - 1u);
-    float above = uintBitsToFloat(floatBitsToUint(root) + 1u);
     precise float over = fma(-root, below, x);
-    precise float under = fma(-root, above, x);
-    return over <= 0.0f ? below : under > 0.0f ? above : root;
+    return over <= 0.0f ? below : root;
 }
 
 inline float exact_quotient(float a, float b)
