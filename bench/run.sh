@@ -235,6 +235,8 @@ if asked estimates; then
   must bench/estimator_errors.sh
   title "Edge correction"
   must bench/edge_correction.sh
+  title "One lamp and a hundred"
+  must bench/lamps.sh
 fi
 if asked error; then
   title "Time against error"
