@@ -243,7 +243,8 @@ TEST(boxes_in_scenes, are_checked)
     };
     EXPECT_NO_THROW(check(box{}));
     EXPECT_NO_THROW(check(box{dvec3(1), {0, 2, 0}, {1, 0, 0}, {0, 0, 1}, 0})) << "left-handed";
-    refused({dvec3(NAN), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 0}, "corner: must be finite");
+    refused({dvec3(std::numeric_limits<double>::quiet_NaN()), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 0},
+        "corner: must be finite");
     refused({dvec3(0), {1, 0, 0}, {0, 0, 0}, {0, 0, 1}, 0}, "edge_v: must be finite and not zero");
     refused({dvec3(0), {1, 0, 0}, {0, 1, 0}, {0, 0.1, 1}, 0}, "right angles");
     refused({dvec3(0), {1, 0, 0.1}, {0, 1, 0}, {0, 0, 1}, 0}, "right angles");

@@ -25,10 +25,13 @@ protected:
             EXPECT_EQ(count_different_bits(mine.facings, theirs.facings), 0u)
                 << "of " << r.size() << ", " << first_difference(mine.facings, theirs.facings);
             // After a miss they are infinite or NaN, whose sign devices choose.
-            std::vector<glm::vec4> starts, their_starts;
-            for (std::size_t i = 0; i < r.size(); ++i)
-                for (auto [all, chosen] : {std::pair(&mine, &starts), std::pair(&theirs, &their_starts)})
-                    chosen->push_back(all->hit(i) ? all->starts[i] : glm::vec4(0, 0, 0, all->starts[i].w));
+            const auto starts_of_hits = [](ray_hits h) {
+                for (std::size_t i = 0; i < h.starts.size(); ++i)
+                    if (!h.hit(i))
+                        h.starts[i] = glm::vec4(0, 0, 0, h.starts[i].w);
+                return h.starts;
+            };
+            const auto starts = starts_of_hits(mine), their_starts = starts_of_hits(theirs);
             EXPECT_EQ(count_different_bits(starts, their_starts), 0u)
                 << "of " << r.size() << ", " << first_difference(starts, their_starts);
         }
