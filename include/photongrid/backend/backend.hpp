@@ -90,8 +90,8 @@ struct capabilities {
     bool software = true;           ///< true if the device is a CPU
     std::uint64_t max_elements = 0; ///< of one buffer
     uint max_route_slots = 0;       ///< the largest m of route's m x m slots per destination
-    bool exact_division = false;    ///< a / b rounds correctly (self-test at start)
-    bool exact_sqrt = false;        ///< sqrt rounds correctly (self-test at start)
+    bool exact_division = false;    ///< a / b rounds correctly, by itself or rewritten (self-test)
+    bool exact_sqrt = false;        ///< sqrt rounds correctly, by itself or rewritten (self-test)
     float cells_per_radius = 2;     ///< the grid resolution at which searches are fastest: cells per search radius
     bool nearest_in_blocks = false; ///< the nearest photon alone is found fastest in a block map, however photons lie
     uint loop_limit = 0;            ///< iterations after which the driver silently ends loops; 0: none known

@@ -1,14 +1,16 @@
 // Correctly rounded quotients and square roots for devices whose own may be off by a few units in the last place.
-// with_exact_arithmetic() (exact_arithmetic.hpp) replaces `a / b` and `sqrt(x)` in kernels by these functions. They need
-// a fused fma. Outside of 2^-79 to 2^100, where residuals would lose bits or overflow, they return the device's result.
+// with_exact_arithmetic() (exact_arithmetic.hpp) replaces `a / b` and `sqrt(x)` in kernels by these functions. They
+// need a fused fma. Outside of 2^-79 to 2^100, where residuals would lose bits or overflow, they return the device's
+// result.
 inline bool has_exact_residuals(float least, float most)
 {
     return least >= 1.6543612e-24f && most <= 1.2676506e30f;
 }
 
-// a / b, from an approximate 1 / b: of the two numbers about the quotient, the one with the smaller residual. fma computes
-// residuals exactly (Markstein, Computation of elementary functions on the IBM RISC System/6000 processor, IBM J. Res.
-// Dev. 34(1), 1990); his own last step needs a correctly rounded reciprocal, which one step does not always give.
+// a / b, from an approximate 1 / b: of the two numbers about the quotient, the one with the smaller residual. fma
+// computes residuals exactly (Markstein, Computation of elementary functions on the IBM RISC System/6000 processor, IBM
+// J. Res. Dev. 34(1), 1990). His own last step needs a correctly rounded reciprocal, which one step does not always
+// give.
 inline float refined_quotient(float a, float b, float reciprocal)
 {
     precise float rough = a * reciprocal;
@@ -20,8 +22,8 @@ inline float refined_quotient(float a, float b, float reciprocal)
     return abs(its_residual) < abs(residual) ? neighbour : quotient;
 }
 
-// The square root of x, from an approximate one. A step of Newton's iteration does not end below the root, so that it is
-// the right number or the one above that: x lies between the products of the right one with its two neighbours
+// The square root of x, from an approximate one. A step of Newton's iteration does not end below the root, so that it
+// is the right number or the one above that: x lies between the products of the right one with its two neighbours
 // (Tuckerman's test; Markstein, as above).
 inline float refined_root(float x, float approximate)
 {
