@@ -18,11 +18,10 @@ if [[ $backend == --quick ]]; then
 fi
 mkdir -p "$pictures"
 scenes=(ring glass_ball cornell_box cornell_blocks)
-median() { sort -n | awk '{ v[NR] = $1 } END { printf "%.3f", v[int((NR + 1) / 2)] }'; }
 # drawn SCENE OPTION...: draws $work/picture.exr and prints the seconds that took
 drawn() {
   "$build/photongrid" render "examples/scenes/$1.json" --backend "$backend" --shader-cache "$work/cache" --stats "$work/stats.json" --quiet "${@:2}" -o "$work/picture.exr" >/dev/null
-  awk '$1 == "\"total_ms\":" { total = $2 + 0 } /^  "compile_ms":/ { compile = $2 + 0 } END { printf "%.3f\n", (total - compile) / 1000 }' "$work/stats.json"
+  seconds_of "$work/stats.json"
 }
 # similarity: of $work/picture.exr to the scene's reference
 similarity() { "$build/photongrid" compare "$work/picture.exr" "$work/reference.exr" | sed -n 's/^SSIM *\([0-9.]*\).*/\1/p'; }

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Direct light of one lamp and of a hundred, of which each shadow ray chooses one: a floor with a ball and a box, lit by lamps of
-# the same power in all. Prints a Markdown table: seconds of a whole picture without compiling kernels, medians of runs in turn;
-# and the error of each picture (relMSE) against one of 16 times as many samples. Exits 1 where a hundred lamps take over 3 times
-# as long as one.
+# Direct light of one lamp and of a hundred, of which each shadow ray chooses one: a floor with a ball and a box, lit by
+# lamps of the same power in all. Prints a Markdown table: seconds of a whole picture without compiling kernels, medians of
+# runs in turn; and the error of each picture (relMSE) against one of 16 times as many samples. Exits 1 where a hundred
+# lamps take over 3 times as long as one.
 #
 #   bench/lamps.sh [BACKEND [REPETITIONS]]      default: cpu 5
 #   bench/lamps.sh --quick                      tiny pictures, once, to see that it runs
@@ -38,9 +38,8 @@ lamps() {
 # drawn SCENE SAMPLES PICTURE: draws a scene and prints the seconds that took
 drawn() {
   "$build/photongrid" render "$work/$1.json" --backend "$backend" --shader-cache "$work/cache" --spp "$2" --stats "$work/stats.json" --quiet -o "$3" >/dev/null
-  awk '$1 == "\"total_ms\":" { total = $2 + 0 } /^  "compile_ms":/ { compile = $2 + 0 } END { printf "%.4f\n", (total - compile) / 1000 }' "$work/stats.json"
+  seconds_of "$work/stats.json"
 }
-median() { sort -n | awk '{ v[NR] = $1 } END { printf "%.3f", v[int((NR + 1) / 2)] }'; }
 
 failed=0
 echo "$backend, $samples samples a pixel, ${size/,/ x }."

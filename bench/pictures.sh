@@ -22,7 +22,7 @@ median() { sort -n | awk '{ v[NR] = $1 } END { printf "%.2f", v[int((NR + 1) / 2
 ours() {
   # shellcheck disable=SC2046,SC2086
   "$build/photongrid" render "examples/scenes/$1.json" "${size[@]}" --spp 1 $(paper_counts "$1") $plain_estimate --backend "$2" --shader-cache "$work/cache" --stats "$work/stats.json" --quiet -o "$work/picture.pfm" >/dev/null
-  awk '$1 == "\"total_ms\":" { total = $2 + 0 } /^  "compile_ms":/ { compile = $2 + 0 } END { printf "%.3f\n", (total - compile) / 1000 }' "$work/stats.json"
+  seconds_of "$work/stats.json"
 }
 # theirs SCENE PHOTONS: seconds of one run
 theirs() {

@@ -22,6 +22,12 @@ paper_counts() {
 }
 # plain_estimate: options for the library's default estimate, where a scene has another
 plain_estimate="--leaks side --edge-correction none"
+# median: of numbers, one a line
+median() { sort -n | awk '{ v[NR] = $1 } END { printf "%.3f", v[int((NR + 1) / 2)] }'; }
+# seconds_of STATS: of a whole picture, without compiling kernels, from its statistics
+seconds_of() {
+  awk '$1 == "\"total_ms\":" { total = $2 + 0 } /^  "compile_ms":/ { compile = $2 + 0 } END { printf "%.4f\n", (total - compile) / 1000 }' "$1"
+}
 # need_povray: the same for POV-Ray
 need_povray() {
   command -v povray >/dev/null || { echo "$0: no povray; apt-get install povray" >&2; exit 2; }

@@ -69,8 +69,7 @@ public:
         } catch (const backend_error&) {
             return;
         }
-        for (const auto& [key, id] : kernels_)
-            device_->call.DeleteProgram(id);
+        forget_kernels();
         for (const auto& [key, id] : own_)
             device_->call.DeleteProgram(id);
     }
@@ -81,9 +80,7 @@ public:
     /// Kernels that are compiled from now on take quotients and square roots from exact_arithmetic.glsl, or do not.
     void rewrite_arithmetic(bool rewrite)
     {
-        for (const auto& [key, id] : kernels_)
-            device_->call.DeleteProgram(id);
-        kernels_.clear();
+        forget_kernels();
         exact_arithmetic_ = rewrite ? &text("exact_arithmetic.glsl") : nullptr;
     }
 
@@ -141,6 +138,12 @@ public:
 
 private:
     static const text_file& text(std::string_view name) { return find_kernel_text(name, gl_texts); }
+    void forget_kernels()
+    {
+        for (const auto& [key, id] : kernels_)
+            device_->call.DeleteProgram(id);
+        kernels_.clear();
+    }
     GLuint compile_own(GLenum stage, const char* file)
     {
         photongrid::detail::splicer s(library_);

@@ -34,7 +34,7 @@ public:
     void rewrite_arithmetic(bool rewrite)
     {
         pipelines_.clear();
-        rewrites_ = rewrite;
+        exact_arithmetic_ = rewrite ? &own_text("exact_arithmetic") : nullptr;
     }
 
     /// The elements per workgroup, and the workgroups for so many elements.
@@ -132,8 +132,7 @@ private:
         const auto texts = texts_of<K>(texts_);
         const auto source = splice(own_text("compute_prelude"),
             defines(output_count<K>, switches & known_switches<K>(), v == verb::list, texels, lanes),
-            find_kernel_text(K::path, texts), own_text(epilogues[static_cast<int>(v)]), texts,
-            rewrites_ ? &own_text("exact_arithmetic") : nullptr);
+            find_kernel_text(K::path, texts), own_text(epilogues[static_cast<int>(v)]), texts, exact_arithmetic_);
         auto words = kernels_.compile(source, name);
         auto& c = costs[name];
         if (v != verb::list)
@@ -145,7 +144,7 @@ private:
     std::shared_ptr<context> context_;
     compiled_kernels kernels_;
     std::vector<text_file> texts_;
-    bool rewrites_ = false;
+    const text_file* exact_arithmetic_ = nullptr; ///< where kernels are rewritten
     uint group_ = 64;
     uint lanes_ = 1;                ///< elements per group in kernels that are IN_GROUPS
     std::uint64_t texel_limit_ = 0; ///< bytes of the largest buffer that is read as texels; 0: none
