@@ -5,6 +5,7 @@
 #include <photongrid/backend/backend.hpp>
 #include <photongrid/scene/scene.hpp>
 #include <photongrid/trace/environment_layout.hpp>
+#include <photongrid/trace/light_tree.hpp>
 #include <photongrid/trace/mesh_layout.hpp>
 #include <photongrid/trace/scene_layout.kernel.hpp>
 
@@ -342,6 +343,44 @@ namespace detail {
             });
             for (const auto& l : s_.environment_lights)
                 out_.environment = lay_out(l);
+            write_light_tree(w);
+        }
+
+        /// The tree of all lights that have a place.
+        void write_light_tree(record_writer& w)
+        {
+            const auto lights = out_.table(kernels::LIGHT_TABLE);
+            std::vector<light_ball> balls;
+            for (uint n = 0; n < lights.count; ++n)
+                if (const auto ball = ball_of(&out_.records[lights.first + lights.stride * n]))
+                    balls.push_back(*ball);
+            const auto nodes = build_light_tree(balls);
+            enter(kernels::LIGHT_TREE, w.next(), nodes.size(), 2);
+            out_.records[kernels::LIGHT_TREE].w = static_cast<float>(balls.size());
+            for (const auto& n : nodes) {
+                w.put(n.ball.center, n.ball.radius);
+                w.put(dvec3(n.ball.power, static_cast<double>(n.left), static_cast<double>(n.right)), 0);
+            }
+        }
+
+        /// The ball that holds a light, as chosen_light.glsl has it; none for light from outside of the scene.
+        static std::optional<light_ball> ball_of(const glm::vec4* record)
+        {
+            const auto vector = [&](int at) { return dvec3(record[at].x, record[at].y, record[at].z); };
+            const auto form = static_cast<uint>(record[0].x);
+            light_ball ball{.center = vector(1), .power = glm::dot(vector(5), dvec3(1))};
+            switch (form) {
+            case kernels::DIRECTIONAL_LIGHT:
+            case kernels::ENVIRONMENT_LIGHT: return {};
+            case kernels::RECTANGLE_LIGHT:
+                ball.center += 0.5 * (vector(2) + vector(3));
+                ball.radius = 0.5 * std::hypot(glm::length(vector(2)), glm::length(vector(3)));
+                break;
+            case kernels::SPHERE_LIGHT: ball.radius = static_cast<double>(record[2].x); break;
+            case kernels::MESH_LIGHT: ball.radius = static_cast<double>(record[4].x); break;
+            default: break;
+            }
+            return ball;
         }
 
         const scene& s_;
