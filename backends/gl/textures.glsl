@@ -32,6 +32,10 @@ uint group_min(uint v) { return v; }
 uint group_max(uint v) { return v; }
 uint group_sum_up_to(uint v) { return v; }
 #define lane_value(V, LANE) (V)
-#define from_lane(V, LANE) (V)
+#define LANE_VARIABLE(T, NAME) T NAME;
+#define begin_lanes()
+#define end_lanes()
+#define set_lane(NAME, V) NAME = V
+#define from_lane(NAME, LANE) NAME
 layout(location = 0) uniform uvec4 launch_; // first element, number of elements; unused
 #endif

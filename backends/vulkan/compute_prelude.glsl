@@ -5,6 +5,8 @@
 //   OUTPUTS    how many OUTPUTs and STATEs the kernel has
 //   LANES      elements per group in kernels that are IN_GROUPS: a subgroup's invocations, or 1
 //   LANE_LOOPS 1: EACH_LANE is a loop; 0: it is unrolled, so that lanes are constants for lavapipe
+//   SHARE_LANES
+//              1: LANE_VARIABLEs are in memory that a workgroup shares; 0: they are passed by shuffles
 //   TEXELS     1: inputs are read as texel buffers, 0: as storage buffers
 //   FIRST_OUTPUT, FIRST_OWN: see Bindings
 // Bindings: inputs from 0, outputs and states from FIRST_OUTPUT, the verb's own from FIRST_OWN. No buffer is
@@ -12,6 +14,7 @@
 #if LANES > 1
 #extension GL_KHR_shader_subgroup_shuffle : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_basic : require
 #endif
 #define inline
 // `precise` is not needed, because every float operation gets NoContraction in the SPIR-V (spirv.hpp). And glslang 12
@@ -59,7 +62,25 @@ layout(local_size_x = GROUP) in;
 const uint GROUP_LANES = uint(LANES);
 uint group_lane() { return gl_SubgroupInvocationID; }
 #define lane_value(V, LANE) subgroupShuffle(V, LANE)
-#define from_lane(V, LANE) subgroupShuffle(V, LANE)
+#if SHARE_LANES
+// A shuffle passes one word; a read of shared memory passes four.
+#define LANE_VARIABLE(T, NAME) shared T NAME[GROUP];
+uint first_lane_() { return gl_SubgroupID * GROUP_LANES; }
+void begin_lanes() { subgroupBarrier(); }
+void end_lanes()
+{
+    subgroupMemoryBarrierShared();
+    subgroupBarrier();
+}
+#define set_lane(NAME, V) NAME[first_lane_() + gl_SubgroupInvocationID] = V
+#define from_lane(NAME, LANE) NAME[first_lane_() + (LANE)]
+#else
+#define LANE_VARIABLE(T, NAME) T NAME;
+#define begin_lanes()
+#define end_lanes()
+#define set_lane(NAME, V) NAME = V
+#define from_lane(NAME, LANE) subgroupShuffle(NAME, LANE)
+#endif
 #if LANE_LOOPS
 uint group_min(uint v) { return subgroupMin(v); }
 uint group_max(uint v) { return subgroupMax(v); }
@@ -109,7 +130,11 @@ uint group_min(uint v) { return v; }
 uint group_max(uint v) { return v; }
 uint group_sum_up_to(uint v) { return v; }
 #define lane_value(V, LANE) (V)
-#define from_lane(V, LANE) (V)
+#define LANE_VARIABLE(T, NAME) T NAME;
+#define begin_lanes()
+#define end_lanes()
+#define set_lane(NAME, V) NAME = V
+#define from_lane(NAME, LANE) NAME
 #endif
 
 #if OUTPUTS > 8

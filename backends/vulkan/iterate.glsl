@@ -3,8 +3,10 @@
 // in groups (LANES > 1), a group stays together until all its elements are done, so that its common work does not
 // depend on that order either.
 //
-// control_ has eight words per pass: workgroups in x, y, z for the indirect dispatch, the length of the list, and the
-// number of elements that are not done. launch_.z: this pass; launch_.w: offset of its elements from those of the list.
+// control_ has eight words per pass: workgroups in x, y, z for its indirect dispatch, the length of its list, the number
+// of elements that are not done, and the number of workgroups that have finished it; in the first pass one more, the
+// workgroups that have finished the list. The last workgroup to finish writes the workgroups of the next pass.
+// launch_.z: this pass; launch_.w: offset of its elements from those of the list.
 //
 // main() is one function, because its steps, from barrier to barrier, share what is known of the invocation's element.
 layout(std430, binding = FIRST_OWN) readonly buffer listed_block_ { uint listed_[]; };
@@ -31,6 +33,7 @@ void main()
     bool more = false;
 #if LISTING
     uint target = 0u;
+    uint finished = 6u;
     if (group_() < launch_.z && at < launch_.x) {
         i = launch_.y + at;
         LOAD_ALL(i)
@@ -39,6 +42,7 @@ void main()
     bool keep = group_any(more);
 #else
     uint target = launch_.z * 8u + 8u;
+    uint finished = launch_.z * 8u + 5u;
     bool keep = false;
 #if LANES > 1
     // The first entry of a group is always an element. Lanes without an element, and elements that are done, take part
@@ -82,6 +86,15 @@ void main()
         if (all != 0u) {
             base_ = atomicAdd(control_[target + 3u], all);
             atomicAdd(control_[target + 4u], unfinished_);
+        }
+        memoryBarrierBuffer();
+        if (atomicAdd(control_[finished], 1u) + 1u == gl_NumWorkGroups.x * gl_NumWorkGroups.y) {
+            memoryBarrierBuffer();
+            uint groups = (atomicAdd(control_[target + 3u], 0u) + uint(GROUP) - 1u) / uint(GROUP);
+            uint rows = (groups + MOST_GROUPS - 1u) / MOST_GROUPS;
+            control_[target] = rows == 0u ? 0u : (groups + rows - 1u) / rows;
+            control_[target + 1u] = rows;
+            control_[target + 2u] = 1u;
         }
     }
     barrier();

@@ -5,6 +5,7 @@
 #include <photongrid/backends/vulkan/pipelines.hpp>
 
 #include <cassert>
+#include <map>
 
 namespace photongrid::vulkan {
 
@@ -14,8 +15,6 @@ public:
         : context_(std::move(c)), made(context_, options), batches(context_, options.time_passes), empty_(allocate(0))
     {
     }
-
-    const VkPhysicalDeviceLimits& limits() const { return context_->properties().limits; }
 
     /// Memory for `bytes` bytes of any kind.
     memory allocate(std::size_t bytes) const
@@ -56,6 +55,9 @@ public:
         ++cost.passes;
     }
 
+    /// The passes that a kernel's last run until done took, at least 1.
+    uint& usual_passes(const std::string& kernel) { return usual_passes_.try_emplace(kernel, 1u).first->second; }
+
     /// The launch header, 16 bytes, followed by the parameters.
     template <class Params>
     static std::array<std::byte, pipeline::push_bytes> push(
@@ -80,6 +82,7 @@ public:
 
 private:
     memory empty_;
+    std::map<std::string, uint> usual_passes_;
 };
 
 } // namespace photongrid::vulkan

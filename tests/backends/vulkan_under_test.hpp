@@ -46,8 +46,12 @@ TEST_KERNEL(
 TEST_KERNEL(
     group_probe, struct Params { uint unused; }; PARAMS(Params) IN_GROUPS(3) INPUT(0, uint, numbers) STATE(0, uvec2,
         state) OUTPUT(1, uvec4, over_all) OUTPUT(2, uvec4, of_lanes) bool done() { return state.x == 0u; } uint weighed;
-    uint number; void weigh(uint lane) { weighed += from_lane(number, lane) * (lane + 1u); } void kernel(uint i) {
-        number = numbers(i);
+    LANE_VARIABLE(uint, shown) void weigh(uint lane) { weighed += from_lane(shown, lane) * (lane + 1u); } void kernel(
+        uint i) {
+        uint number = numbers(i);
+        begin_lanes();
+        set_lane(shown, number);
+        end_lanes();
         weighed = 0u;
         EACH_LANE(weigh)
         over_all = uvec4(

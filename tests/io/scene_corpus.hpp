@@ -53,9 +53,10 @@ namespace detail {
         std::size_t shapes = polygons.count, next = materials.first + std::size_t{materials.count} * materials.stride;
         for (uint number = 0; number < kernels::SCENE_TABLES; ++number)
             if (number != shape_kind<polygon>::number && number != kernels::MATERIAL_TABLE
-                && number != kernels::SCENE_SIZES && number != kernels::LIGHT_TABLE) {
+                && number != kernels::SCENE_SIZES && number != kernels::LIGHT_TABLE && number != kernels::LIGHT_TREE) {
                 const auto t = r.table(number);
-                shapes += t.count;
+                if (number != kernels::TEXTURE_TABLE)
+                    shapes += t.count;
                 next += t.count * t.stride;
             }
         if (shapes != count_shapes(s) - s.meshes.size() + s.rectangle_lights.size())
@@ -67,8 +68,10 @@ namespace detail {
                 return "the normal of a polygon is not a unit vector";
             next += 2 + 2 * static_cast<std::size_t>(r.records[next + 1].x); // each edge is a record, and each vertex
         }
-        if (lights.first != next || r.records.size() != lights.first + lights.count * lights.stride)
-            return "lights and the end do not follow the polygons";
+        const auto tree = r.table(kernels::LIGHT_TREE);
+        if (lights.first != next || tree.first != lights.first + lights.count * lights.stride
+            || r.records.size() != tree.first + tree.count * tree.stride)
+            return "lights, their tree and the end do not follow the polygons";
         for (uint n = 0, i = quadrics.first; n < quadrics.count; ++n, i += quadrics.stride)
             if (!unit(r.records[i + 1]) || !unit(r.records[i + 2]) || !unit(r.records[i + 3]))
                 return "the axes of a cylinder, cone or paraboloid are not unit vectors";

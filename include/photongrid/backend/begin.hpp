@@ -19,7 +19,11 @@
 //     group_sum_up_to(v)  inclusive prefix sum of v over the lanes
 //     lane_value(v, n)    v of lane n
 //     EACH_LANE(F)        F(0u) to F(GROUP_LANES - 1u)
-//     from_lane(v, LANE)  lane_value for the LANE of an EACH_LANE
+//     LANE_VARIABLE(T, NAME)
+//                         a variable that each lane sets and all lanes read, declared outside of functions
+//     set_lane(NAME, v)   sets this lane's; between begin_lanes() and end_lanes()
+//     from_lane(NAME, LANE)
+//                         that of the LANE of an EACH_LANE; after end_lanes()
 //                         Subgroup operations must be in uniform control flow: not in a branch, nor in an operand of
 //                         ?:, that only some of the lanes execute.
 //
@@ -57,6 +61,8 @@
 #undef GROUP_LANES
 #pragma push_macro("EACH_LANE")
 #undef EACH_LANE
+#pragma push_macro("LANE_VARIABLE")
+#undef LANE_VARIABLE
 #pragma push_macro("IN_GROUPS")
 #undef IN_GROUPS
 #pragma push_macro("VISIT")
@@ -111,6 +117,7 @@
 
 #define GROUP_LANES 1u
 #define EACH_LANE(F) F(0u);
+#define LANE_VARIABLE(T, NAME) T NAME;
 #define IN_GROUPS(B)                                                                                                   \
     static constexpr ::photongrid::uint group_switch = B;                                                              \
     void turn(::photongrid::slot<B>, bool) {}                                                                          \
@@ -120,6 +127,9 @@
     static constexpr ::photongrid::uint group_max(::photongrid::uint v) { return v; }                                  \
     static constexpr ::photongrid::uint group_sum_up_to(::photongrid::uint v) { return v; }                            \
     static constexpr auto lane_value(const auto& v, ::photongrid::uint) { return v; }                                  \
+    static constexpr void begin_lanes() {}                                                                             \
+    static constexpr void end_lanes() {}                                                                               \
+    static constexpr void set_lane(auto& lane, const auto& v) { lane = v; }                                            \
     static constexpr auto from_lane(const auto& v, ::photongrid::uint) { return v; }
 
 #define precise

@@ -16,6 +16,8 @@
 #pragma pop_macro("GROUP_LANES")
 #undef EACH_LANE
 #pragma pop_macro("EACH_LANE")
+#undef LANE_VARIABLE
+#pragma pop_macro("LANE_VARIABLE")
 #undef IN_GROUPS
 #pragma pop_macro("IN_GROUPS")
 #undef VISIT

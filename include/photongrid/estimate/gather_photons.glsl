@@ -49,13 +49,15 @@ STATE(6, uvec4, tally)        // see gather_tally.glsl
 #include <photongrid/estimate/search_blocks.glsl>
 #include <photongrid/estimate/photon_walk.glsl>
 
-uint chunk_id;
-vec4 chunk_power;
+LANE_VARIABLE(uint, chunk_place)
+LANE_VARIABLE(uint, chunk_id)
+LANE_VARIABLE(vec4, chunk_power)
 void gather_powers(uint nth, uint all)
 {
     gather_chunk(nth, all);
-    chunk_id = list(chunk_index);
-    chunk_power = powers(chunk_index);
+    set_lane(chunk_place, chunk_index);
+    set_lane(chunk_id, list(chunk_index));
+    set_lane(chunk_power, powers(chunk_index));
 }
 
 bool done()
@@ -102,7 +104,7 @@ void kernel(uint i)
     {                                                                                      \
         float d2 = distance2_of(PHOTON_OF(LANE), from, n);                                 \
         if (GROUP_LANES > 1u || d2 <= radius2) {                                           \
-            uint at = from_lane(chunk_index, LANE);                                        \
+            uint at = from_lane(chunk_place, LANE);                                        \
             uint id = from_lane(chunk_id, LANE);                                           \
             vec4 power = from_lane(chunk_power, LANE);                                     \
             bool at_radius = d2 == radius2 && id <= last_id;                               \

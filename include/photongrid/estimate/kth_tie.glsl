@@ -37,11 +37,11 @@ STATE(3, uvec4, cursor)      // see row_cursor.glsl
 #include <photongrid/estimate/search_blocks.glsl>
 #include <photongrid/estimate/photon_walk.glsl>
 
-uint chunk_id;
+LANE_VARIABLE(uint, chunk_id)
 void gather_ids(uint nth, uint all)
 {
     gather_chunk(nth, all);
-    chunk_id = list(chunk_index);
+    set_lane(chunk_id, list(chunk_index));
 }
 
 bool done()

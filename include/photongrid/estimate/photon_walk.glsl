@@ -20,9 +20,9 @@ uint walk_steps = 0u;  // steps left in this pass's budget
 uint rows_end = 0u;    // inclusive prefix sum over the lanes of the photons in their current rows
 uint rows_shift = 0u;  // this lane's row: difference between a photon's index in the map and its number in the rows
 uint chunk_index = 0u; // index of the photon that this lane loads
-vec4 chunk_position;
-vec4 chunk_direction;
-vec4 chunk_normal;
+LANE_VARIABLE(vec4, chunk_position)
+LANE_VARIABLE(vec4, chunk_direction)
+LANE_VARIABLE(vec4, chunk_normal)
 
 // Begins a walk for the unfinished point in the centre of the subgroup and the points that can share its walk: those
 // that are close to it and go on at the same photon in the same phase (`resume_at`, row_cursor.glsl). Returns whether
@@ -174,24 +174,29 @@ void gather_chunk(uint nth, uint all)
 {
     uint mine = nth + group_lane();
     chunk_index = index_of(min(mine, all - 1u));
-    chunk_position = positions(chunk_index);
+    vec4 position = positions(chunk_index);
     if (GROUP_LANES > 1u && mine >= all)
-        chunk_position.x = 3.0e38f;
-    chunk_direction = chunk_position;
-    chunk_normal = chunk_position;
+        position.x = 3.0e38f;
+    vec4 direction = position;
+    vec4 normal = position;
     if (SIDE)
-        chunk_direction = directions(chunk_index);
+        direction = directions(chunk_index);
     if (NORMALS)
-        chunk_normal = photon_normals(chunk_index);
+        normal = photon_normals(chunk_index);
+    set_lane(chunk_position, position);
+    set_lane(chunk_direction, direction);
+    set_lane(chunk_normal, normal);
 }
 #define PHOTON_OF(LANE) from_lane(chunk_position, LANE), from_lane(chunk_direction, LANE), from_lane(chunk_normal, LANE)
 // VISIT(LANE) for each of the PHOTONS, at least one, in the current rows. GATHER is gather_chunk or a function that
-// loads more.
+// loads more, by which each lane sets its LANE_VARIABLEs.
 #define EACH_PHOTON(PHOTONS, GATHER, VISIT)  \
     {                                        \
         uint nth = 0u;                       \
         do {                                 \
+            begin_lanes();                   \
             GATHER(nth, PHOTONS);            \
+            end_lanes();                     \
             EACH_LANE(VISIT)                 \
             nth += GROUP_LANES;              \
         } while (nth < PHOTONS);             \

@@ -134,9 +134,6 @@ struct light_sampling {
     uint choices = 0;
 };
 
-/// Of more lights than these each sample of direct light chooses one.
-inline constexpr uint most_lights_sampled_each = 16;
-
 /// Computes the irradiance of direct light at the hits of `pixels` into `light`, with a bounded number of shadow rays
 /// per pass.
 template <backend B>
@@ -152,6 +149,7 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
     if ((s.layout.features & others) != 0 || lights.count > most_lights_sampled_each) {
         mesh_rays<B> rays(device, pixels.elements);
         auto arriving = device.template make<glm::vec4>(pixels.elements);
+        auto found = device.template make<glm::uvec4>(1);
         const auto add_sample = [&](const light_sampling& how) {
             device.template run<kernels::shadow_ray>({pixels.elements, 0u, s.layout.features},
                 {.strata = how.strata,
@@ -166,9 +164,11 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
                 reads(s.records, hits.points, hits.surfaces, s.faces, s.planes, s.vertices, s.shares, s.environment,
                     s.environment_shares),
                 writes(rays.origins, rays.directions, arriving));
-            const auto found = rays.search(device, s, hit_kind::any);
+            if (s.has_meshes())
+                found = rays.search(device, s, hit_kind::any);
             device.template run<kernels::add_unblocked>(
-                pixels, {.first = pixels.first}, reads(arriving, found), writes(light));
+                {pixels.elements, pixels.first, s.has_meshes() ? kernels::add_unblocked::MESHES_switch : 0u},
+                {.first = pixels.first}, reads(arriving, found), writes(light));
         };
         if (lights.count > most_lights_sampled_each) {
             // Each sample is the only one of its light, so it may be anywhere on it.

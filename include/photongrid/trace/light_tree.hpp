@@ -27,6 +27,9 @@ struct light_node {
 };
 
 namespace detail {
+    /// Of more lights than these each sample of direct light chooses one, by the tree.
+    inline constexpr uint most_lights_sampled_each = 16;
+
     class light_tree_builder {
     public:
         explicit light_tree_builder(std::span<const light_ball> lights) : lights_(lights), order_(lights.size())

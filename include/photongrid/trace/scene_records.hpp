@@ -346,12 +346,12 @@ namespace detail {
             write_light_tree(w);
         }
 
-        /// The tree of all lights that have a place.
+        /// The tree of all lights that have a place, if samples choose among them.
         void write_light_tree(record_writer& w)
         {
             const auto lights = out_.table(kernels::LIGHT_TABLE);
             std::vector<light_ball> balls;
-            for (uint n = 0; n < lights.count; ++n)
+            for (uint n = 0; lights.count > most_lights_sampled_each && n < lights.count; ++n)
                 if (const auto ball = ball_of(&out_.records[lights.first + lights.stride * n]))
                     balls.push_back(*ball);
             const auto nodes = build_light_tree(balls);
@@ -359,7 +359,8 @@ namespace detail {
             out_.records[kernels::LIGHT_TREE].w = static_cast<float>(balls.size());
             for (const auto& n : nodes) {
                 w.put(n.ball.center, n.ball.radius);
-                w.put(dvec3(n.ball.power, static_cast<double>(n.left), static_cast<double>(n.right)), 0);
+                const double power = std::min(n.ball.power, 1e38); // of all together it may be too large for a float
+                w.put(dvec3(power, static_cast<double>(n.left), static_cast<double>(n.right)), 0);
             }
         }
 

@@ -22,6 +22,7 @@
 #include <photongrid/trace/tally_path.kernel.hpp>
 
 #include <bit>
+#include <optional>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -70,6 +71,15 @@ namespace detail {
             n = groups;
         } while (n > 1);
         return t;
+    }
+
+    /// The most paths of a batch. A GPU needs many to be busy; on a CPU more only take memory.
+    inline uint most_paths(const capabilities& caps, uint photon_depth)
+    {
+        if (caps.software)
+            return 32768;
+        constexpr std::size_t bytes = std::size_t{1} << 29; // of all frames
+        return static_cast<uint>(std::bit_floor(bytes / (5 * sizeof(glm::vec4) * (std::size_t{photon_depth} + 1))));
     }
 
     /// trace_batch by a pass for each bounce.
@@ -127,10 +137,10 @@ public:
         if_none_stored none = if_none_stored::fail)
         : device_(device), scene_(uploaded), settings_(settings), lights_(detail::names_of_lights(s)), none_(none),
           wanted_(settings.output.only == light_part::direct ? 0u : settings.map.photons),
-          paths_(std::clamp(std::bit_ceil(wanted_ / 2 + 1), 1024u, 32768u)),
-          frames_(device, std::size_t{paths_} * (settings.map.photon_depth + 1))
+          most_paths_(detail::most_paths(device.caps(), settings.map.photon_depth))
     {
         make_photons();
+        make_frames(wanted_ / 2 + 1);
     }
 
     photon_tracing(B&, const scene&, const device_scene<B>&&, const render_settings&) = delete; // it keeps a reference
@@ -156,6 +166,16 @@ private:
         if (settings_.estimate.leaks.needs_photon_normals())
             t_.photons.normals = make();
     }
+    /// Makes room for at least so many paths, or as many as a batch may have.
+    void make_frames(std::uint64_t paths)
+    {
+        const uint enough = static_cast<uint>(std::bit_ceil(std::clamp<std::uint64_t>(paths, 1024, most_paths_)));
+        if (enough <= paths_)
+            return;
+        frames_.reset();
+        frames_.emplace(device_, std::size_t{enough} * (settings_.map.photon_depth + 1));
+        paths_ = enough;
+    }
     /// Ends tracing if so many paths have stored no photon that none will.
     void stop_if_none_are_stored()
     {
@@ -179,8 +199,9 @@ private:
     std::string lights_;
     if_none_stored none_;
     uint wanted_; // photons
-    uint paths_;  // per batch
-    detail::photon_frames<B> frames_;
+    uint most_paths_;
+    uint paths_ = 0; // per batch
+    std::optional<detail::photon_frames<B>> frames_;
     traced_photons<B> t_;
     uint stored_ = 0;
 };
@@ -196,11 +217,13 @@ void photon_tracing<B>::advance()
     if (finished())
         return;
     const uint missing = wanted_ - stored_;
-    const uint frames = trace_batch(device_, scene_, frames_, paths_, static_cast<uint>(t_.emitted), settings_);
+    if (t_.emitted > 0) // where few paths store a photon, a batch needs more of them
+        make_frames(std::uint64_t{missing} * t_.emitted / std::max(stored_, 1u) * 33 / 32);
+    const uint frames = trace_batch(device_, scene_, *frames_, paths_, static_cast<uint>(t_.emitted), settings_);
 
     auto storable = device_.template make<uint>(paths_);
     path_tally<B> tally{device_.template make<glm::uvec4>(paths_), device_.template make<glm::uvec4>(paths_)};
-    device_.template run<kernels::tally_path>(paths_, {.paths = paths_, .frames = frames}, reads(frames_.positions),
+    device_.template run<kernels::tally_path>(paths_, {.paths = paths_, .frames = frames}, reads(frames_->positions),
         writes(storable, tally.ends, tally.hits));
     const auto sums = prefix_sums(device_, storable);
 
@@ -215,12 +238,12 @@ void photon_tracing<B>::advance()
     const uint taken = std::min(found, missing);
     device_.template run<kernels::gather_photon>({taken, stored_},
         {.paths = paths_, .frames = frames, .stored_before = stored_},
-        reads(sums, frames_.positions, frames_.powers, frames_.directions),
+        reads(sums, frames_->positions, frames_->powers, frames_->directions),
         writes(t_.photons.positions, t_.photons.powers, t_.photons.directions));
     if (settings_.estimate.leaks.needs_photon_normals())
         device_.template run<kernels::gather_normal>({taken, stored_},
             {.paths = paths_, .frames = frames, .stored_before = stored_},
-            reads(sums, frames_.positions, frames_.powers, frames_.next_origins, frames_.next_directions),
+            reads(sums, frames_->positions, frames_->powers, frames_->next_origins, frames_->next_directions),
             writes(t_.photons.normals));
     t_.tallies.push_back(detail::sum_tally(device_, std::move(tally), emitted));
     t_.dropped += found - taken;
