@@ -25,8 +25,7 @@
 
 static_assert(INPUT == 1 && OUTPUT == 2 && STATE == 3 && SWITCH == 4 && PARAMS == 5 && GROUP_LANES == 6
     && EACH_LANE == 7 && IN_GROUPS == 8 && precise == 9 && VISIT == 10 && PHOTON_OF == 11 && EACH_PHOTON == 12
-    && LANE_VARIABLE == 13
-    && std::string_view(HWY_TARGET_INCLUDE) == "host.hpp");
+    && LANE_VARIABLE == 13 && std::string_view(HWY_TARGET_INCLUDE) == "host.hpp");
 
 namespace host {
 
