@@ -144,6 +144,7 @@ faults=(
   "cpu: parts of the light swapped|backends/cpu/overrides/photons_simd.hpp|hn::Eq(w, hn::Set(d, 1.0f))|hn::Ne(w, hn::Set(d, 1.0f))"
   "cpu: the last pair of a digit lost|backends/cpu/overrides/scatter_simd.hpp|p < next[v]; ++p)|p + 1 < next[v]; ++p)"
   "vulkan: groups hear another lane|backends/vulkan/compute_prelude.glsl|#define from_lane(NAME, LANE) subgroupShuffle(NAME, LANE)|#define from_lane(NAME, LANE) subgroupShuffle(NAME, (LANE) & 6u)"
+  "vulkan: shared lanes hear another lane|backends/vulkan/compute_prelude.glsl|NAME[first_lane_() + (LANE)]|NAME[first_lane_() + ((LANE) \& 6u)]|vulkan_backend"
   "vulkan: a pass is announced before all workgroups have finished|backends/vulkan/iterate.glsl|+ 1u == gl_NumWorkGroups.x * gl_NumWorkGroups.y|== 0u|vulkan_backend"
   "vulkan: an element left off the list|backends/vulkan/iterate.glsl|keep = more;|keep = more && (i & 1023u) != 1023u;"
   "vulkan: a stride sorts one way|backends/vulkan/overrides/bitonic_strides.glsl|EXCHANGE(p6, p7, rising)|EXCHANGE(p6, p7, true)"

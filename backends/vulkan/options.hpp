@@ -17,8 +17,8 @@ struct vulkan_options {
     bool validation = false;   ///< run the Khronos validation layer (core and synchronization) and collect its messages
     bool gpu_assisted = false; ///< with validation: instrument kernels, so that accesses past a buffer's end give
                                ///< messages; slow
-    bool staging = false;      ///< always work as on a discrete GPU: copy through staging buffers, and read inputs as
-                               ///< storage buffers
+    bool staging = false;      ///< always work as on a discrete GPU: copy through staging buffers, read inputs as
+                               ///< storage buffers, and let lanes exchange values in shared memory
     bool subgroups = true;     ///< let neighbouring points search in a subgroup, if the device supports it
     bool time_passes = false;  ///< measure passes by the device's clock, for costs(); a little slower
     arithmetic_kind arithmetic = arithmetic_kind::automatic; ///< how kernels compute quotients and square roots

@@ -5,7 +5,7 @@ struct Params {
     uint first; // the eye ray of shadow ray 0
 };
 PARAMS(Params)
-SWITCH(0, MESHES)
+SWITCH(9, MESHES)
 INPUT(0, vec4, arriving)   // rgb: irradiance of the sample if no mesh blocks it, W/m^2
 INPUT(1, uvec4, mesh_hits) // with MESHES: of the shadow rays; see ray_state.glsl
 STATE(0, vec4, irradiance)

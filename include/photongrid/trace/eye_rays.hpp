@@ -166,8 +166,7 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
                 writes(rays.origins, rays.directions, arriving));
             if (s.has_meshes())
                 found = rays.search(device, s, hit_kind::any);
-            device.template run<kernels::add_unblocked>(
-                {pixels.elements, pixels.first, s.has_meshes() ? kernels::add_unblocked::MESHES_switch : 0u},
+            device.template run<kernels::add_unblocked>({pixels.elements, pixels.first, s.layout.features},
                 {.first = pixels.first}, reads(arriving, found), writes(light));
         };
         if (lights.count > most_lights_sampled_each) {
