@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Direct light of one lamp and of a hundred, of which each shadow ray chooses one: a floor with a ball and a box, lit by
-# lamps of the same power in all. Prints a Markdown table: seconds of a whole picture without compiling kernels, medians of
-# runs in turn; and the error of each picture (relMSE) against one of 16 times as many samples. Exits 1 where a hundred
-# lamps take over 3 times as long as one.
+# lamps of the same power in all. Prints a Markdown table: seconds of a whole picture without compiling kernels, medians
+# of runs in turn; and the error of each picture (relMSE) against one of 16 times as many samples. Exits 1 where a
+# hundred lamps take over 3 times as long as one.
 #
 #   bench/lamps.sh [BACKEND [REPETITIONS]]      default: cpu 5
 #   bench/lamps.sh --quick                      tiny pictures, once, to see that it runs

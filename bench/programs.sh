@@ -26,7 +26,9 @@ plain_estimate="--leaks side --edge-correction none"
 median() { sort -n | awk '{ v[NR] = $1 } END { printf "%.3f", v[int((NR + 1) / 2)] }'; }
 # seconds_of STATS: of a whole picture, without compiling kernels, from its statistics
 seconds_of() {
-  awk '$1 == "\"total_ms\":" { total = $2 + 0 } /^  "compile_ms":/ { compile = $2 + 0 } END { printf "%.4f\n", (total - compile) / 1000 }' "$1"
+  awk '$1 == "\"total_ms\":" { total = $2 + 0 }
+    /^  "compile_ms":/ { compile = $2 + 0 }
+    END { printf "%.4f\n", (total - compile) / 1000 }' "$1"
 }
 # need_povray: the same for POV-Ray
 need_povray() {

@@ -4,9 +4,8 @@
 //   GROUP      invocations in a workgroup      SWITCHES   the bits of launch.switches
 //   OUTPUTS    how many OUTPUTs and STATEs the kernel has
 //   LANES      elements per group in kernels that are IN_GROUPS: a subgroup's invocations, or 1
-//   LANE_LOOPS 1: EACH_LANE is a loop; 0: it is unrolled, so that lanes are constants for lavapipe
-//   SHARE_LANES
-//              1: LANE_VARIABLEs are in memory that a workgroup shares; 0: they are passed by shuffles
+//   LANE_LOOPS 1: EACH_LANE is a loop, and LANE_VARIABLEs are in memory that a workgroup shares; 0: for lavapipe
+//              EACH_LANE is unrolled, so that lanes are constants, and LANE_VARIABLEs are passed by shuffles
 //   TEXELS     1: inputs are read as texel buffers, 0: as storage buffers
 //   FIRST_OUTPUT, FIRST_OWN: see Bindings
 // Bindings: inputs from 0, outputs and states from FIRST_OUTPUT, the verb's own from FIRST_OWN. No buffer is
@@ -62,7 +61,7 @@ layout(local_size_x = GROUP) in;
 const uint GROUP_LANES = uint(LANES);
 uint group_lane() { return gl_SubgroupInvocationID; }
 #define lane_value(V, LANE) subgroupShuffle(V, LANE)
-#if SHARE_LANES
+#if LANE_LOOPS
 // A shuffle passes one word; a read of shared memory passes four.
 #define LANE_VARIABLE(T, NAME) shared T NAME[GROUP];
 uint first_lane_() { return gl_SubgroupID * GROUP_LANES; }

@@ -3,9 +3,10 @@
 // in groups (LANES > 1), a group stays together until all its elements are done, so that its common work does not
 // depend on that order either.
 //
-// control_ has eight words per pass: workgroups in x, y, z for its indirect dispatch, the length of its list, the number
-// of elements that are not done, and the number of workgroups that have finished it; in the first pass one more, the
-// workgroups that have finished the list. The last workgroup to finish writes the workgroups of the next pass.
+// control_ has eight words per pass: workgroups in x, y, z for its indirect dispatch, the length of its list, the
+// number of elements that are not done, and the number of workgroups that have finished the pass; the first pass has
+// one more, the workgroups that have finished its list. The last workgroup to finish writes the workgroups of the next
+// pass.
 // launch_.z: this pass; launch_.w: offset of its elements from those of the list.
 //
 // main() is one function, because its steps, from barrier to barrier, share what is known of the invocation's element.

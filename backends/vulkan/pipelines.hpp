@@ -111,8 +111,7 @@ private:
     std::string defines(std::size_t outputs, uint switches, bool listing, bool texels, uint lanes) const
     {
         return "#define GROUP " + std::to_string(group_) + "\n#define LANES " + std::to_string(lanes)
-            + "\n#define LANE_LOOPS " + (lanes > 8 || context_->staging() ? "1" : "0") + "\n#define SHARE_LANES "
-            + (lanes > 8 || (lanes > 1 && context_->staging()) ? "1" : "0") + "\n#define MOST_GROUPS "
+            + "\n#define LANE_LOOPS " + (lanes > 8 || context_->staging() ? "1" : "0") + "\n#define MOST_GROUPS "
             + std::to_string(context_->properties().limits.maxComputeWorkGroupCount[0]) + "u\n#define OUTPUTS "
             + std::to_string(outputs) + "\n#define SWITCHES " + std::to_string(switches) + "u\n#define LISTING "
             + (listing ? "1" : "0") + "\n#define TEXELS " + (texels ? "1" : "0") + "\n#define FIRST_OUTPUT "

@@ -1,9 +1,9 @@
-// A light that is chosen for a sample, where there are many: by estimates of irradiance without shadows, of the halves of
-// a tree of lights, from its root on (Conty Estevez and Kulla, Importance Sampling of Many Lights with Adaptive Tree
-// Splitting, 2018). Lights from outside of the scene are in no tree: each is estimated. Included by kernels after
+// Chooses a light for a sample, where there are many: down a tree of lights, from its root on, by estimates of each
+// half's irradiance without shadows (Conty Estevez and Kulla, Importance Sampling of Many Lights with Adaptive Tree
+// Splitting, 2018). Lights from outside of the scene are not in the tree: each is estimated. Included by kernels after
 // trace/light_sample.glsl, trace/mesh_light.glsl, trace/spot_light.glsl and trace/distant_light.glsl.
 
-// The estimate for a ball of this power, or its lamps: 0 only where none of it can be seen from the lit side.
+// The estimate for lamps of this power inside a ball: 0 only where none of the ball can be seen from the lit side.
 float ball_importance(vec3 middle, float radius, float watts, LitPoint lit)
 {
     precise vec3 to = middle - lit.position;
@@ -80,7 +80,7 @@ struct ChosenLight {
     float probability; // 0: none gives any light
 };
 
-// Of the light in a tree, by u from 0 to 1.
+// Of the light in a tree, for u from 0 to 1.
 ChosenLight light_in_tree(float root, LitPoint lit, float u)
 {
     ChosenLight c;
@@ -90,6 +90,7 @@ ChosenLight light_in_tree(float root, LitPoint lit, float u)
     uint first = table_of(scene(LIGHT_TREE)).first;
     for (uint level = 0u; child >= 0.0f && level < 32u; ++level) {
         vec4 node = scene(first + 2u * uint(child) + 1u);
+        u = u < 0.99999994f ? u : 0.99999994f; // quotients round up to 1
         float left = child_importance(node.y, lit);
         float right = child_importance(node.z, lit);
         precise float both = left + right;
@@ -112,7 +113,6 @@ ChosenLight light_in_tree(float root, LitPoint lit, float u)
             c.probability = probability;
             child = node.z;
         }
-        u = u < 0.99999994f ? u : 0.99999994f;
     }
     c.number = light_of_child(child);
     return c;
@@ -139,7 +139,7 @@ ChosenLight chosen_light(LitPoint lit, float u)
     precise float goal = u * total;
     if (goal < in_tree) {
         precise float within = goal / in_tree;
-        c = light_in_tree(root, lit, within < 0.99999994f ? within : 0.99999994f);
+        c = light_in_tree(root, lit, within);
         precise float probability = c.probability * (in_tree / total);
         c.probability = probability;
         return c;

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <photongrid/scene/scene.hpp>
+#include <photongrid/trace/scene_layout.kernel.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,6 +32,26 @@ struct light_node {
 namespace detail {
     /// Of more lights than these each sample of direct light chooses one, by the tree.
     inline constexpr uint most_lights_sampled_each = 16;
+
+    /// The ball around a light, from its record, as light_importance has it (chosen_light.glsl); none for light from
+    /// outside of the scene.
+    inline std::optional<light_ball> ball_around(const glm::vec4* record)
+    {
+        const auto vector = [&](int at) { return dvec3(record[at].x, record[at].y, record[at].z); };
+        light_ball ball{.center = vector(1), .power = glm::dot(vector(5), dvec3(1))};
+        switch (static_cast<uint>(record[0].x)) {
+        case kernels::DIRECTIONAL_LIGHT:
+        case kernels::ENVIRONMENT_LIGHT: return {};
+        case kernels::RECTANGLE_LIGHT:
+            ball.center += 0.5 * (vector(2) + vector(3));
+            ball.radius = 0.5 * std::hypot(glm::length(vector(2)), glm::length(vector(3)));
+            break;
+        case kernels::SPHERE_LIGHT: ball.radius = static_cast<double>(record[2].x); break;
+        case kernels::MESH_LIGHT: ball.radius = static_cast<double>(record[4].x); break;
+        default: break;
+        }
+        return ball;
+    }
 
     class light_tree_builder {
     public:
@@ -58,7 +81,7 @@ namespace detail {
                 ball.radius = std::max(ball.radius, glm::distance(lights_[n].center, ball.center) + lights_[n].radius);
                 ball.power += lights_[n].power;
             }
-            // Single precision rounds it.
+            // Kernels have the ball in single precision.
             ball.radius += 0x1p-20 * (ball.radius + glm::length(ball.center));
 
             const dvec3 size = box.high - box.low;

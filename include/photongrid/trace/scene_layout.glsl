@@ -8,8 +8,9 @@ const uint MATERIAL_TABLE = 4u; // no kind of shape has the numbers 4 to 7 or 12
 const uint SCENE_SIZES = 5u;    // x: what ray_offset adds for curved shapes, m
 const uint LIGHT_TABLE = 6u;
 const uint TEXTURE_TABLE = 7u; // of the materials that have one; see trace/mesh_color.glsl
-const uint LIGHT_TREE = 12u;   // two records a node (trace/chosen_light.glsl): ball; power, children; w of the table: lights
-                               // in the tree, which come first among all
+// Two records per node (trace/light_tree.hpp): its ball; power, left, right. w of the table's record: how many lights
+// are in the tree; they come first among all lights.
+const uint LIGHT_TREE = 12u;
 // Forms of lights.
 const uint POINT_LIGHT = 0u;
 const uint RECTANGLE_LIGHT = 1u;

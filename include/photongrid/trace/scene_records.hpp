@@ -352,7 +352,7 @@ namespace detail {
             const auto lights = out_.table(kernels::LIGHT_TABLE);
             std::vector<light_ball> balls;
             for (uint n = 0; lights.count > most_lights_sampled_each && n < lights.count; ++n)
-                if (const auto ball = ball_of(&out_.records[lights.first + lights.stride * n]))
+                if (const auto ball = ball_around(&out_.records[lights.first + lights.stride * n]))
                     balls.push_back(*ball);
             const auto nodes = build_light_tree(balls);
             enter(kernels::LIGHT_TREE, w.next(), nodes.size(), 2);
@@ -362,26 +362,6 @@ namespace detail {
                 const double power = std::min(n.ball.power, 1e38); // of all together it may be too large for a float
                 w.put(dvec3(power, static_cast<double>(n.left), static_cast<double>(n.right)), 0);
             }
-        }
-
-        /// The ball that holds a light, as chosen_light.glsl has it; none for light from outside of the scene.
-        static std::optional<light_ball> ball_of(const glm::vec4* record)
-        {
-            const auto vector = [&](int at) { return dvec3(record[at].x, record[at].y, record[at].z); };
-            const auto form = static_cast<uint>(record[0].x);
-            light_ball ball{.center = vector(1), .power = glm::dot(vector(5), dvec3(1))};
-            switch (form) {
-            case kernels::DIRECTIONAL_LIGHT:
-            case kernels::ENVIRONMENT_LIGHT: return {};
-            case kernels::RECTANGLE_LIGHT:
-                ball.center += 0.5 * (vector(2) + vector(3));
-                ball.radius = 0.5 * std::hypot(glm::length(vector(2)), glm::length(vector(3)));
-                break;
-            case kernels::SPHERE_LIGHT: ball.radius = static_cast<double>(record[2].x); break;
-            case kernels::MESH_LIGHT: ball.radius = static_cast<double>(record[4].x); break;
-            default: break;
-            }
-            return ball;
         }
 
         const scene& s_;
