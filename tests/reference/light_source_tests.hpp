@@ -34,6 +34,24 @@ namespace {
         }
         const dvec3 p(-0.5, 0, 0.7), to = floors[1].sphere_lights[0].center - p;
         expect_irradiance(floors[1], p, 10 / (4 * M_PI) * to.y / std::pow(glm::length(to), 3));
+        // A mesh of one triangle, by Lambert's formula: a term for each edge.
+        auto s = testing::bare_floor();
+        const std::array<dvec3, 3> corners{dvec3(-0.4, 1.2, 0.3), dvec3(0.5, 0.9, 0.1), dvec3(0.1, 1.1, -0.6)};
+        mesh triangle{{}, {{0, 2, 1}}, {}, {}, {}}; // its front looks down
+        for (const auto& c : corners)
+            triangle.positions.emplace_back(c);
+        s.mesh_lights
+            = {{"ember", {"", std::make_shared<const mesh>(triangle), glm::dmat3(1), dvec3(0), 0}, dvec3(10, 5, 2)}};
+        for (const dvec3& q : {dvec3(-0.3, 0, -0.9), dvec3(1, 0, 0), dvec3(0.3, 0, 1)}) {
+            double projected = 0;
+            for (int i = 0; i < 3; ++i) {
+                const dvec3 a = corners[static_cast<std::size_t>(i)] - q,
+                            b = corners[static_cast<std::size_t>((i + 1) % 3)] - q, n = glm::cross(a, b);
+                projected += std::atan2(glm::length(n), glm::dot(a, b)) * n.y / glm::length(n);
+            }
+            const double area = glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0])) / 2;
+            expect_irradiance(s, q, 10 / (M_PI * area) * std::abs(projected) / 2);
+        }
         expect_irradiance(floors[2], p, 3 * 2 / std::sqrt(0.09 + 4 + 0.25));
         expect_irradiance(floors[4], p, M_PI);
     }

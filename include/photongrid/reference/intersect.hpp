@@ -88,7 +88,9 @@ public:
             return !found;
         });
         if (!found)
-            triangles_.each_hit(r, triangle_from(r), far, [&](std::uint32_t, double) {
+            triangles_.each_hit(r, triangle_from(r), far, [&](std::uint32_t triangle, double) {
+                if (first_triangle_ + triangle == target) // rounding may put it nearer than `far`
+                    return far;
                 found = true;
                 return 0.0;
             });
