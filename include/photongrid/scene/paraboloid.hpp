@@ -39,8 +39,18 @@ struct shape_kind<paraboloid> {
     /// @{
     static void add_bounds(bounds& b, const paraboloid& x)
     {
-        b.add(x.vertex);
-        b.add(x.rim, detail::disc_extent(x.rim - x.vertex, x.radius));
+        const double height = extent(x);
+        // How far it reaches from the vertex in a direction at this cosine to the axis: to the rim, or where that looks
+        // the other way, to where z times the cosine plus the radius at z times the sine is greatest.
+        const auto reach = [&](double cosine) {
+            const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)), r = x.radius;
+            const double z
+                = cosine < 0 ? std::min(height, r * r * sine * sine / (4 * height * cosine * cosine)) : height;
+            return z * cosine + r * std::sqrt(z / height) * sine;
+        };
+        const dvec3 axis = (x.rim - x.vertex) / height;
+        b.add(x.vertex + dvec3(reach(axis.x), reach(axis.y), reach(axis.z)));
+        b.add(x.vertex - dvec3(reach(-axis.x), reach(-axis.y), reach(-axis.z)));
     }
     static double size(const paraboloid& x) { return x.radius; }
     static double round_size(const paraboloid& x) { return detail::quadric_size(x.rim - x.vertex, x.radius); }
