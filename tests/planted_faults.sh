@@ -250,12 +250,19 @@ faults=(
   "lights around the horizon are never chosen|include/photongrid/trace/chosen_light.glsl|(dot3(to, lit.normal) + least) / distance|dot3(to, lit.normal) / distance"
   "spotlights fall off linearly|include/photongrid/trace/spot_light.glsl|axis.w * t * t * (3.0f - 2.0f * t)|axis.w * t"
   "photons of spotlights fall off linearly|include/photongrid/trace/spot_light.glsl|max(min(three.x, three.y), min(max(three.x, three.y), three.z))|three.x"
-  "a sphere light's cone is as wide as its radius|include/photongrid/trace/shadow_ray.glsl|sine2 / (1.0f + sqrt(1.0f - sine2))|0.5f * sine2"
+  "a sphere light's cone is as wide as its radius|include/photongrid/trace/any_light.glsl|sine2 / (1.0f + sqrt(1.0f - sine2))|0.5f * sine2"
   "distant light enters by the first face alone|include/photongrid/trace/distant_light.glsl|if (goal < areas.x)|if (goal < 2.0f * areas.x)"
   "the power of environments ignores the box|include/photongrid/trace/emit_photon.glsl|(outline_area(at, d) / probability)|(1.0f / probability)"
   "an environment is seen mirrored|include/photongrid/trace/environment.glsl|m.x < 0.0f ? 6.28318531f - half_turn : half_turn|m.x < 0.0f ? half_turn : 6.28318531f - half_turn"
   "texels of an environment are sampled without their solid angle|include/photongrid/trace/environment_sample.glsl|precise float scale = sine / texel.w;|precise float scale = 0.6f / texel.w;"
-  "samples of a mesh light leave out its parts|include/photongrid/trace/shadow_ray.glsl|(float(args.sample_id) + r.x) * share|r.x * share"
+  "samples of a mesh light leave out its parts|include/photongrid/trace/any_light.glsl|(float(args.sample_id) + r.x) * share|r.x * share"
+  "rough facets are chosen as if all faced the eye|include/photongrid/trace/microfacet.glsl|vec3(view.x * alpha, view.y * alpha, view.z)|vec3(view.x, view.y, view.z)|optics"
+  "facets hide no light|include/photongrid/trace/microfacet.glsl|return share < 1.0f ? share : 1.0f;|return 1.0f;|optics"
+  "light in rough glass is not scaled|include/photongrid/trace/microfacet.glsl|(1.0f - share) * eta * eta|(1.0f - share)|optics"
+  "hidden photons go on|include/photongrid/trace/bounce_photon.glsl|largest3(material.reflectance) * l.share|largest3(material.reflectance)|optics"
+  "samples of lights on rough surfaces count in full|include/photongrid/trace/scatter_rough.glsl|(light.w / (light.w + s.density))|1.0f|validation"
+  "rays off rough surfaces count in full|include/photongrid/trace/eye_bounce.glsl|surface.x / (surface.x + args.light_samples * density)|1.0f|validation"
+  "rough glass is lit from the front alone|include/photongrid/trace/eye_rays.hpp|(s.layout.features & has_glass) != 0 ? 2u : 1u|1u|validation"
   "lights of meshes are one another|include/photongrid/trace/mesh_hit.glsl|uint(-normal.w) - 1u|uint(-normal.w)"
   "a photon off a mirror may go where no eye ray does|include/photongrid/trace/shading_normals.glsl|} else if (!by_shading && !by_geometric) {|} else if (!by_shading && !by_geometric && u < -1.0f) {|validation"
   "radiance is not scaled at glass|include/photongrid/trace/eye_bounce.glsl|b.share * f.radiance_scale|b.share"
@@ -266,7 +273,7 @@ faults=(
   "faces' indices are not looked at|include/photongrid/io/ply_file.cpp|>= made_.positions.size())|> made_.positions.size())|scene_file"
   "meshes lie outside the scene's folder|include/photongrid/io/surface_reader.hpp|std::find(path.begin(), path.end(), \"..\") == path.end()|true|scene_file"
   "the reference hits the triangle that it leaves|include/photongrid/reference/triangles.hpp|if (order_[i] != from)|if (order_[i] + 1 != 0 && from + 1 >= 0)|reference"
-  "loop steps wrap|include/photongrid/trace/device_scene.hpp|return layout.steps_per_ray * layout|return static_cast<uint>(layout.steps_per_ray) * layout|bad_scenes"
+  "loop steps wrap|include/photongrid/trace/device_scene.hpp|return layout.steps_per_ray * lights|return static_cast<uint>(layout.steps_per_ray) * static_cast<uint>(lights)|bad_scenes"
   "shadow rays of the paper wrap|include/photongrid/scene/render_settings.hpp|std::uint64_t{s.view.light_samples} * std::max|s.view.light_samples * std::max|bad_scenes"
   "a star is a polygon|include/photongrid/scene/polygon.hpp|1e-4 * longest) < 9|1e-4 * longest) < 19|bad_scenes"
   "up may lie along the view|include/photongrid/scene/camera.hpp|> 1e-9 * glm::length(c.up)|>= -1e-9 * glm::length(c.up)|bad_scenes"
@@ -323,7 +330,7 @@ tests_of() {
     backends/vulkan/*) echo on_vulkan ;;
     */film.hpp | */exact_sum.hpp) echo passes ;;
     */scene/scene.hpp | */render/*.hpp | */eye_ray*| */trace_photons.hpp) echo on_serial_pictures ;;
-    */bounce_photon.glsl | */covered_share.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */mesh_surface.glsl | */shading_normals.glsl | */shadow_ray.glsl | */mesh_light.glsl | */eye_bounce.glsl | */add_unblocked.glsl | */spot_light.glsl | */distant_light.glsl | */environment*.glsl | */mesh_color.glsl | */chosen_light.glsl | */emit_photon.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
+    */bounce_photon.glsl | */covered_share.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */mesh_surface.glsl | */shading_normals.glsl | */shadow_ray.glsl | */any_light.glsl | */mesh_light.glsl | */eye_bounce.glsl | */add_unblocked.glsl | */spot_light.glsl | */distant_light.glsl | */environment*.glsl | */mesh_color.glsl | */chosen_light.glsl | */emit_photon.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
     *) echo on_serial_algorithms ;;
   esac
 }

@@ -179,6 +179,7 @@ namespace {
         s.materials[0].name.clear();
         s.materials.push_back(s.materials[1]); // "clear", twice
         s.materials[2].index_of_refraction = 1.7;
+        s.materials[2].roughness = 0.25;
         s.materials.push_back({"material 2", material_kind::mirror, dvec3(0.1, 1.0 / 3, 0.9)});
         s.spheres.push_back({{5, 1, 0}, 0.1, 2});
         s.spheres.push_back({{7, 1, 0}, 0.1, 3});
@@ -189,7 +190,9 @@ namespace {
             EXPECT_EQ(again.materials[i].reflectance, s.materials[i].reflectance);
         }
         EXPECT_EQ(again.spheres, s.spheres);
+        EXPECT_EQ(again.materials[1].roughness, 0);
         EXPECT_EQ(again.materials[2].index_of_refraction, 1.7);
+        EXPECT_EQ(again.materials[2].roughness, 0.25);
     }
 
 } // namespace

@@ -26,5 +26,34 @@ namespace {
         expect_photons_equal_eye_paths(s);
     }
 
+    // Samples of lights and rays that hit them by chance, with weights that add up to 1.
+    TEST(validation, rough_metal_and_glass_under_all_kinds_of_lights_equal_eye_paths)
+    {
+        const auto floors = floors_under_each_light();
+        std::vector<scene> scenes(2, bare_floor());
+        scenes[0].name = "lights without size on rough surfaces";
+        scenes[0].spot_lights = floors[0].spot_lights;
+        scenes[0].directional_lights = floors[2].directional_lights;
+        scenes[0].point_lights = {{"bulb", {-0.8, 0.9, -0.4}, dvec3(6, 12, 9)}};
+        scenes[1].name = "lights with a size on rough surfaces";
+        scenes[1].sphere_lights = floors[1].sphere_lights;
+        scenes[1].environment_lights = floors[3].environment_lights;
+        scenes[1].environment_lights[0].radiance = dvec3(0.1);
+        scenes[1].rectangle_lights = {{"lamp", {-0.5, 1, 0.2}, {0.6, 0, 0}, {0, 0.1, 0.5}, dvec3(10, 5, 2)}};
+        const auto pyramid = std::make_shared<const mesh>(
+            mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}});
+        scenes[1].mesh_lights = {{"ember", {"", pyramid, glm::dmat3(0.4), {0.5, 0.8, -0.5}, 0}, dvec3(10, 5, 2)}};
+        for (auto& s : scenes) {
+            s.materials.push_back({"metal", material_kind::metal, {0.9, 0.8, 0.7}, 1.5, 0.45});
+            s.materials.push_back({"frosted", material_kind::glass, dvec3(0.95), 1.5, 0.8});
+            s.polygons.push_back({{{-1.2, 0.05, -1}, {-1.2, 0.25, 1}, {0, 0.25, 1}, {0, 0.05, -1}}, 2});
+            s.spheres = {{{0.6, 0.35, 0}, 0.35, 3}};
+            s.camera = {{0, 2, -2.5}, {0, 0.2, 0}, {0, 1, 0}, 40};
+            s.render.view.light_samples = 4;
+            s.render.view.spp = 128;
+            expect_photons_equal_eye_paths(s);
+        }
+    }
+
 } // namespace
 } // namespace photongrid::testing

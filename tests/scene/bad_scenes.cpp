@@ -291,6 +291,7 @@ namespace {
             {"reflectance", [](scene& x) { x.materials[1].reflectance.y = 2; }, "materials[1].reflectance"},
             {"index of refraction", [](scene& x) { x.materials[2].index_of_refraction = 0.5; },
                 "materials[2].index_of_refraction"},
+            {"roughness", [](scene& x) { x.materials[1].roughness = 1.5; }, "materials[1].roughness"},
             {"no axis", [](scene& x) { x.cylinders[0].top = x.cylinders[0].base; }, "cylinders[0].base and top"},
             {"no axis", [](scene& x) { x.cones[0].apex = x.cones[0].base; }, "cones[0].base and apex"},
             {"no axis", [](scene& x) { x.paraboloids[0].rim = x.paraboloids[0].vertex; },
@@ -463,6 +464,10 @@ namespace {
             refused(
                 "materials[2].index_of_refraction",
                 [](scene& s) -> double& { return s.materials[2].index_of_refraction; }, bad);
+        for (const std::size_t m : {1u, 2u})
+            for (const double bad : {nan, infinity, -infinity, -1e-300, 1 + 1e-15})
+                refused(("materials[" + std::to_string(m) + "].roughness").c_str(),
+                    [m](scene& s) -> double& { return s.materials[m].roughness; }, bad);
         for (int c = 0; c < 3; ++c)
             for (const double bad : {nan, infinity, -infinity}) {
                 refused(

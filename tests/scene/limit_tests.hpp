@@ -62,12 +62,26 @@ TEST(loop_limits, lamps_multiply_and_never_wrap)
     s.point_lights.resize(1);
     s.rectangle_lights.assign(6000, {"lamp", {0, 2, 0}, {1, 0, 0}, {0, 0, 1}, dvec3(1)}); // their surfaces are polygons
     EXPECT_THROW(detail::check_loops(lay_out(s), limited_device()), std::invalid_argument);
-    // 2^16 steps for each of 2^16 lights: 0 in 32 bits.
+    // 2^28 steps for each of 16 lights: 0 in 32 bits.
     scene_layout wide;
     wide.records.assign(kernels::SCENE_TABLES, glm::vec4(0));
-    wide.records[kernels::LIGHT_TABLE] = {0, 65536, 6, 0};
-    wide.steps_per_ray = 65536;
+    wide.records[kernels::LIGHT_TABLE] = {0, 16, 6, 0};
+    wide.steps_per_ray = 1u << 28;
     EXPECT_THROW(detail::check_loops(wide, limited_device()), std::invalid_argument);
+    wide.records[kernels::LIGHT_TABLE].y = 65536; // none of them in a tree
+    wide.steps_per_ray = 1;
+    EXPECT_THROW(detail::check_loops(wide, limited_device()), std::invalid_argument);
+}
+
+// Samples choose one of many lamps, so that no pass asks all shapes for all lamps.
+TEST(loop_limits, many_lamps_do_not_multiply)
+{
+    auto s = polygons_under_a_lamp(1, 20);
+    s.rectangle_lights.assign(500, {"lamp", {0, 2, 0}, {1, 0, 0}, {0, 0, 1}, dvec3(1)});
+    EXPECT_NO_THROW(detail::check_loops(lay_out(s), limited_device()));
+    s.polygons = polygons_under_a_lamp(32, 1024).polygons;
+    EXPECT_THROW(detail::check_loops(lay_out(s), limited_device()), std::invalid_argument)
+        << "each ray asks all shapes";
 }
 
 /// As shapes that single precision cannot resolve beside the rest of the scene.

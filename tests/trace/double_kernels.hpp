@@ -27,6 +27,7 @@ inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintB
 #include <photongrid/map/grid.kernel.hpp>
 #include <photongrid/trace/photon_event.kernel.hpp>
 #include <photongrid/trace/ray_state.kernel.hpp>
+#include <photongrid/trace/ray_tests.kernel.hpp>
 #include <photongrid/trace/scene_layout.kernel.hpp>
 #define float double
 
@@ -43,6 +44,7 @@ inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintB
 #include <photongrid/map/grid.glsl>
 #include <photongrid/trace/photon_event.glsl>
 #include <photongrid/trace/ray_state.glsl>
+#include <photongrid/trace/ray_tests.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 #define PHOTONGRID_INSIDE_KERNEL_STRUCT
 

@@ -167,6 +167,8 @@ namespace {
             {.branch = branch,
                 .splits = splits,
                 .depth = 8,
+                .sample_id = 0,
+                .light_samples = 0,
                 .stratum = stratum,
                 .seed = 1,
                 .first_pixel = 0,

@@ -30,7 +30,7 @@ inline scene rectangle_in_even_light(mesh rectangle, texture_use texture)
 {
     scene s;
     s.name = "rectangle";
-    s.materials = {{"picture", material_kind::lambertian, {1, 0.5, 0.25}, 1.5, std::move(texture)}};
+    s.materials = {{"picture", material_kind::lambertian, {1, 0.5, 0.25}, 1.5, 0, std::move(texture)}};
     s.meshes = {{"", std::make_shared<const mesh>(std::move(rectangle)), glm::dmat3(1), dvec3(0), 0}};
     s.directional_lights = {{"sun", {0, 0, -1}, dvec3(M_PI)}}; // so that radiance is the reflectance
     s.camera = {{0.75, 0.5, 3}, {0.75, 0.5, 0}, {0, 1, 0}, 16};
@@ -47,9 +47,9 @@ inline scene textured_cornell()
     auto s = with_meshes(small_cornell());
     s.name = "textured_cornell";
     const auto picture = std::make_shared<const texture>(random_texture(7, 5, 3));
-    s.materials.push_back(
-        {"wood", material_kind::lambertian, dvec3(0.9), 1.5, {"", picture, texture_wrap::repeat, {3, 2}, {0.25, 0.5}}});
-    s.materials.push_back({"foil", material_kind::mirror, dvec3(1), 1.5, {"", picture, texture_wrap::clamp}});
+    s.materials.push_back({"wood", material_kind::lambertian, dvec3(0.9), 1.5, 0,
+        {"", picture, texture_wrap::repeat, {3, 2}, {0.25, 0.5}}});
+    s.materials.push_back({"foil", material_kind::mirror, dvec3(1), 1.5, 0, {"", picture, texture_wrap::clamp}});
     s.meshes[0] = {"", std::make_shared<const mesh>(textured_rectangle({0, 0, 0}, {1, 0, 0}, {0, 0, 1})), glm::dmat3(1),
         dvec3(0), 5};
     auto back = *s.meshes[2].surface;

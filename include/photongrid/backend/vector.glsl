@@ -46,6 +46,17 @@ inline vec3 from_basis(vec3 local, vec3 n)
     return w;
 }
 
+// The coordinates of v in the basis of from_basis.
+inline vec3 in_basis(vec3 v, vec3 n)
+{
+    float s = n.z >= 0.0f ? 1.0f : -1.0f;
+    precise float a = -1.0f / (s + n.z);
+    precise float b = n.x * n.y * a;
+    precise vec3 first = vec3(1.0f + s * n.x * n.x * a, s * b, -s * n.x);
+    precise vec3 second = vec3(b, s + n.y * n.y * a, -n.y);
+    return vec3(dot3(v, first), dot3(v, second), dot3(v, n));
+}
+
 // (cos, sin) of 2 pi u without trigonometric functions, whose results differ between devices: the quadrant, then Taylor
 // polynomials on [-pi/4, pi/4], error below 4e-7.
 inline vec2 unit_circle(float u)

@@ -29,6 +29,7 @@ struct specular_bounce {
     /// The factor for power that is traced from the lights: Veach's correction for shading normals (1997, section 5.3),
     /// at most 8.
     double adjoint = 1;
+    double weight = 1; ///< the share that is not lost on rough surfaces, divided by its probability
 };
 
 /// At a refracting surface, `u` in [0, 1) selects reflection with Fresnel's probability. The caller applies the
@@ -71,10 +72,74 @@ struct facing_normals {
     double received(const dvec3& d) const { return std::min(8.0, glm::dot(shading, d) / glm::dot(geometric, d)); }
 };
 
+/// Smith's share of the facets of GGX that no other facet hides; `cosine`: of the direction and the normal.
+inline double unhidden(double cosine, double alpha)
+{
+    const double tangent2 = (1 - cosine * cosine) / (cosine * cosine);
+    return 2 / (1 + std::sqrt(1 + alpha * alpha * std::max(0.0, tangent2)));
+}
+
+/// A bounce from a facet of a rough surface (Walter et al. 2007). Normals of facets are drawn by their density,
+/// not by what is seen of them as in the photon-map renderer: weights may be far above 1.
+inline specular_bounce rough(const material& m, const hit& h, const dvec3& d, random_stream& random)
+{
+    const double alpha = m.roughness * m.roughness;
+    const facing_normals n(h, d);
+    const double side = glm::dot(h.normal, d) > 0 ? -1 : 1, u = random(), turn = random();
+    const double tangent2 = alpha * alpha * u / (1 - u), cosine = 1 / std::sqrt(1 + tangent2);
+    const dvec3 facet = around(n.shading, cosine, 2 * std::numbers::pi * turn);
+    const double met = -glm::dot(d, facet), seen = -glm::dot(d, n.shading);
+    specular_bounce lost;
+    lost.weight = 0;
+    if (!(met > 0))
+        return lost;
+    auto bounce = specular(m, d, side * facet, refracts(m) ? random() : 0);
+    const double up = bounce.refracted ? -1 : 1, leaving = up * glm::dot(bounce.direction, n.shading),
+                 geometric = up * glm::dot(bounce.direction, n.geometric);
+    if (!(leaving > 0) || !(geometric > 0))
+        return lost;
+    bounce.weight = met * unhidden(seen, alpha) * unhidden(leaving, alpha) / (seen * cosine);
+    bounce.adjoint = std::min(8.0, std::abs(glm::dot(d, n.shading) * geometric / (glm::dot(d, n.geometric) * leaving)));
+    return bounce;
+}
+
+/// The BSDF of a rough surface for radiance that comes from `towards` and leaves against d, per sr.
+inline double rough_bsdf(const material& m, const hit& h, const dvec3& d, const dvec3& towards)
+{
+    const facing_normals n(h, d);
+    const double in = glm::dot(towards, n.shading), out = -glm::dot(d, n.shading);
+    if (in * glm::dot(towards, n.geometric) <= 0 || (in < 0 && !refracts(m)))
+        return 0;
+    const bool outside = !(glm::dot(h.normal, d) > 0);
+    const double n_out = outside ? 1 : m.index_of_refraction, n_far = outside ? m.index_of_refraction : 1,
+                 n_in = in > 0 ? n_out : n_far;
+    dvec3 facet = glm::normalize(n_in * towards - n_out * d);
+    if (glm::dot(facet, n.shading) < 0)
+        facet = -facet;
+    const double met = -glm::dot(d, facet), lit = glm::dot(towards, facet), cosine = glm::dot(facet, n.shading);
+    if (!(met > 0) || !(lit * in > 0))
+        return 0;
+    double reflected = 1;
+    if (refracts(m)) {
+        const double sine = n_out / n_far * std::sqrt(std::max(0.0, 1 - met * met));
+        if (sine < 1)
+            reflected = fresnel_reflectance(met, n_out, std::sqrt(1 - sine * sine), n_far);
+    }
+    const double alpha = m.roughness * m.roughness, spread = cosine * cosine * (alpha * alpha - 1) + 1;
+    const double facets
+        = alpha * alpha / (std::numbers::pi * spread * spread) * unhidden(std::abs(in), alpha) * unhidden(out, alpha);
+    if (in > 0)
+        return reflected * facets / (4 * in * out);
+    const double apart = n_out * met + n_in * lit;
+    return (1 - reflected) * facets * met * std::abs(lit / (in * out)) * n_out * n_out / (apart * apart);
+}
+
 /// The same at a hit, by its shading normal, or by the geometric one where that would lead to the wrong side; with a
 /// number from `random` where the surface needs one.
 inline specular_bounce specular(const material& m, const hit& h, const dvec3& d, random_stream& random)
 {
+    if (is_rough(m))
+        return rough(m, h, d, random);
     const double u = refracts(m) ? random() : 0;
     if (h.shading == h.normal)
         return specular(m, d, h.normal, u);
@@ -95,7 +160,7 @@ inline specular_bounce specular(const material& m, const hit& h, const dvec3& d,
 inline specular_bounce specular_of_light(const material& m, const hit& h, const dvec3& d, random_stream& random)
 {
     auto bounce = specular(m, h, d, random);
-    if (bounce.refracted || h.shading == h.normal)
+    if (bounce.refracted || h.shading == h.normal || is_rough(m))
         return bounce;
     const facing_normals n(h, d);
     const auto mirrored = [](const dvec3& v, const dvec3& normal) { return v - 2 * glm::dot(v, normal) * normal; };

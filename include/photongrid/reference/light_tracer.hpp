@@ -193,9 +193,9 @@ private:
                 return 1;
             }
             const auto bounce = specular_of_light(m, h, r.direction, random);
-            if (bounce.adjoint == 0)
+            if (bounce.adjoint == 0 || bounce.weight == 0)
                 return 0;
-            power *= m.reflectance * h.color * bounce.adjoint;
+            power *= m.reflectance * h.color * (bounce.adjoint * bounce.weight);
             r = {h.position, bounce.direction, h.shape};
         }
         return 0;

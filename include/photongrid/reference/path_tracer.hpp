@@ -60,8 +60,10 @@ public:
             } else {
                 if (surfaces == 0 ? ++specular_before > settings_.depth : ++surfaces > settings_.photon_depth)
                     return sum;
+                if (is_rough(m) && surfaces == 0)
+                    sum += throughput * m.reflectance * h.color * highlight(m, h, r.direction, random);
                 const auto bounce = specular(m, h, r.direction, random);
-                throughput *= m.reflectance * h.color * bounce.radiance_scale;
+                throughput *= m.reflectance * h.color * (bounce.radiance_scale * bounce.weight);
                 r = {h.position, bounce.direction, h.shape};
                 through_specular = true;
             }
@@ -92,8 +94,8 @@ private:
         return {light.radiance(), light.probability * h.t * h.t / (light.area * cosine)};
     }
 
-    /// The irradiance of direct light, by one shadow ray to a light chosen by power.
-    dvec3 direct(const hit& h, const facing_normals& normals, random_stream& random) const
+    /// A light, chosen by power.
+    const light_source& chosen(random_stream& random) const
     {
         const auto lights = shapes_.lights();
         const light_source* light = &lights.front();
@@ -105,15 +107,37 @@ private:
                     break;
             }
         }
-        const auto seen = shapes_.seen_from(*light, h.position, random);
+        return *light;
+    }
+
+    /// The radiance of lights that rays cannot find, as a rough surface reflects or refracts it against d.
+    dvec3 highlight(const material& m, const hit& h, const dvec3& d, random_stream& random) const
+    {
+        const auto& light = chosen(random);
+        if (light.is_visible())
+            return dvec3(0);
+        const auto seen = shapes_.seen_from(light, h.position, random);
+        const double reflected
+            = rough_bsdf(m, h, d, seen.towards) * std::abs(glm::dot(seen.towards, facing_normals(h, d).shading));
+        if (!(reflected > 0) || seen.arriving == dvec3(0)
+            || shapes_.blocked({h.position, seen.towards, h.shape}, seen.distance, seen.shape))
+            return dvec3(0);
+        return seen.arriving * (reflected / light.probability);
+    }
+
+    /// The irradiance of direct light, by one shadow ray to a light chosen by power.
+    dvec3 direct(const hit& h, const facing_normals& normals, random_stream& random) const
+    {
+        const auto& light = chosen(random);
+        const auto seen = shapes_.seen_from(light, h.position, random);
         const dvec3& d = seen.towards;
         const double cosine = glm::dot(normals.geometric, d) > 0 ? glm::dot(normals.shading, d) : 0;
         if (!(cosine > 0) || seen.arriving == dvec3(0)
             || shapes_.blocked({h.position, d, h.shape}, seen.distance, seen.shape))
             return dvec3(0);
         if (!(seen.density > 0))
-            return seen.arriving * (cosine / light->probability);
-        const double by_light = light->probability * seen.density, by_surface = cosine / M_PI;
+            return seen.arriving * (cosine / light.probability);
+        const double by_light = light.probability * seen.density, by_surface = cosine / M_PI;
         return seen.arriving * (cosine / (by_light + by_surface));
     }
 

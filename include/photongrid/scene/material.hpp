@@ -6,6 +6,7 @@
 #include <photongrid/scene/check.hpp>
 #include <photongrid/scene/texture.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -16,7 +17,7 @@
 
 namespace photongrid {
 
-/// How a surface scatters light. `metal` is a coloured mirror.
+/// How a surface scatters light. `metal` is a coloured mirror, which may be rough.
 enum class material_kind { lambertian, mirror, metal, glass };
 
 /// A material.
@@ -25,7 +26,8 @@ struct material {
     material_kind kind = material_kind::lambertian; ///< how it scatters light
     dvec3 reflectance{0.5};                         ///< rgb, 0 to 1; of glass, the transmittance per crossing
     double index_of_refraction = 1.5;               ///< of glass, 1 to 10; outside is air, 1
-    texture_use texture{};                          ///< factor on the reflectance; on meshes with texture coordinates
+    double roughness = 0;  ///< of metal and glass, 0 to 1: the square root of GGX's alpha; below 0.001 it is smooth
+    texture_use texture{}; ///< factor on the reflectance; on meshes with texture coordinates
 
     bool operator==(const material&) const = default;
 };
@@ -64,11 +66,13 @@ namespace detail {
     }
     inline constexpr material_field lambertian_fields[] = {reflectance("reflectance")};
     inline constexpr material_field mirror_fields[] = {reflectance("reflectance", 1)};
-    inline constexpr material_field metal_fields[] = {reflectance("reflectance")};
+    inline constexpr material_field roughness
+        = {"roughness", "roughness", "a roughness", &material::roughness, {0, 1, ""}, 0};
+    inline constexpr material_field metal_fields[] = {reflectance("reflectance"), roughness};
     inline constexpr material_field glass_fields[]
         = {{"index_of_refraction", "index_of_refraction", "an index of refraction", &material::index_of_refraction,
                {1, 10, ""}, std::nullopt},
-            reflectance("transmittance", 1)};
+            reflectance("transmittance", 1), roughness};
 } // namespace detail
 
 /// All kinds of materials, in the order of material_kind.
@@ -105,8 +109,20 @@ inline bool is_diffuse(const material& m) { return detail::entry_of(m.kind).surf
 /// Whether light enters bodies of this material.
 inline bool refracts(const material& m) { return detail::entry_of(m.kind).surface == surface_kind::refracting; }
 
+/// Whether surfaces of this material reflect and refract by facets (trace/microfacet.glsl).
+inline bool is_rough(const material& m)
+{
+    const auto& fields = detail::entry_of(m.kind).fields;
+    const auto says_so = [](const material_field& f) {
+        const auto* number = std::get_if<double material::*>(&f.member);
+        return number != nullptr && *number == &material::roughness;
+    };
+    return m.roughness >= 0.001 && std::any_of(fields.begin(), fields.end(), says_so);
+}
+
 /// \throws std::invalid_argument for a member that the kind has and that is out of its range: a reflectance outside 0
-/// to 1, or glass with an index of refraction outside 1 to 10; or a texture that check() rejects.
+/// to 1, glass with an index of refraction outside 1 to 10, or a roughness outside 0 to 1; or a texture that check()
+/// rejects.
 inline void check(const material& m)
 {
     for (const auto& f : detail::entry_of(m.kind).fields)

@@ -15,5 +15,5 @@ void kernel(uint i)
     if (MESHES && triangle_of(mesh_hits(i - args.first)) != NO_TRIANGLE)
         return;
     precise vec3 more = vec3(irradiance) + vec3(arriving(i - args.first));
-    irradiance = vec4(more.x, more.y, more.z, 0.0f);
+    irradiance = vec4(more.x, more.y, more.z, irradiance.w);
 }

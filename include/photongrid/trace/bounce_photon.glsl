@@ -40,6 +40,7 @@ OUTPUT(4, vec4, next_direction)
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/optics.glsl>
 #include <photongrid/trace/shading_normals.glsl>
+#include <photongrid/trace/rough_leaving.glsl>
 #include <photongrid/trace/color_code.glsl>
 
 void kernel(uint i)
@@ -132,7 +133,24 @@ void kernel(uint i)
     vec3 next = facing;
     if (material.kind == LAMBERTIAN_SURFACE)
         next = cosine_direction(sides.geometric, r.y, r.z);
-    if ((MIRRORS && material.kind == MIRROR_SURFACE) || (GLASS && material.kind == GLASS_SURFACE)) {
+    if (ROUGH && material.alpha > 0.0f) {
+        vec3 facet = facet_met(sides, material.alpha, d, r.y, r.z);
+        Fresnel f = total_reflection(d);
+        if (GLASS && material.kind == GLASS_SURFACE)
+            f = fresnel(d, outward_facet(hit, facet, d), material.index_of_refraction);
+        RoughLeaving l = leave_rough(sides, facet, material.alpha, f, r.w < f.reflected, d);
+        // Roulette by what other facets hide, too: r.x is even below the reflectance.
+        precise float survival = largest3(material.reflectance) * l.share;
+        if (!(r.x < survival)) {
+            position.w = event_code(surface, ABSORBED, hit_before);
+            return;
+        }
+        next = l.direction;
+        if (SMOOTH) {
+            precise vec3 scaled = vec3(power) * l.adjoint;
+            power = vec4(scaled.x, scaled.y, scaled.z, facing.x);
+        }
+    } else if ((MIRRORS && material.kind == MIRROR_SURFACE) || (GLASS && material.kind == GLASS_SURFACE)) {
         Fresnel f = total_reflection(d);
         if (GLASS && material.kind == GLASS_SURFACE)
             f = fresnel(d, outward_normal(hit, sides, d), material.index_of_refraction);

@@ -76,10 +76,17 @@ namespace detail {
         return reads(s.records, s.faces, s.planes, s.vertices, s.shares, s.environment, s.environment_shares);
     }
 
-    /// A bound on the loop iterations of one shadow ray to each light, the least that a pass takes.
+    /// A bound on the loop iterations of the least that a pass takes: a shadow ray to each light, or of many lights to
+    /// one, which is chosen by a walk down their tree and by looking twice at each light that is not in it
+    /// (trace/chosen_light.glsl).
     inline std::uint64_t steps_of_shadow_rays(const scene_layout& layout)
     {
-        return layout.steps_per_ray * layout.table(kernels::LIGHT_TABLE).count;
+        const std::uint64_t lights = layout.table(kernels::LIGHT_TABLE).count;
+        if (lights <= most_lights_sampled_each)
+            return layout.steps_per_ray * lights;
+        constexpr std::uint64_t of_searches = 128; // down the tree, and for a part of a mesh light or of an environment
+        return layout.steps_per_ray + 2 * (lights - static_cast<uint>(layout.records[kernels::LIGHT_TREE].w))
+            + of_searches;
     }
 
     /// \throws std::invalid_argument if the device would end loops over all shapes too early, and lose hits.
@@ -88,7 +95,8 @@ namespace detail {
         const std::uint64_t steps = steps_of_shadow_rays(layout);
         if (caps.loop_limit > 0 && steps > caps.loop_limit)
             throw std::invalid_argument("scene: " + caps.backend + ": tracing takes up to " + std::to_string(steps)
-                + " steps (shapes and their edges, times lights), and this driver silently ends loops after "
+                + " steps (shapes and their edges, times lights if these are few), and this driver silently ends loops "
+                  "after "
                 + std::to_string(caps.loop_limit) + "; use a backend without a limit, or fewer shapes or lights");
     }
 } // namespace detail

@@ -22,6 +22,7 @@ STATE(0, vec4, irradiance)
 
 #include <photongrid/trace/intersect.glsl>
 #include <photongrid/trace/lights.glsl>
+#include <photongrid/trace/lit_point.glsl>
 #include <photongrid/trace/light_sample.glsl>
 
 void kernel(uint i)

@@ -16,8 +16,13 @@ uint environment_texel(uint at, uint column, uint row)
     return row * uint(scene(at + 1u).x) + column;
 }
 
-// The radiance that comes from direction d, W/(m^2 sr).
-vec3 environment_radiance(uint at, vec3 d)
+// What comes from direction d.
+struct EnvironmentSeen {
+    vec3 radiance; // W/(m^2 sr)
+    float density; // of sampled directions, sr^-1
+};
+
+EnvironmentSeen environment_seen(uint at, vec3 d)
 {
     vec4 size = scene(at + 1u);
     vec4 turn = scene(at + 4u);
@@ -28,5 +33,10 @@ vec3 environment_radiance(uint at, vec3 d)
     precise float v = angle_of(across, m.y) * 0.318309886f * size.y;
     uint column = min(uint(u), uint(size.x) - 1u);
     uint row = min(uint(v), uint(size.y) - 1u);
-    return vec3(environment(environment_texel(at, column, row)));
+    vec4 texel = environment(environment_texel(at, column, row));
+    EnvironmentSeen s;
+    s.radiance = vec3(texel);
+    precise float density = across > 0.0f ? texel.w / across : 0.0f;
+    s.density = density;
+    return s;
 }

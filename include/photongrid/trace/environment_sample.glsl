@@ -21,6 +21,7 @@ uint chosen_share(uint first, uint count, float u)
 struct EnvironmentSample {
     vec3 towards;             // unit vector in the scene
     vec3 radiance_per_density; // W/m^2
+    float density;             // sr^-1
 };
 
 // Of numbers from 0 to 1, `place` chooses a texel, `inside` a point of it.
@@ -43,5 +44,7 @@ EnvironmentSample environment_sample(uint at, vec2 place, vec2 inside)
     precise float scale = sine / texel.w;
     precise vec3 weighted = vec3(texel) * scale;
     s.radiance_per_density = weighted;
+    precise float density = texel.w / sine;
+    s.density = density;
     return s;
 }

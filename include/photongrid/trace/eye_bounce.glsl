@@ -1,15 +1,17 @@
 // Traces an eye ray to the next surface (2.4), through mirrors and glass until it ends on a diffuse surface, on a
-// light, or in the environment. At the first `splits` glass surfaces a ray splits into its two Fresnel branches: the
-// bits of `branch` select the one that this pass follows at each. At later ones a random number selects it, stratified
-// over the eye rays of a pixel.
+// light, or in the environment. The first `splits` times a ray splits: at glass into its two Fresnel branches; at a
+// rough surface into one that ends there, for samples of lights, and one that goes on. The bits of `branch` select the
+// one that this pass follows at each. Later a random number selects it, stratified over the eye rays of a pixel.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
-    uint branch;     // bit n: reflected (1) or refracted (0) at the n-th glass surface
-    uint splits;     // how many glass surfaces split a ray
+    uint branch;     // bit n, at the n-th split: reflected (1) or refracted (0); ends (1) at a rough surface or not (0)
+    uint splits;     // how often a ray splits at most
     uint depth;      // surfaces a ray passes at most
+    uint sample_id;  // number of the eye ray in its pixel
+    float light_samples; // of each light with a size at rough surfaces; 0: such lights are left to rays
     float stratum;   // number of the eye ray in its pixel / eye rays per pixel: shifts its random numbers
     uint seed;
     uint first_pixel; // pixel of element 0
@@ -26,10 +28,14 @@ INPUT(2, vec4, mesh_normals)
 INPUT(3, vec4, mesh_shadings)
 INPUT(4, vec4, environment) // see environment.glsl
 INPUT(5, vec4, mesh_colors) // see mesh_color.glsl
-STATE(0, vec4, point)      // xyz: origin, at the end the point hit, m; w: 0 in flight, 1 on a diffuse surface, else -1
+// xyz: origin, at the end the point hit, m; w: 0 in flight, 1 on a diffuse surface, -2 on a rough one
+// (rough_points.glsl), else -1
+STATE(0, vec4, point)
 STATE(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
 STATE(2, vec4, throughput) // rgb: factor between radiance here and at the eye; w: splits so far
-STATE(3, vec4, surface)    // xyz: normal towards the eye; w: material
+// xyz: normal towards the eye; w: material. In flight, x: the density of the direction in which the ray left a rough
+// surface, the last one that it met, sr^-1; else 0
+STATE(3, vec4, surface)
 STATE(4, vec4, emitted)    // rgb: radiance of the light that the ray ended on, times throughput
 STATE(5, uint, branches)   // bit b: branch b must be traced for this pixel; branch 0 sets the other bits
 
@@ -40,19 +46,84 @@ STATE(5, uint, branches)   // bit b: branch b must be traced for this pixel; bra
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/optics.glsl>
 #include <photongrid/trace/shading_normals.glsl>
+#include <photongrid/trace/rough_leaving.glsl>
 
 bool done()
 {
     return point.w != 0.0f;
 }
 
-// The ray ends on the front of this light.
-void see_light(uint number)
+// The weight of a light that the ray hits. If it comes from a rough surface, samples of lights may find this one there,
+// too (balance heuristic); `density`: that of such a sample's direction, sr^-1.
+float weight_of_hit(float density)
 {
-    Light light = light_of(number);
+    if (!ROUGH || !(surface.x > 0.0f))
+        return 1.0f;
+    precise float weight = surface.x / (surface.x + args.light_samples * density);
+    return weight;
+}
+
+// The density of the samples of this light, which the ray hits on its front: see mesh_light_sample and
+// sphere_light_sample.
+float sampled_density(Light light, Hit hit, vec3 d)
+{
+    if (SPHERE_LIGHTS && light.form == SPHERE_LIGHT) {
+        float radius = light.edge_u.x;
+        precise vec3 to_centre = light.position - vec3(point);
+        precise float sine2 = radius * radius / dot3(to_centre, to_centre);
+        if (!(sine2 < 1.0f))
+            return 0.0f;
+        precise float density = (1.0f + sqrt(1.0f - sine2)) / (6.28318531f * sine2);
+        return density;
+    }
+    precise float density = hit.t * hit.t * 3.14159265f * light.radiance_per_power / -dot3(d, hit.normal);
+    return density;
+}
+
+// The ray ends on the front of this light.
+void see_light(Hit hit, vec3 d)
+{
+    Light light = light_of(hit.light);
     float scale = light.radiance_per_power;
+    if (ROUGH) {
+        precise float weighted = scale * weight_of_hit(sampled_density(light, hit, d));
+        scale = weighted;
+    }
     emitted = vec4(throughput.x * light.power.x * scale, throughput.y * light.power.y * scale,
         throughput.z * light.power.z * scale, 0.0f);
+}
+
+// The ray ends on a rough surface, for light from lights (rough_points.glsl). w of direction, throughput and emitted:
+// the geometric normal.
+void end_on_rough(Hit hit, vec3 shading, vec3 weighted, bool counted)
+{
+    point = vec4(hit.position.x, hit.position.y, hit.position.z, counted ? -2.0f : -1.0f);
+    direction.w = hit.normal.x;
+    throughput = vec4(weighted.x, weighted.y, weighted.z, hit.normal.y);
+    emitted.w = hit.normal.z;
+    surface = vec4(shading.x, shading.y, shading.z, float(hit.material));
+}
+
+// A random number that is stratified over the eye rays of a pixel.
+float stratified_number(uint i, uint what)
+{
+    vec4 r = random4(uvec4(i + args.first_pixel, args.branch, what, args.seed));
+    precise float u = r.x + args.stratum;
+    return u < 1.0f ? u : u - 1.0f;
+}
+
+// Numbers that choose a facet, the same in all passes that trace this ray. On the first surface those of a pixel's eye
+// rays are spread evenly from a random start on, by the generalized golden ratio (Roberts, The Unreasonable
+// Effectiveness of Quasirandom Sequences, 2018).
+vec2 facet_numbers(uint i, uint hits)
+{
+    bool first = hits == 0u;
+    uvec4 bits = hash4(uvec4(i + args.first_pixel, first ? 0u : args.sample_id, 4000u + hits, args.seed));
+    if (first) {
+        bits.x += args.sample_id * 0xC13FA9A9u;
+        bits.y += args.sample_id * 0x91E10DA5u;
+    }
+    return vec2(unit_float(bits.x), unit_float(bits.y));
 }
 
 // The Fresnel branch that a ray takes at a glass surface, and the factor on its throughput.
@@ -83,9 +154,7 @@ FresnelBranch sampled_branch(uint i, uint hits, float reflectance)
     if (!(reflectance >= 1.0f)) {
         precise float least = 0.25f - 0.25f * max(max(throughput.x, throughput.y), throughput.z);
         float probability = min(max(reflectance, least), 1.0f - least);
-        vec4 r = random4(uvec4(i + args.first_pixel, args.branch, 2000u + hits, args.seed));
-        precise float u = r.x + args.stratum;
-        b.reflected = (u < 1.0f ? u : u - 1.0f) < probability;
+        b.reflected = stratified_number(i, 2000u + hits) < probability;
         precise float corrected = b.reflected ? reflectance / probability : (1.0f - reflectance) / (1.0f - probability);
         b.share = corrected;
     }
@@ -107,7 +176,12 @@ void kernel(uint i)
     if (hit.t < 0.0f) {
         point.w = -1.0f;
         if (ENVIRONMENT_LIGHTS && counted) {
-            vec3 seen = environment_radiance(environment_light(), d);
+            EnvironmentSeen e = environment_seen(environment_light(), d);
+            vec3 seen = e.radiance;
+            if (ROUGH) {
+                precise vec3 weighted = seen * weight_of_hit(e.density);
+                seen = weighted;
+            }
             emitted = vec4(throughput.x * seen.x, throughput.y * seen.y, throughput.z * seen.z, 0.0f);
         }
         return;
@@ -115,7 +189,7 @@ void kernel(uint i)
     if (hit.material == NO_MATERIAL) {
         point.w = -1.0f;
         if (counted && dot3(d, hit.normal) < 0.0f) // on the front only
-            see_light(hit.light);
+            see_light(hit, d);
         return;
     }
     Material material = material_of(hit.material);
@@ -132,13 +206,41 @@ void kernel(uint i)
         surface = vec4(sides.shading.x, sides.shading.y, sides.shading.z, float(hit.material));
         return;
     }
-    vec3 next = d;
+    if (hits + 1u > args.depth) {
+        point.w = -1.0f;
+        return;
+    }
     precise vec3 tinted = vec3(throughput) * material.reflectance;
     float share = 1.0f;
-    if (MIRRORS && material.kind == MIRROR_SURFACE)
-        next = leave_specular(hit, sides, total_reflection(d), true, 1.0f, d).direction;
+    bool rough = ROUGH && material.alpha > 0.0f;
+    if (rough) {
+        // Some rays end here for samples of lights: in a pass of their own, or every other one.
+        bool ends = false;
+        if (splits < args.splits) {
+            ends = split_branch(splits, 1.0f, counted).reflected;
+            ++splits;
+            counted = args.branch >> min(splits, 31u) == 0u;
+        } else {
+            ends = stratified_number(i, 2500u + hits) < 0.5f;
+            share = 2.0f;
+        }
+        if (ends) {
+            precise vec3 weighted = tinted * share;
+            end_on_rough(hit, sides.shading, weighted, counted);
+            return;
+        }
+    }
+    vec3 outward = outward_normal(hit, sides, d);
+    vec3 facet = sides.shading;
+    if (rough) {
+        vec2 r = facet_numbers(i, hits);
+        facet = facet_met(sides, material.alpha, d, r.x, r.y);
+        outward = outward_facet(hit, facet, d);
+    }
+    Fresnel f = total_reflection(d);
+    bool reflected = true;
     if (GLASS && material.kind == GLASS_SURFACE) {
-        Fresnel f = fresnel(d, outward_normal(hit, sides, d), material.index_of_refraction);
+        f = fresnel(d, outward, material.index_of_refraction);
         FresnelBranch b;
         if (splits < args.splits) {
             b = split_branch(splits, f.reflected, counted);
@@ -146,17 +248,28 @@ void kernel(uint i)
         } else {
             b = sampled_branch(i, hits, f.reflected);
         }
-        next = leave_specular(hit, sides, f, b.reflected, material.index_of_refraction, d).direction;
-        precise float scaled = b.reflected ? b.share : b.share * f.radiance_scale;
+        reflected = b.reflected;
+        precise float scaled = share * (reflected ? b.share : b.share * f.radiance_scale);
         share = scaled;
     }
-    ++hits;
-    if (hits > args.depth || !(share > 0.0f)) {
+    vec3 next = d;
+    if (rough) {
+        RoughLeaving l = leave_rough(sides, facet, material.alpha, f, reflected, d);
+        next = l.direction;
+        precise float unhidden_share = share * l.share;
+        share = unhidden_share;
+        surface.x = rough_scattering(sides.shading, material.alpha, material.index_of_refraction,
+            GLASS && material.kind == GLASS_SURFACE, !(dot3(hit.normal, d) > 0.0f), d, next).density;
+    } else if (MIRRORS || GLASS) {
+        surface.x = 0.0f;
+        next = leave_specular(hit, sides, f, reflected, material.index_of_refraction, d).direction;
+    }
+    if (!(share > 0.0f)) {
         point.w = -1.0f;
         return;
     }
     vec3 start = ray_start(hit.position, hit.normal, next);
     point = vec4(start.x, start.y, start.z, 0.0f);
-    direction = vec4(next.x, next.y, next.z, float(hits));
+    direction = vec4(next.x, next.y, next.z, float(hits + 1u));
     throughput = vec4(tinted.x * share, tinted.y * share, tinted.z * share, float(splits));
 }

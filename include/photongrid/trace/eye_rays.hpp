@@ -9,6 +9,8 @@
 #include <photongrid/trace/eye_ray.kernel.hpp>
 #include <photongrid/trace/eye_ray_to_search.kernel.hpp>
 #include <photongrid/trace/mesh_search.hpp>
+#include <photongrid/trace/rough_points.kernel.hpp>
+#include <photongrid/trace/scatter_rough.kernel.hpp>
 #include <photongrid/trace/shadow_ray.kernel.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -55,9 +57,14 @@ inline glm::uvec2 strata_of(uint samples)
     return {samples / rows, rows};
 }
 
-/// How many glass surfaces split an eye ray into its two Fresnel branches. Each combination of branches is a pass over
-/// the picture.
-inline uint splits_of(const scene_layout& layout) { return (layout.features & has_glass) != 0 ? 2u : 0u; }
+/// How many times eye rays split: into the two Fresnel branches of glass, and into one that ends at a rough surface and
+/// one that goes on (eye_bounce.glsl). Each combination of branches is a pass over the picture.
+inline uint splits_of(const scene_layout& layout)
+{
+    if ((layout.features & has_rough) != 0)
+        return 3;
+    return (layout.features & has_glass) != 0 ? 2u : 0u;
+}
 
 /// The camera as eye_ray.glsl reads it. `ray` is sample x branches + branch.
 inline kernels::eye_ray::Params eye_params(
@@ -80,6 +87,107 @@ inline kernels::eye_ray::Params eye_params(
         .first_pixel = r.first_pixel()};
 }
 
+/// One sample of the light at each of some points: see the Params of shadow_ray.glsl.
+struct light_sampling {
+    glm::uvec2 strata{1};
+    uint light = 0;
+    uint sample_id = 0;
+    uint seed = 0;
+    uint choice = 0;
+    uint choices = 0;
+};
+
+/// Points that light falls on.
+template <backend B>
+struct lit_points {
+    const buffer_of<B, glm::vec4>&points, &surfaces; ///< as shadow_ray.glsl reads them
+    uint first = 0;                                  ///< element of the first point
+    uint first_pixel = 0;                            ///< pixel of element 0
+    uint whole = 1;                                  ///< see shadow_ray.glsl
+};
+
+/// Whether each sample chooses one of many lights.
+inline bool samples_choose_lights(const scene_layout& layout)
+{
+    return layout.table(kernels::LIGHT_TABLE).count > most_lights_sampled_each;
+}
+
+/// Calls add(light_sampling) for each sample of direct light at a point: `light_samples` of each light with a size, one
+/// of each other light; or, of many lights, samples that choose one.
+template <class Add>
+void for_each_light_sample(const scene_layout& layout, const render_settings& settings, Add add)
+{
+    const auto lights = layout.table(kernels::LIGHT_TABLE);
+    const uint samples = settings.view.light_samples;
+    if (samples_choose_lights(layout)) {
+        // Each sample is the only one of its light, so it may be anywhere on it.
+        for (uint choice = 0; choice < samples; ++choice)
+            add({.seed = settings.seed ^ (choice + 1) * 0x9E3779B1u, .choice = choice, .choices = samples});
+        return;
+    }
+    for (uint number = 0; number < lights.count; ++number) {
+        const auto form = static_cast<uint>(layout.records[lights.first + lights.stride * number].x);
+        const bool has_size = form == kernels::RECTANGLE_LIGHT || form == kernels::MESH_LIGHT
+            || form == kernels::SPHERE_LIGHT || form == kernels::ENVIRONMENT_LIGHT;
+        const uint of_this = has_size ? samples : 1u;
+        for (uint sample = 0; sample < of_this; ++sample)
+            add({.strata = strata_of(of_this), .light = number, .sample_id = sample, .seed = settings.seed});
+    }
+}
+
+/// Samples direct light at some points. Calls change(directions of the shadow rays, what arrives if nothing blocks
+/// them) for each sample, and adds what then arrives, where no mesh blocks it, to `light`.
+template <backend B, class Change>
+void add_light_samples(B& device, const device_scene<B>& s, const render_settings& settings, uint ray, launch pixels,
+    const lit_points<B>& lit, buffer_of<B, glm::vec4>& light, Change change)
+{
+    mesh_rays<B> rays(device, pixels.elements);
+    auto arriving = device.template make<glm::vec4>(pixels.elements);
+    auto found = device.template make<glm::uvec4>(1);
+    for_each_light_sample(s.layout, settings, [&](const light_sampling& how) {
+        device.template run<kernels::shadow_ray>({pixels.elements, 0u, s.layout.features},
+            {.strata = how.strata,
+                .light = how.light,
+                .sample_id = how.sample_id,
+                .first = lit.first,
+                .ray_id = ray,
+                .seed = how.seed,
+                .first_pixel = lit.first_pixel,
+                .choice = how.choice,
+                .choices = how.choices,
+                .whole = lit.whole},
+            reads(s.records, lit.points, lit.surfaces, s.faces, s.planes, s.vertices, s.shares, s.environment,
+                s.environment_shares),
+            writes(rays.origins, rays.directions, arriving));
+        change(rays.directions, arriving);
+        if (s.has_meshes())
+            found = rays.search(device, s, hit_kind::any);
+        device.template run<kernels::add_unblocked>({pixels.elements, pixels.first, s.layout.features},
+            {.first = pixels.first}, reads(arriving, found), writes(light));
+    });
+}
+
+/// Adds direct light to the emissions of the eye rays that ended on rough surfaces.
+template <backend B>
+void light_rough_surfaces(
+    B& device, const device_scene<B>& s, const render_settings& settings, uint ray, launch pixels, eye_hits<B>& hits)
+{
+    auto points = device.template make<glm::vec4>(pixels.elements);
+    auto surfaces = device.template make<glm::vec4>(pixels.elements);
+    const auto ends = reads(s.records, hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions);
+    for (uint behind = 0; behind < ((s.layout.features & has_glass) != 0 ? 2u : 1u); ++behind) {
+        device.template run<kernels::rough_points>(
+            pixels.elements, {.first = pixels.first, .behind = behind}, ends, writes(points, surfaces));
+        const lit_points<B> lit{points, surfaces, 0, hits.first_pixel + pixels.first, 0};
+        add_light_samples(device, s, settings, ray, pixels, lit, hits.emissions, [&](const auto& ways, auto& arriving) {
+            device.template run<kernels::scatter_rough>(pixels.elements,
+                {.first = pixels.first, .only_without_size = samples_choose_lights(s.layout) ? 1u : 0u},
+                reads(s.records, hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, ways),
+                writes(arriving));
+        });
+    }
+}
+
 /// Traces eye rays to their ends, for the pixels of `pixels`: `ray` is sample x branches + branch. Bit b of `branches`
 /// is set for the pixels for which branch b must be traced; rays of other pixels end at once. Branch 0 sets its own
 /// bit, and a ray that splits sets that of its other branch, so the branches of a sample must be traced in order.
@@ -89,6 +197,7 @@ void trace_eye_rays(B& device, const device_scene<B>& s, const camera& view, con
 {
     const auto& layout = s.layout;
     const uint splits = splits_of(layout), sample = ray >> splits;
+    const uint sampled_at_rough = samples_choose_lights(layout) ? 0 : settings.view.light_samples;
     device.template run<kernels::eye_ray>(pixels, eye_params(view, layout.center, settings, r, ray, splits), reads(),
         writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
     mesh_hits<B> on_meshes(device, s, pixels.elements);
@@ -105,6 +214,8 @@ void trace_eye_rays(B& device, const device_scene<B>& s, const camera& view, con
                       {.branch = ray & ((1u << splits) - 1u),
                           .splits = splits,
                           .depth = settings.view.depth,
+                          .sample_id = sample,
+                          .light_samples = static_cast<float>(sampled_at_rough),
                           .stratum = static_cast<float>(sample) / static_cast<float>(settings.view.spp),
                           .seed = settings.seed,
                           .first_pixel = hits.first_pixel,
@@ -115,24 +226,9 @@ void trace_eye_rays(B& device, const device_scene<B>& s, const camera& view, con
                       s.has_meshes() ? 1u : all_passes)
                   .finished;
     }
+    if ((layout.features & has_rough) != 0)
+        light_rough_surfaces(device, s, settings, ray, pixels, hits);
 }
-
-/// Whether a kind of light is sampled at several points; all samples of the others are the same.
-inline bool is_sampled(uint form)
-{
-    return form == kernels::RECTANGLE_LIGHT || form == kernels::MESH_LIGHT || form == kernels::SPHERE_LIGHT
-        || form == kernels::ENVIRONMENT_LIGHT;
-}
-
-/// One sample of the light at each of some points: see the Params of shadow_ray.glsl.
-struct light_sampling {
-    glm::uvec2 strata{1};
-    uint light = 0;
-    uint sample_id = 0;
-    uint seed = 0;
-    uint choice = 0;
-    uint choices = 0;
-};
 
 /// Computes the irradiance of direct light at the hits of `pixels` into `light`, with a bounded number of shadow rays
 /// per pass.
@@ -141,49 +237,14 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
     uint ray, launch pixels, buffer_of<B, glm::vec4>& light)
 {
     device.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
-    constexpr uint sampled = has_area_lights | has_mesh_lights | has_sphere_lights | has_environment;
-    const uint samples = (s.layout.features & sampled) != 0 ? settings.view.light_samples : 1u;
     // What direct_light.glsl does not know.
     constexpr uint others = has_meshes | has_sphere_lights | has_spot_lights | has_directional_lights | has_environment;
-    const auto lights = s.layout.table(kernels::LIGHT_TABLE);
-    if ((s.layout.features & others) != 0 || lights.count > most_lights_sampled_each) {
-        mesh_rays<B> rays(device, pixels.elements);
-        auto arriving = device.template make<glm::vec4>(pixels.elements);
-        auto found = device.template make<glm::uvec4>(1);
-        const auto add_sample = [&](const light_sampling& how) {
-            device.template run<kernels::shadow_ray>({pixels.elements, 0u, s.layout.features},
-                {.strata = how.strata,
-                    .light = how.light,
-                    .sample_id = how.sample_id,
-                    .first = pixels.first,
-                    .ray_id = ray,
-                    .seed = how.seed,
-                    .first_pixel = hits.first_pixel,
-                    .choice = how.choice,
-                    .choices = how.choices},
-                reads(s.records, hits.points, hits.surfaces, s.faces, s.planes, s.vertices, s.shares, s.environment,
-                    s.environment_shares),
-                writes(rays.origins, rays.directions, arriving));
-            if (s.has_meshes())
-                found = rays.search(device, s, hit_kind::any);
-            device.template run<kernels::add_unblocked>({pixels.elements, pixels.first, s.layout.features},
-                {.first = pixels.first}, reads(arriving, found), writes(light));
-        };
-        if (lights.count > most_lights_sampled_each) {
-            // Each sample is the only one of its light, so it may be anywhere on it.
-            for (uint choice = 0; choice < settings.view.light_samples; ++choice)
-                add_sample({.seed = settings.seed ^ (choice + 1) * 0x9E3779B1u,
-                    .choice = choice,
-                    .choices = settings.view.light_samples});
-            return;
-        }
-        for (uint number = 0; number < lights.count; ++number) {
-            const auto form = static_cast<uint>(s.layout.records[lights.first + lights.stride * number].x);
-            for (uint sample = 0; sample < (is_sampled(form) ? samples : 1u); ++sample)
-                add_sample({.strata = strata_of(samples), .light = number, .sample_id = sample, .seed = settings.seed});
-        }
+    if ((s.layout.features & others) != 0 || samples_choose_lights(s.layout)) {
+        const lit_points<B> lit{hits.points, hits.surfaces, pixels.first, hits.first_pixel};
+        add_light_samples(device, s, settings, ray, pixels, lit, light, [](const auto&, auto&) {});
         return;
     }
+    const uint samples = (s.layout.features & has_area_lights) != 0 ? settings.view.light_samples : 1u;
     // Well below the 65,535 iterations, of all loops of an invocation, after which some drivers end loops
     // (docs/design/decisions.md, "How many iterations").
     const uint per_pass = std::max(1u, static_cast<uint>(16384 / steps_of_shadow_rays(s.layout)));

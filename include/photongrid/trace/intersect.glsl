@@ -1,11 +1,12 @@
-// Ray-scene intersection (3.1): tests every shape, without an acceleration structure. Included by kernels after the
-// SWITCHes of lights and the scene buffer. Only the kinds of shapes that the scene has are compiled. A kind of shape is
-// a file of intersect/ and a line in each of the functions below.
+// Ray-scene intersection (3.1): tests every shape, as the paper does, or in scenes of many those that a tree finds.
+// Included by kernels after the SWITCHes of lights and the scene buffer. Only the kinds of shapes that the scene has are
+// compiled. A kind of shape is a file of intersect/ and a line in each of the functions below.
 //
 // hit_x returns the distance along the ray, or `far` if shape x is not hit before that. closest_x tests all shapes x,
 // x_surface computes the hit point's position, normal and material, and x_block says whether any shape x occludes a
 // ray.
 #include <photongrid/backend/vector.glsl>
+#include <photongrid/trace/ray_tests.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 // The bit of the n-th polygon or sphere of the scene. All from the 32nd on share one bit.
@@ -23,6 +24,24 @@ uint bit_of(uint n)
 #include <photongrid/trace/intersect/box.glsl>
 #include <photongrid/trace/intersect/polygon.glsl>
 
+// The distance at which a ray hits a shape of any kind, or 3.0e38; `at`: its first record.
+float hit_shape(uint kind, uint at, vec3 o, vec3 d)
+{
+    if (SPHERES && kind == SPHERE)
+        return hit_sphere(at, o, d, 3.0e38f);
+    if (QUADRICS && kind == QUADRIC)
+        return hit_quadric(at, o, d, 3.0e38f);
+    if (DISKS && kind == DISK)
+        return hit_disk(at, o, d, 3.0e38f);
+    if (BOXES && kind == BOX)
+        return hit_box(at, o, d, 3.0e38f);
+    if (POLYGONS && kind == POLYGON)
+        return hit_polygon(at, polygon_edges(at), o, d, 3.0e38f);
+    return 3.0e38f;
+}
+
+#include <photongrid/trace/intersect/tree.glsl>
+
 // The closest hit of the ray from o in direction d.
 Hit intersect_closest(vec3 o, vec3 d)
 {
@@ -30,15 +49,17 @@ Hit intersect_closest(vec3 o, vec3 d)
     c.t = 3.0e38f;
     c.kind = NO_SHAPE;
     c.at = 0u;
-    if (SPHERES)
+    if (TREE_OF_SHAPES)
+        c = closest_in_tree(o, d, c);
+    if (SPHERES && !TREE_OF_SHAPES)
         c = closest_sphere(o, d, c);
-    if (QUADRICS)
+    if (QUADRICS && !TREE_OF_SHAPES)
         c = closest_quadric(o, d, c);
-    if (DISKS)
+    if (DISKS && !TREE_OF_SHAPES)
         c = closest_disk(o, d, c);
-    if (BOXES)
+    if (BOXES && !TREE_OF_SHAPES)
         c = closest_box(o, d, c);
-    if (POLYGONS)
+    if (POLYGONS && !TREE_OF_SHAPES)
         c = closest_polygon(o, d, c);
 
     Hit hit;
@@ -75,9 +96,9 @@ Candidates shaft(vec3 from, vec3 corner, vec3 edge_u, vec3 edge_v)
     Candidates c;
     c.polygons = 0u;
     c.spheres = 0u;
-    if (POLYGONS)
+    if (POLYGONS && !TREE_OF_SHAPES)
         c.polygons = polygons_in_shaft(from, corner, edge_u, edge_v);
-    if (SPHERES)
+    if (SPHERES && !TREE_OF_SHAPES)
         c.spheres = spheres_in_shaft(from, corner, edge_u, edge_v);
     return c;
 }
@@ -90,9 +111,11 @@ Candidates everything()
     return c;
 }
 
-// Any-hit query up to distance `far`. Of polygons and spheres only the candidates are tested.
+// Any-hit query up to distance `far`. Of polygons and spheres only the candidates are tested, unless there is a tree.
 bool occluded(vec3 o, vec3 d, float far, Candidates c)
 {
+    if (TREE_OF_SHAPES)
+        return tree_blocks(o, d, far);
     if (POLYGONS && c.polygons != 0u && polygons_block(o, d, far, c.polygons))
         return true;
     if (SPHERES && c.spheres != 0u && spheres_block(o, d, far, c.spheres))

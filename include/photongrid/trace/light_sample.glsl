@@ -1,25 +1,6 @@
-// A sample of a light as seen from a point of a surface: its irradiance and its shadow ray (2.4). Included by kernels
-// after trace/lights.glsl and the SWITCHes POINT_LIGHTS and AREA_LIGHTS; args: strata, ray_id, seed, first_pixel.
-
-// A point of a surface that is lit.
-struct LitPoint {
-    vec3 position;
-    vec3 normal;
-    vec3 origin;       // of its shadow rays, off the surface
-    float offset;      // of the origin from the surface, m
-    float round_share; // see ray_offset
-};
-
-LitPoint lit_point(vec3 p, vec3 n)
-{
-    LitPoint lit;
-    lit.position = p;
-    lit.normal = n;
-    lit.round_share = scene(SCENE_SIZES).x;
-    lit.offset = ray_offset(p, lit.round_share);
-    lit.origin = ray_at(p, n, lit.offset);
-    return lit;
-}
+// A sample of a point or rectangle light as seen from a point of a surface (2.4). Included by kernels after
+// trace/lights.glsl, trace/lit_point.glsl and the SWITCHes POINT_LIGHTS and AREA_LIGHTS; args: strata, ray_id, seed,
+// first_pixel.
 
 // A light as seen from a point: what all samples have in common.
 struct SeenLight {
@@ -114,59 +95,6 @@ float form_factor(vec3 corner, vec3 edge_u, vec3 edge_v, vec3 n)
     }
     precise float factor = abs(sum) * 0.159154943f; // 1 / (2 pi)
     return factor;
-}
-
-// The way from a lit point to a point of a light.
-struct LightWay {
-    vec3 direction;  // unit
-    float distance2; // m^2; 0: the points are the same
-    float cosine;    // with the lit point's normal
-};
-
-LightWay way_to(vec3 target, LitPoint lit)
-{
-    LightWay way;
-    precise vec3 towards = target - lit.position;
-    way.distance2 = dot3(towards, towards);
-    precise float inverse = 1.0f / sqrt(way.distance2);
-    precise vec3 d = towards * inverse;
-    way.direction = d;
-    way.cosine = dot3(d, lit.normal);
-    return way;
-}
-
-struct LightSample {
-    float per_power; // irradiance if it is visible, divided by the light's power, m^-2
-    bool has_ray;    // else it counts as visible
-    vec3 direction;  // of the shadow ray, unit
-    float far;       // length of the shadow ray, m
-};
-
-LightSample no_light(LitPoint lit)
-{
-    LightSample none;
-    none.per_power = 0.0f;
-    none.has_ray = false;
-    none.direction = lit.normal;
-    none.far = 0.0f;
-    return none;
-}
-
-// A sample whose shadow ray goes to `end`; no light from a point without distance.
-LightSample lit_from(vec3 end, float per_power, LitPoint lit)
-{
-    LightSample found = no_light(lit);
-    precise vec3 ray = end - lit.origin;
-    float length2 = dot3(ray, ray);
-    if (!(length2 > 0.0f))
-        return found;
-    precise float far = sqrt(length2);
-    precise vec3 way = ray / far;
-    found.per_power = per_power;
-    found.has_ray = true;
-    found.direction = way;
-    found.far = far;
-    return found;
 }
 
 // Sample s of light `number`, for element i. The sample of an area light is a random point of its stratum. A stratum

@@ -1,8 +1,9 @@
 // Lights, read from the scene buffer. Included by kernels after their scene buffer.
 struct Light {
+    uint form;
     bool is_area;             // a rectangle; other kinds have some of these members only
     vec3 position;            // of a rectangle light: one corner, m
-    vec3 edge_u;              // m
+    vec3 edge_u;              // m; x of a sphere: its radius
     vec3 edge_v;              // m
     vec3 normal;              // unit; light leaves on this side
     vec3 power;               // W
@@ -13,7 +14,8 @@ Light light_at(uint at)
 {
     vec4 position_record = scene(at + 1u);
     Light l;
-    l.is_area = uint(scene(at).x) == RECTANGLE_LIGHT;
+    l.form = uint(scene(at).x);
+    l.is_area = l.form == RECTANGLE_LIGHT;
     l.position = vec3(position_record);
     l.edge_u = vec3(scene(at + 2u));
     l.edge_v = vec3(scene(at + 3u));

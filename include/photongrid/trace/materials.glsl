@@ -4,6 +4,7 @@ struct Material {
     vec3 reflectance;          // of glass: transmittance per crossing
     uint kind;                 // LAMBERTIAN_SURFACE, MIRROR_SURFACE, GLASS_SURFACE
     float index_of_refraction; // glass only
+    float alpha;               // of rough surfaces (trace/microfacet.glsl); 0: smooth
 };
 
 // 1 + the number of the material's texture, or 0.
@@ -19,6 +20,13 @@ Material material_of(uint number)
     Material m;
     m.reflectance = vec3(record);
     m.kind = uint(record.w);
-    m.index_of_refraction = scene(at + 1u).x;
+    vec4 more = scene(at + 1u);
+    m.index_of_refraction = more.x;
+    m.alpha = more.z;
     return m;
+}
+
+bool is_glass(Material m)
+{
+    return m.kind == GLASS_SURFACE;
 }

@@ -11,6 +11,9 @@ const uint TEXTURE_TABLE = 7u; // of the materials that have one; see trace/mesh
 // Two records per node (trace/light_tree.hpp): its ball; power, left, right. w of the table's record: how many lights
 // are in the tree; they come first among all lights.
 const uint LIGHT_TREE = 12u;
+// Two records per node (trace/shape_tree.hpp). Corners of its box, m; w of the first: the number of the node after all
+// that are below it, or of a leaf -1 - the number of its shape's kind; w of the second: of a leaf, its shape's record.
+const uint SHAPE_TREE = 13u;
 // Forms of lights.
 const uint POINT_LIGHT = 0u;
 const uint RECTANGLE_LIGHT = 1u;
@@ -40,7 +43,7 @@ inline Table table_of(vec4 record)
 
 // Kinds of materials.
 const uint LAMBERTIAN_SURFACE = 0u;
-const uint MIRROR_SURFACE = 1u; // metals too
+const uint MIRROR_SURFACE = 1u; // of all kinds that only reflect
 const uint GLASS_SURFACE = 2u;
 
 const uint NO_MATERIAL = 0xFFFFFFFFu; // of a light's surface

@@ -8,6 +8,7 @@
 #include <photongrid/trace/light_tree.hpp>
 #include <photongrid/trace/mesh_layout.hpp>
 #include <photongrid/trace/scene_layout.kernel.hpp>
+#include <photongrid/trace/shape_tree.hpp>
 
 #include <algorithm>
 #include <map>
@@ -35,7 +36,9 @@ enum scene_feature : uint {
     has_spot_lights = 1u << 13,
     has_directional_lights = 1u << 14,
     has_environment = 1u << 15,
-    has_textures = 1u << 16, ///< or colours of vertices
+    has_textures = 1u << 16,   ///< or colours of vertices
+    has_rough = 1u << 17,      ///< a rough surface
+    has_shape_tree = 1u << 18, ///< of many shapes
 };
 
 static_assert(light_kind<point_light>::form == kernels::POINT_LIGHT
@@ -157,6 +160,7 @@ namespace detail {
                 = static_cast<float>(std::max(round_size_ * 0x1p-19, scale_ * 0x1p-26));
             write_materials(w);
             write_shapes(w);
+            write_shape_tree(w);
             write_meshes();
             write_lights(w);
             for (const auto& r : out_.records)
@@ -167,6 +171,11 @@ namespace detail {
         }
 
     private:
+        static uint features_of(const material& m)
+        {
+            return entry_of(m.kind).switches | (is_rough(m) ? has_rough : 0u);
+        }
+
         /// Computes the bounds, the centre and the features.
         void measure()
         {
@@ -177,7 +186,7 @@ namespace detail {
                     kind.add_bounds(all, x);
                     if (is_diffuse(m))
                         kind.add_bounds(diffuse, x);
-                    out_.features |= entry_of(m.kind).switches;
+                    out_.features |= features_of(m);
                     round_size_ = std::max(round_size_, kind.round_size(x));
                     out_.steps_per_ray += steps_of(kind, x);
                 }
@@ -188,7 +197,7 @@ namespace detail {
                 shape_kind<placed_mesh>::add_bounds(all, m);
                 if (is_diffuse(of))
                     shape_kind<placed_mesh>::add_bounds(diffuse, m);
-                out_.features |= has_meshes | entry_of(of.kind).switches;
+                out_.features |= has_meshes | features_of(of);
                 out_.features |= m.surface->normals.empty() ? 0u : has_smooth_meshes;
                 out_.features |= m.surface->colors.empty() && !of.texture.map ? 0u : has_textures;
             }
@@ -236,8 +245,10 @@ namespace detail {
                     count = 0;
                 }
                 const uint begin = w.next();
-                for (const auto& x : list)
+                for (const auto& x : list) {
+                    place(kind, x, w.next());
                     kind.write(w, x);
+                }
                 std::size_t written = list.size();
                 if constexpr (std::is_same_v<decltype(kind), shape_kind<sphere>>)
                     written += write_spheres_of_lights(w);
@@ -246,17 +257,50 @@ namespace detail {
                     enter(number, first, count, (w.next() - begin) / static_cast<uint>(written));
             });
             // Polygons come last, because the surfaces of lights belong to the same table.
-            for (std::size_t i = 0; i < s_.rectangle_lights.size(); ++i)
-                put_polygon(w, surface_of(s_.rectangle_lights[i]), i + 1);
+            for (std::size_t i = 0; i < s_.rectangle_lights.size(); ++i) {
+                const auto surface = surface_of(s_.rectangle_lights[i]);
+                place(shape_kind<polygon>{}, surface, w.next());
+                put_polygon(w, surface, i + 1);
+            }
             enter(number, first, s_.polygons.size() + s_.rectangle_lights.size(), 0);
+        }
+
+        /// Remembers a shape whose records begin at `at`, for the tree. Its box has a margin, since polygons are a
+        /// little larger than they are, and rays hit a little off the shape.
+        template <class Kind, class Shape>
+        void place(Kind kind, const Shape& x, uint at)
+        {
+            bounds b;
+            kind.add_bounds(b, x);
+            const dvec3 margin(scale_ * 0x1p-17);
+            shapes_.push_back(
+                {{glm::vec3(b.low - out_.center - margin), glm::vec3(b.high - out_.center + margin)}, kind.number, at});
+        }
+
+        /// The tree of all shapes, if there are many.
+        void write_shape_tree(record_writer& w)
+        {
+            if (shapes_.size() <= most_shapes_without_tree)
+                return;
+            out_.features |= has_shape_tree;
+            const auto nodes = build_shape_tree(shapes_);
+            out_.steps_per_ray += nodes.size();
+            enter(kernels::SHAPE_TREE, w.next(), nodes.size(), 2);
+            for (const auto& n : nodes) {
+                w.put(dvec3(n.shape.box.low), n.is_leaf ? -1.0 - n.shape.kind : n.past);
+                w.put(dvec3(n.shape.box.high), n.shape.at);
+            }
         }
 
         /// Returns how many.
         std::size_t write_spheres_of_lights(record_writer& w)
         {
             const std::size_t first = s_.rectangle_lights.size() + s_.point_lights.size();
-            for (std::size_t i = 0; i < s_.sphere_lights.size(); ++i)
-                shape_kind<sphere>::write(w, surface_of(s_.sphere_lights[i]), first + i + 1);
+            for (std::size_t i = 0; i < s_.sphere_lights.size(); ++i) {
+                const auto surface = surface_of(s_.sphere_lights[i]);
+                place(shape_kind<sphere>{}, surface, w.next());
+                shape_kind<sphere>::write(w, surface, first + i + 1);
+            }
             return s_.sphere_lights.size();
         }
 
@@ -284,7 +328,8 @@ namespace detail {
             std::size_t textures = 0;
             for (const auto& m : s_.materials) {
                 w.put(m.reflectance, static_cast<uint>(entry_of(m.kind).surface));
-                w.put(dvec3(m.index_of_refraction, static_cast<double>(m.texture.map ? ++textures : 0), 0), 0);
+                const double alpha = is_rough(m) ? m.roughness * m.roughness : 0;
+                w.put(dvec3(m.index_of_refraction, static_cast<double>(m.texture.map ? ++textures : 0), alpha), 0);
             }
             write_textures(w, textures);
         }
@@ -366,6 +411,7 @@ namespace detail {
 
         const scene& s_;
         scene_layout out_;
+        std::vector<boxed_shape> shapes_;
         double scale_ = 0;      ///< half the scene's diagonal, m
         double round_size_ = 0; ///< the largest shape_kind::round_size, m
     };

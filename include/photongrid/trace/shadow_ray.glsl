@@ -14,6 +14,7 @@ struct Params {
     uint first_pixel; // pixel of eye ray 0
     uint choice;      // with `choices` the number of a sample, whose light is chosen (chosen_light.glsl)
     uint choices;     // 0: none is chosen
+    uint whole;       // 1: parts of a rectangle that are close are taken whole, by their form factor
 };
 PARAMS(Params)
 SWITCH(6, POINT_LIGHTS)
@@ -32,121 +33,13 @@ INPUT(7, vec4, environment)        // see environment.glsl ...
 INPUT(8, uint, environment_shares) // ... and environment_sample.glsl
 OUTPUT(0, vec4, origin)    // xyz, m; w: length, m; 0 where nothing need be searched
 OUTPUT(1, vec4, direction) // xyz: unit vector
-OUTPUT(2, vec4, arriving)  // rgb: irradiance if no mesh blocks the ray, W/m^2
+// rgb: irradiance if no mesh blocks the ray, W/m^2; w: density of the direction among all samples of the light, sr^-1;
+// 0 of lights without size
+OUTPUT(2, vec4, arriving)
 
 #include <photongrid/trace/intersect.glsl>
-#include <photongrid/trace/lights.glsl>
-#include <photongrid/trace/light_sample.glsl>
-#include <photongrid/trace/mesh_light.glsl>
-#include <photongrid/trace/spot_light.glsl>
-#include <photongrid/trace/sphere_light.glsl>
-#include <photongrid/trace/distant_light.glsl>
-#include <photongrid/trace/environment.glsl>
-#include <photongrid/trace/environment_sample.glsl>
-
-// The random numbers of this sample.
-vec4 sample_numbers(uint i)
-{
-    return random4(
-        uvec4(i + args.first_pixel, args.ray_id, 3000u + args.light, args.seed ^ (args.sample_id * 0x9E3779B1u)));
-}
-
-// The share of a sample among all samples.
-float sample_share()
-{
-    precise float share = 1.0f / float(args.strata.x * args.strata.y);
-    return share;
-}
-
-// A point of this sample's stratum of the unit square.
-vec2 stratified(vec2 r)
-{
-    uint row = args.sample_id / args.strata.x;
-    uint column = args.sample_id - row * args.strata.x;
-    precise vec2 at
-        = vec2((float(column) + r.x) / float(args.strata.x), (float(row) + r.y) / float(args.strata.y));
-    return vec2(min(at.x, 0.99999994f), min(at.y, 0.99999994f));
-}
-
-// A sample of a mesh light: a random point of the sample's own part of the area.
-LightSample mesh_light_sample(uint at, uint i, LitPoint lit)
-{
-    vec4 r = sample_numbers(i);
-    float share = sample_share();
-    precise float u = (float(args.sample_id) + r.x) * share;
-    EmittingPoint e = emitting_point(at, min(u, 0.99999994f), r.y, r.z);
-    LightWay way = way_to(e.position, lit);
-    float leaving = -dot3(way.direction, e.normal);
-    if (!(way.distance2 > 0.0f) || !(way.cosine > 0.0f) || !(leaving > 0.0f))
-        return no_light(lit);
-    // Radiance times area is power / pi.
-    precise float per_power = way.cosine * leaving / way.distance2 * 3.18309886e-1f * share;
-    return lit_from(ray_at(e.position, e.normal, e.offset), per_power, lit);
-}
-
-// A sample of a sphere light: a direction that is even over the solid angle that the sphere takes up (Shirley, Wang and
-// Zimmerman, Monte Carlo Techniques for Direct Lighting Calculations, 1996).
-LightSample sphere_light_sample(uint at, uint i, LitPoint lit)
-{
-    vec4 record = scene(at + 1u);
-    float radius = scene(at + 2u).x;
-    precise vec3 to_centre = vec3(record) - lit.position;
-    float distance2 = dot3(to_centre, to_centre);
-    precise float sine2 = radius * radius / distance2;
-    if (!(sine2 < 1.0f))
-        return no_light(lit); // inside
-    precise float cone = sine2 / (1.0f + sqrt(1.0f - sine2)); // 1 - cosine
-    vec2 u = stratified(vec2(sample_numbers(i)));
-    precise float below = cone * u.x;
-    precise float off_axis2 = below * (2.0f - below);
-    precise float off_axis = sqrt(off_axis2);
-    vec2 circle = unit_circle(u.y);
-    vec3 d = from_basis(
-        vec3(off_axis * circle.x, off_axis * circle.y, 1.0f - below), normalized3(to_centre));
-    float cosine = dot3(d, lit.normal);
-    if (!(cosine > 0.0f))
-        return no_light(lit);
-    // The sphere's surface along d, then outward by the offset.
-    precise float half_chord2 = radius * radius - distance2 * off_axis2;
-    precise float t = dot3(d, to_centre) - sqrt(half_chord2 > 0.0f ? half_chord2 : 0.0f);
-    vec3 normal = normalized3(ray_at(-to_centre, d, t));
-    float end_radius = radius + sphere_light_offset(vec3(record), radius, lit.round_share);
-    precise float per_power = record.w * cosine * 6.28318531f * cone * sample_share();
-    return lit_from(ray_at(vec3(record), normal, end_radius), per_power, lit);
-}
-
-// A spotlight.
-LightSample spot_light_sample(uint at, LitPoint lit)
-{
-    vec3 position = vec3(scene(at + 1u));
-    LightWay way = way_to(position, lit);
-    float intensity = spot_intensity(at, -way.direction);
-    if (!(way.distance2 > 0.0f) || !(way.cosine > 0.0f) || !(intensity > 0.0f))
-        return no_light(lit);
-    float least2 = lit.offset * lit.offset; // as for a point light
-    precise float per_power = way.cosine * intensity / (way.distance2 > least2 ? way.distance2 : least2);
-    LightSample found = lit_from(position, per_power, lit);
-    precise float short_of = found.far * 0.9999f; // it may touch a surface
-    found.far = short_of;
-    return found;
-}
-
+#include <photongrid/trace/any_light.glsl>
 #include <photongrid/trace/chosen_light.glsl>
-
-// Light from outside of the scene.
-LightSample distant_sample(vec3 towards, float per_power, LitPoint lit)
-{
-    LightSample found = no_light(lit);
-    float cosine = dot3(towards, lit.normal);
-    if (!(cosine > 0.0f))
-        return found;
-    precise float received = per_power * cosine;
-    found.per_power = received;
-    found.has_ray = true;
-    found.direction = towards;
-    found.far = 3.0e38f;
-    return found;
-}
 
 void kernel(uint i)
 {
@@ -169,33 +62,14 @@ void kernel(uint i)
         precise float weight = 1.0f / (c.probability * float(args.choices));
         scale = weight;
     }
-    Table lights = table_of(scene(LIGHT_TABLE));
-    uint at = lights.first + lights.stride * number;
-    uint form = uint(scene(at).x);
-    vec3 power = vec3(scene(at + 5u));
-    LightSample found = no_light(lit);
-    if (is_mesh_light(at)) {
-        found = mesh_light_sample(at, args.first + i, lit);
-    } else if (SPHERE_LIGHTS && form == SPHERE_LIGHT) {
-        found = sphere_light_sample(at, args.first + i, lit);
-    } else if (ENVIRONMENT_LIGHTS && form == ENVIRONMENT_LIGHT) {
-        vec4 r = sample_numbers(args.first + i);
-        EnvironmentSample e = environment_sample(at, stratified(vec2(r)), vec2(r.z, r.w));
-        found = distant_sample(e.towards, sample_share(), lit);
-        power = e.radiance_per_density;
-    } else if (SPOT_LIGHTS && form == SPOT_LIGHT) {
-        found = spot_light_sample(at, lit);
-    } else if (DIRECTIONAL_LIGHTS && form == DIRECTIONAL_LIGHT) {
-        vec4 light = scene(at + 1u);
-        found = distant_sample(-vec3(light), light.w, lit);
-    } else if (POINT_LIGHTS || AREA_LIGHTS) {
-        found = light_sample(seen_light(at, lit), number, args.sample_id, args.first + i, lit);
-    }
+    ArrivingLight light = arriving_light(number, args.first + i, args.whole != 0u, lit);
+    LightSample found = light.found;
     if (!(found.per_power > 0.0f)
         || (found.has_ray && occluded(lit.origin, found.direction, found.far, everything())))
         return;
     origin = vec4(lit.origin.x, lit.origin.y, lit.origin.z, found.has_ray ? found.far : 0.0f);
     direction = vec4(found.direction.x, found.direction.y, found.direction.z, 0.0f);
     precise float received = found.per_power * scale;
-    arriving = vec4(power.x * received, power.y * received, power.z * received, 0.0f);
+    precise float density = light.radiance_per_power * dot3(found.direction, lit.normal) / found.per_power;
+    arriving = vec4(light.power.x * received, light.power.y * received, light.power.z * received, density);
 }
