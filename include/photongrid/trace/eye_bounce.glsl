@@ -57,7 +57,7 @@ bool done()
 // too (balance heuristic); `density`: that of such a sample's direction, sr^-1.
 float weight_of_hit(float density)
 {
-    if (!ROUGH || !(surface.x > 0.0f))
+    if (!ROUGH || !(surface.x > 0.0f) || args.light_samples == 0.0f)
         return 1.0f;
     precise float weight = surface.x / (surface.x + args.light_samples * density);
     return weight;
@@ -93,7 +93,7 @@ void see_light(Hit hit, vec3 d)
         throughput.z * light.power.z * scale, 0.0f);
 }
 
-// The ray ends on a rough surface, for light from lights (rough_points.glsl). w of direction, throughput and emitted:
+// The ray ends on a rough surface, for samples of lights (rough_points.glsl). w of direction, throughput and emitted:
 // the geometric normal.
 void end_on_rough(Hit hit, vec3 shading, vec3 weighted, bool counted)
 {

@@ -20,15 +20,15 @@ bool ended_on_rough(uint ray)
 RoughEnd rough_end(uint ray)
 {
     vec4 way = directions(ray);
-    vec4 surface = surfaces(ray);
+    vec4 facing = surfaces(ray);
     vec3 outward = vec3(way.w, throughputs(ray).w, emissions(ray).w);
     RoughEnd e;
     e.position = vec3(points(ray));
     e.d = vec3(way);
-    e.shading = vec3(surface);
+    e.shading = vec3(facing);
     e.outside = !(dot3(outward, e.d) > 0.0f);
     e.geometric = e.outside ? outward : -outward;
-    e.material = material_of(uint(surface.w));
+    e.material = material_of(uint(facing.w));
     e.is_glass = is_glass(e.material);
     return e;
 }
