@@ -88,7 +88,7 @@ public:
     void release(const block& b, memory_kind kind)
     {
         bytes_ -= b.bytes;
-        if (free_bytes_ + b.bytes > keep_bytes || free_[kind].size() >= keep_blocks) {
+        if (free_bytes_ + b.bytes > keep_bytes_ || free_[kind].size() >= keep_blocks) {
             destroy(b);
             return;
         }
@@ -98,8 +98,8 @@ public:
 
 private:
     // Algorithms allocate the same sizes repeatedly, and an allocation costs more than a pass.
-    static constexpr VkDeviceSize keep_bytes = VkDeviceSize{64} << 20;
-    static constexpr std::size_t keep_blocks = 64;
+    VkDeviceSize keep_bytes_ = VkDeviceSize{64} << 20;
+    static constexpr std::size_t keep_blocks = 1024;
 
     void query_device(bool staging)
     {
@@ -115,8 +115,21 @@ private:
             = std::min<std::uint64_t>(properties_.limits.maxStorageBufferRange, m3.maxMemoryAllocationSize);
         vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
         // If host and device share memory, staging copies are not needed; across a bus, reads by the host are slow.
+        // A discrete GPU has memory to spare, and allocates slowly.
+        if (properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU)
+            keep_bytes_ = std::max(keep_bytes_, std::min<VkDeviceSize>(device_bytes() / 16, VkDeviceSize{1} << 30));
         unified_ = !staging && properties_.deviceType != VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU
             && find_type(~0u, shared_memory) != none;
+    }
+
+    /// Of its largest local heap.
+    VkDeviceSize device_bytes() const
+    {
+        VkDeviceSize most = 0;
+        for (std::uint32_t h = 0; h < memory_.memoryHeapCount; ++h)
+            if ((memory_.memoryHeaps[h].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0)
+                most = std::max(most, memory_.memoryHeaps[h].size);
+        return most;
     }
 
     static constexpr std::uint32_t none = ~0u;

@@ -17,7 +17,8 @@ namespace photongrid {
 /// Work is deferred: passes are recorded and submitted in batches; download, count, route, run_until_done and finish
 /// wait for them. One thread at a time may use a backend and its buffers. A buffer may outlive the backend. The memory
 /// of a destroyed buffer is released when the last pass that uses it is done: bytes() counts the buffers that exist,
-/// peak_bytes() the most memory in use. It keeps up to 64 MiB of free memory for new buffers, which neither counts.
+/// peak_bytes() the most memory in use. It keeps free memory for new buffers, which neither counts: up to 64 MiB, of a
+/// discrete GPU up to a sixteenth of its own memory and 1 GiB.
 ///
 /// costs()[kernel].instructions is the number of SPIR-V instructions in the functions of the kernel's largest
 /// specialisation so far, after optimisation.
