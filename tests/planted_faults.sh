@@ -263,7 +263,7 @@ faults=(
   "samples of lights on rough surfaces count in full|include/photongrid/trace/scatter_rough.glsl|(light.w / (light.w + s.density))|1.0f|validation"
   "rays off rough surfaces count in full|include/photongrid/trace/eye_bounce.glsl|surface.x / (surface.x + args.light_samples * density)|1.0f|validation"
   "rough glass is lit from the front alone|include/photongrid/trace/eye_rays.hpp|(s.layout.features & has_glass) != 0 ? 2u : 1u|1u|validation"
-  "of shapes at the same distance any is hit|include/photongrid/trace/intersect/tree.glsl|(t == c.t && at < c.at)|false|optics"
+  "of shapes at the same distance any is hit|include/photongrid/trace/intersect/tree.glsl|(t == c.t && n.at < c.at)|false|optics"
   "boxes of shapes are a little too small|include/photongrid/trace/scene_records.hpp|const dvec3 margin(scale_ * 0x1p-17)|const dvec3 margin(scale_ * -0x1p-12)|optics"
   "paraboloids do not bulge|include/photongrid/scene/paraboloid.hpp|cosine < 0 ?|cosine < -2 ?|optics"
   "lights of meshes are one another|include/photongrid/trace/mesh_hit.glsl|uint(-normal.w) - 1u|uint(-normal.w)"

@@ -141,15 +141,16 @@ namespace {
         check_photons({"dark glass", material_kind::glass, {0.2, 0.4, 0.1}, index_of_glass}, {1.5, 0.5, 1});
     }
 
-    /// One step of eye rays.
-    struct eye_step {
-        std::vector<glm::vec4> points, directions, throughputs;
+    /// How eye rays take one step.
+    struct step_settings {
+        uint branch = 0, splits = 0;
+        float throughput = 1, stratum = 0;
     };
-    eye_step step(const scene& s, const std::vector<dvec3>& origins, const std::vector<dvec3>& ways, uint branch,
-        uint splits, float throughput = 1, float stratum = 0)
+
+    /// One step of eye rays from these origins in these directions.
+    detail::eye_hits<serial_backend> hits_of_step(serial_backend& b, const device_scene<serial_backend>& device,
+        const std::vector<dvec3>& origins, const std::vector<dvec3>& ways, const step_settings& how = {})
     {
-        serial_backend b;
-        const auto device = upload_scene(b, s);
         const std::size_t n = origins.size();
         detail::eye_hits<serial_backend> hits(b, n);
         std::vector<glm::vec4> points, directions;
@@ -159,22 +160,33 @@ namespace {
         }
         hits.points = b.upload(std::span<const glm::vec4>(points));
         hits.directions = b.upload(std::span<const glm::vec4>(directions));
-        hits.throughputs
-            = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(n, glm::vec4(glm::vec3(throughput), 0.0f))));
+        hits.throughputs = b.upload(
+            std::span<const glm::vec4>(std::vector<glm::vec4>(n, glm::vec4(glm::vec3(how.throughput), 0.0f))));
         auto branches = b.make<uint>(n);
         const detail::mesh_hits<serial_backend> none(b, device, 0);
         b.run<kernels::eye_bounce>({n, 0u, device.layout.features},
-            {.branch = branch,
-                .splits = splits,
+            {.branch = how.branch,
+                .splits = how.splits,
                 .depth = 8,
                 .sample_id = 0,
                 .light_samples = 0,
-                .stratum = stratum,
+                .stratum = how.stratum,
                 .seed = 1,
                 .first_pixel = 0,
                 .first = 0},
             reads(device.records, none.places, none.normals, none.shadings, device.environment, none.colors),
             writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
+        return hits;
+    }
+
+    struct eye_step {
+        std::vector<glm::vec4> points, directions, throughputs;
+    };
+    eye_step step(const scene& s, const std::vector<dvec3>& origins, const std::vector<dvec3>& ways, uint branch,
+        uint splits, float throughput = 1, float stratum = 0)
+    {
+        serial_backend b;
+        const auto hits = hits_of_step(b, upload_scene(b, s), origins, ways, {branch, splits, throughput, stratum});
         return {b.download(hits.points), b.download(hits.directions), b.download(hits.throughputs)};
     }
 

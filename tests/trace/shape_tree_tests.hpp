@@ -105,29 +105,7 @@ namespace {
         const std::vector<dvec3>& origins, const std::vector<dvec3>& ways)
     {
         const std::size_t n = origins.size();
-        detail::eye_hits<serial_backend> hits(b, n);
-        std::vector<glm::vec4> points, directions;
-        for (std::size_t i = 0; i < n; ++i) {
-            points.emplace_back(glm::vec3(origins[i] - device.layout.center), 0.0f);
-            directions.emplace_back(glm::vec3(ways[i]), 0.0f);
-        }
-        hits.points = b.upload(std::span<const glm::vec4>(points));
-        hits.directions = b.upload(std::span<const glm::vec4>(directions));
-        hits.throughputs = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(n, glm::vec4(1, 1, 1, 0))));
-        auto branches = b.make<uint>(n);
-        const detail::mesh_hits<serial_backend> none(b, device, 0);
-        b.run<kernels::eye_bounce>({n, 0u, device.layout.features},
-            {.branch = 0,
-                .splits = 0,
-                .depth = 8,
-                .sample_id = 0,
-                .light_samples = 0,
-                .stratum = 0,
-                .seed = 1,
-                .first_pixel = 0,
-                .first = 0},
-            reads(device.records, none.places, none.normals, none.shadings, device.environment, none.colors),
-            writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
+        const auto hits = hits_of_step(b, device, origins, ways);
         auto light = b.make<glm::vec4>(n);
         auto settings = s.render;
         settings.view.light_samples = 4;

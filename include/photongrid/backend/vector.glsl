@@ -33,28 +33,39 @@ inline float largest3(vec3 v)
     return m > v.z ? m : v.z;
 }
 
-// The vector that has the coordinates `local` in an orthonormal basis whose third axis is n. Duff et al., Building an
-// Orthonormal Basis, Revisited, JCGT 6(1), 2017.
-inline vec3 from_basis(vec3 local, vec3 n)
+// The first two axes of an orthonormal basis whose third axis is n. Duff et al., Building an Orthonormal Basis,
+// Revisited, JCGT 6(1), 2017.
+struct Basis {
+    vec3 u;
+    vec3 v;
+};
+
+inline Basis basis_about(vec3 n)
 {
     float s = n.z >= 0.0f ? 1.0f : -1.0f;
     precise float a = -1.0f / (s + n.z);
     precise float b = n.x * n.y * a;
     precise vec3 u = vec3(1.0f + s * n.x * n.x * a, s * b, -s * n.x);
     precise vec3 v = vec3(b, s + n.y * n.y * a, -n.y);
-    precise vec3 w = u * local.x + v * local.y + n * local.z;
+    Basis basis;
+    basis.u = u;
+    basis.v = v;
+    return basis;
+}
+
+// The vector that has the coordinates `local` in that basis.
+inline vec3 from_basis(vec3 local, vec3 n)
+{
+    Basis b = basis_about(n);
+    precise vec3 w = b.u * local.x + b.v * local.y + n * local.z;
     return w;
 }
 
-// The coordinates of v in the basis of from_basis.
+// The coordinates of v in that basis.
 inline vec3 in_basis(vec3 v, vec3 n)
 {
-    float s = n.z >= 0.0f ? 1.0f : -1.0f;
-    precise float a = -1.0f / (s + n.z);
-    precise float b = n.x * n.y * a;
-    precise vec3 first = vec3(1.0f + s * n.x * n.x * a, s * b, -s * n.x);
-    precise vec3 second = vec3(b, s + n.y * n.y * a, -n.y);
-    return vec3(dot3(v, first), dot3(v, second), dot3(v, n));
+    Basis b = basis_about(n);
+    return vec3(dot3(v, b.u), dot3(v, b.v), dot3(v, n));
 }
 
 // (cos, sin) of 2 pi u without trigonometric functions, whose results differ between devices: the quadrant, then Taylor

@@ -261,7 +261,8 @@ void kernel(uint i)
         surface.x = rough_scattering(sides.shading, material.alpha, material.index_of_refraction,
             GLASS && material.kind == GLASS_SURFACE, !(dot3(hit.normal, d) > 0.0f), d, next).density;
     } else if (MIRRORS || GLASS) {
-        surface.x = 0.0f;
+        if (ROUGH)
+            surface.x = 0.0f;
         next = leave_specular(hit, sides, f, reflected, material.index_of_refraction, d).direction;
     }
     if (!(share > 0.0f)) {

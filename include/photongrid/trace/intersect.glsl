@@ -1,6 +1,6 @@
 // Ray-scene intersection (3.1): tests every shape, as the paper does, or in scenes of many those that a tree finds.
-// Included by kernels after the SWITCHes of lights and the scene buffer. Only the kinds of shapes that the scene has are
-// compiled. A kind of shape is a file of intersect/ and a line in each of the functions below.
+// Included by kernels after the SWITCHes of lights and the scene buffer. Only the kinds of shapes that the scene has
+// are compiled. A kind of shape is a file of intersect/ and a line in each of the functions below.
 //
 // hit_x returns the distance along the ray, or `far` if shape x is not hit before that. closest_x tests all shapes x,
 // x_surface computes the hit point's position, normal and material, and x_block says whether any shape x occludes a

@@ -7,12 +7,12 @@
 #include <photongrid/trace/environment_layout.hpp>
 #include <photongrid/trace/light_tree.hpp>
 #include <photongrid/trace/mesh_layout.hpp>
+#include <photongrid/trace/moved_scene.hpp>
 #include <photongrid/trace/scene_layout.kernel.hpp>
 #include <photongrid/trace/shape_tree.hpp>
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -68,48 +68,6 @@ struct scene_layout {
 };
 
 namespace detail {
-    /// The scene moved by -by.
-    inline scene moved_back(scene s, const dvec3& by)
-    {
-        const auto move = [&](auto& list, auto kind) {
-            for (auto& x : list)
-                move_points(x, kind.fields, -by);
-        };
-        for_each_shape(s, move);
-        for_each_light(s, move);
-        move(s.meshes, shape_kind<placed_mesh>{});
-        s.camera.position -= by;
-        s.camera.look_at -= by;
-        return s;
-    }
-
-    /// Reference point for recentring: the first light's first point, or else the first shape's, so a translated scene
-    /// yields the same records.
-    inline dvec3 anchor(const scene& s)
-    {
-        std::optional<dvec3> first;
-        const auto look = [&](const auto& list, auto kind) {
-            if (list.empty() || first)
-                return;
-            if constexpr (requires { corners_of(list[0], 0); })
-                first = corners_of(list[0], 0)[0];
-            else if constexpr (requires { list[0].surface; })
-                first = corners_of(list[0].surface, 0)[0];
-            else
-                for_each_field(kind.fields, [&](const auto& f) {
-                    const auto& value = list[0].*f.member;
-                    if constexpr (requires { first = value; })
-                        first = f.of == quantity::point && !first ? value : first;
-                    else if constexpr (requires { first = value.front(); })
-                        first = value.front();
-                });
-        };
-        for_each_light(s, look);
-        for_each_shape(s, look);
-        look(s.meshes, shape_kind<placed_mesh>{});
-        return first.value_or(dvec3(0));
-    }
-
     /// \throws std::invalid_argument if a shape is so small, relative to the scene, that single precision cannot
     ///         resolve it.
     inline void require_resolvable(const scene& s, double scale)

@@ -14,6 +14,30 @@ float hit_in_box(uint kind, uint at, vec3 o, vec3 d, vec2 inside)
     return t > 0.0f ? t : 3.0e38f;
 }
 
+// A node as a ray of length `far` meets it.
+struct ShapeNode {
+    vec2 inside; // where the ray is inside its box
+    bool found;  // it is a leaf, and the ray meets its box
+    uint kind;   // of a leaf's shape
+    uint at;     // the shape's record
+    uint next;   // the node where the walk goes on
+};
+
+ShapeNode shape_node(Table tree, uint node, Ray r, float far)
+{
+    vec4 low = scene(tree.first + 2u * node);
+    vec4 high = scene(tree.first + 2u * node + 1u);
+    bool leaf = low.w < 0.0f;
+    ShapeNode n;
+    n.inside = inside_box(vec3(low), vec3(high), r);
+    bool meets = meets_box(n.inside, far);
+    n.found = meets && leaf;
+    n.kind = leaf ? uint(-1.0f - low.w) : NO_SHAPE;
+    n.at = uint(high.w);
+    n.next = meets || leaf ? node + 1u : uint(low.w);
+    return n;
+}
+
 // The closest hit: the least of (t, the shape's record).
 Closest closest_in_tree(vec3 o, vec3 d, Closest c)
 {
@@ -21,22 +45,16 @@ Closest closest_in_tree(vec3 o, vec3 d, Closest c)
     Ray r = ray_of(o, d);
     uint node = 0u;
     while (node < tree.count) {
-        vec4 low = scene(tree.first + 2u * node);
-        vec4 high = scene(tree.first + 2u * node + 1u);
-        vec2 inside = inside_box(vec3(low), vec3(high), r);
-        bool meets = meets_box(inside, c.t);
-        bool leaf = low.w < 0.0f;
-        if (meets && leaf) {
-            uint kind = uint(-1.0f - low.w);
-            uint at = uint(high.w);
-            float t = hit_in_box(kind, at, o, d, inside);
-            if (t < c.t || (t == c.t && at < c.at)) {
+        ShapeNode n = shape_node(tree, node, r, c.t);
+        if (n.found) {
+            float t = hit_in_box(n.kind, n.at, o, d, n.inside);
+            if (t < c.t || (t == c.t && n.at < c.at)) {
                 c.t = t;
-                c.kind = kind;
-                c.at = at;
+                c.kind = n.kind;
+                c.at = n.at;
             }
         }
-        node = meets || leaf ? node + 1u : uint(low.w);
+        node = n.next;
     }
     return c;
 }
@@ -47,14 +65,10 @@ bool tree_blocks(vec3 o, vec3 d, float far)
     Ray r = ray_of(o, d);
     uint node = 0u;
     while (node < tree.count) {
-        vec4 low = scene(tree.first + 2u * node);
-        vec4 high = scene(tree.first + 2u * node + 1u);
-        vec2 inside = inside_box(vec3(low), vec3(high), r);
-        bool meets = meets_box(inside, far);
-        bool leaf = low.w < 0.0f;
-        if (meets && leaf && hit_in_box(uint(-1.0f - low.w), uint(high.w), o, d, inside) < far)
+        ShapeNode n = shape_node(tree, node, r, far);
+        if (n.found && hit_in_box(n.kind, n.at, o, d, n.inside) < far)
             return true;
-        node = meets || leaf ? node + 1u : uint(low.w);
+        node = n.next;
     }
     return false;
 }
