@@ -33,7 +33,7 @@ TYPED_TEST(hard_cases_of_shading, h2_many_samples_of_a_constant_stay_that_consta
              searches = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(1)));
         for (uint i = 0; i < samples; ++i)
             b.template run<kernels::shade>(1, {.share = 1.0f / static_cast<float>(samples)},
-                reads(nothing, nothing, nothing, nothing, at, nothing, nothing, none), writes(pixel, searches));
+                reads(nothing, nothing, at, nothing, nothing, none), writes(pixel, searches));
         const auto mean = b.download(pixel)[0];
         double largest = 0;
         for (int c = 0; c < 3; ++c)

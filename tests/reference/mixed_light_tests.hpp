@@ -26,16 +26,17 @@ namespace {
         expect_photons_equal_eye_paths(s);
     }
 
-    // Samples of lights and rays that hit them by chance, with weights that add up to 1.
-    TEST(validation, rough_metal_and_glass_under_all_kinds_of_lights_equal_eye_paths)
+    /// A floor under lights without size, and one under lights with a size, with a tilted square of material 2 above it
+    /// and a ball of material 3.
+    std::vector<scene> square_and_ball_under_all_lights(const material& square, const material& ball)
     {
         const auto floors = floors_under_each_light();
         std::vector<scene> scenes(2, bare_floor());
-        scenes[0].name = "lights without size on rough surfaces";
+        scenes[0].name = square.name + ", lights without size";
         scenes[0].spot_lights = floors[0].spot_lights;
         scenes[0].directional_lights = floors[2].directional_lights;
         scenes[0].point_lights = {{"bulb", {-0.8, 0.9, -0.4}, dvec3(6, 12, 9)}};
-        scenes[1].name = "lights with a size on rough surfaces";
+        scenes[1].name = square.name + ", lights with a size";
         scenes[1].sphere_lights = floors[1].sphere_lights;
         scenes[1].environment_lights = floors[3].environment_lights;
         scenes[1].environment_lights[0].radiance = dvec3(0.1);
@@ -44,13 +45,32 @@ namespace {
             mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}});
         scenes[1].mesh_lights = {{"ember", {"", pyramid, glm::dmat3(0.4), {0.5, 0.8, -0.5}, 0}, dvec3(10, 5, 2)}};
         for (auto& s : scenes) {
-            s.materials.push_back({"metal", material_kind::metal, {0.9, 0.8, 0.7}, 1.5, 0.45});
-            s.materials.push_back({"frosted", material_kind::glass, dvec3(0.95), 1.5, 0.8});
+            s.materials.push_back(square);
+            s.materials.push_back(ball);
             s.polygons.push_back({{{-1.2, 0.05, -1}, {-1.2, 0.25, 1}, {0, 0.25, 1}, {0, 0.05, -1}}, 2});
             s.spheres = {{{0.6, 0.35, 0}, 0.35, 3}};
             s.camera = {{0, 2, -2.5}, {0, 0.2, 0}, {0, 1, 0}, 40};
             s.render.view.light_samples = 4;
             s.render.view.spp = 128;
+        }
+        return scenes;
+    }
+
+    // Samples of lights and rays that hit them by chance, with weights that add up to 1.
+    TEST(validation, rough_metal_and_glass_under_all_kinds_of_lights_equal_eye_paths)
+    {
+        for (const auto& s :
+            square_and_ball_under_all_lights({"metal", material_kind::metal, {0.9, 0.8, 0.7}, 1.5, 0.45},
+                {"frosted", material_kind::glass, dvec3(0.95), 1.5, 0.8}))
+            expect_photons_equal_eye_paths(s);
+    }
+
+    // Photons that a coat reflects, and photons that it lets pass, which the map holds.
+    TEST(validation, plastic_under_all_kinds_of_lights_equals_eye_paths)
+    {
+        for (auto& s : square_and_ball_under_all_lights({"varnish", material_kind::plastic, {0.9, 0.6, 0.3}, 2},
+                 {"plastic", material_kind::plastic, {0.3, 0.9, 0.5}, 1.5, 0.6})) {
+            s.materials[0] = {"table", material_kind::plastic, dvec3(0.8), 1.5, 0.3};
             expect_photons_equal_eye_paths(s);
         }
     }

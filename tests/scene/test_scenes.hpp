@@ -188,7 +188,8 @@ inline scene many_lights()
     return s;
 }
 
-/// all_shapes_and_meshes() under every kind of light, with rough metal and a glass mesh that is rough and has normals.
+/// all_shapes_and_meshes() under every kind of light, with rough metal, a glass mesh that is rough and has normals, and
+/// plastic, smooth and rough, of which one is a mesh with normals.
 inline scene all_lights()
 {
     auto s = all_shapes_and_meshes();
@@ -196,6 +197,15 @@ inline scene all_lights()
     s.materials[1].roughness = 0.4;
     s.materials.push_back({"frosted", material_kind::glass, dvec3(0.95), 1.5, 0.3});
     s.meshes[0].material = 4;
+    s.materials.push_back({"red plastic", material_kind::plastic, {0.7, 0.1, 0.1}, 1.5, 0.4});
+    s.materials.push_back({"varnish", material_kind::plastic, {0.6, 0.4, 0.2}, 1.6});
+    s.spheres[1].material = 5;
+    s.boxes[0].material = 6;
+    s.polygons[1].material = 6;
+    auto smooth = s.meshes[0];
+    smooth.material = 5;
+    smooth.offset = {-1.2, 0.2, -0.7};
+    s.meshes.push_back(smooth);
     s.sphere_lights = {{"globe", {-1.2, 1.3, 0.8}, 0.15, dvec3(6, 7, 8)}};
     s.spot_lights = {{"spot", {1.5, 1.6, -1}, {-1, -1.5, 0.6}, 10, 35, dvec3(8, 4, 4)}};
     s.directional_lights = {{"sun", {0.4, -1, 0.6}, dvec3(0.8, 0.7, 0.4)}};

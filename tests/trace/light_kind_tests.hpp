@@ -4,6 +4,7 @@
 #pragma once
 
 #include "direct_light_at.hpp"
+#include "known_coats.hpp"
 #include "mesh_scene_tests.hpp"
 
 namespace photongrid::testing {
@@ -205,56 +206,70 @@ TYPED_TEST_P(light_kinds, what_absorbs_nothing_in_a_white_environment_cannot_be_
         EXPECT_NEAR(mean[c] / (1 << c), 1, 0.004);
 }
 
-/// The share of light from everywhere that facets by GGX, shadowed by Smith's formula, reflect once, seen at this
-/// cosine.
-inline double albedo_of_facets(double cosine, double alpha)
+/// The mean of a picture of the middle of a ball in light that is the same from everywhere, of radiance 1, 2 and 4, and
+/// the one that is known; `albedo`: of the ball, by the cosine at which it is seen.
+template <class Picture, class Albedo>
+std::pair<dvec3, dvec3> ball_in_even_light(
+    const material& m, std::uint32_t light_samples, const Picture& picture, const Albedo& albedo)
 {
-    const auto unhidden = [&](double c) { return 2 / (1 + std::sqrt(1 + alpha * alpha * (1 - c * c) / (c * c))); };
-    const dvec3 view(std::sqrt(1 - cosine * cosine), 0, cosine);
-    double sum = 0;
-    constexpr int steps = 200;
-    for (int i = 0; i < steps; ++i)
-        for (int j = 0; j < steps; ++j) {
-            const double u = (i + 0.5) / steps, angle = std::atan(alpha * std::sqrt(u / (1 - u))),
-                         turn = M_PI * (j + 0.5) / steps;
-            const dvec3 facet(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), std::cos(angle));
-            const double met = glm::dot(view, facet), leaving = 2 * met * facet.z - view.z;
-            if (met > 0 && leaving > 0)
-                sum += met / (cosine * facet.z) * unhidden(cosine) * unhidden(leaving);
+    const dvec3 radiance(1, 2, 4);
+    scene s;
+    s.materials = {{"white", material_kind::lambertian, dvec3(1)}, m};
+    s.spheres = {{{0, 0, 0}, 1, 1}, {{0, 0, -20}, 0.1, 0}};
+    s.environment_lights = {{"white", "", nullptr, radiance}};
+    s.camera = {{0, 0, 50}, {0, 0, 0}, {0, 1, 0}, 1.6};
+    s.render = {.map = {.photons = 100, .grid = {20, 20, 20}},
+        .estimate = {.k = 15, .max_radius = 0.2},
+        .view = {.spp = 16, .light_samples = light_samples},
+        .output = {.width = 24, .height = 24, .only = light_part::direct}};
+    const auto seen = picture(s);
+    dvec3 mean(0);
+    for (const auto& p : seen.pixels)
+        mean += dvec3(p) / double(seen.pixels.size());
+    dvec3 known(0); // of the square within the ball, all seen along one direction
+    constexpr int steps = 24;
+    const double half = 50 * std::tan(glm::radians(0.8));
+    for (int x = 0; x < steps / 2; ++x)
+        for (int y = 0; y < steps / 2; ++y) {
+            const double r2 = half * half * (std::pow((2 * x + 1.0) / steps, 2) + std::pow((2 * y + 1.0) / steps, 2));
+            known += radiance * albedo(std::sqrt(1 - r2)) * 4.0 / double(steps * steps);
         }
-    return sum / (steps * steps);
+    return {mean, known};
 }
 
-/// What a rough ball in light that is the same from everywhere does not reflect, meets a second facet.
+/// What a rough ball does not reflect, meets a second facet.
 TYPED_TEST_P(light_kinds, rough_metal_has_the_albedo_of_its_facets)
 {
     for (const double roughness : {0.1, 0.4, 0.7, 1.0}) {
-        scene s;
-        s.materials = {{"white", material_kind::lambertian, dvec3(1)},
-            {"metal", material_kind::metal, dvec3(1, 0.5, 0.25), 1.5, roughness}};
-        s.spheres = {{{0, 0, 0}, 1, 1}, {{0, 0, -20}, 0.1, 0}};
-        s.environment_lights = {{"white", "", nullptr, dvec3(1, 2, 4)}};
-        s.camera = {{0, 0, 50}, {0, 0, 0}, {0, 1, 0}, 1.6};
-        s.render = {.map = {.photons = 100, .grid = {20, 20, 20}},
-            .estimate = {.k = 15, .max_radius = 0.2},
-            .view = {.spp = 16, .light_samples = 1},
-            .output = {.width = 24, .height = 24, .only = light_part::direct}};
-        const auto seen = this->picture(s);
-        dvec3 mean(0);
-        for (const auto& p : seen.pixels)
-            mean += dvec3(p) / double(seen.pixels.size());
-        double known = 0; // of the square within the ball, all seen along one direction
-        constexpr int steps = 24;
-        const double half = 50 * std::tan(glm::radians(0.8));
-        for (int x = 0; x < steps / 2; ++x)
-            for (int y = 0; y < steps / 2; ++y) {
-                const double r2
-                    = half * half * (std::pow((2 * x + 1.0) / steps, 2) + std::pow((2 * y + 1.0) / steps, 2));
-                known += albedo_of_facets(std::sqrt(1 - r2), roughness * roughness) * 4 / (steps * steps);
-            }
-        std::printf("roughness %.1f: %.1f %% of the light meets a second facet\n", roughness, 100 * (1 - known));
+        const dvec3 gold(1, 0.5, 0.25);
+        const auto [mean, known] = ball_in_even_light(
+            {"metal", material_kind::metal, gold, 1.5, roughness}, 1, [&](const scene& s) { return this->picture(s); },
+            [&](double cosine) {
+                return gold * albedo_of_facets(cosine, roughness * roughness, [](double) { return 1.0; });
+            });
+        std::printf("roughness %.1f: %.1f %% of the light meets a second facet\n", roughness, 100 * (1 - known.x));
         for (int c = 0; c < 3; ++c)
-            EXPECT_NEAR(mean[c] / known, 1, 0.01) << roughness;
+            EXPECT_NEAR(mean[c] / known[c], 1, 0.01) << roughness;
+    }
+}
+
+/// A coat reflects, and what it does not reflect reaches the base, so that a white one loses nothing.
+TYPED_TEST_P(light_kinds, plastic_has_the_albedo_of_its_coat_and_its_base)
+{
+    const dvec3 base(1, 0.5, 0);
+    for (const auto& [index, roughness] : {std::pair(1.5, 0.0), {1.5, 0.3}, {1.5, 0.9}, {4.0, 0.6}}) {
+        const known_coat coat{index, roughness * roughness};
+        const dvec3 left = coat.left(base);
+        const auto [mean, known] = ball_in_even_light(
+            {"plastic", material_kind::plastic, base, index, roughness}, 16,
+            [&](const scene& s) { return this->picture(s); },
+            [&](double cosine) {
+                const double reflected = coat.reflected(cosine);
+                return reflected + (1 - reflected) * left;
+            });
+        EXPECT_NEAR(known.x, 1, 0.002);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(mean[c] / known[c], 1, 0.01) << index << ' ' << roughness;
     }
 }
 
@@ -325,6 +340,6 @@ REGISTER_TYPED_TEST_SUITE_P(light_kinds, a_spotlight_has_its_intensity, a_sphere
     directional_light_is_even_and_casts_shadows, an_environment_has_the_light_of_its_texels,
     the_camera_sees_the_environment, photons_and_shadow_rays_agree, of_which_samples_choose_add_up,
     what_absorbs_nothing_in_a_white_environment_cannot_be_seen, rough_metal_has_the_albedo_of_its_facets,
-    equal_the_serial_backends, account_for_every_path);
+    plastic_has_the_albedo_of_its_coat_and_its_base, equal_the_serial_backends, account_for_every_path);
 
 } // namespace photongrid::testing

@@ -1,5 +1,6 @@
-// Rough metal and glass, compared with their definition: facets in double, drawn evenly by the distribution of normals,
-// each of which reflects and refracts as a smooth surface does. No formula for a density of directions is used.
+// Rough metal, glass and coats, compared with their definition: facets in double, drawn evenly by the distribution of
+// normals, each of which reflects and refracts as a smooth surface does. No formula for a density of directions is
+// used.
 #pragma once
 
 #include "scattering_tests.hpp"
@@ -90,7 +91,7 @@ namespace {
                     if (!(met > 0))
                         continue;
                     const incidence in(d, glm::dot(outward, at.normal) > 0 ? facet : -facet, m);
-                    const double f = m.kind == material_kind::glass ? in.reflectance() : 1;
+                    const double f = m.kind == material_kind::metal ? 1 : in.reflectance();
                     if (!reflected && !(f < 1))
                         continue;
                     const dvec3 next = reflected ? in.reflected() : in.refracted();
@@ -140,6 +141,9 @@ namespace {
                 const material metal{"metal", material_kind::metal, {0.9, 0.6, 0.3}, 1.5, roughness},
                     glass{"glass", material_kind::glass, {0.3, 0.95, 0.6}, index_of_glass, roughness};
                 cases.push_back({metal, from_outside, outward, true});
+                const material plastic{"plastic", material_kind::plastic, {0.9, 0.6, 0.3}, index_of_glass, roughness};
+                for (const auto& d : {from_outside, from_inside})
+                    cases.push_back({plastic, d, outward, true});
                 for (const auto& d : {from_outside, from_inside})
                     for (const bool reflected : {true, false})
                         if (reflected || incidence(d, outward, glass).reflectance() < 1)
@@ -169,9 +173,12 @@ namespace {
             SCOPED_TRACE(name_of(c));
             constexpr std::size_t n = 1 << 15;
             const std::vector<dvec3> origins(n, c.outward - 0.4 * c.d), ways(n, c.d);
-            // Bit 0 of the branch: whether the ray ends here for samples of lights; bit 1: whether it is reflected.
-            const auto e
-                = step(rough_ball_of(c.m), origins, ways, c.reflected && c.m.kind == material_kind::glass ? 2 : 0, 2);
+            // Bit 0 of the branch: whether the ray ends here for samples of lights; bit 1: whether it is reflected. Of
+            // plastic the other way round.
+            const bool coated = c.m.kind == material_kind::plastic;
+            const uint reflected = coated ? 1 : c.m.kind == material_kind::glass ? 2 : 0;
+            const auto e = step(rough_ball_of(c.m), origins, ways, c.reflected ? reflected : 0, 2);
+            const dvec3 colour = coated ? dvec3(1) : c.m.reflectance;
             const auto bins = c.bins();
             const double scale = c.reflected ? 1 : c.whole().radiance_scale();
             std::vector<double> sums(lobe_bins::all);
@@ -179,9 +186,9 @@ namespace {
                 if (e.points[i].w != 0)
                     continue; // hidden by other facets
                 const dvec3 throughput(glm::vec3(e.throughputs[i]));
-                const double weight = throughput.y / c.m.reflectance.y / scale;
+                const double weight = throughput.y / colour.y / scale;
                 EXPECT_LE(weight, 1.0001);
-                ASSERT_TRUE(close(throughput, weight * scale * c.m.reflectance, 1e-5)) << i;
+                ASSERT_TRUE(close(throughput, weight * scale * colour, 1e-5)) << i;
                 sums[bins.at(dvec3(glm::vec3(e.directions[i])))] += weight;
             }
             const auto known = c.known();
@@ -204,6 +211,7 @@ namespace {
                 .outer_angle = 0.02,
                 .power = dvec3(1)}};
             s.materials[1].reflectance = dvec3(0.9);
+            const bool coated = c.m.kind == material_kind::plastic;
             serial_backend b;
             const auto device = upload_scene(b, s);
             auto settings = s.render;
@@ -216,7 +224,10 @@ namespace {
             const incidence at = c.whole();
             std::vector<double> sums(lobe_bins::all);
             for (std::size_t path = 0; path < n; ++path) {
-                ASSERT_EQ(kernels::event_kind(positions[n + path]), kernels::SPECULAR_SURFACE);
+                const bool specular = kernels::event_kind(positions[n + path]) == kernels::SPECULAR_SURFACE;
+                ASSERT_TRUE(specular || coated);
+                if (!specular)
+                    continue; // below the coat
                 if (kernels::event_end(positions[n + path]) != kernels::GOES_ON)
                     continue;
                 ASSERT_TRUE(close(dvec3(glm::vec3(powers[2 * n + path])), dvec3(1), 1e-5))
@@ -227,7 +238,7 @@ namespace {
             }
             auto survive = c.known().shares;
             for (auto& share : survive)
-                share *= 0.9;
+                share *= coated ? 1 : 0.9;
             EXPECT_LE(std::abs(deviate(sums, survive, survive, double(n))), far_off);
         }
     }

@@ -47,6 +47,8 @@ namespace {
                 normal = -outward;
             if (m.kind == material_kind::glass)
                 (outside ? to : from) = m.index_of_refraction;
+            if (m.kind == material_kind::plastic) // its coat is on both sides
+                to = m.index_of_refraction;
             cosine = -glm::dot(d, normal);
         }
         /// The reflected share of unpolarized light (Fresnel).

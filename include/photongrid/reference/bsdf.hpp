@@ -103,14 +103,15 @@ inline specular_bounce rough(const material& m, const hit& h, const dvec3& d, ra
     return bounce;
 }
 
-/// The BSDF of a rough surface for radiance that comes from `towards` and leaves against d, per sr.
+/// The BSDF of a rough surface, or of a rough coat, for radiance that comes from `towards` and leaves against d, per
+/// sr.
 inline double rough_bsdf(const material& m, const hit& h, const dvec3& d, const dvec3& towards)
 {
     const facing_normals n(h, d);
     const double in = glm::dot(towards, n.shading), out = -glm::dot(d, n.shading);
     if (in * glm::dot(towards, n.geometric) <= 0 || (in < 0 && !refracts(m)))
         return 0;
-    const bool outside = !(glm::dot(h.normal, d) > 0);
+    const bool outside = is_coated(m) || !(glm::dot(h.normal, d) > 0); // a coat is on both sides
     const double n_out = outside ? 1 : m.index_of_refraction, n_far = outside ? m.index_of_refraction : 1,
                  n_in = in > 0 ? n_out : n_far;
     dvec3 facet = glm::normalize(n_in * towards - n_out * d);
@@ -120,7 +121,7 @@ inline double rough_bsdf(const material& m, const hit& h, const dvec3& d, const 
     if (!(met > 0) || !(lit * in > 0))
         return 0;
     double reflected = 1;
-    if (refracts(m)) {
+    if (refracts(m) || is_coated(m)) {
         const double sine = n_out / n_far * std::sqrt(std::max(0.0, 1 - met * met));
         if (sine < 1)
             reflected = fresnel_reflectance(met, n_out, std::sqrt(1 - sine * sine), n_far);

@@ -3,7 +3,7 @@
 // light.
 #pragma once
 
-#include <photongrid/reference/bsdf.hpp>
+#include <photongrid/reference/coat.hpp>
 #include <photongrid/reference/intersect.hpp>
 #include <photongrid/reference/random_stream.hpp>
 #include <photongrid/reference/settings.hpp>
@@ -88,12 +88,12 @@ private:
     /// Chooses the bins' size and divides every diffuse surface into bins.
     void cut(const scene& s, const geometry& shapes, const reference_settings& settings)
     {
-        // Calls visit(shape, its number in `shapes`, whether it is diffuse).
+        // Calls visit(shape, its number in `shapes`, its material).
         const auto each_shape = [&](auto visit) {
             std::uint32_t number = 0;
             for_each_shape(s, [&](const auto& list, auto) {
                 for (const auto& x : list)
-                    visit(x, number++, is_diffuse(s.materials[x.material]));
+                    visit(x, number++, s.materials[x.material]);
             });
             number = shapes.first_triangle();
             for (const auto& l : s.mesh_lights)
@@ -101,14 +101,14 @@ private:
             for (const auto& m : s.meshes)
                 for (std::size_t t = 0; t < m.surface->triangles.size(); ++t) {
                     const auto c = corners_of(m, t);
-                    visit(polygon{{c[0], c[1], c[2]}, m.material}, number++, is_diffuse(s.materials[m.material]));
+                    visit(polygon{{c[0], c[1], c[2]}, m.material}, number++, s.materials[m.material]);
                 }
         };
         double area = 0;
         bool shiny = false;
-        each_shape([&](const auto& x, std::uint32_t, bool diffuse) {
-            area += diffuse ? surface_area(x) : 0;
-            shiny = shiny || !diffuse;
+        each_shape([&](const auto& x, std::uint32_t, const material& m) {
+            area += is_diffuse(m) ? surface_area(x) : 0;
+            shiny = shiny || !is_diffuse(m) || is_coated(m);
         });
         if (!shiny || !(area > 0))
             return;
@@ -116,9 +116,9 @@ private:
         // -1/4.
         bin_ = settings.bin > 0 ? settings.bin
                                 : std::sqrt(area) / (8 * std::pow(static_cast<double>(settings.paths), 0.25));
-        each_shape([&](const auto& x, std::uint32_t number, bool diffuse) {
+        each_shape([&](const auto& x, std::uint32_t number, const material& m) {
             surfaces_.resize(std::max<std::size_t>(surfaces_.size(), number + std::size_t{1}));
-            if (!diffuse || !(surface_area(x) > 0))
+            if (!is_diffuse(m) || !(surface_area(x) > 0))
                 return;
             auto& surface = surfaces_[number];
             surface.bins.emplace(bins_of(x, bin_));
@@ -165,7 +165,8 @@ private:
         return hits;
     }
 
-    /// Traces one path up to its first diffuse surface. Returns 1 if it added to a bin there.
+    /// Traces one path up to its first diffuse surface, and on from there if a coat reflects it. Returns how often it
+    /// added to a bin.
     std::uint64_t trace_path(const scene& s, const geometry& shapes, const reference_settings& settings,
         random_stream& random, std::vector<dvec3>& flux) const
     {
@@ -181,24 +182,26 @@ private:
         const auto emitted = shapes.emit(*light, random);
         dvec3 power = emitted.power / light->probability;
         ray r = emitted.from;
+        std::uint64_t added = 0;
         for (std::uint32_t surface = 1; surface <= settings.photon_depth; ++surface) {
             const hit h = shapes.nearest(r);
             if (h.shape == nothing || h.light != nothing)
-                return 0;
+                return added;
             const auto& m = s.materials[h.material];
-            if (is_diffuse(m)) {
-                if (surface == 1)
-                    return 0; // direct light, which the path tracer computes
-                flux[bin_at(h, r.direction)] += power * facing_normals(h, r.direction).received(r.direction);
-                return 1;
+            const auto bounce = is_coated(m) ? off_coat(m, h, r.direction, random, true)
+                : is_diffuse(m)              ? specular_bounce{.weight = 0}
+                                             : specular_of_light(m, h, r.direction, random);
+            if (is_diffuse(m) && surface > 1) { // else direct light, which the path tracer computes
+                flux[bin_at(h, r.direction)]
+                    += power * (1 - bounce.weight) * facing_normals(h, r.direction).received(r.direction);
+                ++added;
             }
-            const auto bounce = specular_of_light(m, h, r.direction, random);
             if (bounce.adjoint == 0 || bounce.weight == 0)
-                return 0;
-            power *= m.reflectance * h.color * (bounce.adjoint * bounce.weight);
+                return added;
+            power *= (is_coated(m) ? dvec3(1) : m.reflectance * h.color) * (bounce.adjoint * bounce.weight);
             r = {h.position, bounce.direction, h.shape};
         }
-        return 0;
+        return added;
     }
 
     struct binned_surface {

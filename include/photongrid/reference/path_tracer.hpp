@@ -13,7 +13,8 @@ public:
     /// The arguments must outlive the tracer.
     path_tracer(
         const scene& s, const geometry& shapes, const caustic_bins& caustics, const reference_settings& settings)
-        : scene_(s), shapes_(shapes), caustics_(caustics), settings_(settings)
+        : scene_(s), bases_(s.materials.begin(), s.materials.end()), shapes_(shapes), caustics_(caustics),
+          settings_(settings)
     {
     }
 
@@ -39,12 +40,19 @@ public:
                 return sum + share * throughput * light.radiance;
             }
             const auto& m = scene_.materials[h.material];
-            if (is_diffuse(m)) {
+            specular_bounce bounce;
+            if (is_coated(m))
+                bounce = off_coat(m, h, r.direction, random, false);
+            if (is_coated(m) && is_rough(m) && surfaces == 0 && specular_before < settings_.depth)
+                sum += throughput * highlight(m, h, r.direction, random);
+            const bool by_coat = is_coated(m) && random() < bounce.weight;
+            if (is_diffuse(m) && !by_coat) {
                 if (++surfaces > settings_.photon_depth)
                     return sum;
                 const facing_normals normals(h, r.direction);
-                throughput *= m.reflectance * h.color;
-                sum += throughput / M_PI * (caustics_.irradiance(h, r.direction, group) + direct(h, normals, random));
+                throughput *= bases_[h.material].reflectance(m.reflectance * h.color);
+                sum += throughput / M_PI
+                    * (caustics_.irradiance(h, r.direction, group) + direct(m, h, normals, random));
                 if (surfaces >= 3) { // Russian roulette
                     const double survival = std::min(1.0, std::max({throughput.x, throughput.y, throughput.z}));
                     if (!(random() < survival))
@@ -56,14 +64,17 @@ public:
                 density = glm::dot(r.direction, normals.shading) / M_PI;
                 if (!(density > 0) || !(glm::dot(r.direction, normals.geometric) > 0))
                     return sum;
+                throughput *= passes_coat(m, h, -r.direction, random);
                 through_specular = false;
             } else {
                 if (surfaces == 0 ? ++specular_before > settings_.depth : ++surfaces > settings_.photon_depth)
                     return sum;
-                if (is_rough(m) && surfaces == 0)
-                    sum += throughput * m.reflectance * h.color * highlight(m, h, r.direction, random);
-                const auto bounce = specular(m, h, r.direction, random);
-                throughput *= m.reflectance * h.color * (bounce.radiance_scale * bounce.weight);
+                if (!by_coat) {
+                    if (is_rough(m) && surfaces == 0)
+                        sum += throughput * m.reflectance * h.color * highlight(m, h, r.direction, random);
+                    bounce = specular(m, h, r.direction, random);
+                    throughput *= m.reflectance * h.color * (bounce.radiance_scale * bounce.weight);
+                }
                 r = {h.position, bounce.direction, h.shape};
                 through_specular = true;
             }
@@ -125,23 +136,27 @@ private:
         return seen.arriving * (reflected / light.probability);
     }
 
-    /// The irradiance of direct light, by one shadow ray to a light chosen by power.
-    dvec3 direct(const hit& h, const facing_normals& normals, random_stream& random) const
+    /// The irradiance of direct light, below a coat if there is one, by one shadow ray to a light chosen by power.
+    dvec3 direct(const material& m, const hit& h, const facing_normals& normals, random_stream& random) const
     {
         const auto& light = chosen(random);
         const auto seen = shapes_.seen_from(light, h.position, random);
         const dvec3& d = seen.towards;
-        const double cosine = glm::dot(normals.geometric, d) > 0 ? glm::dot(normals.shading, d) : 0;
+        double cosine = glm::dot(normals.geometric, d) > 0 ? glm::dot(normals.shading, d) : 0;
+        const double by_surface = cosine / M_PI;
+        if (cosine > 0)
+            cosine *= passes_coat(m, h, -d, random);
         if (!(cosine > 0) || seen.arriving == dvec3(0)
             || shapes_.blocked({h.position, d, h.shape}, seen.distance, seen.shape))
             return dvec3(0);
         if (!(seen.density > 0))
             return seen.arriving * (cosine / light.probability);
-        const double by_light = light.probability * seen.density, by_surface = cosine / M_PI;
+        const double by_light = light.probability * seen.density;
         return seen.arriving * (cosine / (by_light + by_surface));
     }
 
     const scene& scene_;
+    std::vector<diffuse_base> bases_; ///< by material
     const geometry& shapes_;
     const caustic_bins& caustics_;
     const reference_settings& settings_;

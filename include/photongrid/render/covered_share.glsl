@@ -86,7 +86,7 @@ void kernel(uint i)
         precise float tolerance = error + radius * sqrt(sine2);
         if (!(sine2 <= 0.0019f) || !(abs(above) <= tolerance))
             continue;
-        if (is_light_surface(at) || material_of(polygon_material(at)).kind != LAMBERTIAN_SURFACE)
+        if (is_light_surface(at) || !stores_photons(material_of(polygon_material(at))))
             continue; // holds no photons
 
         float nearest = 3.0e38f; // edge's line, m; positive inside

@@ -294,8 +294,7 @@ knn_estimates<B> view_pass<B>::shade(
     if (settings_.estimate.edges != edge_correction::none)
         correct_edges(device_, built_.scene, hits.points, hits.surfaces, found, settings_.estimate.filter);
     device_.template run<kernels::shade>(pixels.size(), {.share = share},
-        reads(built_.scene.records, hits.points, hits.throughputs, hits.surfaces, hits.emissions, samples_->direct,
-            found.irradiance, found.used),
+        reads(hits.points, hits.throughputs, hits.emissions, samples_->direct, found.irradiance, found.used),
         writes(pixels, searches));
     return found;
 }

@@ -17,16 +17,19 @@
 
 namespace photongrid {
 
-/// How a surface scatters light. `metal` is a coloured mirror, which may be rough.
-enum class material_kind { lambertian, mirror, metal, glass };
+/// How a surface scatters light. `metal` is a coloured mirror, which may be rough; `plastic` is Lambertian under a
+/// clear coat, which may be rough.
+enum class material_kind { lambertian, mirror, metal, glass, plastic };
 
 /// A material.
 struct material {
     std::string name;                               ///< any text; in a scene file, the key by which shapes refer to it
     material_kind kind = material_kind::lambertian; ///< how it scatters light
-    dvec3 reflectance{0.5};                         ///< rgb, 0 to 1; of glass, the transmittance per crossing
-    double index_of_refraction = 1.5;               ///< of glass, 1 to 10; outside is air, 1
-    double roughness = 0;  ///< of metal and glass, 0 to 1: the square root of GGX's alpha; below 0.001 it is smooth
+    /// Rgb, 0 to 1; of glass, the transmittance per crossing; of plastic, what is below the coat.
+    dvec3 reflectance{0.5};
+    double index_of_refraction = 1.5; ///< of glass and of the coat of plastic, 1 to 10; outside is air, 1
+    double roughness = 0;  ///< but of Lambertian surfaces and mirrors, 0 to 1: the square root of GGX's alpha; below
+                           ///< 0.001 it is smooth
     texture_use texture{}; ///< factor on the reflectance; on meshes with texture coordinates
 
     bool operator==(const material&) const = default;
@@ -38,6 +41,7 @@ enum class surface_kind : std::uint32_t {
     diffuse = 0,    ///< stores photons, and ends eye rays
     reflecting = 1, ///< as a mirror
     refracting = 2, ///< reflects or refracts; bodies must not overlap
+    coated = 3,     ///< reflects, or is diffuse below its coat
 };
 
 /// A member of `material` that a kind has.
@@ -55,7 +59,7 @@ struct material_entry {
     material_kind kind;
     const char* name;                       ///< in scene files
     surface_kind surface;                   ///< what renderers do at it
-    std::uint32_t switches;                 ///< the SWITCH of its surface in kernels, as a bit of launch::switches
+    std::uint32_t switches;                 ///< the SWITCHes of its surface in kernels, as bits of launch::switches
     std::span<const material_field> fields; ///< in the order of scene files
 };
 
@@ -73,6 +77,10 @@ namespace detail {
         = {{"index_of_refraction", "index_of_refraction", "an index of refraction", &material::index_of_refraction,
                {1, 10, ""}, std::nullopt},
             reflectance("transmittance", 1), roughness};
+    inline constexpr material_field plastic_fields[] = {reflectance("reflectance"),
+        {"index_of_refraction", "index_of_refraction", "an index of refraction", &material::index_of_refraction,
+            {1, 10, ""}, 1.5},
+        roughness};
 } // namespace detail
 
 /// All kinds of materials, in the order of material_kind.
@@ -81,6 +89,8 @@ inline constexpr std::array material_kinds{
     material_entry{material_kind::mirror, "mirror", surface_kind::reflecting, 1u << 4, detail::mirror_fields},
     material_entry{material_kind::metal, "metal", surface_kind::reflecting, 1u << 4, detail::metal_fields},
     material_entry{material_kind::glass, "glass", surface_kind::refracting, 1u << 5, detail::glass_fields},
+    material_entry{material_kind::plastic, "plastic", surface_kind::coated, 1u << 19 | 1u << 4,
+        detail::plastic_fields}, // reflects, too
 };
 
 static_assert(
@@ -104,7 +114,14 @@ namespace detail {
 } // namespace detail
 
 /// Whether surfaces of this material store photons.
-inline bool is_diffuse(const material& m) { return detail::entry_of(m.kind).surface == surface_kind::diffuse; }
+inline bool is_diffuse(const material& m)
+{
+    const auto surface = detail::entry_of(m.kind).surface;
+    return surface == surface_kind::diffuse || surface == surface_kind::coated;
+}
+
+/// Whether surfaces of this material are diffuse below a clear coat.
+inline bool is_coated(const material& m) { return detail::entry_of(m.kind).surface == surface_kind::coated; }
 
 /// Whether light enters bodies of this material.
 inline bool refracts(const material& m) { return detail::entry_of(m.kind).surface == surface_kind::refracting; }
@@ -121,7 +138,7 @@ inline bool is_rough(const material& m)
 }
 
 /// \throws std::invalid_argument for a member that the kind has and that is out of its range: a reflectance outside 0
-/// to 1, glass with an index of refraction outside 1 to 10, or a roughness outside 0 to 1; or a texture that check()
+/// to 1, an index of refraction outside 1 to 10, or a roughness outside 0 to 1; or a texture that check()
 /// rejects.
 inline void check(const material& m)
 {

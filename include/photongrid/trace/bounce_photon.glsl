@@ -31,7 +31,8 @@ INPUT(9, vec4, mesh_colors) // see mesh_color.glsl
 OUTPUT(0, vec4, position)       // xyz, m; w: event
 // w of power, next_origin and next_direction: x, y and z of the normal.
 OUTPUT(1, vec4, power)          // rgb of the incoming photon, W, not yet divided by the number of paths
-OUTPUT(2, vec4, direction)      // xyz: direction of the incoming photon; w: material; with TEXTURES a color_code
+// xyz: direction of the incoming photon; w: material; with TEXTURES or COATS a color_code
+OUTPUT(2, vec4, direction)
 OUTPUT(3, vec4, next_origin)
 OUTPUT(4, vec4, next_direction)
 
@@ -41,7 +42,33 @@ OUTPUT(4, vec4, next_direction)
 #include <photongrid/trace/optics.glsl>
 #include <photongrid/trace/shading_normals.glsl>
 #include <photongrid/trace/rough_leaving.glsl>
+#include <photongrid/trace/coat.glsl>
 #include <photongrid/trace/color_code.glsl>
+
+// The share of a photon that a coat reflects by the facet that it meets.
+float coat_reflects(FacingNormals sides, Material coat, vec3 d, float u, float v)
+{
+    if (!ROUGH || !(coat.alpha > 0.0f))
+        return fresnel(d, sides.shading, coat.index_of_refraction).reflected;
+    vec3 facet = facet_met(sides, coat.alpha, d, u, v);
+    precise float share = fresnel(d, facet, coat.index_of_refraction).reflected
+        * leave_rough(sides, facet, coat.alpha, total_reflection(d), true, d).share;
+    return share;
+}
+
+// Where a photon leaves that was scattered below a coat: cosine-distributed directions are drawn until one passes. Of
+// 64 at least one does, but for 1 in 10^9 photons at the largest index of refraction.
+vec3 direction_out_of_coat(Coat c, vec3 normal, uint id, uint frame)
+{
+    vec3 next = normal;
+    bool inside = true;
+    for (uint turn = 1u; inside && turn <= 64u; ++turn) {
+        vec4 r = random4(uvec4(id, frame, turn, args.seed));
+        next = cosine_direction(normal, r.x, r.y);
+        inside = !(r.z < passes_coat(c, dot3(next, normal)));
+    }
+    return next;
+}
 
 void kernel(uint i)
 {
@@ -68,7 +95,7 @@ void kernel(uint i)
     vec4 arrived = powers(before);
     if (frame > 1u) {
         vec3 colour;
-        if (TEXTURES)
+        if (TEXTURES || COATS)
             colour = color_of_code(directions(before).w);
         else
             colour = material_of(uint(directions(before).w)).reflectance;
@@ -104,17 +131,22 @@ void kernel(uint i)
 
     Material material = material_of(hit.material);
     direction.w = float(hit.material);
-    if (TEXTURES) {
-        if (on_mesh) {
-            precise vec3 colored = material.reflectance * vec3(mesh_colors(i - frame * args.paths));
-            material.reflectance = colored;
-        }
-        direction.w = largest3(material.reflectance) > 0.0f ? color_code(material.reflectance) : 0.0f;
+    if (TEXTURES && on_mesh) {
+        precise vec3 colored = material.reflectance * vec3(mesh_colors(i - frame * args.paths));
+        material.reflectance = colored;
     }
     vec4 r = random4(uvec4(id, frame, 0u, args.seed));
-    uint surface = material.kind == LAMBERTIAN_SURFACE ? DIFFUSE_SURFACE : SPECULAR_SURFACE;
     FacingNormals sides = facing_normals(hit, d);
     vec3 facing = sides.shading;
+    bool coated = COATS && material.kind == COATED_SURFACE;
+    bool below = false; // whether the photon passes the coat
+    if (coated) {
+        below = !(r.w < coat_reflects(sides, material, d, r.y, r.z));
+        material.reflectance = below ? under_coat(coat_of(hit.material), material.reflectance) : vec3(1.0f, 1.0f, 1.0f);
+    }
+    if (TEXTURES || COATS)
+        direction.w = largest3(material.reflectance) > 0.0f ? color_code(material.reflectance) : 0.0f;
+    uint surface = material.kind == LAMBERTIAN_SURFACE || below ? DIFFUSE_SURFACE : SPECULAR_SURFACE;
     if (SMOOTH && surface == DIFFUSE_SURFACE) {
         // What the surface receives about its shading normal; it sends that out about its geometric normal.
         precise float share = dot3(facing, d) / dot3(sides.geometric, d);
@@ -133,15 +165,17 @@ void kernel(uint i)
     vec3 next = facing;
     if (material.kind == LAMBERTIAN_SURFACE)
         next = cosine_direction(sides.geometric, r.y, r.z);
-    if (ROUGH && material.alpha > 0.0f) {
+    if (below) {
+        next = direction_out_of_coat(coat_of(hit.material), sides.geometric, id, frame);
+    } else if (ROUGH && material.alpha > 0.0f) {
         vec3 facet = facet_met(sides, material.alpha, d, r.y, r.z);
         Fresnel f = total_reflection(d);
         if (GLASS && material.kind == GLASS_SURFACE)
             f = fresnel(d, outward_facet(hit, facet, d), material.index_of_refraction);
         RoughLeaving l = leave_rough(sides, facet, material.alpha, f, r.w < f.reflected, d);
-        // Roulette by what other facets hide, too: r.x is even below the reflectance.
+        // Roulette by what other facets hide, too: r.x is even below the reflectance. Of a coat, that passes it.
         precise float survival = largest3(material.reflectance) * l.share;
-        if (!(r.x < survival)) {
+        if (!coated && !(r.x < survival)) {
             position.w = event_code(surface, ABSORBED, hit_before);
             return;
         }
@@ -150,7 +184,7 @@ void kernel(uint i)
             precise vec3 scaled = vec3(power) * l.adjoint;
             power = vec4(scaled.x, scaled.y, scaled.z, facing.x);
         }
-    } else if ((MIRRORS && material.kind == MIRROR_SURFACE) || (GLASS && material.kind == GLASS_SURFACE)) {
+    } else if (material.kind != LAMBERTIAN_SURFACE && (MIRRORS || GLASS)) {
         Fresnel f = total_reflection(d);
         if (GLASS && material.kind == GLASS_SURFACE)
             f = fresnel(d, outward_normal(hit, sides, d), material.index_of_refraction);

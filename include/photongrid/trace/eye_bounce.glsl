@@ -1,13 +1,15 @@
 // Traces an eye ray to the next surface (2.4), through mirrors and glass until it ends on a diffuse surface, on a
 // light, or in the environment. The first `splits` times a ray splits: at glass into its two Fresnel branches; at a
-// rough surface into one that ends there, for samples of lights, and one that goes on. The bits of `branch` select the
-// one that this pass follows at each. Later a random number selects it, stratified over the eye rays of a pixel.
+// coat into one that it reflects and one that ends on the diffuse surface below; at a rough surface into one that ends
+// there, for samples of lights, and one that goes on. The bits of `branch` select the one that this pass follows at
+// each. Later a random number selects it, stratified over the eye rays of a pixel.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
-    uint branch;     // bit n, at the n-th split: reflected (1) or refracted (0); ends (1) at a rough surface or not (0)
+    uint branch;     // bit n, at the n-th split: reflected (1) or refracted, or below a coat (0); ends (1) at a rough
+                     // surface or not (0)
     uint splits;     // how often a ray splits at most
     uint depth;      // surfaces a ray passes at most
     uint sample_id;  // number of the eye ray in its pixel
@@ -32,7 +34,9 @@ INPUT(5, vec4, mesh_colors) // see mesh_color.glsl
 // (rough_points.glsl), else -1
 STATE(0, vec4, point)
 STATE(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
-STATE(2, vec4, throughput) // rgb: factor between radiance here and at the eye; w: splits so far
+// rgb: factor between radiance here and at the eye; at the end on a diffuse surface between pi times its irradiance, or
+// below a coat the part of that which passed, and radiance at the eye. w: splits so far
+STATE(2, vec4, throughput)
 // xyz: normal towards the eye; w: material. In flight, x: the density of the direction in which the ray left a rough
 // surface, the last one that it met, sr^-1; else 0
 STATE(3, vec4, surface)
@@ -47,6 +51,7 @@ STATE(5, uint, branches)   // bit b: branch b must be traced for this pixel; bra
 #include <photongrid/trace/optics.glsl>
 #include <photongrid/trace/shading_normals.glsl>
 #include <photongrid/trace/rough_leaving.glsl>
+#include <photongrid/trace/coat.glsl>
 
 bool done()
 {
@@ -194,15 +199,38 @@ void kernel(uint i)
     }
     Material material = material_of(hit.material);
     if (TEXTURES && on_mesh) {
-        precise vec3 colored = vec3(throughput) * vec3(mesh_colors(i - args.first));
-        throughput = vec4(colored.x, colored.y, colored.z, throughput.w);
+        precise vec3 colored = material.reflectance * vec3(mesh_colors(i - args.first));
+        material.reflectance = colored;
     }
     FacingNormals sides = facing_normals(hit, d);
-    if (material.kind == LAMBERTIAN_SURFACE) {
+    bool coated = COATS && material.kind == COATED_SURFACE;
+    bool below = false; // whether the ray passes the coat
+    float share = 1.0f;
+    if (coated) {
+        Coat coat = coat_of(hit.material);
+        precise float passed = passes_coat(coat, -dot3(sides.shading, d));
+        precise float reflectance = 1.0f - passed;
+        FresnelBranch b;
+        if (splits < args.splits) {
+            b = split_branch(splits, reflectance, counted);
+            ++splits;
+            counted = args.branch >> min(splits, 31u) == 0u;
+        } else {
+            b = sampled_branch(i, hits, reflectance);
+        }
+        below = !b.reflected;
+        // The coat's reflectance follows, for the facet that the ray meets.
+        precise float weight = below ? b.share / coat.mean_passed : (reflectance > 0.0f ? b.share / reflectance : 0.0f);
+        share = weight;
+        material.reflectance = below ? under_coat(coat, material.reflectance) : vec3(1.0f, 1.0f, 1.0f);
+    }
+    precise vec3 tinted = vec3(throughput) * material.reflectance * share;
+    if (material.kind == LAMBERTIAN_SURFACE || below) {
         vec3 p = hit.position;
         if (SMOOTH) // shadow rays start off the surface about its shading normal
             p = ray_start(p, sides.geometric, sides.geometric);
         point = vec4(p.x, p.y, p.z, counted ? 1.0f : -1.0f);
+        throughput = vec4(tinted.x, tinted.y, tinted.z, throughput.w);
         surface = vec4(sides.shading.x, sides.shading.y, sides.shading.z, float(hit.material));
         return;
     }
@@ -210,8 +238,7 @@ void kernel(uint i)
         point.w = -1.0f;
         return;
     }
-    precise vec3 tinted = vec3(throughput) * material.reflectance;
-    float share = 1.0f;
+    share = 1.0f;
     bool rough = ROUGH && material.alpha > 0.0f;
     if (rough) {
         // Some rays end here for samples of lights: in a pass of their own, or every other one.
@@ -230,15 +257,19 @@ void kernel(uint i)
             return;
         }
     }
-    vec3 outward = outward_normal(hit, sides, d);
+    vec3 outward = coated ? sides.shading : outward_normal(hit, sides, d);
     vec3 facet = sides.shading;
     if (rough) {
         vec2 r = facet_numbers(i, hits);
         facet = facet_met(sides, material.alpha, d, r.x, r.y);
-        outward = outward_facet(hit, facet, d);
+        outward = coated ? facet : outward_facet(hit, facet, d);
     }
     Fresnel f = total_reflection(d);
     bool reflected = true;
+    if (coated) {
+        precise float scaled = share * fresnel(d, outward, material.index_of_refraction).reflected;
+        share = scaled;
+    }
     if (GLASS && material.kind == GLASS_SURFACE) {
         f = fresnel(d, outward, material.index_of_refraction);
         FresnelBranch b;
@@ -258,8 +289,7 @@ void kernel(uint i)
         next = l.direction;
         precise float unhidden_share = share * l.share;
         share = unhidden_share;
-        surface.x = rough_scattering(sides.shading, material.alpha, material.index_of_refraction,
-            GLASS && material.kind == GLASS_SURFACE, !(dot3(hit.normal, d) > 0.0f), d, next).density;
+        surface.x = rough_scattering(sides.shading, material, !(dot3(hit.normal, d) > 0.0f), d, next).density;
     } else if (MIRRORS || GLASS) {
         if (ROUGH)
             surface.x = 0.0f;

@@ -57,13 +57,13 @@ inline glm::uvec2 strata_of(uint samples)
     return {samples / rows, rows};
 }
 
-/// How many times eye rays split: into the two Fresnel branches of glass, and into one that ends at a rough surface and
-/// one that goes on (eye_bounce.glsl). Each combination of branches is a pass over the picture.
+/// How many times eye rays split: at glass, at coats and at rough surfaces (eye_bounce.glsl). Each combination of
+/// branches is a pass over the picture.
 inline uint splits_of(const scene_layout& layout)
 {
     if ((layout.features & has_rough) != 0)
         return 3;
-    return (layout.features & has_glass) != 0 ? 2u : 0u;
+    return (layout.features & (has_glass | has_coats)) != 0 ? 2u : 0u;
 }
 
 /// The camera as eye_ray.glsl reads it. `ray` is sample x branches + branch.
@@ -238,7 +238,8 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
 {
     device.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
     // What direct_light.glsl does not know.
-    constexpr uint others = has_meshes | has_sphere_lights | has_spot_lights | has_directional_lights | has_environment;
+    constexpr uint others
+        = has_meshes | has_sphere_lights | has_spot_lights | has_directional_lights | has_environment | has_coats;
     if ((s.layout.features & others) != 0 || samples_choose_lights(s.layout)) {
         const lit_points<B> lit{hits.points, hits.surfaces, pixels.first, hits.first_pixel};
         add_light_samples(device, s, settings, ray, pixels, lit, light, [](const auto&, auto&) {});

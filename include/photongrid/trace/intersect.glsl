@@ -49,18 +49,20 @@ Hit intersect_closest(vec3 o, vec3 d)
     c.t = 3.0e38f;
     c.kind = NO_SHAPE;
     c.at = 0u;
-    if (TREE_OF_SHAPES)
+    if (TREE_OF_SHAPES) {
         c = closest_in_tree(o, d, c);
-    if (SPHERES && !TREE_OF_SHAPES)
-        c = closest_sphere(o, d, c);
-    if (QUADRICS && !TREE_OF_SHAPES)
-        c = closest_quadric(o, d, c);
-    if (DISKS && !TREE_OF_SHAPES)
-        c = closest_disk(o, d, c);
-    if (BOXES && !TREE_OF_SHAPES)
-        c = closest_box(o, d, c);
-    if (POLYGONS && !TREE_OF_SHAPES)
-        c = closest_polygon(o, d, c);
+    } else {
+        if (SPHERES)
+            c = closest_sphere(o, d, c);
+        if (QUADRICS)
+            c = closest_quadric(o, d, c);
+        if (DISKS)
+            c = closest_disk(o, d, c);
+        if (BOXES)
+            c = closest_box(o, d, c);
+        if (POLYGONS)
+            c = closest_polygon(o, d, c);
+    }
 
     Hit hit;
     hit.t = c.kind == NO_SHAPE ? -1.0f : c.t;

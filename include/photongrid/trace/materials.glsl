@@ -2,8 +2,8 @@
 // bounce_photon.glsl; an eye ray: eye_bounce.glsl; the formulas of both: optics.glsl.
 struct Material {
     vec3 reflectance;          // of glass: transmittance per crossing
-    uint kind;                 // LAMBERTIAN_SURFACE, MIRROR_SURFACE, GLASS_SURFACE
-    float index_of_refraction; // glass only
+    uint kind;                 // LAMBERTIAN_SURFACE, MIRROR_SURFACE, GLASS_SURFACE, COATED_SURFACE
+    float index_of_refraction; // of glass and coats
     float alpha;               // of rough surfaces (trace/microfacet.glsl); 0: smooth
 };
 
@@ -29,4 +29,9 @@ Material material_of(uint number)
 bool is_glass(Material m)
 {
     return m.kind == GLASS_SURFACE;
+}
+
+bool stores_photons(Material m)
+{
+    return m.kind == LAMBERTIAN_SURFACE || m.kind == COATED_SURFACE;
 }

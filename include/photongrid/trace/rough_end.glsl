@@ -9,7 +9,6 @@ struct RoughEnd {
     vec3 geometric; // unit; on the eye's side
     bool outside;   // the eye's side is
     Material material;
-    bool is_glass;
 };
 
 bool ended_on_rough(uint ray)
@@ -29,6 +28,5 @@ RoughEnd rough_end(uint ray)
     e.outside = !(dot3(outward, e.d) > 0.0f);
     e.geometric = e.outside ? outward : -outward;
     e.material = material_of(uint(facing.w));
-    e.is_glass = is_glass(e.material);
     return e;
 }

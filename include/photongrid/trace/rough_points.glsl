@@ -14,7 +14,7 @@ INPUT(3, vec4, throughputs)
 INPUT(4, vec4, surfaces)
 INPUT(5, vec4, emissions)
 OUTPUT(0, vec4, point)   // xyz, m; w: 1 where light may fall, else -1
-OUTPUT(1, vec4, surface) // xyz: normal on the lit side
+OUTPUT(1, vec4, surface) // xyz: normal on the lit side; w: -1, no material: the light is not yet that below a coat
 
 #include <photongrid/trace/rough_end.glsl>
 
@@ -22,15 +22,15 @@ void kernel(uint i)
 {
     uint ray = args.first + i;
     point = vec4(0.0f, 0.0f, 0.0f, -1.0f);
-    surface = vec4(0.0f, 0.0f, 1.0f, 0.0f);
+    surface = vec4(0.0f, 0.0f, 1.0f, -1.0f);
     if (!ended_on_rough(ray))
         return;
     RoughEnd e = rough_end(ray);
-    if (args.behind != 0u && !e.is_glass)
+    if (args.behind != 0u && !is_glass(e.material))
         return;
     float side = args.behind != 0u ? -1.0f : 1.0f;
     // Shadow rays start off the surface about its shading normal, and from this point.
     vec3 p = ray_at(e.position, e.geometric, side * ray_offset(e.position, scene(SCENE_SIZES).x));
     point = vec4(p.x, p.y, p.z, 1.0f);
-    surface = vec4(e.shading.x * side, e.shading.y * side, e.shading.z * side, 0.0f);
+    surface = vec4(e.shading.x * side, e.shading.y * side, e.shading.z * side, -1.0f);
 }

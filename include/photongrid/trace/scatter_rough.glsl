@@ -36,8 +36,7 @@ void kernel(uint i)
     bool geometric_front = dot3(towards, e.geometric) > 0.0f;
     if (front != geometric_front)
         return;
-    RoughScattering s = rough_scattering(
-        e.shading, e.material.alpha, e.material.index_of_refraction, e.is_glass, e.outside, e.d, towards);
+    RoughScattering s = rough_scattering(e.shading, e.material, e.outside, e.d, towards);
     float share = s.bsdf;
     if (has_size) {
         precise float weighted = s.bsdf * (light.w / (light.w + s.density));

@@ -45,6 +45,9 @@ inline Table table_of(vec4 record)
 const uint LAMBERTIAN_SURFACE = 0u;
 const uint MIRROR_SURFACE = 1u; // of all kinds that only reflect
 const uint GLASS_SURFACE = 2u;
+const uint COATED_SURFACE = 3u;
+
+const uint COAT_STEPS = 64u; // of the shares that pass a rough coat (trace/coat.glsl)
 
 const uint NO_MATERIAL = 0xFFFFFFFFu; // of a light's surface
 const uint NO_SHAPE = 0xFFFFFFFFu;

@@ -4,6 +4,7 @@
 
 #include <photongrid/backend/backend.hpp>
 #include <photongrid/scene/scene.hpp>
+#include <photongrid/trace/coat_layout.hpp>
 #include <photongrid/trace/environment_layout.hpp>
 #include <photongrid/trace/light_tree.hpp>
 #include <photongrid/trace/mesh_layout.hpp>
@@ -39,6 +40,7 @@ enum scene_feature : uint {
     has_textures = 1u << 16,   ///< or colours of vertices
     has_rough = 1u << 17,      ///< a rough surface
     has_shape_tree = 1u << 18, ///< of many shapes
+    has_coats = 1u << 19,      ///< diffuse surfaces under a coat
 };
 
 static_assert(light_kind<point_light>::form == kernels::POINT_LIGHT
@@ -49,7 +51,9 @@ static_assert(light_kind<point_light>::form == kernels::POINT_LIGHT
     && light_kind<environment_light>::form == kernels::ENVIRONMENT_LIGHT);
 static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SURFACE
     && static_cast<uint>(surface_kind::reflecting) == kernels::MIRROR_SURFACE
-    && static_cast<uint>(surface_kind::refracting) == kernels::GLASS_SURFACE);
+    && static_cast<uint>(surface_kind::refracting) == kernels::GLASS_SURFACE
+    && static_cast<uint>(surface_kind::coated) == kernels::COATED_SURFACE
+    && detail::entry_of(material_kind::plastic).switches == (has_coats | has_mirrors)); // coats reflect, too
 
 /// The records of a scene, and their layout.
 struct scene_layout {
@@ -133,6 +137,9 @@ namespace detail {
         {
             return entry_of(m.kind).switches | (is_rough(m) ? has_rough : 0u);
         }
+
+        /// Of the distribution of facets; 0 of smooth surfaces.
+        static double alpha_of(const material& m) { return is_rough(m) ? m.roughness * m.roughness : 0; }
 
         /// Computes the bounds, the centre and the features.
         void measure()
@@ -286,10 +293,32 @@ namespace detail {
             std::size_t textures = 0;
             for (const auto& m : s_.materials) {
                 w.put(m.reflectance, static_cast<uint>(entry_of(m.kind).surface));
-                const double alpha = is_rough(m) ? m.roughness * m.roughness : 0;
-                w.put(dvec3(m.index_of_refraction, static_cast<double>(m.texture.map ? ++textures : 0), alpha), 0);
+                w.put(
+                    dvec3(m.index_of_refraction, static_cast<double>(m.texture.map ? ++textures : 0), alpha_of(m)), 0);
             }
             write_textures(w, textures);
+            write_coats(w);
+        }
+
+        /// Materials may share the records of a coat.
+        void write_coats(record_writer& w)
+        {
+            std::map<std::pair<double, double>, uint> written;
+            for (std::size_t i = 0; i < s_.materials.size(); ++i) {
+                const auto& m = s_.materials[i];
+                if (!is_coated(m))
+                    continue;
+                const double alpha = alpha_of(m);
+                const auto [found, is_new] = written.emplace(std::pair(m.index_of_refraction, alpha), w.next());
+                if (is_new) {
+                    const coat_shares c = shares_of_coat(m.index_of_refraction, alpha);
+                    w.put(dvec3(c.mean_passed, c.thrown_back, 0), 0);
+                    for (std::size_t n = 0; n + 2 < c.passed.size(); n += 2)
+                        w.put(dvec3(c.passed[n], c.passed[n + 1], c.passed[n + 2]), 0);
+                }
+                out_.records[kernels::FIRST_MATERIAL + kernels::MATERIAL_RECORDS * i + 1].w
+                    = static_cast<float>(found->second);
+            }
         }
 
         /// Materials may share the texels of a texture.

@@ -24,7 +24,7 @@ SWITCH(14, DIRECTIONAL_LIGHTS)
 SWITCH(15, ENVIRONMENT_LIGHTS)
 INPUT(0, vec4, scene)
 INPUT(1, vec4, points)     // w > 0: compute direct light
-INPUT(2, vec4, surfaces)   // xyz: normal
+INPUT(2, vec4, surfaces)   // xyz: normal; w: material, or -1
 INPUT(3, uvec4, faces)     // these four: see mesh_light.glsl
 INPUT(4, vec4, planes)
 INPUT(5, vec4, vertices)
@@ -33,13 +33,16 @@ INPUT(7, vec4, environment)        // see environment.glsl ...
 INPUT(8, uint, environment_shares) // ... and environment_sample.glsl
 OUTPUT(0, vec4, origin)    // xyz, m; w: length, m; 0 where nothing need be searched
 OUTPUT(1, vec4, direction) // xyz: unit vector
-// rgb: irradiance if no mesh blocks the ray, W/m^2; w: density of the direction among all samples of the light, sr^-1;
-// 0 of lights without size
+// rgb: irradiance if no mesh blocks the ray, below a coat if there is one, W/m^2; w: density of the direction among all
+// samples of the light, sr^-1; 0 of lights without size
 OUTPUT(2, vec4, arriving)
 
 #include <photongrid/trace/intersect.glsl>
 #include <photongrid/trace/any_light.glsl>
 #include <photongrid/trace/chosen_light.glsl>
+#include <photongrid/trace/materials.glsl>
+#include <photongrid/trace/optics.glsl>
+#include <photongrid/trace/coat.glsl>
 
 void kernel(uint i)
 {
@@ -49,7 +52,9 @@ void kernel(uint i)
     vec4 point = points(args.first + i);
     if (!(point.w > 0.0f))
         return;
-    LitPoint lit = lit_point(vec3(point), vec3(surfaces(args.first + i)));
+    vec4 surface = surfaces(args.first + i);
+    LitPoint lit = lit_point(vec3(point), vec3(surface));
+    bool coated = COATS && surface.w >= 0.0f && material_of(uint(surface.w)).kind == COATED_SURFACE;
     uint number = args.light;
     float scale = 1.0f;
     if (args.choices > 0u) {
@@ -62,13 +67,17 @@ void kernel(uint i)
         precise float weight = 1.0f / (c.probability * float(args.choices));
         scale = weight;
     }
-    ArrivingLight light = arriving_light(number, args.first + i, args.whole != 0u, lit);
+    ArrivingLight light = arriving_light(number, args.first + i, args.whole != 0u && !coated, lit);
     LightSample found = light.found;
     if (!(found.per_power > 0.0f)
         || (found.has_ray && occluded(lit.origin, found.direction, found.far, everything())))
         return;
     origin = vec4(lit.origin.x, lit.origin.y, lit.origin.z, found.has_ray ? found.far : 0.0f);
     direction = vec4(found.direction.x, found.direction.y, found.direction.z, 0.0f);
+    if (coated) {
+        precise float passed = scale * passes_coat(coat_of(uint(surface.w)), dot3(found.direction, lit.normal));
+        scale = passed;
+    }
     precise float received = found.per_power * scale;
     precise float density = light.radiance_per_power * dot3(found.direction, lit.normal) / found.per_power;
     arriving = vec4(light.power.x * received, light.power.y * received, light.power.z * received, density);
