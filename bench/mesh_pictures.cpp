@@ -1,9 +1,10 @@
 // A room with a mesh, drawn at 512 x 512: docs/reference/measures.md.
 //
-//   mesh_pictures [--triangles N] [--backend serial|cpu|gl|vulkan]
+//   mesh_pictures [--triangles N] [--places M] [--stored once|apart] [--backend serial|cpu|gl|vulkan]
 //
 // The mesh is a closed ball with bumps and normals (tests/trace/mesh_sets.hpp) of about N triangles, 1,000,000 unless
-// given; on cpu unless a backend is given. Medians of three: the time until the first preview is there and until the
+// given; it stands in M places, 1 unless given, and its surface is stored once, or for each place; on cpu unless a
+// backend is given. Medians of three: the time until the first preview is there and until the
 // picture is, the tree and everything else included; what each stage takes; and the bytes of the mesh on the device.
 #include "median.hpp"
 #include "stopwatch.hpp"
@@ -17,6 +18,7 @@
 #include <photongrid/render/render.hpp>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -31,7 +33,7 @@ namespace {
 using namespace photongrid;
 using namespace photongrid::bench;
 
-scene room_with_ball(uint triangles)
+scene room_with_balls(uint triangles, uint places, bool apart)
 {
     auto ball = testing::bumpy_ball(testing::rings_of(triangles), 0.7f, 0.2f);
     ball.normals = ball.positions; // not quite those of the bumps; the time is the same
@@ -41,7 +43,21 @@ scene room_with_ball(uint triangles)
         = {{"white", material_kind::lambertian, dvec3(0.7)}, {"clay", material_kind::lambertian, {0.7, 0.45, 0.3}}};
     s.polygons = {{{{-2, 0, -2}, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}}, 0},
         {{{-2, 0, 2}, {-2, 3, 2}, {2, 3, 2}, {2, 0, 2}}, 0}, {{{-2, 0, -2}, {-2, 3, -2}, {-2, 3, 2}, {-2, 0, 2}}, 0}};
-    s.meshes = {{"", std::make_shared<const mesh>(std::move(ball)), glm::dmat3(1), {0, 0.85, 0}, 1}};
+    auto surface = std::make_shared<const mesh>(std::move(ball));
+    s.meshes = {{"", surface, glm::dmat3(1), {0, 0.85, 0}, 1}};
+    if (places > 1) {
+        // Turned balls in rows on the floor.
+        const auto rows = static_cast<uint>(std::ceil(std::sqrt(places)));
+        const double apart_by = 3.6 / rows, size = 0.6 * apart_by;
+        s.meshes.clear();
+        for (uint i = 0; i < places; ++i) {
+            const double turn = 0.7 * i, c = size * std::cos(turn), d = size * std::sin(turn);
+            if (apart)
+                surface = std::make_shared<const mesh>(*surface);
+            s.meshes.push_back({"", surface, glm::dmat3(c, 0, -d, 0, size, 0, d, 0, c),
+                {-1.8 + apart_by * (i % rows + 0.5), 0.85 * size, -1.8 + apart_by * (i / rows + 0.5)}, 1});
+        }
+    }
     s.rectangle_lights = {{"lamp", {-0.5, 2.9, -0.5}, {1, 0, 0}, {0, 0, 1}, dvec3(40)}};
     s.camera = {{0, 1.6, -4.2}, {0, 0.75, 0}, {0, 1, 0}, 45};
     s.render = {.map = {.photons = 200000, .builder = map_builder::automatic, .grid = glm::uvec3(0)},
@@ -78,12 +94,12 @@ void measure(B& device, const scene& s)
         rays.push_back(stats.trace_rays.ms / 1000);
         estimate.push_back(stats.radiance_estimate.ms / 1000);
     }
-    const double triangles = static_cast<double>(s.meshes[0].surface->triangles.size());
-    std::printf(
-        "%s, %.0f triangles: first preview %.2f s, picture %.2f s; upload with the tree %.2f s, trace_photons %.2f, "
-        "build_map %.2f, trace_rays %.2f, radiance_estimate %.2f\n",
-        device.caps().backend.c_str(), triangles, median(first), median(whole), median(upload), median(photons),
-        median(map), median(rays), median(estimate));
+    const double triangles = static_cast<double>(s.meshes.size() * s.meshes[0].surface->triangles.size());
+    std::printf("%s, %.0f triangles in %zu places: first preview %.2f s, picture %.2f s; upload with the tree %.2f s, "
+                "trace_photons %.2f, "
+                "build_map %.2f, trace_rays %.2f, radiance_estimate %.2f\n",
+        device.caps().backend.c_str(), triangles, s.meshes.size(), median(first), median(whole), median(upload),
+        median(photons), median(map), median(rays), median(estimate));
     rusage used{};
     getrusage(RUSAGE_SELF, &used);
     std::printf(
@@ -95,12 +111,17 @@ void measure(B& device, const scene& s)
 
 int main(int argc, char** argv)
 {
-    uint triangles = 1'000'000;
+    uint triangles = 1'000'000, places = 1;
+    bool apart = false;
     std::string backend = "cpu";
     for (int i = 1; i < argc; ++i) {
         const std::string name = argv[i], value = i + 1 < argc ? argv[i + 1] : "";
         if (name == "--triangles" && std::atoi(value.c_str()) > 0) {
             triangles = static_cast<uint>(std::atoi(value.c_str()));
+        } else if (name == "--places" && std::atoi(value.c_str()) > 0) {
+            places = static_cast<uint>(std::atoi(value.c_str()));
+        } else if (name == "--stored" && (value == "once" || value == "apart")) {
+            apart = value == "apart";
         } else if (name == "--backend" && (value == "serial" || value == "cpu" || value == "gl" || value == "vulkan")) {
             backend = value;
         } else {
@@ -110,7 +131,7 @@ int main(int argc, char** argv)
         }
         ++i;
     }
-    const auto s = room_with_ball(triangles);
+    const auto s = room_with_balls(triangles, places, apart);
     const auto on = [&](auto&& device) { measure(device, s); };
     if (backend == "serial")
         on(serial_backend());

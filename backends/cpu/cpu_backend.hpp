@@ -105,18 +105,37 @@ neighbour_lists<cpu_backend> knn_neighbours(cpu_backend& device, const map_buffe
 /// \name Rays by code for this backend
 /// @{
 
+namespace cpu {
+    /// Where the tree of an instance's surface begins.
+    struct wide_root {
+        uint node;
+        glm::vec3 low, high; ///< box of the surface, in its own space, m
+    };
+} // namespace cpu
+
 /// The triangles of a mesh in a tree of nodes with up to eight children (overrides/wide_tree.hpp).
 template <>
 struct device_triangles<cpu_backend> {
     cpu::buffer<float> nodes, blocks;
-    glm::vec3 low{0}, high{0}; ///< box of all triangles, m
+    glm::vec3 low{0}, high{0};         ///< box of all triangles, m
+    cpu::buffer<glm::uvec4> instances; ///< see trace/instance.glsl; one element if there are none
+    std::vector<cpu::wide_root> roots; ///< of the instances' surfaces
 
-    /// Of both buffers.
+    uint instance_count() const { return static_cast<uint>(roots.size()); }
+    /// Of the buffers of nodes and triangles.
     std::size_t bytes() const { return (nodes.size() + blocks.size()) * sizeof(float); }
 };
 /// The algorithm of that name.
 triangle_tree build_triangle_tree(cpu_backend& device, const mesh& m);
+triangle_tree build_instance_tree(
+    cpu_backend& device, std::span<const mesh> surfaces, std::span<const placement> placements);
 device_triangles<cpu_backend> upload_triangles(cpu_backend& device, const triangle_tree& tree);
+
+/// The hit of one ray, on the calling thread, for hosts that follow rays one by one: as trace_rays() finds it, which
+/// finds more hits a second. Several threads may call it at once.
+/// \param origin, direction see ray_search
+ray_hit trace_ray(cpu_backend& device, const device_triangles<cpu_backend>& triangles, const glm::vec4& origin,
+    const glm::vec4& direction, hit_kind kind = hit_kind::closest);
 
 /// The same hits; where any hit will do, perhaps another one. A pass completes the searches of some of the rays.
 template <>

@@ -6,6 +6,7 @@
 #include <photongrid/backends/cpu/overrides/radix_sort.hpp>
 
 #include "../map/photon_generator.hpp"
+#include "../trace/instance_tests.hpp"
 #include "serial_algorithms.hpp"
 
 #include <gtest/gtest.h>
@@ -303,6 +304,46 @@ TEST(cpu_backend, two_backends_work_side_by_side)
     first.join();
     second.join();
     EXPECT_TRUE(a == c);
+}
+
+/// One by one, from several threads at once, rays hit what many together hit.
+TEST(cpu_backend, single_rays_hit_what_batches_hit)
+{
+    cpu_backend b(2);
+    const auto s = instances_about(bumpy_ball(12, 1, 0.2f), bumpy_ball(8, 1, 0.1f), 20, 4);
+    const mesh m = flattened(s);
+    auto rays = rays_at(m, 3000, 5, 2, 2);
+    rays.origins[0].w = 0.5f;
+    rays.origins[1].x = std::numeric_limits<float>::quiet_NaN();
+    rays.directions[2] = vec4(0);
+    rays.origins[3].w = 0;
+    for (const auto& triangles : {upload_triangles(b, build_triangle_tree(b, m)),
+             upload_triangles(b, build_instance_tree(b, s.surfaces, s.placements))}) {
+        const auto all = trace_rays(b, triangles, upload(b, rays.origins), upload(b, rays.directions));
+        std::vector<ray_hit> closest(all.size()), any(all.size());
+        std::vector<std::thread> threads;
+        for (std::size_t t = 0; t < 3; ++t)
+            threads.emplace_back([&, t] {
+                for (std::size_t i = t; i < all.size(); i += 3) {
+                    closest[i] = trace_ray(b, triangles, rays.origins[i], rays.directions[i]);
+                    any[i] = trace_ray(b, triangles, rays.origins[i], rays.directions[i], hit_kind::any);
+                }
+            });
+        for (auto& t : threads)
+            t.join();
+        std::size_t hits = 0;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            ASSERT_EQ(closest[i].triangle, all[i].triangle) << i;
+            if (i != 1) {
+                ASSERT_EQ(closest[i].distance, all[i].distance) << i;
+            }
+            ASSERT_EQ(any[i].triangle == no_id, all[i].triangle == no_id) << i;
+            hits += all[i].triangle == no_id ? 0 : 1;
+        }
+        EXPECT_GT(hits, 500u);
+        for (const std::size_t refused : {1u, 2u, 3u})
+            EXPECT_EQ(closest[refused].triangle, no_id);
+    }
 }
 
 } // namespace photongrid::testing

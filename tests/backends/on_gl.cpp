@@ -13,6 +13,7 @@
 #include "../render/render_tests.hpp"
 #include "../render/scene_picture_tests.hpp"
 #include "../trace/box_tests.hpp"
+#include "../trace/instance_tests.hpp"
 #include "../trace/light_kind_tests.hpp"
 #include "../trace/mesh_ray_tests.hpp"
 #include "../trace/mesh_scene_tests.hpp"
@@ -34,6 +35,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases_of_pictures, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, progressive, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, mesh_rays, contexts, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(gl, instances, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, boxes, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, neighbours, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases_of_numbers, contexts, tag_names);

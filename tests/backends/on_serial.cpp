@@ -6,6 +6,7 @@
 #include "../estimate/estimator_tests.hpp"
 #include "../estimate/neighbour_tests.hpp"
 #include "../map/algorithm_tests.hpp"
+#include "../trace/instance_tests.hpp"
 #include "../trace/mesh_ray_tests.hpp"
 #include "serial_pictures.hpp"
 
@@ -16,6 +17,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(serial, algorithms, ::testing::Types<serial_tag>,
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, estimators, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, neighbours, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, mesh_rays, ::testing::Types<serial_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(serial, instances, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, hard_cases_of_numbers, ::testing::Types<serial_tag>, tag_names);
 
 } // namespace photongrid::testing

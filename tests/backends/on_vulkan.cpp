@@ -13,6 +13,7 @@
 #include "../render/render_tests.hpp"
 #include "../render/scene_picture_tests.hpp"
 #include "../trace/box_tests.hpp"
+#include "../trace/instance_tests.hpp"
 #include "../trace/light_kind_tests.hpp"
 #include "../trace/mesh_ray_tests.hpp"
 #include "../trace/mesh_scene_tests.hpp"
@@ -34,6 +35,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases_of_pictures, ::testing::Types<
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, progressive, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, mesh_rays, ::testing::Types<vulkan_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, instances, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, boxes, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, neighbours, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases_of_numbers, ::testing::Types<vulkan_tag>, tag_names);

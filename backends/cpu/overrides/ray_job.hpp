@@ -2,7 +2,7 @@
 // instruction set.
 #pragma once
 
-#include <photongrid/backends/cpu/buffer.hpp>
+#include <photongrid/backends/cpu/cpu_backend.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -12,8 +12,10 @@ namespace photongrid::cpu {
 struct ray_job {
     const float* nodes = nullptr; ///< see wide_tree.hpp
     const float* blocks = nullptr;
-    glm::vec3 low{0}, high{0}; ///< box of all triangles, m
-    bool any = false;          ///< the first hit that is found is enough
+    glm::vec3 low{0}, high{0};             ///< box of all triangles, m
+    const glm::uvec4* instances = nullptr; ///< see trace/instance.glsl; null: there are none
+    const wide_root* roots = nullptr;      ///< of their surfaces
+    bool any = false;                      ///< the first hit that is found is enough
     const glm::vec4* origins = nullptr;
     const glm::vec4* directions = nullptr;
     glm::uvec4* states = nullptr; ///< see trace/ray_state.glsl

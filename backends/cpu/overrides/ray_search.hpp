@@ -10,18 +10,35 @@
 
 namespace photongrid {
 
+namespace cpu {
+    /// Calls f(i) for each i below n, on the device's threads.
+    inline auto run_on_threads(cpu_backend& device)
+    {
+        return [&device](std::size_t n, const auto& f) {
+            device.threads().for_blocks(n, 1, [&](std::size_t first, std::size_t past) {
+                for (std::size_t i = first; i < past; ++i)
+                    f(i);
+            });
+        };
+    }
+} // namespace cpu
+
 #if !defined(PHOTONGRID_CPU_COMPILED)
 inline
 #endif
     triangle_tree
     build_triangle_tree(cpu_backend& device, const mesh& m)
 {
-    return detail::build_triangle_tree(m, [&](std::size_t n, const auto& f) {
-        device.threads().for_blocks(n, 1, [&](std::size_t first, std::size_t past) {
-            for (std::size_t i = first; i < past; ++i)
-                f(i);
-        });
-    });
+    return detail::build_triangle_tree(m, cpu::run_on_threads(device));
+}
+
+#if !defined(PHOTONGRID_CPU_COMPILED)
+inline
+#endif
+    triangle_tree
+    build_instance_tree(cpu_backend& device, std::span<const mesh> surfaces, std::span<const placement> placements)
+{
+    return detail::instance_tree_builder(surfaces, placements).build(cpu::run_on_threads(device));
 }
 
 #if !defined(PHOTONGRID_CPU_COMPILED)
@@ -30,9 +47,47 @@ inline
     device_triangles<cpu_backend>
     upload_triangles(cpu_backend& device, const triangle_tree& tree)
 {
-    const auto w = cpu::tree_widener(tree).build();
-    return {
-        device.upload(std::span<const float>(w.nodes)), device.upload(std::span<const float>(w.blocks)), w.low, w.high};
+    auto w = cpu::tree_widener(tree).build();
+    const std::vector<glm::uvec4> none(1);
+    return {device.upload(std::span<const float>(w.nodes)), device.upload(std::span<const float>(w.blocks)), w.low,
+        w.high, device.upload(std::span<const glm::uvec4>(tree.instances.empty() ? none : tree.instances)),
+        std::move(w.roots)};
+}
+
+namespace cpu {
+    /// What searches of these triangles have in common.
+    inline ray_job job_for(cpu_backend& device, const device_triangles<cpu_backend>& triangles, hit_kind kind)
+    {
+        ray_job j;
+        j.nodes = device.elements(triangles.nodes).data();
+        j.blocks = device.elements(triangles.blocks).data();
+        j.low = triangles.low;
+        j.high = triangles.high;
+        if (triangles.instance_count() > 0) {
+            j.instances = device.elements(triangles.instances).data();
+            j.roots = triangles.roots.data();
+        }
+        j.any = kind == hit_kind::any;
+        return j;
+    }
+} // namespace cpu
+
+#if !defined(PHOTONGRID_CPU_COMPILED)
+inline
+#endif
+    ray_hit
+    trace_ray(cpu_backend& device, const device_triangles<cpu_backend>& triangles, const glm::vec4& origin,
+        const glm::vec4& direction, hit_kind kind)
+{
+    glm::uvec4 state = kernels::ray_state(0, 0, origin.w, kernels::NO_TRIANGLE);
+    if (kernels::is_in_range(glm::vec3(origin), origin.w, glm::vec3(direction))) {
+        auto j = cpu::job_for(device, triangles, kind);
+        j.origins = &origin;
+        j.directions = &direction;
+        j.states = &state;
+        cpu::trace_block(j, 0, 1);
+    }
+    return {kernels::distance_of_hit(state), kernels::triangle_of(state)};
 }
 
 template <>
@@ -49,12 +104,7 @@ inline
                       begin = std::min(n, passes_ * per_pass);
     auto part = cpu::next_passes(n, begin, per_pass, passes);
     if (part.end > begin) {
-        cpu::ray_job j;
-        j.nodes = device.elements(triangles_->nodes).data();
-        j.blocks = device.elements(triangles_->blocks).data();
-        j.low = triangles_->low;
-        j.high = triangles_->high;
-        j.any = settings_.kind == hit_kind::any;
+        auto j = cpu::job_for(device, *triangles_, settings_.kind);
         j.origins = device.elements(*origins_).data();
         j.directions = device.elements(*directions_).data();
         j.states = device.elements_to_write(states_).data();

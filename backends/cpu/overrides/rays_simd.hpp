@@ -5,8 +5,10 @@
 // so, and sometimes if not, and the lanes only choose the triangles that hit_triangle() is then asked about.
 #include <hwy/cache_control.h>
 
+#include <photongrid/backend/vector.kernel.hpp>
 #include <photongrid/backends/cpu/overrides/ray_job.hpp>
 #include <photongrid/backends/cpu/overrides/wide_tree.hpp>
+#include <photongrid/trace/instance.kernel.hpp>
 #include <photongrid/trace/ray_state.kernel.hpp>
 #include <photongrid/trace/ray_tests.kernel.hpp>
 
@@ -32,9 +34,11 @@ class wide_ray {
     float shear_[2];
 
 public:
-    wide_ray(const ray_job& j, const glm::vec3& o, const glm::vec3& d) : ray_(kernels::ray_of(o, d))
+    /// `low`, `high`: box of all that it may meet.
+    wide_ray(const glm::vec3& low, const glm::vec3& high, const glm::vec3& o, const glm::vec3& d)
+        : ray_(kernels::ray_of(o, d))
     {
-        const glm::vec3 far = glm::max(glm::abs(j.low - o), glm::abs(j.high - o));
+        const glm::vec3 far = glm::max(glm::abs(low - o), glm::abs(high - o));
         // inside_box() enlarges a box of the tree by at most half of this. The other half is 16 times what a distance
         // rounds by; the two tests differ by less than 5 times that.
         const float more = std::max(far.x, std::max(far.y, far.z)) * 0x1p-19f;
@@ -116,13 +120,22 @@ public:
 };
 
 /// The search for the hit of one ray: the closest, of several at one distance that with the least index, or any.
+///
+/// Above instances leaves are instances, and below them the ray is in the space of the surface, as in
+/// trace/trace_ray.glsl.
 class hit_search {
     struct entry {
         uint child;
         float enter; ///< where the ray enters its box
     };
-    const wide_ray ray_;
+    static constexpr uint nowhere = kernels::NO_INSTANCE;
+
+    wide_ray ray_;            ///< in the space of what is visited
     const std::size_t index_; ///< of the ray
+    uint instance_ = nowhere; ///< in which the search is
+    std::size_t above_ = 0;   ///< so many entries were held when it entered
+    uint first_id_ = 0;       ///< of the instance's triangles
+    glm::vec2 inside_{-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()}; ///< its box
     float closest_;
     uint triangle_ = kernels::NO_TRIANGLE;
     std::size_t held_ = 0;
@@ -132,7 +145,7 @@ class hit_search {
 
 public:
     hit_search(const ray_job& j, std::size_t i)
-        : ray_(j, glm::vec3(j.origins[i]), glm::vec3(j.directions[i])), index_(i),
+        : ray_(j.low, j.high, glm::vec3(j.origins[i]), glm::vec3(j.directions[i])), index_(i),
           closest_(kernels::distance_of_hit(j.states[i]))
     {
         left_[held_++] = {0, 0};
@@ -144,19 +157,27 @@ public:
     {
         const entry now = left_[--held_];
         if (kernels::is_leaf(now.child)) {
-            visit_block(block_of(j, now.child), now.child);
-            if (ANY && triangle_ != kernels::NO_TRIANGLE)
-                return false;
+            if (is_above_instances(j)) {
+                enter(j, kernels::first_of_leaf(now.child), now.enter);
+            } else {
+                visit_block(block_of(j, now.child), now.child);
+                if (ANY && triangle_ != kernels::NO_TRIANGLE)
+                    return false;
+            }
         } else {
             visit_node<ANY>(node_of(j, now.child));
         }
         while (held_ > 0 && left_[held_ - 1].enter > closest_)
             --held_;
+        if (instance_ != nowhere && held_ <= above_)
+            leave(j);
         if (held_ == 0)
             return false;
         // Other rays are searched for until this is in the cache.
         const uint next = left_[held_ - 1].child;
-        const float* first = kernels::is_leaf(next) ? block_of(j, next) : node_of(j, next);
+        const float* first = !kernels::is_leaf(next) ? node_of(j, next)
+            : is_above_instances(j)                  ? node_of(j, j.roots[kernels::first_of_leaf(next)].node)
+                                                     : block_of(j, next);
         for (std::size_t row = 0; row < block_rows; row += 2) // two are a cache line; a node has fewer
             hwy::Prefetch(first + row * wide);
         return true;
@@ -174,14 +195,40 @@ private:
     }
     static const float* node_of(const ray_job& j, uint node) { return j.nodes + node * std::size_t{node_rows * wide}; }
 
+    bool is_above_instances(const ray_job& j) const { return j.instances != nullptr && instance_ == nowhere; }
+
+    /// Goes on in the space of an instance's surface.
+    HWY_NOINLINE void enter(const ray_job& j, uint instance, float where)
+    {
+        const glm::uvec4* of = j.instances + instance * std::size_t{kernels::INSTANCE_RECORDS};
+        const auto vector = [&](std::size_t record) { return kernels::corner_of(of[record]); };
+        const auto turned = [&](const glm::vec3& v) {
+            return glm::vec3(kernels::dot3(vector(0), v), kernels::dot3(vector(1), v), kernels::dot3(vector(2), v));
+        };
+        const glm::vec3 o(j.origins[index_]), d(j.directions[index_]);
+        instance_ = instance;
+        above_ = held_;
+        first_id_ = of[kernels::ID_OF_INSTANCE].w;
+        inside_ = kernels::inside_box(vector(4), vector(5), kernels::ray_of(o, d));
+        const auto& root = j.roots[instance];
+        ray_ = wide_ray(root.low, root.high, turned(o - vector(3)), turned(d));
+        left_[held_++] = {root.node, where};
+    }
+    HWY_NOINLINE void leave(const ray_job& j)
+    {
+        instance_ = nowhere;
+        ray_ = wide_ray(j.low, j.high, glm::vec3(j.origins[index_]), glm::vec3(j.directions[index_]));
+    }
+
     HWY_INLINE void visit_block(const float* block, uint leaf)
     {
         const uint all = (1u << (kernels::past_leaf(leaf) - kernels::first_of_leaf(leaf))) - 1; // its triangles
         for (uint some = ray_.passes_through(block) & all; some != 0; some &= some - 1) {
             const auto n = static_cast<std::size_t>(std::countr_zero(some));
             const float t = ray_.hit(block, n);
-            const auto index = std::bit_cast<uint>(block[row_of_indices * wide + n]);
-            if (t >= std::numeric_limits<float>::min() && (t < closest_ || (t == closest_ && index < triangle_))) {
+            const uint index = first_id_ + std::bit_cast<uint>(block[row_of_indices * wide + n]);
+            if (t >= std::numeric_limits<float>::min() && t >= inside_.x && t <= inside_.y
+                && (t < closest_ || (t == closest_ && index < triangle_))) {
                 closest_ = t;
                 triangle_ = index;
             }

@@ -2,13 +2,14 @@
 // to eight triangles a leaf, so that one SIMD operation tests a ray against all of them.
 #pragma once
 
-#include <photongrid/backends/cpu/buffer.hpp>
-#include <photongrid/trace/triangle_tree.hpp>
+#include <photongrid/backends/cpu/cpu_backend.hpp>
+#include <photongrid/trace/instance_tree.hpp>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <map>
 #include <vector>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -23,11 +24,13 @@ inline constexpr std::size_t node_rows = 7, row_of_children = 6;
 /// ones, and the triangles' indices in the mesh, as bits.
 inline constexpr std::size_t block_rows = 10, row_of_indices = 9;
 
-/// A child is a node or a leaf: a block, as kernels::leaf_of() has it for triangles.
+/// A child is a node or a leaf: a block, as kernels::leaf_of() has it for triangles. Above instances a leaf is one of
+/// them.
 struct wide_tree {
     std::vector<float> nodes;           ///< the root first
     std::vector<float> blocks;          ///< of triangles
     glm::vec3 low{1e30f}, high{-1e30f}; ///< box of all, m; without triangles no ray meets it
+    std::vector<wide_root> roots;       ///< of the instances' surfaces
 };
 
 /// Makes a wide_tree from a triangle_tree.
@@ -41,13 +44,18 @@ public:
 
     wide_tree build()
     {
-        children all;
-        open(0, all);
-        for (std::size_t c = 0; c < all.size; ++c) {
-            made_.low = glm::min(made_.low, all.of[c].box.low);
-            made_.high = glm::max(made_.high, all.of[c].box.high);
+        above_instances_ = !from_.instances.empty();
+        const auto whole = add_tree(0);
+        made_.low = whole.low;
+        made_.high = whole.high;
+        above_instances_ = false;
+        std::map<uint, wide_root> roots; // surfaces by their first pairs
+        for (std::size_t at = 0; at < from_.instances.size(); at += kernels::INSTANCE_RECORDS) {
+            const auto [found, is_new] = roots.try_emplace(from_.instances[at + 2].w);
+            if (is_new)
+                found->second = add_tree(found->first);
+            made_.roots.push_back(found->second);
         }
-        add_node(all);
         return std::move(made_);
     }
 
@@ -71,6 +79,22 @@ private:
         return kernels::is_leaf(id) ? span{kernels::first_of_leaf(id), kernels::past_leaf(id)} : spans_[id];
     }
 
+    /// Adds the nodes from a pair on.
+    wide_root add_tree(uint pair)
+    {
+        children all;
+        open(pair, all);
+        wide_root root{0, glm::vec3(1e30f), glm::vec3(-1e30f)};
+        for (std::size_t c = 0; c < all.size; ++c) {
+            root.low = glm::min(root.low, all.of[c].box.low);
+            root.high = glm::max(root.high, all.of[c].box.high);
+        }
+        root.node = add_node(all);
+        return root;
+    }
+    /// Whether a child becomes a leaf: an instance, or up to eight triangles.
+    bool becomes_leaf(uint id) const { return above_instances_ ? kernels::is_leaf(id) : span_of(id).size() <= wide; }
+
     /// Adds the children of a pair, but for empty ones.
     void open(uint pair, children& to) const
     {
@@ -89,8 +113,7 @@ private:
         while (c.size < wide) {
             std::size_t largest = wide;
             for (std::size_t i = 0; i < c.size; ++i)
-                if (span_of(c.of[i].id).size() > wide
-                    && (largest == wide || c.of[i].box.area() > c.of[largest].box.area()))
+                if (!becomes_leaf(c.of[i].id) && (largest == wide || c.of[i].box.area() > c.of[largest].box.area()))
                     largest = i;
             if (largest == wide)
                 break;
@@ -108,10 +131,10 @@ private:
             }
         }
         for (std::size_t i = 0; i < c.size; ++i) {
-            const auto of = span_of(c.of[i].id);
-            uint id = 0;
-            if (of.size() <= wide) {
-                id = add_block(of);
+            uint id = c.of[i].id;
+            if (becomes_leaf(id)) {
+                if (!above_instances_)
+                    id = add_block(span_of(id));
             } else {
                 children below;
                 open(c.of[i].id, below);
@@ -140,6 +163,7 @@ private:
 
     const triangle_tree& from_;
     std::vector<span> spans_; ///< of the pairs
+    bool above_instances_ = false;
     wide_tree made_;
 };
 

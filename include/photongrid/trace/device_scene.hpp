@@ -49,10 +49,23 @@ namespace detail {
     template <backend B>
     void upload_meshes(B& device, mesh_layout m, device_scene<B>& to)
     {
-        to.triangles = upload_triangles(device, build_triangle_tree(device, m.triangles));
         std::vector<glm::vec4> vertices;
         for (const auto& p : m.triangles.positions)
             vertices.emplace_back(p, 0.0f);
+        for (const auto& surface : m.surfaces)
+            for (const auto& p : surface.positions)
+                vertices.emplace_back(p, 0.0f);
+        if (m.placements.empty()) {
+            to.triangles = upload_triangles(device, build_triangle_tree(device, m.triangles));
+        } else {
+            auto surfaces = std::move(m.surfaces);
+            if (m.placements.front().is_in_place)
+                surfaces.insert(surfaces.begin(), std::move(m.triangles));
+            else
+                for (auto& p : m.placements) // there are no others
+                    --p.surface;
+            to.triangles = upload_triangles(device, build_instance_tree(device, surfaces, m.placements));
+        }
         to.faces = upload_some(device, m.faces);
         to.planes = upload_some(device, m.planes);
         to.vertices = upload_some(device, vertices);

@@ -4,11 +4,13 @@
 // Records of TEXTURE_TABLE: first texel in two parts (high and low 16 bits), width, height; scale and offset of
 // coordinates; x: 1: the texture repeats.
 #include <photongrid/backend/vector.glsl>
+#include <photongrid/trace/instance.glsl>
 #include <photongrid/trace/ray_state.glsl>
 #include <photongrid/trace/scene_layout.glsl>
+#include <photongrid/trace/tree_node.glsl>
 
 struct Params {
-    uint unused;
+    uint count; // of instances
 };
 PARAMS(Params)
 INPUT(0, vec4, scene)
@@ -19,9 +21,11 @@ INPUT(4, uvec4, faces)      // see mesh_surface.glsl
 INPUT(5, vec4, vertices)    // xyz, m
 INPUT(6, vec4, attributes)  // of each vertex, two: xy: texture coordinates; rgb
 INPUT(7, uvec2, texels)     // linear rgb in 16 bits each: red | green << 16, blue
+INPUT(8, uvec4, instances)  // see instance.glsl; only with INSTANCES
 OUTPUT(0, vec4, color)      // rgb
 
 #include <photongrid/trace/materials.glsl>
+#include <photongrid/trace/placed_face.glsl>
 #include <photongrid/trace/triangle_weights.glsl>
 
 // A texel's place along an edge of `size` texels, for a whole number.
@@ -76,9 +80,9 @@ void kernel(uint i)
     vec4 normal = normals(i);
     if (triangle == NO_TRIANGLE || normal.w < 0.0f)
         return; // nothing, or a light
-    uvec4 face = faces(triangle);
-    vec3 w = triangle_weights(
-        vec3(places(i)), vec3(vertices(face.x)), vec3(vertices(face.y)), vec3(vertices(face.z)), vec3(normal));
+    PlacedFace f = placed_face(triangle);
+    uvec4 face = f.face;
+    vec3 w = triangle_weights(vec3(places(i)), f.a, f.b, f.c, vec3(normal));
     precise float sum = w.x + w.y + w.z;
     if (!(sum > 0.0f)) {
         w = vec3(1.0f, 1.0f, 1.0f); // a line or a point

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <photongrid/scene/placed_mesh.hpp>
-#include <photongrid/trace/triangle_tree.hpp>
+#include <photongrid/scene/scene.hpp>
+#include <photongrid/trace/instance_tree.hpp>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -12,9 +14,14 @@
 
 namespace photongrid {
 
-/// The triangles of all meshes of a scene, in the meshes' order, as trace/mesh_surface.glsl describes them.
+/// The triangles of all meshes of a scene, as trace/mesh_surface.glsl describes them: those of lights, those of
+/// surfaces that stand where they are stored, and of each surface that stands in several places, each in the meshes'
+/// order.
 struct mesh_layout {
-    mesh triangles;                 ///< recentred; without normals
+    mesh triangles;             ///< but for those of surfaces in several places; recentred; without normals
+    std::vector<mesh> surfaces; ///< that stand in several places, in their own space; without normals
+    std::vector<placement>
+        placements;                 ///< of those; of surface n + 1. If there are any, the first is `triangles` in place
     std::vector<glm::uvec4> faces;  ///< of each triangle: its vertices, its material, whether it has normals
     std::vector<glm::vec4> planes;  ///< of each triangle: unit normal; offset, m
     std::vector<glm::vec4> normals; ///< of each vertex; empty if no mesh has any
@@ -36,33 +43,18 @@ namespace detail {
         }
 
         /// `code`: w of its faces (trace/mesh_surface.glsl).
-        void write(const placed_mesh& m, uint code, bool smooth)
+        void write(const placed_mesh& m, uint code, bool smooth) { write(out_.triangles, m, center_, code, smooth); }
+
+        /// A surface in its own space; its middle becomes the origin, and is returned.
+        dvec3 write_surface(const placed_mesh& m)
         {
-            auto& all = out_;
-            require_countable(all.triangles.triangles.size() + m.surface->triangles.size());
-            const auto vertices = static_cast<uint>(all.triangles.positions.size());
+            bounds b;
             for (const auto& p : m.surface->positions)
-                all.triangles.positions.emplace_back(place_of(m, p) - center_);
-            if (any_smooth_) {
-                if (smooth)
-                    for (const auto& n : m.surface->normals)
-                        all.normals.emplace_back(normal_of(m, n), 0.0f);
-                all.normals.resize(all.triangles.positions.size(), glm::vec4(0));
-            }
-            if (any_colored_)
-                for (std::size_t v = 0; v < m.surface->positions.size(); ++v) {
-                    const auto& places = m.surface->texture_coordinates;
-                    out_.attributes.emplace_back(places.empty() ? glm::vec2(0) : places[v], 0.0f, 0.0f);
-                    out_.attributes.emplace_back(m.surface->colors.empty() ? glm::vec3(1) : m.surface->colors[v], 0.0f);
-                }
-            const bool mirrored = is_mirrored(m); // as corners_of(placed_mesh)
-            for (auto t : m.surface->triangles) {
-                if (mirrored)
-                    std::swap(t.y, t.z);
-                all.triangles.triangles.push_back(t + vertices);
-                all.faces.emplace_back(t + vertices, code);
-                write_plane(all.faces.size() - 1);
-            }
+                b.add(dvec3(p));
+            const dvec3 middle(glm::vec3(0.5 * (b.low + b.high)));
+            write(out_.surfaces.emplace_back(), {"", m.surface, glm::dmat3(1), dvec3(0), 0}, middle, 0,
+                !m.surface->normals.empty());
+            return middle;
         }
 
         /// The shares of a light's area up to each of its triangles, which begin at `first`.
@@ -78,11 +70,39 @@ namespace detail {
         }
 
     private:
+        void write(mesh& to, const placed_mesh& m, const dvec3& center, uint code, bool smooth)
+        {
+            require_countable(out_.faces.size() + m.surface->triangles.size());
+            const auto first = static_cast<uint>(to.positions.size()), vertices = vertices_;
+            vertices_ += static_cast<uint>(m.surface->positions.size());
+            for (const auto& p : m.surface->positions)
+                to.positions.emplace_back(place_of(m, p) - center);
+            if (any_smooth_) {
+                if (smooth)
+                    for (const auto& n : m.surface->normals)
+                        out_.normals.emplace_back(normal_of(m, n), 0.0f);
+                out_.normals.resize(vertices_, glm::vec4(0));
+            }
+            if (any_colored_)
+                for (std::size_t v = 0; v < m.surface->positions.size(); ++v) {
+                    const auto& places = m.surface->texture_coordinates;
+                    out_.attributes.emplace_back(places.empty() ? glm::vec2(0) : places[v], 0.0f, 0.0f);
+                    out_.attributes.emplace_back(m.surface->colors.empty() ? glm::vec3(1) : m.surface->colors[v], 0.0f);
+                }
+            const bool mirrored = is_mirrored(m); // as corners_of(placed_mesh)
+            for (auto t : m.surface->triangles) {
+                if (mirrored)
+                    std::swap(t.y, t.z);
+                to.triangles.push_back(t + first);
+                out_.faces.emplace_back(t + vertices, code);
+                write_plane(corners_of(to, to.triangles.size() - 1));
+            }
+        }
+
         /// The plane of a triangle as it is in single precision. A triangle without area has that of any that contains
         /// its longest edge.
-        void write_plane(std::size_t triangle)
+        void write_plane(const std::array<glm::vec3, 3>& corners)
         {
-            const auto corners = corners_of(out_.triangles, triangle);
             const dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
             dvec3 n = glm::cross(b - a, c - a);
             if (!(glm::length(n) > 0)) {
@@ -99,7 +119,32 @@ namespace detail {
         mesh_layout& out_;
         dvec3 center_;
         bool any_smooth_, any_colored_;
+        uint vertices_ = 0; ///< written so far
     };
+
+    /// A surface of fewer triangles is stored once for each place.
+    inline constexpr std::size_t least_shared_triangles = 1024;
+
+    /// Whether a mesh stands where its surface could be stored once for several: rounding in the surface's space must
+    /// be no more than 16 times that in the scene.
+    inline bool can_share(const placed_mesh& m)
+    {
+        const auto size = [](const glm::dmat3& a) {
+            return std::sqrt(glm::dot(a[0], a[0]) + glm::dot(a[1], a[1]) + glm::dot(a[2], a[2]));
+        };
+        return m.surface->triangles.size() >= least_shared_triangles
+            && size(m.linear) * size(glm::inverse(m.linear)) <= 3 * 16;
+    }
+
+    /// How many meshes stand where their surface could be stored once, for each surface.
+    inline std::map<const mesh*, std::size_t> places_of_surfaces(const scene& s)
+    {
+        std::map<const mesh*, std::size_t> places;
+        for (const auto& m : s.meshes)
+            if (can_share(m))
+                ++places[m.surface.get()];
+        return places;
+    }
 } // namespace detail
 
 } // namespace photongrid

@@ -50,12 +50,15 @@ struct mesh_rays {
     void find(B& device, const device_scene<B>& s, mesh_hits<B>& hits) const
     {
         const auto found = search(device, s, hit_kind::closest);
-        device.template run<kernels::mesh_surface>({origins.size(), 0u, s.layout.features}, {},
-            reads(s.records, origins, directions, found, s.faces, s.planes, s.vertices, s.normals),
+        const uint instances = s.triangles.instance_count();
+        device.template run<kernels::mesh_surface>({origins.size(), 0u, s.layout.features}, {.count = instances},
+            reads(
+                s.records, origins, directions, found, s.faces, s.planes, s.vertices, s.normals, s.triangles.instances),
             writes(hits.places, hits.normals, hits.shadings));
         if (s.has_textures())
-            device.template run<kernels::mesh_color>(origins.size(), {},
-                reads(s.records, found, hits.places, hits.normals, s.faces, s.vertices, s.attributes, s.texels),
+            device.template run<kernels::mesh_color>({origins.size(), 0u, s.layout.features}, {.count = instances},
+                reads(s.records, found, hits.places, hits.normals, s.faces, s.vertices, s.attributes, s.texels,
+                    s.triangles.instances),
                 writes(hits.colors));
     }
 };

@@ -1,10 +1,12 @@
 // The surface at a ray's hit on a triangle, for kernels that follow paths (mesh_hit.glsl).
 #include <photongrid/backend/vector.glsl>
+#include <photongrid/trace/instance.glsl>
 #include <photongrid/trace/ray_state.glsl>
 #include <photongrid/trace/scene_layout.glsl>
+#include <photongrid/trace/tree_node.glsl>
 
 struct Params {
-    uint unused;
+    uint count; // of instances
 };
 PARAMS(Params)
 SWITCH(10, SMOOTH)
@@ -17,11 +19,13 @@ INPUT(4, uvec4, faces)     // of each triangle, xyz: its vertices; w: 2 x materi
 INPUT(5, vec4, planes)     // of each triangle, xyz: unit normal; w: offset
 INPUT(6, vec4, vertices)   // xyz, m
 INPUT(7, vec4, normals)    // of each vertex, xyz, of any length; only with SMOOTH
+INPUT(8, uvec4, instances) // see instance.glsl; only with INSTANCES
 OUTPUT(0, vec4, place)     // xyz: of the hit, m; w: its distance; -1: no hit
 OUTPUT(1, vec4, normal)    // xyz: geometric normal, unit; w: material, or of a light its number, times -1, less 1
 OUTPUT(2, vec4, shading)   // xyz: interpolated normal, unit, on the side of the geometric one; without normals that
 
 #include <photongrid/trace/intersect/plane.glsl>
+#include <photongrid/trace/placed_face.glsl>
 #include <photongrid/trace/triangle_weights.glsl>
 
 // A point of a triangle by the weights of its corners: their sum is not 1.
@@ -32,11 +36,11 @@ struct Weighted {
 
 // Moves a point of a triangle off its edges, by the offset of rays or a quarter of the triangle's height. Where
 // surfaces meet at an edge, rays that leave the point then start on its side of the other surface.
-Weighted off_edges(vec3 p, uvec4 face, vec3 n)
+Weighted off_edges(vec3 p, PlacedFace f, vec3 n)
 {
-    vec3 a = vec3(vertices(face.x));
-    vec3 b = vec3(vertices(face.y));
-    vec3 c = vec3(vertices(face.z));
+    vec3 a = f.a;
+    vec3 b = f.b;
+    vec3 c = f.c;
     float off = ray_offset(p, scene(SCENE_SIZES).x);
     Weighted at;
     at.weights = triangle_weights(p, a, b, c, n);
@@ -63,10 +67,11 @@ Weighted off_edges(vec3 p, uvec4 face, vec3 n)
 }
 
 // The normals of a triangle's vertices, weighted; the geometric normal where they cancel out.
-vec3 shading_normal(uvec4 face, vec3 weights, vec3 geometric)
+vec3 shading_normal(PlacedFace f, vec3 weights, vec3 geometric)
 {
-    precise vec3 sum = vec3(normals(face.x)) * weights.x + vec3(normals(face.y)) * weights.y
-        + vec3(normals(face.z)) * weights.z;
+    precise vec3 sum = normal_in_scene(f, vec3(normals(f.face.x))) * weights.x
+        + normal_in_scene(f, vec3(normals(f.face.y))) * weights.y
+        + normal_in_scene(f, vec3(normals(f.face.z))) * weights.z;
     precise vec3 scaled = sum / largest3(vec3(abs(sum.x), abs(sum.y), abs(sum.z)));
     vec3 n = normalized3(scaled);
     if (!is_finite3(n))
@@ -83,18 +88,22 @@ void kernel(uint i)
     shading = normal;
     if (triangle == NO_TRIANGLE)
         return;
-    uvec4 face = faces(triangle);
-    vec4 plane = planes(triangle);
+    PlacedFace f = placed_face(triangle);
+    vec4 plane = planes(f.number);
+    if (INSTANCES && f.instance != NO_INSTANCE) {
+        vec3 n = normal_in_scene(f, vec3(plane));
+        plane = vec4(n.x, n.y, n.z, dot3(n, f.a));
+    }
     float t = distance_of_hit(found);
-    Weighted at = off_edges(ray_at(vec3(origins(i)), vec3(directions(i)), t), face, vec3(plane));
+    Weighted at = off_edges(ray_at(vec3(origins(i)), vec3(directions(i)), t), f, vec3(plane));
     vec3 p = onto_plane(plane, at.point);
     place = vec4(p.x, p.y, p.z, t);
-    bool of_light = face.w >= FACE_OF_LIGHT;
-    float code = of_light ? -1.0f - float(face.w - FACE_OF_LIGHT) : float(face.w >> 1u);
+    bool of_light = f.face.w >= FACE_OF_LIGHT;
+    float code = of_light ? -1.0f - float(f.face.w - FACE_OF_LIGHT) : float(f.face.w >> 1u);
     normal = vec4(plane.x, plane.y, plane.z, code);
     shading = normal;
-    if (SMOOTH && !of_light && (face.w & 1u) != 0u) {
-        vec3 n = shading_normal(face, at.weights, vec3(plane));
+    if (SMOOTH && !of_light && (f.face.w & 1u) != 0u) {
+        vec3 n = shading_normal(f, at.weights, vec3(plane));
         shading = vec4(n.x, n.y, n.z, 0.0f);
     }
 }

@@ -4,10 +4,10 @@
 #pragma once
 
 #include <photongrid/backend/backend.hpp>
+#include <photongrid/trace/instance_tree.hpp>
 #include <photongrid/trace/ray_start.kernel.hpp>
 #include <photongrid/trace/ray_state.kernel.hpp>
 #include <photongrid/trace/trace_ray.kernel.hpp>
-#include <photongrid/trace/triangle_tree.hpp>
 
 #include <limits>
 #include <span>
@@ -19,11 +19,14 @@
 
 namespace photongrid {
 
-/// The triangles of a mesh on a device, in a tree.
+/// The triangles of a mesh on a device, in a tree; or of surfaces that stand in a scene several times.
 template <backend B>
 struct device_triangles {
-    buffer_of<B, glm::uvec4> pairs;   ///< see trace/tree_node.glsl
-    buffer_of<B, glm::uvec4> corners; ///< of the triangles, in the order of the leaves
+    buffer_of<B, glm::uvec4> pairs;     ///< see trace/tree_node.glsl
+    buffer_of<B, glm::uvec4> corners;   ///< of the triangles, in the order of the leaves
+    buffer_of<B, glm::uvec4> instances; ///< see trace/instance.glsl; one element if there are none
+
+    uint instance_count() const { return static_cast<uint>(instances.size() / kernels::INSTANCE_RECORDS); }
 };
 
 /// Builds the tree of a mesh as build_triangle_tree(m) does, on the device's threads if it has any.
@@ -33,13 +36,22 @@ triangle_tree build_triangle_tree(B&, const mesh& m)
     return build_triangle_tree(m);
 }
 
+/// Builds a tree of two levels, as build_instance_tree() without a device does, likewise.
+template <backend B>
+triangle_tree build_instance_tree(B&, std::span<const mesh> surfaces, std::span<const placement> placements)
+{
+    return build_instance_tree(surfaces, placements);
+}
+
 /// Uploads a tree.
 /// \throws backend_error if the device has no room.
 template <backend B>
 device_triangles<B> upload_triangles(B& device, const triangle_tree& tree)
 {
+    const std::vector<glm::uvec4> none(1);
     return {device.upload(std::span<const glm::uvec4>(tree.pairs)),
-        device.upload(std::span<const glm::uvec4>(tree.corners))};
+        device.upload(std::span<const glm::uvec4>(tree.corners)),
+        device.upload(std::span<const glm::uvec4>(tree.instances.empty() ? none : tree.instances))};
 }
 
 /// Which hit of a ray is sought.
@@ -53,7 +65,7 @@ static_assert(kernels::NO_TRIANGLE == no_id);
 /// The hit of a ray.
 struct ray_hit {
     float distance; ///< along the ray, in lengths of its direction; without a hit, its length
-    uint triangle;  ///< its index in the mesh; `no_id`: no hit
+    uint triangle;  ///< its index in the mesh, or among the triangles of all instances; `no_id`: no hit
 
     bool operator==(const ray_hit&) const = default;
 };
@@ -88,7 +100,8 @@ private:
     template <class K>
     uint switches() const
     {
-        return settings_.kind == hit_kind::any ? K::ANY_HIT_switch : 0u;
+        return (settings_.kind == hit_kind::any ? K::ANY_HIT_switch : 0u)
+            | (triangles_->instance_count() > 0 ? K::INSTANCES_switch : 0u);
     }
 
     B* device_;
@@ -122,8 +135,10 @@ template <backend B>
 progress ray_search<B>::advance(uint passes)
 {
     const progress p = device_->template run_until_done<kernels::trace_ray>(
-        {states_.size(), 0u, this->template switches<kernels::trace_ray>()}, {.steps = settings_.steps_per_pass},
-        reads(*origins_, *directions_, triangles_->pairs, triangles_->corners), writes(states_), passes);
+        {states_.size(), 0u, this->template switches<kernels::trace_ray>()},
+        {.steps = settings_.steps_per_pass, .count = triangles_->instance_count()},
+        reads(*origins_, *directions_, triangles_->pairs, triangles_->corners, triangles_->instances), writes(states_),
+        passes);
     passes_ += p.passes;
     finished_ = p.finished;
     return p;

@@ -5,6 +5,18 @@
 
 const uint NO_TRIANGLE = 0xFFFFFFFFu;
 
+inline bool is_up_to(float most, vec3 v)
+{
+    return abs(v.x) <= most && abs(v.y) <= most && abs(v.z) <= most;
+}
+// Whether a ray can hit anything: it has a length, and its coordinates and its direction's length are in range. NaN is
+// not.
+inline bool is_in_range(vec3 origin, float length, vec3 direction)
+{
+    return is_up_to(1.0e18f, origin) && is_up_to(1.0e18f, direction) && !is_up_to(1.0e-18f, direction)
+        && length > 0.0f;
+}
+
 inline uvec4 ray_state(uint pair, uint trail, float distance, uint triangle)
 {
     return uvec4(pair, trail, floatBitsToUint(distance), triangle);

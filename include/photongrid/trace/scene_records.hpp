@@ -41,6 +41,7 @@ enum scene_feature : uint {
     has_rough = 1u << 17,      ///< a rough surface
     has_shape_tree = 1u << 18, ///< of many shapes
     has_coats = 1u << 19,      ///< diffuse surfaces under a coat
+    has_instances = 1u << 20,  ///< surfaces of triangles that stand in several places
 };
 
 static_assert(light_kind<point_light>::form == kernels::POINT_LIGHT
@@ -111,7 +112,7 @@ namespace detail {
     class layout_writer {
     public:
         /// `s` must be relative to its anchor.
-        explicit layout_writer(const scene& s) : s_(s) {}
+        explicit layout_writer(const scene& s) : s_(s), places_(places_of_surfaces(s)) {}
 
         scene_layout write()
         {
@@ -164,6 +165,7 @@ namespace detail {
                     shape_kind<placed_mesh>::add_bounds(diffuse, m);
                 out_.features |= has_meshes | features_of(of);
                 out_.features |= m.surface->normals.empty() ? 0u : has_smooth_meshes;
+                out_.features |= is_shared(m) ? has_instances : 0u;
                 out_.features |= m.surface->colors.empty() && !of.texture.map ? 0u : has_textures;
             }
             require(!diffuse.empty(), no_matte_shape);
@@ -281,10 +283,40 @@ namespace detail {
                 w.write(l.surface, kernels::FACE_OF_LIGHT + light++, false);
                 w.write_shares(l.surface, first);
             }
-            for (const auto& m : s_.meshes) {
-                const bool smooth = !m.surface->normals.empty();
-                w.write(m, 2 * m.material + (smooth ? 1 : 0), smooth);
+            const auto code_of
+                = [](const placed_mesh& m) { return 2 * m.material + (m.surface->normals.empty() ? 0 : 1); };
+            std::vector<const placed_mesh*> shared;
+            for (const auto& m : s_.meshes)
+                if (is_shared(m))
+                    shared.push_back(&m);
+                else
+                    w.write(m, code_of(m), !m.surface->normals.empty());
+            if (shared.empty())
+                return;
+            auto& placements = out_.meshes.placements;
+            if (!out_.meshes.triangles.triangles.empty())
+                placements.push_back({.is_in_place = true});
+            struct surface_record {
+                std::size_t number;
+                uint first_face;
+                dvec3 middle;
+            };
+            std::map<const mesh*, surface_record> surfaces;
+            for (const auto* m : shared) {
+                const auto [found, is_new] = surfaces.try_emplace(m->surface.get());
+                auto& of = found->second;
+                if (is_new) {
+                    of = {surfaces.size(), static_cast<uint>(out_.meshes.faces.size()), dvec3(0)};
+                    of.middle = w.write_surface(*m);
+                }
+                placements.push_back({of.number, m->linear, m->linear * of.middle + m->offset - out_.center, false,
+                    of.first_face, code_of(*m)});
             }
+        }
+        bool is_shared(const placed_mesh& m) const
+        {
+            const auto found = places_.find(m.surface.get());
+            return found != places_.end() && found->second > 1 && can_share(m);
         }
 
         void write_materials(record_writer& w)
@@ -397,6 +429,7 @@ namespace detail {
         }
 
         const scene& s_;
+        std::map<const mesh*, std::size_t> places_;
         scene_layout out_;
         std::vector<boxed_shape> shapes_;
         double scale_ = 0;      ///< half the scene's diagonal, m

@@ -1,19 +1,30 @@
 // The hit of a ray among triangles in a tree of boxes: the closest one, of several at one distance that with the least
 // index, so that the tree does not decide which it is; or any. A pass takes a bounded number of steps.
+//
+// With INSTANCES the tree has two levels: leaves of the upper one are instances of surfaces, each with a tree of its
+// own. Below such a leaf the ray is in the space of the surface, where distances along it are the same. A hit counts if
+// the ray is then inside the instance's box, so that hits do not depend on the upper tree.
+#include <photongrid/backend/vector.glsl>
+#include <photongrid/trace/instance.glsl>
 #include <photongrid/trace/ray_state.glsl>
 #include <photongrid/trace/ray_tests.glsl>
 #include <photongrid/trace/tree_node.glsl>
 
 struct Params {
     uint steps; // the most pairs and triangles to visit in a pass
+    uint count; // of instances
 };
 PARAMS(Params)
 SWITCH(0, ANY_HIT)
+SWITCH(1, INSTANCES)
 INPUT(0, vec4, origins)    // xyz, m; w: length of the ray, in lengths of its direction
 INPUT(1, vec4, directions) // xyz
 INPUT(2, uvec4, pairs)     // see tree_node.glsl
 INPUT(3, uvec4, corners)
+INPUT(4, uvec4, instances) // see instance.glsl
 STATE(0, uvec4, state)     // see ray_state.glsl
+
+#include <photongrid/trace/find_instance.glsl>
 
 bool done()
 {
@@ -31,17 +42,58 @@ uint child_of(uint pair, uint child)
     return pairs(PAIR_RECORDS * pair + child).w;
 }
 
+// The ray in the space of an instance's surface.
+Ray ray_in_surface(uint instance, vec3 o, vec3 d)
+{
+    uint at = INSTANCE_RECORDS * instance;
+    precise vec3 from = o - corner_of(instances(at + 3u));
+    return ray_of(by_matrix(at, from), by_matrix(at, d));
+}
+
+// Where the ray is inside an instance's box.
+vec2 inside_instance(uint instance, vec3 o, vec3 d)
+{
+    uint at = INSTANCE_RECORDS * instance;
+    return inside_box(corner_of(instances(at + 4u)), corner_of(instances(at + 5u)), ray_of(o, d));
+}
+
+// The number of the first pair of an instance in walks, less its first pair.
+uint pairs_before(uint instance)
+{
+    uint at = INSTANCE_RECORDS * instance;
+    return instances(at + PAIR_OF_INSTANCE).w - instances(at + 2u).w;
+}
+
 void kernel(uint i)
 {
     vec4 o = origins(i);
-    Ray r = ray_of(vec3(o), vec3(directions(i)));
+    vec3 d = vec3(directions(i));
+    Ray r = ray_of(vec3(o), d);
     uint pair = pair_of(state);
     uint trail = trail_of(state);
     float closest = distance_of_hit(state);
     uint triangle = triangle_of(state);
+    uint instance = NO_INSTANCE; // in whose surface the walk is
+    vec2 inside = vec2(0.0f, 0.0f);
+    uint first_id = 0u;
+    uint below = NO_PAIR; // what the instance is below
+    uint enters = NO_INSTANCE;
+    if (INSTANCES && pair != NO_PAIR && pair >= instances(PAIR_OF_INSTANCE).w) {
+        enters = find_instance(args.count, PAIR_OF_INSTANCE, pair);
+        pair = pair - pairs_before(enters);
+    }
 
     uint steps = args.steps;
     while (steps > 0u && pair != NO_PAIR) {
+        if (INSTANCES && enters != NO_INSTANCE) {
+            instance = enters;
+            enters = NO_INSTANCE;
+            r = ray_in_surface(instance, vec3(o), d);
+            inside = inside_instance(instance, vec3(o), d);
+            first_id = instances(INSTANCE_RECORDS * instance + ID_OF_INSTANCE).w;
+            below = instances(INSTANCE_RECORDS * instance + 3u).w;
+        }
+        bool above_instances = INSTANCES && instance == NO_INSTANCE;
         uint taken = 1u;
         vec2 first = inside_child(pair, 0u, r);
         vec2 second = inside_child(pair, 1u, r);
@@ -52,18 +104,20 @@ void kernel(uint i)
             uint side = nth == 0u ? nearer : 1u - nearer;
             uint child = child_of(pair, side);
             bool meets = meets_box(side == 0u ? first : second, closest);
-            if (meets && !is_leaf(child)) {
+            if (meets && (!is_leaf(child) || above_instances)) {
                 both = next != NO_PAIR;
                 next = both ? next : child;
             }
-            if (meets && is_leaf(child)) {
+            if (meets && is_leaf(child) && !above_instances) {
                 for (uint n = first_of_leaf(child); n < past_leaf(child); ++n) {
                     uvec4 a = corners(TRIANGLE_RECORDS * n);
                     float t = hit_triangle(corner_of(a), corner_of(corners(TRIANGLE_RECORDS * n + 1u)),
                         corner_of(corners(TRIANGLE_RECORDS * n + 2u)), r);
-                    if (t >= 1.17549435e-38f && (t < closest || (t == closest && a.w < triangle))) {
+                    uint id = first_id + a.w;
+                    bool counts = !INSTANCES || (t >= inside.x && t <= inside.y);
+                    if (counts && t >= 1.17549435e-38f && (t < closest || (t == closest && id < triangle))) {
                         closest = t;
-                        triangle = a.w;
+                        triangle = id;
                     }
                     ++taken;
                 }
@@ -75,6 +129,11 @@ void kernel(uint i)
             // Up to the closest pair whose other child is still to be visited and near enough.
             ++taken;
             uint link = pairs(PAIR_RECORDS * pair + 2u).w;
+            if (INSTANCES && link == NO_PAIR && instance != NO_INSTANCE) {
+                link = below;
+                instance = NO_INSTANCE;
+                r = ray_of(vec3(o), d);
+            }
             pair = link == NO_PAIR ? NO_PAIR : pair_above(link);
             trail = trail >> 1u;
             if (pair != NO_PAIR && (trail & 1u) != 0u) {
@@ -87,7 +146,16 @@ void kernel(uint i)
         pair = next;
         if (ANY_HIT && triangle != NO_TRIANGLE)
             pair = NO_PAIR;
+        if (INSTANCES && instance == NO_INSTANCE && pair != NO_PAIR && is_leaf(pair)) {
+            enters = first_of_leaf(pair);
+            pair = instances(INSTANCE_RECORDS * enters + 2u).w;
+        }
         steps -= min(taken, steps);
+    }
+    if (INSTANCES && pair != NO_PAIR) {
+        if (enters != NO_INSTANCE)
+            instance = enters;
+        pair = instance == NO_INSTANCE ? pair : pair + pairs_before(instance);
     }
     state = ray_state(pair, trail, closest, triangle);
 }

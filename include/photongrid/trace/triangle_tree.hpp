@@ -26,13 +26,31 @@ struct triangle_tree {
     std::vector<glm::uvec4> pairs;   ///< of nodes
     std::vector<glm::uvec4> corners; ///< of the triangles, in the order of the leaves
     uint depth = 0;                  ///< of the deepest pair; the first has 0
+    std::vector<glm::uvec4>
+        instances{}; ///< of a tree of two levels (instance_tree.hpp), as trace/instance.glsl has them
 };
 
 namespace detail {
+    /// The shape of a tree.
+    struct tree_limits {
+        uint deepest = kernels::DEEPEST_PAIR;      ///< pair
+        uint most_in_leaf = kernels::MOST_IN_LEAF; ///< triangles
+        std::size_t few = 6;                       ///< the most triangles of a leaf that could be split
+
+        /// The most triangles that a subtree can hold if its first pair has this depth.
+        std::uint64_t most_below(uint at) const
+        {
+            return at > deepest ? most_in_leaf : std::uint64_t{most_in_leaf} << (deepest + 1 - at);
+        }
+    };
+
     /// Builds a triangle_tree. The same mesh gives the same tree on every machine, with any number of threads.
     class tree_builder {
     public:
-        explicit tree_builder(const mesh& m) : mesh_(m), items_(m.triangles.size()) {}
+        explicit tree_builder(const mesh& m, const tree_limits& limits = {})
+            : mesh_(m), limits_(limits), items_(m.triangles.size())
+        {
+        }
 
         /// `run(n, f)` calls f(i) for each i below n, in any order or at once.
         template <class Run>
@@ -47,9 +65,9 @@ namespace detail {
             }
             // The upper part of the tree, then what is below it, in pieces.
             std::vector<piece> pieces;
-            grower top{items_, std::max<std::size_t>(n / 32, 4096), &pieces};
+            grower top{items_, limits_, std::max<std::size_t>(n / 32, 4096), &pieces};
             top.grow_root(all);
-            std::vector<grower> below(pieces.size(), grower{items_});
+            std::vector<grower> below(pieces.size(), grower{items_, limits_});
             run(pieces.size(), [&](std::size_t i) { pieces[i].root = below[i].grow(pieces[i].of, pieces[i].depth); });
 
             triangle_tree tree{std::move(top.pairs), {}, top.depth};
@@ -72,7 +90,6 @@ namespace detail {
 
     private:
         static constexpr std::size_t most_bins = 16;
-        static constexpr std::size_t few = 6; ///< the most triangles of a leaf that could be split
 
         /// A triangle's box, and the halves of its index in the mesh as two floats. The index's bits as one float would
         /// often be subnormal, and arithmetic on all lanes slow.
@@ -161,6 +178,7 @@ namespace detail {
         /// Makes pairs of nodes of parts.
         struct grower {
             std::vector<item>& items;
+            tree_limits limits;
             std::size_t size_of_piece = 0;        ///< parts of up to so many items are left to others ...
             std::vector<piece>* pieces = nullptr; ///< ... and added here; null: none is
             std::vector<glm::uvec4> pairs{};
@@ -254,25 +272,17 @@ namespace detail {
                 return best;
             }
 
-            /// The most triangles that a subtree can hold if its first pair has this depth.
-            static std::uint64_t most_below(uint at)
-            {
-                return at > kernels::DEEPEST_PAIR
-                    ? kernels::MOST_IN_LEAF
-                    : std::uint64_t{kernels::MOST_IN_LEAF} << (kernels::DEEPEST_PAIR + 1 - at);
-            }
-
             /// Divides a part, whose items are ordered so that those of one half come first. Returns false if it is to
             /// be a leaf. `at`: depth of the pair that the halves would be.
             bool split(const part& p, uint at, part (&halves)[2])
             {
-                if (p.size() <= 1 || at > kernels::DEEPEST_PAIR)
+                if (p.size() <= 1 || at > limits.deepest)
                     return false;
                 const bins in(p);
                 const plane best = best_plane(p, in);
                 const double area = p.box.area();
                 // A pair costs as much as the tests of three triangles.
-                if (at > 0 && p.size() <= few && !(best.cost + 3 * area < static_cast<double>(p.size()) * area))
+                if (at > 0 && p.size() <= limits.few && !(best.cost + 3 * area < static_cast<double>(p.size()) * area))
                     return false;
                 if (best.cost < std::numeric_limits<double>::max()) {
                     halves[0] = {p.first, p.first};
@@ -287,7 +297,7 @@ namespace detail {
                             std::swap(x, items[--halves[1].first]);
                         }
                     }
-                    if (std::max(halves[0].size(), halves[1].size()) <= most_below(at + 1))
+                    if (std::max(halves[0].size(), halves[1].size()) <= limits.most_below(at + 1))
                         return true;
                 }
                 // No plane divides them, or the tree would become too deep: halves, by place, or by index at one place.
@@ -326,6 +336,7 @@ namespace detail {
         }
 
         const mesh& mesh_;
+        tree_limits limits_;
         std::vector<item> items_;
     };
 
@@ -344,17 +355,17 @@ namespace detail {
         require_countable(m.triangles.size());
         return tree_builder(m).build(run);
     }
+
+    /// Runs one after the other.
+    inline constexpr auto run_in_turn = [](std::size_t n, const auto& f) {
+        for (std::size_t i = 0; i < n; ++i)
+            f(i);
+    };
 } // namespace detail
 
 /// Builds the tree of a mesh.
 /// \throws std::invalid_argument as check(mesh) does, or for more than 2^28 triangles.
-inline triangle_tree build_triangle_tree(const mesh& m)
-{
-    return detail::build_triangle_tree(m, [](std::size_t n, const auto& f) {
-        for (std::size_t i = 0; i < n; ++i)
-            f(i);
-    });
-}
+inline triangle_tree build_triangle_tree(const mesh& m) { return detail::build_triangle_tree(m, detail::run_in_turn); }
 
 } // namespace photongrid
 

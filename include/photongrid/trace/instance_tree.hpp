@@ -1,0 +1,197 @@
+// A tree of two levels: instances of surfaces, which stand in a scene several times and are stored once. Leaves of the
+// upper level are instances; each surface has a triangle_tree.
+#pragma once
+
+#include <photongrid/trace/instance.kernel.hpp>
+#include <photongrid/trace/triangle_tree.hpp>
+
+#include <bit>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <numeric>
+#include <span>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// Where a surface stands.
+struct placement {
+    std::size_t surface = 0;  ///< its index
+    glm::dmat3 linear{1};     ///< scales and turns its vertices ...
+    glm::dvec3 offset{0};     ///< ... and then moves them, m
+    bool is_in_place = false; ///< its vertices are the scene's; then `linear` is 1 and `offset` 0
+    uint first_face = 0;      ///< see trace/instance.glsl, for kernels that look surfaces up
+    uint face_code = 0;       ///< likewise
+};
+
+namespace detail {
+    class instance_tree_builder {
+    public:
+        instance_tree_builder(std::span<const mesh> surfaces, std::span<const placement> placements)
+            : surfaces_(surfaces), placements_(placements)
+        {
+            for (std::size_t s = 0; s < surfaces.size(); ++s) {
+                check(surfaces[s]);
+                if (surfaces[s].triangles.empty())
+                    throw std::invalid_argument("instances: surface " + std::to_string(s) + " has no triangles");
+            }
+            for (const auto& p : placements) {
+                if (p.surface >= surfaces.size())
+                    throw std::invalid_argument("instances: surface " + std::to_string(p.surface)
+                        + " is placed; there are " + std::to_string(surfaces.size()));
+                const double determinant = glm::determinant(p.linear);
+                if (!(std::abs(determinant) > 0) || !std::isfinite(determinant))
+                    throw std::invalid_argument("instances: a placement makes a surface flat, or is not finite");
+            }
+        }
+
+        template <class Run>
+        triangle_tree build(const Run& run)
+        {
+            triangle_tree tree;
+            if (placements_.empty()) // a tree that no ray meets
+                return tree_builder(mesh{}).build(run);
+            std::vector<tree_box> boxes(placements_.size());
+            run(placements_.size(), [&](std::size_t i) { boxes[i] = box_of(placements_[i]); });
+            // A "triangle" for each box, and a leaf for each.
+            mesh corners;
+            for (const auto& b : boxes) {
+                const auto first = static_cast<uint>(corners.positions.size());
+                corners.positions.insert(corners.positions.end(), {b.low, b.high});
+                corners.triangles.emplace_back(first, first + 1, first);
+            }
+            const auto levels = static_cast<uint>(std::bit_width(placements_.size() - 1)) + 1;
+            tree = tree_builder(corners, {.deepest = levels, .most_in_leaf = 1, .few = 0}).build(run);
+            links_.assign(placements_.size(), 0);
+            number_leaves(tree);
+            tree.corners.clear();
+
+            tree_limits limits;
+            limits.deepest -= tree.depth + 1;
+            uint depth = 0;
+            std::vector<uint> roots(surfaces_.size()), sizes(surfaces_.size());
+            for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+                require_countable(tree.corners.size() / kernels::TRIANGLE_RECORDS + surfaces_[s].triangles.size());
+                if (surfaces_[s].triangles.size() > limits.most_below(0))
+                    throw std::invalid_argument("instances: surface " + std::to_string(s) + " has "
+                        + std::to_string(surfaces_[s].triangles.size()) + " triangles; below "
+                        + std::to_string(placements_.size()) + " placements a tree holds "
+                        + std::to_string(limits.most_below(0)) + ", so split the surface or place fewer");
+                const auto below = tree_builder(surfaces_[s], limits).build(run);
+                roots[s] = static_cast<uint>(tree.pairs.size() / kernels::PAIR_RECORDS);
+                sizes[s] = static_cast<uint>(below.pairs.size() / kernels::PAIR_RECORDS);
+                append(tree, below, roots[s]);
+                depth = std::max(depth, below.depth);
+            }
+            write_instances(tree, boxes, roots, sizes);
+            tree.depth += 1 + depth;
+            return tree;
+        }
+
+    private:
+        /// The box of a surface where it stands: around its triangles' boxes, in which hits lie, and larger by more
+        /// than what rays in its space and in the scene differ by.
+        tree_box box_of(const placement& p) const
+        {
+            const mesh& m = surfaces_[p.surface];
+            const glm::dmat3 spread(glm::abs(p.linear[0]), glm::abs(p.linear[1]), glm::abs(p.linear[2]));
+            tree_box b;
+            for (std::size_t t = 0; t < m.triangles.size(); ++t) {
+                const auto corners = corners_of(m, t);
+                const glm::dvec3 low(glm::min(corners[0], glm::min(corners[1], corners[2]))),
+                    high(glm::max(corners[0], glm::max(corners[1], corners[2])));
+                const glm::dvec3 middle = p.linear * (0.5 * (low + high)) + p.offset,
+                                 half = spread * (0.5 * (high - low));
+                b.add(glm::vec3(middle - half));
+                b.add(glm::vec3(middle + half));
+            }
+            if (!p.is_in_place) {
+                const auto far = glm::max(glm::abs(b.low), glm::abs(b.high));
+                const float margin = std::max(far.x, std::max(far.y, far.z)) * 0x1p-17f;
+                b.low -= margin;
+                b.high += margin;
+            }
+            if (const auto far = glm::max(glm::abs(b.low), glm::abs(b.high));
+                !(std::max(far.x, std::max(far.y, far.z)) <= 1e18f))
+                throw std::invalid_argument("instances: a placement moves a surface beyond 10^18 m");
+            return b;
+        }
+        /// Makes each leaf of the upper level name its instance, and finds what instances are below.
+        void number_leaves(triangle_tree& tree)
+        {
+            for (uint pair = 0; pair < tree.pairs.size() / kernels::PAIR_RECORDS; ++pair)
+                for (uint side = 0; side < 2; ++side) {
+                    auto& child = tree.pairs[pair * kernels::PAIR_RECORDS + side].w;
+                    const auto leaf = std::size_t{kernels::first_of_leaf(child)} * kernels::TRIANGLE_RECORDS;
+                    if (!kernels::is_leaf(child) || leaf >= tree.corners.size())
+                        continue; // the empty second child of a tree of one instance
+                    const uint instance = tree.corners[leaf].w;
+                    child = kernels::leaf_of(instance, 1);
+                    links_[instance] = kernels::below_child(pair, side);
+                }
+        }
+        /// Adds the pairs and triangles of a surface's tree, whose first pair becomes `root`.
+        static void append(triangle_tree& tree, const triangle_tree& below, uint root)
+        {
+            const auto first = static_cast<uint>(tree.corners.size() / kernels::TRIANGLE_RECORDS);
+            tree.corners.insert(tree.corners.end(), below.corners.begin(), below.corners.end());
+            const auto at = tree.pairs.size();
+            tree.pairs.insert(tree.pairs.end(), below.pairs.begin(), below.pairs.end());
+            const auto moved = [&](uint child) { return child + (kernels::is_leaf(child) ? first : root); };
+            for (auto pair = at; pair < tree.pairs.size(); pair += kernels::PAIR_RECORDS) {
+                tree.pairs[pair].w = moved(tree.pairs[pair].w);
+                tree.pairs[pair + 1].w = moved(tree.pairs[pair + 1].w);
+                if (auto& link = tree.pairs[pair + 2].w; link != kernels::NO_PAIR)
+                    link = kernels::below_child(kernels::pair_above(link) + root, kernels::child_above(link));
+            }
+        }
+        void write_instances(triangle_tree& tree, const std::vector<tree_box>& boxes, const std::vector<uint>& roots,
+            const std::vector<uint>& sizes) const
+        {
+            std::uint64_t id = 0, pair = roots.empty() ? 0 : roots[0];
+            const auto put = [&](const glm::vec3& v, std::uint64_t w) {
+                tree.instances.emplace_back(
+                    std::bit_cast<uint>(v.x), std::bit_cast<uint>(v.y), std::bit_cast<uint>(v.z), static_cast<uint>(w));
+            };
+            const auto row = [](const glm::dmat3& m, int r) { return glm::vec3(m[0][r], m[1][r], m[2][r]); };
+            for (std::size_t i = 0; i < placements_.size(); ++i) {
+                const auto& p = placements_[i];
+                const glm::dmat3 inverse = glm::inverse(p.linear);
+                put(row(inverse, 0), id);
+                put(row(inverse, 1), pair);
+                put(row(inverse, 2), roots[p.surface]);
+                put(glm::vec3(p.offset), links_[i]);
+                put(boxes[i].low, p.first_face);
+                put(boxes[i].high, p.face_code);
+                const bool mirrored = glm::determinant(p.linear) < 0;
+                put(row(p.linear, 0), p.is_in_place ? kernels::IN_PLACE : mirrored ? kernels::MIRRORED : 0u);
+                put(row(p.linear, 1), 0);
+                put(row(p.linear, 2), 0);
+                id += surfaces_[p.surface].triangles.size();
+                pair += sizes[p.surface];
+                if (id >= 1u << 31 || pair >= 1u << 31)
+                    throw std::invalid_argument("instances: more than 2^31 triangles in all; place fewer");
+            }
+        }
+
+        std::span<const mesh> surfaces_;
+        std::span<const placement> placements_;
+        std::vector<uint> links_; ///< of the instances
+    };
+} // namespace detail
+
+/// Builds a tree of surfaces that stand in a scene, each as often as placements name it. A hit's triangle is numbered
+/// among those of all placements, in their order.
+/// \throws std::invalid_argument as build_triangle_tree(mesh) does; for a surface without triangles; for a placement of a
+///         surface that does not exist, that makes it flat, or that moves it beyond 10^18 m; for more than 2^31
+///         triangles of all placements; for a surface of more triangles than a tree holds below so many placements:
+///         2^23 below 1,024, 2^17 below 65,536.
+inline triangle_tree build_instance_tree(std::span<const mesh> surfaces, std::span<const placement> placements)
+{
+    return detail::instance_tree_builder(surfaces, placements).build(detail::run_in_turn);
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>
