@@ -158,6 +158,7 @@ if [[ $smoke == yes ]]; then
   must bench/window.sh cpu
   must $build/bench/search_times 1 vulkan 1000
   must $build/bench/mesh_pictures --triangles 1000
+  must $build/bench/mesh_pictures --triangles 1100 --places 4
   must $build/bench/knn_peers --sets 1 --seconds 0.05
   must $build/bench/knn_peers_portable --sets 1 --seconds 0.05
   must bench/clustered_peers.sh --photons 2000 --k 10 --seconds 0.01
