@@ -154,6 +154,37 @@ TYPED_TEST_P(instances, never_leave_a_closed_surface)
     }
 }
 
+/// Faces that lie in the sides of an instance's box, as far as rounding in the surface's space lets them.
+TYPED_TEST_P(instances, flat_faces_are_hit_from_afar)
+{
+    std::mt19937 bits(8);
+    const auto u = [&] { return static_cast<float>(bits() >> 8) * 0x1p-24f; };
+    for (const double stretch : {1.0, 2.0, 4.0, 30.0}) {
+        const auto turn = random_linear(bits, 1, false);
+        glm::dmat3 scale(1);
+        scale[1][1] = stretch;
+        const glm::dmat3 linear = turn * scale * glm::transpose(turn), back = glm::inverse(linear);
+        mesh square; // of the face x = 1 of the scene, in the surface's space
+        for (const float y : {-1.0f, 1.0f})
+            for (const float z : {-1.0f, 1.0f})
+                square.positions.emplace_back(back * dvec3(1, static_cast<double>(y), static_cast<double>(z)));
+        square.triangles = {{0, 1, 2}, {1, 3, 2}};
+        const instance_set s{{square}, {{.linear = linear, .offset = {0.3, -0.2, 0.7}}}};
+        ray_set rays;
+        for (int i = 0; i < 20000; ++i) {
+            const glm::vec3 at(1.3f, -0.2f + 1.98f * u() - 0.99f, 0.7f + 1.98f * u() - 0.99f);
+            const float far = i % 2 == 0 ? 3.0f : 15.0f;
+            const glm::vec3 o = at + far * glm::normalize(glm::vec3(1, i % 3 == 0 ? 0 : u() - 0.5f, 0));
+            rays.origins.emplace_back(o, std::numeric_limits<float>::infinity());
+            rays.directions.emplace_back(at - o, 0.0f);
+        }
+        std::size_t missed = 0;
+        for (const auto& h : this->traced(s, rays))
+            missed += h.triangle == no_id ? 1 : 0;
+        EXPECT_EQ(missed, 0u) << stretch;
+    }
+}
+
 TYPED_TEST_P(instances, go_on_from_pass_to_pass_and_hit_anything)
 {
     const auto s = instances_about(bumpy_ball(12, 1, 0.2f), bumpy_ball(8, 1, 0.1f), 30, 4);
@@ -190,6 +221,7 @@ TYPED_TEST_P(instances, are_refused_where_they_have_no_place)
     refused(surfaces, {.linear = glm::dmat3(0)}, "flat");
     refused(surfaces, {.linear = glm::dmat3(std::numeric_limits<double>::quiet_NaN())}, "not finite");
     refused(surfaces, {.offset = {1e19, 0, 0}}, "10^18");
+    refused(surfaces, {.offset = {1, 0, 0}, .is_in_place = true}, "in place");
     refused(empty, {}, "no triangles");
 }
 
@@ -247,7 +279,8 @@ TYPED_TEST_P(instances, equal_the_serial_backends)
 }
 
 REGISTER_TYPED_TEST_SUITE_P(instances, are_hit_as_a_loop_over_all_triangles_hits, are_hit_where_double_precision_says,
-    never_leave_a_closed_surface, go_on_from_pass_to_pass_and_hit_anything, are_refused_where_they_have_no_place,
-    make_the_picture_of_surfaces_that_are_stored_for_each_place, equal_the_serial_backends);
+    never_leave_a_closed_surface, flat_faces_are_hit_from_afar, go_on_from_pass_to_pass_and_hit_anything,
+    are_refused_where_they_have_no_place, make_the_picture_of_surfaces_that_are_stored_for_each_place,
+    equal_the_serial_backends);
 
 } // namespace photongrid::testing

@@ -137,6 +137,9 @@ inline bool is_rough(const material& m)
     return m.roughness >= 0.001 && std::any_of(fields.begin(), fields.end(), says_so);
 }
 
+/// The parameter alpha of the distribution of facets (GGX); 0 of smooth surfaces.
+inline double alpha_of(const material& m) { return is_rough(m) ? m.roughness * m.roughness : 0; }
+
 /// \throws std::invalid_argument for a member that the kind has and that is out of its range: a reflectance outside 0
 /// to 1, an index of refraction outside 1 to 10, or a roughness outside 0 to 1; or a texture that check()
 /// rejects.

@@ -1,13 +1,17 @@
 // The shares of light that a clear coat reflects and lets pass, for kernels (trace/coat.glsl).
 #pragma once
 
+#include <photongrid/scene/material.hpp>
+#include <photongrid/scene/record_writer.hpp>
 #include <photongrid/trace/scene_layout.kernel.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
+#include <map>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -77,6 +81,27 @@ inline coat_shares shares_of_coat(double index, double alpha)
     // As much light passes from below as from outside of the same radiance, if that is divided by the squared index.
     c.thrown_back = 1 - c.mean_passed / (index * index);
     return c;
+}
+
+/// Appends the records of coats, and enters them in those of their materials. Materials may share the records of a
+/// coat.
+inline void write_coats(record_writer& w, std::vector<glm::vec4>& records, const std::vector<material>& materials)
+{
+    std::map<std::pair<double, double>, uint> written;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        const auto& m = materials[i];
+        if (!is_coated(m))
+            continue;
+        const double alpha = alpha_of(m);
+        const auto [found, is_new] = written.emplace(std::pair(m.index_of_refraction, alpha), w.next());
+        if (is_new) {
+            const coat_shares c = shares_of_coat(m.index_of_refraction, alpha);
+            w.put(dvec3(c.mean_passed, c.thrown_back, 0), 0);
+            for (std::size_t n = 0; n + 2 < c.passed.size(); n += 2)
+                w.put(dvec3(c.passed[n], c.passed[n + 1], c.passed[n + 2]), 0);
+        }
+        records[kernels::FIRST_MATERIAL + kernels::MATERIAL_RECORDS * i + 1].w = static_cast<float>(found->second);
+    }
 }
 
 } // namespace photongrid::detail

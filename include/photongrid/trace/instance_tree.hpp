@@ -6,9 +6,9 @@
 #include <photongrid/trace/triangle_tree.hpp>
 
 #include <bit>
+#include <cmath>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
-#include <numeric>
 #include <span>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -26,7 +26,19 @@ struct placement {
 };
 
 namespace detail {
+    /// By how much rounding in the space that a matrix leads from may count for more in the space that it leads to; 1
+    /// of turns, and of even scales.
+    inline double stretch_of(const glm::dmat3& linear)
+    {
+        const auto size = [](const glm::dmat3& a) {
+            return std::sqrt(glm::dot(a[0], a[0]) + glm::dot(a[1], a[1]) + glm::dot(a[2], a[2]));
+        };
+        return size(linear) * size(glm::inverse(linear)) / 3;
+    }
+
     class instance_tree_builder {
+        static constexpr std::size_t most_placements = std::size_t{1} << 24;
+
     public:
         instance_tree_builder(std::span<const mesh> surfaces, std::span<const placement> placements)
             : surfaces_(surfaces), placements_(placements)
@@ -36,6 +48,9 @@ namespace detail {
                 if (surfaces[s].triangles.empty())
                     throw std::invalid_argument("instances: surface " + std::to_string(s) + " has no triangles");
             }
+            if (placements.size() > most_placements)
+                throw std::invalid_argument("instances: " + std::to_string(placements.size())
+                    + " placements; at most 2^24 are possible, so place fewer");
             for (const auto& p : placements) {
                 if (p.surface >= surfaces.size())
                     throw std::invalid_argument("instances: surface " + std::to_string(p.surface)
@@ -43,6 +58,8 @@ namespace detail {
                 const double determinant = glm::determinant(p.linear);
                 if (!(std::abs(determinant) > 0) || !std::isfinite(determinant))
                     throw std::invalid_argument("instances: a placement makes a surface flat, or is not finite");
+                if (p.is_in_place && (p.linear != glm::dmat3(1) || p.offset != glm::dvec3(0)))
+                    throw std::invalid_argument("instances: a placement that is in place moves its surface");
             }
         }
 
@@ -54,6 +71,7 @@ namespace detail {
                 return tree_builder(mesh{}).build(run);
             std::vector<tree_box> boxes(placements_.size());
             run(placements_.size(), [&](std::size_t i) { boxes[i] = box_of(placements_[i]); });
+            enlarge(boxes);
             // A "triangle" for each box, and a leaf for each.
             mesh corners;
             for (const auto& b : boxes) {
@@ -90,8 +108,7 @@ namespace detail {
         }
 
     private:
-        /// The box of a surface where it stands: around its triangles' boxes, in which hits lie, and larger by more
-        /// than what rays in its space and in the scene differ by.
+        /// The box of a surface where it stands: around its triangles' boxes, in which hits lie.
         tree_box box_of(const placement& p) const
         {
             const mesh& m = surfaces_[p.surface];
@@ -106,16 +123,27 @@ namespace detail {
                 b.add(glm::vec3(middle - half));
                 b.add(glm::vec3(middle + half));
             }
-            if (!p.is_in_place) {
-                const auto far = glm::max(glm::abs(b.low), glm::abs(b.high));
-                const float margin = std::max(far.x, std::max(far.y, far.z)) * 0x1p-17f;
-                b.low -= margin;
-                b.high += margin;
-            }
-            if (const auto far = glm::max(glm::abs(b.low), glm::abs(b.high));
-                !(std::max(far.x, std::max(far.y, far.z)) <= 1e18f))
-                throw std::invalid_argument("instances: a placement moves a surface beyond 10^18 m");
             return b;
+        }
+        /// Makes boxes larger by more than what hits in a surface's space and in the scene differ by, of rays from ten
+        /// times as far away as the scene is large.
+        void enlarge(std::vector<tree_box>& boxes) const
+        {
+            float largest = 0; // coordinate, m
+            for (const auto& b : boxes)
+                for (int axis = 0; axis < 3; ++axis) {
+                    const float far = std::max(std::abs(b.low[axis]), std::abs(b.high[axis]));
+                    if (!(far <= 1e18f))
+                        throw std::invalid_argument("instances: a placement moves a surface beyond 10^18 m");
+                    largest = std::max(largest, far);
+                }
+            for (std::size_t i = 0; i < boxes.size(); ++i)
+                if (!placements_[i].is_in_place) {
+                    const double stretch = std::max(1.0, stretch_of(placements_[i].linear) / 4);
+                    const auto margin = static_cast<float>(static_cast<double>(largest) * 0x1p-16 * stretch);
+                    boxes[i].low -= margin;
+                    boxes[i].high += margin;
+                }
         }
         /// Makes each leaf of the upper level name its instance, and finds what instances are below.
         void number_leaves(triangle_tree& tree)
@@ -184,9 +212,9 @@ namespace detail {
 /// Builds a tree of surfaces that stand in a scene, each as often as placements name it. A hit's triangle is numbered
 /// among those of all placements, in their order.
 /// \throws std::invalid_argument as build_triangle_tree(mesh) does; for a surface without triangles; for a placement of a
-///         surface that does not exist, that makes it flat, or that moves it beyond 10^18 m; for more than 2^31
-///         triangles of all placements; for a surface of more triangles than a tree holds below so many placements:
-///         2^23 below 1,024, 2^17 below 65,536.
+///         surface that does not exist, that makes it flat, or that moves it beyond 10^18 m; for more than 2^24
+///         placements or 2^31 triangles of all of them; for a surface of more triangles than a tree holds below so many
+///         placements: 2^23 below 1,024, 2^17 below 65,536.
 inline triangle_tree build_instance_tree(std::span<const mesh> surfaces, std::span<const placement> placements)
 {
     return detail::instance_tree_builder(surfaces, placements).build(detail::run_in_turn);

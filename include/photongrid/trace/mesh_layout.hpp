@@ -3,7 +3,8 @@
 
 #include <photongrid/scene/placed_mesh.hpp>
 #include <photongrid/scene/scene.hpp>
-#include <photongrid/trace/instance_tree.hpp>
+#include <photongrid/trace/scene_layout.kernel.hpp>
+#include <photongrid/trace/shared_surfaces.hpp>
 
 #include <algorithm>
 #include <map>
@@ -20,8 +21,8 @@ namespace photongrid {
 struct mesh_layout {
     mesh triangles;             ///< but for those of surfaces in several places; recentred; without normals
     std::vector<mesh> surfaces; ///< that stand in several places, in their own space; without normals
-    std::vector<placement>
-        placements;                 ///< of those; of surface n + 1. If there are any, the first is `triangles` in place
+    /// Of those, of surface n + 1. If there are any, the first is `triangles` in place, unless there are none.
+    std::vector<placement> placements;
     std::vector<glm::uvec4> faces;  ///< of each triangle: its vertices, its material, whether it has normals
     std::vector<glm::vec4> planes;  ///< of each triangle: unit normal; offset, m
     std::vector<glm::vec4> normals; ///< of each vertex; empty if no mesh has any
@@ -42,8 +43,48 @@ namespace detail {
         {
         }
 
-        /// `code`: w of its faces (trace/mesh_surface.glsl).
-        void write(const placed_mesh& m, uint code, bool smooth) { write(out_.triangles, m, center_, code, smooth); }
+        /// Appends all meshes of a scene; `light`: the number of the first light of a mesh.
+        void write_all(const scene& s, const shared_surfaces& shared, uint light)
+        {
+            for (const auto& l : s.mesh_lights) {
+                const std::size_t first = out_.faces.size();
+                write(out_.triangles, l.surface, center_, kernels::FACE_OF_LIGHT + light++, false);
+                write_shares(l.surface, first);
+            }
+            for (const auto& m : s.meshes)
+                if (!shared.holds(m))
+                    write(out_.triangles, m, center_, code_of(m), is_smooth(m));
+            if (!shared.empty())
+                write_shared(s, shared);
+        }
+
+    private:
+        static bool is_smooth(const placed_mesh& m) { return !m.surface->normals.empty(); }
+        /// W of its faces (trace/mesh_surface.glsl).
+        static uint code_of(const placed_mesh& m) { return 2 * m.material + (is_smooth(m) ? 1 : 0); }
+
+        /// Appends the surfaces that stand in several places, and those.
+        void write_shared(const scene& s, const shared_surfaces& shared)
+        {
+            if (!out_.triangles.triangles.empty())
+                out_.placements.push_back({.is_in_place = true});
+            struct written_surface {
+                std::size_t number = 0;
+                uint first_face = 0;
+                dvec3 middle{0};
+            };
+            std::map<const mesh*, written_surface> surfaces;
+            for (const auto& m : s.meshes) {
+                if (!shared.holds(m))
+                    continue;
+                const auto [found, is_new] = surfaces.try_emplace(m.surface.get());
+                auto& of = found->second;
+                if (is_new)
+                    of = {surfaces.size(), static_cast<uint>(out_.faces.size()), write_surface(m)};
+                out_.placements.push_back(
+                    {of.number, m.linear, m.linear * of.middle + m.offset - center_, false, of.first_face, code_of(m)});
+            }
+        }
 
         /// A surface in its own space; its middle becomes the origin, and is returned.
         dvec3 write_surface(const placed_mesh& m)
@@ -69,7 +110,6 @@ namespace detail {
             out_.shares.back() = 0xFFFFFFFFu;
         }
 
-    private:
         void write(mesh& to, const placed_mesh& m, const dvec3& center, uint code, bool smooth)
         {
             require_countable(out_.faces.size() + m.surface->triangles.size());
@@ -121,30 +161,6 @@ namespace detail {
         bool any_smooth_, any_colored_;
         uint vertices_ = 0; ///< written so far
     };
-
-    /// A surface of fewer triangles is stored once for each place.
-    inline constexpr std::size_t least_shared_triangles = 1024;
-
-    /// Whether a mesh stands where its surface could be stored once for several: rounding in the surface's space must
-    /// be no more than 16 times that in the scene.
-    inline bool can_share(const placed_mesh& m)
-    {
-        const auto size = [](const glm::dmat3& a) {
-            return std::sqrt(glm::dot(a[0], a[0]) + glm::dot(a[1], a[1]) + glm::dot(a[2], a[2]));
-        };
-        return m.surface->triangles.size() >= least_shared_triangles
-            && size(m.linear) * size(glm::inverse(m.linear)) <= 3 * 16;
-    }
-
-    /// How many meshes stand where their surface could be stored once, for each surface.
-    inline std::map<const mesh*, std::size_t> places_of_surfaces(const scene& s)
-    {
-        std::map<const mesh*, std::size_t> places;
-        for (const auto& m : s.meshes)
-            if (can_share(m))
-                ++places[m.surface.get()];
-        return places;
-    }
 } // namespace detail
 
 } // namespace photongrid

@@ -112,7 +112,7 @@ namespace detail {
     class layout_writer {
     public:
         /// `s` must be relative to its anchor.
-        explicit layout_writer(const scene& s) : s_(s), places_(places_of_surfaces(s)) {}
+        explicit layout_writer(const scene& s) : s_(s), shared_(s) {}
 
         scene_layout write()
         {
@@ -139,9 +139,6 @@ namespace detail {
             return entry_of(m.kind).switches | (is_rough(m) ? has_rough : 0u);
         }
 
-        /// Of the distribution of facets; 0 of smooth surfaces.
-        static double alpha_of(const material& m) { return is_rough(m) ? m.roughness * m.roughness : 0; }
-
         /// Computes the bounds, the centre and the features.
         void measure()
         {
@@ -165,7 +162,7 @@ namespace detail {
                     shape_kind<placed_mesh>::add_bounds(diffuse, m);
                 out_.features |= has_meshes | features_of(of);
                 out_.features |= m.surface->normals.empty() ? 0u : has_smooth_meshes;
-                out_.features |= is_shared(m) ? has_instances : 0u;
+                out_.features |= shared_.holds(m) ? has_instances : 0u;
                 out_.features |= m.surface->colors.empty() && !of.texture.map ? 0u : has_textures;
             }
             require(!diffuse.empty(), no_matte_shape);
@@ -276,47 +273,8 @@ namespace detail {
         {
             mesh_writer w(out_.meshes, out_.center, (out_.features & has_smooth_meshes) != 0,
                 (out_.features & has_textures) != 0);
-            uint light
-                = static_cast<uint>(s_.rectangle_lights.size() + s_.point_lights.size() + s_.sphere_lights.size());
-            for (const auto& l : s_.mesh_lights) {
-                const std::size_t first = out_.meshes.faces.size();
-                w.write(l.surface, kernels::FACE_OF_LIGHT + light++, false);
-                w.write_shares(l.surface, first);
-            }
-            const auto code_of
-                = [](const placed_mesh& m) { return 2 * m.material + (m.surface->normals.empty() ? 0 : 1); };
-            std::vector<const placed_mesh*> shared;
-            for (const auto& m : s_.meshes)
-                if (is_shared(m))
-                    shared.push_back(&m);
-                else
-                    w.write(m, code_of(m), !m.surface->normals.empty());
-            if (shared.empty())
-                return;
-            auto& placements = out_.meshes.placements;
-            if (!out_.meshes.triangles.triangles.empty())
-                placements.push_back({.is_in_place = true});
-            struct surface_record {
-                std::size_t number;
-                uint first_face;
-                dvec3 middle;
-            };
-            std::map<const mesh*, surface_record> surfaces;
-            for (const auto* m : shared) {
-                const auto [found, is_new] = surfaces.try_emplace(m->surface.get());
-                auto& of = found->second;
-                if (is_new) {
-                    of = {surfaces.size(), static_cast<uint>(out_.meshes.faces.size()), dvec3(0)};
-                    of.middle = w.write_surface(*m);
-                }
-                placements.push_back({of.number, m->linear, m->linear * of.middle + m->offset - out_.center, false,
-                    of.first_face, code_of(*m)});
-            }
-        }
-        bool is_shared(const placed_mesh& m) const
-        {
-            const auto found = places_.find(m.surface.get());
-            return found != places_.end() && found->second > 1 && can_share(m);
+            const std::size_t light = s_.rectangle_lights.size() + s_.point_lights.size() + s_.sphere_lights.size();
+            w.write_all(s_, shared_, static_cast<uint>(light));
         }
 
         void write_materials(record_writer& w)
@@ -329,28 +287,7 @@ namespace detail {
                     dvec3(m.index_of_refraction, static_cast<double>(m.texture.map ? ++textures : 0), alpha_of(m)), 0);
             }
             write_textures(w, textures);
-            write_coats(w);
-        }
-
-        /// Materials may share the records of a coat.
-        void write_coats(record_writer& w)
-        {
-            std::map<std::pair<double, double>, uint> written;
-            for (std::size_t i = 0; i < s_.materials.size(); ++i) {
-                const auto& m = s_.materials[i];
-                if (!is_coated(m))
-                    continue;
-                const double alpha = alpha_of(m);
-                const auto [found, is_new] = written.emplace(std::pair(m.index_of_refraction, alpha), w.next());
-                if (is_new) {
-                    const coat_shares c = shares_of_coat(m.index_of_refraction, alpha);
-                    w.put(dvec3(c.mean_passed, c.thrown_back, 0), 0);
-                    for (std::size_t n = 0; n + 2 < c.passed.size(); n += 2)
-                        w.put(dvec3(c.passed[n], c.passed[n + 1], c.passed[n + 2]), 0);
-                }
-                out_.records[kernels::FIRST_MATERIAL + kernels::MATERIAL_RECORDS * i + 1].w
-                    = static_cast<float>(found->second);
-            }
+            write_coats(w, out_.records, s_.materials);
         }
 
         /// Materials may share the texels of a texture.
@@ -429,7 +366,7 @@ namespace detail {
         }
 
         const scene& s_;
-        std::map<const mesh*, std::size_t> places_;
+        shared_surfaces shared_;
         scene_layout out_;
         std::vector<boxed_shape> shapes_;
         double scale_ = 0;      ///< half the scene's diagonal, m
