@@ -174,7 +174,7 @@ namespace {
                     x.environment_lights.clear();
                 },
                 "lights:"},
-            {"texture on a sphere", [](scene& x) { x.materials[0].texture.map = std::make_shared<const texture>(); },
+            {"texture on a sphere", [](scene& x) { x.materials[5].texture.map = std::make_shared<const texture>(); },
                 "spheres[1].material"},
             {"texture without coordinates",
                 [](scene& x) {
@@ -284,7 +284,8 @@ namespace {
                 },
                 "polygons[1].vertices"},
             {"material that is not there", [](scene& x) { x.cones[0].material = 99; }, "cones[0].material"},
-            {"material of no kind", [](scene& x) { x.materials[1].kind = static_cast<material_kind>(4); },
+            {"material of no kind",
+                [](scene& x) { x.materials[1].kind = static_cast<material_kind>(material_kinds.size()); },
                 "materials[1].kind"},
             {"material of a negative kind", [](scene& x) { x.materials[1].kind = static_cast<material_kind>(-1); },
                 "materials[1].kind"},
