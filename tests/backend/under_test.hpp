@@ -64,6 +64,8 @@ protected:
         GTEST_SKIP() << Tag::name << ": " << reason;
     }
     B& b() { return *instance_; }
+    /// Whether its division rounds as IEEE says.
+    bool divides_exactly() { return b().caps().exact_division; }
 
     /// Says, and records in the test's report, the largest error of a case of docs/reference/hard_cases.md.
     void report(const std::string& hard_case, const std::string& what, double value)

@@ -22,23 +22,8 @@ namespace {
                 + std::to_string(cosine));
             constexpr uint n = 1 << 17;
             const dvec3 d = -turned_off(outward, std::acos(cosine), 1);
-            auto s = ball_of({"plastic", material_kind::plastic, base, index, roughness}, {});
-            s.point_lights.clear();
-            s.spot_lights = {{.name = "beam",
-                .position = outward - 0.4 * d,
-                .direction = d,
-                .inner_angle = 0.01,
-                .outer_angle = 0.02,
-                .power = dvec3(1)}};
-            serial_backend b;
-            const auto device = upload_scene(b, s);
-            auto settings = s.render;
-            settings.map.photon_depth = 2;
-            detail::photon_frames<serial_backend> f(b, std::size_t{n} * 3);
-            trace_batch(b, device, f, n, 0, settings);
-            const auto positions = b.download(f.positions), directions = b.download(f.directions),
-                       powers = b.download(f.powers);
-
+            const auto [positions, directions, powers]
+                = beam(ball_of({"plastic", material_kind::plastic, base, index, roughness}, {}), outward, d, n);
             const known_coat coat{index, roughness * roughness};
             const dvec3 left = coat.left(base);
             const double mean_passed = coat.mean_passed();

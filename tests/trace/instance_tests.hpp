@@ -92,13 +92,12 @@ protected:
         const auto tree = upload_triangles(b, build_instance_tree(b, s.surfaces, s.placements));
         return trace_rays(b, tree, upload(b, rays.origins), upload(b, rays.directions), settings);
     }
-    bool is_exact() { return this->b().caps().exact_division; }
 };
 TYPED_TEST_SUITE_P(instances);
 
 TYPED_TEST_P(instances, are_hit_as_a_loop_over_all_triangles_hits)
 {
-    if (!this->is_exact())
+    if (!this->divides_exactly())
         GTEST_SKIP() << "this device's division rounds loosely";
     const auto ball = bumpy_ball(7, 1, 0.2f);
     for (const auto& [name, m, closed] : ray_meshes(200)) {

@@ -83,14 +83,12 @@ protected:
                 EXPECT_EQ(escaped, 0u) << name << ", of " << n << ", seed " << seed;
             }
     }
-    /// Whether serial's hits are this backend's bit for bit: its division rounds as IEEE says.
-    bool is_exact() { return this->b().caps().exact_division; }
 };
 TYPED_TEST_SUITE_P(mesh_rays);
 
 TYPED_TEST_P(mesh_rays, hit_what_a_loop_over_all_triangles_hits)
 {
-    if (!this->is_exact())
+    if (!this->divides_exactly())
         GTEST_SKIP() << "this device's division rounds loosely";
     for (const auto& [name, m, closed] : ray_meshes(400))
         for (const float from : {0.0f, 0.75f, 3.0f, 1e3f}) {

@@ -167,6 +167,32 @@ namespace {
         return s;
     }
 
+    /// Photons that all meet the ball in one direction, a narrow spotlight's: frame n of path p is element n paths + p.
+    struct beam {
+        std::vector<glm::vec4> positions, directions, powers;
+
+        beam(scene s, const dvec3& outward, const dvec3& d, uint paths)
+        {
+            s.point_lights.clear();
+            s.sphere_lights.clear();
+            s.spot_lights = {{.name = "beam",
+                .position = outward - 0.4 * d,
+                .direction = d,
+                .inner_angle = 0.01,
+                .outer_angle = 0.02,
+                .power = dvec3(1)}};
+            serial_backend b;
+            const auto device = upload_scene(b, s);
+            auto settings = s.render;
+            settings.map.photon_depth = 2;
+            detail::photon_frames<serial_backend> f(b, std::size_t{paths} * 3);
+            trace_batch(b, device, f, paths, 0, settings);
+            positions = b.download(f.positions);
+            directions = b.download(f.directions);
+            powers = b.download(f.powers);
+        }
+    };
+
     TEST(rough_surfaces, eye_rays_leave_as_facets_reflect_and_refract)
     {
         for (const auto& c : rough_cases()) {
@@ -196,30 +222,15 @@ namespace {
         }
     }
 
-    /// All photons meet the surface in one direction: a narrow spotlight's.
     TEST(rough_surfaces, photons_leave_as_facets_reflect_and_refract)
     {
         for (const auto& c : rough_cases()) {
             SCOPED_TRACE(name_of(c));
             constexpr uint n = 1 << 16;
             auto s = rough_ball_of(c.m);
-            s.sphere_lights.clear();
-            s.spot_lights = {{.name = "beam",
-                .position = c.outward - 0.4 * c.d,
-                .direction = c.d,
-                .inner_angle = 0.01,
-                .outer_angle = 0.02,
-                .power = dvec3(1)}};
             s.materials[1].reflectance = dvec3(0.9);
             const bool coated = c.m.kind == material_kind::plastic;
-            serial_backend b;
-            const auto device = upload_scene(b, s);
-            auto settings = s.render;
-            settings.map.photon_depth = 2;
-            detail::photon_frames<serial_backend> f(b, std::size_t{n} * 3);
-            trace_batch(b, device, f, n, 0, settings);
-            const auto positions = b.download(f.positions), directions = b.download(f.directions),
-                       powers = b.download(f.powers);
+            const auto [positions, directions, powers] = beam(s, c.outward, c.d, n);
             const auto bins = c.bins();
             const incidence at = c.whole();
             std::vector<double> sums(lobe_bins::all);

@@ -48,10 +48,8 @@ inline
     upload_triangles(cpu_backend& device, const triangle_tree& tree)
 {
     auto w = cpu::tree_widener(tree).build();
-    const std::vector<glm::uvec4> none(1);
-    return {device.upload(std::span<const float>(w.nodes)), device.upload(std::span<const float>(w.blocks)), w.low,
-        w.high, device.upload(std::span<const glm::uvec4>(tree.instances.empty() ? none : tree.instances)),
-        std::move(w.roots)};
+    return {upload(device, w.nodes), upload(device, w.blocks), w.low, w.high,
+        detail::upload_some(device, tree.instances), std::move(w.roots)};
 }
 
 namespace cpu {

@@ -162,7 +162,7 @@ private:
     }
 
     const triangle_tree& from_;
-    std::vector<span> spans_; ///< of the pairs
+    std::vector<span> spans_; ///< of the pairs; without meaning above instances
     bool above_instances_ = false;
     wide_tree made_;
 };

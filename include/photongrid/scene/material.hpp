@@ -73,14 +73,15 @@ namespace detail {
     inline constexpr material_field roughness
         = {"roughness", "roughness", "a roughness", &material::roughness, {0, 1, ""}, 0};
     inline constexpr material_field metal_fields[] = {reflectance("reflectance"), roughness};
+    constexpr material_field index_of_refraction(std::optional<double> if_absent = std::nullopt)
+    {
+        return {"index_of_refraction", "index_of_refraction", "an index of refraction", &material::index_of_refraction,
+            {1, 10, ""}, if_absent};
+    }
     inline constexpr material_field glass_fields[]
-        = {{"index_of_refraction", "index_of_refraction", "an index of refraction", &material::index_of_refraction,
-               {1, 10, ""}, std::nullopt},
-            reflectance("transmittance", 1), roughness};
-    inline constexpr material_field plastic_fields[] = {reflectance("reflectance"),
-        {"index_of_refraction", "index_of_refraction", "an index of refraction", &material::index_of_refraction,
-            {1, 10, ""}, 1.5},
-        roughness};
+        = {index_of_refraction(), reflectance("transmittance", 1), roughness};
+    inline constexpr material_field plastic_fields[]
+        = {reflectance("reflectance"), index_of_refraction(1.5), roughness};
 } // namespace detail
 
 /// All kinds of materials, in the order of material_kind.

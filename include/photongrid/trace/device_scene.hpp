@@ -38,14 +38,6 @@ struct device_scene {
 };
 
 namespace detail {
-    /// Uploads elements, or one if there are none: kernels need a buffer for each INPUT, even if they do not read it.
-    template <backend B, class Element>
-    buffer_of<B, Element> upload_some(B& device, std::vector<Element>& elements)
-    {
-        elements.resize(std::max<std::size_t>(elements.size(), 1));
-        return upload(device, elements);
-    }
-
     template <backend B>
     void upload_meshes(B& device, mesh_layout m, device_scene<B>& to)
     {

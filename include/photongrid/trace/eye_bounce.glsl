@@ -131,7 +131,7 @@ vec2 facet_numbers(uint i, uint hits)
     return vec2(unit_float(bits.x), unit_float(bits.y));
 }
 
-// The Fresnel branch that a ray takes at a glass surface, and the factor on its throughput.
+// The Fresnel branch that a ray takes at glass or at a coat, and the factor on its throughput.
 struct FresnelBranch {
     bool reflected;
     float share;
@@ -164,6 +164,14 @@ FresnelBranch sampled_branch(uint i, uint hits, float reflectance)
         b.share = corrected;
     }
     return b;
+}
+
+// The branch that this pass follows, at a split or beyond the last one.
+FresnelBranch fresnel_branch(uint i, uint hits, uint splits, float reflectance, bool counted)
+{
+    if (splits < args.splits)
+        return split_branch(splits, reflectance, counted);
+    return sampled_branch(i, hits, reflectance);
 }
 
 void kernel(uint i)
@@ -210,14 +218,9 @@ void kernel(uint i)
         Coat coat = coat_of(hit.material);
         precise float passed = passes_coat(coat, -dot3(sides.shading, d));
         precise float reflectance = 1.0f - passed;
-        FresnelBranch b;
-        if (splits < args.splits) {
-            b = split_branch(splits, reflectance, counted);
-            ++splits;
-            counted = args.branch >> min(splits, 31u) == 0u;
-        } else {
-            b = sampled_branch(i, hits, reflectance);
-        }
+        FresnelBranch b = fresnel_branch(i, hits, splits, reflectance, counted);
+        splits = min(splits + 1u, args.splits);
+        counted = args.branch >> min(splits, 31u) == 0u;
         below = !b.reflected;
         // The coat's reflectance follows, for the facet that the ray meets.
         precise float weight = below ? b.share / coat.mean_passed : (reflectance > 0.0f ? b.share / reflectance : 0.0f);
@@ -272,13 +275,8 @@ void kernel(uint i)
     }
     if (GLASS && material.kind == GLASS_SURFACE) {
         f = fresnel(d, outward, material.index_of_refraction);
-        FresnelBranch b;
-        if (splits < args.splits) {
-            b = split_branch(splits, f.reflected, counted);
-            ++splits;
-        } else {
-            b = sampled_branch(i, hits, f.reflected);
-        }
+        FresnelBranch b = fresnel_branch(i, hits, splits, f.reflected, counted);
+        splits = min(splits + 1u, args.splits);
         reflected = b.reflected;
         precise float scaled = share * (reflected ? b.share : b.share * f.radiance_scale);
         share = scaled;

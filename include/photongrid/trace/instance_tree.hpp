@@ -211,8 +211,8 @@ namespace detail {
 
 /// Builds a tree of surfaces that stand in a scene, each as often as placements name it. A hit's triangle is numbered
 /// among those of all placements, in their order.
-/// \throws std::invalid_argument as build_triangle_tree(mesh) does; for a surface without triangles; for a placement of a
-///         surface that does not exist, that makes it flat, or that moves it beyond 10^18 m; for more than 2^24
+/// \throws std::invalid_argument as build_triangle_tree(mesh) does; for a surface without triangles; for a placement of
+///         a surface that does not exist, that makes it flat, or that moves it beyond 10^18 m; for more than 2^24
 ///         placements or 2^31 triangles of all of them; for a surface of more triangles than a tree holds below so many
 ///         placements: 2^23 below 1,024, 2^17 below 65,536.
 inline triangle_tree build_instance_tree(std::span<const mesh> surfaces, std::span<const placement> placements)

@@ -19,6 +19,15 @@
 
 namespace photongrid {
 
+namespace detail {
+    /// Uploads elements, or one if there are none: kernels need a buffer for each INPUT, even if they do not read it.
+    template <backend B, class Element>
+    buffer_of<B, Element> upload_some(B& device, const std::vector<Element>& elements)
+    {
+        return upload(device, elements.empty() ? std::vector<Element>(1) : elements);
+    }
+} // namespace detail
+
 /// The triangles of a mesh on a device, in a tree; or of surfaces that stand in a scene several times.
 template <backend B>
 struct device_triangles {
@@ -48,10 +57,7 @@ triangle_tree build_instance_tree(B&, std::span<const mesh> surfaces, std::span<
 template <backend B>
 device_triangles<B> upload_triangles(B& device, const triangle_tree& tree)
 {
-    const std::vector<glm::uvec4> none(1);
-    return {device.upload(std::span<const glm::uvec4>(tree.pairs)),
-        device.upload(std::span<const glm::uvec4>(tree.corners)),
-        device.upload(std::span<const glm::uvec4>(tree.instances.empty() ? none : tree.instances))};
+    return {upload(device, tree.pairs), upload(device, tree.corners), detail::upload_some(device, tree.instances)};
 }
 
 /// Which hit of a ray is sought.
