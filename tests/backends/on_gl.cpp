@@ -17,6 +17,7 @@
 #include "../trace/light_kind_tests.hpp"
 #include "../trace/mesh_ray_tests.hpp"
 #include "../trace/mesh_scene_tests.hpp"
+#include "../trace/mixture_tests.hpp"
 #include "../trace/ray_tests.hpp"
 #include "../trace/texture_tests.hpp"
 
@@ -31,6 +32,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(gl, pictures, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, mesh_scenes, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, light_kinds, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, textures, contexts, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(gl, mixtures, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases_of_pictures, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, progressive, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases, contexts, tag_names);

@@ -11,6 +11,7 @@
 #include "../trace/double_oracle_tests.hpp"
 #include "../trace/light_kind_tests.hpp"
 #include "../trace/mesh_scene_tests.hpp"
+#include "../trace/mixture_tests.hpp"
 #include "../trace/ray_tests.hpp"
 #include "../trace/texture_tests.hpp"
 #include "on_serial.hpp"
@@ -23,6 +24,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(serial, pictures, ::testing::Types<serial_tag>, t
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, mesh_scenes, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, light_kinds, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, textures, ::testing::Types<serial_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(serial, mixtures, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, hard_cases_of_pictures, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, progressive, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, hard_cases, ::testing::Types<serial_tag>, tag_names);

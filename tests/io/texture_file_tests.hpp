@@ -88,6 +88,96 @@ namespace {
         EXPECT_NE(message.find("texture coordinates"), std::string::npos) << message;
     }
 
+    TEST(textures_in_a_scene, that_are_numbers_are_channels_as_the_file_has_them)
+    {
+        const auto folder = picture_folder();
+        write_png(folder / "four.png", PNG_FORMAT_RGBA, {0, 51, 102, 204, 255, 188, 55, 1});
+        const auto file = (folder / "s.json").string();
+        const auto s = parse_scene(file,
+            text_with_texture(
+                R"("opacity": 0.25, "opacity_texture": {"file": "four.png", "channel": "alpha", "wrap": "clamp"},)"
+                R"( "texture": "four.png")",
+                with_coordinates));
+        const auto& m = s.materials.at(0);
+        EXPECT_EQ(m.opacity, 0.25);
+        EXPECT_EQ(m.opacity_texture.channel, texture_channel::alpha);
+        EXPECT_EQ(m.opacity_texture.wrap, texture_wrap::clamp);
+        ASSERT_EQ(m.opacity_texture.map->texels.size(), 2u);
+        EXPECT_EQ(m.opacity_texture.map->texels[0], glm::u16vec4(0, 51 * 257, 102 * 257, 204 * 257));
+        EXPECT_EQ(m.opacity_texture.map->texels[1], glm::u16vec4(65535, 188 * 257, 55 * 257, 257));
+        EXPECT_EQ(m.texture.map->texels[1], glm::u16vec4(65535, 32957, 2504, 65535)) << "a colour is decoded";
+        EXPECT_TRUE(parse_scene(file, scene_text(s, s.render)) == s);
+        const auto metal = parse_scene(file,
+            text_with_texture(R"("opacity_texture": "four.png"}, "steel": {"type": "metal", "reflectance": 0.5, )"
+                              R"("roughness": 0.5, "roughness_texture": {"file": "four.png", "channel": "green"})",
+                with_coordinates));
+        EXPECT_EQ(metal.materials.at(0).opacity_texture.channel, texture_channel::red);
+        EXPECT_EQ(metal.materials.at(1).roughness_texture.channel, texture_channel::green);
+        EXPECT_TRUE(metal.materials[0].opacity_texture.map == metal.materials[1].roughness_texture.map) << "read once";
+        EXPECT_TRUE(parse_scene(file, scene_text(metal, metal.render)) == metal);
+        write_image((folder / "half.pfm").string(), {.width = 1, .height = 1, .pixels = {glm::vec3(0.5f)}});
+        const auto floats = parse_scene(
+            file, text_with_texture(R"("opacity_texture": {"file": "half.pfm", "channel": "blue"})", with_coordinates));
+        EXPECT_EQ(floats.materials[0].opacity_texture.map->texels[0], glm::u16vec4(32768, 32768, 32768, 65535));
+    }
+
+    TEST(mixtures_in_a_scene, are_read_and_written)
+    {
+        auto lines = good;
+        lines[5] = R"(  "rust": {"type": "mixture", "materials": ["steel", "white"], "share": 0.75},)"
+                   R"( "steel": {"type": "metal", "reflectance": 0.5},)"
+            + lines[5];
+        const auto s = parse_scene("s.json", text(lines));
+        const auto& m = s.materials.at(0);
+        EXPECT_EQ(m.kind, material_kind::mixture);
+        EXPECT_EQ(s.materials.at(m.parts[0]).name, "steel");
+        EXPECT_EQ(s.materials.at(m.parts[1]).name, "white");
+        EXPECT_EQ(m.share, 0.75);
+        EXPECT_TRUE(parse_scene("s.json", scene_text(s, s.render)) == s);
+    }
+
+    TEST(mixtures_in_a_scene, that_are_wrong_are_refused_with_their_place)
+    {
+        struct bad {
+            const char *materials, *what;
+        };
+        const std::string steel = R"("steel": {"type": "metal", "reflectance": 0.5})";
+        for (const auto& b :
+            {bad{R"("rust": {"type": "mixture", "materials": ["steel", "whte"], "share": 0.75})", "\"white\""},
+                {R"("rust": {"type": "mixture", "materials": ["steel"], "share": 0.75})", "two materials"},
+                {R"("rust": {"type": "mixture", "materials": "steel", "share": 0.75})", "two materials"},
+                {R"("rust": {"type": "mixture", "materials": ["steel", 3], "share": 0.75})", "name of a material"},
+                {R"("rust": {"type": "mixture", "materials": ["steel", "white"]})", "\"share\""},
+                {R"("rust": {"type": "mixture", "share": 0.5})", "\"materials\""},
+                {R"("rust": {"type": "mixture", "materials": ["steel", "white"], "share": 1.5})", "from 0 to 1"},
+                {R"("rust": {"type": "mixture", "materials": ["steel", "rust"], "share": 0.5})", "mixture itself"},
+                {R"("rust": {"type": "mixture", "materials": ["steel", "white"], "share": 0.5, "texture": "a.png"})",
+                    "\"texture\""},
+                {R"("thin": {"type": "mirror", "opacity": 0.5}, "rust": {"type": "mixture", "materials": ["white", )"
+                 R"("thin"], "share": 0.5})",
+                    "opacity"},
+                {R"("toy": {"type": "plastic", "reflectance": 0.5}, "rust": {"type": "mixture", "materials": )"
+                 R"(["white", "toy"], "share": 0.5})",
+                    "coat"},
+                {R"("thin": {"type": "mirror", "opacity": 1.5})", "from 0 to 1"},
+                {R"("thin": {"type": "mirror", "roughness_texture": "a.png"})", "\"roughness_texture\""},
+                {R"("toy": {"type": "plastic", "reflectance": 0.5, "roughness_texture": "a.png"})",
+                    "\"roughness_texture\""},
+                {R"("thin": {"type": "mirror", "opacity_texture": {"file": "a.png", "channel": "cyan"}})", "a.png"}}) {
+            auto lines = good;
+            lines[5] = "  " + std::string(b.materials) + ", " + steel + "," + lines[5];
+            const auto message = refusal_by([&] { return parse_scene("s.json", text(lines)); });
+            EXPECT_NE(message.find(b.what), std::string::npos) << b.materials << ": " << message;
+            EXPECT_NE(message.find("s.json:6:"), std::string::npos) << message;
+        }
+        // Of shapes, only meshes are clear; the message names the shape's line.
+        auto lines = good;
+        lines[6] = R"(  "clear": {"type": "glass", "index_of_refraction": 1.5, "opacity": 0.5}},)";
+        const auto message = refusal_by([&] { return parse_scene("s.json", text(lines)); });
+        EXPECT_NE(message.find("s.json:9:"), std::string::npos) << message;
+        EXPECT_NE(message.find("only meshes"), std::string::npos) << message;
+    }
+
     TEST(ply_file, has_texture_coordinates_and_colors_of_vertices)
     {
         const std::string head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"

@@ -1,6 +1,7 @@
 // Scenes with all kinds of lights and with textures, by photons and by eye paths.
 #pragma once
 
+#include "../trace/mixture_scenes.hpp"
 #include "../trace/texture_scenes.hpp"
 #include "eye_path_sums.hpp"
 
@@ -51,7 +52,7 @@ namespace {
             s.spheres = {{{0.6, 0.35, 0}, 0.35, 3}};
             s.camera = {{0, 2, -2.5}, {0, 0.2, 0}, {0, 1, 0}, 40};
             s.render.view.light_samples = 4;
-            s.render.view.spp = 128;
+            s.render.view.spp = 48;
         }
         return scenes;
     }
@@ -73,6 +74,16 @@ namespace {
             s.materials[0] = {"table", material_kind::plastic, dvec3(0.8), 1.5, 0.3};
             expect_photons_equal_eye_paths(s);
         }
+    }
+
+    // Photons that one part of a mixture stores and the other reflects, also about normals of vertices; and light that
+    // passes what is clear in part: straight from the lamp, off other surfaces, and from rough ones to the lamp.
+    TEST(validation, photons_of_mixtures_and_clear_surfaces_equal_eye_paths)
+    {
+        auto s = mixed_cornell();
+        s.render.view.light_samples = 16;
+        s.render.view.spp = 64;
+        expect_photons_equal_eye_paths(s);
     }
 
 } // namespace

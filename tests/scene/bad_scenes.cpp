@@ -148,6 +148,13 @@ namespace {
         s.environment_lights[0].map = std::make_shared<const environment_map>(std::move(m));
     }
 
+    material mixed(std::uint32_t first, std::uint32_t second)
+    {
+        material m{"mixture", material_kind::mixture};
+        m.parts = {first, second};
+        return m;
+    }
+
     /// A change that makes a scene bad, and what the message says.
     struct spoiled {
         const char* what;
@@ -183,6 +190,51 @@ namespace {
                     x.meshes[1].material = static_cast<std::uint32_t>(x.materials.size() - 1);
                 },
                 "meshes[1].material"},
+            {"clear sphere", [](scene& x) { x.materials[5].opacity = 0.5; }, "spheres[1].material"},
+            {"opacity above 1", [](scene& x) { x.materials[0].opacity = 1.5; }, "materials[0].opacity"},
+            {"share that is no number",
+                [](scene& x) {
+                    x.materials[0].kind = material_kind::mixture;
+                    x.materials[0].parts = {1, 2};
+                    x.materials[0].share = nan;
+                },
+                "materials[0].share"},
+            {"texture of a roughness that there is none",
+                [](scene& x) { x.materials[0].roughness_texture.map = std::make_shared<const texture>(); },
+                "materials[0].roughness_texture"},
+            {"texture of no channel",
+                [](scene& x) {
+                    x.materials[0].opacity_texture.map = std::make_shared<const texture>();
+                    x.materials[0].opacity_texture.channel = static_cast<texture_channel>(4);
+                },
+                "materials[0].texture"},
+            {"texture of a mixture",
+                [](scene& x) {
+                    x.materials[0].kind = material_kind::mixture;
+                    x.materials[0].parts = {1, 2};
+                    x.materials[0].texture.map = std::make_shared<const texture>();
+                },
+                "materials[0].texture"},
+            {"mixture of nothing", [](scene& x) { x.materials.push_back(mixed(0, 1000)); }, "materials["},
+            {"mixture of a mixture",
+                [](scene& x) {
+                    x.materials.push_back(mixed(0, 1));
+                    x.materials.push_back(mixed(0, static_cast<std::uint32_t>(x.materials.size() - 1)));
+                },
+                "materials["},
+            {"mixture of what is clear",
+                [](scene& x) {
+                    x.materials.push_back({"thin", material_kind::mirror});
+                    x.materials.back().opacity = 0.5;
+                    x.materials.push_back(mixed(0, static_cast<std::uint32_t>(x.materials.size() - 1)));
+                },
+                "materials["},
+            {"mixture of two that store photons, one below a coat",
+                [](scene& x) {
+                    x.materials.push_back({"toy", material_kind::plastic});
+                    x.materials.push_back(mixed(0, static_cast<std::uint32_t>(x.materials.size() - 1)));
+                },
+                "materials["},
             {"texture with too few texels",
                 [](scene& x) {
                     x.materials[0].texture.map = std::make_shared<const texture>(texture{2, 1});

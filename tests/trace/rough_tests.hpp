@@ -254,6 +254,12 @@ namespace {
         }
     }
 
+    /// Where an eye ray ends on a rough surface at a point, as eye_bounce.glsl writes it.
+    glm::vec4 ended_at(const dvec3& point, const scene_layout& layout, const material& m)
+    {
+        return {glm::vec3(point - layout.center), static_cast<float>(-2 - alpha_of(m))};
+    }
+
     /// The radiance of directional light by way of a surface, for lights all around it: its mean over the directions of
     /// a bin is what facets send there.
     TEST(rough_surfaces, highlights_are_as_bright_as_facets_make_them)
@@ -271,8 +277,8 @@ namespace {
             const auto bins = c.bins();
             constexpr std::size_t per_bin = 1000, n = per_bin * lobe_bins::all;
             detail::eye_hits<serial_backend> hits(b, n);
-            std::vector<glm::vec4> points(n, glm::vec4(glm::vec3(-device.layout.center), -2.0f)), directions,
-                throughputs, surfaces, emissions;
+            std::vector<glm::vec4> points(n, ended_at(dvec3(0), device.layout, c.m)), directions, throughputs, surfaces,
+                emissions;
             std::vector<double> solid_angles;
             for (std::size_t i = 0; i < n; ++i) {
                 // The frame is turned so that the light comes from where this element wants it.
@@ -328,7 +334,7 @@ namespace {
         const auto all
             = [&](const glm::vec4& v) { return b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(n, v))); };
         const auto outward = glm::vec3(outside ? normal : -normal);
-        hits.points = all(glm::vec4(glm::vec3(dvec3(0, 0.5, 0) - device.layout.center), -2.0f));
+        hits.points = all(ended_at({0, 0.5, 0}, device.layout, s.materials[material]));
         hits.directions = all(glm::vec4(glm::vec3(d), outward.x));
         hits.throughputs = all(glm::vec4(glm::vec3(1), outward.y));
         hits.surfaces = all(glm::vec4(glm::vec3(normal), static_cast<float>(material)));

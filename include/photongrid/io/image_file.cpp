@@ -1,5 +1,6 @@
 #include <photongrid/io/image_file.hpp>
 #include <photongrid/io/image_formats.hpp>
+#include <photongrid/io/tone_map.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -61,13 +62,15 @@ void write_image(const std::string& path, const image& picture, double exposure,
 
 namespace {
     /// A format that can be read, by the ending of its files.
+    template <class Picture>
     struct readable {
         std::string_view ending;
-        image (*read)(const std::string& path);
+        Picture (*read)(const std::string& path);
     };
 
     /// \throws file_error, for another ending with `expected`.
-    image read_as(std::span<const readable> formats, const std::string& path, const char* expected)
+    template <class Picture>
+    Picture read_as(std::span<const readable<Picture>> formats, const std::string& path, const char* expected)
     {
         const auto e = ending(path);
         const auto* format = std::find_if(
@@ -88,16 +91,50 @@ namespace {
 
 image read_image(const std::string& path)
 {
-    static constexpr readable formats[] = {{".exr", image_formats::read_exr}, {".pfm", image_formats::read_pfm}};
-    return read_as(formats, path, ".exr or .pfm (a PNG is tone-mapped and clamped, so it cannot be measured)");
+    static constexpr readable<image> formats[] = {{".exr", image_formats::read_exr}, {".pfm", image_formats::read_pfm}};
+    return read_as<image>(formats, path, ".exr or .pfm (a PNG is tone-mapped and clamped, so it cannot be measured)");
+}
+
+namespace {
+    /// A reader of pictures without transparency.
+    template <image (*Read)(const std::string&), bool IsSrgb = false>
+    picture_channels read_opaque(const std::string& path)
+    {
+        const auto picture = Read(path);
+        picture_channels made{picture.width, picture.height, {}, IsSrgb};
+        made.pixels.reserve(picture.pixels.size());
+        for (const auto& p : picture.pixels)
+            made.pixels.emplace_back(p, 1.0f);
+        return made;
+    }
+} // namespace
+
+picture_channels read_channels(const std::string& path)
+{
+    using namespace image_formats;
+    static constexpr readable<picture_channels> formats[] = {{".exr", read_opaque<read_exr>},
+        {".pfm", read_opaque<read_pfm>}, {".hdr", read_opaque<read_hdr>}, {".png", read_png_channels},
+        {".jpg", read_opaque<read_jpeg, true>}, {".jpeg", read_opaque<read_jpeg, true>}};
+    return read_as<picture_channels>(formats, path, ".exr, .hdr, .pfm, .png or .jpg");
 }
 
 image read_linear_image(const std::string& path)
 {
-    static constexpr readable formats[]
-        = {{".exr", image_formats::read_exr}, {".pfm", image_formats::read_pfm}, {".hdr", image_formats::read_hdr},
-            {".png", image_formats::read_png}, {".jpg", image_formats::read_jpeg}, {".jpeg", image_formats::read_jpeg}};
-    return read_as(formats, path, ".exr, .hdr, .pfm, .png or .jpg");
+    const auto picture = read_channels(path);
+    image made{.width = picture.width, .height = picture.height, .pixels = {}};
+    made.pixels.reserve(picture.pixels.size());
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        made.pixels.push_back(linear_pixel(picture, i));
+    return made;
+}
+
+glm::vec3 linear_pixel(const picture_channels& picture, std::size_t pixel)
+{
+    const glm::vec3 p(picture.pixels[pixel]);
+    if (!picture.is_srgb)
+        return p;
+    const auto decoded = [](float v) { return linear_value(static_cast<unsigned char>(v * 255.0f + 0.5f)); };
+    return {decoded(p.x), decoded(p.y), decoded(p.z)};
 }
 
 } // namespace photongrid

@@ -4,6 +4,8 @@
 #include <photongrid/io/files.hpp>
 #include <photongrid/render/image.hpp>
 
+#include <glm/vec4.hpp>
+
 #include <map>
 #include <string>
 
@@ -33,5 +35,20 @@ image read_image(const std::string& path);
 /// files are decoded to linear values from 0 to 1; transparency is ignored.
 /// \throws file_error.
 image read_linear_image(const std::string& path);
+
+/// The channels of a picture, row by row from the top left.
+struct picture_channels {
+    std::uint32_t width = 0, height = 0; ///< pixels
+    std::vector<glm::vec4> pixels;       ///< red, green, blue, alpha
+    bool is_srgb = false;                ///< red, green and blue are encoded, from 0 to 1: a PNG or JPEG file
+};
+
+/// The linear red, green and blue of one of its pixels.
+glm::vec3 linear_pixel(const picture_channels& picture, std::size_t pixel);
+
+/// Reads what read_linear_image() reads, as the file has it: PNG and JPEG are not decoded. Alpha is 1 but in PNG files
+/// that have it.
+/// \throws file_error.
+picture_channels read_channels(const std::string& path);
 
 } // namespace photongrid

@@ -11,9 +11,9 @@ std::string exr_bytes(const image& picture, const image_notes& notes);
 std::string pfm_bytes(const image& picture);
 image read_exr(const std::string& path);
 image read_pfm(const std::string& path);
-image read_png(const std::string& path); // linear
+picture_channels read_png_channels(const std::string& path);
 image read_hdr(const std::string& path);
-image read_jpeg(const std::string& path); // linear
+image read_jpeg(const std::string& path); // as it is encoded, from 0 to 1
 
 /// Throws file_error for a picture that is empty or too large to hold.
 void check_read_size(const std::string& path, std::int64_t width, std::int64_t height);

@@ -26,17 +26,30 @@ public:
     }
 
     /// A texture: the name of its file, or an object. A file that several materials name is read once.
-    texture_use texture_in(const json_value& v)
+    texture_use texture_in(const json_value& v) { return texture_in(v, holds::colour); }
+
+    /// The same, of numbers in a channel.
+    texture_use number_texture_in(const json_value& v) { return texture_in(v, holds::numbers); }
+
+private:
+    enum class holds { colour, numbers };
+
+    texture_use texture_in(const json_value& v, holds what)
     {
         texture_use t;
         if (v.kind != json_kind::object) {
             t.file = file_name(v);
-            t.map = texels_in(t.file, v);
+            t.map = texels_in(t.file, v, what);
             return t;
         }
-        open(v, "texture");
+        open(v, what == holds::colour ? "texture" : "number_texture");
         t.file = file_name(at(v, "file"));
-        t.map = texels_in(t.file, at(v, "file"));
+        t.map = texels_in(t.file, at(v, "file"), what);
+        if (const auto* channel = v.find("channel")) {
+            const auto& names = texture_channel_names;
+            const auto& name = one_of(*channel, {names.begin(), names.end()});
+            t.channel = static_cast<texture_channel>(std::find(names.begin(), names.end(), name) - names.begin());
+        }
         if (const auto* wrap = v.find("wrap"))
             t.wrap = one_of(*wrap, {"repeat", "clamp"}) == "clamp" ? texture_wrap::clamp : texture_wrap::repeat;
         if (const auto* scale = v.find("scale"))
@@ -46,21 +59,26 @@ public:
         return t;
     }
 
-private:
-    std::shared_ptr<const texture> texels_in(const std::string& name, const json_value& v)
+    static texture read_texture(const std::string& path, holds what)
     {
-        auto& map = textures_[name];
+        const auto picture = read_channels(path);
+        texture made{picture.width, picture.height, {}};
+        made.texels.reserve(picture.pixels.size());
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+            const glm::vec4 p = what == holds::numbers ? picture.pixels[i] : glm::vec4(linear_pixel(picture, i), 1.0f);
+            if (std::isnan(p.x) || std::isnan(p.y) || std::isnan(p.z) || std::isnan(p.w))
+                throw std::invalid_argument("a pixel is not a number");
+            made.texels.emplace_back(glm::vec4(0.5f) + glm::clamp(p, 0.0f, 1.0f) * 65535.0f);
+        }
+        return made;
+    }
+
+    std::shared_ptr<const texture> texels_in(const std::string& name, const json_value& v, holds what)
+    {
+        auto& map = textures_[{name, what}];
         if (!map) {
             try {
-                const auto picture = read_linear_image(path_of(name));
-                texture made{picture.width, picture.height, {}};
-                made.texels.reserve(picture.pixels.size());
-                for (const auto& p : picture.pixels) {
-                    if (std::isnan(p.x) || std::isnan(p.y) || std::isnan(p.z))
-                        throw std::invalid_argument("a pixel is not a number");
-                    const glm::vec3 inside = glm::clamp(p, 0.0f, 1.0f);
-                    made.texels.emplace_back(glm::vec3(0.5f) + inside * 65535.0f, 65535);
-                }
+                auto made = read_texture(path_of(name), what);
                 texture_use use;
                 use.map = map = std::make_shared<const texture>(std::move(made));
                 check(use);
@@ -87,7 +105,8 @@ private:
         }
     }
 
-    std::map<std::string, std::shared_ptr<const texture>> textures_; ///< by the names of their files
+    /// By the names of their files and what they hold.
+    std::map<std::pair<std::string, holds>, std::shared_ptr<const texture>> textures_;
 };
 
 } // namespace photongrid

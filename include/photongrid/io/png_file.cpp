@@ -30,7 +30,7 @@ std::string png_bytes(const image& picture, double exposure)
     return bytes;
 }
 
-image read_png(const std::string& path)
+picture_channels read_png_channels(const std::string& path)
 {
     png_image png{};
     png.version = PNG_IMAGE_VERSION;
@@ -42,10 +42,10 @@ image read_png(const std::string& path)
     std::vector<png_byte> rgba(std::size_t{png.width} * png.height * 4);
     if (!png_image_finish_read(&png, nullptr, rgba.data(), 0, nullptr))
         throw std::runtime_error(png.message);
-    image picture{.width = png.width, .height = png.height, .pixels = {}};
+    picture_channels picture{.width = png.width, .height = png.height, .pixels = {}, .is_srgb = true};
     picture.pixels.reserve(rgba.size() / 4);
     for (std::size_t i = 0; i < rgba.size(); i += 4)
-        picture.pixels.emplace_back(linear_value(rgba[i]), linear_value(rgba[i + 1]), linear_value(rgba[i + 2]));
+        picture.pixels.push_back(glm::vec4(rgba[i], rgba[i + 1], rgba[i + 2], rgba[i + 3]) / 255.0f);
     return picture;
 }
 

@@ -122,6 +122,22 @@ namespace {
                     material_names_.push_back(m.key);
                     scene_.materials.push_back(read_material(m));
                 }
+            for (const auto& m : v.items)
+                if (const auto* parts = m.key == "comment" ? nullptr : m.find("materials"))
+                    read_parts(m, *parts, scene_.materials[material_index_[m.key]]);
+        }
+
+        void read_parts(const json_value& mixture, const json_value& v, material& to) const
+        {
+            if (v.kind != json_kind::array || v.items.size() != to.parts.size())
+                wrong(v, "the names of two materials");
+            for (std::size_t i = 0; i < to.parts.size(); ++i)
+                to.parts[i] = index_of_material(v.items[i]);
+            try {
+                check_parts(scene_.materials, to);
+            } catch (const std::invalid_argument& e) {
+                fail(at(mixture, "materials").place, e.what());
+            }
         }
 
         material read_material(const json_value& v)
@@ -133,6 +149,9 @@ namespace {
             material made{.name = v.key, .kind = row.kind};
             for (const auto& f : row.fields)
                 std::visit([&](auto member) { read_field(v.find(f.key), f, made.*member); }, f.member);
+            for (const auto& [key, member] : detail::number_textures)
+                if (const auto* texture = v.find(key))
+                    made.*member = number_texture_in(*texture);
             if (const auto* texture = v.find("texture"))
                 made.texture = texture_in(*texture);
             checked(v, made);
@@ -148,9 +167,10 @@ namespace {
             to = given ? in_range(*given, f.range, f.what) : f.if_absent.value();
         }
 
-        std::uint32_t material_of(const json_value& shape) const
+        std::uint32_t material_of(const json_value& shape) const { return index_of_material(at(shape, "material")); }
+
+        std::uint32_t index_of_material(const json_value& v) const
         {
-            const auto& v = at(shape, "material");
             if (v.kind != json_kind::string)
                 wrong(v, "the name of a material");
             const auto found = material_index_.find(v.text);
@@ -205,17 +225,17 @@ namespace {
                     kind.fields, [&](const auto& f) { read_field(v, x, f, is_triangle ? 3 : max_vertices); });
                 x.material = material_of(v);
                 checked(v, x);
-                check_has_coordinates(v, x);
+                check_suits_material(v, x);
                 shape_places_.push_back({kind.list, list.size()});
                 list.push_back(std::move(x));
             });
         }
 
         template <class Shape>
-        void check_has_coordinates(const json_value& v, const Shape& shape) const
+        void check_suits_material(const json_value& v, const Shape& shape) const
         {
             try {
-                detail::check_texture(shape, scene_.materials);
+                detail::check_material_of(shape, scene_.materials);
             } catch (const std::invalid_argument& e) {
                 fail(at(v, "material").place, e.what());
             }
@@ -227,7 +247,7 @@ namespace {
             placed_mesh m = surface_in(v);
             m.material = material_of(v);
             checked(v, m);
-            check_has_coordinates(v, m);
+            check_suits_material(v, m);
             shape_places_.push_back({"meshes", scene_.meshes.size()});
             scene_.meshes.push_back(std::move(m));
         }

@@ -19,6 +19,9 @@ namespace {
     /// Of environments, but for their fields.
     constexpr scene_key environment_keys[] = {{"file", may}, {"rotate", may}};
     constexpr scene_key texture_keys[] = {{"file", must}, {"wrap", may}, {"scale", may}, {"offset", may}};
+    /// Of a texture that is a number.
+    constexpr scene_key number_texture_keys[]
+        = {{"file", must}, {"channel", may}, {"wrap", may}, {"scale", may}, {"offset", may}};
     constexpr scene_key rotate_keys[] = {{"axis", must}, {"degrees", must}};
     constexpr scene_key leaks_keys[] = {{"side", may}, {"min_cosine", may}, {"flattening", may}};
     // The keys of materials, shapes and lights come from the tables in scene/ (material_kinds, shape_kind, light_kind).
@@ -41,9 +44,15 @@ namespace {
             std::vector<kind_keys> kinds;
             for (const auto& m : material_kinds) {
                 kinds.push_back({m.name, {{"type", must}}});
-                for (const auto& f : m.fields)
+                for (const auto& f : m.fields) {
                     kinds.back().keys.push_back({f.key, f.if_absent ? may : must});
-                kinds.back().keys.push_back({"texture", may});
+                    if (f.texture != nullptr)
+                        kinds.back().keys.push_back({detail::texture_key(f.texture), may});
+                }
+                if (m.surface == surface_kind::mixed)
+                    kinds.back().keys.push_back({"materials", must});
+                else
+                    kinds.back().keys.push_back({"texture", may});
             }
             return kinds;
         }();
@@ -128,7 +137,7 @@ std::span<const object_keys> known_objects()
     static const auto all = [] {
         std::vector<object_keys> objects{{"scene", scene_keys}, {"units", units_keys}, {"camera", camera_keys},
             {"render", render_keys()}, {"as_paper", as_paper_keys()}, {"leaks", leaks_keys}, {"rotate", rotate_keys},
-            {"texture", texture_keys}};
+            {"texture", texture_keys}, {"number_texture", number_texture_keys}};
         for (const auto* kinds : {&material_keys(), &shape_keys(), &light_keys()})
             for (const auto& k : *kinds)
                 objects.push_back({k.name, k.keys});

@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <set>
+#include <string_view>
 
 namespace photongrid {
 
@@ -132,13 +133,15 @@ namespace {
         return names;
     }
 
-    json texture_json(const material& m)
+    /// `channel`: it is a number.
+    json texture_json(const material& m, const texture_use& t, bool channel)
     {
-        const auto& t = m.texture;
         if (t.file.empty())
             throw std::invalid_argument("scene_text: material '" + m.name
                 + "': its texture was not read from a file; write it to one, and set `file` to its name");
         json all = {{"file", t.file}};
+        if (channel && t.channel != texture_channel::red)
+            all["channel"] = texture_channel_names[static_cast<std::size_t>(t.channel)];
         if (t.wrap == texture_wrap::clamp)
             all["wrap"] = "clamp";
         if (t.scale != glm::dvec2(1))
@@ -148,15 +151,26 @@ namespace {
         return all;
     }
 
-    json material_json(const material& m)
+    /// `names`: of all materials.
+    json material_json(const material& m, const std::vector<std::string>& names)
     {
         const auto& row = detail::entry_of(m.kind);
         json all = json::object();
         all["type"] = row.name;
         for (const auto& f : row.fields)
-            std::visit([&](auto member) { all[f.key] = written(m.*member); }, f.member);
+            std::visit(
+                [&](auto member) {
+                    if (f.key != std::string_view("opacity") || m.opacity != 1)
+                        all[f.key] = written(m.*member);
+                },
+                f.member);
+        if (is_mixture(m))
+            all["materials"] = {names.at(m.parts[0]), names.at(m.parts[1])};
+        for (const auto& [key, member] : detail::number_textures)
+            if ((m.*member).map)
+                all[key] = texture_json(m, m.*member, true);
         if (m.texture.map)
-            all["texture"] = texture_json(m);
+            all["texture"] = texture_json(m, m.texture, false);
         return all;
     }
 } // namespace
@@ -168,7 +182,7 @@ std::string scene_text(const scene& s, const render_settings& settings)
     const auto names = names_of(s.materials);
     json materials = json::object(), shapes = json::array(), lights = json::array();
     for (std::size_t i = 0; i < names.size(); ++i)
-        materials[names[i]] = material_json(s.materials[i]);
+        materials[names[i]] = material_json(s.materials[i], names);
     const auto with_fields = [](json object, const auto& part, const auto& fields) {
         for_each_field(fields, [&](const auto& f) { object[f.name] = written(part.*f.member); });
         return object;

@@ -1,6 +1,5 @@
 // Radiance HDR and JPEG, by stb_image.
 #include <photongrid/io/image_formats.hpp>
-#include <photongrid/io/tone_map.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -80,7 +79,7 @@ namespace {
 
     constexpr stbi_io_callbacks from_source{read_bytes, skip_bytes, is_at_end};
 
-    /// `load` returns three channels a pixel, `value` the linear value of one.
+    /// `load` returns three channels a pixel, `value` the number that one is.
     template <class Load, class Value>
     image read(const std::string& path, Load load, Value value)
     {
@@ -112,6 +111,9 @@ image read_hdr(const std::string& path)
     return read(path, stbi_loadf_from_callbacks, [](float v) { return v; });
 }
 
-image read_jpeg(const std::string& path) { return read(path, stbi_load_from_callbacks, linear_value); }
+image read_jpeg(const std::string& path)
+{
+    return read(path, stbi_load_from_callbacks, [](stbi_uc v) { return static_cast<float>(v) / 255.0f; });
+}
 
 } // namespace photongrid::image_formats

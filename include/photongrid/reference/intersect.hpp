@@ -65,7 +65,9 @@ public:
             h.normal = triangles_.settle(h.shape - first_triangle_, h.position);
             h.shading = triangles_.shading(h.shape - first_triangle_, h.position, h.normal);
             h.material = triangles_.material(h.shape - first_triangle_);
-            h.color = triangles_.color(h.shape - first_triangle_, h.position);
+            const auto attributes = triangles_.attributes_at(h.shape - first_triangle_, h.position);
+            h.color = attributes.color;
+            h.coordinates = attributes.coordinates;
             if (h.shape - first_triangle_ < lights_of_triangles_.size())
                 h.light = lights_of_triangles_[h.shape - first_triangle_];
             return h;

@@ -7,6 +7,7 @@
 #include <photongrid/reference/intersect.hpp>
 #include <photongrid/reference/random_stream.hpp>
 #include <photongrid/reference/settings.hpp>
+#include <photongrid/reference/surfaces.hpp>
 #include <photongrid/reference/work.hpp>
 
 #include <optional>
@@ -107,8 +108,9 @@ private:
         double area = 0;
         bool shiny = false;
         each_shape([&](const auto& x, std::uint32_t, const material& m) {
-            area += is_diffuse(m) ? surface_area(x) : 0;
-            shiny = shiny || !is_diffuse(m) || is_coated(m);
+            area += is_diffuse(s.materials, m) ? surface_area(x) : 0;
+            for (const auto* part : parts_of(s.materials, m))
+                shiny = shiny || !is_diffuse(*part) || is_coated(*part);
         });
         if (!shiny || !(area > 0))
             return;
@@ -118,7 +120,7 @@ private:
                                 : std::sqrt(area) / (8 * std::pow(static_cast<double>(settings.paths), 0.25));
         each_shape([&](const auto& x, std::uint32_t number, const material& m) {
             surfaces_.resize(std::max<std::size_t>(surfaces_.size(), number + std::size_t{1}));
-            if (!is_diffuse(m) || !(surface_area(x) > 0))
+            if (!is_diffuse(s.materials, m) || !(surface_area(x) > 0))
                 return;
             auto& surface = surfaces_[number];
             surface.bins.emplace(bins_of(x, bin_));
@@ -141,6 +143,7 @@ private:
     {
         std::vector<dvec3> flux(size_, dvec3(0));
         random_stream random(settings.seed, 1, group);
+        const surfaces met(s, shapes);
         std::uint64_t hits = 0;
         constexpr std::uint64_t paths_per_report = 1024;
         for (std::uint64_t done = 0; done < paths_per_group_;) {
@@ -148,7 +151,7 @@ private:
             if (!w.goes_on(past - done))
                 return hits;
             for (; done < past; ++done)
-                hits += trace_path(s, shapes, settings, random, flux);
+                hits += trace_path(met, shapes, settings, random, flux);
         }
         auto& out = irradiance_[group];
         out.assign(size_, glm::vec3(0));
@@ -165,9 +168,9 @@ private:
         return hits;
     }
 
-    /// Traces one path up to its first diffuse surface, and on from there if a coat reflects it. Returns how often it
-    /// added to a bin.
-    std::uint64_t trace_path(const scene& s, const geometry& shapes, const reference_settings& settings,
+    /// Traces one path up to its first diffuse surface, and on from there if a coat or another part of a mixture
+    /// reflects it. Returns how often it added to a bin.
+    std::uint64_t trace_path(const surfaces& all, const geometry& shapes, const reference_settings& settings,
         random_stream& random, std::vector<dvec3>& flux) const
     {
         const auto* light = &lights_.front();
@@ -183,22 +186,29 @@ private:
         dvec3 power = emitted.power / light->probability;
         ray r = emitted.from;
         std::uint64_t added = 0;
+        bool from_light = true; // straight, or through clear surfaces
         for (std::uint32_t surface = 1; surface <= settings.photon_depth; ++surface) {
             const hit h = shapes.nearest(r);
             if (h.shape == nothing || h.light != nothing)
                 return added;
-            const auto& m = s.materials[h.material];
+            if (all.passes(h, random)) {
+                r = {h.position, r.direction, h.shape};
+                continue;
+            }
+            const auto met = all.met(h, random);
+            const auto& m = met.of();
             const auto bounce = is_coated(m) ? off_coat(m, h, r.direction, random, true)
                 : is_diffuse(m)              ? specular_bounce{.weight = 0}
                                              : specular_of_light(m, h, r.direction, random);
-            if (is_diffuse(m) && surface > 1) { // else direct light, which the path tracer computes
-                flux[bin_at(h, r.direction)]
-                    += power * (1 - bounce.weight) * facing_normals(h, r.direction).received(r.direction);
+            if (const auto* base = from_light ? nullptr : all.base(h)) { // else direct light: see the path tracer
+                const double passed = is_diffuse(m) ? 1 - bounce.weight : passes_coat(*base, h, r.direction, random);
+                flux[bin_at(h, r.direction)] += power * passed * facing_normals(h, r.direction).received(r.direction);
                 ++added;
             }
+            from_light = false;
             if (bounce.adjoint == 0 || bounce.weight == 0)
                 return added;
-            power *= (is_coated(m) ? dvec3(1) : m.reflectance * h.color) * (bounce.adjoint * bounce.weight);
+            power *= (is_coated(m) ? dvec3(1) : met.reflectance()) * (bounce.adjoint * bounce.weight);
             r = {h.position, bounce.direction, h.shape};
         }
         return added;

@@ -13,7 +13,7 @@ public:
     /// The arguments must outlive the tracer.
     path_tracer(
         const scene& s, const geometry& shapes, const caustic_bins& caustics, const reference_settings& settings)
-        : scene_(s), bases_(s.materials.begin(), s.materials.end()), shapes_(shapes), caustics_(caustics),
+        : bases_(s.materials.begin(), s.materials.end()), shapes_(shapes), surfaces_(s, shapes), caustics_(caustics),
           settings_(settings)
     {
     }
@@ -26,10 +26,13 @@ public:
         std::uint32_t surfaces = 0;        // surfaces from the first diffuse one on
         bool through_specular = false;     // whether a specular surface followed the last diffuse one
         double density = 0;                // of the ray's direction at the last diffuse surface
+        double come = 0;                   // from the last surface on, through clear ones, m
+        const auto is_too_deep
+            = [&] { return surfaces == 0 ? ++specular_before > settings_.depth : ++surfaces > settings_.photon_depth; };
         for (;;) {
             const hit h = shapes_.nearest(r);
             if (h.shape == nothing || h.light != nothing) {
-                const auto light = light_at(h, r.direction);
+                const auto light = light_at(h, r.direction, come + h.t);
                 if (!(light.density > 0))
                     return sum;
                 double share = 1;
@@ -39,7 +42,16 @@ public:
                     share = density / (density + light.density);
                 return sum + share * throughput * light.radiance;
             }
-            const auto& m = scene_.materials[h.material];
+            if (surfaces_.passes(h, random)) {
+                if (is_too_deep())
+                    return sum;
+                come += h.t;
+                r = {h.position, r.direction, h.shape};
+                continue;
+            }
+            come = 0;
+            const auto met = surfaces_.met(h, random);
+            const auto& m = met.of();
             specular_bounce bounce;
             if (is_coated(m))
                 bounce = off_coat(m, h, r.direction, random, false);
@@ -50,7 +62,7 @@ public:
                 if (++surfaces > settings_.photon_depth)
                     return sum;
                 const facing_normals normals(h, r.direction);
-                throughput *= bases_[h.material].reflectance(m.reflectance * h.color);
+                throughput *= bases_[met.number()].reflectance(met.reflectance());
                 sum += throughput / M_PI
                     * (caustics_.irradiance(h, r.direction, group) + direct(m, h, normals, random));
                 if (surfaces >= 3) { // Russian roulette
@@ -67,13 +79,13 @@ public:
                 throughput *= passes_coat(m, h, -r.direction, random);
                 through_specular = false;
             } else {
-                if (surfaces == 0 ? ++specular_before > settings_.depth : ++surfaces > settings_.photon_depth)
+                if (is_too_deep())
                     return sum;
                 if (!by_coat) {
                     if (is_rough(m) && surfaces == 0)
-                        sum += throughput * m.reflectance * h.color * highlight(m, h, r.direction, random);
+                        sum += throughput * met.reflectance() * highlight(m, h, r.direction, random);
                     bounce = specular(m, h, r.direction, random);
-                    throughput *= m.reflectance * h.color * (bounce.radiance_scale * bounce.weight);
+                    throughput *= met.reflectance() * (bounce.radiance_scale * bounce.weight);
                 }
                 r = {h.position, bounce.direction, h.shape};
                 through_specular = true;
@@ -88,8 +100,8 @@ private:
         dvec3 radiance{0};  ///< W/(m^2 sr)
         double density = 0; ///< of shadow rays in this direction, per sr; 0: no light
     };
-    /// The light on which a ray ends.
-    found_light light_at(const hit& h, const dvec3& d) const
+    /// The light on which a ray ends; `t`: how far it is from the last surface that is not clear.
+    found_light light_at(const hit& h, const dvec3& d, double t) const
     {
         if (h.shape == nothing) {
             const auto* sky = shapes_.sky();
@@ -102,7 +114,7 @@ private:
         const double cosine = -glm::dot(h.normal, d);
         if (!(cosine > 0))
             return {};
-        return {light.radiance(), light.probability * h.t * h.t / (light.area * cosine)};
+        return {light.radiance(), light.probability * t * t / (light.area * cosine)};
     }
 
     /// A light, chosen by power.
@@ -130,10 +142,10 @@ private:
         const auto seen = shapes_.seen_from(light, h.position, random);
         const double reflected
             = rough_bsdf(m, h, d, seen.towards) * std::abs(glm::dot(seen.towards, facing_normals(h, d).shading));
-        if (!(reflected > 0) || seen.arriving == dvec3(0)
-            || shapes_.blocked({h.position, seen.towards, h.shape}, seen.distance, seen.shape))
+        if (!(reflected > 0) || seen.arriving == dvec3(0))
             return dvec3(0);
-        return seen.arriving * (reflected / light.probability);
+        const double passes = surfaces_.share_through({h.position, seen.towards, h.shape}, seen.distance, seen.shape);
+        return seen.arriving * (passes * reflected / light.probability);
     }
 
     /// The irradiance of direct light, below a coat if there is one, by one shadow ray to a light chosen by power.
@@ -146,18 +158,18 @@ private:
         const double by_surface = cosine / M_PI;
         if (cosine > 0)
             cosine *= passes_coat(m, h, -d, random);
-        if (!(cosine > 0) || seen.arriving == dvec3(0)
-            || shapes_.blocked({h.position, d, h.shape}, seen.distance, seen.shape))
+        if (!(cosine > 0) || seen.arriving == dvec3(0))
             return dvec3(0);
+        cosine *= surfaces_.share_through({h.position, d, h.shape}, seen.distance, seen.shape);
         if (!(seen.density > 0))
             return seen.arriving * (cosine / light.probability);
         const double by_light = light.probability * seen.density;
         return seen.arriving * (cosine / (by_light + by_surface));
     }
 
-    const scene& scene_;
     std::vector<diffuse_base> bases_; ///< by material
     const geometry& shapes_;
+    surfaces surfaces_;
     const caustic_bins& caustics_;
     const reference_settings& settings_;
 };

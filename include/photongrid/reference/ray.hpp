@@ -33,7 +33,8 @@ struct hit {
     dvec3 position{0};                ///< moved onto the surface
     dvec3 normal{0, 0, 1};            ///< unit; outward, or as the shape defines it
     dvec3 shading{0, 0, 1};           ///< the same, interpolated between a mesh's vertices if they have normals
-    dvec3 color{1};                   ///< of textures and vertices: the factor on the material's reflectance
+    dvec3 color{1};                   ///< of vertices
+    glm::dvec2 coordinates{0};        ///< of textures
 };
 
 /// A unit vector perpendicular to n.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <photongrid/reference/ray.hpp>
-#include <photongrid/reference/texture.hpp>
 
 #include <algorithm>
 #include <array>
@@ -18,14 +17,13 @@ namespace photongrid::reference {
 /// Triangles and the tree of their boxes.
 class triangle_set {
 public:
-    /// The triangles of all mesh lights and of all meshes of a scene, in their order. The scene's textures must outlive
-    /// it.
+    /// The triangles of all mesh lights and of all meshes of a scene, in their order.
     explicit triangle_set(const scene& s)
     {
         for (const auto& l : s.mesh_lights)
             add(l.surface, nothing, false);
         for (const auto& m : s.meshes)
-            add(m, m.material, true, &s.materials[m.material].texture);
+            add(m, m.material, true, has_texture(s.materials, s.materials[m.material]));
         order_.resize(triangles_.size());
         std::iota(order_.begin(), order_.end(), 0u);
         if (!order_.empty())
@@ -99,26 +97,29 @@ public:
         return glm::dot(sum, normal) < 0 ? -sum / length : sum / length;
     }
 
-    /// The colour at a point of a triangle: that of its vertices times that of its texture.
-    dvec3 color(std::uint32_t triangle, const dvec3& p) const
+    /// What the vertices of a triangle say at a point of it.
+    struct attributes {
+        dvec3 color{1};
+        glm::dvec2 coordinates{0};
+    };
+    attributes attributes_at(std::uint32_t triangle, const dvec3& p) const
     {
         const auto& t = triangles_[triangle];
         if (t.colored < 0)
-            return dvec3(1);
+            return {};
         const auto& of = colored_[static_cast<std::size_t>(t.colored)];
         const dvec3 w = weights_at(t, p);
         const auto mixed
             = [&](const auto& corners) { return w[0] * corners[0] + w[1] * corners[1] + w[2] * corners[2]; };
-        const dvec3 color = mixed(of.colors);
-        return of.texture->map ? color * color_at(*of.texture, mixed(of.coordinates)) : color;
+        return {mixed(of.colors), mixed(of.coordinates)};
     }
 
 private:
-    void add(const placed_mesh& m, std::uint32_t material, bool with_normals, const texture_use* texture = nullptr)
+    void add(const placed_mesh& m, std::uint32_t material, bool with_normals, bool textured = false)
     {
         const auto& coordinates = m.surface->texture_coordinates;
         const auto& colors = m.surface->colors;
-        const bool colored = texture != nullptr && (texture->map || !colors.empty());
+        const bool colored = material != nothing && (textured || !colors.empty());
         for (std::size_t t = 0; t < m.surface->triangles.size(); ++t) {
             const auto c = corners_of(m, t);
             const dvec3 n = glm::cross(c[1] - c[0], c[2] - c[0]);
@@ -137,7 +138,6 @@ private:
             if (colored) {
                 triangles_.back().colored = static_cast<std::int64_t>(colored_.size());
                 auto& of = colored_.emplace_back();
-                of.texture = texture;
                 for (int i = 0; i < 3; ++i) {
                     const int corner = i > 0 && glm::determinant(m.linear) < 0 ? 3 - i : i; // as corners_of does
                     const auto v = m.surface->triangles[t][corner];
@@ -156,7 +156,6 @@ private:
     };
     /// Of a triangle's corners.
     struct corner_colors {
-        const texture_use* texture = nullptr;
         std::array<glm::dvec2, 3> coordinates{};
         std::array<dvec3, 3> colors{};
     };

@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <variant>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -18,8 +20,8 @@
 namespace photongrid {
 
 /// How a surface scatters light. `metal` is a coloured mirror, which may be rough; `plastic` is Lambertian under a
-/// clear coat, which may be rough.
-enum class material_kind { lambertian, mirror, metal, glass, plastic };
+/// clear coat, which may be rough; a `mixture` scatters a share of the light as one material, the rest as another.
+enum class material_kind { lambertian, mirror, metal, glass, plastic, mixture };
 
 /// A material.
 struct material {
@@ -30,7 +32,13 @@ struct material {
     double index_of_refraction = 1.5; ///< of glass and of the coat of plastic, 1 to 10; outside is air, 1
     double roughness = 0;  ///< but of Lambertian surfaces and mirrors, 0 to 1: the square root of GGX's alpha; below
                            ///< 0.001 it is smooth
-    texture_use texture{}; ///< factor on the reflectance; on meshes with texture coordinates
+    texture_use texture{}; ///< factor on the reflectance; on meshes with texture coordinates, as all textures
+    double opacity = 1;    ///< of meshes, 0 to 1: the share of light that meets the surface; the rest goes straight on
+    texture_use opacity_texture{};            ///< factor on it
+    texture_use roughness_texture{};          ///< factor on the roughness of metal and glass
+    std::array<std::uint32_t, 2> parts{0, 0}; ///< of a mixture: indices of other materials (scene/mixture.hpp)
+    double share = 0.5;                       ///< of the second part, 0 to 1
+    texture_use share_texture{};              ///< factor on it
 
     bool operator==(const material&) const = default;
 };
@@ -42,6 +50,7 @@ enum class surface_kind : std::uint32_t {
     reflecting = 1, ///< as a mirror
     refracting = 2, ///< reflects or refracts; bodies must not overlap
     coated = 3,     ///< reflects, or is diffuse below its coat
+    mixed = 4,      ///< that of one of its parts
 };
 
 /// A member of `material` that a kind has.
@@ -52,6 +61,7 @@ struct material_field {
     std::variant<dvec3 material::*, double material::*> member; ///< rgb, or a number
     real_range range;                                           ///< of the number, or of each channel
     std::optional<double> if_absent;                            ///< its value where a file lacks it; none: it must not
+    texture_use material::*texture = nullptr; ///< factor on a number, in scene files `key`_texture; null: it has none
 };
 
 /// A row of the table: a kind of material.
@@ -68,20 +78,26 @@ namespace detail {
     {
         return {key, "reflectance", "a reflectance", &material::reflectance, {0, 1, ""}, if_absent};
     }
-    inline constexpr material_field lambertian_fields[] = {reflectance("reflectance")};
-    inline constexpr material_field mirror_fields[] = {reflectance("reflectance", 1)};
+    inline constexpr material_field opacity
+        = {"opacity", "opacity", "an opacity", &material::opacity, {0, 1, ""}, 1, &material::opacity_texture};
+    inline constexpr material_field lambertian_fields[] = {reflectance("reflectance"), opacity};
+    inline constexpr material_field mirror_fields[] = {reflectance("reflectance", 1), opacity};
     inline constexpr material_field roughness
+        = {"roughness", "roughness", "a roughness", &material::roughness, {0, 1, ""}, 0, &material::roughness_texture};
+    inline constexpr material_field roughness_of_coat
         = {"roughness", "roughness", "a roughness", &material::roughness, {0, 1, ""}, 0};
-    inline constexpr material_field metal_fields[] = {reflectance("reflectance"), roughness};
+    inline constexpr material_field metal_fields[] = {reflectance("reflectance"), roughness, opacity};
     constexpr material_field index_of_refraction(std::optional<double> if_absent = std::nullopt)
     {
         return {"index_of_refraction", "index_of_refraction", "an index of refraction", &material::index_of_refraction,
             {1, 10, ""}, if_absent};
     }
     inline constexpr material_field glass_fields[]
-        = {index_of_refraction(), reflectance("transmittance", 1), roughness};
+        = {index_of_refraction(), reflectance("transmittance", 1), roughness, opacity};
     inline constexpr material_field plastic_fields[]
-        = {reflectance("reflectance"), index_of_refraction(1.5), roughness};
+        = {reflectance("reflectance"), index_of_refraction(1.5), roughness_of_coat, opacity};
+    inline constexpr material_field mixture_fields[] = {
+        {"share", "share", "a share", &material::share, {0, 1, ""}, std::nullopt, &material::share_texture}, opacity};
 } // namespace detail
 
 /// All kinds of materials, in the order of material_kind.
@@ -92,6 +108,7 @@ inline constexpr std::array material_kinds{
     material_entry{material_kind::glass, "glass", surface_kind::refracting, 1u << 5, detail::glass_fields},
     material_entry{material_kind::plastic, "plastic", surface_kind::coated, 1u << 19 | 1u << 4,
         detail::plastic_fields}, // reflects, too
+    material_entry{material_kind::mixture, "mixture", surface_kind::mixed, 1u << 21, detail::mixture_fields},
 };
 
 static_assert(
@@ -113,6 +130,12 @@ namespace detail {
         return material_kinds[static_cast<std::size_t>(k)];
     }
 } // namespace detail
+
+/// Whether a material is a mixture of two others. What follows knows nothing of these: see scene/mixture.hpp.
+inline bool is_mixture(const material& m) { return detail::entry_of(m.kind).surface == surface_kind::mixed; }
+
+/// Whether some light goes straight on through surfaces of this material.
+inline bool is_clear(const material& m) { return m.opacity < 1 || m.opacity_texture.map; }
 
 /// Whether surfaces of this material store photons.
 inline bool is_diffuse(const material& m)
@@ -141,11 +164,48 @@ inline bool is_rough(const material& m)
 /// The parameter alpha of the distribution of facets (GGX); 0 of smooth surfaces.
 inline double alpha_of(const material& m) { return is_rough(m) ? m.roughness * m.roughness : 0; }
 
-/// \throws std::invalid_argument for a member that the kind has and that is out of its range: a reflectance outside 0
-/// to 1, an index of refraction outside 1 to 10, or a roughness outside 0 to 1; or a texture that check()
-/// rejects.
+namespace detail {
+    /// The textures of a material that are numbers, by their names in scene files.
+    inline constexpr std::array<std::pair<const char*, texture_use material::*>, 3> number_textures{
+        {{"roughness_texture", &material::roughness_texture}, {"opacity_texture", &material::opacity_texture},
+            {"share_texture", &material::share_texture}}};
+
+    /// The key of such a texture in scene files.
+    constexpr const char* texture_key(texture_use material::*texture)
+    {
+        for (const auto& [name, member] : number_textures)
+            if (member == texture)
+                return name;
+        return nullptr;
+    }
+
+    /// Whether the kind of material has a number on which this texture is a factor.
+    inline bool has_texture(const material& m, texture_use material::*texture)
+    {
+        const auto& fields = entry_of(m.kind).fields;
+        return std::any_of(fields.begin(), fields.end(), [&](const auto& f) { return f.texture == texture; });
+    }
+} // namespace detail
+
+/// Whether the material needs texture coordinates.
+inline bool has_texture(const material& m)
+{
+    return m.texture.map
+        || std::any_of(detail::number_textures.begin(), detail::number_textures.end(),
+            [&](const auto& t) { return (m.*t.second).map != nullptr; });
+}
+
+/// \throws std::invalid_argument for a member that the kind has and that is out of its range: a reflectance, a
+/// roughness, an opacity or a share outside 0 to 1, or an index of refraction outside 1 to 10; or a texture that
+/// check() rejects or that the kind does not have.
 inline void check(const material& m)
 {
+    detail::require(!is_mixture(m) || !m.texture.map, "texture: of a mixture; give its parts one");
+    for (const auto& [name, texture] : detail::number_textures) {
+        detail::require(!(m.*texture).map || detail::has_texture(m, texture),
+            std::string(name) + ": " + detail::entry_of(m.kind).name + " has none");
+        check(m.*texture);
+    }
     for (const auto& f : detail::entry_of(m.kind).fields)
         std::visit(
             [&](auto member) {

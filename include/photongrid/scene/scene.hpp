@@ -10,6 +10,7 @@
 #include <photongrid/scene/distant_lights.hpp>
 #include <photongrid/scene/lights.hpp>
 #include <photongrid/scene/material.hpp>
+#include <photongrid/scene/mixture.hpp>
 #include <photongrid/scene/paraboloid.hpp>
 #include <photongrid/scene/placed_mesh.hpp>
 #include <photongrid/scene/polygon.hpp>
@@ -233,7 +234,7 @@ namespace detail {
         for_each_shape(s, [&](const auto& list, auto kind) {
             if constexpr (requires { overlaps(list[0], list[0]); })
                 for (std::size_t i = 0; i < list.size(); ++i)
-                    if (refracts(s.materials[list[i].material])) {
+                    if (refracts(s.materials, s.materials[list[i].material])) {
                         kind.add_bounds(bodies.emplace_back(body{{kind.list, i}, bodies.size()}).box, list[i]);
                         kind.add_bounds(all, list[i]);
                     }
@@ -257,22 +258,24 @@ namespace detail {
         bool has = false;
         const auto look = [&](const auto& list, auto) {
             for (const auto& x : list)
-                has = has || is_diffuse(s.materials[x.material]);
+                has = has || is_diffuse(s.materials, s.materials[x.material]);
         };
         for_each_shape(s, look);
         look(s.meshes, nullptr);
         return has;
     }
 
-    /// Textures need coordinates, which only meshes have.
+    /// Only meshes are clear, and textures need coordinates, which only they have.
     template <class Part>
-    void check_texture(const Part& part, const std::vector<material>& materials)
+    void check_material_of(const Part& part, const std::vector<material>& materials)
     {
-        if constexpr (requires { part.surface->texture_coordinates; })
+        const auto& m = materials[part.material];
+        constexpr bool is_mesh = requires { part.surface->texture_coordinates; };
+        require(is_mesh || !is_clear(m), "material: has an opacity, which only meshes may have");
+        if constexpr (is_mesh)
             if (!part.surface->texture_coordinates.empty())
                 return;
-        require(!materials[part.material].texture.map,
-            "material: has a texture, which needs a mesh with texture coordinates");
+        require(!has_texture(materials, m), "material: has a texture, which needs a mesh with texture coordinates");
     }
 
     template <class Parts>
@@ -281,10 +284,12 @@ namespace detail {
         for (std::size_t i = 0; i < parts.size(); ++i) {
             try {
                 check(parts[i]);
+                if constexpr (requires { parts[i].parts; })
+                    check_parts(materials, parts[i]);
                 if constexpr (requires { parts[i].material; }) {
                     require(
                         parts[i].material < materials.size(), "material: is not an index into the scene's materials");
-                    check_texture(parts[i], materials);
+                    check_material_of(parts[i], materials);
                 }
             } catch (const std::invalid_argument& e) {
                 throw std::invalid_argument(std::string(list) + "[" + std::to_string(i) + "]." + e.what());

@@ -31,7 +31,7 @@ INPUT(9, vec4, mesh_colors) // see mesh_color.glsl
 OUTPUT(0, vec4, position)       // xyz, m; w: event
 // w of power, next_origin and next_direction: x, y and z of the normal.
 OUTPUT(1, vec4, power)          // rgb of the incoming photon, W, not yet divided by the number of paths
-// xyz: direction of the incoming photon; w: material; with TEXTURES or COATS a color_code
+// xyz: direction of the incoming photon; w: material; with TEXTURES, COATS, MIXTURES or CLEAR a color_code
 OUTPUT(2, vec4, direction)
 OUTPUT(3, vec4, next_origin)
 OUTPUT(4, vec4, next_direction)
@@ -39,11 +39,13 @@ OUTPUT(4, vec4, next_direction)
 #include <photongrid/trace/intersect.glsl>
 #include <photongrid/trace/mesh_hit.glsl>
 #include <photongrid/trace/materials.glsl>
+#include <photongrid/trace/mixture.glsl>
 #include <photongrid/trace/optics.glsl>
 #include <photongrid/trace/shading_normals.glsl>
 #include <photongrid/trace/rough_leaving.glsl>
 #include <photongrid/trace/coat.glsl>
 #include <photongrid/trace/color_code.glsl>
+#include <photongrid/trace/met_surface.glsl>
 
 // The share of a photon that a coat reflects by the facet that it meets.
 float coat_reflects(FacingNormals sides, Material coat, vec3 d, float u, float v)
@@ -85,7 +87,8 @@ void kernel(uint i)
         return;
 
     uint hit_before = event_before(last);
-    if (event_kind(last) == SPECULAR_SURFACE && hit_before == NOTHING_BEFORE)
+    bool from_both = MIXTURES && event_kind(last) == BOTH_SURFACES;
+    if ((event_kind(last) == SPECULAR_SURFACE || from_both) && hit_before == NOTHING_BEFORE)
         hit_before = SPECULAR_BEFORE;
     if (event_kind(last) == DIFFUSE_SURFACE)
         hit_before = DIFFUSE_BEFORE;
@@ -95,7 +98,7 @@ void kernel(uint i)
     vec4 arrived = powers(before);
     if (frame > 1u) {
         vec3 colour;
-        if (TEXTURES || COATS)
+        if (TEXTURES || COATS || MIXTURES || CLEAR)
             colour = color_of_code(directions(before).w);
         else
             colour = material_of(uint(directions(before).w)).reflectance;
@@ -103,6 +106,10 @@ void kernel(uint i)
         precise vec4 tinted = vec4(arrived.x * (colour.x / survival), arrived.y * (colour.y / survival),
             arrived.z * (colour.z / survival), 0.0f);
         arrived = tinted;
+        if (from_both) {
+            precise vec4 left = arrived * event_leaving(last);
+            arrived = left;
+        }
     }
     vec3 o = vec3(next_origins(before));
     vec3 d = vec3(next_directions(before));
@@ -114,9 +121,10 @@ void kernel(uint i)
         return;
     }
     Hit hit = intersect_closest(o, d);
-    bool on_mesh = MESHES && mesh_is_closer(hit, i - frame * args.paths);
+    uint number = i - frame * args.paths; // of the hit on a mesh
+    bool on_mesh = MESHES && mesh_is_closer(hit, number);
     if (on_mesh)
-        hit = mesh_hit(i - frame * args.paths);
+        hit = mesh_hit(number);
     if (hit.t < 0.0f) {
         position.w = event_code(NO_SURFACE, ESCAPED, NOTHING_BEFORE);
         return;
@@ -129,12 +137,28 @@ void kernel(uint i)
     if (hit.material == NO_MATERIAL)
         return; // the surfaces of lights are black
 
-    Material material = material_of(hit.material);
-    direction.w = float(hit.material);
-    if (TEXTURES && on_mesh) {
-        precise vec3 colored = material.reflectance * vec3(mesh_colors(i - frame * args.paths));
-        material.reflectance = colored;
+    uint end = frame < args.last_frame ? GOES_ON : CUT_OFF;
+    vec4 chance = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    if (MIXTURES || CLEAR)
+        chance = random4(uvec4(id, frame, 1000u, args.seed));
+    if (CLEAR && !(chance.x < opacity_at(hit.material, on_mesh, number))) {
+        vec3 beyond = ray_start(hit.position, hit.normal, d);
+        direction.w = color_code(vec3(1.0f, 1.0f, 1.0f));
+        next_origin = vec4(beyond.x, beyond.y, beyond.z, 0.0f);
+        next_direction = vec4(d.x, d.y, d.z, 0.0f);
+        position.w = event_code(NO_SURFACE, end, hit_before);
+        return;
     }
+    uint part = 0u;
+    uint other = NO_MATERIAL; // the part of a mixture that the photon does not leave as from
+    if (MIXTURES && is_mixture(hit.material)) {
+        Parts parts = parts_of(hit.material);
+        part = chance.y < share_at(parts, on_mesh, number) ? 1u : 0u;
+        hit.material = part == 0u ? parts.first : parts.second;
+        other = part == 0u ? parts.second : parts.first;
+    }
+    Material material = material_at(hit.material, part, on_mesh, number);
+    direction.w = float(hit.material);
     vec4 r = random4(uvec4(id, frame, 0u, args.seed));
     FacingNormals sides = facing_normals(hit, d);
     vec3 facing = sides.shading;
@@ -144,13 +168,22 @@ void kernel(uint i)
         below = !(r.w < coat_reflects(sides, material, d, r.y, r.z));
         material.reflectance = below ? under_coat(coat_of(hit.material), material.reflectance) : vec3(1.0f, 1.0f, 1.0f);
     }
-    if (TEXTURES || COATS)
+    if (TEXTURES || COATS || MIXTURES || CLEAR)
         direction.w = largest3(material.reflectance) > 0.0f ? color_code(material.reflectance) : 0.0f;
     uint surface = material.kind == LAMBERTIAN_SURFACE || below ? DIFFUSE_SURFACE : SPECULAR_SURFACE;
-    if (SMOOTH && surface == DIFFUSE_SURFACE) {
+    if (MIXTURES && surface == SPECULAR_SURFACE && other != NO_MATERIAL) {
+        Material base = material_of(other);
+        bool is_met = stores_photons(base) && !stores_photons(material);
+        if (COATS && base.kind == COATED_SURFACE)
+            is_met = is_met && !(r.w < coat_reflects(sides, base, d, r.y, r.z));
+        if (is_met)
+            surface = BOTH_SURFACES;
+    }
+    float received = 1.0f;
+    if (SMOOTH && surface != SPECULAR_SURFACE) {
         // What the surface receives about its shading normal; it sends that out about its geometric normal.
         precise float share = dot3(facing, d) / dot3(sides.geometric, d);
-        float received = share < 8.0f ? share : 8.0f;
+        received = share < 8.0f ? share : 8.0f;
         precise vec3 scaled = vec3(power) * received;
         power = vec4(scaled.x, scaled.y, scaled.z, 0.0f);
     }
@@ -161,8 +194,9 @@ void kernel(uint i)
         position.w = event_code(surface, ABSORBED, hit_before);
         return;
     }
-    position.w = event_code(surface, frame < args.last_frame ? GOES_ON : CUT_OFF, hit_before);
+    position.w = event_code(surface, end, hit_before);
     vec3 next = facing;
+    float leaving = 1.0f; // the factor on the power of what leaves a specular surface
     if (material.kind == LAMBERTIAN_SURFACE)
         next = cosine_direction(sides.geometric, r.y, r.z);
     if (below) {
@@ -180,10 +214,7 @@ void kernel(uint i)
             return;
         }
         next = l.direction;
-        if (SMOOTH) {
-            precise vec3 scaled = vec3(power) * l.adjoint;
-            power = vec4(scaled.x, scaled.y, scaled.z, facing.x);
-        }
+        leaving = l.adjoint;
     } else if (material.kind != LAMBERTIAN_SURFACE && (MIRRORS || GLASS)) {
         Fresnel f = total_reflection(d);
         if (GLASS && material.kind == GLASS_SURFACE)
@@ -195,9 +226,15 @@ void kernel(uint i)
                 position.w = event_code(surface, ABSORBED, hit_before);
                 return;
             }
-            precise vec3 scaled = vec3(power) * l.adjoint;
-            power = vec4(scaled.x, scaled.y, scaled.z, facing.x);
+            leaving = l.adjoint;
         }
+    }
+    if (MIXTURES && surface == BOTH_SURFACES) {
+        precise float share = leaving / received;
+        position.w = event_of_both(end, hit_before, share, chance.z);
+    } else if (SMOOTH && surface == SPECULAR_SURFACE) {
+        precise vec3 scaled = vec3(power) * leaving;
+        power = vec4(scaled.x, scaled.y, scaled.z, facing.x);
     }
     vec3 start = ray_start(hit.position, hit.normal, next);
     next_origin = vec4(start.x, start.y, start.z, facing.y);

@@ -1,7 +1,8 @@
 // Traces an eye ray to the next surface (2.4), through mirrors and glass until it ends on a diffuse surface, on a
 // light, or in the environment. The first `splits` times a ray splits: at glass into its two Fresnel branches; at a
 // coat into one that it reflects and one that ends on the diffuse surface below; at a rough surface into one that ends
-// there, for samples of lights, and one that goes on. The bits of `branch` select the one that this pass follows at
+// there, for samples of lights, and one that goes on; at a mixture into its parts; and where a surface is clear in part
+// into one that meets it and one that passes. The bits of `branch` select the one that this pass follows at
 // each. Later a random number selects it, stratified over the eye rays of a pixel.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
@@ -9,7 +10,7 @@
 
 struct Params {
     uint branch;     // bit n, at the n-th split: reflected (1) or refracted, or below a coat (0); ends (1) at a rough
-                     // surface or not (0)
+                     // surface or not (0); the second (1) or first part of a mixture; meets a surface (1) or passes
     uint splits;     // how often a ray splits at most
     uint depth;      // surfaces a ray passes at most
     uint sample_id;  // number of the eye ray in its pixel
@@ -30,7 +31,7 @@ INPUT(2, vec4, mesh_normals)
 INPUT(3, vec4, mesh_shadings)
 INPUT(4, vec4, environment) // see environment.glsl
 INPUT(5, vec4, mesh_colors) // see mesh_color.glsl
-// xyz: origin, at the end the point hit, m; w: 0 in flight, 1 on a diffuse surface, -2 on a rough one
+// xyz: origin, at the end the point hit, m; w: 0 in flight, 1 on a diffuse surface, -2 - alpha on a rough one
 // (rough_points.glsl), else -1
 STATE(0, vec4, point)
 STATE(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
@@ -38,7 +39,7 @@ STATE(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
 // below a coat the part of that which passed, and radiance at the eye. w: splits so far
 STATE(2, vec4, throughput)
 // xyz: normal towards the eye; w: material. In flight, x: the density of the direction in which the ray left a rough
-// surface, the last one that it met, sr^-1; else 0
+// surface, the last one that it met, sr^-1, else 0; y: how far it has come from there through clear ones, m
 STATE(3, vec4, surface)
 STATE(4, vec4, emitted)    // rgb: radiance of the light that the ray ended on, times throughput
 STATE(5, uint, branches)   // bit b: branch b must be traced for this pixel; branch 0 sets the other bits
@@ -48,10 +49,12 @@ STATE(5, uint, branches)   // bit b: branch b must be traced for this pixel; bra
 #include <photongrid/trace/lights.glsl>
 #include <photongrid/trace/environment.glsl>
 #include <photongrid/trace/materials.glsl>
+#include <photongrid/trace/mixture.glsl>
 #include <photongrid/trace/optics.glsl>
 #include <photongrid/trace/shading_normals.glsl>
 #include <photongrid/trace/rough_leaving.glsl>
 #include <photongrid/trace/coat.glsl>
+#include <photongrid/trace/met_surface.glsl>
 
 bool done()
 {
@@ -72,16 +75,24 @@ float weight_of_hit(float density)
 // sphere_light_sample.
 float sampled_density(Light light, Hit hit, vec3 d)
 {
+    vec3 from = vec3(point);
+    float far = hit.t;
+    if (CLEAR) { // as seen from the rough surface
+        precise vec3 start = from - d * surface.y;
+        from = start;
+        precise float whole = far + surface.y;
+        far = whole;
+    }
     if (SPHERE_LIGHTS && light.form == SPHERE_LIGHT) {
         float radius = light.edge_u.x;
-        precise vec3 to_centre = light.position - vec3(point);
+        precise vec3 to_centre = light.position - from;
         precise float sine2 = radius * radius / dot3(to_centre, to_centre);
         if (!(sine2 < 1.0f))
             return 0.0f;
         precise float density = (1.0f + sqrt(1.0f - sine2)) / (6.28318531f * sine2);
         return density;
     }
-    precise float density = hit.t * hit.t * 3.14159265f * light.radiance_per_power / -dot3(d, hit.normal);
+    precise float density = far * far * 3.14159265f * light.radiance_per_power / -dot3(d, hit.normal);
     return density;
 }
 
@@ -100,9 +111,10 @@ void see_light(Hit hit, vec3 d)
 
 // The ray ends on a rough surface, for samples of lights (rough_points.glsl). w of direction, throughput and emitted:
 // the geometric normal.
-void end_on_rough(Hit hit, vec3 shading, vec3 weighted, bool counted)
+void end_on_rough(Hit hit, vec3 shading, float alpha, vec3 weighted, bool counted)
 {
-    point = vec4(hit.position.x, hit.position.y, hit.position.z, counted ? -2.0f : -1.0f);
+    precise float code = -2.0f - alpha;
+    point = vec4(hit.position.x, hit.position.y, hit.position.z, counted ? code : -1.0f);
     direction.w = hit.normal.x;
     throughput = vec4(weighted.x, weighted.y, weighted.z, hit.normal.y);
     emitted.w = hit.normal.z;
@@ -131,56 +143,77 @@ vec2 facet_numbers(uint i, uint hits)
     return vec2(unit_float(bits.x), unit_float(bits.y));
 }
 
-// The Fresnel branch that a ray takes at glass or at a coat, and the factor on its throughput.
-struct FresnelBranch {
-    bool reflected;
+// The branch that a ray takes where it may be one of two, and the factor on its throughput. At glass and coats the
+// first one is what they reflect; of a mixture the second part; of what is clear in part, what meets it.
+struct Branch {
+    bool first;
     float share;
 };
 
-// At a split, where other passes follow the other branch: the one that this pass follows. `counted`: whether this
-// pass counts the ray so far (kernel).
-FresnelBranch split_branch(uint splits, float reflectance, bool counted)
+// At a split, where other passes follow the other branch: the one that this pass follows. `share`: of the first branch.
+// `counted`: whether this pass counts the ray so far (kernel).
+Branch split_branch(uint splits, float share, bool counted)
 {
     if (counted)
         branches = branches | 1u << min(args.branch | 1u << splits, 31u);
-    FresnelBranch b;
-    b.reflected = ((args.branch >> splits) & 1u) != 0u;
-    b.share = b.reflected ? reflectance : 1.0f - reflectance;
+    Branch b;
+    b.first = ((args.branch >> splits) & 1u) != 0u;
+    b.share = b.first ? share : 1.0f - share;
     return b;
 }
 
-// Sampled with its Fresnel probability, a 4 % reflection that reaches a lamp is a firefly. Sample the rarer branch more
-// often as throughput falls, up to 1/4, and weight it accordingly.
-FresnelBranch sampled_branch(uint i, uint hits, float reflectance)
+// Sampled with its probability, a 4 % reflection that reaches a lamp is a firefly. Sample the rarer branch more often as
+// throughput falls, up to 1/4, and weight it accordingly. `what`: of the random number.
+Branch sampled_branch(uint i, uint what, float share)
 {
-    FresnelBranch b;
-    b.reflected = true; // total internal reflection
+    Branch b;
+    b.first = true; // total internal reflection
     b.share = 1.0f;
-    if (!(reflectance >= 1.0f)) {
+    if (!(share >= 1.0f)) {
         precise float least = 0.25f - 0.25f * max(max(throughput.x, throughput.y), throughput.z);
-        float probability = min(max(reflectance, least), 1.0f - least);
-        b.reflected = stratified_number(i, 2000u + hits) < probability;
-        precise float corrected = b.reflected ? reflectance / probability : (1.0f - reflectance) / (1.0f - probability);
+        float probability = min(max(share, least), 1.0f - least);
+        b.first = stratified_number(i, what) < probability;
+        precise float corrected = b.first ? share / probability : (1.0f - share) / (1.0f - probability);
         b.share = corrected;
     }
     return b;
 }
 
 // The branch that this pass follows, at a split or beyond the last one.
-FresnelBranch fresnel_branch(uint i, uint hits, uint splits, float reflectance, bool counted)
+Branch branch_of(uint i, uint what, uint splits, float share, bool counted)
 {
     if (splits < args.splits)
-        return split_branch(splits, reflectance, counted);
-    return sampled_branch(i, hits, reflectance);
+        return split_branch(splits, share, counted);
+    return sampled_branch(i, what, share);
+}
+
+// What random numbers are for; the number of surfaces hit is added.
+const uint FRESNEL = 2000u;
+const uint PASSES = 10000u;
+const uint PART = 20000u;
+
+// The ray passes a surface that is clear in part.
+void pass_clear(Hit hit, vec3 d, float share, uint splits)
+{
+    vec3 beyond = ray_start(hit.position, hit.normal, d);
+    point = vec4(beyond.x, beyond.y, beyond.z, 0.0f);
+    direction.w = direction.w + 1.0f;
+    precise vec3 passed = vec3(throughput) * share;
+    throughput = vec4(passed.x, passed.y, passed.z, float(splits));
+    if (ROUGH) {
+        precise float come = surface.y + hit.t;
+        surface.y = come;
+    }
 }
 
 void kernel(uint i)
 {
     vec3 d = vec3(direction);
     Hit hit = intersect_closest(vec3(point), d);
-    bool on_mesh = MESHES && mesh_is_closer(hit, i - args.first);
+    uint number = i - args.first; // of the hit on a mesh
+    bool on_mesh = MESHES && mesh_is_closer(hit, number);
     if (on_mesh)
-        hit = mesh_hit(i - args.first);
+        hit = mesh_hit(number);
     uint hits = uint(direction.w);
     uint splits = uint(throughput.w);
     // A ray that has split fewer than `splits` times is the same in several passes. Count it in one of them, the one
@@ -205,11 +238,46 @@ void kernel(uint i)
             see_light(hit, d);
         return;
     }
-    Material material = material_of(hit.material);
-    if (TEXTURES && on_mesh) {
-        precise vec3 colored = material.reflectance * vec3(mesh_colors(i - args.first));
-        material.reflectance = colored;
+    float met = 1.0f; // the factor on throughput for what the ray has met of the surface
+    if (CLEAR) {
+        float opacity = opacity_at(hit.material, on_mesh, number);
+        if (opacity < 1.0f) {
+            Branch b;
+            b.first = false;
+            b.share = 1.0f;
+            if (opacity > 0.0f) {
+                b = branch_of(i, PASSES + hits, splits, opacity, counted);
+                splits = min(splits + 1u, args.splits);
+                counted = args.branch >> min(splits, 31u) == 0u;
+            }
+            if (!b.first) {
+                if (hits + 1u > args.depth)
+                    point.w = -1.0f;
+                else
+                    pass_clear(hit, d, b.share, splits);
+                return;
+            }
+            met = b.share;
+        }
     }
+    uint part = 0u;
+    if (MIXTURES && is_mixture(hit.material)) {
+        Parts parts = parts_of(hit.material);
+        float share_of_second = share_at(parts, on_mesh, number);
+        Branch b;
+        b.first = share_of_second > 0.0f;
+        b.share = 1.0f;
+        if (share_of_second > 0.0f && share_of_second < 1.0f) {
+            b = branch_of(i, PART + hits, splits, share_of_second, counted);
+            splits = min(splits + 1u, args.splits);
+            counted = args.branch >> min(splits, 31u) == 0u;
+        }
+        part = b.first ? 1u : 0u;
+        hit.material = b.first ? parts.second : parts.first;
+        precise float both = met * b.share;
+        met = both;
+    }
+    Material material = material_at(hit.material, part, on_mesh, number);
     FacingNormals sides = facing_normals(hit, d);
     bool coated = COATS && material.kind == COATED_SURFACE;
     bool below = false; // whether the ray passes the coat
@@ -218,14 +286,18 @@ void kernel(uint i)
         Coat coat = coat_of(hit.material);
         precise float passed = passes_coat(coat, -dot3(sides.shading, d));
         precise float reflectance = 1.0f - passed;
-        FresnelBranch b = fresnel_branch(i, hits, splits, reflectance, counted);
+        Branch b = branch_of(i, FRESNEL + hits, splits, reflectance, counted);
         splits = min(splits + 1u, args.splits);
         counted = args.branch >> min(splits, 31u) == 0u;
-        below = !b.reflected;
+        below = !b.first;
         // The coat's reflectance follows, for the facet that the ray meets.
         precise float weight = below ? b.share / coat.mean_passed : (reflectance > 0.0f ? b.share / reflectance : 0.0f);
         share = weight;
         material.reflectance = below ? under_coat(coat, material.reflectance) : vec3(1.0f, 1.0f, 1.0f);
+    }
+    if (MIXTURES || CLEAR) {
+        precise float of_met = share * met;
+        share = of_met;
     }
     precise vec3 tinted = vec3(throughput) * material.reflectance * share;
     if (material.kind == LAMBERTIAN_SURFACE || below) {
@@ -247,7 +319,7 @@ void kernel(uint i)
         // Some rays end here for samples of lights: in a pass of their own, or every other one.
         bool ends = false;
         if (splits < args.splits) {
-            ends = split_branch(splits, 1.0f, counted).reflected;
+            ends = split_branch(splits, 1.0f, counted).first;
             ++splits;
             counted = args.branch >> min(splits, 31u) == 0u;
         } else {
@@ -256,7 +328,7 @@ void kernel(uint i)
         }
         if (ends) {
             precise vec3 weighted = tinted * share;
-            end_on_rough(hit, sides.shading, weighted, counted);
+            end_on_rough(hit, sides.shading, material.alpha, weighted, counted);
             return;
         }
     }
@@ -275,9 +347,9 @@ void kernel(uint i)
     }
     if (GLASS && material.kind == GLASS_SURFACE) {
         f = fresnel(d, outward, material.index_of_refraction);
-        FresnelBranch b = fresnel_branch(i, hits, splits, f.reflected, counted);
+        Branch b = branch_of(i, FRESNEL + hits, splits, f.reflected, counted);
         splits = min(splits + 1u, args.splits);
-        reflected = b.reflected;
+        reflected = b.first;
         precise float scaled = share * (reflected ? b.share : b.share * f.radiance_scale);
         share = scaled;
     }
@@ -288,6 +360,7 @@ void kernel(uint i)
         precise float unhidden_share = share * l.share;
         share = unhidden_share;
         surface.x = rough_scattering(sides.shading, material, !(dot3(hit.normal, d) > 0.0f), d, next).density;
+        surface.y = 0.0f;
     } else if (MIRRORS || GLASS) {
         if (ROUGH)
             surface.x = 0.0f;

@@ -12,6 +12,9 @@
 #include <photongrid/trace/rough_points.kernel.hpp>
 #include <photongrid/trace/scatter_rough.kernel.hpp>
 #include <photongrid/trace/shadow_ray.kernel.hpp>
+#include <photongrid/trace/shadow_through.kernel.hpp>
+
+#include <optional>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -57,13 +60,13 @@ inline glm::uvec2 strata_of(uint samples)
     return {samples / rows, rows};
 }
 
-/// How many times eye rays split: at glass, at coats and at rough surfaces (eye_bounce.glsl). Each combination of
-/// branches is a pass over the picture.
+/// How many times eye rays split: at glass, coats, rough surfaces, mixtures and what is clear in part
+/// (eye_bounce.glsl). Each combination of branches is a pass over the picture.
 inline uint splits_of(const scene_layout& layout)
 {
     if ((layout.features & has_rough) != 0)
         return 3;
-    return (layout.features & (has_glass | has_coats)) != 0 ? 2u : 0u;
+    return (layout.features & (has_glass | has_coats | has_mixtures | has_clear)) != 0 ? 2u : 0u;
 }
 
 /// The camera as eye_ray.glsl reads it. `ray` is sample x branches + branch.
@@ -135,6 +138,21 @@ void for_each_light_sample(const scene_layout& layout, const render_settings& se
     }
 }
 
+/// Lowers what arrives along shadow rays by what they meet on meshes.
+template <backend B>
+void take_through(
+    B& device, const device_scene<B>& s, mesh_rays<B>& rays, mesh_hits<B>& hits, buffer_of<B, glm::vec4>& arriving)
+{
+    for (bool finished = false; !finished;) {
+        rays.find(device, s, hits);
+        finished = device
+                       .template run_until_done<kernels::shadow_through>({arriving.size(), 0u, s.layout.features}, {},
+                           reads(s.records, rays.directions, hits.places, hits.normals, hits.shadings, hits.colors),
+                           writes(rays.origins, arriving), 1u)
+                       .finished;
+    }
+}
+
 /// Samples direct light at some points. Calls change(directions of the shadow rays, what arrives if nothing blocks
 /// them) for each sample, and adds what then arrives, where no mesh blocks it, to `light`.
 template <backend B, class Change>
@@ -144,6 +162,10 @@ void add_light_samples(B& device, const device_scene<B>& s, const render_setting
     mesh_rays<B> rays(device, pixels.elements);
     auto arriving = device.template make<glm::vec4>(pixels.elements);
     auto found = device.template make<glm::uvec4>(1);
+    const bool through = (s.layout.features & has_clear) != 0;
+    std::optional<mesh_hits<B>> met;
+    if (through)
+        met.emplace(device, s, pixels.elements);
     for_each_light_sample(s.layout, settings, [&](const light_sampling& how) {
         device.template run<kernels::shadow_ray>({pixels.elements, 0u, s.layout.features},
             {.strata = how.strata,
@@ -160,10 +182,14 @@ void add_light_samples(B& device, const device_scene<B>& s, const render_setting
                 s.environment_shares),
             writes(rays.origins, rays.directions, arriving));
         change(rays.directions, arriving);
-        if (s.has_meshes())
+        if (through)
+            take_through(device, s, rays, *met, arriving);
+        else if (s.has_meshes())
             found = rays.search(device, s, hit_kind::any);
-        device.template run<kernels::add_unblocked>({pixels.elements, pixels.first, s.layout.features},
-            {.first = pixels.first}, reads(arriving, found), writes(light));
+        // Those that went through know already what is blocked.
+        const uint features = s.layout.features & ~(through ? uint{has_meshes} : 0u);
+        device.template run<kernels::add_unblocked>(
+            {pixels.elements, pixels.first, features}, {.first = pixels.first}, reads(arriving, found), writes(light));
     });
 }
 

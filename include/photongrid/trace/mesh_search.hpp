@@ -12,6 +12,12 @@
 
 namespace photongrid::detail {
 
+/// See trace/mixture.glsl.
+inline std::size_t colors_per_hit(const scene_layout& layout)
+{
+    return (layout.features & (has_mixtures | has_clear)) != 0 ? 3 : 1;
+}
+
 /// The hits of rays on the meshes of a scene. Without meshes its buffers have one element, which stands where kernels
 /// have an INPUT that they do not read.
 template <backend B>
@@ -23,7 +29,7 @@ struct mesh_hits {
         : places(device.template make<glm::vec4>(s.has_meshes() ? rays : 1)),
           normals(device.template make<glm::vec4>(places.size())),
           shadings(device.template make<glm::vec4>(places.size())),
-          colors(device.template make<glm::vec4>(s.has_textures() ? rays : 1))
+          colors(device.template make<glm::vec4>(s.has_textures() ? colors_per_hit(s.layout) * rays : 1))
     {
     }
 };
@@ -56,7 +62,8 @@ struct mesh_rays {
                 s.records, origins, directions, found, s.faces, s.planes, s.vertices, s.normals, s.triangles.instances),
             writes(hits.places, hits.normals, hits.shadings));
         if (s.has_textures())
-            device.template run<kernels::mesh_color>({origins.size(), 0u, s.layout.features}, {.count = instances},
+            device.template run<kernels::mesh_color>({colors_per_hit(s.layout) * origins.size(), 0u, s.layout.features},
+                {.count = instances},
                 reads(s.records, found, hits.places, hits.normals, s.faces, s.vertices, s.attributes, s.texels,
                     s.triangles.instances),
                 writes(hits.colors));

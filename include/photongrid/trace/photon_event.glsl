@@ -1,11 +1,13 @@
-// A path's event at one surface, stored in the w of its position in a frame: kind of surface + 4 * end + 32 * surfaces
-// before.
+// A path's event at one surface, stored in the w of its position in a frame: kind of surface + 4 * end + 32 * power
+// that leaves + 2^22 * surfaces before.
 #ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
 
 // Kinds of surface
 const uint NO_SURFACE = 0u;
 const uint SPECULAR_SURFACE = 1u;
 const uint DIFFUSE_SURFACE = 2u;
+// Of a mixture: the part that stores photons stored this one, which then left as from the other part, a specular one.
+const uint BOTH_SURFACES = 3u;
 
 // How the path continues or ends
 const uint GOES_ON = 0u;
@@ -15,14 +17,15 @@ const uint CUT_OFF = 3u;      // reached the depth limit
 const uint NOT_A_NUMBER = 4u; // became NaN or infinite
 const uint ENDED_BEFORE = 5u;
 
-// The surfaces that the path hit before: none; mirrors and glass only (a caustic photon); a diffuse surface
+// The surfaces that the path hit before, but for clear ones: none; mirrors and glass only (a caustic photon); a diffuse
+// surface
 const uint NOTHING_BEFORE = 0u;
 const uint SPECULAR_BEFORE = 1u;
 const uint DIFFUSE_BEFORE = 2u;
 
 inline float event_code(uint kind, uint end, uint before)
 {
-    return float(kind + 4u * end + 32u * before);
+    return float(kind + 4u * end + 4194304u * before);
 }
 inline uint event_kind(vec4 position)
 {
@@ -34,7 +37,29 @@ inline uint event_end(vec4 position)
 }
 inline uint event_before(vec4 position)
 {
-    return uint(position.w) >> 5u;
+    return uint(position.w) >> 22u;
+}
+// Whether the surface stored the photon, or left it to the direct light.
+inline bool event_is_diffuse(vec4 position)
+{
+    return event_kind(position) >= DIFFUSE_SURFACE;
+}
+// Whether the photon is stored: one straight from a light is left to the direct light, also if it passed clear surfaces.
+inline bool event_is_stored(vec4 position)
+{
+    return event_is_diffuse(position) && event_before(position) != NOTHING_BEFORE;
+}
+// Of BOTH_SURFACES, the power that leaves over that which was stored, which differ by shading normals: at most 256, in
+// steps of 2^-8. `u` in [0, 1) rounds it so that its mean is right.
+inline float event_of_both(uint end, uint before, float leaving, float u)
+{
+    precise float steps = leaving * 256.0f + u;
+    uint rounded = steps < 65536.0f ? uint(steps) : 65536u;
+    return event_code(BOTH_SURFACES, end, before) + float(32u * rounded);
+}
+inline float event_leaving(vec4 position)
+{
+    return float((uint(position.w) >> 5u) & 131071u) / 256.0f;
 }
 
 #endif

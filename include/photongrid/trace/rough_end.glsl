@@ -13,7 +13,7 @@ struct RoughEnd {
 
 bool ended_on_rough(uint ray)
 {
-    return points(ray).w == -2.0f;
+    return points(ray).w <= -2.0f;
 }
 
 RoughEnd rough_end(uint ray)
@@ -28,5 +28,7 @@ RoughEnd rough_end(uint ray)
     e.outside = !(dot3(outward, e.d) > 0.0f);
     e.geometric = e.outside ? outward : -outward;
     e.material = material_of(uint(facing.w));
+    precise float alpha = -2.0f - points(ray).w;
+    e.material.alpha = alpha;
     return e;
 }

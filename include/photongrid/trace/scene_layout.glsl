@@ -23,7 +23,7 @@ const uint SPOT_LIGHT = 4u;
 const uint DIRECTIONAL_LIGHT = 5u;
 const uint ENVIRONMENT_LIGHT = 6u; // the last light of a scene that has one
 const uint FIRST_MATERIAL = SCENE_TABLES; // materials come first, so that kernels need not look their table up
-const uint MATERIAL_RECORDS = 2u;
+const uint MATERIAL_RECORDS = 4u; // trace/scene_records.hpp
 
 // Consecutive shapes of one kind, materials, or lights.
 struct Table {
@@ -46,6 +46,7 @@ const uint LAMBERTIAN_SURFACE = 0u;
 const uint MIRROR_SURFACE = 1u; // of all kinds that only reflect
 const uint GLASS_SURFACE = 2u;
 const uint COATED_SURFACE = 3u;
+const uint MIXED_SURFACE = 4u; // of two other materials (trace/mixture.glsl)
 
 const uint COAT_STEPS = 64u; // of the shares that pass a rough coat (trace/coat.glsl)
 

@@ -42,6 +42,8 @@ enum scene_feature : uint {
     has_shape_tree = 1u << 18, ///< of many shapes
     has_coats = 1u << 19,      ///< diffuse surfaces under a coat
     has_instances = 1u << 20,  ///< surfaces of triangles that stand in several places
+    has_mixtures = detail::entry_of(material_kind::mixture).switches,
+    has_clear = 1u << 22, ///< surfaces through which some light goes straight on
 };
 
 static_assert(light_kind<point_light>::form == kernels::POINT_LIGHT
@@ -54,6 +56,7 @@ static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SU
     && static_cast<uint>(surface_kind::reflecting) == kernels::MIRROR_SURFACE
     && static_cast<uint>(surface_kind::refracting) == kernels::GLASS_SURFACE
     && static_cast<uint>(surface_kind::coated) == kernels::COATED_SURFACE
+    && static_cast<uint>(surface_kind::mixed) == kernels::MIXED_SURFACE
     && detail::entry_of(material_kind::plastic).switches == (has_coats | has_mirrors)); // coats reflect, too
 
 /// The records of a scene, and their layout.
@@ -134,9 +137,12 @@ namespace detail {
         }
 
     private:
-        static uint features_of(const material& m)
+        uint features_of(const material& m) const
         {
-            return entry_of(m.kind).switches | (is_rough(m) ? has_rough : 0u);
+            uint features = entry_of(m.kind).switches | (is_clear(m) ? has_clear : 0u);
+            for (const auto* part : parts_of(s_.materials, m))
+                features |= entry_of(part->kind).switches | (is_rough(*part) ? has_rough : 0u);
+            return features;
         }
 
         /// Computes the bounds, the centre and the features.
@@ -147,7 +153,7 @@ namespace detail {
                 for (const auto& x : list) {
                     const auto& m = s_.materials[x.material];
                     kind.add_bounds(all, x);
-                    if (is_diffuse(m))
+                    if (is_diffuse(s_.materials, m))
                         kind.add_bounds(diffuse, x);
                     out_.features |= features_of(m);
                     round_size_ = std::max(round_size_, kind.round_size(x));
@@ -158,12 +164,12 @@ namespace detail {
             for (const auto& m : s_.meshes) {
                 const auto& of = s_.materials[m.material];
                 shape_kind<placed_mesh>::add_bounds(all, m);
-                if (is_diffuse(of))
+                if (is_diffuse(s_.materials, of))
                     shape_kind<placed_mesh>::add_bounds(diffuse, m);
                 out_.features |= has_meshes | features_of(of);
                 out_.features |= m.surface->normals.empty() ? 0u : has_smooth_meshes;
                 out_.features |= shared_.holds(m) ? has_instances : 0u;
-                out_.features |= m.surface->colors.empty() && !of.texture.map ? 0u : has_textures;
+                out_.features |= m.surface->colors.empty() && !has_texture(s_.materials, of) ? 0u : has_textures;
             }
             require(!diffuse.empty(), no_matte_shape);
             for_each_light(s_, [&](const auto& list, auto kind) {
@@ -280,33 +286,38 @@ namespace detail {
         void write_materials(record_writer& w)
         {
             enter(kernels::MATERIAL_TABLE, w.next(), s_.materials.size(), kernels::MATERIAL_RECORDS);
-            std::size_t textures = 0;
+            std::vector<const texture_use*> textures;
+            const auto number_of = [&](const texture_use& t) {
+                if (t.map)
+                    textures.push_back(&t);
+                return static_cast<double>(t.map ? textures.size() : 0);
+            };
             for (const auto& m : s_.materials) {
                 w.put(m.reflectance, static_cast<uint>(entry_of(m.kind).surface));
+                w.put(dvec3(m.index_of_refraction, number_of(m.texture), alpha_of(m)), 0);
+                w.put(dvec3(m.opacity, m.share, m.parts[0]), m.parts[1]);
                 w.put(
-                    dvec3(m.index_of_refraction, static_cast<double>(m.texture.map ? ++textures : 0), alpha_of(m)), 0);
+                    dvec3(number_of(m.opacity_texture), number_of(m.roughness_texture), number_of(m.share_texture)), 0);
             }
             write_textures(w, textures);
             write_coats(w, out_.records, s_.materials);
         }
 
         /// Materials may share the texels of a texture.
-        void write_textures(record_writer& w, std::size_t textures)
+        void write_textures(record_writer& w, const std::vector<const texture_use*>& textures)
         {
-            enter(kernels::TEXTURE_TABLE, w.next(), textures, 3);
+            enter(kernels::TEXTURE_TABLE, w.next(), textures.size(), 3);
             std::map<const texture*, std::size_t> firsts;
             auto& texels = out_.meshes.texels;
-            for (const auto& m : s_.materials) {
-                if (!m.texture.map)
-                    continue;
-                const auto [found, is_new] = firsts.emplace(m.texture.map.get(), texels.size());
+            for (const auto* use : textures) {
+                const auto [found, is_new] = firsts.emplace(use->map.get(), texels.size());
                 if (is_new)
-                    for (const auto& t : m.texture.map->texels)
-                        texels.emplace_back(uint{t.x} | uint{t.y} << 16, uint{t.z});
+                    for (const auto& t : use->map->texels)
+                        texels.emplace_back(uint{t.x} | uint{t.y} << 16, uint{t.z} | uint{t.w} << 16);
                 require(texels.size() <= max_texels, "materials: their textures have more than 2^28 texels together");
-                w.put(dvec3(halves_of(found->second), m.texture.map->width), m.texture.map->height);
-                w.put(dvec3(m.texture.scale, m.texture.offset.x), m.texture.offset.y);
-                w.put(dvec3(m.texture.wrap == texture_wrap::repeat ? 1 : 0, 0, 0), 0);
+                w.put(dvec3(halves_of(found->second), use->map->width), use->map->height);
+                w.put(dvec3(use->scale, use->offset.x), use->offset.y);
+                w.put(dvec3(use->wrap == texture_wrap::repeat ? 1 : 0, static_cast<double>(use->channel), 0), 0);
             }
         }
 

@@ -18,7 +18,7 @@ uint stored_photon(uint i)
     uint found = low;
     for (uint frame = args.frames - 1u; frame >= 2u; --frame) {
         uint at = frame * args.paths + low;
-        if (event_kind(positions(at)) == DIFFUSE_SURFACE) {
+        if (event_is_stored(positions(at))) {
             if (skip == 0u) {
                 found = at;
                 break;

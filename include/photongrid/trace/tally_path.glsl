@@ -1,5 +1,5 @@
-// Counts for path i, over all its frames: how it ended, and its diffuse hits. Photons straight from a light (frame 1)
-// are not stored, because direct light is computed by shadow rays.
+// Counts for path i, over all its frames: how it ended, and its diffuse hits. Photons straight from a light are not
+// stored, because direct light is computed by shadow rays.
 #include <photongrid/trace/photon_event.glsl>
 
 struct Params {
@@ -8,7 +8,7 @@ struct Params {
 };
 PARAMS(Params)
 INPUT(0, vec4, positions)
-OUTPUT(0, uint, storable) // diffuse hits after the first surface
+OUTPUT(0, uint, storable) // diffuse hits that are stored
 OUTPUT(1, uvec4, ends)    // a 1 for its end: absorbed, escaped, cut off, not a number
 OUTPUT(2, uvec4, hits)    // diffuse hits; those straight from a light
 
@@ -22,12 +22,12 @@ void kernel(uint i)
         uint end = event_end(p);
         if (end == ENDED_BEFORE)
             break;
-        if (event_kind(p) == DIFFUSE_SURFACE) {
+        if (event_is_diffuse(p)) {
             ++hits.x;
-            if (frame == 1u)
-                ++hits.y;
-            else
+            if (event_is_stored(p))
                 ++storable;
+            else
+                ++hits.y;
         }
         if (end == ABSORBED)
             ends.x = 1u;

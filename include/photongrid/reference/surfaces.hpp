@@ -1,0 +1,108 @@
+// What light meets at a hit, for the reference renderer: nothing where the surface is clear, one part of a mixture, and
+// the values of textures.
+#pragma once
+
+#include <photongrid/reference/intersect.hpp>
+#include <photongrid/reference/random_stream.hpp>
+#include <photongrid/reference/texture.hpp>
+
+#include <algorithm>
+#include <optional>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid::reference {
+
+/// A material at a hit.
+class met_material {
+public:
+    met_material(const material& m, std::uint32_t number, const hit& h)
+        : number_(number), material_(&m), reflectance_(m.reflectance * h.color * color_at(m.texture, h.coordinates))
+    {
+        if (m.roughness_texture.map) {
+            own_ = m;
+            own_->roughness *= number_at(m.roughness_texture, h.coordinates);
+        }
+    }
+
+    /// Its index in scene::materials.
+    std::uint32_t number() const { return number_; }
+    /// With its roughness here, but its colour without textures.
+    const material& of() const { return own_ ? *own_ : *material_; }
+    /// With textures and the colours of vertices.
+    const dvec3& reflectance() const { return reflectance_; }
+
+private:
+    std::uint32_t number_;
+    const material* material_;
+    std::optional<material> own_;
+    dvec3 reflectance_;
+};
+
+/// The surfaces of a scene.
+class surfaces {
+public:
+    /// The arguments must outlive it.
+    surfaces(const scene& s, const geometry& shapes)
+        : materials_(s.materials), shapes_(shapes),
+          any_clear_(std::any_of(s.materials.begin(), s.materials.end(), [](const material& m) { return is_clear(m); }))
+    {
+    }
+
+    /// Whether light passes the surface by chance.
+    bool passes(const hit& h, random_stream& random) const
+    {
+        const auto& m = materials_[h.material];
+        return is_clear(m) && random() >= opacity(m, h);
+    }
+
+    /// The material that light meets; of a mixture one of its parts by chance.
+    met_material met(const hit& h, random_stream& random) const
+    {
+        const auto& m = materials_[h.material];
+        if (!is_mixture(m))
+            return {m, h.material, h};
+        const auto number = m.parts[random() < m.share * number_at(m.share_texture, h.coordinates) ? 1 : 0];
+        return {materials_[number], number, h};
+    }
+
+    /// The first part that stores photons, or null.
+    const material* base(const hit& h) const
+    {
+        for (const auto* part : parts_of(materials_, materials_[h.material]))
+            if (is_diffuse(*part))
+                return part;
+        return nullptr;
+    }
+
+    /// The share of light that shapes other than `target` let pass up to `far`, m.
+    double share_through(ray r, double far, std::uint32_t target) const
+    {
+        if (!any_clear_)
+            return shapes_.blocked(r, far, target) ? 0 : 1;
+        double share = 1;
+        while (share > 0) {
+            const hit h = shapes_.nearest(r);
+            if (!(h.t < far) || h.shape == target)
+                return share;
+            share *= h.light != nothing ? 0 : 1 - opacity(materials_[h.material], h);
+            r = {h.position, r.direction, h.shape};
+            far -= h.t;
+        }
+        return 0;
+    }
+
+private:
+    static double opacity(const material& m, const hit& h)
+    {
+        return m.opacity * number_at(m.opacity_texture, h.coordinates);
+    }
+
+    const std::vector<material>& materials_;
+    const geometry& shapes_;
+    bool any_clear_;
+};
+
+} // namespace photongrid::reference
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,171 @@
+// Mixtures of materials, surfaces that are clear in part, and textures of numbers, on any backend: against formulas,
+// their parts alone, and the serial backend's pictures. Included by each on_<backend>.cpp.
+#pragma once
+
+#include "light_kind_tests.hpp"
+#include "mixture_scenes.hpp"
+#include "texture_tests.hpp"
+
+namespace photongrid::testing {
+
+template <class Tag>
+class mixtures : public textures<Tag> {
+protected:
+    photon_stats traced_by(const scene& s)
+    {
+        auto& b = this->b();
+        const auto device = upload_scene(b, s);
+        const auto t = trace_photons(b, s, device, s.render);
+        return count_photons(b, t, s.render.map.photons);
+    }
+};
+TYPED_TEST_SUITE_P(mixtures);
+
+/// Sheets between the sun, the camera beside it, and a wall. Light meets each sheet twice: from the sun and to the eye.
+TYPED_TEST_P(mixtures, sheets_stop_the_light_of_their_opacity)
+{
+    const double grey = 0.5;
+    auto s = rectangle_in_even_light(textured_rectangle({-1, -1, 0}, {4, 0, 0}, {0, 3, 0}), {});
+    s.materials[0].reflectance = dvec3(grey);
+    const auto sheet = [&](float z, const dvec3& reflectance, double opacity, texture_use texture) {
+        material m{"sheet", material_kind::lambertian, reflectance};
+        m.opacity = opacity;
+        m.opacity_texture = std::move(texture);
+        s.materials.push_back(m);
+        s.meshes.push_back({"", std::make_shared<const mesh>(textured_rectangle({-1, -1, z}, {4, 0, 0}, {0, 3, 0})),
+            glm::dmat3(1), dvec3(0), static_cast<std::uint32_t>(s.materials.size() - 1)});
+    };
+    sheet(0.25f, dvec3(0.2, 0.4, 0.8), 0.25, {});
+    sheet(0.5f, dvec3(0.9, 0.3, 0.6), 0.8, use_of_numbers({1, 0, 0, 1, 0.5}, texture_channel::blue));
+    const auto opacity = [](double x) { // of the second sheet, by x
+        const double at = (x + 1) / 4 * 5 - 0.5;
+        const double values[] = {1, 0, 0, 1, 0.5};
+        const double left = std::clamp(std::floor(at), 0.0, 3.0);
+        const auto i = static_cast<std::size_t>(left);
+        return 0.8 * (values[i] + (values[i + 1] - values[i]) * std::clamp(at - left, 0.0, 1.0));
+    };
+    const auto seen = this->picture(s);
+    const double half = std::tan(glm::radians(8.0));
+    for (std::uint32_t y = 0; y < 32; ++y)
+        for (std::uint32_t x = 0; x < 48; ++x) {
+            const double slope = half * 1.5 * ((x + 0.5) / 24 - 1);
+            const auto at = [&](double z) { return 0.75 + (3 - z) * slope; };
+            const double first = opacity(at(0.5));
+            for (int c = 0; c < 3; ++c) {
+                const auto of = [&](std::size_t m) { return s.materials[m].reflectance[c]; };
+                const double behind
+                    = (1 - opacity(at(0.25))) * 0.25 * of(1) + (1 - opacity(at(0))) * 0.75 * 0.75 * grey;
+                EXPECT_NEAR(static_cast<double>(seen.pixels[y * 48 + x][c]), first * of(2) + (1 - first) * behind, 2e-4)
+                    << x << ' ' << y << ' ' << c;
+            }
+        }
+}
+
+/// Where nothing stops light, and where all is stopped, a sheet is not there, or as if it had no opacity.
+TYPED_TEST_P(mixtures, what_is_clear_is_not_seen_and_what_is_opaque_is_as_before)
+{
+    auto s = with_meshes(small_cornell());
+    s.spheres.clear();
+    s.render.output.only = light_part::direct; // photons that pass a sheet have other random numbers from there on
+    const auto plain = this->picture(s);
+    auto clear = s.materials[1];
+    clear.opacity = 0;
+    s.materials.push_back(clear);
+    s.meshes.push_back(
+        {"", std::make_shared<const mesh>(textured_rectangle({0.1f, 0.7f, 0.1f}, {0.8f, 0, 0}, {0, 0, 0.8f})),
+            glm::dmat3(1), dvec3(0), 5});
+    // Rays start anew at the sheet, and hit elsewhere by their rounding.
+    EXPECT_LE(relative_mse(this->picture(s), plain), 1e-6);
+    s.render.output.only = light_part::all;
+    s.materials[5].opacity = 1;
+    const auto opaque = this->picture(s);
+    s.materials[5].opacity_texture.map = std::make_shared<const texture>(); // white
+    EXPECT_LE(relative_mse(this->picture(s), opaque), 1e-6);
+}
+
+TYPED_TEST_P(mixtures, matte_parts_add_up_by_their_shares)
+{
+    auto rectangle = textured_rectangle({0, 0, 0}, {1.5f, 0, 0}, {0, 1, 0});
+    rectangle.colors = {{1, 0.5f, 0.25f}, {1, 0.5f, 0.25f}, {1, 0.5f, 0.25f}, {1, 0.5f, 0.25f}};
+    auto s = rectangle_in_even_light(rectangle, {});
+    const dvec3 first(0.9, 0.8, 0.7), second(0.1, 0.3, 0.6);
+    s.materials[0] = mixture_of(1, 2, 0.75, use_of_numbers({0, 1}, texture_channel::green));
+    s.materials.push_back({"first", material_kind::lambertian, first});
+    s.materials.push_back({"second", material_kind::lambertian, second});
+    s.materials[2].texture = use_of_numbers({0.5, 0.5}, texture_channel::red);
+    s.materials[2].texture.map = std::make_shared<const texture>(texture{1, 1, {{32768, 16384, 65535, 65535}}});
+    this->expect_reflectance(s, [&](double u, double) {
+        const double share = 0.75 * std::clamp(2 * u - 0.5, 0.0, 1.0);
+        const dvec3 textured = second * dvec3(32768, 16384, 65535) / 65535.0;
+        return ((1 - share) * first + share * textured) * dvec3(1, 0.5, 0.25);
+    });
+}
+
+/// In light that is the same from everywhere.
+TYPED_TEST_P(mixtures, of_all_kinds_have_the_albedo_of_their_parts)
+{
+    const dvec3 gold(1, 0.5, 0.25), base(1, 0.5, 0);
+    const known_coat coat{1.5, 0.09};
+    const dvec3 left = coat.left(base);
+    const double share = 0.3;
+    const auto [mean, known] = ball_in_even_light(
+        mixture_of(2, 3, share), 16,
+        [&](scene s) {
+            s.materials.push_back({"plastic", material_kind::plastic, base, 1.5, 0.3});
+            s.materials.push_back({"metal", material_kind::metal, gold, 1.5, 0.4});
+            return this->picture(s);
+        },
+        [&](double cosine) {
+            const double reflected = coat.reflected(cosine);
+            const dvec3 of_metal = gold * albedo_of_facets(cosine, 0.16, [](double) { return 1.0; });
+            return (1 - share) * (reflected + (1 - reflected) * left) + share * of_metal;
+        });
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(mean[c] / known[c], 1, 0.01) << c;
+}
+
+/// A mixture of one part alone, and textures of numbers that are everywhere the same, against materials without.
+TYPED_TEST_P(mixtures, of_one_part_and_even_textures_are_as_plain_materials)
+{
+    auto s = with_meshes(small_cornell());
+    s.spheres.clear();
+    s.materials[3].roughness = 0.3;
+    s.meshes[0] = {"", std::make_shared<const mesh>(textured_rectangle({0, 0, 0}, {1, 0, 0}, {0, 0, 1})), glm::dmat3(1),
+        dvec3(0), 3};
+    const auto metal = this->picture(s);
+    auto with_texture = s;
+    with_texture.materials[3].roughness = 0.6;
+    with_texture.materials[3].roughness_texture = use_of_numbers({0.5}, texture_channel::alpha);
+    EXPECT_LE(relative_mse(this->picture(with_texture), metal), 1e-4);
+    // What walls reflect is rounded to 2^-12 in scenes with mixtures.
+    for (const double share : {0.0, 1.0}) {
+        auto mixed = s;
+        mixed.materials.push_back({"silver", material_kind::mirror, dvec3(0.9)});
+        mixed.materials.push_back(share > 0 ? mixture_of(5, 3, share) : mixture_of(3, 5, share));
+        mixed.materials.push_back(share > 0 ? mixture_of(2, 1, share) : mixture_of(1, 2, share));
+        mixed.meshes[0].material = 6;
+        mixed.meshes[3].material = 7;
+        ASSERT_EQ(s.meshes[3].material, 1u);
+        EXPECT_LE(relative_mse(this->picture(mixed), metal), 1e-5) << share;
+    }
+}
+
+TYPED_TEST_P(mixtures, equal_the_serial_backends)
+{
+    const auto s = mixed_cornell();
+    this->expect_serial(s, s.render);
+}
+
+TYPED_TEST_P(mixtures, account_for_every_path)
+{
+    auto s = mixed_cornell();
+    s.render.map.photons = 20000;
+    expect_an_exact_account(this->traced_by(s), 20000);
+}
+
+REGISTER_TYPED_TEST_SUITE_P(mixtures, sheets_stop_the_light_of_their_opacity,
+    what_is_clear_is_not_seen_and_what_is_opaque_is_as_before, matte_parts_add_up_by_their_shares,
+    of_all_kinds_have_the_albedo_of_their_parts, of_one_part_and_even_textures_are_as_plain_materials,
+    equal_the_serial_backends, account_for_every_path);
+
+} // namespace photongrid::testing
