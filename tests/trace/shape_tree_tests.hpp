@@ -10,9 +10,8 @@ namespace photongrid::testing {
 namespace {
 
     /// The tree holds each shape once, in boxes around it, and its walk is complete.
-    void expect_a_tree(const std::vector<boxed_shape>& shapes)
+    void expect_a_tree_of(const std::vector<boxed_shape>& shapes, const std::vector<shape_node>& nodes)
     {
-        const auto nodes = build_shape_tree(shapes);
         ASSERT_EQ(nodes.size(), shapes.empty() ? 0 : 2 * shapes.size() - 1);
         std::vector<int> seen(shapes.size());
         std::vector<std::size_t> open; // the nodes that the walk is below
@@ -38,6 +37,17 @@ namespace {
         for (const int n : seen)
             ASSERT_EQ(n, 1);
         EXPECT_LE(deepest, 34 + std::log2(1.0 + double(shapes.size())));
+    }
+
+    void expect_a_tree(const std::vector<boxed_shape>& shapes)
+    {
+        expect_a_tree_of(shapes, build_shape_tree(shapes));
+        const std::size_t apart = shapes.size() / 3, others = shapes.size() - apart;
+        const auto nodes = build_shape_tree(shapes, apart);
+        expect_a_tree_of(shapes, nodes);
+        for (std::size_t i = 1; apart > 0 && i < nodes.size(); ++i)
+            ASSERT_TRUE(!nodes[i].is_leaf || (nodes[i].shape.at < others) == (i < 2 * others))
+                << "below the root's first child";
     }
 
     TEST(shape_tree, has_each_shape_once_and_bounded_depth)
@@ -132,7 +142,7 @@ namespace {
             }
         EXPECT_EQ(leaves.size() / 2, count_shapes(s) + s.rectangle_lights.size());
         std::copy(leaves.begin(), leaves.end(), records.begin() + tree.first);
-        records[kernels::SHAPE_TREE].y = static_cast<float>(leaves.size() / 2);
+        records[kernels::SHAPE_TREE].y = records[kernels::SHAPE_TREE].w = static_cast<float>(leaves.size() / 2);
         flat.records = b.upload(std::span<const glm::vec4>(records));
         // No tree at all.
         auto without = upload_scene(b, s);
@@ -182,6 +192,49 @@ namespace {
     }
 
     /// A paraboloid bulges beyond its vertex and its rim.
+    /// A room of squares under 49 lamps in one plane, the last of which is lower by `lower`.
+    scene lamps_in_a_plane(double lower)
+    {
+        auto s = many_shapes();
+        s.rectangle_lights.clear();
+        for (int i = 0; i < 49; ++i)
+            s.rectangle_lights.push_back(
+                {"lamp", {-2.5 + 0.7 * (i % 7), 2.75 - (i == 48 ? lower : 0), -2.5 + 0.7 * (i / 7)}, {0.4, 0, 0},
+                    {0, 0, 0.4}, dvec3(1)});
+        return s;
+    }
+
+    // Where lamps block no light of each other, shadow rays to them leave the part of the tree out that holds them.
+    TEST(shape_tree, keeps_lamps_apart_that_block_no_light)
+    {
+        const auto s = lamps_in_a_plane(0);
+        serial_backend b;
+        const auto device = upload_scene(b, s);
+        const auto record = device.layout.records[kernels::SHAPE_TREE];
+        EXPECT_EQ(record.w, 2.0f * static_cast<float>(count_shapes(s)));
+        EXPECT_LT(record.w, record.y);
+        auto whole = upload_scene(b, s);
+        whole.layout.records[kernels::SHAPE_TREE].w = record.y;
+        whole.records = b.upload(std::span<const glm::vec4>(whole.layout.records));
+        std::mt19937_64 random(3);
+        std::uniform_real_distribution<double> u(-1, 1);
+        std::vector<dvec3> origins, ways;
+        for (std::size_t i = 0; i < 20000; ++i) {
+            origins.push_back(2.7 * dvec3(u(random), u(random), u(random)));
+            ways.push_back(glm::normalize(dvec3(u(random), u(random), u(random))));
+        }
+        const auto apart = find(b, device, s, origins, ways), all = find(b, whole, s, origins, ways);
+        std::size_t lit = 0;
+        for (std::size_t i = 0; i < origins.size(); ++i) {
+            lit += all.light[i].x > 0 ? 1 : 0;
+            EXPECT_EQ(apart.light[i], all.light[i]) << i;
+        }
+        EXPECT_GT(lit, origins.size() / 10);
+
+        const auto below = upload_scene(b, lamps_in_a_plane(0.5)).layout.records[kernels::SHAPE_TREE];
+        EXPECT_EQ(below.w, below.y) << "the lowest lamp blocks light of the others";
+    }
+
     TEST(shape_tree, boxes_hold_tilted_paraboloids_and_no_more)
     {
         std::mt19937_64 random(11);

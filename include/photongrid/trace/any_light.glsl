@@ -117,6 +117,7 @@ struct ArrivingLight {
     LightSample found;
     vec3 power;               // factor on found.per_power
     float radiance_per_power; // m^-2 sr^-1; 0 of lights without size
+    bool is_rectangle;
 };
 
 // Of light `number`, for eye ray i. `whole`: parts of a rectangle that are close are taken whole, by their form factor.
@@ -129,6 +130,7 @@ ArrivingLight arriving_light(uint number, uint i, bool whole, LitPoint lit)
     a.found = no_light(lit);
     a.power = vec3(scene(at + 5u));
     a.radiance_per_power = 0.0f;
+    a.is_rectangle = AREA_LIGHTS && form == RECTANGLE_LIGHT;
     if (is_mesh_light(at)) {
         a.found = mesh_light_sample(at, i, lit);
         a.radiance_per_power = scene(at + 1u).w;

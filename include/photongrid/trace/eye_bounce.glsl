@@ -162,8 +162,8 @@ Branch split_branch(uint splits, float share, bool counted)
     return b;
 }
 
-// Sampled with its probability, a 4 % reflection that reaches a lamp is a firefly. Sample the rarer branch more often as
-// throughput falls, up to 1/4, and weight it accordingly. `what`: of the random number.
+// Sampled with its probability, a 4 % reflection that reaches a lamp is a firefly. Sample the rarer branch more often
+// as throughput falls, up to 1/4, and weight it accordingly. `what`: of the random number.
 Branch sampled_branch(uint i, uint what, float share)
 {
     Branch b;

@@ -85,7 +85,8 @@ Hit intersect_closest(vec3 o, vec3 d)
     return hit;
 }
 
-// A set of polygons and spheres, as bits (bit_of).
+// A set of polygons and spheres, as bits (bit_of). In a tree: without polygons the surfaces of rectangle lights are
+// left out, if they are apart (detail::lamps_block_none).
 struct Candidates {
     uint polygons;
     uint spheres;
@@ -113,11 +114,20 @@ Candidates everything()
     return c;
 }
 
+// What can occlude a rectangle light.
+Candidates all_before_rectangles()
+{
+    Candidates c = everything();
+    if (TREE_OF_SHAPES)
+        c.polygons = 0u;
+    return c;
+}
+
 // Any-hit query up to distance `far`. Of polygons and spheres only the candidates are tested, unless there is a tree.
 bool occluded(vec3 o, vec3 d, float far, Candidates c)
 {
     if (TREE_OF_SHAPES)
-        return tree_blocks(o, d, far);
+        return tree_blocks(o, d, far, c.polygons != 0u);
     if (POLYGONS && c.polygons != 0u && polygons_block(o, d, far, c.polygons))
         return true;
     if (SPHERES && c.spheres != 0u && spheres_block(o, d, far, c.spheres))

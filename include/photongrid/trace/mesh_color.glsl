@@ -1,5 +1,5 @@
-// What textures and the colours of vertices say at a ray's hit on a triangle: factors on what the material says. Element
-// i is of hit i / colors_per_hit(). Only in scenes with textures or colours of vertices.
+// What textures and the colours of vertices say at a ray's hit on a triangle: factors on what the material says.
+// Element i is of hit i / colors_per_hit(). Only in scenes with textures or colours of vertices.
 //
 // Records of TEXTURE_TABLE: first texel in two parts (high and low 16 bits), width, height; scale and offset of
 // coordinates; x: 1: the texture repeats; y: of a number, its channel.

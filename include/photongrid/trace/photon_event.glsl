@@ -44,7 +44,7 @@ inline bool event_is_diffuse(vec4 position)
 {
     return event_kind(position) >= DIFFUSE_SURFACE;
 }
-// Whether the photon is stored: one straight from a light is left to the direct light, also if it passed clear surfaces.
+// Whether the photon is stored: one straight from a light, or through clear surfaces, is left to the direct light.
 inline bool event_is_stored(vec4 position)
 {
     return event_is_diffuse(position) && event_before(position) != NOTHING_BEFORE;

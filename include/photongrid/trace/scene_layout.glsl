@@ -13,6 +13,8 @@ const uint TEXTURE_TABLE = 7u; // of the materials that have one; see trace/mesh
 const uint LIGHT_TREE = 12u;
 // Two records per node (trace/shape_tree.hpp). Corners of its box, m; w of the first: the number of the node after all
 // that are below it, or of a leaf -1 - the number of its shape's kind; w of the second: of a leaf, its shape's record.
+// w of the table's record: the node after all that shadow rays to rectangle lights can meet. If that is not the last
+// one, the root is left out, too.
 const uint SHAPE_TREE = 13u;
 // Forms of lights.
 const uint POINT_LIGHT = 0u;

@@ -101,6 +101,19 @@ namespace detail {
                 + " records; at most 2^24 are possible. A vertex takes 2, so use fewer vertices");
     }
 
+    /// Whether no lamp stands before another by more than `least`, m: then none blocks light on its way from another.
+    inline bool lamps_block_none(const std::vector<rectangle_light>& lamps, double least)
+    {
+        for (const auto& lit : lamps) {
+            const dvec3 n = glm::normalize(glm::cross(lit.edge_u, lit.edge_v));
+            for (const auto& other : lamps)
+                for (const auto& corner : surface_of(other).vertices)
+                    if (glm::dot(n, corner - lit.corner) > least)
+                        return false;
+        }
+        return true;
+    }
+
     /// The most iterations of the kernels' loops over a shape of this kind, per ray.
     template <class Kind, class Shape>
     std::uint64_t steps_of(Kind kind, const Shape& x)
@@ -253,9 +266,14 @@ namespace detail {
             if (shapes_.size() <= most_shapes_without_tree)
                 return;
             out_.features |= has_shape_tree;
-            const auto nodes = build_shape_tree(shapes_);
+            const std::size_t lamps = s_.rectangle_lights.size(); // the last shapes
+            const bool apart = lamps_block_none(s_.rectangle_lights, scale_ * 0x1p-26);
+            const auto nodes = build_shape_tree(shapes_, apart ? lamps : 0);
             out_.steps_per_ray += nodes.size();
             enter(kernels::SHAPE_TREE, w.next(), nodes.size(), 2);
+            const std::size_t others = shapes_.size() - lamps; // after the root, a tree of these
+            const std::size_t past = !apart || lamps == 0 ? nodes.size() : others == 0 ? 0 : 2 * others;
+            out_.records[kernels::SHAPE_TREE].w = static_cast<float>(past);
             for (const auto& n : nodes) {
                 w.put(dvec3(n.shape.box.low), n.is_leaf ? -1.0 - n.shape.kind : n.past);
                 w.put(dvec3(n.shape.box.high), n.shape.at);

@@ -70,7 +70,9 @@ void kernel(uint i)
     ArrivingLight light = arriving_light(number, args.first + i, args.whole != 0u && !coated, lit);
     LightSample found = light.found;
     if (!(found.per_power > 0.0f)
-        || (found.has_ray && occluded(lit.origin, found.direction, found.far, everything())))
+        || (found.has_ray
+            && occluded(lit.origin, found.direction, found.far,
+                light.is_rectangle ? all_before_rectangles() : everything())))
         return;
     origin = vec4(lit.origin.x, lit.origin.y, lit.origin.z, found.has_ray ? found.far : 0.0f);
     direction = vec4(found.direction.x, found.direction.y, found.direction.z, 0.0f);

@@ -44,10 +44,14 @@ namespace detail {
             nodes_.reserve(2 * shapes.size());
         }
 
-        std::vector<shape_node> build()
+        /// `apart`: so many of the last shapes are below the root's second child, all others below its first.
+        std::vector<shape_node> build(std::size_t apart)
         {
-            if (!shapes_.empty())
-                add(order_);
+            const std::span all(order_);
+            if (apart > 0 && apart < all.size())
+                join(all, all.size() - apart, 0);
+            else if (!all.empty())
+                add(all);
             return std::move(nodes_);
         }
 
@@ -55,18 +59,23 @@ namespace detail {
         /// Appends the tree of these shapes, `level` nodes below the root.
         void add(std::span<std::uint32_t> shapes, int level = 0)
         {
-            const std::size_t number = nodes_.size();
             if (shapes.size() == 1) {
-                nodes_.push_back({shapes_[shapes[0]], true, static_cast<std::uint32_t>(number + 1)});
+                nodes_.push_back({shapes_[shapes[0]], true, static_cast<std::uint32_t>(nodes_.size() + 1)});
                 return;
             }
+            // From level 32 on halves, so that the tree is at most 32 + log2(n) levels deep.
+            const bool in_the_middle = shapes.size() > 8192 || level >= 32;
+            join(shapes, in_the_middle ? split_in_the_middle(shapes) : split(shapes), level);
+        }
+
+        /// Appends a node, and below it the trees of the first `half` of these shapes and of the rest.
+        void join(std::span<std::uint32_t> shapes, std::size_t half, int level)
+        {
+            const std::size_t number = nodes_.size();
             shape_node made{{}, false, 0};
             for (const auto n : shapes)
                 made.shape.box.add(shapes_[n].box);
             nodes_.push_back(made);
-            // From level 32 on halves, so that the tree is at most 32 + log2(n) levels deep.
-            const bool in_the_middle = shapes.size() > 8192 || level >= 32;
-            const std::size_t half = in_the_middle ? split_in_the_middle(shapes) : split(shapes);
             add(shapes.first(half), level + 1);
             add(shapes.subspan(half), level + 1);
             nodes_[number].past = static_cast<std::uint32_t>(nodes_.size());
@@ -128,10 +137,11 @@ namespace detail {
     };
 } // namespace detail
 
-/// The tree of some shapes, the root first: a leaf for each shape. The same shapes have the same tree.
-inline std::vector<shape_node> build_shape_tree(std::span<const boxed_shape> shapes)
+/// The tree of some shapes, the root first: a leaf for each shape. The same shapes have the same tree. `apart`: so many
+/// of the last shapes are below the root's second child, all others below its first.
+inline std::vector<shape_node> build_shape_tree(std::span<const boxed_shape> shapes, std::size_t apart = 0)
 {
-    return detail::shape_tree_builder(shapes).build();
+    return detail::shape_tree_builder(shapes).build(apart);
 }
 
 } // namespace photongrid

@@ -59,12 +59,15 @@ Closest closest_in_tree(vec3 o, vec3 d, Closest c)
     return c;
 }
 
-bool tree_blocks(vec3 o, vec3 d, float far)
+// `lamps`: the surfaces of rectangle lights, too, where they are apart.
+bool tree_blocks(vec3 o, vec3 d, float far, bool lamps)
 {
-    Table tree = table_of(scene(SHAPE_TREE));
+    vec4 record = scene(SHAPE_TREE);
+    Table tree = table_of(record);
+    uint past = lamps ? tree.count : uint(record.w);
+    uint node = past < tree.count ? 1u : 0u;
     Ray r = ray_of(o, d);
-    uint node = 0u;
-    while (node < tree.count) {
+    while (node < past) {
         ShapeNode n = shape_node(tree, node, r, far);
         if (n.found && hit_in_box(n.kind, n.at, o, d, n.inside) < far)
             return true;
