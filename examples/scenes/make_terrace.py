@@ -69,5 +69,6 @@ def write_hdr(path, width, height):
     path.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (height, width) + pixels)
 
 
-write_png(folder / "terrace_wood.png", 256)
-write_hdr(folder / "terrace_sky.hdr", 128, 64)
+if __name__ == "__main__":
+    write_png(folder / "terrace_wood.png", 256)
+    write_hdr(folder / "terrace_sky.hdr", 128, 64)
