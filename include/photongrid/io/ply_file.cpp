@@ -1,17 +1,15 @@
 #include <photongrid/io/ply_file.hpp>
 #include <photongrid/io/tone_map.hpp>
+#include <photongrid/io/whole_file.hpp>
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -98,15 +96,6 @@ namespace {
             const auto begin = before.rfind('\n') + 1; // npos + 1 is 0
             throw scene_error(file_, line, at_ - begin + 1, what);
         }
-        /// A word of the file for messages: short, and without control characters.
-        static std::string quoted(std::string_view word)
-        {
-            std::string shown = "\"";
-            for (const char c : word.substr(0, 40))
-                shown += static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7F ? '?' : c;
-            return shown + '"';
-        }
-
         bool has(role use) const
         {
             return std::any_of(elements_.begin(), elements_.end(), [&](const element& e) {
@@ -144,7 +133,7 @@ namespace {
             for (const auto& s : scalar_names)
                 if (s.name == name)
                     return s.type;
-            fail("found " + quoted(name) + "; expected a type such as float or uchar");
+            fail("found " + shown_word(name) + "; expected a type such as float or uchar");
         }
         void read_header()
         {
@@ -174,12 +163,12 @@ namespace {
                     element e{std::string(w[1])};
                     const auto [end, wrong] = std::from_chars(w[2].data(), w[2].data() + w[2].size(), e.count);
                     if (wrong != std::errc() || end != w[2].data() + w[2].size())
-                        fail("found " + quoted(w[2]) + "; expected how many elements there are");
+                        fail("found " + shown_word(w[2]) + "; expected how many elements there are");
                     elements_.push_back(std::move(e));
                 } else if (w[0] == "property") {
                     read_property(w);
                 } else {
-                    fail("found " + quoted(w[0]) + "; expected format, comment, element, property or end_header");
+                    fail("found " + shown_word(w[0]) + "; expected format, comment, element, property or end_header");
                 }
             }
             if (!has_format)
@@ -189,7 +178,8 @@ namespace {
         }
         [[noreturn]] format throw_format(std::string_view word) const
         {
-            fail("found the format " + quoted(word) + "; expected ascii, binary_little_endian or binary_big_endian");
+            fail(
+                "found the format " + shown_word(word) + "; expected ascii, binary_little_endian or binary_big_endian");
         }
         void read_property(const std::vector<std::string_view>& w)
         {
@@ -205,7 +195,7 @@ namespace {
             if (is_list) {
                 p.count = scalar_of(w[2]);
                 if (*p.count == scalar::f32 || *p.count == scalar::f64)
-                    fail("the length of a list is of the type " + quoted(w[2]) + "; expected a whole number");
+                    fail("the length of a list is of the type " + shown_word(w[2]) + "; expected a whole number");
                 if (e.name == "face" && (name == "vertex_indices" || name == "vertex_index"))
                     p.use = role::corners;
             } else if (e.name == "vertex") {
@@ -224,7 +214,7 @@ namespace {
                 least += format_ == format::ascii ? 2 : size_of(p.count.value_or(p.type));
             // The last number of a text needs no blank behind it.
             if (e.count > 0 && least > 0 && e.count - 1 > (bytes_.size() - at_) / least)
-                fail("the header declares " + std::to_string(e.count) + " elements " + quoted(e.name)
+                fail("the header declares " + std::to_string(e.count) + " elements " + shown_word(e.name)
                     + ", which need more bytes than the file has");
             if (least == 0)
                 return;
@@ -325,7 +315,7 @@ namespace {
                 d = std::strtod(std::string(begin, past).c_str(), nullptr);
             else if (wrong != std::errc() || (past != end && !is_blank(*past)))
                 fail("found "
-                    + quoted(
+                    + shown_word(
                         std::string_view(begin, static_cast<std::size_t>(std::find_if(begin, end, is_blank) - begin)))
                     + "; expected a number");
             at_ = static_cast<std::size_t>(past - bytes_.data());
@@ -372,19 +362,6 @@ namespace {
 
 mesh parse_ply(const std::string& file, std::string_view bytes) { return ply_reader(file, bytes).read(); }
 
-mesh read_ply(const std::string& path)
-{
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
-        std::fopen(path.c_str(), "rb"), [](std::FILE* f) { return f ? std::fclose(f) : 0; });
-    std::string bytes;
-    if (file) {
-        std::vector<char> block(std::size_t{1} << 20);
-        while (const auto n = std::fread(block.data(), 1, block.size(), file.get()))
-            bytes.append(block.data(), n);
-    }
-    if (!file || std::ferror(file.get()) != 0)
-        throw scene_error(path, 0, 0, std::string("the file cannot be read: ") + std::strerror(errno));
-    return parse_ply(path, bytes);
-}
+mesh read_ply(const std::string& path) { return parse_ply(path, whole_file(path)); }
 
 } // namespace photongrid

@@ -1,6 +1,8 @@
-// Reads the surfaces of meshes in a scene file: from PLY files beside it or listed there, and where they are placed.
+// Reads the surfaces of meshes in a scene file: from PLY and OBJ files beside it or listed there, and where they are
+// placed.
 #pragma once
 
+#include <photongrid/io/obj_file.hpp>
 #include <photongrid/io/ply_file.hpp>
 #include <photongrid/io/scene_values.hpp>
 
@@ -88,13 +90,20 @@ protected:
     }
 
 private:
+    static bool is_obj(const std::string& name)
+    {
+        const auto ending = std::filesystem::path(name).extension();
+        return ending == ".obj" || ending == ".OBJ";
+    }
+
     /// The surface in a file. A file that several meshes name is read once.
     std::shared_ptr<const mesh> mesh_in(const std::string& name, const json_value& v)
     {
         auto& surface = surfaces_[name];
         if (!surface) {
             try {
-                surface = std::make_shared<const mesh>(read_ply(path_of(name)));
+                const auto path = path_of(name);
+                surface = std::make_shared<const mesh>(is_obj(name) ? read_obj(path) : read_ply(path));
             } catch (const scene_error& e) {
                 fail(v.place, e.what());
             }
