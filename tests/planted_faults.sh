@@ -245,7 +245,7 @@ faults=(
   "mirrors have no textures|include/photongrid/trace/met_surface.glsl|precise vec3 colored = m.reflectance * vec3(factors);|precise vec3 colored = m.reflectance * (m.kind == MIRROR_SURFACE ? vec3(1.0f, 1.0f, 1.0f) : vec3(factors));|validation"
   "photons meet clear surfaces half as often|include/photongrid/trace/bounce_photon.glsl|!(chance.x < opacity_at(hit.material, on_mesh, number))|!(chance.x < 0.5f * opacity_at(hit.material, on_mesh, number))|validation"
   "clear surfaces stop shadow rays|include/photongrid/trace/shadow_through.glsl|precise float clear = 1.0f - opacity_at(hit.material, true, i);|precise float clear = 0.0f * opacity_at(hit.material, true, i);"
-  "what a mixture's mirror reflects is not stored in its other part|include/photongrid/trace/bounce_photon.glsl|surface = BOTH_SURFACES;|surface = SPECULAR_SURFACE;|validation"
+  "what a mixture's mirror reflects is not stored in its other part|include/photongrid/trace/bounce_photon.glsl|surface = BOTH_SURFACES;|surface = SPECULAR_SURFACE;"
   "a mixture's parts are swapped for the eye|include/photongrid/trace/eye_bounce.glsl|hit.material = b.first ? parts.second : parts.first;|hit.material = b.first ? parts.first : parts.second;"
   "the share of a mixture has the texture of its opacity|include/photongrid/trace/met_surface.glsl|share * mesh_colors(colors_per_hit() * number + 2u).y|share * mesh_colors(colors_per_hit() * number + 2u).x"
   "textures of roughness are not squared|include/photongrid/trace/met_surface.glsl|m.alpha * (factors.w * factors.w)|m.alpha * factors.w"

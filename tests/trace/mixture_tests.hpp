@@ -150,6 +150,42 @@ TYPED_TEST_P(mixtures, of_one_part_and_even_textures_are_as_plain_materials)
     }
 }
 
+/// A matte part stores all photons that a surface receives, not only those that leave as from it.
+TYPED_TEST_P(mixtures, store_all_photons_that_reach_a_matte_part)
+{
+    auto plain = small_cornell();
+    plain.spheres.clear();
+    plain.render.map.photon_depth = 2;
+    auto mixed = plain;
+    mixed.materials.push_back({"silver", material_kind::mirror, dvec3(0.9)});
+    mixed.materials.push_back(mixture_of(5, 0, 0.1));
+    mixed.polygons[0].material = 6; // the floor
+    constexpr uint paths = 8192;
+    const auto frames_of = [&](const scene& s) {
+        auto& b = this->b();
+        const auto device = upload_scene(b, s);
+        detail::photon_frames<typename TestFixture::B> f(b, std::size_t{paths} * 3);
+        trace_batch(b, device, f, paths, 0, s.render);
+        return std::tuple{b.download(f.positions), b.download(f.powers), static_cast<float>(device.layout.center.y)};
+    };
+    const auto [positions, powers, height] = frames_of(plain);
+    const auto [mixed_positions, mixed_powers, same_height] = frames_of(mixed);
+    const auto is_on_floor
+        = [&](const glm::vec4& p) { return kernels::event_is_diffuse(p) && std::abs(p.y + height) < 1e-3f; };
+    std::size_t stored = 0;
+    for (std::size_t p = 0; p < paths; ++p) {
+        const std::size_t second = 2 * paths + p;
+        if (is_on_floor(positions[paths + p]) || !is_on_floor(positions[second]))
+            continue;
+        ++stored;
+        ASSERT_TRUE(kernels::event_is_stored(mixed_positions[second])) << p;
+        ASSERT_EQ(glm::vec3(mixed_positions[second]), glm::vec3(positions[second])) << p;
+        for (int c = 0; c < 3; ++c) // colours are rounded to 2^-12 where there are mixtures
+            ASSERT_LE(std::abs(mixed_powers[second][c] - powers[second][c]), 1e-3f * powers[second].x) << p;
+    }
+    EXPECT_GT(stored, 200u);
+}
+
 TYPED_TEST_P(mixtures, equal_the_serial_backends)
 {
     const auto s = mixed_cornell();
@@ -166,6 +202,6 @@ TYPED_TEST_P(mixtures, account_for_every_path)
 REGISTER_TYPED_TEST_SUITE_P(mixtures, sheets_stop_the_light_of_their_opacity,
     what_is_clear_is_not_seen_and_what_is_opaque_is_as_before, matte_parts_add_up_by_their_shares,
     of_all_kinds_have_the_albedo_of_their_parts, of_one_part_and_even_textures_are_as_plain_materials,
-    equal_the_serial_backends, account_for_every_path);
+    store_all_photons_that_reach_a_matte_part, equal_the_serial_backends, account_for_every_path);
 
 } // namespace photongrid::testing
