@@ -10,14 +10,6 @@ namespace photongrid::testing {
 
 template <class Tag>
 class mixtures : public textures<Tag> {
-protected:
-    photon_stats traced_by(const scene& s)
-    {
-        auto& b = this->b();
-        const auto device = upload_scene(b, s);
-        const auto t = trace_photons(b, s, device, s.render);
-        return count_photons(b, t, s.render.map.photons);
-    }
 };
 TYPED_TEST_SUITE_P(mixtures);
 
@@ -196,7 +188,7 @@ TYPED_TEST_P(mixtures, account_for_every_path)
 {
     auto s = mixed_cornell();
     s.render.map.photons = 20000;
-    expect_an_exact_account(this->traced_by(s), 20000);
+    expect_an_exact_account(this->traced(s), 20000);
 }
 
 REGISTER_TYPED_TEST_SUITE_P(mixtures, sheets_stop_the_light_of_their_opacity,

@@ -5,22 +5,33 @@
 #include <photongrid/scene/material.hpp>
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
 
-/// The parts of a mixture; of another material itself alone. They are in `materials`, or the material itself.
-inline std::vector<const material*> parts_of(std::span<const material> materials, const material& m)
-{
-    if (!is_mixture(m))
-        return {&m};
-    return {&materials[m.parts[0]], &materials[m.parts[1]]};
-}
+/// The parts of a mixture; of another material that alone.
+class material_parts {
+public:
+    /// They point to elements of `materials`, or to `m`.
+    material_parts(std::span<const material> materials, const material& m) : parts_{&m, nullptr}
+    {
+        if (is_mixture(m))
+            parts_ = {&materials[m.parts[0]], &materials[m.parts[1]]};
+    }
+
+    const material* const* begin() const { return parts_.data(); }
+    const material* const* end() const { return parts_.data() + (parts_[1] != nullptr ? 2 : 1); }
+
+private:
+    std::array<const material*, 2> parts_;
+};
+
+/// The parts of a material.
+inline material_parts parts_of(std::span<const material> materials, const material& m) { return {materials, m}; }
 
 namespace detail {
     template <class Predicate>

@@ -150,8 +150,15 @@ struct Branch {
     float share;
 };
 
+// A ray that has split fewer than args.splits times is the same in several passes. Count it in one of them, the one
+// whose unused branch bits are 0.
+bool is_counted(uint splits)
+{
+    return args.branch >> min(splits, 31u) == 0u; // a device that computes garbage may shift by anything
+}
+
 // At a split, where other passes follow the other branch: the one that this pass follows. `share`: of the first branch.
-// `counted`: whether this pass counts the ray so far (kernel).
+// `counted`: is_counted() before the split.
 Branch split_branch(uint splits, float share, bool counted)
 {
     if (counted)
@@ -216,9 +223,7 @@ void kernel(uint i)
         hit = mesh_hit(number);
     uint hits = uint(direction.w);
     uint splits = uint(throughput.w);
-    // A ray that has split fewer than `splits` times is the same in several passes. Count it in one of them, the one
-    // whose unused branch bits are 0.
-    bool counted = args.branch >> min(splits, 31u) == 0u; // a device that computes garbage may shift by anything
+    bool counted = is_counted(splits);
     if (hit.t < 0.0f) {
         point.w = -1.0f;
         if (ENVIRONMENT_LIGHTS && counted) {
@@ -248,7 +253,7 @@ void kernel(uint i)
             if (opacity > 0.0f) {
                 b = branch_of(i, PASSES + hits, splits, opacity, counted);
                 splits = min(splits + 1u, args.splits);
-                counted = args.branch >> min(splits, 31u) == 0u;
+                counted = is_counted(splits);
             }
             if (!b.first) {
                 if (hits + 1u > args.depth)
@@ -270,7 +275,7 @@ void kernel(uint i)
         if (share_of_second > 0.0f && share_of_second < 1.0f) {
             b = branch_of(i, PART + hits, splits, share_of_second, counted);
             splits = min(splits + 1u, args.splits);
-            counted = args.branch >> min(splits, 31u) == 0u;
+            counted = is_counted(splits);
         }
         part = b.first ? 1u : 0u;
         hit.material = b.first ? parts.second : parts.first;
@@ -288,7 +293,7 @@ void kernel(uint i)
         precise float reflectance = 1.0f - passed;
         Branch b = branch_of(i, FRESNEL + hits, splits, reflectance, counted);
         splits = min(splits + 1u, args.splits);
-        counted = args.branch >> min(splits, 31u) == 0u;
+        counted = is_counted(splits);
         below = !b.first;
         // The coat's reflectance follows, for the facet that the ray meets.
         precise float weight = below ? b.share / coat.mean_passed : (reflectance > 0.0f ? b.share / reflectance : 0.0f);
@@ -321,7 +326,7 @@ void kernel(uint i)
         if (splits < args.splits) {
             ends = split_branch(splits, 1.0f, counted).first;
             ++splits;
-            counted = args.branch >> min(splits, 31u) == 0u;
+            counted = is_counted(splits);
         } else {
             ends = stratified_number(i, 2500u + hits) < 0.5f;
             share = 2.0f;

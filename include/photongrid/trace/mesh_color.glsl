@@ -22,8 +22,9 @@ INPUT(5, vec4, vertices)    // xyz, m
 INPUT(6, vec4, attributes)  // of each vertex, two: xy: texture coordinates; rgb
 INPUT(7, uvec2, texels)     // 16 bits each: red | green << 16, blue | alpha << 16; of a colour linear
 INPUT(8, uvec4, instances)  // see instance.glsl; only with INSTANCES
-// The first, and of a mixture the second, of a part: rgb, the factor on the reflectance; w: on the roughness. The third
-// one, x: on the opacity; y: on the share of a mixture's second part.
+// Of a hit, the first one is for its material, or for the first part of a mixture, the second one for the second part.
+// rgb: factor on the reflectance; w: on the roughness. The third one, x: on the opacity; y: on the share of the second
+// part.
 OUTPUT(0, vec4, color)
 
 #include <photongrid/trace/materials.glsl>

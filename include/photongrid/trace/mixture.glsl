@@ -2,8 +2,8 @@
 SWITCH(21, MIXTURES)
 SWITCH(22, CLEAR)
 
-// What mesh_color.glsl writes for a hit: with neither a vector for the material; else one for each part of a mixture,
-// and one for the numbers that are about both.
+// How many vectors mesh_color.glsl writes for a hit: one; in scenes with mixtures or clear surfaces one for each of two
+// parts, and one for opacity and share.
 uint colors_per_hit()
 {
     return MIXTURES || CLEAR ? 3u : 1u;

@@ -25,7 +25,8 @@ const uint SPOT_LIGHT = 4u;
 const uint DIRECTIONAL_LIGHT = 5u;
 const uint ENVIRONMENT_LIGHT = 6u; // the last light of a scene that has one
 const uint FIRST_MATERIAL = SCENE_TABLES; // materials come first, so that kernels need not look their table up
-const uint MATERIAL_RECORDS = 4u; // trace/scene_records.hpp
+const uint MATERIAL_RECORDS = 4u; // trace/material_layout.hpp
+const uint TEXTURE_RECORDS = 3u;
 
 // Consecutive shapes of one kind, materials, or lights.
 struct Table {

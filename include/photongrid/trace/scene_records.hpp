@@ -7,6 +7,7 @@
 #include <photongrid/trace/coat_layout.hpp>
 #include <photongrid/trace/environment_layout.hpp>
 #include <photongrid/trace/light_tree.hpp>
+#include <photongrid/trace/material_layout.hpp>
 #include <photongrid/trace/mesh_layout.hpp>
 #include <photongrid/trace/moved_scene.hpp>
 #include <photongrid/trace/scene_layout.kernel.hpp>
@@ -304,39 +305,10 @@ namespace detail {
         void write_materials(record_writer& w)
         {
             enter(kernels::MATERIAL_TABLE, w.next(), s_.materials.size(), kernels::MATERIAL_RECORDS);
-            std::vector<const texture_use*> textures;
-            const auto number_of = [&](const texture_use& t) {
-                if (t.map)
-                    textures.push_back(&t);
-                return static_cast<double>(t.map ? textures.size() : 0);
-            };
-            for (const auto& m : s_.materials) {
-                w.put(m.reflectance, static_cast<uint>(entry_of(m.kind).surface));
-                w.put(dvec3(m.index_of_refraction, number_of(m.texture), alpha_of(m)), 0);
-                w.put(dvec3(m.opacity, m.share, m.parts[0]), m.parts[1]);
-                w.put(
-                    dvec3(number_of(m.opacity_texture), number_of(m.roughness_texture), number_of(m.share_texture)), 0);
-            }
-            write_textures(w, textures);
+            const auto textures = put_materials(w, s_.materials);
+            enter(kernels::TEXTURE_TABLE, w.next(), textures.size(), kernels::TEXTURE_RECORDS);
+            put_textures(w, textures, out_.meshes.texels);
             write_coats(w, out_.records, s_.materials);
-        }
-
-        /// Materials may share the texels of a texture.
-        void write_textures(record_writer& w, const std::vector<const texture_use*>& textures)
-        {
-            enter(kernels::TEXTURE_TABLE, w.next(), textures.size(), 3);
-            std::map<const texture*, std::size_t> firsts;
-            auto& texels = out_.meshes.texels;
-            for (const auto* use : textures) {
-                const auto [found, is_new] = firsts.emplace(use->map.get(), texels.size());
-                if (is_new)
-                    for (const auto& t : use->map->texels)
-                        texels.emplace_back(uint{t.x} | uint{t.y} << 16, uint{t.z} | uint{t.w} << 16);
-                require(texels.size() <= max_texels, "materials: their textures have more than 2^28 texels together");
-                w.put(dvec3(halves_of(found->second), use->map->width), use->map->height);
-                w.put(dvec3(use->scale, use->offset.x), use->offset.y);
-                w.put(dvec3(use->wrap == texture_wrap::repeat ? 1 : 0, static_cast<double>(use->channel), 0), 0);
-            }
         }
 
         /// Lights are chosen with probabilities proportional to their power.

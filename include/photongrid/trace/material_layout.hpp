@@ -1,0 +1,57 @@
+// The records of materials and of their textures, for kernels (trace/materials.glsl, mixture.glsl, mesh_color.glsl).
+#pragma once
+
+#include <photongrid/scene/material.hpp>
+#include <photongrid/scene/record_writer.hpp>
+#include <photongrid/trace/scene_layout.kernel.hpp>
+
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <map>
+#include <vector>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid::detail {
+
+/// Appends the records of materials. Returns their textures, which the records number from 1 on.
+inline std::vector<const texture_use*> put_materials(record_writer& w, const std::vector<material>& materials)
+{
+    std::vector<const texture_use*> textures;
+    const auto number_of = [&](const texture_use& t) {
+        if (t.map)
+            textures.push_back(&t);
+        return static_cast<double>(t.map ? textures.size() : 0);
+    };
+    for (const auto& m : materials) {
+        w.put(m.reflectance, static_cast<uint>(entry_of(m.kind).surface));
+        w.put(dvec3(m.index_of_refraction, number_of(m.texture), alpha_of(m)), 0); // w: see write_coats
+        w.put(dvec3(m.opacity, m.share, m.parts[0]), m.parts[1]);
+        const double opacity = number_of(m.opacity_texture), roughness = number_of(m.roughness_texture),
+                     share = number_of(m.share_texture);
+        w.put(dvec3(opacity, roughness, share), 0);
+    }
+    return textures;
+}
+
+/// Appends the records of textures, and their texels to those of all. Textures may share the texels of a map.
+/// \throws std::invalid_argument for more texels than max_texels.
+inline void put_textures(
+    record_writer& w, const std::vector<const texture_use*>& textures, std::vector<glm::uvec2>& texels)
+{
+    std::map<const texture*, std::size_t> firsts;
+    for (const auto* use : textures) {
+        const auto [found, is_new] = firsts.emplace(use->map.get(), texels.size());
+        if (is_new)
+            for (const auto& t : use->map->texels)
+                texels.emplace_back(uint{t.x} | uint{t.y} << 16, uint{t.z} | uint{t.w} << 16);
+        require(texels.size() <= max_texels, "materials: their textures have more than 2^28 texels together");
+        w.put(dvec3(halves_of(found->second), use->map->width), use->map->height);
+        w.put(dvec3(use->scale, use->offset.x), use->offset.y);
+        w.put(dvec3(use->wrap == texture_wrap::repeat ? 1 : 0, static_cast<double>(use->channel), 0), 0);
+    }
+}
+
+} // namespace photongrid::detail
+
+#include <photongrid/backend/exact_end.hpp>
