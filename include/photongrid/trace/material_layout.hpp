@@ -27,9 +27,9 @@ inline std::vector<const texture_use*> put_materials(record_writer& w, const std
         w.put(m.reflectance, static_cast<uint>(entry_of(m.kind).surface));
         w.put(dvec3(m.index_of_refraction, number_of(m.texture), alpha_of(m)), 0); // w: see write_coats
         w.put(dvec3(m.opacity, m.share, m.parts[0]), m.parts[1]);
-        const double opacity = number_of(m.opacity_texture), roughness = number_of(m.roughness_texture),
-                     share = number_of(m.share_texture);
-        w.put(dvec3(opacity, roughness, share), 0);
+        const double of_opacity = number_of(m.opacity_texture), of_roughness = number_of(m.roughness_texture),
+                     of_share = number_of(m.share_texture);
+        w.put(dvec3(of_opacity, of_roughness, of_share), 0);
     }
     return textures;
 }
