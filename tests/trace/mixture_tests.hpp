@@ -162,8 +162,9 @@ TYPED_TEST_P(mixtures, store_all_photons_that_reach_a_matte_part)
     };
     const auto [positions, powers, height] = frames_of(plain);
     const auto [mixed_positions, mixed_powers, same_height] = frames_of(mixed);
-    const auto is_on_floor
-        = [&](const glm::vec4& p) { return kernels::event_is_diffuse(p) && std::abs(p.y + height) < 1e-3f; };
+    const auto is_on_floor = [floor = -height](const glm::vec4& p) {
+        return kernels::event_is_diffuse(p) && std::abs(p.y - floor) < 1e-3f;
+    };
     std::size_t stored = 0;
     for (std::size_t p = 0; p < paths; ++p) {
         const std::size_t second = 2 * paths + p;
