@@ -4,7 +4,8 @@
 //
 // The mesh is a closed ball with bumps (tests/trace/mesh_sets.hpp) of about N triangles, 100,000 unless given. Half of
 // the rays begin at random places inside of it, the others on a sphere around it, in random directions. Each searcher
-// finds the closest hits of all, then whether anything is hit; medians of the repeats, which take turns. The stream is
+// finds the closest hits of all, then whether anything is hit; medians of the repeats, which take turns, as the builds
+// of the trees do. The stream is
 // Embree's call for many rays at once. Exits 3 where more than one hit in 10,000 is another triangle than Embree's.
 // --threads  that build the trees, 1 unless given; rays are searched for by one
 #include "median.hpp"
@@ -180,17 +181,22 @@ int main(int count, char** values)
     const auto rays = random_rays(a.rays);
     const auto n = static_cast<double>(m.triangles.size());
 
-    triangle_tree tree;
-    cpu_backend builder(a.threads);
-    const double build = seconds_of([&] { tree = build_triangle_tree(builder, m); });
-    const embree_mesh fast(m, RTC_SCENE_FLAG_NONE, a.threads), robust(m, RTC_SCENE_FLAG_ROBUST, a.threads);
     std::printf("%zu triangles, %zu rays; trees by %u threads, rays by one\n", m.triangles.size(), a.rays, a.threads);
+    std::vector<double> build, uploading, embree_build;
+    for (int r = 0; r < a.repeats; ++r) {
+        cpu_backend builder(a.threads); // a new one each time, which holds no memory yet
+        triangle_tree built;
+        build.push_back(seconds_of([&] { built = build_triangle_tree(builder, m); }));
+        uploading.push_back(seconds_of([&] { (void)upload_triangles(builder, built); }));
+        embree_build.push_back(embree_mesh(m, RTC_SCENE_FLAG_NONE, a.threads).build_seconds());
+    }
+    std::printf("build: photongrid %.3f s, for cpu %.3f s more, Embree %.3f s; %.2f of Embree's\n", median(build),
+        median(uploading), median(embree_build), (median(build) + median(uploading)) / median(embree_build));
+    const embree_mesh fast(m, RTC_SCENE_FLAG_NONE, a.threads), robust(m, RTC_SCENE_FLAG_ROBUST, a.threads);
     const double mesh_bytes = 12.0 * static_cast<double>(m.positions.size() + m.triangles.size());
+    const auto tree = build_triangle_tree(m);
     ours<serial_backend> serial(serial_backend{}, tree, rays);
-    const double uploading = seconds_of([&] { (void)upload_triangles(builder, tree); });
     ours<cpu_backend> cpu(cpu_backend(1), tree, rays);
-    std::printf(
-        "build: photongrid %.3f s, for cpu %.3f s more, Embree %.3f s\n", build, uploading, fast.build_seconds());
     std::printf(
         "bytes a triangle, vertices and indices included: photongrid %.0f, cpu %.0f, Embree %.0f; pairs deep: %u\n",
         (16.0 * static_cast<double>(tree.pairs.size() + tree.corners.size()) + mesh_bytes) / n,

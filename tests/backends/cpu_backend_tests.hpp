@@ -14,6 +14,7 @@
 #include <rapidcheck.h>
 
 #include <algorithm>
+#include <cstring>
 #include <thread>
 
 namespace photongrid::testing {
@@ -304,6 +305,43 @@ TEST(cpu_backend, two_backends_work_side_by_side)
     first.join();
     second.join();
     EXPECT_TRUE(a == c);
+}
+
+/// A tree does not depend on threads; and leaves of up to eight triangles, which this backend's tree has from the
+/// start, are those that it makes of the host's tree.
+TEST(cpu_backend, trees_depend_neither_on_threads_nor_on_smaller_leaves)
+{
+    cpu_backend one(1);
+    const auto equal = [](cpu_backend& a, const cpu::buffer<float>& x, cpu_backend& b, const cpu::buffer<float>& y) {
+        const auto m = a.download(x), n = b.download(y);
+        return m.size() == n.size() && std::memcmp(m.data(), n.data(), m.size() * sizeof(float)) == 0;
+    };
+    for (const auto& [name, m, closed] : ray_meshes(12000)) {
+        const auto expected = build_triangle_tree(one, m);
+        const auto wide = upload_triangles(one, expected), from_small = upload_triangles(one, build_triangle_tree(m));
+        for (const uint threads : {2u, 5u}) {
+            cpu_backend several(threads);
+            const auto tree = build_triangle_tree(several, m);
+            EXPECT_EQ(tree.pairs, expected.pairs) << name << ", " << threads << " threads";
+            EXPECT_EQ(tree.corners, expected.corners) << name << ", " << threads << " threads";
+            EXPECT_EQ(tree.depth, expected.depth) << name << ", " << threads << " threads";
+            const auto again = upload_triangles(several, tree);
+            EXPECT_TRUE(equal(one, wide.nodes, several, again.nodes)) << name << ", " << threads << " threads";
+            EXPECT_TRUE(equal(one, wide.blocks, several, again.blocks)) << name << ", " << threads << " threads";
+        }
+        if (m.triangles.size() > cpu::wide) { // fewer are one leaf, but two in the host's tree
+            EXPECT_TRUE(equal(one, wide.nodes, one, from_small.nodes)) << name;
+        }
+    }
+    const auto ball = bumpy_ball(30, 1, 0.2f);
+    const auto s = instances_about(ball, bumpy_ball(12, 1, 0.1f), 20, 4);
+    const auto expected = upload_triangles(one, build_instance_tree(one, s.surfaces, s.placements));
+    const auto from_small = upload_triangles(one, build_instance_tree(s.surfaces, s.placements));
+    cpu_backend several(5);
+    const auto again = upload_triangles(several, build_instance_tree(several, s.surfaces, s.placements));
+    EXPECT_TRUE(equal(one, expected.nodes, several, again.nodes));
+    EXPECT_TRUE(equal(one, expected.blocks, several, again.blocks));
+    EXPECT_TRUE(equal(one, expected.nodes, one, from_small.nodes));
 }
 
 /// One by one, from several threads at once, rays hit what many together hit.

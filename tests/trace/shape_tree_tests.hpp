@@ -6,6 +6,8 @@
 
 #include <photongrid/trace/shape_tree.hpp>
 
+#include <random>
+
 namespace photongrid::testing {
 namespace {
 
@@ -258,6 +260,59 @@ namespace {
                 EXPECT_NEAR(box.high[c], seen.high[c], 1e-3);
             }
         }
+    }
+
+    /// Lamps stand before one another where a corner of one lies on the bright side of another.
+    TEST(shape_tree, lamps_are_apart_where_none_stands_before_another)
+    {
+        const auto by_pairs = [](const std::vector<rectangle_light>& lamps, double least) {
+            for (const auto& a : lamps)
+                for (const auto& b : lamps)
+                    for (const double u : {0.0, 1.0})
+                        for (const double v : {0.0, 1.0})
+                            if (glm::dot(glm::normalize(glm::cross(a.edge_u, a.edge_v)),
+                                    b.corner + u * b.edge_u + v * b.edge_v - a.corner)
+                                > least)
+                                return false;
+            return true;
+        };
+        std::mt19937 bits(4);
+        const auto u = [&] { return static_cast<double>(bits()) * 0x1p-32; };
+        int apart = 0;
+        for (int i = 0; i < 300; ++i) {
+            std::vector<rectangle_light> lamps;
+            const int kind = i % 4;
+            const std::size_t count = 2 + bits() % 9;
+            for (std::size_t n = 0; n < count; ++n) {
+                rectangle_light lamp{"", {u(), 2, u()}, {0.2 + u(), 0, 0}, {0, 0, 0.2 + u()}, dvec3(1)};
+                if (kind == 1) // at other heights
+                    lamp.corner.y += 1e-3 * u();
+                if (kind == 2 && n % 2 == 1) { // back to back
+                    std::swap(lamp.edge_u, lamp.edge_v);
+                    lamp.corner.y += i % 8 == 2 ? 0.1 : -0.1;
+                }
+                if (kind == 3 && n == 1) // on another wall
+                    lamp = {"", {3, u(), u()}, {0, 0, 0.3}, {0, i % 8 == 3 ? 0.3 : -0.3, 0}, dvec3(1)};
+                lamps.push_back(lamp);
+            }
+            for (const double least : {1e-6, 5e-4}) {
+                ASSERT_EQ(detail::lamps_block_none(lamps, least), by_pairs(lamps, least)) << i << ", " << least;
+                apart += by_pairs(lamps, least) ? 1 : 0;
+            }
+        }
+        EXPECT_GT(apart, 100);
+        EXPECT_LT(apart, 500);
+        // Those on the outside of a ball are apart, and too many to tell.
+        std::vector<rectangle_light> ball;
+        for (int i = 0; i < 3000; ++i) {
+            const dvec3 n = glm::normalize(dvec3(u() - 0.5, u() - 0.5, u() - 0.5)),
+                        x = glm::normalize(glm::cross(n, dvec3(0.3, 0.2, 1)));
+            ball.push_back({"", n, 1e-4 * x, 1e-4 * glm::cross(n, x), dvec3(1)});
+            if (i == 200) {
+                EXPECT_TRUE(detail::lamps_block_none(ball, 1e-6));
+            }
+        }
+        EXPECT_FALSE(detail::lamps_block_none(ball, 1e-6));
     }
 
     TEST(shape_tree, scenes_of_few_shapes_have_none)

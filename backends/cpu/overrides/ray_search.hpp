@@ -29,7 +29,7 @@ inline
     triangle_tree
     build_triangle_tree(cpu_backend& device, const mesh& m)
 {
-    return detail::build_triangle_tree(m, cpu::run_on_threads(device));
+    return detail::build_triangle_tree(m, cpu::run_on_threads(device), {.whole = cpu::wide});
 }
 
 #if !defined(PHOTONGRID_CPU_COMPILED)
@@ -38,7 +38,7 @@ inline
     triangle_tree
     build_instance_tree(cpu_backend& device, std::span<const mesh> surfaces, std::span<const placement> placements)
 {
-    return detail::instance_tree_builder(surfaces, placements).build(cpu::run_on_threads(device));
+    return detail::instance_tree_builder(surfaces, placements, {.whole = cpu::wide}).build(cpu::run_on_threads(device));
 }
 
 #if !defined(PHOTONGRID_CPU_COMPILED)
@@ -47,9 +47,9 @@ inline
     device_triangles<cpu_backend>
     upload_triangles(cpu_backend& device, const triangle_tree& tree)
 {
-    auto w = cpu::tree_widener(tree).build();
-    return {upload(device, w.nodes), upload(device, w.blocks), w.low, w.high,
-        detail::upload_some(device, tree.instances), std::move(w.roots)};
+    auto made = cpu::tree_widener(tree).build(device, cpu::run_on_threads(device));
+    made.instances = detail::upload_some(device, tree.instances);
+    return made;
 }
 
 namespace cpu {

@@ -6,8 +6,12 @@
 #include <photongrid/scene/placed_mesh.hpp>
 #include <photongrid/scene/polygon.hpp>
 
+#include <algorithm>
 #include <array>
+#include <limits>
+#include <map>
 #include <numbers>
+#include <vector>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -158,6 +162,32 @@ struct light_kind<mesh_light> {
     }
     /// @}
 };
+
+namespace detail {
+    /// Whether no lamp stands before another by more than `least`, m: then none blocks light on its way from another.
+    /// False also where it would take long to tell: of thousands of lamps that face thousands of ways.
+    inline bool lamps_block_none(const std::vector<rectangle_light>& lamps, double least)
+    {
+        std::vector<dvec3> corners;
+        for (const auto& lamp : lamps)
+            for (const auto& corner : surface_of(lamp).vertices)
+                corners.push_back(corner);
+        std::map<std::array<double, 3>, double> reach; // by normals: how far corners lie along them at most
+        for (const auto& lit : lamps) {
+            const dvec3 n = glm::normalize(glm::cross(lit.edge_u, lit.edge_v));
+            const auto [found, is_new] = reach.try_emplace({n.x, n.y, n.z}, -std::numeric_limits<double>::infinity());
+            if (is_new) {
+                if (reach.size() * corners.size() > 1u << 24)
+                    return false;
+                for (const auto& corner : corners)
+                    found->second = std::max(found->second, glm::dot(n, corner));
+            }
+            if (found->second - glm::dot(n, lit.corner) > least)
+                return false;
+        }
+        return true;
+    }
+} // namespace detail
 
 } // namespace photongrid
 

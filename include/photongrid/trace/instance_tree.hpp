@@ -40,8 +40,10 @@ namespace detail {
         static constexpr std::size_t most_placements = std::size_t{1} << 24;
 
     public:
-        instance_tree_builder(std::span<const mesh> surfaces, std::span<const placement> placements)
-            : surfaces_(surfaces), placements_(placements)
+        /// `limits` of the surfaces' trees.
+        instance_tree_builder(
+            std::span<const mesh> surfaces, std::span<const placement> placements, const tree_limits& limits = {})
+            : surfaces_(surfaces), placements_(placements), limits_(limits)
         {
             for (std::size_t s = 0; s < surfaces.size(); ++s) {
                 check(surfaces[s]);
@@ -69,6 +71,8 @@ namespace detail {
             triangle_tree tree;
             if (placements_.empty()) // a tree that no ray meets
                 return tree_builder(mesh{}).build(run);
+            boxes_within_.resize(surfaces_.size());
+            run(surfaces_.size(), [&](std::size_t s) { boxes_within_[s] = boxes_within(surfaces_[s]); });
             std::vector<tree_box> boxes(placements_.size());
             run(placements_.size(), [&](std::size_t i) { boxes[i] = box_of(placements_[i]); });
             enlarge(boxes);
@@ -85,7 +89,7 @@ namespace detail {
             number_leaves(tree);
             tree.corners.clear();
 
-            tree_limits limits;
+            tree_limits limits = limits_;
             limits.deepest -= tree.depth + 1;
             uint depth = 0;
             std::vector<uint> roots(surfaces_.size()), sizes(surfaces_.size());
@@ -108,18 +112,25 @@ namespace detail {
         }
 
     private:
-        /// The box of a surface where it stands: around its triangles' boxes, in which hits lie.
+        /// The boxes of a surface's triangles, in which hits lie, together for so many triangles in a row that there
+        /// are at most a few hundred: each is turned at each place.
+        static std::vector<tree_box> boxes_within(const mesh& m)
+        {
+            const std::size_t n = m.triangles.size(), per_box = n / 256 + 1;
+            std::vector<tree_box> boxes((n + per_box - 1) / per_box);
+            for (std::size_t t = 0; t < n; ++t)
+                for (const glm::vec3& corner : corners_of(m, t))
+                    boxes[t / per_box].add(corner);
+            return boxes;
+        }
+        /// The box of a surface where it stands: around the boxes within it.
         tree_box box_of(const placement& p) const
         {
-            const mesh& m = surfaces_[p.surface];
             const glm::dmat3 spread(glm::abs(p.linear[0]), glm::abs(p.linear[1]), glm::abs(p.linear[2]));
             tree_box b;
-            for (std::size_t t = 0; t < m.triangles.size(); ++t) {
-                const auto corners = corners_of(m, t);
-                const glm::dvec3 low(glm::min(corners[0], glm::min(corners[1], corners[2]))),
-                    high(glm::max(corners[0], glm::max(corners[1], corners[2])));
-                const glm::dvec3 middle = p.linear * (0.5 * (low + high)) + p.offset,
-                                 half = spread * (0.5 * (high - low));
+            for (const tree_box& part : boxes_within_[p.surface]) {
+                const glm::dvec3 low(part.low), high(part.high), middle = p.linear * (0.5 * (low + high)) + p.offset,
+                                                                 half = spread * (0.5 * (high - low));
                 b.add(glm::vec3(middle - half));
                 b.add(glm::vec3(middle + half));
             }
@@ -205,7 +216,9 @@ namespace detail {
 
         std::span<const mesh> surfaces_;
         std::span<const placement> placements_;
-        std::vector<uint> links_; ///< of the instances
+        tree_limits limits_;
+        std::vector<std::vector<tree_box>> boxes_within_; ///< the surfaces, each in its own space
+        std::vector<uint> links_;                         ///< of the instances
     };
 } // namespace detail
 

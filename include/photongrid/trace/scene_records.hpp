@@ -102,19 +102,6 @@ namespace detail {
                 + " records; at most 2^24 are possible. A vertex takes 2, so use fewer vertices");
     }
 
-    /// Whether no lamp stands before another by more than `least`, m: then none blocks light on its way from another.
-    inline bool lamps_block_none(const std::vector<rectangle_light>& lamps, double least)
-    {
-        for (const auto& lit : lamps) {
-            const dvec3 n = glm::normalize(glm::cross(lit.edge_u, lit.edge_v));
-            for (const auto& other : lamps)
-                for (const auto& corner : surface_of(other).vertices)
-                    if (glm::dot(n, corner - lit.corner) > least)
-                        return false;
-        }
-        return true;
-    }
-
     /// The most iterations of the kernels' loops over a shape of this kind, per ray.
     template <class Kind, class Shape>
     std::uint64_t steps_of(Kind kind, const Shape& x)

@@ -1,11 +1,11 @@
 // A tree of boxes over the triangles of a mesh, built on the host: a bounding volume hierarchy with two children a
-// node, split where the surface area heuristic says (MacDonald and Booth, Heuristics for ray tracing using space
-// subdivision, 1990), binned (Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, 2007).
+// node, divided where tree_split.hpp says.
 #pragma once
 
 #include <photongrid/scene/mesh.hpp>
 #include <photongrid/trace/tree_box.hpp>
 #include <photongrid/trace/tree_node.kernel.hpp>
+#include <photongrid/trace/tree_split.hpp>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <glm/vec4.hpp>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -31,24 +32,11 @@ struct triangle_tree {
 };
 
 namespace detail {
-    /// The shape of a tree.
-    struct tree_limits {
-        uint deepest = kernels::DEEPEST_PAIR;      ///< pair
-        uint most_in_leaf = kernels::MOST_IN_LEAF; ///< triangles
-        std::size_t few = 6;                       ///< the most triangles of a leaf that could be split
-
-        /// The most triangles that a subtree can hold if its first pair has this depth.
-        std::uint64_t most_below(uint at) const
-        {
-            return at > deepest ? most_in_leaf : std::uint64_t{most_in_leaf} << (deepest + 1 - at);
-        }
-    };
-
     /// Builds a triangle_tree. The same mesh gives the same tree on every machine, with any number of threads.
     class tree_builder {
     public:
         explicit tree_builder(const mesh& m, const tree_limits& limits = {})
-            : mesh_(m), limits_(limits), items_(m.triangles.size())
+            : mesh_(m), limits_(limits), items_(std::make_unique_for_overwrite<tree_item[]>(m.triangles.size()))
         {
         }
 
@@ -56,29 +44,35 @@ namespace detail {
         template <class Run>
         triangle_tree build(const Run& run)
         {
-            const std::size_t n = items_.size();
-            part all{0, n};
-            for (std::size_t t = 0; t < n; ++t) {
-                const auto c = corners_of(mesh_, t);
-                items_[t] = item(c, static_cast<uint>(t));
-                all.add(items_[t]);
-            }
-            // The upper part of the tree, then what is below it, in pieces.
+            const std::size_t n = mesh_.triangles.size(), most_in_piece = std::max<std::size_t>(n / 32, 4096);
+            const tree_part all = make_items(run);
+            const tree_splitter by(items_.get(), limits_);
+            grower top{by};
             std::vector<piece> pieces;
-            grower top{items_, limits_, std::max<std::size_t>(n / 32, 4096), &pieces};
-            top.grow_root(all);
-            std::vector<grower> below(pieces.size(), grower{items_, limits_});
-            run(pieces.size(), [&](std::size_t i) { pieces[i].root = below[i].grow(pieces[i].of, pieces[i].depth); });
-
-            triangle_tree tree{std::move(top.pairs), {}, top.depth};
+            if (n <= most_in_piece)
+                top.grow_root(all);
+            else
+                pieces = split_large(top, all, most_in_piece, run);
+            std::vector<grower> below(pieces.size(), grower{by});
+            triangle_tree tree;
+            run(pieces.size() + 1, [&](std::size_t i) {
+                if (i == 0)
+                    tree.corners.resize(n * kernels::TRIANGLE_RECORDS); // much new memory, which takes its time
+                else
+                    pieces[i - 1].root = below[i - 1].grow(pieces[i - 1].of, pieces[i - 1].depth);
+            });
+            tree.pairs = std::move(top.pairs);
+            tree.depth = top.depth;
+            std::size_t pairs = tree.pairs.size();
             for (std::size_t i = 0; i < pieces.size(); ++i) {
-                append(tree, pieces[i], below[i].pairs);
+                pieces[i].first_pair = static_cast<uint>(pairs / kernels::PAIR_RECORDS);
+                pairs += below[i].pairs.size();
                 tree.depth = std::max(tree.depth, below[i].depth);
             }
-            tree.corners.resize(n * kernels::TRIANGLE_RECORDS);
-            constexpr std::size_t block = 65536;
-            run((n + block - 1) / block, [&](std::size_t b) {
-                for (std::size_t t = b * block; t < std::min(n, (b + 1) * block); ++t) {
+            tree.pairs.resize(pairs);
+            run(pieces.size(), [&](std::size_t i) { put(tree, pieces[i], below[i].pairs); });
+            for_blocks(run, [&](std::size_t first, std::size_t past) {
+                for (std::size_t t = first; t < past; ++t) {
                     const uint triangle = items_[t].triangle();
                     const auto corners = corners_of(mesh_, triangle);
                     for (std::size_t c = 0; c < 3; ++c)
@@ -89,87 +83,24 @@ namespace detail {
         }
 
     private:
-        static constexpr std::size_t most_bins = 16;
+        static constexpr std::size_t per_block = 65536;
 
-        /// A triangle's box, and the halves of its index in the mesh as two floats. The index's bits as one float would
-        /// often be subnormal, and arithmetic on all lanes slow.
-        struct item {
-            least_box box;
+        /// Calls f(first, past) for blocks of triangles.
+        template <class Run, class F>
+        void for_blocks(const Run& run, const F& f) const
+        {
+            const std::size_t n = mesh_.triangles.size();
+            run((n + per_block - 1) / per_block,
+                [&](std::size_t b) { f(b * per_block, std::min(n, (b + 1) * per_block)); });
+        }
 
-            item() = default;
-            item(const std::array<glm::vec3, 3>& corners, uint triangle) : box(least_box::of(corners[0]))
-            {
-                box.add(least_box::of(corners[1]));
-                box.add(least_box::of(corners[2]));
-                box.least[3] = static_cast<float>(triangle & 0xFFFFu);
-                box.least[7] = static_cast<float>(triangle >> 16u);
-            }
-            uint triangle() const { return static_cast<uint>(box.least[3]) | static_cast<uint>(box.least[7]) << 16u; }
-            /// Twice the middle of its box, m.
-            least_box middle() const
-            {
-                least_box m;
-                for (std::size_t i = 0; i < 4; ++i)
-                    m.least[i] = box.least[i] - box.least[4 + i];
-                for (std::size_t i = 0; i < 4; ++i)
-                    m.least[4 + i] = box.least[4 + i] - box.least[i];
-                return m;
-            }
-        };
-        /// A range of items, to become a subtree.
-        struct part {
-            std::size_t first, past;
-            least_box box = least_box::of_nothing(), middles = box; ///< of the items' boxes; of their middles
-
-            std::size_t size() const { return past - first; }
-            void add(const item& x)
-            {
-                box.add(x.box);
-                middles.add(x.middle());
-            }
-        };
-        /// A part that another grower makes a subtree of.
+        /// A part that is still to become a subtree.
         struct piece {
-            part of;
-            uint depth, above; ///< of its first pair; the pair and child that it is below
-            uint root = 0;     ///< what it becomes, in the grower's own pairs
+            tree_part of;
+            uint depth, above;   ///< of its first pair; the pair and child that it is below
+            uint root = 0;       ///< what it becomes, in its grower's own pairs
+            uint first_pair = 0; ///< where these are in the tree
         };
-        /// A split of a part by a plane between two bins.
-        struct plane {
-            double cost = std::numeric_limits<double>::max(); ///< triangles times area, summed over both sides, m^2
-            std::size_t axis = 0;
-            std::size_t bin = 0; ///< the last one of the first side
-        };
-        /// The bins of a part along each axis, of equal width.
-        struct bins {
-            std::size_t count;
-            std::array<float, 4> low;     ///< item::middle() where the first bin starts
-            std::array<float, 4> per_bin; ///< 1 / bin's width; 0 without width
-
-            explicit bins(const part& p) : count(p.size() <= 4 ? 4 : p.size() <= 16 ? 8 : most_bins)
-            {
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    low[axis] = p.middles.least[axis];
-                    per_bin[axis] = static_cast<float>(count) / (-p.middles.least[4 + axis] - low[axis]);
-                    if (!(per_bin[axis] > 0 && per_bin[axis] <= std::numeric_limits<float>::max()))
-                        per_bin[axis] = 0; // or too little width to divide by
-                }
-                low[3] = per_bin[3] = 0;
-            }
-            /// Along each axis; the fourth has no meaning.
-            std::array<int, 4> of(const item& x) const
-            {
-                const auto m = x.middle();
-                const int last = static_cast<int>(count) - 1;
-                std::array<int, 4> n;
-                for (std::size_t i = 0; i < 4; ++i) {
-                    const int b = static_cast<int>((m.least[i] - low[i]) * per_bin[i]);
-                    n[i] = b < last ? b : last;
-                }
-                return n;
-            }
-        };
-
         static glm::uvec4 bits_of(const glm::vec3& v, uint w)
         {
             return {std::bit_cast<uint>(v.x), std::bit_cast<uint>(v.y), std::bit_cast<uint>(v.z), w};
@@ -177,159 +108,121 @@ namespace detail {
 
         /// Makes pairs of nodes of parts.
         struct grower {
-            std::vector<item>& items;
-            tree_limits limits;
-            std::size_t size_of_piece = 0;        ///< parts of up to so many items are left to others ...
-            std::vector<piece>* pieces = nullptr; ///< ... and added here; null: none is
+            tree_splitter by;
             std::vector<glm::uvec4> pairs{};
             uint depth = 0; ///< of the deepest pair
 
             /// The first pair has no parent, whose split it would be: a tree of one leaf has an empty second child.
-            void grow_root(const part& all)
+            void grow_root(const tree_part& all)
             {
-                part halves[2]{all, {all.past, all.past}};
-                (void)split(all, 0, halves);
-                add_pair(halves, 0);
+                tree_part halves[2]{all, {all.past, all.past}};
+                (void)by.split(all, 0, halves);
+                grow_pair(halves, 0);
+                pairs[2].w = kernels::NO_PAIR;
             }
 
             /// The child that a part becomes: a leaf, or the pair of its halves, at that depth.
-            uint grow(const part& p, uint at)
+            uint grow(const tree_part& p, uint at)
             {
-                part halves[2]{};
-                return split(p, at, halves) ? add_pair(halves, at)
-                                            : kernels::leaf_of(static_cast<uint>(p.first),
-                                                static_cast<uint>(std::max<std::size_t>(p.size(), 1)));
+                tree_part halves[2]{};
+                return by.split(p, at, halves) ? grow_pair(halves, at)
+                                               : kernels::leaf_of(static_cast<uint>(p.first),
+                                                   static_cast<uint>(std::max<std::size_t>(p.size(), 1)));
+            }
+
+            /// Adds a pair with the boxes of both halves and no children.
+            uint add_pair(const tree_part (&halves)[2], uint at)
+            {
+                const auto pair = static_cast<uint>(pairs.size() / kernels::PAIR_RECORDS);
+                depth = std::max(depth, at);
+                for (const tree_part& p : halves) {
+                    const tree_box box = p.box.box();
+                    pairs.push_back(bits_of(box.low, 0));
+                    pairs.push_back(bits_of(box.high, 0));
+                }
+                return pair;
+            }
+            void link(uint pair, uint side, uint child)
+            {
+                pairs[pair * kernels::PAIR_RECORDS + side].w = child;
+                if (!kernels::is_leaf(child))
+                    pairs[child * kernels::PAIR_RECORDS + 2].w = kernels::below_child(pair, side);
             }
 
         private:
-            uint add_pair(const part (&halves)[2], uint at)
+            uint grow_pair(const tree_part (&halves)[2], uint at)
             {
-                const auto pair = static_cast<uint>(pairs.size() / kernels::PAIR_RECORDS),
-                           first = pair * kernels::PAIR_RECORDS;
-                depth = std::max(depth, at);
-                pairs.resize(pairs.size() + kernels::PAIR_RECORDS);
-                for (uint side = 0; side < 2; ++side) {
-                    const part& p = halves[side];
-                    const uint above = kernels::below_child(pair, side);
-                    const tree_box box = p.box.box();
-                    pairs[first + 2 * side] = bits_of(box.low, pairs[first + 2 * side].w);
-                    pairs[first + 2 * side + 1] = bits_of(box.high, pairs[first + 2 * side + 1].w);
-                    if (pieces != nullptr && p.size() > 0 && p.size() <= size_of_piece) {
-                        pieces->push_back({p, at + 1, above});
-                        continue;
-                    }
-                    const uint child = grow(p, at + 1);
-                    pairs[first + side].w = child;
-                    if (!kernels::is_leaf(child))
-                        pairs[child * kernels::PAIR_RECORDS + 2].w = above;
-                }
-                if (pair == 0)
-                    pairs[2].w = kernels::NO_PAIR;
+                const uint pair = add_pair(halves, at);
+                for (uint side = 0; side < 2; ++side)
+                    link(pair, side, grow(halves[side], at + 1));
                 return pair;
-            }
-
-            /// The best plane for a part; its cost is the largest number if all middles are one point.
-            plane best_plane(const part& p, const bins& in) const
-            {
-                struct contents {
-                    least_box box;
-                    std::size_t held;
-                };
-                contents found[3][most_bins];
-                for (auto& of_axis : found)
-                    std::fill_n(of_axis, in.count, contents{least_box::of_nothing(), 0});
-                for (std::size_t i = p.first; i < p.past; ++i) {
-                    const item& x = items[i];
-                    const auto bin = in.of(x);
-                    for (std::size_t axis = 0; axis < 3; ++axis) {
-                        contents& c = found[axis][static_cast<std::size_t>(bin[axis])];
-                        c.box.add(x.box);
-                        ++c.held;
-                    }
-                }
-                plane best;
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    if (in.per_bin[axis] == 0)
-                        continue;
-                    std::array<double, most_bins> after; // cost of the bins from here on
-                    contents right{least_box::of_nothing(), 0};
-                    for (std::size_t b = in.count; b-- > 1;) {
-                        right.box.add(found[axis][b].box);
-                        right.held += found[axis][b].held;
-                        after[b] = static_cast<double>(right.held) * right.box.area();
-                    }
-                    contents left{least_box::of_nothing(), 0};
-                    for (std::size_t b = 0; b + 1 < in.count; ++b) {
-                        left.box.add(found[axis][b].box);
-                        left.held += found[axis][b].held;
-                        if (left.held == 0 || left.held == p.size())
-                            continue;
-                        const double cost = static_cast<double>(left.held) * left.box.area() + after[b + 1];
-                        if (cost < best.cost)
-                            best = {cost, axis, b};
-                    }
-                }
-                return best;
-            }
-
-            /// Divides a part, whose items are ordered so that those of one half come first. Returns false if it is to
-            /// be a leaf. `at`: depth of the pair that the halves would be.
-            bool split(const part& p, uint at, part (&halves)[2])
-            {
-                if (p.size() <= 1 || at > limits.deepest)
-                    return false;
-                const bins in(p);
-                const plane best = best_plane(p, in);
-                const double area = p.box.area();
-                // A pair costs as much as the tests of three triangles.
-                if (at > 0 && p.size() <= limits.few && !(best.cost + 3 * area < static_cast<double>(p.size()) * area))
-                    return false;
-                if (best.cost < std::numeric_limits<double>::max()) {
-                    halves[0] = {p.first, p.first};
-                    halves[1] = {p.past, p.past};
-                    while (halves[0].past < halves[1].first) {
-                        item& x = items[halves[0].past];
-                        if (static_cast<std::size_t>(in.of(x)[best.axis]) <= best.bin) {
-                            halves[0].add(x);
-                            ++halves[0].past;
-                        } else {
-                            halves[1].add(x);
-                            std::swap(x, items[--halves[1].first]);
-                        }
-                    }
-                    if (std::max(halves[0].size(), halves[1].size()) <= limits.most_below(at + 1))
-                        return true;
-                }
-                // No plane divides them, or the tree would become too deep: halves, by place, or by index at one place.
-                const auto begin = items.begin() + static_cast<std::ptrdiff_t>(p.first),
-                           end = items.begin() + static_cast<std::ptrdiff_t>(p.past), half = begin + (end - begin) / 2;
-                std::nth_element(begin, half, end, [&](const item& a, const item& b) {
-                    const float x = a.middle().least[best.axis], y = b.middle().least[best.axis];
-                    return x < y || (x == y && a.triangle() < b.triangle());
-                });
-                const auto middle = static_cast<std::size_t>(half - items.begin());
-                halves[0] = {p.first, middle};
-                halves[1] = {middle, p.past};
-                for (part& h : halves)
-                    for (std::size_t i = h.first; i < h.past; ++i)
-                        h.add(items[i]);
-                return true;
             }
         };
 
-        /// Adds the pairs of a piece behind those of the tree.
-        static void append(triangle_tree& tree, const piece& p, const std::vector<glm::uvec4>& pairs)
+        /// Makes an item of each triangle. Returns the part of all.
+        template <class Run>
+        tree_part make_items(const Run& run)
         {
-            const auto offset = static_cast<uint>(tree.pairs.size() / kernels::PAIR_RECORDS);
-            const auto moved = [&](uint child) { return kernels::is_leaf(child) ? child : child + offset; };
-            tree.pairs.insert(tree.pairs.end(), pairs.begin(), pairs.end());
-            for (std::size_t at = offset * kernels::PAIR_RECORDS; at < tree.pairs.size(); at += kernels::PAIR_RECORDS) {
-                tree.pairs[at].w = moved(tree.pairs[at].w);
-                tree.pairs[at + 1].w = moved(tree.pairs[at + 1].w);
-                tree.pairs[at + 2].w = at == offset * kernels::PAIR_RECORDS
+            const std::size_t n = mesh_.triangles.size();
+            std::vector<tree_part> blocks((n + per_block - 1) / per_block, tree_part{0, n});
+            for_blocks(run, [&](std::size_t first, std::size_t past) {
+                tree_part& block = blocks[first / per_block];
+                for (std::size_t t = first; t < past; ++t) {
+                    items_[t] = tree_item(corners_of(mesh_, t), static_cast<uint>(t));
+                    block.add(items_[t]);
+                }
+            });
+            tree_part all{0, n};
+            for (const tree_part& block : blocks) {
+                all.box.add(block.box);
+                all.middles.add(block.middles);
+            }
+            return all;
+        }
+
+        /// Makes the upper pairs of the tree: splits parts of more than `most` items, all of one level at once. Returns
+        /// the smaller parts that are left.
+        template <class Run>
+        static std::vector<piece> split_large(grower& top, const tree_part& all, std::size_t most, const Run& run)
+        {
+            struct two_parts {
+                tree_part of[2]{};
+            };
+            std::vector<piece> level{{all, 0, kernels::NO_PAIR}}, left;
+            while (!level.empty()) {
+                std::vector<two_parts> halves(level.size());
+                run(level.size(),
+                    [&](std::size_t i) { (void)top.by.split(level[i].of, level[i].depth, halves[i].of); });
+                std::vector<piece> next;
+                for (std::size_t i = 0; i < level.size(); ++i) {
+                    const uint above = level[i].above, at = level[i].depth, pair = top.add_pair(halves[i].of, at);
+                    if (above == kernels::NO_PAIR)
+                        top.pairs[2].w = above;
+                    else
+                        top.link(kernels::pair_above(above), kernels::child_above(above), pair);
+                    for (uint side = 0; side < 2; ++side) {
+                        const tree_part& half = halves[i].of[side];
+                        (half.size() > most ? next : left).push_back({half, at + 1, kernels::below_child(pair, side)});
+                    }
+                }
+                level = std::move(next);
+            }
+            return left;
+        }
+
+        /// Puts a piece with its pairs into the tree.
+        static void put(triangle_tree& tree, const piece& p, const std::vector<glm::uvec4>& pairs)
+        {
+            const auto moved = [&](uint child) { return kernels::is_leaf(child) ? child : child + p.first_pair; };
+            glm::uvec4* to = tree.pairs.data() + std::size_t{p.first_pair} * kernels::PAIR_RECORDS;
+            std::copy(pairs.begin(), pairs.end(), to);
+            for (std::size_t at = 0; at < pairs.size(); at += kernels::PAIR_RECORDS) {
+                to[at].w = moved(to[at].w);
+                to[at + 1].w = moved(to[at + 1].w);
+                const uint above = to[at + 2].w;
+                to[at + 2].w = at == 0
                     ? p.above
-                    : kernels::below_child(
-                        kernels::pair_above(tree.pairs[at + 2].w) + offset, kernels::child_above(tree.pairs[at + 2].w));
+                    : kernels::below_child(kernels::pair_above(above) + p.first_pair, kernels::child_above(above));
             }
             tree.pairs[kernels::pair_above(p.above) * kernels::PAIR_RECORDS + kernels::child_above(p.above)].w
                 = moved(p.root);
@@ -337,7 +230,7 @@ namespace detail {
 
         const mesh& mesh_;
         tree_limits limits_;
-        std::vector<item> items_;
+        std::unique_ptr<tree_item[]> items_; ///< of the triangles
     };
 
     /// \throws std::invalid_argument for more triangles than the leaves of a tree can number.
@@ -349,11 +242,11 @@ namespace detail {
     }
 
     template <class Run>
-    triangle_tree build_triangle_tree(const mesh& m, const Run& run)
+    triangle_tree build_triangle_tree(const mesh& m, const Run& run, const tree_limits& limits = {})
     {
         check(m);
         require_countable(m.triangles.size());
-        return tree_builder(m).build(run);
+        return tree_builder(m, limits).build(run);
     }
 
     /// Runs one after the other.
