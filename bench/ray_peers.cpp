@@ -5,8 +5,8 @@
 // The mesh is a closed ball with bumps (tests/trace/mesh_sets.hpp) of about N triangles, 100,000 unless given. Half of
 // the rays begin at random places inside of it, the others on a sphere around it, in random directions. Each searcher
 // finds the closest hits of all, then whether anything is hit; medians of the repeats, which take turns, as the builds
-// of the trees do. The stream is
-// Embree's call for many rays at once. Exits 3 where more than one hit in 10,000 is another triangle than Embree's.
+// of the trees do. The stream is Embree's call for many rays at once. Exits 3 where more than one hit in 10,000 is
+// another triangle than Embree's.
 // --threads  that build the trees, 1 unless given; rays are searched for by one
 #include "median.hpp"
 #include "stopwatch.hpp"

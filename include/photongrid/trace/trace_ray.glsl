@@ -95,14 +95,18 @@ void kernel(uint i)
         }
         bool above_instances = INSTANCES && instance == NO_INSTANCE;
         uint taken = 1u;
-        vec2 first = inside_child(pair, 0u, r);
-        vec2 second = inside_child(pair, 1u, r);
+        uvec4 low_0 = pairs(PAIR_RECORDS * pair);
+        uvec4 high_0 = pairs(PAIR_RECORDS * pair + 1u);
+        uvec4 low_1 = pairs(PAIR_RECORDS * pair + 2u);
+        uvec4 high_1 = pairs(PAIR_RECORDS * pair + 3u);
+        vec2 first = inside_box(corner_of(low_0), corner_of(high_0), r);
+        vec2 second = inside_box(corner_of(low_1), corner_of(high_1), r);
         uint nearer = second.x < first.x ? 1u : 0u;
         uint next = NO_PAIR;
         bool both = false;
         for (uint nth = 0u; nth < 2u; ++nth) {
             uint side = nth == 0u ? nearer : 1u - nearer;
-            uint child = child_of(pair, side);
+            uint child = side == 0u ? low_0.w : high_0.w;
             bool meets = meets_box(side == 0u ? first : second, closest);
             if (meets && (!is_leaf(child) || above_instances)) {
                 both = next != NO_PAIR;
