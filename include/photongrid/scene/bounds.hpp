@@ -20,6 +20,11 @@ struct bounds {
         low = glm::min(low, p - margin);
         high = glm::max(high, p + margin);
     }
+    void add(const bounds& b)
+    {
+        low = glm::min(low, b.low);
+        high = glm::max(high, b.high);
+    }
     /// Whether nothing was added.
     bool empty() const { return !(low.x <= high.x); }
 };

@@ -98,8 +98,8 @@ struct shape_kind<placed_mesh> {
     static void add_bounds(bounds& b, const placed_mesh& m)
     {
         for (std::size_t t = 0; t < m.surface->triangles.size(); ++t)
-            for (const auto& c : corners_of(m, t))
-                b.add(c);
+            for (const auto& c : corners_of(*m.surface, t))
+                b.add(place_of(m, c));
     }
     /// The diagonal of its box, m.
     static double size(const placed_mesh& m)

@@ -164,9 +164,11 @@ namespace detail {
             });
             for (const auto& m : s_.meshes) {
                 const auto& of = s_.materials[m.material];
-                shape_kind<placed_mesh>::add_bounds(all, m);
+                bounds box; // once: there may be thousands of meshes of thousands of triangles
+                shape_kind<placed_mesh>::add_bounds(box, m);
+                all.add(box);
                 if (is_diffuse(s_.materials, of))
-                    shape_kind<placed_mesh>::add_bounds(diffuse, m);
+                    diffuse.add(box);
                 out_.features |= has_meshes | features_of(of);
                 out_.features |= m.surface->normals.empty() ? 0u : has_smooth_meshes;
                 out_.features |= shared_.holds(m) ? has_instances : 0u;
