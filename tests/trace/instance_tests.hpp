@@ -86,6 +86,8 @@ inline ray_hit hit_by_all(const instance_set& s, const glm::vec4& o, const glm::
 template <class Tag>
 class instances : public mesh_scenes<Tag> {
 protected:
+    using mesh_scenes<Tag>::traced;
+
     std::vector<ray_hit> traced(const instance_set& s, const ray_set& rays, const ray_search_settings& settings = {})
     {
         auto& b = this->b();
@@ -276,6 +278,29 @@ TYPED_TEST_P(instances, make_the_picture_of_surfaces_that_are_stored_for_each_pl
     EXPECT_LE(error, 2e-3); // photons that rounding sends elsewhere
 }
 
+/// Inside of a turned, stretched and sometimes mirrored instance, whatever the walls are of.
+TYPED_TEST_P(instances, no_photon_leaves_a_closed_room)
+{
+    std::mt19937 bits(6);
+    for (int i = 0; i < 6; ++i) {
+        auto s = bumpy_room(3000, 1, dvec3(0));
+        s.materials.push_back({"glossy", material_kind::plastic, dvec3(0.95), 1.5, i < 3 ? 0.0 : 0.4});
+        s.materials.push_back({"steel", material_kind::metal, dvec3(0.95), 1.5, i < 3 ? 0.0 : 0.3});
+        material both{"both", material_kind::mixture};
+        both.parts = {0, 2};
+        s.materials.push_back(both);
+        s.meshes[0].linear = random_linear(bits, 3, i % 2 == 1);
+        s.meshes[0].material = std::array{0u, 1u, 3u}[static_cast<std::size_t>(i) % 3];
+        s.meshes.push_back(s.meshes[0]); // another place, so that the surface is stored for both
+        s.meshes[1].offset = {20, 3, 1};
+        ASSERT_NE(lay_out(s).features & has_instances, 0u);
+        const auto p = this->traced(s);
+        EXPECT_EQ(p.escaped, 0u) << i << ", of " << p.emitted << " paths";
+        EXPECT_GT(p.diffuse_hits, 5 * p.emitted) << i;
+        expect_an_exact_account(p, s.render.map.photons);
+    }
+}
+
 TYPED_TEST_P(instances, equal_the_serial_backends)
 {
     const auto s = room_of_instances();
@@ -285,6 +310,7 @@ TYPED_TEST_P(instances, equal_the_serial_backends)
 REGISTER_TYPED_TEST_SUITE_P(instances, are_hit_as_a_loop_over_all_triangles_hits, are_hit_where_double_precision_says,
     never_leave_a_closed_surface, long_never_leave_a_closed_surface, flat_faces_are_hit_from_afar,
     go_on_from_pass_to_pass_and_hit_anything, are_refused_where_they_have_no_place,
-    make_the_picture_of_surfaces_that_are_stored_for_each_place, equal_the_serial_backends);
+    make_the_picture_of_surfaces_that_are_stored_for_each_place, no_photon_leaves_a_closed_room,
+    equal_the_serial_backends);
 
 } // namespace photongrid::testing

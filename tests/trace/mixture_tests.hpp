@@ -51,6 +51,13 @@ TYPED_TEST_P(mixtures, sheets_stop_the_light_of_their_opacity)
                     << x << ' ' << y << ' ' << c;
             }
         }
+    // Another sheet where one is already, or closer to it than the offset of rays, counts as one with it.
+    for (const double gap : {0.0, 1e-8}) {
+        auto doubled = s;
+        doubled.meshes.push_back(
+            {"", std::make_shared<const mesh>(*s.meshes[1].surface), glm::dmat3(1), {0, 0, -gap}, 1});
+        EXPECT_LE(relative_mse(this->picture(doubled), seen), 1e-9) << gap;
+    }
 }
 
 /// Where nothing stops light, and where all is stopped, a sheet is not there, or as if it had no opacity.
