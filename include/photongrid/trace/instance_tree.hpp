@@ -112,8 +112,8 @@ namespace detail {
         }
 
     private:
-        /// The boxes of a surface's triangles, in which hits lie, together for so many triangles in a row that there
-        /// are at most a few hundred: each is turned at each place.
+        /// The boxes of a surface's triangles, in which hits lie. One box holds so many triangles in a row that there
+        /// are at most 256 boxes, since every placement moves each of them.
         static std::vector<tree_box> boxes_within(const mesh& m)
         {
             const std::size_t n = m.triangles.size(), per_box = n / 256 + 1;

@@ -14,7 +14,6 @@
 #include <photongrid/trace/shape_tree.hpp>
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include <photongrid/backend/exact_begin.hpp>
