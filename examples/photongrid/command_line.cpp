@@ -110,10 +110,25 @@ namespace {
             ->type_name(type_of(setting_table::exposure.values));
     }
 
+    /// The scene, and how to read those of other programs.
+    void add_scene(CLI::App& to, std::string& path, import_settings& how)
+    {
+        to.add_option("scene", path, "scene file, of photongrid or of pbrt-v4")->required()->type_name("SCENE");
+        to.add_flag("--strict", how.strict,
+            "refuse a scene of another program if anything in it would be replaced or left out");
+        to.add_flag("--allow-outside", how.allow_outside,
+            "let a scene of another program name files outside of its own folder");
+        to.add_option("--unit", how.unit,
+              "length of the unit of another program's scene, m; default: that of its format; its lights are scaled "
+              "along, so that the picture stays the same")
+            ->type_name("METRES")
+            ->check(CLI::Range(1e-9, 1e9).description(""));
+    }
+
     /// Options for scene, backend and settings, common to `render` and `view`.
     void add_picture(CLI::App& to, render_options& o)
     {
-        to.add_option("scene", o.scene_path, "scene file")->required()->type_name("SCENE.json");
+        add_scene(to, o.scene_path, o.how);
         to.add_option("--backend", o.backend,
               "backend; auto: a hardware Vulkan device, else cpu, or serial in a build without cpu")
             ->check(CLI::IsMember({"auto", "serial", "cpu", "gl", "gl-osmesa", "vulkan"}).description(""))
@@ -189,7 +204,7 @@ namespace {
 
     void add_reference(CLI::App& to, reference_options& o)
     {
-        to.add_option("scene", o.scene_path, "scene file")->required()->type_name("SCENE.json");
+        add_scene(to, o.scene_path, o.how);
         to.add_option("-o,--output", o.outputs, "picture; may be given several times")
             ->required()
             ->allow_extra_args(false)
@@ -231,6 +246,11 @@ namespace {
               [&o](const std::string& text) { o.max_relmse = parsed_number("--max-relmse", text, "a number"); },
               "exit with code 1 if relMSE is above this")
             ->type_name("V");
+        to.add_option("--average", o.average,
+              "compare the means of blocks of N x N pixels, so that noise of single pixels and pixel filters of other "
+              "programs matter less")
+            ->type_name("N")
+            ->check(CLI::Range(1, 1024).description(""));
         add_exposure(to, o.exposure, "compare the looks of pixel values times 2^EV; default: auto, fitted to B");
     }
 
@@ -342,7 +362,7 @@ command read_command_line(int argc, char** argv)
 
     check_options check_scene;
     auto& check_command = *app.add_subcommand("check", "Reads and checks a scene file");
-    check_command.add_option("scene", check_scene.scene_path, "scene file")->required()->type_name("SCENE.json");
+    add_scene(check_command, check_scene.scene_path, check_scene.how);
 
     auto& devices_command = *app.add_subcommand(
         "devices", "Lists every backend and device that works here, with its limits, and why the others do not work");

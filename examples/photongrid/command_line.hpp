@@ -3,6 +3,7 @@
 
 #include "picture_series.hpp"
 
+#include <photongrid/io/imported_scene.hpp>
 #include <photongrid/reference/settings.hpp>
 #include <photongrid/scene/scene.hpp>
 
@@ -29,6 +30,7 @@ enum exit_code {
 /// Options of `render`. Empty members keep the scene file's value.
 struct render_options {
     std::string scene_path, backend = "auto", device;
+    import_settings how; ///< scenes of other programs are read
     std::optional<std::uint32_t> threads;
     std::vector<std::function<void(render_settings&)>> settings; ///< the settings given; each changes the scene's
     bool aov = false, as_paper = false;
@@ -49,6 +51,7 @@ struct view_options {
 /// Options of `reference`. Empty members keep the value of the scene file or of reference_settings.
 struct reference_options {
     std::string scene_path;
+    import_settings how; ///< scenes of other programs are read
     std::optional<std::uint32_t> spp, threads, depth, photon_depth, seed;
     std::optional<std::uint64_t> paths;
     std::optional<glm::uvec2> size;
@@ -65,10 +68,12 @@ struct compare_options {
     std::string a, b;
     double max_relmse = std::numeric_limits<double>::infinity();
     std::optional<double> exposure; ///< EV, for structural similarity; none: fitted to the reference
+    std::uint32_t average = 1;      ///< blocks of so many pixels a side are compared
 };
 
 struct check_options {
     std::string scene_path;
+    import_settings how; ///< scenes of other programs are read
 };
 
 struct devices_options {};

@@ -3,11 +3,11 @@
 #include "command_line.hpp"
 #include "reference_command.hpp"
 #include "render_command.hpp"
+#include "scene_notes.hpp"
 #include "viewer/view_command.hpp"
 #include <photongrid/backends/any/any.hpp>
 #include <photongrid/io/image_difference.hpp>
 #include <photongrid/io/image_file.hpp>
-#include <photongrid/io/scene_file.hpp>
 #include <photongrid/io/structural_similarity.hpp>
 #include <photongrid/io/tone_map.hpp>
 
@@ -61,10 +61,12 @@ namespace {
 
     exit_code run(const compare_options& o)
     {
-        const auto a = read_image(o.a), b = read_image(o.b);
+        auto a = read_image(o.a), b = read_image(o.b);
         image_difference d;
         const double exposure = exposure_for(b, o.exposure);
         try {
+            a = averaged(a, o.average);
+            b = averaged(b, o.average);
             d = compare_images(a, b);
         } catch (const std::invalid_argument& e) {
             std::cerr << "photongrid: error: " << o.a << ", " << o.b << ": " << e.what() << '\n';
@@ -84,8 +86,10 @@ namespace {
 
     exit_code run(const check_options& o)
     {
-        const auto s = read_scene(o.scene_path);
+        const auto imported = import_scene(o.scene_path, o.how);
+        const auto& s = imported.scene;
         std::cout << o.scene_path << ": " << summary_of(s) << '\n';
+        print_notes(std::cout, imported.notes, imported.notes.size());
         for (const auto& odd : oddities(s))
             std::cout << o.scene_path << ": note: " << odd << '\n';
         return success;

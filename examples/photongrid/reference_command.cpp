@@ -1,8 +1,8 @@
 #include "reference_command.hpp"
 
 #include "progress_bar.hpp"
+#include "scene_notes.hpp"
 #include <photongrid/io/image_file.hpp>
-#include <photongrid/io/scene_file.hpp>
 #include <photongrid/io/tone_map.hpp>
 #include <photongrid/scene/setting_table.hpp>
 
@@ -49,7 +49,7 @@ namespace {
 
 exit_code run_reference(const reference_options& o, const std::function<bool()>& cancelled)
 {
-    const auto s = read_scene(o.scene_path);
+    const auto s = open_scene(o.scene_path, o.how, o.quiet).scene;
     reference_settings settings;
     try {
         settings = settings_for(s, o);

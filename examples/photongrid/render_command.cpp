@@ -4,8 +4,8 @@
 #include "picture_series.hpp"
 #include "progress_bar.hpp"
 #include "resume_file.hpp"
+#include "scene_notes.hpp"
 #include "stats_file.hpp"
-#include <photongrid/io/scene_file.hpp>
 #include <photongrid/io/tone_map.hpp>
 
 #include <algorithm>
@@ -43,7 +43,11 @@ namespace {
             if (path_.empty())
                 return;
             check_file_path(path_);
-            identity_ = picture_identity(s, settings, drawing_.caps());
+            try {
+                identity_ = picture_identity(s, settings, drawing_.caps());
+            } catch (const std::invalid_argument& e) {
+                throw file_error(path_ + ": a picture of this scene cannot be resumed: " + e.what());
+            }
             if (auto state = read_resume_file(path_, identity_))
                 try {
                     drawing_.resume(std::move(*state));
@@ -175,7 +179,8 @@ namespace {
 
 exit_code run_render(const render_options& o, const std::function<bool()>& stop_asked)
 {
-    const auto s = read_scene(o.scene_path);
+    const auto imported = open_scene(o.scene_path, o.how, o.quiet);
+    const auto& s = imported.scene;
     render_plan plan;
     std::optional<picture_series> series;
     try {
@@ -225,7 +230,7 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
     }
     file.done();
     if (!o.stats.empty())
-        write_file(o.stats, stats_json(s, settings, *drawing, total_ms));
+        write_file(o.stats, stats_json(imported, settings, *drawing, total_ms));
     return success;
 }
 

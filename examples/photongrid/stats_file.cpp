@@ -19,8 +19,12 @@ namespace {
     }
 } // namespace
 
-std::string stats_json(const scene& s, const render_settings& settings, const renderer& result, double total_ms)
+std::string stats_json(
+    const imported_scene& s, const render_settings& settings, const renderer& result, double total_ms)
 {
+    json notes = json::array();
+    for (const auto& n : s.notes)
+        notes.push_back(text_of(n));
     const auto& r = result.stats();
     const auto& p = r.photons;
     json kernels = json::object();
@@ -30,8 +34,9 @@ std::string stats_json(const scene& s, const render_settings& settings, const re
         kernels[name] = {{"instructions", cost.instructions}, {"compile_ms", cost.compile_ms}, {"ms", cost.ms},
             {"passes", cost.passes}};
     }
-    const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.name}, {"backend", result.caps().backend},
-        {"device", result.caps().device}, {"seed", settings.seed}, {"settings", json::parse(settings_text(settings))},
+    const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.scene.name}, {"notes", notes},
+        {"backend", result.caps().backend}, {"device", result.caps().device}, {"seed", settings.seed},
+        {"settings", json::parse(settings_text(settings))},
         {"photons",
             {{"emitted", p.emitted}, {"absorbed", p.absorbed}, {"escaped", p.escaped}, {"cut_off", p.cut_off},
                 {"invalid", p.invalid}, {"stored", p.stored}, {"direct", p.direct}, {"dropped", p.dropped}}},

@@ -37,7 +37,11 @@ namespace {
         std::size_t bad = 0;
         for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
             try {
-                parse_scene("s.json", contents(entry.path()));
+                const auto text = contents(entry.path());
+                if (format_of("s.json", text) == scene_format::pbrt)
+                    parse_pbrt("s.json", text);
+                else
+                    parse_scene("s.json", text);
                 good.insert(entry.path().stem().string());
             } catch (const scene_error&) {
                 ++bad;
@@ -46,7 +50,7 @@ namespace {
         for (const auto* name : {"minimal", "sphere", "cylinder", "cone", "paraboloid", "disk", "box", "mesh",
                  "triangle", "pentagon", "materials", "rectangle_light", "units_mm_kw", "units_cm_mw", "every_setting",
                  "comments_and_schema", "byte_order_mark", "crlf_and_tabs", "glass_ball", "ring", "cornell_box",
-                 "largest_and_smallest_lengths", "estimate_settings"})
+                 "largest_and_smallest_lengths", "estimate_settings", "pbrt_shapes", "pbrt_materials", "pbrt_lights"})
             EXPECT_TRUE(good.contains(name)) << name;
         EXPECT_GE(bad, 20u);
     }

@@ -2,8 +2,10 @@
 // committed corpus (scene_corpus.cpp) hold it to the same function.
 #pragma once
 
+#include <photongrid/io/pbrt_file.hpp>
 #include <photongrid/io/ply_file.hpp>
 #include <photongrid/io/scene_file.hpp>
+#include <photongrid/io/scene_import.hpp>
 
 #include <photongrid/map/map_buffers.hpp>
 #include <photongrid/trace/device_scene.hpp>
@@ -99,8 +101,22 @@ inline std::string broken_in_ply(std::string_view bytes)
     }
 }
 
-/// Reads `text` as a scene and lays it out for a device. Returns the violated guarantee, or "": either a good
-/// scene_error, or a scene that check() takes and that lay_out() takes or refuses with std::invalid_argument.
+namespace detail {
+    /// Notes must be like messages.
+    inline std::string broken_in_notes(const std::vector<import_note>& notes, std::string_view text)
+    {
+        for (const auto& n : notes) {
+            const auto broken = broken_in_message({n.file, n.line, n.column, n.what}, text);
+            if (!broken.empty())
+                return "a note: " + broken;
+        }
+        return "";
+    }
+} // namespace detail
+
+/// Reads `text` as a scene, of pbrt if it looks like one, and lays it out for a device. Returns the violated guarantee,
+/// or "": either a good scene_error, or a scene that check() takes and that lay_out() takes or refuses with
+/// std::invalid_argument.
 inline std::string broken_promise(std::string_view text)
 {
     try {
@@ -108,7 +124,14 @@ inline std::string broken_promise(std::string_view text)
             return broken_in_ply(text);
         scene s;
         try {
-            s = parse_scene("s.json", std::string(text));
+            if (format_of("s.json", text) == scene_format::pbrt) {
+                auto imported = parse_pbrt("s.json", text);
+                s = std::move(imported.scene);
+                if (const auto broken = detail::broken_in_notes(imported.notes, text); !broken.empty())
+                    return broken;
+            } else {
+                s = parse_scene("s.json", std::string(text));
+            }
         } catch (const scene_error& e) {
             return detail::broken_in_message(e, text);
         }

@@ -57,13 +57,13 @@ namespace {
     }
 
     /// The reader's error for `content`, or "" if it accepts it.
-    std::string refusal(const std::string& content)
+    [[maybe_unused]] std::string refusal(const std::string& content)
     {
         return refusal_by([&] { return parse_scene("s.json", content); });
     }
 
     /// `text` with three of its bytes replaced by some of `bytes`.
-    std::string damaged(std::string text, std::string_view bytes, std::uint32_t& state)
+    [[maybe_unused]] std::string damaged(std::string text, std::string_view bytes, std::uint32_t& state)
     {
         for (int changes = 0; changes < 3; ++changes) {
             state = state * 1664525u + 1013904223u;
@@ -73,7 +73,7 @@ namespace {
     }
 
     /// The reader's error for `good` with `from` replaced by `to` in one line (counted from 1).
-    std::string refusal(std::size_t line, const std::string& from, const std::string& to)
+    [[maybe_unused]] std::string refusal(std::size_t line, const std::string& from, const std::string& to)
     {
         auto lines = good;
         auto& l = lines[line - 1];
@@ -83,7 +83,8 @@ namespace {
         return refusal(text(lines));
     }
 
-    void expect_refusal(const std::string& said, const std::string& place, std::initializer_list<const char*> words)
+    [[maybe_unused]] void expect_refusal(
+        const std::string& said, const std::string& place, std::initializer_list<const char*> words)
     {
         EXPECT_EQ(said.substr(0, place.size() + 16), "s.json:" + place + ": error: ") << said;
         for (const auto* w : words)

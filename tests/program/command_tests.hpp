@@ -335,6 +335,7 @@ namespace {
         EXPECT_EQ(kept(), files_then); // nothing was compiled anew
         const auto stats = nlohmann::json::parse(contents(folder / "stats.json"));
         EXPECT_TRUE(stats.contains("compile_ms"));
+        EXPECT_TRUE(stats.at("notes").empty());
         EXPECT_GT(stats.at("kernels").at("bounce_photon").at("ms"), 0);
         EXPECT_EQ(contents(folder / "none.pfm"), contents(folder / "first.pfm"));
         EXPECT_EQ(contents(folder / "none.pfm"), contents(folder / "second.pfm"));

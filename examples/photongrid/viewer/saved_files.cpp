@@ -34,6 +34,8 @@ std::string saved_files::save(const image& picture, double exposure) const
 
 std::string saved_files::save(const version& v)
 {
+    if (scene_text_.empty())
+        return "not saved: only scenes in photongrid's own format can be";
     try {
         const auto text = edited_scene_text(scene_path_, scene_text_, v.scene, v.settings);
         const auto name = free_name(stem_ + "-changed", ".json");

@@ -1,10 +1,10 @@
 #include "view_command.hpp"
 
 #include "../render_command.hpp"
+#include "../scene_notes.hpp"
 #include "window.hpp"
 #include <photongrid/backends/any/module.hpp>
 #include <photongrid/io/json_tree.hpp>
-#include <photongrid/io/scene_file.hpp>
 
 #include <iostream>
 
@@ -15,8 +15,10 @@ exit_code run_view(const view_options& o, bool (*stop_asked)())
     viewer::window_options w;
     w.make = make_renderer;
     w.scene_path = o.picture.scene_path;
-    w.scene_text = read_scene_text(w.scene_path);
-    const auto s = parse_scene(w.scene_path, w.scene_text);
+    const auto s = open_scene(w.scene_path, o.picture.how, o.picture.quiet).scene;
+    // Only photongrid's own files can be saved with changes: they are changed in place.
+    if (format_of_file(w.scene_path) == scene_format::photongrid)
+        w.scene_text = read_scene_text(w.scene_path);
     try {
         w.renderer = renderer_asked(o.picture);
         w.begin = {s, settings_for(s, o.picture), w.renderer.backend};

@@ -7,6 +7,24 @@
 
 namespace photongrid {
 
+image averaged(const image& picture, std::uint32_t n)
+{
+    if (n == 0 || picture.width < n || picture.height < n)
+        throw std::invalid_argument("a picture of " + std::to_string(picture.width) + " x "
+            + std::to_string(picture.height) + " pixels has no block of " + std::to_string(n) + " x "
+            + std::to_string(n));
+    image made{.width = picture.width / n, .height = picture.height / n, .pixels = {}};
+    for (std::uint32_t y = 0; y < made.height; ++y)
+        for (std::uint32_t x = 0; x < made.width; ++x) {
+            glm::dvec3 sum(0);
+            for (std::uint32_t row = 0; row < n; ++row)
+                for (std::uint32_t column = 0; column < n; ++column)
+                    sum += glm::dvec3(picture.pixels[std::size_t{y * n + row} * picture.width + x * n + column]);
+            made.pixels.emplace_back(sum / (static_cast<double>(n) * n));
+        }
+    return made;
+}
+
 void detail::require_same_size(const image& a, const image& b)
 {
     if (a.width != b.width || a.height != b.height)

@@ -17,6 +17,10 @@ struct image_difference {
     std::uint64_t not_finite = 0; ///< pixels skipped
 };
 
+/// The means of blocks of n x n pixels. A rest at the right and the lower edge, less than a block, is left out.
+/// \throws std::invalid_argument for n = 0, or a picture that has no whole block.
+image averaged(const image& picture, std::uint32_t n);
+
 namespace detail {
     /// \throws std::invalid_argument if the sizes differ.
     void require_same_size(const image& a, const image& b);

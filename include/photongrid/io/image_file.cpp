@@ -114,8 +114,8 @@ picture_channels read_channels(const std::string& path)
     using namespace image_formats;
     static constexpr readable<picture_channels> formats[] = {{".exr", read_opaque<read_exr>},
         {".pfm", read_opaque<read_pfm>}, {".hdr", read_opaque<read_hdr>}, {".png", read_png_channels},
-        {".jpg", read_opaque<read_jpeg, true>}, {".jpeg", read_opaque<read_jpeg, true>}};
-    return read_as<picture_channels>(formats, path, ".exr, .hdr, .pfm, .png or .jpg");
+        {".tga", read_tga_channels}, {".jpg", read_opaque<read_jpeg, true>}, {".jpeg", read_opaque<read_jpeg, true>}};
+    return read_as<picture_channels>(formats, path, ".exr, .hdr, .pfm, .png, .jpg or .tga");
 }
 
 image read_linear_image(const std::string& path)

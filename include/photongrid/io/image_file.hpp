@@ -31,8 +31,8 @@ void write_image(const std::string& path, const image& picture, double exposure 
 /// \throws file_error.
 image read_image(const std::string& path);
 
-/// Reads a picture of a scene, such as an environment: EXR, PFM, Radiance HDR, PNG or JPEG. The pixels of PNG and JPEG
-/// files are decoded to linear values from 0 to 1; transparency is ignored.
+/// Reads a picture of a scene, such as an environment: EXR, PFM, Radiance HDR, PNG, JPEG or TGA. The pixels of the last
+/// three are decoded to linear values from 0 to 1; transparency is ignored.
 /// \throws file_error.
 image read_linear_image(const std::string& path);
 
@@ -40,14 +40,14 @@ image read_linear_image(const std::string& path);
 struct picture_channels {
     std::uint32_t width = 0, height = 0; ///< pixels
     std::vector<glm::vec4> pixels;       ///< red, green, blue, alpha
-    bool is_srgb = false;                ///< red, green and blue are encoded, from 0 to 1: a PNG or JPEG file
+    bool is_srgb = false;                ///< red, green and blue are encoded, from 0 to 1: a PNG, JPEG or TGA file
 };
 
 /// The linear red, green and blue of one of its pixels.
 glm::vec3 linear_pixel(const picture_channels& picture, std::size_t pixel);
 
-/// Reads what read_linear_image() reads, as the file has it: PNG and JPEG are not decoded. Alpha is 1 but in PNG files
-/// that have it.
+/// Reads what read_linear_image() reads, as the file has it: PNG, JPEG and TGA are not decoded. Alpha is 1 but in PNG
+/// and TGA files that have it.
 /// \throws file_error.
 picture_channels read_channels(const std::string& path);
 

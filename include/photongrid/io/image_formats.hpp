@@ -12,6 +12,7 @@ std::string pfm_bytes(const image& picture);
 image read_exr(const std::string& path);
 image read_pfm(const std::string& path);
 picture_channels read_png_channels(const std::string& path);
+picture_channels read_tga_channels(const std::string& path);
 image read_hdr(const std::string& path);
 image read_jpeg(const std::string& path); // as it is encoded, from 0 to 1
 

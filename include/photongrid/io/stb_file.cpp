@@ -1,4 +1,4 @@
-// Radiance HDR and JPEG, by stb_image.
+// Radiance HDR, JPEG and TGA, by stb_image.
 #include <photongrid/io/image_formats.hpp>
 
 #include <algorithm>
@@ -21,6 +21,7 @@
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_HDR
 #define STBI_ONLY_JPEG
+#define STBI_ONLY_TGA
 #define STBI_NO_STDIO
 #define STBI_MAX_DIMENSIONS 65536
 #include <stb/stb_image.h>
@@ -79,9 +80,9 @@ namespace {
 
     constexpr stbi_io_callbacks from_source{read_bytes, skip_bytes, is_at_end};
 
-    /// `load` returns three channels a pixel, `value` the number that one is.
-    template <class Load, class Value>
-    image read(const std::string& path, Load load, Value value)
+    /// `load` returns so many channels a pixel, which `add` takes with their number of pixels.
+    template <class Load, class Add>
+    void read(const std::string& path, int channels_wanted, Load load, Add add)
     {
         const auto bytes = bytes_of(path);
         int width = 0, height = 0, channels = 0;
@@ -89,31 +90,54 @@ namespace {
         if (!stbi_info_from_callbacks(&from_source, &begin, &width, &height, &channels))
             throw std::runtime_error(stbi_failure_reason());
         check_read_size(path, width, height);
-        const auto data = load(&from_source, &whole, &width, &height, &channels, 3);
+        const auto data = load(&from_source, &whole, &width, &height, &channels, channels_wanted);
         const std::unique_ptr<void, decltype(&stbi_image_free)> freed(data, stbi_image_free);
         if (data == nullptr)
             throw std::runtime_error(stbi_failure_reason());
         if (whole.past_end)
             throw std::runtime_error("the file ends within the picture");
-        image picture{
-            .width = static_cast<std::uint32_t>(width), .height = static_cast<std::uint32_t>(height), .pixels = {}};
-        const std::size_t pixels = std::size_t{picture.width} * picture.height;
-        picture.pixels.reserve(pixels);
-        for (std::size_t i = 0; i < pixels; ++i)
-            picture.pixels.emplace_back(value(data[3 * i]), value(data[3 * i + 1]), value(data[3 * i + 2]));
-        return picture;
+        add(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), data);
     }
 
+    /// `value`: the number that a channel is.
+    template <class Load, class Value>
+    image read_image_by(const std::string& path, Load load, Value value)
+    {
+        image picture;
+        read(path, 3, load, [&](std::uint32_t width, std::uint32_t height, const auto* data) {
+            picture.width = width;
+            picture.height = height;
+            const std::size_t pixels = std::size_t{width} * height;
+            picture.pixels.reserve(pixels);
+            for (std::size_t i = 0; i < pixels; ++i)
+                picture.pixels.emplace_back(value(data[3 * i]), value(data[3 * i + 1]), value(data[3 * i + 2]));
+        });
+        return picture;
+    }
 } // namespace
 
 image read_hdr(const std::string& path)
 {
-    return read(path, stbi_loadf_from_callbacks, [](float v) { return v; });
+    return read_image_by(path, stbi_loadf_from_callbacks, [](float v) { return v; });
 }
 
 image read_jpeg(const std::string& path)
 {
-    return read(path, stbi_load_from_callbacks, [](stbi_uc v) { return static_cast<float>(v) / 255.0f; });
+    return read_image_by(path, stbi_load_from_callbacks, [](stbi_uc v) { return static_cast<float>(v) / 255.0f; });
+}
+
+picture_channels read_tga_channels(const std::string& path)
+{
+    picture_channels picture{.width = 0, .height = 0, .pixels = {}, .is_srgb = true};
+    read(path, 4, stbi_load_from_callbacks, [&](std::uint32_t width, std::uint32_t height, const stbi_uc* data) {
+        picture.width = width;
+        picture.height = height;
+        const std::size_t pixels = std::size_t{width} * height;
+        picture.pixels.reserve(pixels);
+        for (std::size_t i = 0; i < 4 * pixels; i += 4)
+            picture.pixels.push_back(glm::vec4(data[i], data[i + 1], data[i + 2], data[i + 3]) / 255.0f);
+    });
+    return picture;
 }
 
 } // namespace photongrid::image_formats

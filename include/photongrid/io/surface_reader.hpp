@@ -2,15 +2,15 @@
 // placed.
 #pragma once
 
-#include <photongrid/io/obj_file.hpp>
-#include <photongrid/io/ply_file.hpp>
+#include <photongrid/io/import/scene_files.hpp>
+#include <photongrid/io/json_tree.hpp>
 #include <photongrid/io/scene_values.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <memory>
+#include <type_traits>
 
 namespace photongrid {
 
@@ -25,7 +25,7 @@ inline bool stays_inside(const std::filesystem::path& path)
 class surface_reader : public scene_values {
 public:
     surface_reader(const std::string& file, std::string text)
-        : scene_values(file, std::move(text)), folder_(std::filesystem::path(file).parent_path())
+        : scene_values(file, std::move(text)), files_(std::filesystem::path(file).parent_path(), true)
     {
     }
 
@@ -42,7 +42,7 @@ public:
             fail(v.place, "a mesh has either a \"file\" or \"positions\" and \"triangles\"");
         if (file != nullptr) {
             m.file = file_name(*file);
-            m.surface = mesh_in(m.file, *file);
+            m.surface = from_file(*file, [&] { return files_.surface(m.file); });
         } else {
             auto listed = inline_mesh(*positions, *triangles, normals);
             if (coordinates != nullptr)
@@ -66,7 +66,19 @@ protected:
             wrong(v, "a file's name, relative to the scene's folder and without \"..\", of 1 to 100 bytes");
         return v.text;
     }
-    std::string path_of(const std::string& name) const { return (folder_ / name).string(); }
+
+    /// What `read` returns. Its errors get the place of `v`, the file's name.
+    template <class Read>
+    std::invoke_result_t<Read> from_file(const json_value& v, Read&& read) const
+    {
+        try {
+            return read();
+        } catch (const file_error& e) {
+            fail(v.place, e.what());
+        } catch (const scene_error& e) {
+            fail(v.place, e.what());
+        }
+    }
 
     /// A scale or a place of a texture.
     glm::dvec2 two(const json_value& v) const
@@ -89,30 +101,9 @@ protected:
         return {direction(at(v, "axis")), number(at(v, "degrees"), -360, 360, "an angle from -360 to 360 degrees")};
     }
 
+    scene_files files_; ///< file_name() has seen to it that they lie in the scene's folder
+
 private:
-    static bool is_obj(const std::string& name)
-    {
-        const auto ending = std::filesystem::path(name).extension();
-        return ending == ".obj" || ending == ".OBJ";
-    }
-
-    /// The surface in a file. A file that several meshes name is read once.
-    std::shared_ptr<const mesh> mesh_in(const std::string& name, const json_value& v)
-    {
-        auto& surface = surfaces_[name];
-        if (!surface) {
-            try {
-                const auto path = path_of(name);
-                surface = std::make_shared<const mesh>(is_obj(name) ? read_obj(path) : read_ply(path));
-            } catch (const scene_error& e) {
-                fail(v.place, e.what());
-            }
-            if (surface->triangles.empty())
-                fail(v.place, path_of(name) + ": has no face");
-        }
-        return surface;
-    }
-
     mesh inline_mesh(const json_value& positions, const json_value& triangles, const json_value* normals) const
     {
         mesh m;
@@ -183,9 +174,6 @@ private:
             m.offset[row] = length(r.items[3]);
         }
     }
-
-    std::filesystem::path folder_;                                ///< of the scene's file
-    std::map<std::string, std::shared_ptr<const mesh>> surfaces_; ///< by the names of their files
 };
 
 } // namespace photongrid

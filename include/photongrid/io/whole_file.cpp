@@ -24,12 +24,14 @@ std::string whole_file(const std::string& path)
     return bytes;
 }
 
-std::string shown_word(std::string_view word)
+std::string printable(std::string_view text, std::size_t most)
 {
-    std::string shown = "\"";
-    for (const char c : word.substr(0, 40))
+    std::string shown;
+    for (const char c : text.substr(0, most))
         shown += static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7F ? '?' : c;
-    return shown + '"';
+    return shown;
 }
+
+std::string shown_word(std::string_view word) { return '"' + printable(word, 40) + '"'; }
 
 } // namespace photongrid

@@ -1,0 +1,60 @@
+// The files that a scene's file names: meshes, textures and environments, each read once.
+#pragma once
+
+#include <photongrid/io/files.hpp>
+#include <photongrid/scene/environment_map.hpp>
+#include <photongrid/scene/mesh.hpp>
+#include <photongrid/scene/texture.hpp>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace photongrid {
+
+/// What the pixels of a texture are: colours, which are decoded from sRGB where their file is encoded, or numbers as
+/// the file has them.
+enum class texture_holds { colour, numbers };
+
+/// Reads files by their names in a scene's file.
+class scene_files {
+public:
+    /// `folder`: that of the scene's file. `allow_outside`: files may lie outside of it.
+    scene_files(std::filesystem::path folder, bool allow_outside)
+        : folder_(std::move(folder)), allow_outside_(allow_outside)
+    {
+    }
+
+    /// The path of a file. Where there is no such file, a name with backslashes is taken with slashes.
+    /// \throws file_error for a file that lies outside of the folder and must not.
+    std::string path_of(const std::string& name) const;
+
+    /// The bytes of a file, unpacked if it is compressed (gzip).
+    /// \throws file_error for a file that cannot be read, that is no regular file, or that has more than 2^32 bytes.
+    std::string bytes_of(const std::string& name) const;
+
+    /// The surface in a PLY or OBJ file (.obj), which may be compressed.
+    /// \throws file_error; scene_error for a file that does not hold one.
+    std::shared_ptr<const mesh> surface(const std::string& name);
+
+    /// A texture.
+    /// \throws file_error.
+    std::shared_ptr<const photongrid::texture> texture(const std::string& name, texture_holds holds);
+
+    /// An environment, as its file has it.
+    /// \throws file_error.
+    std::shared_ptr<const environment_map> environment(const std::string& name);
+
+private:
+    std::string path_of_regular(const std::string& name) const;
+
+    std::filesystem::path folder_;
+    bool allow_outside_;
+    std::map<std::string, std::shared_ptr<const mesh>> surfaces_;
+    std::map<std::pair<std::string, texture_holds>, std::shared_ptr<const photongrid::texture>> textures_;
+    std::map<std::string, std::shared_ptr<const environment_map>> environments_;
+};
+
+} // namespace photongrid

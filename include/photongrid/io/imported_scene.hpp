@@ -1,0 +1,46 @@
+// What a reader of other programs' scenes makes, and what it is told.
+#pragma once
+
+#include <photongrid/io/scene_error.hpp>
+#include <photongrid/scene/scene.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace photongrid {
+
+/// How to read a scene that another program wrote.
+struct import_settings {
+    bool strict = false;        ///< what would be replaced or left out is an error
+    bool allow_outside = false; ///< the file may name files outside of its own folder
+    /// The length of the file's unit, m; none: that of its format. Lights are scaled along, so that the picture stays
+    /// the same.
+    std::optional<double> unit{};
+};
+
+/// Something in a file that photongrid does not have: what stands in its place, or that it is left out.
+struct import_note {
+    std::string file;       ///< where it stands
+    std::size_t line = 0;   ///< counted from 1; 0: the file as a whole
+    std::size_t column = 0; ///< counted from 1, in bytes
+    std::string what;       ///< as `material "hair": drawn as diffuse 0.5`
+
+    bool operator==(const import_note&) const = default;
+};
+
+/// "file:line:column: note: what".
+inline std::string text_of(const import_note& n)
+{
+    return n.file + (n.line > 0 ? ":" + std::to_string(n.line) + ":" + std::to_string(n.column) : "")
+        + ": note: " + n.what;
+}
+
+/// A scene, and how it differs from what its file says.
+struct imported_scene {
+    photongrid::scene scene;
+    std::vector<import_note> notes;
+};
+
+} // namespace photongrid
