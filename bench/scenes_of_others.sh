@@ -30,6 +30,6 @@ draw() { # NAME SIZE OPTIONS...
   echo "$((SECONDS - begin)) s"
   "$program" compare "$picture.exr" "$folder/$name/pbrt/TungstenRender.exr" --average 4
 }
-draw cornell-box 1024x1024 --spp 16 --light-samples 8 --photons 1000000
+draw cornell-box 1024x1024 --spp 16 --light-samples 8 --photons 2000000 --k 1000
 draw water-caustic 1024x1024 --spp 16 --photons 8000000 --k 200 --photon-depth 9 --depth 9
-draw veach-ajar 1280x720 --spp 64 --photons 4000000 --k 400 --photon-depth 13 --depth 13
+draw veach-ajar 1280x720 --spp 16 --photons 1000000 --k 200 --photon-depth 13 --depth 13

@@ -222,6 +222,45 @@ namespace {
         EXPECT_EQ(run({"compare", "a.pfm", "other.pfm"}).code, 5);
     }
 
+    TEST_F(program, reads_scenes_of_pbrt_and_says_what_it_replaced)
+    {
+        std::ofstream(folder / "s.pbrt") << "Camera \"perspective\"\nWorldBegin\nShape \"disk\"\nMaterial \"hair\"\n"
+                                            "Translate 0 0 4\nShape \"sphere\"\n";
+        const std::string note = "s.pbrt:4:1: note: material \"hair\": drawn as diffuse 0.5\n",
+                          sky = "s.pbrt: note: the file has no light; a white environment of radiance 1 is added\n";
+        const auto checked = run({"check", "s.pbrt"});
+        EXPECT_EQ(checked.code, 0) << checked.err;
+        EXPECT_NE(checked.out.find("\"s\": 2 shapes, 2 materials, 1 light"), std::string::npos) << checked.out;
+        EXPECT_NE(checked.out.find(note + sky), std::string::npos) << checked.out;
+        const auto strict = run({"check", "s.pbrt", "--strict"});
+        EXPECT_EQ(strict.code, 3);
+        EXPECT_TRUE(strict.err.starts_with("s.pbrt:4:1: error: material \"hair\": drawn as diffuse 0.5")) << strict.err;
+        EXPECT_EQ(run({"check", "s.pbrt", "--unit", "0"}).code, 2);
+        EXPECT_EQ(run({"check", ring, "--unit", "2"}).code, 3); // it has its own
+
+        const auto drawn = run({"render", "s.pbrt", "--backend", "serial", "--size", "16x12", "--photons", "50",
+            "--spp", "1", "-o", "s.pfm", "--stats", "stats.json"});
+        ASSERT_EQ(drawn.code, 0) << drawn.err;
+        EXPECT_NE(drawn.err.find(note), std::string::npos) << drawn.err;
+        const auto notes = nlohmann::json::parse(contents(folder / "stats.json")).at("notes");
+        ASSERT_EQ(notes.size(), 2u);
+        EXPECT_EQ(notes.at(0).get<std::string>() + "\n", note);
+    }
+
+    // Each block of 2 x 2 pixels has the same mean, though no pixel is the same.
+    TEST_F(program, compares_means_of_blocks)
+    {
+        image even{.width = 5, .height = 4, .pixels = std::vector<glm::vec3>(20, glm::vec3(2))}, uneven = even;
+        for (std::size_t i = 0; i < uneven.pixels.size(); ++i)
+            uneven.pixels[i] = glm::vec3(i % 5 % 2 == 0 ? 1.0f : 3.0f);
+        write_image((folder / "even.pfm").string(), even);
+        write_image((folder / "uneven.pfm").string(), uneven);
+        EXPECT_EQ(run({"compare", "uneven.pfm", "even.pfm", "--max-relmse", "0.1"}).code, 1);
+        const auto means = run({"compare", "uneven.pfm", "even.pfm", "--average", "2", "--max-relmse", "0"});
+        EXPECT_EQ(means.code, 0) << means.out << means.err;
+        EXPECT_EQ(run({"compare", "uneven.pfm", "even.pfm", "--average", "5"}).code, 5);
+    }
+
     TEST_F(program, renders_several_passes)
     {
         const auto stats_of = [&](const char* picture, const char* passes) {

@@ -504,8 +504,8 @@ void scene_builder::choose_settings()
 {
     const auto b = bounds_of(made_);
     auto& r = made_.render;
-    r.map.photons = 400'000;
-    r.estimate.k = 200;
+    r.map.photons = 100'000; // few of an open scene's paths end in one that is stored
+    r.estimate.k = 100;
     r.estimate.max_radius = std::clamp(0.1 * glm::length(b.high - b.low), 1e-6, max_length);
     r.view.spp = 16;
     r.view.light_samples = 4;
