@@ -86,13 +86,15 @@ namespace {
         return std::make_shared<const mesh>(std::move(made));
     }
 
-    /// The mean of a texture's colours.
-    dvec3 mean_of(const texture& t)
+    /// Runs photongrid::check. Its message gets the place and begins with `of`.
+    template <class Part>
+    void check_at(const source_place& place, const Part& part, const std::string& of = "")
     {
-        dvec3 sum(0);
-        for (const auto& p : t.texels)
-            sum += dvec3(p.x, p.y, p.z);
-        return sum / (65535.0 * static_cast<double>(t.texels.size()));
+        try {
+            check(part);
+        } catch (const std::invalid_argument& e) {
+            fail_at(place, of + e.what());
+        }
     }
 } // namespace
 
@@ -138,25 +140,16 @@ void scene_builder::set_camera(
         || (c.fov_axis == imported_camera::axis::smaller && height <= width)
         || (c.fov_axis == imported_camera::axis::larger && height > width);
     to.vertical_fov = is_vertical ? c.fov : glm::degrees(2 * std::atan(std::tan(glm::radians(c.fov) / 2) / aspect));
-    try {
-        check(to);
-    } catch (const std::invalid_argument& e) {
-        fail_at(place, std::string("camera: ") + e.what());
-    }
+    check_at(place, to, "camera: ");
     has_camera_ = true;
 }
 
-// --- materials
-// --------------------------------------------------------------------------------------------------------
+// --- materials ---
 
 std::uint32_t scene_builder::add_material(const source_place& place, material m)
 {
     m.name = printable(m.name, 100);
-    try {
-        check(m);
-    } catch (const std::invalid_argument& e) {
-        fail_at(place, "material " + shown_word(m.name) + ": " + e.what());
-    }
+    check_at(place, m, "material " + shown_word(m.name) + ": ");
     made_.materials.push_back(std::move(m));
     return static_cast<std::uint32_t>(made_.materials.size() - 1);
 }
@@ -210,32 +203,10 @@ std::optional<texture_use> scene_builder::texture(
     }
 }
 
-std::uint32_t scene_builder::without_textures(std::uint32_t m)
-{
-    auto plain = made_.materials[m];
-    if (plain.texture.map)
-        plain.reflectance *= mean_of(*plain.texture.map);
-    plain.texture = {};
-    for (const auto& [name, member] : detail::number_textures)
-        plain.*member = {};
-    if (is_mixture(plain))
-        for (auto& part : plain.parts)
-            part = without_textures(part);
-    const auto same = std::find(made_.materials.begin(), made_.materials.end(), plain);
-    if (same != made_.materials.end())
-        return static_cast<std::uint32_t>(same - made_.materials.begin());
-    made_.materials.push_back(std::move(plain));
-    return static_cast<std::uint32_t>(made_.materials.size() - 1);
-}
-
 template <class List, class Part>
 void scene_builder::add_checked(const source_place& place, List& list, Part part)
 {
-    try {
-        check(part);
-    } catch (const std::invalid_argument& e) {
-        fail_at(place, e.what());
-    }
+    check_at(place, part);
     list.push_back(std::move(part));
 }
 
@@ -258,8 +229,7 @@ void scene_builder::add_light(const source_place& place, List& list, Light light
     add_checked(place, list, std::move(light));
 }
 
-// --- shapes
-// -----------------------------------------------------------------------------------------------------------
+// --- shapes ---
 
 scene_builder::placing scene_builder::place_in_scene(const source_place& place, const glm::dmat4& to_scene) const
 {
@@ -279,11 +249,7 @@ placed_mesh scene_builder::placed(const source_place& place, std::shared_ptr<con
 {
     const auto at = place_in_scene(place, to_scene);
     placed_mesh m{.file = file, .surface = std::move(surface), .linear = at.linear, .offset = at.offset};
-    try {
-        check(m);
-    } catch (const std::invalid_argument& e) {
-        fail_at(place, e.what());
-    }
+    check_at(place, m);
     return m;
 }
 
@@ -292,27 +258,25 @@ void scene_builder::add_mesh(const source_place& place, std::shared_ptr<const me
 {
     auto m = placed(place, std::move(surface), to_scene, file);
     m.material = material;
-    if (has_texture(material) && m.surface->texture_coordinates.empty()) {
-        note(place,
-            "a texture of material " + shown_word(made_.materials[material].name)
-                + ": its mean is drawn, since the mesh has no texture coordinates");
-        m.material = without_textures(material);
+    try {
+        detail::check_material_of(m, made_.materials);
+    } catch (const std::invalid_argument& e) {
+        fail_at(place, e.what());
     }
     made_.meshes.push_back(std::move(m));
 }
 
-bool scene_builder::needs_mesh(std::uint32_t material) const
+double scene_builder::round_scale(const placing& at, std::uint32_t material) const
 {
-    const auto& m = made_.materials[material];
-    return is_clear(m) || has_texture(material);
+    return is_clear(made_.materials[material]) || has_texture(material) ? 0 : even_scale(at.linear);
 }
 
 bool scene_builder::add_sphere(
     const source_place& place, double radius, const glm::dmat4& to_scene, std::uint32_t material)
 {
     const auto at = place_in_scene(place, to_scene);
-    const double scale = even_scale(at.linear);
-    if (scale == 0 || needs_mesh(material))
+    const double scale = round_scale(at, material);
+    if (scale == 0)
         return false;
     add_checked(place, made_.spheres, sphere{at.offset, radius * scale, material});
     sphere_places_.push_back(place);
@@ -323,8 +287,8 @@ bool scene_builder::add_cylinder(const source_place& place, double radius, doubl
     const glm::dmat4& to_scene, std::uint32_t material)
 {
     const auto at = place_in_scene(place, to_scene);
-    const double scale = even_scale(at.linear);
-    if (scale == 0 || needs_mesh(material))
+    const double scale = round_scale(at, material);
+    if (scale == 0)
         return false;
     add_checked(place, made_.cylinders,
         cylinder{at.offset + at.linear * dvec3(0, 0, low), at.offset + at.linear * dvec3(0, 0, high), radius * scale,
@@ -336,16 +300,15 @@ bool scene_builder::add_disk(
     const source_place& place, double height, double radius, const glm::dmat4& to_scene, std::uint32_t material)
 {
     const auto at = place_in_scene(place, to_scene);
-    const double scale = even_scale(at.linear);
-    if (scale == 0 || needs_mesh(material))
+    const double scale = round_scale(at, material);
+    if (scale == 0)
         return false;
     add_checked(place, made_.disks,
         disk{at.offset + at.linear * dvec3(0, 0, height), at.linear[2] / scale, radius * scale, material});
     return true;
 }
 
-// --- lights
-// -----------------------------------------------------------------------------------------------------------
+// --- lights ---
 
 std::string scene_builder::next_light_name() { return "lamp " + std::to_string(++lights_); }
 
@@ -456,11 +419,7 @@ void scene_builder::add_environment(const source_place& place, std::shared_ptr<c
         l.axis = glm::normalize(axis);
         l.degrees = glm::degrees(2 * std::atan2(glm::length(axis), q.w));
     }
-    try {
-        check(l);
-    } catch (const std::invalid_argument& e) {
-        fail_at(place, std::string("environment: ") + e.what());
-    }
+    check_at(place, l, "environment: ");
     environment_ = std::move(l);
     if (!sky_place_)
         sky_place_ = place;
@@ -483,8 +442,7 @@ void scene_builder::add_environment_light()
             environment_light{.name = next_light_name(), .file = "", .map = nullptr, .radiance = sky_});
 }
 
-// --- the whole
-// --------------------------------------------------------------------------------------------------------
+// --- the whole ---
 
 void scene_builder::add_default_camera()
 {
@@ -530,12 +488,8 @@ imported_scene scene_builder::finish()
         fail_at(second.list == shape_kind<sphere>::list ? sphere_places_[second.index] : file_,
             "this glass overlaps other glass; the outside of glass must be air");
     }
-    try {
-        check(made_.camera);
-        check(made_.render);
-    } catch (const std::invalid_argument& e) {
-        fail_at(file_, e.what());
-    }
+    check_at(file_, made_.camera);
+    check_at(file_, made_.render);
     return {std::move(made_), log_.take()};
 }
 

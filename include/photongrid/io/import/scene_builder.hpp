@@ -64,6 +64,7 @@ public:
     /// \name Shapes and lights
     /// `to_scene`: from the shape's space to the file's. `file`: that of the surface, or "".
     /// @{
+    /// A material with a texture needs a surface with texture coordinates.
     void add_mesh(const source_place& place, std::shared_ptr<const mesh> surface, const glm::dmat4& to_scene,
         std::uint32_t material, const std::string& file = "");
     /// A rectangle becomes a rectangle_light, other surfaces a mesh_light.
@@ -110,10 +111,9 @@ private:
         const std::string& file) const;
     dvec3 point(const dvec3& p) const { return dvec3(world_ * glm::dvec4(p, 1)); }
     dvec3 direction(const dvec3& d) const { return glm::dmat3(world_) * d; }
-    /// Whether a material is for meshes alone: it has a texture or an opacity.
-    bool needs_mesh(std::uint32_t material) const;
-    /// The same material with the means of its textures.
-    std::uint32_t without_textures(std::uint32_t m);
+    /// The factor on a round shape's lengths. 0: it is stretched, or its material is for meshes alone (a texture or an
+    /// opacity).
+    double round_scale(const placing& at, std::uint32_t material) const;
     /// Adds a shape or a light, or throws scene_error for what check() rejects.
     template <class List, class Part>
     void add_checked(const source_place& place, List& list, Part part);

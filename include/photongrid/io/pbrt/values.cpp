@@ -205,8 +205,7 @@ dvec3 value_reader::mean(const varying& v)
     return v.factor * sum / static_cast<double>(v.texture.map->texels.size());
 }
 
-// --- textures
-// ---------------------------------------------------------------------------------------------------------
+// --- textures ---
 
 varying value_reader::texture(const source_place& place, const std::string& name, bool is_float)
 {
@@ -335,7 +334,6 @@ varying value_reader::checkerboard(const entity& e, bool is_float)
             // The lower left square has the first colour; rows go down.
             const bool is_first = (column < side) == (row >= side);
             const auto c = (is_first ? a : b) * 65535.0 + 0.5;
-            map.texels.resize(std::size_t{row} * map.width + column);
             map.texels.emplace_back(glm::u16vec4(c.x, c.y, c.z, 65535));
         }
     varying made{dvec3(1), {}};
