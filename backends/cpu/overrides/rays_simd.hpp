@@ -201,17 +201,17 @@ private:
     HWY_NOINLINE void enter(const ray_job& j, uint instance, float where)
     {
         const glm::uvec4* of = j.instances + instance * std::size_t{kernels::INSTANCE_RECORDS};
-        const auto vector = [&](std::size_t record) { return kernels::corner_of(of[record]); };
+        const auto row = [&](std::size_t record) { return kernels::corner_of(of[record]); };
         const auto turned = [&](const glm::vec3& v) {
-            return glm::vec3(kernels::dot3(vector(0), v), kernels::dot3(vector(1), v), kernels::dot3(vector(2), v));
+            return glm::vec3(kernels::dot3(row(0), v), kernels::dot3(row(1), v), kernels::dot3(row(2), v));
         };
         const glm::vec3 o(j.origins[index_]), d(j.directions[index_]);
         instance_ = instance;
         above_ = held_;
         first_id_ = of[kernels::ID_OF_INSTANCE].w;
-        inside_ = kernels::inside_box(vector(4), vector(5), kernels::ray_of(o, d));
+        inside_ = kernels::inside_box(row(4), row(5), kernels::ray_of(o, d));
         const auto& root = j.roots[instance];
-        ray_ = wide_ray(root.low, root.high, turned(o - vector(3)), turned(d));
+        ray_ = wide_ray(root.low, root.high, turned(o - row(3)), turned(d));
         left_[held_++] = {root.node, where};
     }
     HWY_NOINLINE void leave(const ray_job& j)
