@@ -87,7 +87,7 @@ list(JOIN backends ", " backends)
 photongrid_pkg_config(photongrid-renderer "photongrid's renderer on a backend chosen at run time" REQUIRES "${backends}"
   LIBS "-L\${pcfiledir}/${to_library} -lphotongrid_renderer" COMPONENT compiled)
 if(TARGET photongrid_io)
-  photongrid_pkg_config(photongrid-io "photongrid's scene files and pictures" REQUIRES "photongrid, OpenEXR, libpng, zlib"
+  photongrid_pkg_config(photongrid-io "photongrid's scene files and pictures" REQUIRES "photongrid, OpenEXR, libpng, pugixml, zlib"
     LIBS "-L\${pcfiledir}/${to_library} -lphotongrid_io" COMPONENT compiled)
 endif()
 

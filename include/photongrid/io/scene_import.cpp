@@ -1,4 +1,7 @@
-#include <photongrid/io/json_tree.hpp>
+#include <photongrid/io/gltf_file.hpp>
+#include <photongrid/io/import/scene_files.hpp>
+#include <photongrid/io/mitsuba_file.hpp>
+#include <photongrid/io/obj_scene.hpp>
 #include <photongrid/io/pbrt_file.hpp>
 #include <photongrid/io/scene_file.hpp>
 #include <photongrid/io/scene_import.hpp>
@@ -8,6 +11,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 namespace photongrid {
 
@@ -38,23 +42,53 @@ namespace {
         bytes.resize(file ? std::fread(bytes.data(), 1, bytes.size(), file.get()) : 0);
         return bytes;
     }
+
+    /// Whether a JSON text has this key somewhere.
+    bool has_key(std::string_view text, std::string_view key)
+    {
+        const auto quoted = '"' + std::string(key) + '"';
+        for (auto at = text.find(quoted); at != text.npos; at = text.find(quoted, at + 1)) {
+            const auto next = text.find_first_not_of(blanks, at + quoted.size());
+            if (next != text.npos && text[next] == ':')
+                return true;
+        }
+        return false;
+    }
+
+    constexpr std::string_view words_of_pbrt[] = {"Integrator", "Transform", "Sampler", "PixelFilter", "Film", "Camera",
+        "LookAt", "Scale", "Rotate", "Translate", "Option", "ColorSpace", "WorldBegin", "Accelerator", "Include",
+        "Attribute", "Identity", "ConcatTransform", "MakeNamedMedium", "MediumInterface", "CoordinateSystem",
+        "ActiveTransform", "TransformTimes"};
+    constexpr std::string_view words_of_obj[] = {"mtllib", "usemtl", "v", "vn", "vt", "o", "g", "s"};
+    constexpr std::pair<std::string_view, scene_format> endings[]
+        = {{".pbrt", scene_format::pbrt}, {".xml", scene_format::mitsuba}, {".gltf", scene_format::gltf},
+            {".glb", scene_format::gltf}, {".obj", scene_format::obj}, {".ply", scene_format::ply}};
 } // namespace
 
 scene_format format_of(const std::string& path, std::string_view text)
 {
+    if (text.starts_with("glTF"))
+        return scene_format::gltf;
+    if (text.starts_with("ply\n") || text.starts_with("ply\r"))
+        return scene_format::ply;
     const auto word = first_word(text);
-    if (word.starts_with("{"))
-        return scene_format::photongrid;
-    static constexpr std::string_view words[] = {"Integrator", "Transform", "Sampler", "PixelFilter", "Film", "Camera",
-        "LookAt", "Scale", "Rotate", "Translate", "Option", "ColorSpace", "WorldBegin", "Accelerator", "Include",
-        "Attribute", "Identity", "ConcatTransform", "MakeNamedMedium", "MediumInterface", "CoordinateSystem",
-        "ActiveTransform", "TransformTimes"};
-    if (std::find(std::begin(words), std::end(words), word) != std::end(words))
+    if (word.starts_with("{")) {
+        if (has_key(text, "photongrid"))
+            return scene_format::photongrid;
+        if (has_key(text, "asset"))
+            return scene_format::gltf;
+    }
+    if (word.starts_with("<"))
+        return scene_format::mitsuba;
+    if (std::find(std::begin(words_of_pbrt), std::end(words_of_pbrt), word) != std::end(words_of_pbrt))
         return scene_format::pbrt;
-    std::filesystem::path name(path);
-    if (name.extension() == ".gz")
-        name.replace_extension();
-    return name.extension() == ".pbrt" ? scene_format::pbrt : scene_format::photongrid;
+    if (std::find(std::begin(words_of_obj), std::end(words_of_obj), word) != std::end(words_of_obj))
+        return scene_format::obj;
+    const auto ending = ending_of(path);
+    for (const auto& [name, format] : endings)
+        if (ending == name)
+            return format;
+    return scene_format::photongrid;
 }
 
 scene_format format_of_file(const std::string& path) { return format_of(path, beginning_of(path)); }
@@ -63,6 +97,10 @@ imported_scene import_scene(const std::string& path, const import_settings& sett
 {
     switch (format_of_file(path)) {
     case scene_format::pbrt: return read_pbrt(path, settings);
+    case scene_format::mitsuba: return read_mitsuba(path, settings);
+    case scene_format::gltf: return read_gltf(path, settings);
+    case scene_format::obj: return read_obj_scene(path, settings);
+    case scene_format::ply: return read_ply_scene(path, settings);
     case scene_format::photongrid: break;
     }
     if (settings.unit)

@@ -9,7 +9,7 @@
 namespace photongrid {
 
 /// The formats of scenes.
-enum class scene_format { photongrid, pbrt };
+enum class scene_format { photongrid, pbrt, mitsuba, gltf, obj, ply };
 
 /// The format of a file by its content, or else by its name. `text`: at least the first 64 KiB of it.
 scene_format format_of(const std::string& path, std::string_view text);

@@ -114,9 +114,6 @@ private:
     /// The factor on a round shape's lengths. 0: it is stretched, or its material is for meshes alone (a texture or an
     /// opacity).
     double round_scale(const placing& at, std::uint32_t material) const;
-    /// Adds a shape or a light, or throws scene_error for what check() rejects.
-    template <class List, class Part>
-    void add_checked(const source_place& place, List& list, Part part);
     template <class List, class Light>
     void add_light(const source_place& place, List& list, Light light);
     std::string next_light_name();

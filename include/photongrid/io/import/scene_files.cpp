@@ -62,18 +62,6 @@ namespace {
         return made;
     }
 
-    /// The ending of a name, in small letters, without that of compressed files.
-    std::string ending_of(const std::string& name)
-    {
-        fs::path path(name);
-        if (path.extension() == ".gz")
-            path.replace_extension();
-        auto e = path.extension().string();
-        std::transform(e.begin(), e.end(), e.begin(),
-            [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
-        return e;
-    }
-
     texture read_texture(const std::string& path, texture_holds holds)
     {
         const auto picture = read_channels(path);
@@ -89,6 +77,17 @@ namespace {
         return made;
     }
 } // namespace
+
+std::string ending_of(const std::string& name)
+{
+    fs::path path(name);
+    if (path.extension() == ".gz")
+        path.replace_extension();
+    auto e = path.extension().string();
+    std::transform(e.begin(), e.end(), e.begin(),
+        [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
+    return e;
+}
 
 std::string scene_files::path_of(const std::string& name) const
 {

@@ -18,6 +18,9 @@ namespace photongrid {
 /// the file has them.
 enum class texture_holds { colour, numbers };
 
+/// The ending of a file's name in small letters, as ".ply", without that of compressed files (.gz).
+std::string ending_of(const std::string& name);
+
 /// Reads files by their names in a scene's file.
 class scene_files {
 public:
