@@ -4,12 +4,11 @@ find_package(OpenEXR QUIET)
 find_package(PNG QUIET)
 find_package(ZLIB QUIET)
 find_package(pugixml QUIET)
-find_path(PHOTONGRID_TINYGLTF_INCLUDE_DIR tiny_gltf.h)
 find_path(PHOTONGRID_STB_INCLUDE_DIR stb/stb_image.h)
-mark_as_advanced(PHOTONGRID_STB_INCLUDE_DIR PHOTONGRID_TINYGLTF_INCLUDE_DIR)
+mark_as_advanced(PHOTONGRID_STB_INCLUDE_DIR)
 if(NOT TARGET nlohmann_json::nlohmann_json OR NOT TARGET OpenEXR::OpenEXR OR NOT TARGET PNG::PNG OR NOT TARGET ZLIB::ZLIB
-    OR NOT TARGET pugixml::pugixml OR NOT PHOTONGRID_STB_INCLUDE_DIR OR NOT PHOTONGRID_TINYGLTF_INCLUDE_DIR)
-  message(STATUS "photongrid: no scene files or pictures, and no program (Debian packages nlohmann-json3-dev, libopenexr-dev, libpng-dev, libpugixml-dev, libstb-dev, libtinygltf-dev, zlib1g-dev)")
+    OR NOT TARGET pugixml::pugixml OR NOT PHOTONGRID_STB_INCLUDE_DIR)
+  message(STATUS "photongrid: no scene files or pictures, and no program (Debian packages nlohmann-json3-dev, libopenexr-dev, libpng-dev, libpugixml-dev, libstb-dev, zlib1g-dev)")
   return()
 endif()
 file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/photongrid/io/*.cpp
@@ -24,8 +23,7 @@ target_sources(photongrid_io PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_
   ${folder}/scene_error.hpp ${folder}/scene_file.hpp ${folder}/scene_import.hpp ${folder}/scene_writer.hpp ${folder}/structural_similarity.hpp ${folder}/tone_map.hpp)
 target_link_libraries(photongrid_io PUBLIC photongrid PRIVATE $<BUILD_INTERFACE:photongrid_warnings>
   $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> OpenEXR::OpenEXR PNG::PNG ZLIB::ZLIB pugixml::pugixml)
-target_include_directories(photongrid_io SYSTEM PRIVATE $<BUILD_INTERFACE:${PHOTONGRID_STB_INCLUDE_DIR}>
-  $<BUILD_INTERFACE:${PHOTONGRID_TINYGLTF_INCLUDE_DIR}>)
+target_include_directories(photongrid_io SYSTEM PRIVATE $<BUILD_INTERFACE:${PHOTONGRID_STB_INCLUDE_DIR}>)
 if(PHOTONGRID_SANITIZE)
   set(together 0) # all
   if(PHOTONGRID_FUZZ)

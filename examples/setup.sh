@@ -6,7 +6,7 @@ program_packages=(
   g++ cmake ninja-build pkg-config
   libtbb-dev libhwy-dev
   libglm-dev libcli11-dev nlohmann-json3-dev libopenexr-dev libpng-dev libstb-dev
-  libpugixml-dev libtinygltf-dev zlib1g-dev
+  libpugixml-dev zlib1g-dev
   libgl-dev libopengl-dev libegl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
   libvulkan-dev mesa-vulkan-drivers glslang-dev glslang-tools spirv-tools
   libglfw3-dev libimgui-dev

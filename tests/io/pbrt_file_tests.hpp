@@ -2,10 +2,9 @@
 // expected values are computed from pbrt's own definitions.
 #pragma once
 
-#include "scene_texts.hpp"
+#include "import_tests.hpp"
 
 #include <photongrid/io/pbrt_file.hpp>
-#include <photongrid/io/scene_import.hpp>
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -24,29 +23,6 @@ namespace {
         return parse_pbrt("s.pbrt", options + "WorldBegin\n" + world + lamp, settings);
     }
     scene pbrt_world(const std::string& world) { return pbrt_scene(world).scene; }
-
-    std::vector<std::string> notes_of(const imported_scene& s)
-    {
-        std::vector<std::string> all;
-        for (const auto& n : s.notes)
-            all.push_back(text_of(n));
-        return all;
-    }
-
-    void expect_near(const dvec3& a, const dvec3& b, double most = 1e-12)
-    {
-        EXPECT_LT(glm::length(a - b), most)
-            << a.x << ' ' << a.y << ' ' << a.z << " is not " << b.x << ' ' << b.y << ' ' << b.z;
-    }
-
-    /// The direction of the ray through a place of the picture, from -1, -1 (left, lower) to 1, 1.
-    dvec3 view_direction(const scene& s, double x, double y)
-    {
-        const detail::camera_axes axes(s.camera);
-        const double up = std::tan(glm::radians(s.camera.vertical_fov) / 2),
-                     right = up * s.render.output.width / s.render.output.height;
-        return glm::normalize(axes.forward + x * right * axes.right + y * up * axes.up);
-    }
 
     struct view_case {
         const char* name;
@@ -386,29 +362,20 @@ namespace {
         EXPECT_THROW(parse_pbrt("s.pbrt", "", {.unit = 0.0}), std::invalid_argument);
     }
 
-    class pbrt_folder : public ::testing::Test {
+    class pbrt_folder : public import_folder {
     protected:
         pbrt_folder()
         {
-            std::filesystem::create_directories(folder / "below");
             write("below/square.ply",
                 "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
                 "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 "
                 "2 3\n");
-        }
-        ~pbrt_folder() override { std::filesystem::remove_all(folder); }
-        void write(const std::string& name, const std::string& content)
-        {
-            std::ofstream(folder / name, std::ios::binary) << content;
         }
         std::string refused(const std::string& text, const import_settings& settings = {})
         {
             write("s.pbrt", text);
             return refusal_by([&] { return import_scene((folder / "s.pbrt").string(), settings); });
         }
-        std::filesystem::path folder = std::filesystem::temp_directory_path()
-            / ("photongrid_pbrt_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + "_"
-                + ::testing::UnitTest::GetInstance()->current_test_info()->name());
     };
 
     TEST_F(pbrt_folder, reads_files_that_it_names)

@@ -1,3 +1,4 @@
 // Scenes of other programs.
+#include "gltf_file_tests.hpp"
 #include "pbrt_file_tests.hpp"
 #include "spectra_tests.hpp"

@@ -96,16 +96,19 @@ image read_image(const std::string& path)
 }
 
 namespace {
-    /// A reader of pictures without transparency.
-    template <image (*Read)(const std::string&), bool IsSrgb = false>
-    picture_channels read_opaque(const std::string& path)
+    /// A picture without transparency.
+    picture_channels opaque(const image& picture, bool is_srgb)
     {
-        const auto picture = Read(path);
-        picture_channels made{picture.width, picture.height, {}, IsSrgb};
+        picture_channels made{picture.width, picture.height, {}, is_srgb};
         made.pixels.reserve(picture.pixels.size());
         for (const auto& p : picture.pixels)
             made.pixels.emplace_back(p, 1.0f);
         return made;
+    }
+    template <image (*Read)(const std::string&), bool IsSrgb = false>
+    picture_channels read_opaque(const std::string& path)
+    {
+        return opaque(Read(path), IsSrgb);
     }
 } // namespace
 
@@ -116,6 +119,21 @@ picture_channels read_channels(const std::string& path)
         {".pfm", read_opaque<read_pfm>}, {".hdr", read_opaque<read_hdr>}, {".png", read_png_channels},
         {".tga", read_tga_channels}, {".jpg", read_opaque<read_jpeg, true>}, {".jpeg", read_opaque<read_jpeg, true>}};
     return read_as<picture_channels>(formats, path, ".exr, .hdr, .pfm, .png, .jpg or .tga");
+}
+
+picture_channels decode_channels(const std::string& name, std::string_view bytes)
+{
+    try {
+        if (bytes.starts_with("\x89PNG"))
+            return image_formats::png_channels(name, bytes);
+        if (bytes.starts_with("\xFF\xD8\xFF"))
+            return opaque(image_formats::jpeg_picture(name, bytes), true);
+    } catch (const file_error&) {
+        throw;
+    } catch (const std::exception& what) {
+        fail_file(name, std::string("cannot be read: ") + what.what());
+    }
+    fail_file(name, "is neither a PNG nor a JPEG file");
 }
 
 image read_linear_image(const std::string& path)

@@ -8,6 +8,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 
 namespace photongrid {
 
@@ -50,5 +51,9 @@ glm::vec3 linear_pixel(const picture_channels& picture, std::size_t pixel);
 /// and TGA files that have it.
 /// \throws file_error.
 picture_channels read_channels(const std::string& path);
+
+/// The same of a PNG or JPEG file's bytes; `name` is that of the picture in messages.
+/// \throws file_error, also for other formats.
+picture_channels decode_channels(const std::string& name, std::string_view bytes);
 
 } // namespace photongrid

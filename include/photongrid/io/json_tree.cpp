@@ -125,9 +125,9 @@ private:
     bool open(json_kind kind)
     {
         const auto place = token();
-        if (frames_.size() == json_tree::max_depth)
+        if (frames_.size() == tree_.limits_.depth)
             tree_.fail(place,
-                "nested deeper than " + std::to_string(json_tree::max_depth) + " levels; a scene needs far fewer");
+                "nested deeper than " + std::to_string(tree_.limits_.depth) + " levels; a scene needs far fewer");
         count(place);
         frames_.push_back({.value = {.kind = kind, .place = place}});
         return true;
@@ -166,9 +166,9 @@ private:
 
     void count(std::size_t place)
     {
-        if (++values_ > json_tree::max_values)
+        if (++values_ > tree_.limits_.values)
             tree_.fail(
-                place, "more than " + std::to_string(json_tree::max_values) + " values; expected a scene, not a mesh");
+                place, "more than " + std::to_string(tree_.limits_.values) + " values; expected a scene, not a mesh");
     }
 
     json_tree& tree_;
@@ -182,11 +182,12 @@ const json_value* json_value::find(std::string_view key_wanted) const
     return m == items.end() ? nullptr : &*m;
 }
 
-json_tree::json_tree(std::string file, std::string text) : file_(std::move(file)), text_(std::move(text))
+json_tree::json_tree(std::string file, std::string text, const json_limits& limits)
+    : file_(std::move(file)), text_(std::move(text)), limits_(limits)
 {
-    if (text_.size() > max_bytes)
+    if (text_.size() > limits_.bytes)
         throw scene_error(
-            file_, 0, 0, "larger than " + std::to_string(max_bytes >> 20) + " MiB; expected a scene file");
+            file_, 0, 0, "larger than " + std::to_string(limits_.bytes >> 20) + " MiB; expected a scene file");
     json_builder builder(*this);
     nlohmann::json::sax_parse(text_.data(), text_.data() + text_.size(), &builder);
 }
@@ -257,9 +258,9 @@ std::string read_scene_text(const std::string& path)
     std::vector<char> block(std::size_t{1} << 16);
     while (const auto n = std::fread(block.data(), 1, block.size(), file.get())) {
         text.append(block.data(), n);
-        if (text.size() > json_tree::max_bytes)
-            throw scene_error(path, 0, 0,
-                "larger than " + std::to_string(json_tree::max_bytes >> 20) + " MiB; expected a scene file");
+        if (text.size() > json_limits{}.bytes)
+            throw scene_error(
+                path, 0, 0, "larger than " + std::to_string(json_limits{}.bytes >> 20) + " MiB; expected a scene file");
     }
     if (std::ferror(file.get()))
         throw refuse(std::strerror(errno));

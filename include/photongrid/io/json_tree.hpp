@@ -30,18 +30,22 @@ struct json_value {
     const json_value* find(std::string_view key_wanted) const;
 };
 
+/// Limits of files; the values that are given are those of scene files.
+struct json_limits {
+    std::size_t bytes = std::size_t{16} << 20;
+    std::size_t depth = 32;
+    std::size_t values = 1'000'000;
+};
+
 /// A parsed file: its name for messages, its text and its tree.
 class json_tree {
 public:
-    static constexpr std::size_t max_bytes = std::size_t{16} << 20;
-    static constexpr std::size_t max_depth = 32;
-    static constexpr std::size_t max_values = 1'000'000;
-
     /// Parses `text`. Throws scene_error for a syntax error, a duplicate key, a number beyond double precision, or a
     /// limit exceeded.
-    json_tree(std::string file, std::string text);
+    json_tree(std::string file, std::string text, const json_limits& limits = {});
 
     const json_value& root() const { return root_; }
+    const std::string& text() const { return text_; }
 
     /// Throws scene_error for the value at `place`.
     [[noreturn]] void fail(std::size_t place, const std::string& what) const;
@@ -49,6 +53,7 @@ public:
 private:
     friend class json_builder;
     std::string file_, text_;
+    json_limits limits_;
     json_value root_;
 };
 
@@ -58,7 +63,7 @@ std::string described(const json_value& v);
 /// The candidate that is most similar to `word`, if `word` is probably a misspelling of it; otherwise empty.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
-/// Reads a file's bytes, at most json_tree::max_bytes. Throws scene_error without a line.
+/// Reads a file's bytes, at most as many as a scene file has. Throws scene_error without a line.
 std::string read_scene_text(const std::string& path);
 
 } // namespace photongrid

@@ -30,23 +30,38 @@ std::string png_bytes(const image& picture, double exposure)
     return bytes;
 }
 
+namespace {
+    /// `begin` makes libpng read the header.
+    template <class Begin>
+    picture_channels read_channels_by(const std::string& path, Begin begin)
+    {
+        png_image png{};
+        png.version = PNG_IMAGE_VERSION;
+        const std::unique_ptr<png_image, decltype(&png_image_free)> freed(&png, png_image_free);
+        if (!begin(&png))
+            throw std::runtime_error(png.message);
+        check_read_size(path, png.width, png.height);
+        png.format = PNG_FORMAT_RGBA; // 8 bits, sRGB; libpng's own linear format is decoded through 8 bits
+        std::vector<png_byte> rgba(std::size_t{png.width} * png.height * 4);
+        if (!png_image_finish_read(&png, nullptr, rgba.data(), 0, nullptr))
+            throw std::runtime_error(png.message);
+        picture_channels picture{.width = png.width, .height = png.height, .pixels = {}, .is_srgb = true};
+        picture.pixels.reserve(rgba.size() / 4);
+        for (std::size_t i = 0; i < rgba.size(); i += 4)
+            picture.pixels.push_back(glm::vec4(rgba[i], rgba[i + 1], rgba[i + 2], rgba[i + 3]) / 255.0f);
+        return picture;
+    }
+} // namespace
+
 picture_channels read_png_channels(const std::string& path)
 {
-    png_image png{};
-    png.version = PNG_IMAGE_VERSION;
-    const std::unique_ptr<png_image, decltype(&png_image_free)> freed(&png, png_image_free);
-    if (!png_image_begin_read_from_file(&png, path.c_str()))
-        throw std::runtime_error(png.message);
-    check_read_size(path, png.width, png.height);
-    png.format = PNG_FORMAT_RGBA; // 8 bits, sRGB; libpng's own linear format is decoded through 8 bits
-    std::vector<png_byte> rgba(std::size_t{png.width} * png.height * 4);
-    if (!png_image_finish_read(&png, nullptr, rgba.data(), 0, nullptr))
-        throw std::runtime_error(png.message);
-    picture_channels picture{.width = png.width, .height = png.height, .pixels = {}, .is_srgb = true};
-    picture.pixels.reserve(rgba.size() / 4);
-    for (std::size_t i = 0; i < rgba.size(); i += 4)
-        picture.pixels.push_back(glm::vec4(rgba[i], rgba[i + 1], rgba[i + 2], rgba[i + 3]) / 255.0f);
-    return picture;
+    return read_channels_by(path, [&](png_image* png) { return png_image_begin_read_from_file(png, path.c_str()); });
+}
+
+picture_channels png_channels(const std::string& path, std::string_view bytes)
+{
+    return read_channels_by(
+        path, [&](png_image* png) { return png_image_begin_read_from_memory(png, bytes.data(), bytes.size()); });
 }
 
 } // namespace photongrid::image_formats

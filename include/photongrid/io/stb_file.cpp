@@ -7,7 +7,7 @@
 #include <fstream>
 #include <memory>
 #include <stdexcept>
-#include <vector>
+#include <string_view>
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
@@ -32,7 +32,7 @@
 namespace photongrid::image_formats {
 
 namespace {
-    std::vector<stbi_uc> bytes_of(const std::string& path)
+    std::string bytes_of(const std::string& path)
     {
         std::ifstream file(path, std::ios::binary | std::ios::ate);
         const auto size = file.tellg();
@@ -40,16 +40,16 @@ namespace {
             throw std::runtime_error(std::strerror(errno));
         if (size > (std::streamoff{1} << 30))
             fail_file(path, "is larger than 2^30 bytes");
-        std::vector<stbi_uc> bytes(static_cast<std::size_t>(size));
+        std::string bytes(static_cast<std::size_t>(size), '\0');
         file.seekg(0);
-        if (!file.read(reinterpret_cast<char*>(bytes.data()), size))
+        if (!file.read(bytes.data(), size))
             throw std::runtime_error(std::strerror(errno));
         return bytes;
     }
 
     /// The bytes of a file as stb_image reads them. It takes what is missing at the end of a file for zeros.
     struct source {
-        const std::vector<stbi_uc>& bytes;
+        std::string_view bytes;
         std::size_t at = 0;
         bool past_end = false;
     };
@@ -82,9 +82,8 @@ namespace {
 
     /// `load` returns so many channels a pixel, which `add` takes with their number of pixels.
     template <class Load, class Add>
-    void read(const std::string& path, int channels_wanted, Load load, Add add)
+    void read(const std::string& path, std::string_view bytes, int channels_wanted, Load load, Add add)
     {
-        const auto bytes = bytes_of(path);
         int width = 0, height = 0, channels = 0;
         source begin{bytes}, whole{bytes};
         if (!stbi_info_from_callbacks(&from_source, &begin, &width, &height, &channels))
@@ -101,10 +100,10 @@ namespace {
 
     /// `value`: the number that a channel is.
     template <class Load, class Value>
-    image read_image_by(const std::string& path, Load load, Value value)
+    image read_image_by(const std::string& path, std::string_view bytes, Load load, Value value)
     {
         image picture;
-        read(path, 3, load, [&](std::uint32_t width, std::uint32_t height, const auto* data) {
+        read(path, bytes, 3, load, [&](std::uint32_t width, std::uint32_t height, const auto* data) {
             picture.width = width;
             picture.height = height;
             const std::size_t pixels = std::size_t{width} * height;
@@ -118,25 +117,29 @@ namespace {
 
 image read_hdr(const std::string& path)
 {
-    return read_image_by(path, stbi_loadf_from_callbacks, [](float v) { return v; });
+    return read_image_by(path, bytes_of(path), stbi_loadf_from_callbacks, [](float v) { return v; });
 }
 
-image read_jpeg(const std::string& path)
+image jpeg_picture(const std::string& path, std::string_view bytes)
 {
-    return read_image_by(path, stbi_load_from_callbacks, [](stbi_uc v) { return static_cast<float>(v) / 255.0f; });
+    return read_image_by(
+        path, bytes, stbi_load_from_callbacks, [](stbi_uc v) { return static_cast<float>(v) / 255.0f; });
 }
+
+image read_jpeg(const std::string& path) { return jpeg_picture(path, bytes_of(path)); }
 
 picture_channels read_tga_channels(const std::string& path)
 {
     picture_channels picture{.width = 0, .height = 0, .pixels = {}, .is_srgb = true};
-    read(path, 4, stbi_load_from_callbacks, [&](std::uint32_t width, std::uint32_t height, const stbi_uc* data) {
-        picture.width = width;
-        picture.height = height;
-        const std::size_t pixels = std::size_t{width} * height;
-        picture.pixels.reserve(pixels);
-        for (std::size_t i = 0; i < 4 * pixels; i += 4)
-            picture.pixels.push_back(glm::vec4(data[i], data[i + 1], data[i + 2], data[i + 3]) / 255.0f);
-    });
+    read(path, bytes_of(path), 4, stbi_load_from_callbacks,
+        [&](std::uint32_t width, std::uint32_t height, const stbi_uc* data) {
+            picture.width = width;
+            picture.height = height;
+            const std::size_t pixels = std::size_t{width} * height;
+            picture.pixels.reserve(pixels);
+            for (std::size_t i = 0; i < 4 * pixels; i += 4)
+                picture.pixels.push_back(glm::vec4(data[i], data[i + 1], data[i + 2], data[i + 3]) / 255.0f);
+        });
     return picture;
 }
 

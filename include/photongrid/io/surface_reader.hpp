@@ -107,13 +107,13 @@ private:
     mesh inline_mesh(const json_value& positions, const json_value& triangles, const json_value* normals) const
     {
         mesh m;
-        read_list(positions, json_tree::max_values, "positions", [&](const json_value& p) {
+        read_list(positions, json_limits{}.values, "positions", [&](const json_value& p) {
             m.positions.emplace_back(three(p, "a position: [x, y, z]",
                 [&](const json_value& c) { return number(c, -1e9, 1e9, "a coordinate from -1e9 to 1e9"); }));
         });
         if (m.positions.empty())
             wrong(positions, "at least one position");
-        read_list(triangles, json_tree::max_values, "triangles", [&](const json_value& t) {
+        read_list(triangles, json_limits{}.values, "triangles", [&](const json_value& t) {
             m.triangles.emplace_back(
                 three(t, "a triangle: the numbers of 3 positions, counted from 0", [&](const json_value& c) {
                     return static_cast<double>(whole(c, 0, static_cast<std::uint32_t>(m.positions.size() - 1)));
@@ -131,7 +131,7 @@ private:
     void read_for_each_position(
         const json_value& v, const char* what, const mesh& m, std::vector<Element>& to, Read&& read) const
     {
-        read_list(v, json_tree::max_values, what, [&](const json_value& e) { to.push_back(read(e)); });
+        read_list(v, json_limits{}.values, what, [&](const json_value& e) { to.push_back(read(e)); });
         if (to.size() != m.positions.size())
             wrong(v, std::string(what) + " for each of the " + std::to_string(m.positions.size()) + " positions");
     }

@@ -62,9 +62,8 @@ namespace {
         return made;
     }
 
-    texture read_texture(const std::string& path, texture_holds holds)
+    texture texture_of_picture(const picture_channels& picture, texture_holds holds)
     {
-        const auto picture = read_channels(path);
         texture made{picture.width, picture.height, {}};
         made.texels.reserve(picture.pixels.size());
         for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
@@ -75,6 +74,19 @@ namespace {
             made.texels.emplace_back(glm::vec4(0.5f) + glm::clamp(p, 0.0f, 1.0f) * 65535.0f);
         }
         return made;
+    }
+
+    std::shared_ptr<const texture> checked_texture(
+        const std::string& path, const picture_channels& picture, texture_holds holds)
+    {
+        try {
+            texture_use use;
+            use.map = std::make_shared<const texture>(texture_of_picture(picture, holds));
+            check(use);
+            return use.map;
+        } catch (const std::invalid_argument& e) {
+            fail_file(path, e.what());
+        }
     }
 } // namespace
 
@@ -144,15 +156,17 @@ std::shared_ptr<const texture> scene_files::texture(const std::string& name, tex
     auto& map = textures_[{name, holds}];
     if (!map) {
         const auto path = path_of_regular(name);
-        try {
-            texture_use use;
-            use.map = std::make_shared<const photongrid::texture>(read_texture(path, holds));
-            check(use);
-            map = use.map;
-        } catch (const std::invalid_argument& e) {
-            fail_file(path, e.what());
-        }
+        map = checked_texture(path, read_channels(path), holds);
     }
+    return map;
+}
+
+std::shared_ptr<const texture> scene_files::texture_of(
+    const std::string& name, std::string_view bytes, texture_holds holds)
+{
+    auto& map = textures_[{name, holds}];
+    if (!map)
+        map = checked_texture(name, decode_channels(name, bytes), holds);
     return map;
 }
 

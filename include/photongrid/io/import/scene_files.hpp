@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace photongrid {
@@ -45,6 +46,11 @@ public:
     /// A texture.
     /// \throws file_error.
     std::shared_ptr<const photongrid::texture> texture(const std::string& name, texture_holds holds);
+
+    /// A texture of a PNG or JPEG file's bytes, made once for each `name`.
+    /// \throws file_error.
+    std::shared_ptr<const photongrid::texture> texture_of(
+        const std::string& name, std::string_view bytes, texture_holds holds);
 
     /// An environment, as its file has it.
     /// \throws file_error.
