@@ -325,6 +325,28 @@ namespace {
         EXPECT_EQ(glossy.materials.at(0).kind, material_kind::plastic);
         EXPECT_NEAR(glossy.materials.at(0).index_of_refraction, 1.5, 1e-12);
         EXPECT_EQ(glossy.materials.at(0).roughness, 0.25);
+        // Of the light that passes the coat, 0.3 leaves again, however often it goes back and forth below: the sum of a
+        // geometric series, with what a coat throws back of even light from below, by Fresnel's formula.
+        const auto red = gltf_scene(triangle_text(R"(, "material": 0)",
+            R"(, "materials": [{"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0,
+            "baseColorFactor": [0.3, 0, 1, 1]}}])"));
+        double thrown_back = 0;
+        constexpr int steps = 200'000;
+        for (int i = 0; i < steps; ++i) {
+            const double inside = (i + 0.5) / steps, sine = 1.5 * std::sqrt(1 - inside * inside);
+            double reflected = 1;
+            if (sine < 1) {
+                const double outside = std::sqrt(1 - sine * sine),
+                             s = (1.5 * inside - outside) / (1.5 * inside + outside),
+                             p = (inside - 1.5 * outside) / (inside + 1.5 * outside);
+                reflected = 0.5 * (s * s + p * p);
+            }
+            thrown_back += 2 * inside * reflected / steps;
+        }
+        const auto base = red.materials.at(0).reflectance;
+        EXPECT_NEAR(base.x * (1 - thrown_back) / (1 - base.x * thrown_back), 0.3, 1e-4);
+        EXPECT_EQ(base.y, 0);
+        EXPECT_NEAR(base.z, 1, 1e-12);
         // A body of 2 m of which 1 m lets half of the red light pass: a quarter in two crossings.
         const auto tinted = gltf_scene(triangle_text(R"(, "material": 0}, {"attributes": {"POSITION": 0})",
             R"(, "materials": [{"pbrMetallicRoughness": {"metallicFactor": 0}, "extensions":

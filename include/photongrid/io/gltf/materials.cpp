@@ -1,4 +1,5 @@
 #include <photongrid/io/gltf/materials.hpp>
+#include <photongrid/io/import/coat.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -233,13 +234,14 @@ namespace {
                 note("a texture of the roughness: its mean is used where the surface is no metal");
                 roughness *= mean_of(*roughness_texture_.map)[1];
             }
-            return add(suffix,
-                {.name = "",
-                    .kind = material_kind::plastic,
-                    .reflectance = base_,
-                    .index_of_refraction = index_,
-                    .roughness = roughness,
-                    .texture = texture_});
+            material m{.name = "",
+                .kind = material_kind::plastic,
+                .reflectance = base_,
+                .index_of_refraction = index_,
+                .roughness = roughness,
+                .texture = texture_};
+            set_reflectance_below_coat(m);
+            return add(suffix, std::move(m));
         }
 
         std::uint32_t clear(const char* suffix)
