@@ -57,6 +57,7 @@ struct reference_options {
     std::optional<glm::uvec2> size;
     std::optional<double> bin;
     std::optional<caustics_by> caustics;
+    std::optional<pixel_filter> filter;
     /// EV, PNG only, or none: fitted to the picture. Not given: the scene's.
     std::optional<std::optional<double>> exposure;
     std::vector<std::string> outputs;

@@ -25,6 +25,7 @@ namespace {
             r.height = o.size->y;
         }
         r.spp = o.spp.value_or(r.spp);
+        r.filter = o.filter.value_or(r.filter);
         r.paths = o.paths.value_or(r.paths);
         r.threads = o.threads.value_or(r.threads);
         r.seed = o.seed.value_or(r.seed);
@@ -41,8 +42,9 @@ namespace {
 
     json settings_json(const reference_settings& s)
     {
-        return {{"size", {s.width, s.height}}, {"spp", s.spp}, {"paths", s.paths}, {"bin", s.bin}, {"depth", s.depth},
-            {"photon_depth", s.photon_depth},
+        return {{"size", {s.width, s.height}}, {"spp", s.spp},
+            {"pixel_filter", setting_table::pixel_filter.values.word_for(s.filter)}, {"paths", s.paths}, {"bin", s.bin},
+            {"depth", s.depth}, {"photon_depth", s.photon_depth},
             {"caustics", s.area_light_caustics == caustics_by::bins ? "bins" : "paths"}, {"seed", s.seed}};
     }
 } // namespace

@@ -30,6 +30,33 @@ namespace {
         expect_agrees(render_reference(s, s.camera, settings), 1, 0.01); // rho / (1 - rho)
     }
 
+    // The edge of a lamp goes between two pixels. Under a tent of two pixels' width, an eighth of the area of each lies
+    // beyond it.
+    TEST(reference, pixel_filter_weighs_the_edge_of_a_lamp)
+    {
+        scene s = empty_scene();
+        s.disks = {{dvec3(0, 0, 9), {0, 0, -1}, 5, white}};
+        s.rectangle_lights = {{"lamp", {0, -20, 0}, {20, 0, 0}, {0, 40, 0}, dvec3(M_PI * 800)}};
+        const camera view{
+            {0, 0, 5}, dvec3(0), {0, 1, 0}, glm::degrees(2 * std::atan(0.4))}; // pixels of 1 m at the lamp
+        auto settings = quick(6, 4, 40'000);
+        settings.photon_depth = 1;
+        const auto columns = [&](pixel_filter filter) {
+            settings.filter = filter;
+            const auto picture = render_reference(s, view, settings).mean;
+            std::vector<double> all;
+            for (std::size_t x = 0; x < 6; ++x)
+                all.push_back(static_cast<double>(picture.pixels[6 + x].x));
+            return all;
+        };
+        EXPECT_EQ(columns(pixel_filter::box), (std::vector<double>{0, 0, 0, 1, 1, 1}));
+        const auto tent = columns(pixel_filter::tent);
+        EXPECT_EQ(tent[1], 0);
+        EXPECT_NEAR(tent[2], 0.125, 0.007); // four standard errors
+        EXPECT_NEAR(tent[3], 0.875, 0.007);
+        EXPECT_EQ(tent[4], 1);
+    }
+
     TEST(reference, point_light_falls_off_with_the_square_and_the_cosine)
     {
         scene s = empty_scene();

@@ -407,6 +407,7 @@ namespace {
             {"no photons", [](scene& x) { x.render.map.photons = 0; }, "photons"},
             {"no radius", [](scene& x) { x.render.estimate.max_radius = 0; }, "max_radius"},
             {"builder", [](scene& x) { x.render.map.builder = static_cast<map_builder>(9); }, "map"},
+            {"pixel filter", [](scene& x) { x.render.view.filter = static_cast<pixel_filter>(9); }, "pixel_filter"},
             {"one axis without cells",
                 [](scene& x) {
                     x.render.map.grid = {0, 1, 1};

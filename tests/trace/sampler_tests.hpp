@@ -283,6 +283,35 @@ namespace {
         }
     }
 
+    /// With a tent a ray's place has the density 1 - |x| about the pixel's middle, along both axes, and the shares of
+    /// the tent up to it are strata as places in a pixel are.
+    TEST(samplers, eye_rays_are_distributed_as_a_tent)
+    {
+        const auto share = [](double x) { // of the tent up to x, from its middle
+            return x < 0 ? 0.5 * (1 + x) * (1 + x) : 1 - 0.5 * (1 - x) * (1 - x);
+        };
+        for (const uint spp : {2u, 4u, 9u}) {
+            const render_settings settings{
+                .view = {.spp = spp, .filter = pixel_filter::tent}, .output = {.width = 128, .height = 128}};
+            even_bins<2> in_tent(32);
+            std::vector<std::set<std::size_t>> columns(128 * 128);
+            for (uint sample = 0; sample < spp; ++sample) {
+                const auto rays = eye_rays(oblique, settings, sample);
+                for (std::size_t i = 0; i < rays.size(); ++i) {
+                    const double x = rays[i].x - static_cast<double>(i % 128) - 0.5,
+                                 y = rays[i].y - static_cast<double>(i / 128) - 0.5;
+                    ASSERT_LE(std::max(std::abs(x), std::abs(y)), 1.001);
+                    in_tent.add({std::clamp(share(x), 0.0, 1 - 1e-9), std::clamp(share(y), 0.0, 1 - 1e-9)});
+                    const double column = share(x) * spp;
+                    if (std::abs(column - std::round(column)) > 2e-3 * spp) {
+                        EXPECT_TRUE(columns[i].insert(static_cast<std::size_t>(column)).second) << i;
+                    }
+                }
+            }
+            EXPECT_LE(in_tent.deviate(), far_off) << spp;
+        }
+    }
+
     TEST(samplers, eye_rays_of_other_pixels_samples_and_seeds_are_independent)
     {
         render_settings settings{.view = {.spp = 4}, .output = {.width = 256, .height = 128}};

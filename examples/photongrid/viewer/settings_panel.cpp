@@ -113,6 +113,10 @@ void settings_panel::draw(double shown_exposure)
     ImGui::Separator();
     number(setting_table::spp, "eye rays", 1, 64,
         "Eye rays per pixel. Speed: time in proportion. Error: smoother edges, less noise from glass and lamps.");
+    choice(setting_table::pixel_filter, "pixel filter",
+        "Weight of an eye ray by its place: even over its pixel, or a tent of two pixels. Speed: the same. Error: a "
+        "tent "
+        "is smoother at edges, and a little blurred.");
     number(setting_table::passes, "passes", 1, 1024,
         "The picture is the mean of this many passes, each with its own photons and rays. Speed: time in proportion. "
         "Error: noise and blotches fade with every pass.");

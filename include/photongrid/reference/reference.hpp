@@ -10,6 +10,16 @@
 
 namespace photongrid {
 
+namespace reference {
+    /// A place along an axis of a pixel, from 0 to 1 within it; `u`: a random number from 0 to 1.
+    inline double place_in_pixel(pixel_filter filter, double u)
+    {
+        if (filter == pixel_filter::box)
+            return u;
+        return u < 0.5 ? std::sqrt(2 * u) - 0.5 : 1.5 - std::sqrt(2 - 2 * u);
+    }
+} // namespace reference
+
 /// Renders a view without a photon map. The same scene and settings give the same bytes with any number of threads. The
 /// result is unbiased except for the bins, which blur caustics over their size (stats.bin_size), and for the depth
 /// limits. It is one function, because each step needs most of what the steps before it have computed.
@@ -59,7 +69,8 @@ inline reference_picture render_reference(
                         return;
                     dvec3 sum(0);
                     for (std::uint32_t n = 0; n < per_group; ++n) {
-                        const double dx = random(), dy = random();
+                        const double dx = reference::place_in_pixel(settings.filter, random()),
+                                     dy = reference::place_in_pixel(settings.filter, random());
                         const dvec3 d = forward + (x + dx - 0.5 * settings.width) * pixel * right
                             + (0.5 * settings.height - (y + dy)) * pixel * up;
                         const dvec3 sample = tracer.radiance(

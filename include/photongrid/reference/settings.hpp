@@ -28,9 +28,10 @@ struct reference_settings {
     std::uint32_t photon_depth
         = 32; ///< the most surfaces of a light path up to and including the first diffuse one seen from the camera
     caustics_by area_light_caustics = caustics_by::paths; ///< method for rectangle lights
+    pixel_filter filter = pixel_filter::box;              ///< weight of an eye path by its place in the picture
 };
 
-/// Reference settings with the size, seed and depths of a scene's render settings.
+/// Reference settings with the size, seed, filter and depths of a scene's render settings.
 inline reference_settings reference_settings_for(const render_settings& s)
 {
     reference_settings r;
@@ -38,6 +39,7 @@ inline reference_settings reference_settings_for(const render_settings& s)
     r.height = s.output.height;
     r.seed = s.seed;
     r.depth = s.view.depth;
+    r.filter = s.view.filter;
     r.photon_depth = s.map.photon_depth;
     return r;
 }
@@ -47,6 +49,7 @@ inline void check(const reference_settings& s)
 {
     detail::require(s.width >= 1 && s.height >= 1 && s.width <= 16384 && s.height <= 16384,
         "size: width and height must be from 1 to 16384 pixels");
+    detail::require(s.filter <= pixel_filter::tent, "filter: must be one of the enumerators");
     detail::require(
         s.spp >= 2 && s.spp <= (1u << 24), "spp: must be from 2 to 2^24, since one path has no standard error");
     detail::require(s.paths >= 1 && s.paths <= (std::uint64_t{1} << 40), "paths: must be from 1 to 2^40");

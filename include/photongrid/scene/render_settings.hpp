@@ -72,11 +72,16 @@ struct estimate_settings {
     bool operator==(const estimate_settings&) const = default;
 };
 
+/// The weight of an eye ray in a pixel by the place that it goes through: even over the pixel; or falling linearly from
+/// the pixel's middle to those of its neighbours (a tent).
+enum class pixel_filter { box, tent };
+
 /// The eye rays (2.4).
 struct view_settings {
-    std::uint32_t spp = 4;           ///< eye rays per pixel and pass
-    std::uint32_t light_samples = 8; ///< shadow rays per light and eye ray; a point light needs one
-    std::uint32_t depth = 8;         ///< the most reflections and refractions of an eye ray
+    std::uint32_t spp = 4;                   ///< eye rays per pixel and pass
+    std::uint32_t light_samples = 8;         ///< shadow rays per light and eye ray; a point light needs one
+    std::uint32_t depth = 8;                 ///< the most reflections and refractions of an eye ray
+    pixel_filter filter = pixel_filter::box; ///< of pixels with several eye rays
 
     bool operator==(const view_settings&) const = default;
 };

@@ -177,6 +177,9 @@ namespace setting_table {
         in_scenes::optional, "shadow rays per area light and eye ray"};
     inline constexpr setting spp{
         "spp", of(&view_settings::spp), whole_range{1, 65536}, in_scenes::optional, "eye rays per pixel and pass"};
+    inline constexpr setting pixel_filter{"pixel_filter", of(&view_settings::filter),
+        one_of{{named{"box", photongrid::pixel_filter::box}, {"tent", photongrid::pixel_filter::tent}}},
+        in_scenes::optional, "weight of an eye ray by its place: even over its pixel (box), or a tent of two pixels"};
     inline constexpr setting passes{"passes", of(&output_settings::passes), whole_range{1, 65536}, in_scenes::optional,
         "the picture is the mean of so many passes, each with its own photons, eye rays and shadow rays"};
     inline constexpr setting depth{"depth", of(&view_settings::depth), whole_range{0, 64}, in_scenes::optional,
@@ -231,9 +234,9 @@ constexpr void for_each_setting(const Visit& visit)
 {
     namespace t = setting_table;
     const auto all = [&](const auto&... row) { (visit(row), ...); };
-    all(t::size, t::photons, t::k, t::grid, t::max_radius, t::light_samples, t::spp, t::passes, t::depth,
-        t::photon_depth, t::seed, t::map, t::slots, t::surplus, t::exposure, t::search, t::filter, t::bias, t::leaks,
-        t::edge_correction, t::only);
+    all(t::size, t::photons, t::k, t::grid, t::max_radius, t::light_samples, t::spp, t::pixel_filter, t::passes,
+        t::depth, t::photon_depth, t::seed, t::map, t::slots, t::surplus, t::exposure, t::search, t::filter, t::bias,
+        t::leaks, t::edge_correction, t::only);
 }
 
 /// \throws std::invalid_argument "name: must be …" for a setting out of its range, or for two incompatible settings.

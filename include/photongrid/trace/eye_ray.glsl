@@ -1,5 +1,5 @@
 // The ray from the camera through a pixel (2.4): through the pixel's centre if it is the only one, else through a
-// random point of the ray's own stratum of the pixel. Of n eye rays no two are in the same n-th of the pixel's width,
+// random point of the ray's own stratum of the pixel or of the filter's area. Of n eye rays no two are in the same n-th of the pixel's width,
 // nor of its height, so edges along rows and columns are smooth (Chiu, Shirley and Wang, Multi-Jittered Sampling,
 // 1994).
 #include <photongrid/backend/vector.glsl>
@@ -16,6 +16,7 @@ struct Params {
     uint branch;    // Fresnel branch (eye_bounce.glsl)
     uint seed;
     uint first_pixel; // pixel of element 0
+    uint tent;        // 1: places are distributed as a tent over two pixels; 0: evenly over one
 };
 PARAMS(Params)
 // Bit b: branch b must be traced for this pixel. Branch 0 is traced first and sets the other bits.
@@ -25,6 +26,16 @@ OUTPUT(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
 OUTPUT(2, vec4, throughput) // rgb: factor between radiance here and at the eye; w: splits so far
 OUTPUT(3, vec4, surface)    // xyz: normal towards the eye; w: material
 OUTPUT(4, vec4, emitted)    // rgb: radiance of the light that the ray ended on, times throughput
+
+// The place, in pixels, up to which a tent about 0.5 has the share u of its area.
+float under_tent(float u)
+{
+    bool rises = u < 0.5f;
+    precise float twice = rises ? 2.0f * u : 2.0f - 2.0f * u; // an exact difference of at least 0
+    precise float root = sqrt(twice > 0.0f ? twice : 0.0f);
+    precise float place = rises ? root - 0.5f : 1.5f - root;
+    return place;
+}
 
 void kernel(uint i)
 {
@@ -54,8 +65,8 @@ void kernel(uint i)
         uint nth_y = row * args.strata.x + (column + first_y) % args.strata.x;
         precise float across = (float(nth_x) + r.x) / float(args.strata.x * args.strata.y);
         precise float along_column = (float(nth_y) + r.y) / float(args.strata.x * args.strata.y);
-        dx = across;
-        dy = along_column;
+        dx = args.tent != 0u ? under_tent(across) : across;
+        dy = args.tent != 0u ? under_tent(along_column) : along_column;
     }
     precise vec3 d = vec3(args.corner) + vec3(args.right) * (float(x) + dx) + vec3(args.down) * (float(y) + dy);
     vec3 n = normalized3(d);

@@ -87,7 +87,8 @@ inline kernels::eye_ray::Params eye_params(
         .strata = s.view.spp > 1 || s.output.passes > 1 ? strata_of(s.view.spp) : glm::uvec2(0),
         .branch = ray & ((1u << splits) - 1u),
         .seed = s.seed,
-        .first_pixel = r.first_pixel()};
+        .first_pixel = r.first_pixel(),
+        .tent = s.view.filter == pixel_filter::tent ? 1u : 0u};
 }
 
 /// One sample of the light at each of some points: see the Params of shadow_ray.glsl.
