@@ -2,6 +2,8 @@
 // committed corpus (scene_corpus.cpp) hold it to the same function.
 #pragma once
 
+#include <photongrid/io/obj/mtl.hpp>
+#include <photongrid/io/obj_scene.hpp>
 #include <photongrid/io/pbrt_file.hpp>
 #include <photongrid/io/ply_file.hpp>
 #include <photongrid/io/scene_file.hpp>
@@ -20,7 +22,9 @@ namespace detail {
     inline std::string broken_in_message(const scene_error& e, std::string_view text)
     {
         const std::string_view said = e.what();
-        const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
+        const auto lines = static_cast<std::size_t>(std::max(std::count(text.begin(), text.end(), '\n'),
+                               std::count(text.begin(), text.end(), '\r'))) // of old Macs
+            + 1;
         if (!said.starts_with("s.json") || said.find(": error: ") == std::string_view::npos)
             return "the message names no file: " + std::string(said);
         if (e.line > lines || e.column > text.size() + 1 || (e.line > 0 && e.column < 1))
@@ -114,18 +118,35 @@ namespace detail {
     }
 } // namespace detail
 
-/// Reads `text` as a scene, of pbrt if it looks like one, and lays it out for a device. Returns the violated guarantee,
-/// or "": either a good scene_error, or a scene that check() takes and that lay_out() takes or refuses with
+/// Reads `text` as an MTL file, with the same result as broken_promise.
+inline std::string broken_in_mtl(std::string_view text)
+{
+    try {
+        const auto made = obj::parse_mtl("s.json", text);
+        return made.size() > text.size() ? "more materials than bytes" : "";
+    } catch (const scene_error& e) {
+        return detail::broken_in_message(e, text);
+    }
+}
+
+/// Reads `text` as a scene, of the format that it looks like, and lays it out for a device. Returns the violated
+/// guarantee, or "": either a good scene_error, or a scene that check() takes and that lay_out() takes or refuses with
 /// std::invalid_argument.
 inline std::string broken_promise(std::string_view text)
 {
     try {
+        const auto format = format_of("s.json", text);
+        if (text.starts_with("newmtl"))
+            return broken_in_mtl(text);
         if (text.starts_with("ply"))
-            return broken_in_ply(text);
+            if (const auto broken = broken_in_ply(text); !broken.empty())
+                return broken;
         scene s;
         try {
-            if (format_of("s.json", text) == scene_format::pbrt) {
-                auto imported = parse_pbrt("s.json", text);
+            if (format == scene_format::pbrt || format == scene_format::obj || format == scene_format::ply) {
+                auto imported = format == scene_format::pbrt ? parse_pbrt("s.json", text)
+                    : format == scene_format::obj            ? parse_obj_scene("s.json", text)
+                                                             : parse_ply_scene("s.json", text);
                 s = std::move(imported.scene);
                 if (const auto broken = detail::broken_in_notes(imported.notes, text); !broken.empty())
                     return broken;

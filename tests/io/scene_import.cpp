@@ -1,4 +1,5 @@
 // Scenes of other programs.
 #include "gltf_file_tests.hpp"
+#include "obj_scene_tests.hpp"
 #include "pbrt_file_tests.hpp"
 #include "spectra_tests.hpp"

@@ -24,13 +24,18 @@ namespace obj {
             imported_scene made()
             {
                 if (surface_.face_starts.empty())
-                    fail_at(file_, "the file has no face, so that there is no surface to be drawn");
+                    fail_at(
+                        file_, "the file has no face; points, lines and curves have no surface that could be drawn");
                 for (const auto& l : surface_.libraries)
                     read_library(l);
                 note_what_is_left_out();
                 resolve_names();
                 for (const auto& [material, faces] : faces_by_material())
                     add_faces(material, faces);
+                if (cutter_.not_cut() > 0)
+                    builder_.note(file_,
+                        std::to_string(cutter_.not_cut())
+                            + " faces cross themselves: their triangles cover each other, or more than the face");
                 return builder_.finish();
             }
 
@@ -137,7 +142,7 @@ namespace obj {
 
             void add_faces(std::uint32_t number, const std::vector<face_range>& faces)
             {
-                const auto surface = std::make_shared<const mesh>(mesh_of(surface_, faces));
+                const auto surface = std::make_shared<const mesh>(mesh_of(surface_, faces, &cutter_));
                 if (number == undefined) {
                     const material grey{
                         .name = "without material", .reflectance = dvec3(surface_.colors.empty() ? 0.5 : 1.0)};
@@ -155,6 +160,7 @@ namespace obj {
             source_place file_;
             scene_builder builder_;
             surface surface_;
+            polygon_cutter cutter_;
             std::map<std::string, bool> read_libraries_;
             std::vector<mtl_material> defined_;
             std::map<std::string, std::uint32_t> numbers_; ///< of materials by their names
@@ -186,12 +192,24 @@ namespace {
         const std::string& path, std::string_view bytes, const std::string& file, const import_settings& settings)
     {
         const source_place place(path);
+        const auto name = std::make_shared<const std::string>(path);
         scene_builder builder(path, settings);
-        const auto surface = std::make_shared<const mesh>(parse_ply(path, bytes));
+        ply_rest rest;
+        const auto surface = std::make_shared<const mesh>(parse_ply(path, bytes, &rest));
         if (surface->triangles.empty())
             fail_at(place, "the file has no face, so that there is no surface to be drawn");
-        const material grey{.name = "surface", .reflectance = dvec3(surface->colors.empty() ? 0.5 : 1.0)};
-        builder.add_mesh(place, surface, glm::dmat4(1), builder.add_material(place, grey), file);
+        for (const auto& r : rest.left_out)
+            builder.note({name, r.line, 1}, r.what);
+        material m{.name = "surface", .reflectance = dvec3(surface->colors.empty() ? 0.5 : 1.0)};
+        if (const source_place at(name, rest.texture_line, 1); !rest.texture.empty()) {
+            if (surface->texture_coordinates.empty()) {
+                builder.note(at, "a picture is left out: the vertices have no texture coordinates");
+            } else if (const auto t = builder.texture(at, rest.texture, texture_holds::colour)) {
+                m.texture = *t;
+                m.reflectance = dvec3(1);
+            }
+        }
+        builder.add_mesh(place, surface, glm::dmat4(1), builder.add_material(place, std::move(m)), file);
         return builder.finish();
     }
 } // namespace

@@ -54,17 +54,23 @@ namespace {
         role use = role::none;
         scalar type = scalar::f32;
         std::optional<scalar> count{}; ///< of a list: the type of its length
+        std::string name{};
+        std::size_t line = 0;
     };
     struct element {
         std::string name;
         std::uint64_t count = 0;
+        std::size_t line = 0;
         std::vector<property> properties{};
     };
     enum class format { ascii, little_endian, big_endian };
 
     class ply_reader {
     public:
-        ply_reader(const std::string& file, std::string_view bytes) : file_(file), bytes_(bytes) {}
+        ply_reader(const std::string& file, std::string_view bytes, ply_rest* rest)
+            : file_(file), bytes_(bytes), rest_(rest)
+        {
+        }
 
         mesh read()
         {
@@ -72,7 +78,8 @@ namespace {
             if (!has(role::x) || !has(role::y) || !has(role::z))
                 fail("the header declares no vertex with the properties x, y and z");
             if (!has(role::corners))
-                fail("the header declares no face with the list vertex_indices");
+                fail("the header declares no face with the list vertex_indices; a cloud of points has no surface");
+            tell_what_is_left_out();
             for (const auto& e : elements_)
                 read_element(e);
             for (std::size_t t = 0; t < made_.triangles.size(); ++t) // faces may come before vertices
@@ -102,6 +109,46 @@ namespace {
                 return std::any_of(e.properties.begin(), e.properties.end(),
                     [&](const property& p) { return p.use == use && e.count > 0; });
             });
+        }
+
+        bool is_smooth() const { return has(role::nx) && has(role::ny) && has(role::nz); }
+        bool is_mapped() const { return has(role::u) && has(role::v); }
+        bool is_colored() const { return has(role::red) && has(role::green) && has(role::blue); }
+        bool is_read(role use) const
+        {
+            switch (use) {
+            case role::x:
+            case role::y:
+            case role::z:
+            case role::corners: return true;
+            case role::nx:
+            case role::ny:
+            case role::nz: return is_smooth();
+            case role::u:
+            case role::v: return is_mapped();
+            case role::red:
+            case role::green:
+            case role::blue: return is_colored();
+            case role::none: break;
+            }
+            return false;
+        }
+        void tell_what_is_left_out()
+        {
+            if (rest_ == nullptr)
+                return;
+            for (const auto& e : elements_) {
+                if (e.count == 0)
+                    continue;
+                if (e.name != "vertex" && e.name != "face") {
+                    rest_->left_out.push_back({e.line, "the elements " + shown_word(e.name) + " are left out"});
+                    continue;
+                }
+                for (const auto& p : e.properties)
+                    if (!is_read(p.use))
+                        rest_->left_out.push_back(
+                            {p.line, "the property " + shown_word(p.name) + " of each " + e.name + " is left out"});
+            }
         }
 
         // --- the header ---
@@ -142,11 +189,17 @@ namespace {
             bool has_format = false;
             for (bool ends = false; !ends;) {
                 at_ = bytes_.find('\n', at_) + 1;
-                const auto w = words_of(next_line());
+                ++line_;
+                const auto line = next_line();
+                const auto w = words_of(line);
                 const auto expect = [&](std::size_t n, const char* form) {
                     if (w.size() != n)
                         fail(std::string("expected \"") + form + "\"");
                 };
+                if (rest_ != nullptr && w.size() > 2 && w[0] == "comment" && w[1] == "TextureFile") { // as of MeshLab
+                    rest_->texture = line.substr(static_cast<std::size_t>(w[2].data() - line.data()));
+                    rest_->texture_line = line_;
+                }
                 if (w.empty() || w[0] == "comment" || w[0] == "obj_info")
                     continue;
                 if (w[0] == "end_header") {
@@ -160,7 +213,7 @@ namespace {
                     has_format = true;
                 } else if (w[0] == "element") {
                     expect(3, "element NAME COUNT");
-                    element e{std::string(w[1])};
+                    element e{.name = std::string(w[1]), .line = line_};
                     const auto [end, wrong] = std::from_chars(w[2].data(), w[2].data() + w[2].size(), e.count);
                     if (wrong != std::errc() || end != w[2].data() + w[2].size())
                         fail("found " + shown_word(w[2]) + "; expected how many elements there are");
@@ -191,6 +244,8 @@ namespace {
             auto& e = elements_.back();
             property p;
             const auto name = w.back();
+            p.name = name;
+            p.line = line_;
             p.type = scalar_of(w[w.size() - 2]);
             if (is_list) {
                 p.count = scalar_of(w[2]);
@@ -210,22 +265,30 @@ namespace {
         void read_element(const element& e)
         {
             std::uint64_t least = 0; // bytes of one
-            for (const auto& p : e.properties)
-                least += format_ == format::ascii ? 2 : size_of(p.count.value_or(p.type));
+            for (const auto& p : e.properties) {
+                const bool is_ascii = format_ == format::ascii;
+                least += is_ascii ? 2 : size_of(p.count.value_or(p.type));
+                if (p.use == role::corners)
+                    least += 3 * (is_ascii ? 2 : size_of(p.type));
+            }
             // The last number of a text needs no blank behind it.
             if (e.count > 0 && least > 0 && e.count - 1 > (bytes_.size() - at_) / least)
                 fail("the header declares " + std::to_string(e.count) + " elements " + shown_word(e.name)
                     + ", which need more bytes than the file has");
             if (least == 0)
                 return;
-            const bool is_vertex = e.name == "vertex", is_smooth = has(role::nx) && has(role::ny) && has(role::nz),
-                       is_mapped = has(role::u) && has(role::v),
-                       is_colored = has(role::red) && has(role::green) && has(role::blue);
+            const bool is_vertex = e.name == "vertex", has_normals = is_smooth(), has_coordinates = is_mapped(),
+                       has_colors = is_colored();
             if (is_vertex)
                 made_.positions.reserve(made_.positions.size() + e.count);
+            for (const auto& p : e.properties)
+                if (p.use == role::corners) // most files have triangles alone
+                    made_.triangles.reserve(made_.triangles.size() + e.count);
+            std::array<float, static_cast<std::size_t>(role::corners)> v{};
             for (std::uint64_t i = 0; i < e.count; ++i) {
-                std::array<float, static_cast<std::size_t>(role::corners)> v{};
                 for (const auto& p : e.properties) {
+                    if (p.use == role::corners && read_corners_of_32_bits(p))
+                        continue;
                     if (p.count)
                         read_list(p);
                     else if (p.use == role::none)
@@ -235,11 +298,11 @@ namespace {
                 }
                 if (is_vertex)
                     made_.positions.emplace_back(v[0], v[1], v[2]);
-                if (is_vertex && is_smooth)
+                if (is_vertex && has_normals)
                     made_.normals.emplace_back(v[3], v[4], v[5]);
-                if (is_vertex && is_mapped)
+                if (is_vertex && has_coordinates)
                     made_.texture_coordinates.emplace_back(v[6], v[7]);
-                if (is_vertex && is_colored)
+                if (is_vertex && has_colors)
                     made_.colors.emplace_back(v[8], v[9], v[10]);
             }
         }
@@ -268,7 +331,9 @@ namespace {
         }
         float coordinate(scalar type)
         {
-            const double d = next(type);
+            const double d = type == scalar::f32 && format_ == format::little_endian && bytes_.size() - at_ >= 4
+                ? binary_as<float>() // as nearly all files have them
+                : next(type);
             if (!(std::abs(d) <= 1e18))
                 fail("a coordinate that is not finite or above 10^18");
             return static_cast<float>(d);
@@ -298,6 +363,32 @@ namespace {
                     made_.triangles.push_back({first, before, index});
                 before = index;
             }
+        }
+
+        /// Reads a face as nearly all files have them, without doubles, and with one look for the end of the file. Does
+        /// nothing and returns false for others, which read_list reads or refuses.
+        bool read_corners_of_32_bits(const property& p)
+        {
+            if (format_ == format::ascii || *p.count != scalar::u8 || (p.type != scalar::i32 && p.type != scalar::u32)
+                || at_ >= bytes_.size())
+                return false;
+            const std::size_t length = static_cast<unsigned char>(bytes_[at_]);
+            if (length < 3 || bytes_.size() - at_ < 1 + 4 * length)
+                return false;
+            const bool is_reversed = (format_ == format::big_endian) != (std::endian::native == std::endian::big);
+            const auto index = [&](std::size_t i) {
+                std::uint32_t n;
+                std::memcpy(&n, bytes_.data() + at_ + 1 + 4 * i, sizeof n);
+                return is_reversed ? n >> 24 | (n >> 8 & 0xFF00u) | (n << 8 & 0xFF0000u) | n << 24 : n;
+            };
+            if (p.type == scalar::i32)
+                for (std::size_t i = 0; i < length; ++i)
+                    if (index(i) > 0x7FFFFFFFu)
+                        return false;
+            for (std::size_t i = 2; i < length; ++i)
+                made_.triangles.push_back({index(0), index(i - 1), index(i)});
+            at_ += 1 + 4 * length;
+            return true;
         }
 
         double next(scalar type) { return format_ == format::ascii ? next_in_text() : next_in_binary(type); }
@@ -352,7 +443,8 @@ namespace {
 
         std::string file_;
         std::string_view bytes_;
-        std::size_t at_ = 0;
+        ply_rest* rest_;
+        std::size_t at_ = 0, line_ = 1; ///< the line of the header
         bool in_header_ = true;
         format format_ = format::ascii;
         std::vector<element> elements_;
@@ -360,7 +452,10 @@ namespace {
     };
 } // namespace
 
-mesh parse_ply(const std::string& file, std::string_view bytes) { return ply_reader(file, bytes).read(); }
+mesh parse_ply(const std::string& file, std::string_view bytes, ply_rest* rest)
+{
+    return ply_reader(file, bytes, rest).read();
+}
 
 mesh read_ply(const std::string& path) { return parse_ply(path, whole_file(path)); }
 

@@ -1,11 +1,12 @@
 #include <photongrid/io/scene_error.hpp>
 #include <photongrid/io/whole_file.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
-#include <vector>
 
 namespace photongrid {
 
@@ -15,9 +16,19 @@ std::string whole_file(const std::string& path)
         std::fopen(path.c_str(), "rb"), [](std::FILE* f) { return f ? std::fclose(f) : 0; });
     std::string bytes;
     if (file) {
-        std::vector<char> block(std::size_t{1} << 20);
-        while (const auto n = std::fread(block.data(), 1, block.size(), file.get()))
-            bytes.append(block.data(), n);
+        // Straight to their place, for large files, with room for a byte more, so that the end is found at once.
+        std::error_code unknown;
+        const auto size
+            = std::filesystem::is_regular_file(path, unknown) ? std::filesystem::file_size(path, unknown) : 0;
+        bytes.resize(unknown ? 1 : static_cast<std::size_t>(size) + 1);
+        std::size_t taken = 0;
+        for (;;) {
+            taken += std::fread(bytes.data() + taken, 1, bytes.size() - taken, file.get());
+            if (taken < bytes.size())
+                break;
+            bytes.resize(2 * taken + (std::size_t{1} << 16)); // it grows, or it is none that has a size
+        }
+        bytes.resize(taken);
     }
     if (!file || std::ferror(file.get()) != 0)
         throw scene_error(path, 0, 0, std::string("the file cannot be read: ") + std::strerror(errno));

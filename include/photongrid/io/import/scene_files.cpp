@@ -135,7 +135,9 @@ std::string scene_files::bytes_of(const std::string& name) const
 {
     const auto path = path_of_regular(name);
     auto bytes = whole_file(path);
-    return bytes.starts_with("\x1f\x8b") ? unpacked(path, bytes) : bytes;
+    if (bytes.starts_with("\x1f\x8b"))
+        return unpacked(path, bytes);
+    return bytes;
 }
 
 std::shared_ptr<const mesh> scene_files::surface(const std::string& name)

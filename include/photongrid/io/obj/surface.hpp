@@ -2,6 +2,7 @@
 #pragma once
 
 #include <photongrid/io/import/import_log.hpp>
+#include <photongrid/io/obj/polygon.hpp>
 #include <photongrid/scene/mesh.hpp>
 
 #include <array>
@@ -60,7 +61,8 @@ struct face_range {
 /// \throws scene_error as parse_obj does.
 surface parse(const std::string& file, std::string_view text);
 
-/// The mesh of some faces. Its vertices are in the order in which faces first name them.
-mesh mesh_of(const surface& s, std::span<const face_range> faces);
+/// The mesh of some faces. Its vertices are in the order in which faces first name them. Without a cutter all faces are
+/// fans around their first corner.
+mesh mesh_of(const surface& s, std::span<const face_range> faces, polygon_cutter* cutter);
 
 } // namespace photongrid::obj

@@ -7,15 +7,15 @@
 namespace photongrid::obj {
 
 namespace {
-    /// Newell's method: of any length.
-    glm::vec3 normal_of_face(const surface& s, std::size_t first, std::size_t past)
+    /// Newell's method.
+    glm::dvec3 normal_of_face(const surface& s, std::size_t first, std::size_t past)
     {
         const auto at = [&](std::size_t i) { return glm::dvec3(s.positions[s.corners[i][0]]); };
         glm::dvec3 sum(0);
         for (std::size_t i = first; i < past; ++i)
             sum += glm::cross(at(i) - at(first), at(i + 1 < past ? i + 1 : first) - at(first));
         const double length = glm::length(sum);
-        return length > 0 && std::isfinite(length) ? glm::vec3(sum / length) : glm::vec3(0, 0, 1);
+        return length > 0 && std::isfinite(length) ? sum / length : glm::dvec3(0, 0, 1);
     }
 
     /// The numbers of corners: a table with open addressing, which takes a third of the memory of a standard one.
@@ -70,7 +70,7 @@ namespace {
     };
 } // namespace
 
-mesh mesh_of(const surface& s, std::span<const face_range> faces)
+mesh mesh_of(const surface& s, std::span<const face_range> faces, polygon_cutter* cutter)
 {
     const auto first_corner = [&](std::uint32_t face) {
         return face < s.face_starts.size() ? s.face_starts[face] : static_cast<std::uint32_t>(s.corners.size());
@@ -99,6 +99,7 @@ mesh mesh_of(const surface& s, std::span<const face_range> faces)
     };
     corner_numbers numbers(std::min(corners, s.positions.size()));
     std::vector<std::uint32_t> face;
+    std::vector<glm::dvec3> outline;
     for (const auto& r : faces)
         for (auto f = r.first; f < r.past; ++f) {
             const std::size_t begin = first_corner(f), end = first_corner(f + 1);
@@ -109,7 +110,7 @@ mesh mesh_of(const surface& s, std::span<const face_range> faces)
                 const auto next = static_cast<std::uint32_t>(made.positions.size());
                 if (has_normals && c[2] == absent) {
                     if (!of_plane)
-                        of_plane = normal_of_face(s, begin, end);
+                        of_plane = glm::vec3(normal_of_face(s, begin, end));
                     add(c, *of_plane);
                     face.push_back(next);
                     continue;
@@ -117,6 +118,14 @@ mesh mesh_of(const surface& s, std::span<const face_range> faces)
                 face.push_back(numbers.number_of(c, next));
                 if (face.back() == next)
                     add(c, has_normals ? s.normals[c[2]] : glm::vec3(0));
+            }
+            if (cutter != nullptr && face.size() > 3) {
+                outline.clear();
+                for (std::size_t i = begin; i < end; ++i)
+                    outline.emplace_back(s.positions[s.corners[i][0]]);
+                for (const auto& t : cutter->triangles_of(outline, normal_of_face(s, begin, end)))
+                    made.triangles.emplace_back(face[t.x], face[t.y], face[t.z]);
+                continue;
             }
             for (std::size_t i = 2; i < face.size(); ++i)
                 made.triangles.emplace_back(face[0], face[i - 1], face[i]);
