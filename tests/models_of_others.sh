@@ -37,6 +37,7 @@ while IFS= read -r -d '' file; do
     broken=$((broken + 1))
     echo "BROKEN   $file: exit status $status: $said"
   fi
-done < <(find "$folder" -type f \( -iname '*.obj' -o -iname '*.ply' -o -iname '*.gltf' -o -iname '*.glb' \) -print0 | sort -z)
+done < <(find "$folder" -type f \( -iname '*.obj' -o -iname '*.ply' -o -iname '*.gltf' -o -iname '*.glb' \) -print0 |
+  sort -z)
 echo "$loaded loaded, $refused refused, $broken broken"
 [[ $broken == 0 ]]

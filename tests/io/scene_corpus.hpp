@@ -2,7 +2,7 @@
 // committed corpus (scene_corpus.cpp) hold it to the same function.
 #pragma once
 
-#include <photongrid/io/obj/mtl.hpp>
+#include <photongrid/io/obj/materials.hpp>
 #include <photongrid/io/obj_scene.hpp>
 #include <photongrid/io/pbrt_file.hpp>
 #include <photongrid/io/ply_file.hpp>
@@ -118,11 +118,17 @@ namespace detail {
     }
 } // namespace detail
 
-/// Reads `text` as an MTL file, with the same result as broken_promise.
+/// Reads `text` as an MTL file and makes its materials, with the same result as broken_promise.
 inline std::string broken_in_mtl(std::string_view text)
 {
     try {
         const auto made = obj::parse_mtl("s.json", text);
+        scene_builder builder("s.json", {});
+        for (const auto& m : made)
+            if (!obj::emission_of(builder, m))
+                obj::add_material(builder, m, text.size() % 2 == 0); // with texture coordinates, or without
+        if (const auto broken = detail::broken_in_notes(builder.log().take(), text); !broken.empty())
+            return broken;
         return made.size() > text.size() ? "more materials than bytes" : "";
     } catch (const scene_error& e) {
         return detail::broken_in_message(e, text);
