@@ -211,8 +211,8 @@ namespace {
         EXPECT_TRUE(first_material(metallic).share_texture.map);
         // 255 and 51 are 1 and, by the curve of sRGB, 0.0331.
         write("m.mtl", "newmtl a\nmap_Ke mask.tga\nKd 0 0 0\nKe 10\n");
-        const auto lamp = read("mtllib m.mtl\n" + corners_of_a_square + "f 1 2 3\nusemtl a\nf 1 2 3 4\n");
-        EXPECT_NEAR(lamp.scene.rectangle_lights.at(0).power.x, 10 * 1.0331 / 4 * std::numbers::pi, 1e-3);
+        const auto lit = read("mtllib m.mtl\n" + corners_of_a_square + "f 1 2 3\nusemtl a\nf 1 2 3 4\n");
+        EXPECT_NEAR(lit.scene.rectangle_lights.at(0).power.x, 10 * 1.0331 / 4 * std::numbers::pi, 1e-3);
     }
 
     TEST_F(obj_folder, what_is_replaced_or_left_out_is_noted_with_its_place)
