@@ -38,27 +38,21 @@ namespace {
         for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
             try {
                 const auto text = contents(entry.path());
-                const auto format = format_of("s.json", text);
                 if (text.starts_with("newmtl"))
                     obj::parse_mtl("s.json", text);
-                else if (format == scene_format::pbrt)
-                    parse_pbrt("s.json", text);
-                else if (format == scene_format::obj)
-                    parse_obj_scene("s.json", text);
-                else if (format == scene_format::ply)
-                    parse_ply_scene("s.json", text);
                 else
-                    parse_scene("s.json", text);
+                    testing::scene_of(text);
                 good.insert(entry.path().stem().string());
             } catch (const scene_error&) {
                 ++bad;
             }
         }
-        for (const auto* name : {"minimal", "sphere", "cylinder", "cone", "paraboloid", "disk", "box", "mesh",
-                 "triangle", "pentagon", "materials", "rectangle_light", "units_mm_kw", "units_cm_mw", "every_setting",
-                 "comments_and_schema", "byte_order_mark", "crlf_and_tabs", "glass_ball", "ring", "cornell_box",
-                 "largest_and_smallest_lengths", "estimate_settings", "pbrt_shapes", "pbrt_materials", "pbrt_lights",
-                 "obj_materials", "obj_concave", "mtl_keys", "ply_colors"})
+        for (const auto* name :
+            {"minimal", "sphere", "cylinder", "cone", "paraboloid", "disk", "box", "mesh", "triangle", "pentagon",
+                "materials", "rectangle_light", "units_mm_kw", "units_cm_mw", "every_setting", "comments_and_schema",
+                "byte_order_mark", "crlf_and_tabs", "glass_ball", "ring", "cornell_box", "largest_and_smallest_lengths",
+                "estimate_settings", "pbrt_shapes", "pbrt_materials", "pbrt_lights", "obj_materials", "obj_concave",
+                "mtl_keys", "ply_colors", "mitsuba_shapes", "mitsuba_materials", "mitsuba_lights", "mitsuba_old"})
             EXPECT_TRUE(good.contains(name)) << name;
         EXPECT_GE(bad, 20u);
     }

@@ -2,6 +2,8 @@
 // committed corpus (scene_corpus.cpp) hold it to the same function.
 #pragma once
 
+#include <photongrid/io/gltf_file.hpp>
+#include <photongrid/io/mitsuba_file.hpp>
 #include <photongrid/io/obj/materials.hpp>
 #include <photongrid/io/obj_scene.hpp>
 #include <photongrid/io/pbrt_file.hpp>
@@ -135,13 +137,26 @@ inline std::string broken_in_mtl(std::string_view text)
     }
 }
 
-/// Reads `text` as a scene, of the format that it looks like, and lays it out for a device. Returns the violated
-/// guarantee, or "": either a good scene_error, or a scene that check() takes and that lay_out() takes or refuses with
-/// std::invalid_argument.
+/// Reads `text` as a scene of the format that it looks like.
+/// \throws scene_error.
+inline imported_scene scene_of(std::string_view text)
+{
+    switch (format_of("s.json", text)) {
+    case scene_format::pbrt: return parse_pbrt("s.json", text);
+    case scene_format::mitsuba: return parse_mitsuba("s.json", text);
+    case scene_format::gltf: return parse_gltf("s.json", text);
+    case scene_format::obj: return parse_obj_scene("s.json", text);
+    case scene_format::ply: return parse_ply_scene("s.json", text);
+    case scene_format::photongrid: break;
+    }
+    return {parse_scene("s.json", std::string(text)), {}};
+}
+
+/// Reads `text` as a scene, and lays it out for a device. Returns the violated guarantee, or "": either a good
+/// scene_error, or a scene that check() takes and that lay_out() takes or refuses with std::invalid_argument.
 inline std::string broken_promise(std::string_view text)
 {
     try {
-        const auto format = format_of("s.json", text);
         if (text.starts_with("newmtl"))
             return broken_in_mtl(text);
         if (text.starts_with("ply"))
@@ -149,16 +164,10 @@ inline std::string broken_promise(std::string_view text)
                 return broken;
         scene s;
         try {
-            if (format == scene_format::pbrt || format == scene_format::obj || format == scene_format::ply) {
-                auto imported = format == scene_format::pbrt ? parse_pbrt("s.json", text)
-                    : format == scene_format::obj            ? parse_obj_scene("s.json", text)
-                                                             : parse_ply_scene("s.json", text);
-                s = std::move(imported.scene);
-                if (const auto broken = detail::broken_in_notes(imported.notes, text); !broken.empty())
-                    return broken;
-            } else {
-                s = parse_scene("s.json", std::string(text));
-            }
+            auto imported = scene_of(text);
+            s = std::move(imported.scene);
+            if (const auto broken = detail::broken_in_notes(imported.notes, text); !broken.empty())
+                return broken;
         } catch (const scene_error& e) {
             return detail::broken_in_message(e, text);
         }

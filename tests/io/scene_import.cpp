@@ -1,5 +1,6 @@
 // Scenes of other programs.
 #include "gltf_file_tests.hpp"
+#include "mitsuba_file_tests.hpp"
 #include "obj_scene_tests.hpp"
 #include "pbrt_file_tests.hpp"
 #include "spectra_tests.hpp"

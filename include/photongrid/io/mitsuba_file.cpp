@@ -223,7 +223,7 @@ namespace mitsuba {
                               "inside out");
                 }
                 if (made.surface)
-                    builder_.add_mesh(o.place, made.surface, to_world, material, made.file);
+                    builder_.add_mesh(o.place, made.surface, to_world * made.round.to_shape, material, made.file);
             }
 
             bool add_round(const object& o, const round_shape& r, const glm::dmat4& to_world, std::uint32_t material)
@@ -263,7 +263,7 @@ namespace mitsuba {
                     builder_.note(o.place,
                         "a round lamp: drawn as " + std::to_string(made.surface->triangles.size()) + " triangles");
                 }
-                builder_.add_emitter(o.place, made.surface, to_world, emission, made.file);
+                builder_.add_emitter(o.place, made.surface, to_world * made.round.to_shape, emission, made.file);
                 return true;
             }
 

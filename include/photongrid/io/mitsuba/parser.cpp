@@ -1,8 +1,5 @@
-#include <photongrid/io/json_tree.hpp>
+#include <photongrid/io/mitsuba/xml_file.hpp>
 #include <photongrid/io/mitsuba/xml_values.hpp>
-#include <photongrid/io/whole_file.hpp>
-
-#include <pugixml.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +11,6 @@ namespace photongrid::mitsuba {
 namespace {
     constexpr std::size_t max_include_depth = 16, max_includes = 10'000, max_depth = 64;
     constexpr std::size_t max_objects = std::size_t{1} << 22;
-    constexpr std::size_t max_substituted = 1'000; // so that parameters within each other do not grow without bounds
-
     constexpr std::string_view object_tags[] = {"bsdf", "emitter", "film", "integrator", "medium", "phase", "rfilter",
         "sampler", "sensor", "shape", "spectrum", "subsurface", "texture", "volume"};
     constexpr std::string_view property_tags[] = {"blackbody", "boolean", "float", "integer", "point", "rgb",
@@ -23,42 +18,6 @@ namespace {
     constexpr std::string_view other_tags[] = {"alias", "default", "include", "path", "ref", "scene"};
     constexpr std::string_view transformation_tags[]
         = {"lookAt", "look_at", "lookat", "matrix", "rotate", "scale", "translate"};
-
-    template <class Words>
-    bool is_one_of(std::string_view word, const Words& words)
-    {
-        return std::find(std::begin(words), std::end(words), word) != std::end(words);
-    }
-
-    std::string in_brackets(std::string_view tag) { return "<" + printable(tag, 40) + ">"; }
-
-    /// A file that is being read.
-    struct source_file {
-        std::shared_ptr<const std::string> name;
-        std::vector<std::size_t> lines{0}; ///< where they begin
-        std::size_t include_depth = 0;
-        bool is_old = false; ///< of Mitsuba 0.5 or 0.6
-
-        source_file(std::shared_ptr<const std::string> name_, std::string_view text, std::size_t depth)
-            : name(std::move(name_)), include_depth(depth)
-        {
-            for (auto at = text.find('\n'); at != text.npos; at = text.find('\n', at + 1))
-                lines.push_back(at + 1);
-        }
-        source_place place_at(std::ptrdiff_t offset) const
-        {
-            if (offset < 0)
-                return {name, 0, 0};
-            const auto at = static_cast<std::size_t>(offset);
-            const auto line = std::upper_bound(lines.begin(), lines.end(), at) - 1;
-            return {name, static_cast<std::size_t>(line - lines.begin()) + 1, at - *line + 1};
-        }
-        source_place place_of(const pugi::xml_node& node) const
-        {
-            // Names of elements stand behind "<".
-            return place_at(node.offset_debug() - (node.type() == pugi::node_element ? 1 : 0));
-        }
-    };
 
     class parser {
     public:
@@ -82,12 +41,9 @@ namespace {
             const auto found = ids_.find(c.id);
             if (found == ids_.end()) {
                 std::vector<std::string> known;
-                for (const auto& [id, o] : ids_)
-                    if (known.size() < 10'000)
-                        known.push_back(id);
-                const auto near = nearest(c.id, known);
-                fail_at(c.place,
-                    "nothing has the id " + shown_word(c.id) + (near.empty() ? "" : ", perhaps " + shown_word(near)));
+                for (auto i = ids_.begin(); i != ids_.end() && known.size() < 10'000; ++i)
+                    known.push_back(i->first);
+                fail_at(c.place, "nothing has the id " + shown_word(c.id) + perhaps(c.id, known, "\"", "\""));
             }
             c.target = found->second;
         }
@@ -153,55 +109,10 @@ namespace {
         }
 
         // --- attributes ---
-        /// \throws scene_error for one that is not among `names`, or that is there twice.
-        static void check_attributes(
-            const source_file& f, const pugi::xml_node& node, std::initializer_list<std::string_view> names)
-        {
-            std::vector<std::string_view> seen;
-            for (const auto& a : node.attributes()) {
-                if (!is_one_of(a.name(), names)) {
-                    const auto near = nearest(a.name(), std::vector<std::string>(names.begin(), names.end()));
-                    fail_at(f.place_of(node),
-                        in_brackets(node.name()) + " has no attribute " + shown_word(a.name())
-                            + (near.empty() ? "" : ", perhaps " + shown_word(near)));
-                }
-                if (is_one_of(a.name(), seen))
-                    fail_at(f.place_of(node), in_brackets(node.name()) + " has " + shown_word(a.name()) + " twice");
-                seen.emplace_back(a.name());
-            }
-        }
-
-        /// An attribute's value with what `$` stands for; "" if it is missing.
+        /// An attribute's value with those of its parameters; "" if it is missing.
         std::string attribute(const source_file& f, const pugi::xml_node& node, const char* name) const
         {
-            const std::string_view raw = node.attribute(name).value();
-            if (raw.find('$') == raw.npos)
-                return std::string(raw);
-            std::string made;
-            for (std::size_t at = 0; at < raw.size();) {
-                if (raw[at] != '$') {
-                    made += raw[at++];
-                    continue;
-                }
-                const auto rest = raw.substr(++at);
-                const auto end = std::find_if_not(rest.begin(), rest.end(), [](char c) {
-                    return c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-                });
-                // The longest name that is defined: "$radius2" may be $radius with a 2 behind it.
-                auto length = static_cast<std::size_t>(end - rest.begin());
-                auto found = parameters_.end();
-                for (; length > 0 && found == parameters_.end(); length -= found == parameters_.end() ? 1 : 0)
-                    found = parameters_.find(rest.substr(0, length));
-                if (found == parameters_.end())
-                    fail_at(f.place_of(node),
-                        "the parameter " + shown_word(rest.substr(0, static_cast<std::size_t>(end - rest.begin())))
-                            + " is not defined; expected a <default> of it before");
-                made += found->second;
-                at += found->first.size();
-                if (made.size() > max_substituted)
-                    fail_at(f.place_of(node), "a value has more than 1,000 bytes with what its parameters stand for");
-            }
-            return made;
+            return parameters_.replaced(f.place_of(node), node.attribute(name).value());
         }
 
         std::string required(const source_file& f, const pugi::xml_node& node, const char* name) const
@@ -250,10 +161,9 @@ namespace {
             std::vector<std::string> known(std::begin(object_tags), std::end(object_tags));
             known.insert(known.end(), std::begin(property_tags), std::end(property_tags));
             known.insert(known.end(), std::begin(other_tags), std::end(other_tags));
-            const auto near = tag == "scene" ? "" : nearest(tag, known);
             fail_at(place,
                 "found " + in_brackets(tag) + "; expected an element of Mitsuba"
-                    + (near.empty() ? "" : ", perhaps <" + near + ">"));
+                    + (tag == "scene" ? "" : perhaps(tag, known, "<", ">")));
         }
 
         object& add_object(const source_file& f, const pugi::xml_node& node, const source_place& place)
@@ -320,13 +230,7 @@ namespace {
         void read_default(const source_file& f, const pugi::xml_node& node)
         {
             check_attributes(f, node, {"name", "value"});
-            const auto name = required(f, node, "name");
-            if (name.empty() || name.size() > 100)
-                fail_at(f.place_of(node), "the name of a parameter must have 1 to 100 bytes");
-            auto value = required(f, node, "value");
-            if (value.size() > max_substituted)
-                fail_at(f.place_of(node), "the value of a parameter has more than 1,000 bytes");
-            parameters_.try_emplace(name, std::move(value)); // the first one is valid
+            parameters_.define(f.place_of(node), required(f, node, "name"), required(f, node, "value"));
         }
 
         void read_alias(const source_file& f, const pugi::xml_node& node)
@@ -447,13 +351,10 @@ namespace {
                 const element e{.tag = c.name(), .place = f.place_of(c), .attribute = [&](const char* name) {
                                     return attribute(f, c, name);
                                 }};
-                if (!is_one_of(e.tag, transformation_tags)) {
-                    const auto near = nearest(e.tag,
-                        std::vector<std::string>(std::begin(transformation_tags), std::end(transformation_tags)));
+                if (!is_one_of(e.tag, transformation_tags))
                     fail_at(e.place,
                         "found " + in_brackets(e.tag) + "; expected translate, scale, rotate, lookat or matrix"
-                            + (near.empty() ? "" : ", perhaps <" + near + ">"));
-                }
+                            + perhaps(e.tag, transformation_tags, "<", ">"));
                 if (e.tag == "matrix")
                     check_attributes(f, c, {"value"});
                 else if (e.tag == "rotate")
@@ -475,7 +376,7 @@ namespace {
         import_log& log_;
         description made_;
         std::map<std::string, const object*, std::less<>> ids_;
-        std::map<std::string, std::string, std::less<>> parameters_; ///< of <default>
+        parameter_table parameters_;
         std::size_t includes_ = 0;
     };
 } // namespace

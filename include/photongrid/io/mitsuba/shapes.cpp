@@ -221,10 +221,6 @@ std::shared_ptr<const mesh> shape_reader::triangles_of(const object& o, const ro
             at.y = 1 - at.y;
         else if (r.is == round_shape::kind::disk)
             at = {1 - at.y, 1 - at.x};
-    for (auto& p : m.positions)
-        p = glm::vec3(r.to_shape * glm::dvec4(p, 1));
-    for (auto& n : m.normals)
-        n = glm::vec3(glm::dmat3(r.to_shape) * glm::dvec3(n));
     face_outwards(m, o.truth("flip_normals", false));
     return shared(std::move(m));
 }

@@ -39,7 +39,7 @@ public:
     /// v = 1 is the first row of a picture.
     /// \throws scene_error.
     shape_surface surface_of(const object& o, const surface_needs& needs);
-    /// The triangles of a round shape, in the space of Mitsuba's shape.
+    /// The triangles of a round shape, in its own space.
     std::shared_ptr<const mesh> triangles_of(const object& o, const round_shape& r);
 
 private:

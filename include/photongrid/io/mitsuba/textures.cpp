@@ -12,8 +12,8 @@ namespace {
 
     glm::u16vec4 texel_of(const dvec3& color)
     {
-        const auto c = glm::clamp(color, dvec3(0), dvec3(1)) * 65535.0 + 0.5;
-        return {c.x, c.y, c.z, 65535};
+        const auto step = [](double c) { return c > 0 ? std::min(c, 1.0) * 65535 + 0.5 : 0; }; // 0 of what is no number
+        return {step(color.x), step(color.y), step(color.z), 65535};
     }
 
     double luminance(const dvec3& c) { return glm::dot(c, dvec3(0.2126, 0.7152, 0.0722)); } // Rec. 709
@@ -74,12 +74,12 @@ varying value_reader::spectrum_object(const object& o, meaning m)
         return {constant(p, m), {}};
     }
     if (o.type == "uniform" || o.type == "d65" || o.type == "srgb" || o.type == "rawconstant") {
-        const auto* name = o.type == "srgb" ? "color" : o.type == "d65" ? "color" : "value";
+        const auto* name = o.type == "srgb" || o.type == "d65" ? "color" : "value";
         const auto v = value(o, name, m).value_or(varying{});
         return {v.factor * o.number("scale", 1), {}};
     }
     if (o.type == "irregular" || o.type == "regular") {
-        const auto values = numbers_of(o.place, o.text(o.type == "regular" ? "values" : "values", ""));
+        const auto values = numbers_of(o.place, o.text("values", ""));
         std::vector<double> wavelengths;
         if (o.type == "irregular") {
             wavelengths = numbers_of(o.place, o.text("wavelengths", ""));
