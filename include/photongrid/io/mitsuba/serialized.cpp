@@ -124,7 +124,7 @@ namespace {
         if (is_double) {
             auto numbers = u.numbers<double>(count * n);
             for (auto& d : numbers) // a larger one has no float, and is refused like infinity
-                if (std::abs(d) > double{std::numeric_limits<float>::max()})
+                if (std::abs(d) > static_cast<double>(std::numeric_limits<float>::max()))
                     d = std::numeric_limits<double>::infinity();
             fill(numbers);
         } else {
