@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace photongrid::mitsuba {
 
@@ -11,7 +12,7 @@ namespace {
     /// photongrid's roughness of GGX's alpha.
     double rough(double alpha) { return std::sqrt(std::clamp(alpha, 0.0, 1.0)); }
 
-    /// Of the channels of a roughness or an opacity, which are alike.
+    /// Whether it changes nothing as a factor.
     bool is_one(const varying& v) { return !v.texture.map && v.factor == dvec3(1); }
 } // namespace
 
@@ -120,11 +121,15 @@ std::optional<std::uint32_t> material_reader::with_opacity(
 {
     if (!m)
         return std::nullopt;
+    if (opacity.texture.map && cut_out_.contains(*m))
+        builder_.note(o.place, o.said() + ": its texture of the opacity is drawn without that of the bsdf inside");
     const auto made = builder_.with_opacity(o.place, *m, std::clamp(opacity.factor.x, 0.0, 1.0), opacity.texture);
     if (glass_.contains(*m))
         glass_.insert(made);
     if (colored_.contains(*m))
         colored_.insert(made);
+    if (opacity.texture.map || cut_out_.contains(*m))
+        cut_out_.insert(made);
     return made;
 }
 
@@ -147,7 +152,10 @@ std::optional<std::uint32_t> material_reader::blend(const object& o)
     material m{.name = o.id.empty() ? "bsdf " + std::to_string(++count_) : o.id};
     m.share = std::clamp(weight.factor.x, 0.0, 1.0);
     m.share_texture = weight.texture;
-    return builder_.add_mixture(o.place, m, *first, *second);
+    const auto made = builder_.add_mixture(o.place, m, *first, *second);
+    if (glass_.contains(*first) || glass_.contains(*second))
+        glass_.insert(made);
+    return made;
 }
 
 /// Mitsuba's plastic keeps the colour of its base unless it is "nonlinear": light that the coat throws back is not

@@ -42,8 +42,8 @@ private:
     value_reader& values_;
     std::map<const object*, std::optional<std::uint32_t>> made_; ///< null: that of shapes without one
     std::set<const object*> within_;                             ///< those that are being made
-    std::set<std::uint32_t> glass_, colored_;
-    bool is_colored_ = false; ///< the one that is being made
+    std::set<std::uint32_t> glass_, colored_, cut_out_;          ///< cut_out_: those with a texture of their opacity
+    bool is_colored_ = false;                                    ///< the one that is being made
     std::size_t count_ = 0;
 };
 

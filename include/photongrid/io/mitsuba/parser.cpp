@@ -122,6 +122,27 @@ namespace {
             return attribute(f, node, name);
         }
 
+        [[noreturn]] static void fail_at_text(const source_file& f, const pugi::xml_node& text)
+        {
+            fail_at(f.place_of(text), "found the text " + shown_word(text.value()) + "; expected an element");
+        }
+        static bool is_text(const pugi::xml_node& node)
+        {
+            return node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata;
+        }
+        /// \throws scene_error for what stands within an element that has attributes alone.
+        static void check_empty(const source_file& f, const pugi::xml_node& node)
+        {
+            for (const auto& c : node.children()) {
+                if (is_text(c))
+                    fail_at_text(f, c);
+                if (c.type() == pugi::node_element)
+                    fail_at(f.place_of(c),
+                        "found " + in_brackets(c.name()) + " within " + in_brackets(node.name())
+                            + "; expected its end");
+            }
+        }
+
         // --- elements ---
         void read_children(const source_file& f, const pugi::xml_node& node, object& outer, std::size_t depth)
         {
@@ -130,30 +151,39 @@ namespace {
             for (const auto& c : node.children())
                 if (c.type() == pugi::node_element)
                     read_element(f, c, outer, depth);
-                else if (c.type() == pugi::node_pcdata || c.type() == pugi::node_cdata)
-                    fail_at(f.place_of(c), "found the text " + shown_word(c.value()) + "; expected an element");
+                else if (is_text(c))
+                    fail_at_text(f, c);
         }
 
         void read_element(const source_file& f, const pugi::xml_node& node, object& outer, std::size_t depth)
         {
             const std::string_view tag = node.name();
-            const auto place = f.place_of(node);
             if (is_one_of(tag, property_tags) && !(tag == "spectrum" && node.attribute("type")))
                 read_property(f, node, outer);
             else if (is_one_of(tag, object_tags))
                 read_object(f, node, outer, depth);
-            else if (tag == "ref")
-                read_reference(f, node, outer);
-            else if (tag == "default")
-                read_default(f, node);
-            else if (tag == "include")
-                read_include(f, node, outer, depth);
-            else if (tag == "alias")
-                read_alias(f, node);
-            else if (tag == "path")
-                log_.add(place, "<path>: files are sought in the scene's folder alone");
+            else if (is_one_of(tag, other_tags) && tag != "scene")
+                read_other(f, node, outer, depth);
             else
-                fail_unknown(place, tag);
+                fail_unknown(f.place_of(node), tag);
+        }
+
+        void read_other(const source_file& f, const pugi::xml_node& node, object& outer, std::size_t depth)
+        {
+            const std::string_view tag = node.name();
+            check_empty(f, node);
+            if (tag == "ref") {
+                read_reference(f, node, outer);
+            } else if (tag == "default") {
+                read_default(f, node);
+            } else if (tag == "include") {
+                read_include(f, node, outer, depth);
+            } else if (tag == "alias") {
+                read_alias(f, node);
+            } else {
+                check_attributes(f, node, {"value"});
+                log_.add(f.place_of(node), "<path>: files are sought in the scene's folder alone");
+            }
         }
 
         [[noreturn]] static void fail_unknown(const source_place& place, std::string_view tag)
@@ -253,9 +283,7 @@ namespace {
             check_name(p.place, p.name, outer);
             read_value(f, node, e, p);
             if (p.is != property_kind::transform)
-                for (const auto& c : node.children())
-                    if (c.type() == pugi::node_element)
-                        fail_at(f.place_of(c), "found " + in_brackets(c.name()) + " in " + in_brackets(e.tag));
+                check_empty(f, node);
             outer.properties.push_back(std::move(p));
         }
 
@@ -346,8 +374,11 @@ namespace {
         {
             glm::dmat4 made(1);
             for (const auto& c : node.children()) {
+                if (is_text(c))
+                    fail_at_text(f, c);
                 if (c.type() != pugi::node_element)
                     continue;
+                check_empty(f, c);
                 const element e{.tag = c.name(), .place = f.place_of(c), .attribute = [&](const char* name) {
                                     return attribute(f, c, name);
                                 }};
