@@ -1,6 +1,7 @@
-// Atomic replacement of files.
+// Errors of files, and their atomic replacement.
 #pragma once
 
+#include <functional>
 #include <stdexcept>
 #include <string>
 
@@ -10,6 +11,9 @@ namespace photongrid {
 struct file_error : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
+
+/// Called with the path of a file that a scene names, before it is read, and if it cannot be read too.
+using file_listener = std::function<void(const std::string& path)>;
 
 /// \throws file_error "path: reason".
 [[noreturn]] void fail_file(const std::string& path, const std::string& reason);

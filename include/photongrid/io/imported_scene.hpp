@@ -1,6 +1,7 @@
 // What a reader of other programs' scenes makes, and what it is told.
 #pragma once
 
+#include <photongrid/io/files.hpp>
 #include <photongrid/io/scene_error.hpp>
 #include <photongrid/scene/scene.hpp>
 
@@ -18,6 +19,7 @@ struct import_settings {
     /// The length of the file's unit, m; none: that of its format. Lights are scaled along, so that the picture stays
     /// the same.
     std::optional<double> unit{};
+    file_listener before_reading{}; ///< hears of the files that the scene's file names; may be empty
 };
 
 /// Something in a file that photongrid does not have: what stands in its place, or that it is left out.

@@ -367,11 +367,14 @@ namespace {
     };
 } // namespace
 
-scene parse_scene(const std::string& file, std::string text)
+scene parse_scene(const std::string& file, std::string text, file_listener before_reading)
 {
-    return reader(file, std::move(text)).read(std::filesystem::path(file).stem().string());
+    return reader(file, std::move(text), std::move(before_reading)).read(std::filesystem::path(file).stem().string());
 }
 
-scene read_scene(const std::string& path) { return parse_scene(path, read_scene_text(path)); }
+scene read_scene(const std::string& path, file_listener before_reading)
+{
+    return parse_scene(path, read_scene_text(path), std::move(before_reading));
+}
 
 } // namespace photongrid

@@ -1,6 +1,7 @@
 // Reads scene files (JSON) into a checked photongrid::scene in SI units. docs/guide/scenes.md describes the format.
 #pragma once
 
+#include <photongrid/io/files.hpp>
 #include <photongrid/io/scene_error.hpp>
 #include <photongrid/scene/scene.hpp>
 
@@ -8,12 +9,13 @@
 
 namespace photongrid {
 
-/// Reads the scene in `text`; `file` is its name in messages. Files of meshes are sought in its folder.
+/// Reads the scene in `text`; `file` is its name in messages. The files that it names are sought
+/// in its folder; `before_reading` hears of them, and may be empty.
 /// \throws scene_error.
-scene parse_scene(const std::string& file, std::string text);
+scene parse_scene(const std::string& file, std::string text, file_listener before_reading = {});
 
 /// Reads a scene file.
 /// \throws scene_error.
-scene read_scene(const std::string& path);
+scene read_scene(const std::string& path, file_listener before_reading = {});
 
 } // namespace photongrid

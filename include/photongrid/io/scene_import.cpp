@@ -105,7 +105,7 @@ imported_scene import_scene(const std::string& path, const import_settings& sett
     }
     if (settings.unit)
         throw scene_error(path, 0, 0, "a unit was given, but photongrid's own scene files have \"units\"");
-    return {read_scene(path), {}};
+    return {read_scene(path, settings.before_reading), {}};
 }
 
 } // namespace photongrid

@@ -20,7 +20,7 @@ namespace {
 
 scene_builder::scene_builder(const std::string& path, const import_settings& settings)
     : file_(path), settings_(settings), log_(settings.strict),
-      files_(std::filesystem::path(path).parent_path(), settings.allow_outside)
+      files_(std::filesystem::path(path).parent_path(), settings.allow_outside, settings.before_reading)
 {
     if (settings.unit && !(*settings.unit >= 1e-9 && *settings.unit <= 1e9))
         throw std::invalid_argument("import_settings: unit: must be from 1e-9 to 1e9 m");

@@ -120,6 +120,8 @@ std::string scene_files::path_of(const std::string& name) const
 std::string scene_files::path_of_regular(const std::string& name) const
 {
     auto path = path_of(name);
+    if (before_reading_)
+        before_reading_(path);
     std::error_code wrong;
     const auto status = fs::status(path, wrong);
     if (!fs::exists(status))

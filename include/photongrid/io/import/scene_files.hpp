@@ -25,9 +25,10 @@ std::string ending_of(const std::string& name);
 /// Reads files by their names in a scene's file.
 class scene_files {
 public:
-    /// `folder`: that of the scene's file. `allow_outside`: files may lie outside of it.
-    scene_files(std::filesystem::path folder, bool allow_outside)
-        : folder_(std::move(folder)), allow_outside_(allow_outside)
+    /// `folder`: that of the scene's file. `allow_outside`: files may lie outside of it. `before_reading` hears of the
+    /// files that are read; it may be empty.
+    scene_files(std::filesystem::path folder, bool allow_outside, file_listener before_reading = {})
+        : folder_(std::move(folder)), allow_outside_(allow_outside), before_reading_(std::move(before_reading))
     {
     }
 
@@ -61,6 +62,7 @@ private:
 
     std::filesystem::path folder_;
     bool allow_outside_;
+    file_listener before_reading_;
     std::map<std::string, std::shared_ptr<const mesh>> surfaces_;
     std::map<std::pair<std::string, texture_holds>, std::shared_ptr<const photongrid::texture>> textures_;
     std::map<std::string, std::shared_ptr<const environment_map>> environments_;
