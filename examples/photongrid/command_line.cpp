@@ -197,6 +197,7 @@ namespace {
         to.add_option("--reference", o.picture.reference,
               "picture to measure the error against, such as one made by `photongrid reference`")
             ->type_name("REF.exr|.pfm");
+        to.add_flag("--no-reload", o.no_reload, "do not read the scene again when its files change");
         to.add_option("--journal", o.journal,
               "log of what happens in the window: one line of JSON per request, picture and error")
             ->type_name("FILE");

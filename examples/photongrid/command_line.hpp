@@ -46,6 +46,7 @@ struct render_options {
 struct view_options {
     render_options picture; ///< without the members for output
     std::string journal;
+    bool no_reload = false;
 };
 
 /// Options of `reference`. Empty members keep the value of the scene file or of reference_settings.

@@ -43,12 +43,11 @@ namespace {
         const auto folder = fs::temp_directory_path() / ("photongrid_saved_" + std::to_string(::getpid()));
         fs::create_directories(folder);
         const auto s = parse_scene("glass.json", text);
-        window_options o;
-        o.begin = begun(s);
-        o.scene_path = "glass.json";
-        o.scene_text = text;
-        o.stem = (folder / "glass").string();
-        saved_files files(o);
+        saved_files files({.path = "glass.json",
+            .text = text,
+            .stem = (folder / "glass").string(),
+            .scene = s,
+            .settings = s.render});
         auto v = begun(s);
         EXPECT_FALSE(files.lacks(v));
         v.scene.spheres[1].center.x = 0.5;

@@ -1,9 +1,12 @@
 #include "document.hpp"
 
+#include <photongrid/scene/setting_table.hpp>
+
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace photongrid::viewer {
 
@@ -11,6 +14,27 @@ namespace {
     constexpr std::size_t most_steps = 200;
     constexpr double nearest_to_pole = 2; // degrees between line of sight and up
 } // namespace
+
+version read_again(const version& now, const version& was, const version& is)
+{
+    auto made = is;
+    made.backend = now.backend;
+    if (now.scene.camera != was.scene.camera)
+        made.scene.camera = now.scene.camera;
+    for_each_setting([&](const auto& row) {
+        if constexpr (!std::is_same_v<std::decay_t<decltype(row.values)>, setting_table::pixels>) // never changed here
+            if (row.of(now.settings) != row.of(was.settings))
+                row.of(made.settings) = row.of(now.settings);
+    });
+    return made;
+}
+
+bool moves_parts(const version& now, const version& was)
+{
+    auto with_its_camera = was.scene;
+    with_its_camera.camera = now.scene.camera;
+    return now.scene != with_its_camera;
+}
 
 void document::begin(const std::string& name)
 {

@@ -17,6 +17,13 @@ struct version {
     bool operator==(const version&) const = default;
 };
 
+/// A scene whose file has changed from `was` to `is` while the window shows `now`: the file's, but what was changed in
+/// the window of the camera, the settings and the backend stays.
+version read_again(const version& now, const version& was, const version& is);
+
+/// Whether `now` has shapes or lights elsewhere than `was`.
+bool moves_parts(const version& now, const version& was);
+
 class document {
 public:
     explicit document(version v) : now_(std::move(v)), parts_(parts_of(now_.scene)) {}

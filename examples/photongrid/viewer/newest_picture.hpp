@@ -21,6 +21,8 @@ public:
     void take_news(std::optional<double> exposure);
     /// Shows the picture at another exposure.
     void show(std::optional<double> exposure);
+    /// Another scene follows, with which the reference has nothing to do.
+    void forget_reference() { reference_.reset(); }
     /// Within an ImGui window.
     void draw_curves() const;
 

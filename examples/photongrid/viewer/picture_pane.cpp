@@ -113,6 +113,16 @@ void picture_pane::drag(const sight_line& line, bool level)
     pressed_->position = *to;
 }
 
+void draw_scene_error(const std::string& what)
+{
+    const auto room = ImGui::GetWindowSize();
+    const float wide = std::max(100.0f, room.x - 16), high = ImGui::CalcTextSize(what.c_str(), nullptr, false, wide).y,
+                top = std::max(8.0f, room.y - high - 12);
+    auto* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled({0, top - 6}, room, IM_COL32(40, 0, 0, 220));
+    list->AddText(nullptr, 0, {8, top}, IM_COL32(255, 160, 130, 255), what.c_str(), nullptr, wide);
+}
+
 void draw_report(const render_report& r, const frame& shown, bool numbers)
 {
     char text[512];

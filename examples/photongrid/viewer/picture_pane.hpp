@@ -35,6 +35,9 @@ private:
     bool moved_ = false, moves_part_ = false;
 };
 
+/// Draws what is wrong with a scene's file over the lower part of the picture.
+void draw_scene_error(const std::string& what);
+
 /// Draws what failed over the picture and, if `numbers` are wanted, what runs and for how long.
 void draw_report(const render_report& r, const frame& shown, bool numbers);
 

@@ -38,13 +38,18 @@ std::string saved_files::save(const version& v)
         return "not saved: only scenes in photongrid's own format can be";
     try {
         const auto text = edited_scene_text(scene_path_, scene_text_, v.scene, v.settings);
-        const auto name = free_name(stem_ + "-changed", ".json");
+        const auto folder = names_files_ ? std::filesystem::path(scene_path_).parent_path() : std::filesystem::path();
+        const auto name = free_name((folder / (stem_ + "-changed")).string(), ".json");
         parse_scene(name, text);
         write_file(name, text);
         last_ = v;
         return "saved " + name;
     } catch (const scene_error& e) {
         return std::string("not saved, since it cannot be rendered: ") + e.what();
+    } catch (const std::invalid_argument&) {
+        return "not saved: a file that the scene names has changed since it was read; drop the scene's file here to "
+               "open "
+               "it anew";
     } catch (const file_error& e) {
         return e.what();
     }

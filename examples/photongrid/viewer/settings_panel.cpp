@@ -9,9 +9,10 @@
 
 namespace photongrid::viewer {
 
-settings_panel::settings_panel(document& d)
-    : document_(d), grid_(d.now().settings.map.grid == glm::uvec3(0) ? glm::uvec3(32) : d.now().settings.map.grid)
+void settings_panel::begin_anew()
 {
+    const auto given = document_.now().settings.map.grid;
+    grid_ = given == glm::uvec3(0) ? glm::uvec3(32) : given;
 }
 
 /// After an item that changes settings: one drag is one undo step.

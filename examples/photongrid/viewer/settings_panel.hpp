@@ -2,7 +2,7 @@
 #pragma once
 
 #include "document.hpp"
-#include "keyboard.hpp"
+#include "window_input.hpp"
 
 #include <optional>
 
@@ -10,8 +10,11 @@ namespace photongrid::viewer {
 
 class settings_panel {
 public:
-    /// `d` must outlive it. Its grid, or one of 32 x 32 x 32 where it names none, is what "fitted grid" goes back to.
-    explicit settings_panel(document& d);
+    /// `d` must outlive it.
+    explicit settings_panel(document& d) : document_(d) { begin_anew(); }
+    /// The document has another scene. Its grid, or one of 32 x 32 x 32 where it names none, is what "fitted grid" goes
+    /// back to.
+    void begin_anew();
 
     /// Within an ImGui window. `shown_exposure`: of the screen, EV.
     void draw(double shown_exposure);
@@ -34,7 +37,7 @@ private:
     void draw_exposure(double shown);
 
     document& document_;
-    glm::uvec3 grid_;             ///< that is not fitted
+    glm::uvec3 grid_{32};         ///< that is not fitted
     std::optional<version> held_; ///< before the item that is held was edited
 };
 

@@ -3,19 +3,22 @@
 #include "window.hpp"
 
 #include "display.hpp"
-#include "keyboard.hpp"
+#include "journal_file.hpp"
 #include "newest_picture.hpp"
 #include "picture_pane.hpp"
+#include "question.hpp"
 #include "saved_files.hpp"
 #include "settings_panel.hpp"
+#include "window_input.hpp"
 #include <photongrid/backends/any/module.hpp>
-#include <photongrid/io/files.hpp>
+#include <photongrid/io/import/scene_files.hpp>
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 
 #include <algorithm>
-#include <fstream>
+#include <array>
+#include <filesystem>
 #include <utility>
 
 PHOTONGRID_MODULE
@@ -29,15 +32,15 @@ namespace {
     class window {
     public:
         window(const window_options& o, bool (*stop_asked)())
-            : options_(o), stop_asked_(stop_asked), handle_(open_window(o.begin.settings, panel_width)),
-              keyboard_(handle_.get()), interface_(handle_.get()), document_(o.begin), panel_(document_),
-              pane_(document_), picture_(renderer_, pane_, o.reference), saved_(o), journal_(o.journal),
+            : stop_asked_(stop_asked), handle_(open_window(o.begin.settings, panel_width)), input_(handle_.get()),
+              interface_(handle_.get()), in_file_{o.begin.scene, o.begin.settings, o.renderer.backend},
+              document_(in_file_), panel_(document_), pane_(document_), picture_(renderer_, pane_, o.reference),
+              saved_(o.begin), journal_(o.journal), scenes_(o.open, glfwPostEmptyEvent, o.reloads),
               renderer_(
-                  o.make, o.renderer, [] { glfwPostEmptyEvent(); },
-                  o.journal.empty() ? journal() : [this](const std::string& line) { note(line); })
+                  o.make, o.renderer, glfwPostEmptyEvent,
+                  o.journal.empty() ? journal() : [this](const std::string& line) { journal_.note(line); })
         {
-            if (!o.journal.empty() && !journal_.is_open())
-                throw file_error(o.journal + ": cannot be written");
+            scenes_.watch(o.begin);
             send(false);
         }
         window(const window&) = delete;
@@ -58,6 +61,8 @@ namespace {
                 const double begin = glfwGetTime();
                 settles = begin - asleep < longest;
                 picture_.take_news(document_.now().settings.output.exposure);
+                take_dropped();
+                take_scenes();
                 draw();
                 if (glGetError() == context_lost)
                     throw backend_error("view: the window's OpenGL context was lost (driver reset); open it again, or "
@@ -67,18 +72,10 @@ namespace {
                 slowest_ms = std::max(slowest_ms, ms);
                 slow_turns += ms > 1000.0 / 30 ? 1u : 0u;
             }
-            if (journal_.is_open())
-                note("{\"event\": \"closed\", \"turns\": " + std::to_string(turns) + ", \"turns_above_33_ms\": "
-                    + std::to_string(slow_turns) + ", \"slowest_turn_ms\": " + std::to_string(slowest_ms) + "}");
+            journal_.note_end(turns, slow_turns, slowest_ms);
         }
 
     private:
-        void note(const std::string& line)
-        {
-            const std::lock_guard lock(journal_guard_);
-            journal_ << line << std::endl; // whole lines, at once: a test reads along
-        }
-
         /// Whether the window closes. If that would lose changes, its user is asked first.
         bool closes()
         {
@@ -87,14 +84,102 @@ namespace {
             if (closes_anyway_ || !saved_.lacks(document_.now()))
                 return true;
             glfwSetWindowShouldClose(handle_.get(), GLFW_FALSE);
-            asks_to_close_ = true;
-            glfwPostEmptyEvent();
+            ask(question::about::closing);
             return false;
         }
         void close_anyway()
         {
             closes_anyway_ = true;
             glfwSetWindowShouldClose(handle_.get(), GLFW_TRUE);
+        }
+
+        void ask(question::about what)
+        {
+            constexpr std::array words{"closing", "opening", "reading again"};
+            journal_.note("asks", "about", words[static_cast<std::size_t>(what)]);
+            question_.ask(what);
+            glfwPostEmptyEvent();
+        }
+        void take_answer(question::about what, question::answer given)
+        {
+            if (given == question::answer::save) {
+                save_scene();
+                if (saved_.lacks(document_.now()))
+                    given = question::answer::stay; // it could not be saved, and says why
+            }
+            if (what == question::about::closing) {
+                if (given != question::answer::stay)
+                    close_anyway();
+            } else if (given != question::answer::stay) {
+                take_scene();
+            } else {
+                next_.reset();
+                if (what == question::about::reading_again)
+                    message_ = "the scene stays as it is until one of its files changes again";
+            }
+        }
+
+        // --- scenes that come ---
+        void take_dropped()
+        {
+            const auto paths = input_.take_dropped();
+            if (paths.empty())
+                return;
+            constexpr std::array pictures{".exr", ".hdr", ".pfm", ".png", ".jpg", ".jpeg", ".tga"};
+            const auto scene = std::find_if(paths.begin(), paths.end(), [&](const std::string& path) {
+                return std::find(pictures.begin(), pictures.end(), ending_of(path)) == pictures.end();
+            });
+            if (scene == paths.end()) {
+                refuse(paths.front()
+                    + ": is a picture, not a scene; environments and textures are named in the scene's file");
+                return;
+            }
+            message_ = "reading " + *scene;
+            scenes_.open(*scene);
+        }
+        /// What the thread that reads scenes has read; not while the mouse holds a part of the present one.
+        void take_scenes()
+        {
+            if (question_.asked() || ImGui::IsAnyMouseDown())
+                return;
+            if (!next_)
+                next_ = scenes_.take();
+            if (!next_)
+                return;
+            if (!next_->scene) {
+                refuse(next_->error);
+                next_.reset();
+            } else if (saved_.lacks(document_.now()) && (!next_->again || moves_parts(document_.now(), in_file_))) {
+                ask(next_->again ? question::about::reading_again : question::about::opening);
+            } else {
+                take_scene();
+            }
+        }
+        void refuse(const std::string& why)
+        {
+            scene_error_ = why;
+            message_.clear();
+            journal_.note("refused", "why", why);
+        }
+        /// The next scene takes the present one's place.
+        void take_scene()
+        {
+            const bool again = next_->again;
+            const auto next = std::move(*next_->scene);
+            next_.reset();
+            const auto was = std::exchange(in_file_, {next.scene, next.settings, document_.now().backend});
+            document_ = document(again ? read_again(document_.now(), was, in_file_) : in_file_);
+            panel_.begin_anew();
+            saved_ = saved_files(next);
+            if (!again) {
+                picture_.forget_reference();
+                scenes_.watch(next);
+            }
+            scene_error_.clear();
+            message_ = (again ? "read again: " : "opened: ") + std::filesystem::path(next.path).filename().string();
+            if (next.notes > 0)
+                message_ += "; notes: " + std::to_string(next.notes) + " (`photongrid check` prints them)";
+            journal_.note(again ? "read again" : "opened", "scene", next.path);
         }
 
         // --- what is drawn ---
@@ -133,6 +218,8 @@ namespace {
             ImGui::PopStyleVar();
             pane_.draw(picture_.shown().number > 0);
             draw_report(picture_.report(), picture_.shown(), overlay_);
+            if (!scene_error_.empty())
+                draw_scene_error(scene_error_);
             ImGui::End();
             ImGui::SetNextWindowPos({size.x - panel_width, 0});
             ImGui::SetNextWindowSize({panel_width, size.y});
@@ -140,7 +227,7 @@ namespace {
             draw_panel();
             ImGui::End();
             keys(draw_question());
-            note_controls();
+            journal_.note(interface_.controls());
             send_changes(ImGui::IsAnyMouseDown());
 
             ImGui::Render();
@@ -196,38 +283,19 @@ namespace {
                 ImGui::TextWrapped("%s", message_.c_str());
         }
 
-        /// Asks before changes are lost. Returns whether it waits for the answer.
+        /// Returns whether a question waits for its answer.
         bool draw_question()
         {
-            constexpr const char* title = "The scene has changes that are not saved";
-            if (std::exchange(asks_to_close_, false))
-                ImGui::OpenPopup(title);
-            if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove))
-                return false;
-            const auto answer = [](const char* label) {
-                const bool chosen = ImGui::Button(label);
-                placed(label);
-                ImGui::SameLine();
-                return chosen;
-            };
-            if (answer("save scene and close")) {
-                save_scene();
-                if (!saved_.lacks(document_.now()))
-                    close_anyway();
-                ImGui::CloseCurrentPopup();
-            }
-            if (answer("close without saving"))
-                close_anyway();
-            if (answer("stay"))
-                ImGui::CloseCurrentPopup();
-            ImGui::EndPopup();
-            return true;
+            const auto about = question_.asked();
+            if (const auto given = question_.draw())
+                take_answer(*about, *given);
+            return about.has_value();
         }
 
         // --- keys ---
         void keys(bool asking)
         {
-            const auto presses = keyboard_.take();
+            const auto presses = input_.take_keys();
             if (asking || ImGui::GetIO().WantTextInput)
                 return;
             for (const auto& p : presses)
@@ -237,10 +305,15 @@ namespace {
                     save_picture();
                 else if (p.key == 'o' && !p.repeated)
                     overlay_ = !overlay_;
-                else if (p.key == keyboard::escape)
-                    document_.select(std::nullopt);
+                else if (p.key == key_press::escape)
+                    leave();
                 else
                     panel_.key(p, picture_.exposure());
+        }
+        void leave()
+        {
+            document_.select(std::nullopt);
+            scene_error_.clear();
         }
         void command(const key_press& p)
         {
@@ -269,38 +342,25 @@ namespace {
         }
         void save_scene() { message_ = saved_.save(document_.now()); }
 
-        /// For --journal: where the controls are, when that has changed.
-        void note_controls()
-        {
-            if (!journal_.is_open() || interface_.controls() == noted_controls_)
-                return;
-            noted_controls_ = interface_.controls();
-            std::string places;
-            for (const auto& [label, c] : noted_controls_)
-                places += (places.empty() ? "\"" : ", \"") + label + "\": [" + std::to_string(c.x) + ", "
-                    + std::to_string(c.y) + ", " + std::to_string(c.width) + ", " + std::to_string(c.height) + "]";
-            note("{\"event\": \"controls\", \"places\": {" + places + "}}");
-        }
-
-        window_options options_;
         bool (*stop_asked_)();
         glfw glfw_;
         window_handle handle_;
-        keyboard keyboard_;
+        window_input input_;
         interface interface_;
+        version in_file_; ///< the scene as its file has it
         document document_;
         settings_panel panel_;
         picture_pane pane_;
         newest_picture picture_;
         saved_files saved_;
-        std::mutex journal_guard_;
-        std::ofstream journal_;
+        journal_file journal_;
+        question question_;
 
         version sent_;
-        std::string message_;
-        bool overlay_ = true;
-        bool asks_to_close_ = false, closes_anyway_ = false;
-        control_places noted_controls_;
+        std::string message_, scene_error_;
+        bool overlay_ = true, closes_anyway_ = false;
+        std::optional<scene_news> next_; ///< a scene that waits to take the present one's place
+        scene_thread scenes_;
         render_thread renderer_; ///< last: its thread ends first
     };
 } // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render_thread.hpp"
+#include "scene_thread.hpp"
 
 #include <optional>
 #include <string>
@@ -9,13 +10,12 @@
 namespace photongrid::viewer {
 
 struct window_options {
-    version begin;                    ///< the first version to draw
-    std::string scene_path{};         ///< the scene's file ...
-    std::string scene_text{};         ///< ... and its text, of which saved scenes keep all that is not changed
+    opened_scene begin;               ///< the first scene to draw
+    scene_opener open;                ///< opens others, and the present one again, in a thread of the window's
+    bool reloads = true;              ///< a scene whose files change is read again
     renderer_maker make;              ///< makes the renderer ...
-    renderer_options renderer;        ///< ... with these options; its backend is in `begin`
-    std::string stem{};               ///< files that the window saves are called STEM.png, STEM-2.png, …
-    std::optional<image> reference{}; ///< to compute errors against
+    renderer_options renderer;        ///< ... with these options
+    std::optional<image> reference{}; ///< of the first scene, to compute errors against
     std::string journal{};            ///< a file for events, one line of JSON each; empty: none
 };
 

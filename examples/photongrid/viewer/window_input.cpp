@@ -1,4 +1,4 @@
-#include "keyboard.hpp"
+#include "window_input.hpp"
 
 namespace photongrid::viewer {
 
@@ -8,7 +8,7 @@ namespace {
     char letter_of(int key, int scancode)
     {
         if (key == GLFW_KEY_ESCAPE)
-            return keyboard::escape;
+            return key_press::escape;
         const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
         if (const char* name = glfwGetKeyName(key, scancode)) {
             if (is_letter(name[0]) && name[1] == 0)
@@ -20,18 +20,21 @@ namespace {
     }
 } // namespace
 
-keyboard::keyboard(GLFWwindow* w)
+window_input::window_input(GLFWwindow* w)
 {
     glfwSetWindowUserPointer(w, this);
     glfwSetKeyCallback(w, [](GLFWwindow* from, int key, int scancode, int action, int held) {
         if (action == GLFW_RELEASE)
             return;
         if (const char c = letter_of(key, scancode))
-            static_cast<keyboard*>(glfwGetWindowUserPointer(from))
-                ->presses_.push_back({.key = c,
-                    .shift = (held & GLFW_MOD_SHIFT) != 0,
-                    .control = (held & GLFW_MOD_CONTROL) != 0,
-                    .repeated = action == GLFW_REPEAT});
+            of(from).presses_.push_back({.key = c,
+                .shift = (held & GLFW_MOD_SHIFT) != 0,
+                .control = (held & GLFW_MOD_CONTROL) != 0,
+                .repeated = action == GLFW_REPEAT});
+    });
+    glfwSetDropCallback(w, [](GLFWwindow* on, int count, const char** paths) {
+        auto& all = of(on).dropped_;
+        all.insert(all.end(), paths, paths + count);
     });
 }
 
