@@ -2,5 +2,6 @@
 #include "gltf_file_tests.hpp"
 #include "mitsuba_file_tests.hpp"
 #include "obj_scene_tests.hpp"
+#include "named_file_tests.hpp"
 #include "pbrt_file_tests.hpp"
 #include "spectra_tests.hpp"

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include <unistd.h>
 
@@ -62,6 +63,42 @@ namespace {
         EXPECT_FALSE(files.lacks(v));
         EXPECT_EQ(read_scene((folder / "glass-changed.json").string()).spheres[1].center.x, 1.5);
         EXPECT_EQ(files.save(v), "saved " + (folder / "glass-changed-2.json").string());
+        fs::remove_all(folder);
+    }
+
+    TEST(saved_files, that_name_others_lie_beside_their_scene)
+    {
+        namespace fs = std::filesystem;
+        const auto folder = fs::temp_directory_path() / ("photongrid_beside_" + std::to_string(::getpid()));
+        fs::create_directories(folder);
+        const auto write = [&](const char* name, const std::string& content) {
+            std::ofstream(folder / name, std::ios::binary) << content;
+        };
+        const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n";
+        write("triangle.obj", triangle);
+        const std::string text = R"({"photongrid": 1, "units": {"length": "m", "power": "W"},
+ "camera": {"position": [0, 1, 5], "look_at": [0, 0, 0], "vertical_fov": 40},
+ "materials": {"white": {"type": "lambertian", "reflectance": 0.7}},
+ "shapes": [{"type": "mesh", "file": "triangle.obj", "material": "white"}],
+ "lights": [{"type": "point", "position": [0, 3, 0], "power": 10}],
+ "render": {"size": [64, 48], "photons": 1000, "k": 20, "max_radius": 0.25}}
+)";
+        const auto path = (folder / "scene.json").string();
+        const auto s = parse_scene(path, text);
+        saved_files files({.path = path,
+            .text = text,
+            .stem = "triangle",
+            .scene = s,
+            .settings = s.render,
+            .files = {{path, {}}, {(folder / "triangle.obj").string(), {}}}});
+        auto v = begun(s);
+        v.scene.point_lights[0].position.y = 4;
+        const auto saved = (folder / "triangle-changed.json").string();
+        EXPECT_EQ(files.save(v), "saved " + saved);
+        EXPECT_EQ(read_scene(saved).point_lights[0].position.y, 4);
+        write("triangle.obj", triangle + "f 1 3 2\n");
+        const auto refusal = files.save(v);
+        EXPECT_EQ(refusal.substr(0, 60), "not saved: a file that the scene names has changed since it ") << refusal;
         fs::remove_all(folder);
     }
 

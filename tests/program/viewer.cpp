@@ -1,6 +1,7 @@
 // The document of the window, and the thread that draws it, without a display.
 #include "../backends/serial_picture.hpp"
 #include "document_tests.hpp"
+#include "scene_thread_tests.hpp"
 #include "viewer/render_thread.hpp"
 
 #include <algorithm>

@@ -150,7 +150,7 @@ protected:
 
     void open_window(const std::vector<std::string>& more = {}, const std::string& backend = "serial")
     {
-        std::vector<std::string> command{PHOTONGRID_PROGRAM, "view", (folder / "ball.json").string(), "--backend",
+        std::vector<std::string> command{PHOTONGRID_PROGRAM, "view", (folder / scene_name).string(), "--backend",
             backend, "--journal", (folder / "journal").string()};
         command.insert(command.end(), more.begin(), more.end());
         fs::current_path(folder);
@@ -190,7 +190,7 @@ protected:
         return wait_until([&] {
             std::string last;
             for (const auto& j : journal())
-                if (j["event"] != "controls")
+                if (j["event"] == "start" || j["event"] == "picture" || j["event"] == "whole" || j["event"] == "error")
                     last = j["event"];
             return requests() > more_than && last == "whole";
         });
@@ -371,7 +371,7 @@ protected:
     }
 
     fs::path folder;
-    std::string display;
+    std::string scene_name = "ball.json", display;
     Display* x = nullptr;
     std::unique_ptr<process> server, program;
 };

@@ -102,21 +102,16 @@ namespace {
         }
         void take_answer(question::about what, question::answer given)
         {
-            if (given == question::answer::save) {
-                save_scene();
-                if (saved_.lacks(document_.now()))
-                    given = question::answer::stay; // it could not be saved, and says why
-            }
-            if (what == question::about::closing) {
-                if (given != question::answer::stay)
-                    close_anyway();
-            } else if (given != question::answer::stay) {
-                take_scene();
-            } else {
-                next_.reset();
-                if (what == question::about::reading_again)
-                    message_ = "the scene stays as it is until one of its files changes again";
-            }
+            if (given == question::answer::stay && what == question::about::reading_again)
+                message_ = "the scene stays as it is until one of its files changes again";
+            if (given == question::answer::save)
+                save_scene(); // says why if it cannot
+            const bool stays
+                = given == question::answer::stay || (given == question::answer::save && saved_.lacks(document_.now()));
+            if (what != question::about::closing)
+                stays ? next_.reset() : take_scene();
+            else if (!stays)
+                close_anyway();
         }
 
         // --- scenes that come ---
