@@ -3,6 +3,7 @@
 #include "command_line.hpp"
 
 #include "option_values.hpp"
+#include "scene_options.hpp"
 
 #include <photongrid/io/image_file.hpp>
 #include <photongrid/scene/setting_table.hpp>
@@ -10,7 +11,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
 #include <string_view>
 #include <type_traits>
@@ -18,7 +18,7 @@
 namespace photongrid {
 
 namespace {
-    constexpr const char* commands[] = {"render", "view", "reference", "compare", "check", "devices"};
+    constexpr const char* commands[] = {"render", "view", "reference", "compare", "check", "convert", "devices"};
 
     constexpr std::string_view examples[] = {"render examples/scenes/cornell_box.json -o cornell.png",
         "render ring.json --backend vulkan --map route -o ring.exr -o ring.png --stats ring-stats.json",
@@ -28,6 +28,7 @@ namespace {
         "render ring.json --only caustic --filter silverman --leaks side,min_cosine=0.7 --aov -o ring.exr",
         "reference ring.json -o reference.exr --error error.exr --paths 1e8",
         "compare ring.exr reference.exr --max-relmse 1e-3", "check my_scene.json",
+        "convert examples/scenes/still_life.pbrt still_life.json", "convert cornell_box.json cornell_box.glb",
         "view cornell_box.json --size 320x320"};
 
     constexpr const char* exit_codes = R"(Exit codes:
@@ -108,21 +109,6 @@ namespace {
               },
               description)
             ->type_name(type_of(setting_table::exposure.values));
-    }
-
-    /// The scene, and how to read those of other programs.
-    void add_scene(CLI::App& to, std::string& path, import_settings& how)
-    {
-        to.add_option("scene", path, "scene file, of photongrid or of pbrt-v4")->required()->type_name("SCENE");
-        to.add_flag("--strict", how.strict,
-            "refuse a scene of another program if anything in it would be replaced or left out");
-        to.add_flag("--allow-outside", how.allow_outside,
-            "let a scene of another program name files outside of its own folder");
-        to.add_option("--unit", how.unit,
-              "length of the unit of another program's scene, m; default: that of its format; its lights are scaled "
-              "along, so that the picture stays the same")
-            ->type_name("METRES")
-            ->check(CLI::Range(1e-9, 1e9).description(""));
     }
 
     /// Options for scene, backend and settings, common to `render` and `view`.
@@ -255,36 +241,6 @@ namespace {
         add_exposure(to, o.exposure, "compare the looks of pixel values times 2^EV; default: auto, fitted to B");
     }
 
-    /// The files of a command: what it reads and what it writes must differ.
-    class files_of_command {
-    public:
-        explicit files_of_command(const std::string& scene) { files_.push_back({"the scene", resolved(scene)}); }
-        /// Throws for a file that was added before.
-        void add(const std::string& option, const std::string& path)
-        {
-            if (path.empty())
-                return;
-            const auto real = resolved(path);
-            for (const auto& f : files_)
-                if (f.path == real)
-                    throw CLI::ValidationError(option, "\"" + path + "\" is " + f.what + "; expected another file");
-            files_.push_back({"the file of " + option + " too", real});
-        }
-
-    private:
-        struct file {
-            std::string what;
-            std::filesystem::path path;
-        };
-        static std::filesystem::path resolved(const std::string& path)
-        {
-            std::error_code none;
-            const auto real = std::filesystem::weakly_canonical(std::filesystem::absolute(path, none), none);
-            return none ? std::filesystem::path(path) : real;
-        }
-        std::vector<file> files_;
-    };
-
     void check_files(const render_options& o, const std::string& journal = {})
     {
         files_of_command files(o.scene_path);
@@ -305,6 +261,8 @@ namespace {
         files.add("--error", o.error);
         files.add("--stats", o.stats);
     }
+
+    void check_files(const convert_options& o) { files_of_command(o.scene_path).add("OUT", o.output); }
 
     void check_device(const render_options& o)
     {
@@ -365,6 +323,15 @@ command read_command_line(int argc, char** argv)
     auto& check_command = *app.add_subcommand("check", "Reads and checks a scene file");
     add_scene(check_command, check_scene.scene_path, check_scene.how);
 
+    convert_options convert;
+    auto& convert_command = *app.add_subcommand("convert",
+        "Writes a scene in another format, with its meshes and pictures; prints on stderr what the format does not "
+        "have");
+    add_scene(convert_command, convert.scene_path, convert.how);
+    convert_command.add_option("OUT", convert.output, "scene file to write; one that exists is replaced")
+        ->required()
+        ->type_name("OUT.json|.pbrt|.gltf|.glb");
+
     auto& devices_command = *app.add_subcommand(
         "devices", "Lists every backend and device that works here, with its limits, and why the others do not work");
 
@@ -380,6 +347,7 @@ command read_command_line(int argc, char** argv)
         check_files(render);
         check_files(view.picture, view.journal);
         check_files(reference);
+        check_files(convert);
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? success : usage_error;
     }
@@ -393,6 +361,8 @@ command read_command_line(int argc, char** argv)
         return compare;
     if (check_command.parsed())
         return check_scene;
+    if (convert_command.parsed())
+        return convert;
     return devices_command.parsed() ? command(devices_options{}) : command(usage_error);
 }
 

@@ -78,11 +78,16 @@ struct check_options {
     import_settings how; ///< scenes of other programs are read
 };
 
+struct convert_options {
+    std::string scene_path, output;
+    import_settings how; ///< scenes of other programs are read; `strict` is for what is written, too
+};
+
 struct devices_options {};
 
 /// The command to run, or the exit code if parsing has already printed the answer (help, version, mistake).
 using command = std::variant<exit_code, render_options, view_options, reference_options, compare_options, check_options,
-    devices_options>;
+    convert_options, devices_options>;
 
 command read_command_line(int argc, char** argv);
 

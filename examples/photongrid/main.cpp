@@ -1,6 +1,7 @@
 // The photongrid program: scene file in, picture and statistics out.
 #include "advice.hpp"
 #include "command_line.hpp"
+#include "convert_command.hpp"
 #include "reference_command.hpp"
 #include "render_command.hpp"
 #include "scene_notes.hpp"
@@ -94,6 +95,8 @@ namespace {
             std::cout << o.scene_path << ": note: " << odd << '\n';
         return success;
     }
+
+    exit_code run(const convert_options& o) { return run_convert(o); }
 
     exit_code run(const devices_options&)
     {

@@ -10,6 +10,8 @@ namespace photongrid::image_formats {
 // Encoders throw std::exception if their library fails; readers throw std::exception or file_error. Those that are
 // given bytes use the path in messages alone.
 std::string png_bytes(const image& picture, double exposure);
+/// `rgba`: 8 bits each, row by row from the top, as they are.
+std::string png_bytes(std::uint32_t width, std::uint32_t height, const std::vector<unsigned char>& rgba);
 std::string exr_bytes(const image& picture, const image_notes& notes);
 std::string pfm_bytes(const image& picture);
 image read_exr(const std::string& path);

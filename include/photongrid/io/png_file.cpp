@@ -9,6 +9,25 @@
 
 namespace photongrid::image_formats {
 
+namespace {
+    /// `format`: of `channels`, 8 bits each, sRGB.
+    std::string written(
+        std::uint32_t width, std::uint32_t height, png_uint_32 format, const std::vector<unsigned char>& channels)
+    {
+        png_image png{};
+        png.version = PNG_IMAGE_VERSION;
+        png.width = width;
+        png.height = height;
+        png.format = format;
+        png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+        std::string bytes(size, '\0');
+        if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, channels.data(), 0, nullptr))
+            throw std::runtime_error(png.message);
+        bytes.resize(size);
+        return bytes;
+    }
+} // namespace
+
 std::string png_bytes(const image& picture, double exposure)
 {
     const tone_map to_screen(exposure);
@@ -17,17 +36,12 @@ std::string png_bytes(const image& picture, double exposure)
     for (const auto& p : picture.pixels)
         for (int c = 0; c < 3; ++c)
             rgb.push_back(to_screen(p[c]));
-    png_image png{};
-    png.version = PNG_IMAGE_VERSION;
-    png.width = picture.width;
-    png.height = picture.height;
-    png.format = PNG_FORMAT_RGB; // 8 bits, sRGB
-    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
-    std::string bytes(size, '\0');
-    if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, rgb.data(), 0, nullptr))
-        throw std::runtime_error(png.message);
-    bytes.resize(size);
-    return bytes;
+    return written(picture.width, picture.height, PNG_FORMAT_RGB, rgb);
+}
+
+std::string png_bytes(std::uint32_t width, std::uint32_t height, const std::vector<unsigned char>& rgba)
+{
+    return written(width, height, PNG_FORMAT_RGBA, rgba);
 }
 
 namespace {
