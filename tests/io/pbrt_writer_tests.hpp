@@ -114,11 +114,22 @@ namespace {
                 && is_near(a.inner_angle, b.inner_angle) && is_near(a.outer_angle, b.outer_angle)
                 && is_near(a.power, b.power);
         });
-        each(r.directional_lights, s.directional_lights, [&](const auto& a, const auto& b) {
-            return a.direction == b.direction && is_near(a.irradiance, b.irradiance);
-        });
+        each(r.directional_lights, s.directional_lights,
+            [&](const auto& a, const auto& b) { return a.direction == b.direction && a.irradiance == b.irradiance; });
         each(r.environment_lights, s.environment_lights,
-            [&](const auto& a, const auto& b) { return !a.map && is_near(a.radiance, b.radiance); });
+            [&](const auto& a, const auto& b) { return !a.map && a.radiance == b.radiance; });
+    }
+
+    // Colours of sRGB are photongrid's, so that 1 stays 1 and not a little more, which no reflectance is.
+    TEST(pbrt_writer, a_white_surface_stays_white)
+    {
+        const test_folder folder("white");
+        auto s = papered_square({}, {});
+        s.materials[0].reflectance = {1, 1, 0};
+        write_pbrt(folder.file("a.pbrt"), s, {.strict = true});
+        const auto r = read_pbrt(folder.file("a.pbrt"), {.strict = true});
+        EXPECT_TRUE(r.notes.empty());
+        EXPECT_EQ(r.scene.materials.at(0).reflectance, dvec3(1, 1, 0));
     }
 
     /// The scene that pbrt's file of this one describes: polygons are triangles, and materials are counted as they are

@@ -247,6 +247,54 @@ namespace {
         EXPECT_EQ(notes.at(0).get<std::string>() + "\n", note);
     }
 
+    TEST_F(program, converts_scenes)
+    {
+        const std::string still_life = PHOTONGRID_SCENES "/still_life.pbrt";
+        const auto made = run({"convert", still_life, "still.json"});
+        EXPECT_EQ(made.code, 0) << made.err;
+        EXPECT_EQ(made.out, "still.json\nstill: 1 file\n");
+        EXPECT_NE(made.err.find("note: dispersion of \"glass-BK7\" is left out"), std::string::npos) << made.err;
+        EXPECT_EQ(run({"check", "still.json"}).code, 0);
+        const auto drawn = [&](const std::string& scene, const std::string& picture) {
+            const auto e = run({"render", scene, "--backend", "serial", "--size", "16x12", "--photons", "50", "--spp",
+                "1", "--quiet", "-o", picture});
+            EXPECT_EQ(e.code, 0) << e.err;
+            return contents(folder / picture);
+        };
+        EXPECT_EQ(drawn(still_life, "a.pfm"), drawn("still.json", "b.pfm"));
+
+        ASSERT_EQ(run({"convert", "still.json", "again.pbrt"}).code, 0);
+        ASSERT_EQ(run({"convert", "still.json", "again.glb"}).code, 0);
+        EXPECT_TRUE(contents(folder / "again.glb").starts_with("glTF"));
+        EXPECT_EQ(run({"check", "again.pbrt", "--strict"}).code, 0);
+        const auto strict = run({"convert", "still.json", "strict.glb", "--strict"});
+        EXPECT_EQ(strict.code, 3);
+        EXPECT_TRUE(strict.err.starts_with("strict.glb: error: material \"table\": its texture is rounded to 8 bits"))
+            << strict.err;
+        EXPECT_FALSE(fs::exists(folder / "strict.glb"));
+    }
+
+    TEST_F(program, refuses_to_convert_to_what_it_cannot_write)
+    {
+        fs::copy(ring, folder / "ring.json");
+        const auto before = contents(folder / "ring.json");
+        const auto same = run({"convert", "ring.json", "./ring.json"});
+        EXPECT_EQ(same.code, 2);
+        EXPECT_NE(same.err.find("OUT: \"./ring.json\" is the scene; expected another file"), std::string::npos)
+            << same.err;
+        const auto unknown = run({"convert", "ring.json", "ring.xyz"});
+        EXPECT_EQ(unknown.code, 5);
+        EXPECT_NE(
+            unknown.err.find("ring.xyz: has no known extension; expected .json (photongrid), .pbrt, .gltf or .glb"),
+            std::string::npos)
+            << unknown.err;
+        const auto no_folder = run({"convert", "ring.json", "none/ring.json"});
+        EXPECT_EQ(no_folder.code, 5);
+        EXPECT_NE(no_folder.err.find("none/ring.json: there is no folder none"), std::string::npos) << no_folder.err;
+        EXPECT_EQ(contents(folder / "ring.json"), before);
+        EXPECT_EQ(files(), 1u);
+    }
+
     // Each block of 2 x 2 pixels has the same mean, though no pixel is the same.
     TEST_F(program, compares_means_of_blocks)
     {

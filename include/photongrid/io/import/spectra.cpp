@@ -151,7 +151,10 @@ double conductor_reflectance(double eta, double k)
     return ((eta - 1) * (eta - 1) + k * k) / ((eta + 1) * (eta + 1) + k * k);
 }
 
-glm::dmat3 to_rec709(const rgb_primaries& from) { return glm::inverse(to_tristimulus(rec709)) * to_tristimulus(from); }
+glm::dmat3 to_rec709(const rgb_primaries& from)
+{
+    return from == rec709 ? glm::dmat3(1) : glm::inverse(to_tristimulus(rec709)) * to_tristimulus(from);
+}
 
 std::optional<dvec3> metal_reflectance(std::string_view symbol)
 {

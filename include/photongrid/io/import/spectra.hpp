@@ -51,9 +51,12 @@ double conductor_reflectance(double eta, double k);
 struct rgb_primaries {
     std::array<std::array<double, 2>, 3> primaries;
     std::array<double, 2> white;
+
+    bool operator==(const rgb_primaries&) const = default;
 };
 
-/// The matrix from linear rgb of these primaries to that of Rec. 709. White points are not adapted.
+/// The matrix from linear rgb of these primaries to that of Rec. 709; of those themselves exactly 1. White points are
+/// not adapted.
 glm::dmat3 to_rec709(const rgb_primaries& from);
 
 /// The reflectance, rgb, of a polished metal by the symbol of its element ("Ag", "Al", "Au", "Cr", "Cu"), or "CuZn"
