@@ -1,4 +1,5 @@
 // Scenes of other programs.
+#include "five_formats_tests.hpp"
 #include "gltf_file_tests.hpp"
 #include "mitsuba_file_tests.hpp"
 #include "obj_scene_tests.hpp"

@@ -31,7 +31,6 @@ namespace {
             else
                 read_base(m_.object("pbrMetallicRoughness"));
             note_left_out();
-            made.index = with_opacity(surface());
             made.is_black = base_ == dvec3(0);
             made.is_double_sided = m_.truth("doubleSided", false);
             const auto strong = m_.extension("KHR_materials_emissive_strength");
@@ -39,6 +38,8 @@ namespace {
                 * ((strong ? strong->number("emissiveStrength", 1, 0, 1e15) : 1.0) / luminous_efficacy);
             if (made.radiance != dvec3(0))
                 made.emission = textures_.texture(m_, "emissiveTexture", texture_holds::colour);
+            if (made.radiance == dvec3(0) || made.emission) // else all of its surfaces are lamps
+                made.index = with_opacity(surface());
             made.coordinates = textures_.coordinates();
             return made;
         }

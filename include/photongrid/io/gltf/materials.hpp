@@ -14,7 +14,7 @@ inline constexpr double luminous_efficacy = 683;
 
 /// What a surface is made of.
 struct surface_material {
-    std::uint32_t index = 0;               ///< in the scene
+    std::uint32_t index = 0;               ///< in the scene; of lamps without a texture, none
     coordinate_use coordinates{};          ///< of its textures
     dvec3 radiance{0};                     ///< that it emits, W/(m^2 sr), rgb
     std::optional<texture_use> emission{}; ///< factor on it
