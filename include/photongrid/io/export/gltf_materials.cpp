@@ -9,7 +9,7 @@ namespace photongrid::gltf_export {
 
 namespace {
     using json = nlohmann::ordered_json;
-    constexpr int repeat = 10497, clamp_to_edge = 33071, linear = 9729; // of the specification
+    constexpr int repeat = 10497, clamp_to_edge = 33071, interpolated = 9729; // of the specification
 
     json rgb(const dvec3& v) { return {v.x, v.y, v.z}; }
 
@@ -77,7 +77,7 @@ std::size_t material_writer::image(const std::string& ending, const std::string&
 json material_writer::texture(const texture_use& t, const std::string& ending, const std::string& bytes)
 {
     const int wrap = t.wrap == texture_wrap::clamp ? clamp_to_edge : repeat;
-    const json sampler = {{"magFilter", linear}, {"minFilter", linear}, {"wrapS", wrap}, {"wrapT", wrap}};
+    const json sampler = {{"magFilter", interpolated}, {"minFilter", interpolated}, {"wrapS", wrap}, {"wrapT", wrap}};
     const auto at
         = static_cast<std::size_t>(std::find(samplers_.begin(), samplers_.end(), sampler) - samplers_.begin());
     if (at == samplers_.size())

@@ -8,8 +8,8 @@
 namespace photongrid {
 
 namespace {
-    constexpr double turn = 2 * std::numbers::pi;
-    constexpr unsigned around = 128, along_paraboloid = 32;
+    constexpr double whole_turn = 2 * std::numbers::pi;
+    constexpr unsigned parts_around = 128, parts_along = 32;
 
     /// A mesh about the z axis, placed, without the triangles that have no area at a pole or a tip.
     mesh placed_about(mesh m, const glm::dmat3& frame, const dvec3& origin)
@@ -27,7 +27,10 @@ namespace {
     }
 
     /// The direction away from the axis at u; the last one is the first one, bit for bit.
-    dvec3 spoke(double u) { return u == 1 ? dvec3(1, 0, 0) : dvec3(std::cos(turn * u), std::sin(turn * u), 0); }
+    dvec3 spoke(double u)
+    {
+        return u == 1 ? dvec3(1, 0, 0) : dvec3(std::cos(whole_turn * u), std::sin(whole_turn * u), 0);
+    }
 } // namespace
 
 glm::dmat3 frame_about(const dvec3& axis)
@@ -70,13 +73,13 @@ mesh mesh_of(const box& b)
 
 mesh mesh_of(const sphere& s)
 {
-    return placed_about(sphere_mesh(s.radius, -s.radius, s.radius, turn), glm::dmat3(1), s.center);
+    return placed_about(sphere_mesh(s.radius, -s.radius, s.radius, whole_turn), glm::dmat3(1), s.center);
 }
 
 mesh mesh_of(const cylinder& x)
 {
     return placed_about(
-        cylinder_mesh(x.radius, 0, glm::length(x.top - x.base), turn), frame_about(x.top - x.base), x.base);
+        cylinder_mesh(x.radius, 0, glm::length(x.top - x.base), whole_turn), frame_about(x.top - x.base), x.base);
 }
 
 mesh mesh_of(const cone& x)
@@ -84,7 +87,8 @@ mesh mesh_of(const cone& x)
     const double height = glm::length(x.apex - x.base);
     return placed_about(
         tessellated(
-            around, 1, [&](double u, double v) { return x.radius * (1 - v) * spoke(u) + dvec3(0, 0, v * height); },
+            parts_around, 1,
+            [&](double u, double v) { return x.radius * (1 - v) * spoke(u) + dvec3(0, 0, v * height); },
             [&](double u, double) { return glm::normalize(height * spoke(u) + dvec3(0, 0, x.radius)); }),
         frame_about(x.apex - x.base), x.base);
 }
@@ -94,7 +98,7 @@ mesh mesh_of(const paraboloid& x)
     const double height = glm::length(x.rim - x.vertex);
     return placed_about(
         tessellated(
-            around, along_paraboloid,
+            parts_around, parts_along,
             [&](double u, double v) { return x.radius * v * spoke(u) + dvec3(0, 0, v * v * height); },
             [&](double u, double v) { return glm::normalize(2 * height * v * spoke(u) - dvec3(0, 0, x.radius)); }),
         frame_about(x.rim - x.vertex), x.vertex);
@@ -102,7 +106,7 @@ mesh mesh_of(const paraboloid& x)
 
 mesh mesh_of(const disk& d)
 {
-    auto m = placed_about(disk_mesh(0, d.radius, 0, turn), frame_about(d.normal), d.center);
+    auto m = placed_about(disk_mesh(0, d.radius, 0, whole_turn), frame_about(d.normal), d.center);
     m.normals.clear(); // it is flat
     return m;
 }
