@@ -1,5 +1,7 @@
 #include <photongrid/io/export/gltf_materials.hpp>
 #include <photongrid/io/image_formats.hpp>
+#include <photongrid/io/import/coat.hpp>
+#include <photongrid/io/import/photometry.hpp>
 #include <photongrid/io/whole_file.hpp>
 
 #include <algorithm>
@@ -157,8 +159,11 @@ void material_writer::add(const material& owner)
     json surface = json::object(), made = json::object();
     if (!owner.name.empty())
         made["name"] = owner.name;
-    add_base_color(surface, *m, owner);
     const auto kind = detail::entry_of(m->kind).surface;
+    auto plain = *m;
+    if (kind == surface_kind::coated) // glTF has no light that goes back and forth below the coat
+        set_reflectance_above_coat(plain);
+    add_base_color(surface, plain, owner);
     surface["metallicFactor"] = kind == surface_kind::reflecting ? 1 : 0;
     if (kind == surface_kind::diffuse)
         surface["roughnessFactor"] = 1;
@@ -188,7 +193,7 @@ std::size_t material_writer::add_lamp(const std::string& name, const dvec3& radi
         made["name"] = name;
     made["pbrMetallicRoughness"] = {{"baseColorFactor", {0, 0, 0, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
     made["emissiveFactor"] = rgb(radiance / most);
-    extend(made, "KHR_materials_emissive_strength", {{"emissiveStrength", most}});
+    extend(made, "KHR_materials_emissive_strength", {{"emissiveStrength", most * luminous_efficacy}});
     extend(made, "KHR_materials_specular", {{"specularFactor", 0}});
     materials_.push_back(std::move(made));
     return materials_.size() - 1;

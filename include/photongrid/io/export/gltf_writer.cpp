@@ -1,6 +1,7 @@
 #include <photongrid/io/export/gltf_materials.hpp>
 #include <photongrid/io/export/shape_meshes.hpp>
 #include <photongrid/io/gltf_writer.hpp>
+#include <photongrid/io/import/photometry.hpp>
 #include <photongrid/io/whole_file.hpp>
 
 #include <algorithm>
@@ -16,8 +17,6 @@ namespace gltf_export {
     namespace {
         using json = nlohmann::ordered_json;
         constexpr double pi = std::numbers::pi;
-        /// Lumens of a watt, by which KHR_lights_punctual's candela and lux become W/sr and W/m^2 elsewhere too.
-        constexpr double lumens = 683;
 
         /// A node at a place; `linear`: its axes, as columns.
         json node_at(const glm::dmat3& linear, const dvec3& offset)
@@ -265,7 +264,7 @@ namespace gltf_export {
                     light["name"] = name;
                 const dvec3 color = emission / most;
                 light["color"] = {color.x, color.y, color.z};
-                light["intensity"] = most * lumens;
+                light["intensity"] = most * luminous_efficacy;
                 node["extensions"]["KHR_lights_punctual"]["light"] = lights_.size();
                 lights_.push_back(std::move(light));
                 add_node(std::move(node), name);

@@ -2,15 +2,13 @@
 #pragma once
 
 #include <photongrid/io/gltf/textures.hpp>
+#include <photongrid/io/import/photometry.hpp>
 
 #include <map>
 #include <optional>
 #include <string>
 
 namespace photongrid::gltf {
-
-/// Lumens of a watt of light of 555 nm (CIE): lights of glTF are in candela, lux and nits.
-inline constexpr double luminous_efficacy = 683;
 
 /// What a surface is made of.
 struct surface_material {

@@ -5,24 +5,37 @@
 
 namespace photongrid {
 
-void set_reflectance_below_coat(material& plastic)
-{
-    const double thrown_back
-        = detail::shares_of_coat(plastic.index_of_refraction, plastic.roughness * plastic.roughness).thrown_back;
-    // Of b, the reflectance below, b (1 - t) / (1 - b t) leaves (trace/coat.glsl).
-    const auto below = [&](const dvec3& leaves) { return leaves / (1 - thrown_back + thrown_back * leaves); };
-    if (plastic.texture.map) {
+namespace {
+    /// `change`: of a colour, with the share of light from below that the coat throws back.
+    template <class Change>
+    void change_reflectance(material& plastic, Change change)
+    {
+        const double thrown_back
+            = detail::shares_of_coat(plastic.index_of_refraction, plastic.roughness * plastic.roughness).thrown_back;
+        if (!plastic.texture.map) {
+            plastic.reflectance = change(plastic.reflectance, thrown_back);
+            return;
+        }
         auto map = *plastic.texture.map;
         for (auto& t : map.texels) {
-            const auto colour = below(plastic.reflectance * dvec3(t) / 65535.0) * 65535.0 + 0.5;
+            const auto colour = change(plastic.reflectance * dvec3(t) / 65535.0, thrown_back) * 65535.0 + 0.5;
             t = glm::u16vec4(colour.x, colour.y, colour.z, t.w);
         }
         plastic.texture.map = std::make_shared<const texture>(std::move(map));
         plastic.texture.file.clear(); // it is not what the file has any more
         plastic.reflectance = dvec3(1);
-    } else {
-        plastic.reflectance = below(plastic.reflectance);
     }
+} // namespace
+
+// Of b, the reflectance below, b (1 - t) / (1 - b t) leaves (trace/coat.glsl).
+void set_reflectance_below_coat(material& plastic)
+{
+    change_reflectance(plastic, [](const dvec3& leaves, double t) { return leaves / (1 - t + t * leaves); });
+}
+
+void set_reflectance_above_coat(material& plastic)
+{
+    change_reflectance(plastic, [](const dvec3& below, double t) { return below * (1 - t) / (1.0 - t * below); });
 }
 
 } // namespace photongrid

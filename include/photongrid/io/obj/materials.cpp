@@ -1,3 +1,4 @@
+#include <photongrid/io/import/coat.hpp>
 #include <photongrid/io/obj/materials.hpp>
 #include <photongrid/io/whole_file.hpp>
 
@@ -203,6 +204,7 @@ namespace {
                 builder_.note(from_.map_pr->place, "a picture of the roughness of a coat: its mean is used");
                 plastic.roughness = roughness * mean_of(*rough)[std::min(static_cast<int>(rough->channel), 2)];
             }
+            set_reflectance_below_coat(plastic);
             if (share == 0)
                 return builder_.add_material(from_.place, std::move(plastic));
             return add_mixture(std::move(plastic), std::move(metal), share, metallic.value_or(texture_use{}));
@@ -224,6 +226,7 @@ namespace {
             base_.kind = material_kind::plastic;
             base_.index_of_refraction = index_of_coat();
             base_.roughness = roughness_of_exponent(*from_.ns);
+            set_reflectance_below_coat(base_);
             return builder_.add_material(from_.place, base_);
         }
         std::uint32_t mirror(const dvec3& ks)
