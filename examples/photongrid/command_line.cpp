@@ -199,6 +199,13 @@ namespace {
         to.add_option("--error", o.error, "standard error of each pixel, as a picture")->type_name("OUT.exr|.pfm|.png");
         add_whole(to, "--spp", o.spp, "eye paths per pixel, at least 2");
         to.add_option_function<std::string>(
+              "--pixel-filter",
+              [&o](const std::string& text) {
+                  o.filter = parsed_setting("--pixel-filter", text, setting_table::pixel_filter.values);
+              },
+              "weight of an eye path by its place; default: the scene's")
+            ->type_name(type_of(setting_table::pixel_filter.values));
+        to.add_option_function<std::string>(
               "--paths",
               [&o](const std::string& text) { o.paths = parsed<std::uint64_t>("--paths", text, "a whole number"); },
               "light paths traced for caustics that need bins")
@@ -243,7 +250,7 @@ namespace {
 
     void check_files(const render_options& o, const std::string& journal = {})
     {
-        files_of_command files(o.scene_path);
+        files_of_command files(o.scene_path, o.how);
         files.add("--reference", o.reference);
         for (const auto& output : o.outputs)
             files.add("-o", output);
@@ -255,14 +262,14 @@ namespace {
 
     void check_files(const reference_options& o)
     {
-        files_of_command files(o.scene_path);
+        files_of_command files(o.scene_path, o.how);
         for (const auto& output : o.outputs)
             files.add("-o", output);
         files.add("--error", o.error);
         files.add("--stats", o.stats);
     }
 
-    void check_files(const convert_options& o) { files_of_command(o.scene_path).add("OUT", o.output); }
+    void check_files(const convert_options& o) { files_of_command(o.scene_path, o.how).add("OUT", o.output); }
 
     void check_device(const render_options& o)
     {

@@ -15,7 +15,9 @@ namespace {
 
 void add_scene(CLI::App& to, std::string& path, import_settings& how)
 {
-    to.add_option("scene", path, "scene file, of photongrid or of pbrt-v4")->required()->type_name("SCENE");
+    to.add_option("scene", path, "scene file: photongrid's own, glTF, OBJ, PLY, pbrt-v4 or Mitsuba")
+        ->required()
+        ->type_name("SCENE");
     to.add_flag(
         "--strict", how.strict, "refuse a scene of another program if anything in it would be replaced or left out");
     to.add_flag(
@@ -25,9 +27,21 @@ void add_scene(CLI::App& to, std::string& path, import_settings& how)
           "along, so that the picture stays the same")
         ->type_name("METRES")
         ->check(CLI::Range(1e-9, 1e9).description(""));
+    to.add_option("--camera-from", how.camera_from,
+          "scene of any format whose camera and size of the picture are taken in place of the scene's own")
+        ->type_name("SCENE");
+    to.add_option("--environment", how.environment,
+          "picture of light from everywhere, by longitude and latitude, in place of the scene's environments")
+        ->type_name("PICTURE.exr|.hdr|...");
 }
 
-files_of_command::files_of_command(const std::string& scene) { files_.push_back({"the scene", resolved(scene)}); }
+files_of_command::files_of_command(const std::string& scene, const import_settings& how)
+{
+    files_.push_back({"the scene", resolved(scene)});
+    for (const auto& read : {how.camera_from, how.environment})
+        if (!read.empty())
+            files_.push_back({"a file that is read", resolved(read)});
+}
 
 void files_of_command::add(const std::string& option, const std::string& path)
 {

@@ -17,7 +17,7 @@ void add_scene(CLI::App& to, std::string& path, import_settings& how);
 /// The files of a command: what it reads and what it writes must differ.
 class files_of_command {
 public:
-    explicit files_of_command(const std::string& scene);
+    files_of_command(const std::string& scene, const import_settings& how);
     /// \throws CLI::ValidationError for a file that was added before.
     void add(const std::string& option, const std::string& path);
 

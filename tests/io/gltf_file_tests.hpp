@@ -5,6 +5,7 @@
 #include "import_tests.hpp"
 
 #include <photongrid/io/gltf_file.hpp>
+#include <photongrid/io/image_file.hpp>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -614,6 +615,30 @@ namespace {
         const auto refused = refusal_by([&] { return import_scene((folder / "s.gltf").string()); });
         EXPECT_NE(refused.find("s.gltf:1:69: error: "), std::string::npos) << refused;
         EXPECT_NE(refused.find("lies outside of the scene's folder"), std::string::npos) << refused;
+    }
+
+    TEST_F(import_folder, camera_and_environment_of_other_files_replace_the_scenes)
+    {
+        write("s.gltf", triangle_text("", ""));
+        write("camera.pbrt",
+            "Film \"rgb\" \"integer xresolution\" 30 \"integer yresolution\" 20\nScale -1 1 1\nLookAt 1 2 9 "
+            "0 0 0 0 1 0\nCamera \"perspective\" \"float fov\" 35\nWorldBegin\nShape \"sphere\"\n");
+        image sky{.width = 2, .height = 1, .pixels = {{1, 2, 3}, {4, 5, 6}}};
+        write_image((folder / "sky.pfm").string(), sky);
+        const auto path = [&](const char* name) { return (folder / name).string(); };
+        const auto made = import_scene(
+            path("s.gltf"), {.strict = false, .camera_from = path("camera.pbrt"), .environment = path("sky.pfm")});
+        expect_near(made.scene.camera.position, {1, 2, 9});
+        EXPECT_NEAR(made.scene.camera.vertical_fov, 35, 1e-12);
+        EXPECT_EQ(made.scene.render.output.width, 30u);
+        EXPECT_EQ(made.scene.render.output.height, 20u);
+        ASSERT_EQ(made.scene.environment_lights.size(), 1u);
+        EXPECT_EQ(made.scene.environment_lights[0].map->radiance, sky.pixels);
+        for (const auto& n : notes_of(made)) // no camera or light was added
+            EXPECT_EQ(n.find("is added"), std::string::npos) << n;
+        const auto own = import_scene(std::string(PHOTONGRID_SCENES) + "/ring.json", {.environment = path("sky.pfm")});
+        EXPECT_EQ(own.scene.environment_lights.at(0).map->radiance, sky.pixels);
+        EXPECT_NE(refusal_by([&] { return import_scene(path("s.gltf"), {.environment = path("no.hdr")}); }), "");
     }
 
 } // namespace

@@ -89,19 +89,19 @@ namespace {
         return m;
     }
 
-    RC_GTEST_PROP(gltf_writer, says_what_the_specification_wants, (std::uint32_t seed))
+    void expect_what_the_specification_wants(std::uint32_t seed)
     {
         const test_folder folder("gltf");
         const auto s = scene_generator(seed, false).any_scene();
         const auto path = folder.file(seed % 2 == 0 ? "made.glb" : "made it.gltf");
         const auto written = write_gltf(path, s);
-        RC_ASSERT(written.files.back() == path);
+        ASSERT_TRUE(written.files.back() == path);
         const gltf_document d(path);
-        RC_ASSERT(d["asset"].at("version") == "2.0");
-        RC_ASSERT(d["buffers"].at(0).at("byteLength").get<std::size_t>() <= d.bytes.size());
-        RC_ASSERT(d["materials"].size()
+        ASSERT_TRUE(d["asset"].at("version") == "2.0");
+        ASSERT_TRUE(d["buffers"].at(0).at("byteLength").get<std::size_t>() <= d.bytes.size());
+        ASSERT_TRUE(d["materials"].size()
             == s.materials.size() + s.rectangle_lights.size() + s.sphere_lights.size() + s.mesh_lights.size());
-        RC_ASSERT(d["nodes"].size()
+        ASSERT_TRUE(d["nodes"].size()
             == 1 + count_shapes(s) + count_lights(s) - s.environment_lights.size()); // the camera's too
         for (const auto& m : d["meshes"]) {
             const auto& p = m.at("primitives").at(0);
@@ -113,30 +113,30 @@ namespace {
                     low = std::min(low, positions[i]);
                     high = std::max(high, positions[i]);
                 }
-                RC_ASSERT(a.at("min").at(c).get<double>() == static_cast<double>(low));
-                RC_ASSERT(a.at("max").at(c).get<double>() == static_cast<double>(high));
+                ASSERT_TRUE(a.at("min").at(c).get<double>() == static_cast<double>(low));
+                ASSERT_TRUE(a.at("max").at(c).get<double>() == static_cast<double>(high));
             }
             const auto indices = d.numbers<std::uint32_t>(p.at("indices"));
-            RC_ASSERT(*std::max_element(indices.begin(), indices.end()) < positions.size() / 3);
+            ASSERT_TRUE(*std::max_element(indices.begin(), indices.end()) < positions.size() / 3);
             if (p.at("attributes").contains("NORMAL")) {
                 const auto n = d.numbers<float>(p.at("attributes").at("NORMAL"));
-                RC_ASSERT(n.size() == positions.size());
+                ASSERT_TRUE(n.size() == positions.size());
                 double most = 0;
                 for (std::size_t i = 0; i < n.size(); i += 3)
                     most = std::max(most, std::abs(glm::length(glm::dvec3(n[i], n[i + 1], n[i + 2])) - 1));
-                RC_ASSERT(most < 1e-6);
+                ASSERT_TRUE(most < 1e-6);
             }
-            RC_ASSERT(p.at("material") < d["materials"].size());
+            ASSERT_TRUE(p.at("material") < d["materials"].size());
         }
         for (const auto& m : d["materials"])
             for (const auto& c : m.at("pbrMetallicRoughness").at("baseColorFactor"))
-                RC_ASSERT(c >= 0 && c <= 1);
+                ASSERT_TRUE(c >= 0 && c <= 1);
         for (const auto& i : d.all.value("images", nlohmann::json::array())) {
             if (i.contains("uri")) {
-                RC_ASSERT(bytes_in(folder.path / decoded(i.at("uri"))).starts_with("\x89PNG"));
+                ASSERT_TRUE(bytes_in(folder.path / decoded(i.at("uri"))).starts_with("\x89PNG"));
             } else {
                 const auto& v = d["bufferViews"].at(i.at("bufferView").get<std::size_t>());
-                RC_ASSERT(std::string_view(d.bytes).substr(v.at("byteOffset")).starts_with("\x89PNG"));
+                ASSERT_TRUE(std::string_view(d.bytes).substr(v.at("byteOffset")).starts_with("\x89PNG"));
             }
         }
         // Meshes are where they are in the scene.
@@ -146,13 +146,20 @@ namespace {
             const auto& p = d["meshes"].at(node.at("mesh").get<std::size_t>()).at("primitives").at(0);
             const auto positions = d.numbers<float>(p.at("attributes").at("POSITION"));
             const auto& of = s.meshes[i];
-            RC_ASSERT(positions.size() == 3 * of.surface->positions.size());
+            ASSERT_TRUE(positions.size() == 3 * of.surface->positions.size());
             for (std::size_t v = 0; v < of.surface->positions.size(); ++v) {
                 const auto at = dvec3(m * glm::dvec4(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2], 1));
-                RC_ASSERT(glm::length(at - place_of(of, of.surface->positions[v])) < 1e-5);
+                ASSERT_TRUE(glm::length(at - place_of(of, of.surface->positions[v])) < 1e-5);
             }
-            RC_ASSERT(p.at("material") == of.material);
+            ASSERT_TRUE(p.at("material") == of.material);
         }
+    }
+
+    TEST(gltf_writer, says_what_the_specification_wants)
+    {
+        // 20 scenes, not RapidCheck's hundred: round shapes are thousands of triangles.
+        for (std::uint32_t n = 0; n < 20; ++n)
+            expect_what_the_specification_wants(n * 2654435761u + 7);
     }
 
     TEST(gltf_writer, the_cornell_box_is_as_the_specification_says)

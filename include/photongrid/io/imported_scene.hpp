@@ -12,7 +12,7 @@
 
 namespace photongrid {
 
-/// How to read a scene that another program wrote.
+/// How to read a scene. The first three are for those that another program wrote.
 struct import_settings {
     bool strict = false;        ///< what would be replaced or left out is an error
     bool allow_outside = false; ///< the file may name files outside of its own folder
@@ -20,6 +20,11 @@ struct import_settings {
     /// the same.
     std::optional<double> unit{};
     file_listener before_reading{}; ///< hears of the files that the scene's file names; may be empty
+    /// A scene file of any format, whose camera and size of the picture are taken in place of the scene's own; empty:
+    /// none. Only import_scene() reads it; other readers leave the scene's camera as it is, or without a default.
+    std::string camera_from{};
+    /// A picture of light from everywhere, in place of the scene's environments; empty: none. Likewise.
+    std::string environment{};
 };
 
 /// Something in a file that photongrid does not have: what stands in its place, or that it is left out.

@@ -93,19 +93,48 @@ scene_format format_of(const std::string& path, std::string_view text)
 
 scene_format format_of_file(const std::string& path) { return format_of(path, beginning_of(path)); }
 
+namespace {
+    imported_scene read_any(const std::string& path, const import_settings& settings)
+    {
+        switch (format_of_file(path)) {
+        case scene_format::pbrt: return read_pbrt(path, settings);
+        case scene_format::mitsuba: return read_mitsuba(path, settings);
+        case scene_format::gltf: return read_gltf(path, settings);
+        case scene_format::obj: return read_obj_scene(path, settings);
+        case scene_format::ply: return read_ply_scene(path, settings);
+        case scene_format::photongrid: break;
+        }
+        if (settings.unit)
+            throw scene_error(path, 0, 0, "a unit was given, but photongrid's own scene files have \"units\"");
+        return {read_scene(path, settings.before_reading), {}};
+    }
+
+    /// Puts a picture in the place of a scene's environments.
+    void set_environment(scene& s, const std::string& path)
+    {
+        environment_light l;
+        l.name = "environment"; // without the name of its file, which is not in the folder of the scene
+        try {
+            l.map = scene_files("", true).environment(path);
+        } catch (const file_error& e) {
+            throw scene_error(path, 0, 0, e.what());
+        }
+        s.environment_lights = {l};
+    }
+} // namespace
+
 imported_scene import_scene(const std::string& path, const import_settings& settings)
 {
-    switch (format_of_file(path)) {
-    case scene_format::pbrt: return read_pbrt(path, settings);
-    case scene_format::mitsuba: return read_mitsuba(path, settings);
-    case scene_format::gltf: return read_gltf(path, settings);
-    case scene_format::obj: return read_obj_scene(path, settings);
-    case scene_format::ply: return read_ply_scene(path, settings);
-    case scene_format::photongrid: break;
+    auto made = read_any(path, settings);
+    if (!settings.environment.empty())
+        set_environment(made.scene, settings.environment);
+    if (!settings.camera_from.empty()) {
+        const auto from = import_scene(settings.camera_from, {.allow_outside = settings.allow_outside}).scene;
+        made.scene.camera = from.camera;
+        made.scene.render.output.width = from.render.output.width;
+        made.scene.render.output.height = from.render.output.height;
     }
-    if (settings.unit)
-        throw scene_error(path, 0, 0, "a unit was given, but photongrid's own scene files have \"units\"");
-    return {read_scene(path, settings.before_reading), {}};
+    return made;
 }
 
 } // namespace photongrid

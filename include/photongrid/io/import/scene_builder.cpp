@@ -234,11 +234,11 @@ imported_scene scene_builder::finish()
     if (count_shapes(made_) == 0)
         fail_at(file_, "the scene has no shape that can be drawn");
     add_environment_light();
-    if (count_lights(made_) == 0) {
+    if (count_lights(made_) == 0 && settings_.environment.empty()) {
         made_.environment_lights.push_back({.name = "sky", .file = "", .map = nullptr, .radiance = dvec3(1)});
         log_.say(file_, "the file has no light; a white environment of radiance 1 is added");
     }
-    if (!has_camera_)
+    if (!has_camera_ && settings_.camera_from.empty())
         add_default_camera();
     choose_settings();
     if (!detail::has_matte_shape(made_))
@@ -248,7 +248,8 @@ imported_scene scene_builder::finish()
         fail_at(second.list == shape_kind<sphere>::list ? sphere_places_[second.index] : file_,
             "this glass overlaps other glass; the outside of glass must be air");
     }
-    detail::check_at(file_, made_.camera);
+    if (settings_.camera_from.empty())
+        detail::check_at(file_, made_.camera);
     detail::check_at(file_, made_.render);
     return {std::move(made_), log_.take()};
 }
