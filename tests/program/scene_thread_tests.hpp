@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include <unistd.h>
 
@@ -82,6 +83,8 @@ namespace {
                     before_reading(path(named));
                     std::ifstream other(path(named));
                     made.scene.name.append(std::istreambuf_iterator<char>(other), {});
+                    if (const auto happens = std::exchange(while_reading, nullptr))
+                        happens();
                 }
                 if (made.scene.name.empty() || made.scene.name.find("bad") != std::string::npos)
                     throw std::runtime_error(from + ":1:1: error: bad");
@@ -112,6 +115,7 @@ namespace {
         }
         static std::string name_of(const scene_news& n) { return n.scene ? n.scene->scene.name : "error " + n.error; }
 
+        std::function<void()> while_reading; ///< once, when a scene and the file that it names have been read
         std::atomic<int> readings = 0, wakes = 0;
         std::unique_ptr<scene_thread> thread; // last: it ends first
     };
@@ -161,6 +165,19 @@ namespace {
         EXPECT_EQ(name_of(next()), "error " + path("two") + ":1:1: error: bad");
         write("one", "fifth");
         EXPECT_EQ(name_of(next()), "fifth");
+    }
+
+    TEST_F(scenes_read, again_when_a_file_has_changed_meanwhile)
+    {
+        while_reading = [&] { write("mesh", "BB"); };
+        begin();
+        write("mesh", "A");
+        write("one", "first mesh");
+        thread->open(path("one"));
+        const auto one = next();
+        EXPECT_EQ(name_of(one), "firstA");
+        thread->watch(*one.scene);
+        EXPECT_EQ(name_of(next()), "firstBB");
     }
 
     TEST_F(scenes_read, news_of_the_scene_before_is_none)

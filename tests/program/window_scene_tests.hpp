@@ -103,9 +103,9 @@ protected:
     /// All but the panel.
     screenshot screenshot_with_messages()
     {
-        const int height = std::exchange(picture_height, 720), top = std::exchange(picture_top, 0);
+        const int high = std::exchange(picture_height, 720), top = std::exchange(picture_top, 0);
         auto s = take_screenshot();
-        picture_height = height, picture_top = top;
+        picture_height = high, picture_top = top;
         return s;
     }
     /// Without numbers, which go on while the picture rests, and off the panel.

@@ -3,6 +3,7 @@
 
 #include "document.hpp"
 #include "scene_thread.hpp"
+#include <photongrid/io/image_file.hpp>
 
 #include <string>
 
