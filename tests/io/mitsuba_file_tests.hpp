@@ -241,9 +241,9 @@ namespace {
         expect_near(r.power, dvec3(5, 6, 7) * (pi * 8), 1e-9);
         const auto reversed = with("rectangle", above + flip).scene.rectangle_lights.at(0);
         expect_near(glm::cross(reversed.edge_u, reversed.edge_v), {0, 8, 0});
-        const auto ball = with("sphere", "<point name=\"center\" value=\"0, 9, 0\"/>").scene;
-        expect_near(ball.sphere_lights.at(0).power, dvec3(5, 6, 7) * (4 * pi * pi), 1e-9);
-        expect_near(ball.sphere_lights.at(0).center, {0, 9, 0});
+        const auto shining = with("sphere", "<point name=\"center\" value=\"0, 9, 0\"/>").scene;
+        expect_near(shining.sphere_lights.at(0).power, dvec3(5, 6, 7) * (4 * pi * pi), 1e-9);
+        expect_near(shining.sphere_lights.at(0).center, {0, 9, 0});
         // A ball that shines inwards: triangles, almost as large.
         const auto inside = with("sphere", flip).scene;
         EXPECT_NEAR(inside.mesh_lights.at(0).power.x, 5 * 4 * pi * pi, 0.5);
