@@ -30,6 +30,7 @@ namespace {
                 read_glossy(*glossy);
             else
                 read_base(m_.object("pbrMetallicRoughness"));
+            read_opacity();
             note_left_out();
             made.is_black = base_ == dvec3(0);
             made.is_double_sided = m_.truth("doubleSided", false);
@@ -39,7 +40,7 @@ namespace {
             if (made.radiance != dvec3(0))
                 made.emission = textures_.texture(m_, "emissiveTexture", texture_holds::colour);
             if (made.radiance == dvec3(0) || made.emission) // else all of its surfaces are lamps
-                made.index = with_opacity(surface());
+                made.index = surface();
             made.coordinates = textures_.coordinates();
             return made;
         }
@@ -172,11 +173,6 @@ namespace {
             index_ = index_of(reflectance_of(index_) * strength);
         }
 
-        std::uint32_t add(const char* suffix, material m)
-        {
-            m.name = plain_name() + suffix;
-            return all_.builder().add_material(m_.place(), std::move(m));
-        }
         std::string plain_name() const
         {
             const auto name = m_.text("name");
@@ -191,14 +187,11 @@ namespace {
                 return insulator("");
             if (metallic_ >= 1 && !metallic_texture_.map)
                 return metal("");
-            material m{.name = plain_name()};
-            m.share = metallic_;
-            m.share_texture = metallic_texture_;
             const auto first = insulator(" (insulator)"), second = metal(" (metal)");
-            return all_.builder().add_mixture(m_.place(), m, first, second);
+            return add_mixture("", metallic_, metallic_texture_, first, second);
         }
 
-        std::uint32_t metal(const char* suffix)
+        std::uint32_t metal(const std::string& suffix)
         {
             return add(suffix,
                 {.name = "",
@@ -209,7 +202,7 @@ namespace {
                     .roughness_texture = roughness_texture_});
         }
 
-        std::uint32_t insulator(const char* suffix)
+        std::uint32_t insulator(const std::string& suffix)
         {
             const auto e = m_.extension("KHR_materials_transmission");
             const double passes = e ? e->number("transmissionFactor", 0, 0, 1) : 0;
@@ -218,15 +211,11 @@ namespace {
             auto share = textures_.texture(*e, "transmissionTexture", texture_holds::numbers);
             if (passes == 1 && !share)
                 return clear(suffix);
-            material m{.name = plain_name() + suffix};
-            m.share = passes;
-            if (share)
-                m.share_texture = *share;
             const auto first = opaque(" (opaque)"), second = clear(" (clear)");
-            return all_.builder().add_mixture(m_.place(), m, first, second);
+            return add_mixture(suffix, passes, share.value_or(texture_use{}), first, second);
         }
 
-        std::uint32_t opaque(const char* suffix)
+        std::uint32_t opaque(const std::string& suffix)
         {
             if (is_matte_ || index_ == 1)
                 return add(suffix, {.name = "", .reflectance = base_, .texture = texture_});
@@ -245,7 +234,7 @@ namespace {
             return add(suffix, std::move(m));
         }
 
-        std::uint32_t clear(const char* suffix)
+        std::uint32_t clear(const std::string& suffix)
         {
             const auto volume = m_.extension("KHR_materials_volume");
             const double thickness = volume ? volume->number("thicknessFactor", 0, 0) : 0;
@@ -278,28 +267,56 @@ namespace {
             return add(suffix, std::move(m));
         }
 
-        std::uint32_t with_opacity(std::uint32_t m)
+        /// Reads what `alphaMode` makes of the opacity.
+        void read_opacity()
         {
             const auto mode = m_.text("alphaMode").value_or("OPAQUE");
             if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
-                m_.at("alphaMode")
-                    .fail("found the text \"" + mode.substr(0, 40) + "\"; expected OPAQUE, MASK or BLEND");
-            if (mode == "OPAQUE" || (alpha_ == 1 && !alpha_texture_.map))
-                return m;
-            if (mode == "MASK") {
-                const double cutoff = m_.number("alphaCutoff", 0.5, 0);
-                if (alpha_texture_.map) {
-                    auto map = *alpha_texture_.map;
-                    for (auto& t : map.texels)
-                        t = glm::u16vec4(t.w / 65535.0 * alpha_ >= cutoff ? 65535 : 0);
-                    alpha_texture_.map = std::make_shared<const texture>(std::move(map));
-                    alpha_texture_.file.clear();
-                    alpha_ = 1;
-                } else {
-                    alpha_ = alpha_ >= cutoff ? 1 : 0;
-                }
+                m_.at("alphaMode").fail("found " + m_.at("alphaMode").described() + "; expected OPAQUE, MASK or BLEND");
+            const double cutoff = m_.number("alphaCutoff", 0.5, 0);
+            if (mode == "OPAQUE") {
+                alpha_ = 1;
+                alpha_texture_ = {};
+            } else if (mode == "MASK" && alpha_texture_.map) {
+                auto map = *alpha_texture_.map;
+                for (auto& t : map.texels)
+                    t = glm::u16vec4(t.w / 65535.0 * alpha_ >= cutoff ? 65535 : 0);
+                alpha_texture_.map = std::make_shared<const texture>(std::move(map));
+                alpha_texture_.file.clear();
+                alpha_ = 1;
+            } else if (mode == "MASK") {
+                alpha_ = alpha_ >= cutoff ? 1 : 0;
             }
-            return all_.builder().with_opacity(m_.place(), m, alpha_, alpha_texture_);
+        }
+
+        void set_opacity(material& m) const
+        {
+            m.opacity *= alpha_;
+            if (alpha_texture_.map)
+                m.opacity_texture = alpha_texture_;
+        }
+
+        /// Adds a material, or a part of a mixture, which has a suffix to its name.
+        std::uint32_t add(const std::string& suffix, material m)
+        {
+            m.name = plain_name() + suffix;
+            if (suffix.empty())
+                set_opacity(m);
+            return all_.builder().add_material(m_.place(), std::move(m));
+        }
+
+        std::uint32_t add_mixture(const std::string& suffix, double share, const texture_use& share_texture,
+            std::uint32_t first, std::uint32_t second)
+        {
+            material m{.name = plain_name() + suffix};
+            m.share = share;
+            m.share_texture = share_texture;
+            if (suffix.empty())
+                set_opacity(m);
+            const auto made = all_.builder().add_mixture(m_.place(), m, first, second);
+            if (suffix.empty() && (made == first || made == second)) // it stands alone, without the opacity
+                return all_.builder().with_opacity(m_.place(), made, alpha_, alpha_texture_);
+            return made;
         }
 
         document& all_;
