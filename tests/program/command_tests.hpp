@@ -38,7 +38,8 @@ namespace {
         const auto unknown = run({"rendr", "ring.json"});
         EXPECT_EQ(unknown.code, 2);
         EXPECT_EQ(unknown.err,
-            "photongrid: \"rendr\" is not a command; expected render, view, reference, compare, check, convert or devices\n"
+            "photongrid: \"rendr\" is not a command; expected render, view, reference, compare, check, convert or "
+            "devices\n"
             "Run with --help for more information.\n");
         EXPECT_EQ(run({"render"}).code, 2);
         for (const auto& wrong : std::vector<std::vector<std::string>>{{"--backend", "cuda"}, {"--size", "32"},
