@@ -230,7 +230,7 @@ faults=(
   "a missing comma is not named|include/photongrid/io/json_tree.cpp|',' or |or |scene_file"
   "parts of no size are read|include/photongrid/io/scene_file.cpp|least_length(part) < min_length|least_length(part) < 0 * min_length|scene_file"
   "a dark picture is called white|examples/photongrid/advice.cpp|*fitting > *set ?|*fitting < *set ?|program"
-  "outputs may be the same file|examples/photongrid/command_line.cpp|if (f.path == real)|if (f.path == path)|program"
+  "outputs may be the same file|examples/photongrid/scene_options.cpp|if (f.path == real)|if (f.path == path)|program"
   "another picture is resumed|examples/photongrid/resume_file.cpp|if (file.identity != identity)|if (file.identity.empty() && file.identity != identity)|program"
   "a damaged file is resumed|examples/photongrid/resume_file.cpp|!= number(\"hash\")|== 0|program"
   "auto picks cpu where it was not built|backends/any/any.cpp|any::find(\"cpu\") ? \"cpu\" : \"serial\"|\"cpu\"|program"
