@@ -9,6 +9,7 @@
 #include <cstring>
 #include <numbers>
 #include <sstream>
+#include <type_traits>
 
 namespace photongrid {
 namespace {
@@ -229,6 +230,9 @@ namespace {
         add(r.meshes.faces);
         add(r.meshes.planes);
         add(r.meshes.shares);
+        add(r.meshes.normals);
+        add(r.meshes.attributes);
+        add(r.meshes.texels);
         return all;
     }
 
@@ -265,6 +269,45 @@ namespace {
                     square.render.output = expected.render.output;
                     expect_near(view_direction(square, x, y), view_direction(expected, x, y), 1e-9);
                 }
+        }
+    }
+
+    // The repository's own scenes of these formats (examples/scenes/make_table.py).
+    TEST(formats, examples_are_the_same_scene_in_each)
+    {
+        for (const std::string name : {"table", "room"}) {
+            const auto read = [&](const char* ending) {
+                auto made = import_scene(scenes + "/" + name + ending).scene;
+                EXPECT_EQ(made.environment_lights.size(),
+                    name == "room" && ending != std::string(".gltf") && ending != std::string(".obj") ? 1u : 0u);
+                made.environment_lights.clear(); // which glTF and OBJ do not have
+                return made;
+            };
+            const auto expected = read(".pbrt");
+            EXPECT_GE(expected.meshes.size(), 4u);
+            for (const auto* ending : {".xml", ".gltf", ".obj"}) {
+                const auto made = read(ending);
+                ASSERT_EQ(made.meshes.size(), expected.meshes.size()) << name << ending;
+                for (std::size_t i = 0; i < made.meshes.size(); ++i) {
+                    const auto &a = *made.meshes[i].surface, &b = *expected.meshes[i].surface;
+                    ASSERT_EQ(a.triangles.size(), b.triangles.size()) << name << ending << i;
+                    const auto at_corners = [](const mesh& m, const auto& list) { // OBJ files number vertices anew
+                        std::vector<typename std::decay_t<decltype(list)>::value_type> all;
+                        if (!list.empty())
+                            for (const auto& t : m.triangles)
+                                all.insert(all.end(), {list[t.x], list[t.y], list[t.z]});
+                        return all;
+                    };
+                    EXPECT_EQ(at_corners(a, a.positions), at_corners(b, b.positions)) << name << ending << i;
+                    EXPECT_EQ(at_corners(a, a.normals), at_corners(b, b.normals)) << name << ending << i;
+                    const auto place = at_corners(a, a.texture_coordinates),
+                               wanted = at_corners(b, b.texture_coordinates);
+                    ASSERT_EQ(place.size(), wanted.size()) << name << ending << i;
+                    for (std::size_t v = 0; v < place.size(); ++v)
+                        EXPECT_LT(glm::length(place[v] - wanted[v]), 1e-6f) << name << ending << i;
+                }
+                EXPECT_EQ(lay_out(made).records, lay_out(expected).records) << name << ending;
+            }
         }
     }
 
