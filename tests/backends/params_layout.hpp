@@ -30,7 +30,7 @@ namespace params_detail {
     void for_each_member(const T& t, F f)
     {
         constexpr auto n = member_count<T>();
-        static_assert(n >= 1 && n <= 10, "Params with more members: add a line here");
+        static_assert(n >= 1 && n <= 11, "Params with more members: add a line here");
         const auto all = [&](const auto&... m) { (f(m), ...); };
         if constexpr (n == 1) {
             const auto& [a] = t;
@@ -71,6 +71,10 @@ namespace params_detail {
         if constexpr (n == 10) {
             const auto& [a, b, c, d, e, g, h, i, j, k] = t;
             all(a, b, c, d, e, g, h, i, j, k);
+        }
+        if constexpr (n == 11) {
+            const auto& [a, b, c, d, e, g, h, i, j, k, l] = t;
+            all(a, b, c, d, e, g, h, i, j, k, l);
         }
     }
 } // namespace params_detail

@@ -10,14 +10,8 @@
 namespace photongrid {
 namespace {
 
-    class mitsuba_folder : public ::testing::Test {
+    class mitsuba_folder : public import_folder {
     protected:
-        mitsuba_folder() { std::filesystem::create_directories(folder / "below"); }
-        ~mitsuba_folder() override { std::filesystem::remove_all(folder); }
-        void write(const std::string& name, const std::string& content)
-        {
-            std::ofstream(folder / name, std::ios::binary) << content;
-        }
         imported_scene made(const std::string& body)
         {
             write("s.xml", xml_scene(body + "<sensor type=\"perspective\"/>" + xml_lamp));
@@ -27,9 +21,6 @@ namespace {
         {
             return refusal_by([&] { return made(body); });
         }
-        std::filesystem::path folder = std::filesystem::temp_directory_path()
-            / ("photongrid_mitsuba_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + "_"
-                + ::testing::UnitTest::GetInstance()->current_test_info()->name());
     };
 
     std::string file_shape(const std::string& type, const std::string& file, const std::string& more = "")

@@ -15,14 +15,8 @@ namespace {
     const std::string square_with_coordinates = corners_of_a_square + "f 1/1 2/2 3/3 4/4\n";
 
     /// A folder with files, which ends with the test.
-    class obj_folder : public ::testing::Test {
+    class obj_folder : public import_folder {
     protected:
-        obj_folder() { std::filesystem::create_directories(folder / "below"); }
-        ~obj_folder() override { std::filesystem::remove_all(folder); }
-        void write(const std::string& name, const std::string& content)
-        {
-            std::ofstream(folder / name, std::ios::binary) << content;
-        }
         imported_scene read(const std::string& text, const import_settings& settings = {})
         {
             write("s.obj", text);
@@ -65,9 +59,6 @@ namespace {
                     tga += static_cast<char>(p[static_cast<std::size_t>(c)]);
             write(name, tga);
         }
-        std::filesystem::path folder = std::filesystem::temp_directory_path()
-            / ("photongrid_obj_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + "_"
-                + ::testing::UnitTest::GetInstance()->current_test_info()->name());
     };
 
     const material& first_material(const imported_scene& s)

@@ -345,12 +345,7 @@ imported_scene parse_gltf(const std::string& file, std::string_view bytes, const
 
 imported_scene read_gltf(const std::string& path, const import_settings& settings)
 {
-    const std::filesystem::path p(path);
-    try {
-        return parse_gltf(path, scene_files(p.parent_path(), true).bytes_of(p.filename().string()), settings);
-    } catch (const file_error& e) {
-        throw scene_error(path, 0, 0, e.what());
-    }
+    return parsed_file(path, [&](const std::string& bytes) { return parse_gltf(path, bytes, settings); });
 }
 
 } // namespace photongrid

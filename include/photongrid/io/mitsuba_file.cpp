@@ -342,12 +342,7 @@ imported_scene parse_mitsuba(const std::string& file, std::string_view text, con
 
 imported_scene read_mitsuba(const std::string& path, const import_settings& settings)
 {
-    const std::filesystem::path p(path);
-    try {
-        return parse_mitsuba(path, scene_files(p.parent_path(), true).bytes_of(p.filename().string()), settings);
-    } catch (const file_error& e) {
-        throw scene_error(path, 0, 0, e.what());
-    }
+    return parsed_file(path, [&](const std::string& bytes) { return parse_mitsuba(path, bytes, settings); });
 }
 
 } // namespace photongrid

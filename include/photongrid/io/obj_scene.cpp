@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace photongrid {
@@ -73,7 +74,7 @@ namespace obj {
             void read_materials(const source_place& place, const std::string& name)
             {
                 const auto path = path_of(place, name);
-                if (!read_libraries_.insert({path, true}).second)
+                if (!read_libraries_.insert(path).second)
                     return;
                 std::string text;
                 try {
@@ -161,7 +162,7 @@ namespace obj {
             scene_builder builder_;
             surface surface_;
             polygon_cutter cutter_;
-            std::map<std::string, bool> read_libraries_;
+            std::set<std::string> read_libraries_;
             std::vector<mtl_material> defined_;
             std::map<std::string, std::uint32_t> numbers_; ///< of materials by their names
             std::vector<std::uint32_t> resolved_;          ///< numbers of the names in surface_
@@ -176,15 +177,9 @@ imported_scene parse_obj_scene(const std::string& file, std::string_view text, c
 
 imported_scene read_obj_scene(const std::string& path, const import_settings& settings)
 {
-    const auto parsed = [&] { // the text is no longer needed then
-        const std::filesystem::path p(path);
-        try {
-            return obj::parse(path, scene_files(p.parent_path(), true).bytes_of(p.filename().string()));
-        } catch (const file_error& e) {
-            throw scene_error(path, 0, 0, e.what());
-        }
-    };
-    return obj::scene_maker(path, parsed(), settings).made();
+    // The text is gone before the scene is made.
+    auto parsed = parsed_file(path, [&](const std::string& text) { return obj::parse(path, text); });
+    return obj::scene_maker(path, std::move(parsed), settings).made();
 }
 
 namespace {
@@ -221,13 +216,8 @@ imported_scene parse_ply_scene(const std::string& file, std::string_view bytes, 
 
 imported_scene read_ply_scene(const std::string& path, const import_settings& settings)
 {
-    const std::filesystem::path p(path);
-    try {
-        const auto name = p.filename().string();
-        return scene_of_ply(path, scene_files(p.parent_path(), true).bytes_of(name), name, settings);
-    } catch (const file_error& e) {
-        throw scene_error(path, 0, 0, e.what());
-    }
+    const auto name = std::filesystem::path(path).filename().string();
+    return parsed_file(path, [&](const std::string& bytes) { return scene_of_ply(path, bytes, name, settings); });
 }
 
 } // namespace photongrid

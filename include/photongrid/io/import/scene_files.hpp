@@ -2,6 +2,7 @@
 #pragma once
 
 #include <photongrid/io/files.hpp>
+#include <photongrid/io/scene_error.hpp>
 #include <photongrid/scene/environment_map.hpp>
 #include <photongrid/scene/mesh.hpp>
 #include <photongrid/scene/texture.hpp>
@@ -67,5 +68,18 @@ private:
     std::map<std::pair<std::string, texture_holds>, std::shared_ptr<const photongrid::texture>> textures_;
     std::map<std::string, std::shared_ptr<const environment_map>> environments_;
 };
+
+/// What `parse(bytes)` makes of a scene's file.
+/// \throws as `parse` does; scene_error for a file that cannot be read.
+template <class Parse>
+auto parsed_file(const std::string& path, Parse parse)
+{
+    const std::filesystem::path p(path);
+    try {
+        return parse(scene_files(p.parent_path(), true).bytes_of(p.filename().string()));
+    } catch (const file_error& e) {
+        throw scene_error(path, 0, 0, e.what());
+    }
+}
 
 } // namespace photongrid
