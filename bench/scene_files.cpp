@@ -1,8 +1,8 @@
-// How fast scene files are read, and with how much memory: a height field as binary PLY and as OBJ. Each file is read
-// in a process of its own. Prints a Markdown table: seconds, the median of three, MB/s, and the largest memory of the
-// process over the size of the file. Exits 1 where a limit is not kept.
+// How fast scene files are read, and with how much memory: a height field as binary PLY, OBJ and glTF. Each file is
+// read in a process of its own. Prints a Markdown table: seconds, the median of three, MB/s, and the largest memory of
+// the process over the size of the file. Exits 1 where a limit is not kept.
 //
-//   scene_files [PLY_MEGABYTES OBJ_MEGABYTES]      default: 300 100
+//   scene_files [PLY_MEGABYTES OBJ_MEGABYTES GLB_MEGABYTES]      default: 300 100 18, a million triangles
 #include "median.hpp"
 #include "stopwatch.hpp"
 
@@ -91,6 +91,39 @@ namespace {
         return field.triangles();
     }
 
+    std::uint64_t write_glb(std::FILE* to, double megabytes)
+    {
+        const auto field = field_of(megabytes, 36);
+        const std::uint64_t vertices = std::uint64_t{field.n} * field.n, positions = 12 * vertices,
+                            size = positions + 12 * field.triangles();
+        const auto number = [](std::uint64_t n) { return std::to_string(n); };
+        auto json = R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": )" + number(size)
+            + R"(}], "bufferViews": [{"buffer": 0, "byteLength": )" + number(positions)
+            + R"(}, {"buffer": 0, "byteOffset": )" + number(positions) + R"(, "byteLength": )"
+            + number(size - positions)
+            + R"(}], "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": )"
+            + number(vertices) + R"(}, {"bufferView": 1, "componentType": 5125, "type": "SCALAR", "count": )"
+            + number(3 * field.triangles())
+            + R"(}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+              "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}]})";
+        json.resize((json.size() + 3) / 4 * 4, ' ');
+        const auto write = [&](std::uint64_t v) {
+            const auto word = static_cast<std::uint32_t>(v);
+            std::fwrite(&word, sizeof word, 1, to);
+        };
+        std::fputs("glTF", to);
+        write(2);
+        write(28 + json.size() + size);
+        write(json.size());
+        std::fputs("JSON", to);
+        std::fputs(json.c_str(), to);
+        write(size);
+        std::fwrite("BIN\0", 4, 1, to);
+        field.for_each_vertex([&](const glm::vec3& v) { std::fwrite(&v, sizeof v, 1, to); });
+        field.for_each_triangle([&](const glm::uvec3& t) { std::fwrite(&t, sizeof t, 1, to); });
+        return field.triangles();
+    }
+
     struct reading {
         bool is_good = false;
         double seconds = 0, memory = 0; ///< bytes
@@ -164,11 +197,13 @@ namespace {
 int main(int argc, char** argv)
 {
     using namespace photongrid;
-    const double ply = argc > 1 ? std::atof(argv[1]) : 300, obj = argc > 2 ? std::atof(argv[2]) : 100;
+    const double ply = argc > 1 ? std::atof(argv[1]) : 300, obj = argc > 2 ? std::atof(argv[2]) : 100,
+                 glb = argc > 3 ? std::atof(argv[3]) : 18;
     // A process has some 10 MB of its own, which counts where files are small.
     const auto memory = [](double megabytes) { return 3 + 20 / megabytes; };
     const format formats[] = {{"PLY, binary", ".ply", write_ply, ply, 5 * std::max(1.0, ply / 300), memory(ply)},
-        {"OBJ", ".obj", write_obj, obj, 5 * std::max(1.0, obj / 100), memory(obj)}};
+        {"OBJ", ".obj", write_obj, obj, 5 * std::max(1.0, obj / 100), memory(obj)},
+        {"glTF, binary", ".glb", write_glb, glb, 2 * std::max(1.0, glb / 18), 2 + memory(glb)}};
     std::puts("| format | MB | million triangles | s | MB/s | memory over size |");
     std::puts("|---|---|---|---|---|---|");
     bool is_good = true;
