@@ -99,7 +99,7 @@ if(TARGET photongrid_program)
     install(TARGETS ${module} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/photongrid COMPONENT program)
   endforeach()
   install(DIRECTORY examples/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/photongrid COMPONENT program
-    FILES_MATCHING PATTERN "*.json" PATTERN "*.ply" PATTERN "*.png" PATTERN "*.hdr" PATTERN "*.pfm"
+    FILES_MATCHING PATTERN "*.json" PATTERN "*.ply" PATTERN "*.png" PATTERN "*.hdr"
       PATTERN "*.gltf" PATTERN "*.bin" PATTERN "*.obj" PATTERN "*.mtl" PATTERN "*.pbrt" PATTERN "*.xml")
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/photongrid RENAME copyright COMPONENT program)
 endif()

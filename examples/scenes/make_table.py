@@ -5,7 +5,7 @@
 
 On the table, which has the wood of terrace_wood.png, stand a tray of water, a glass and a ring of gold. The room has a
 lamp below its ceiling, and a window to the sky. OBJ and glTF files have no sky, and OBJ files no camera: they are drawn
-with --environment room_sky.pfm and --camera-from room.pbrt.
+with --environment room_sky.hdr and --camera-from room.pbrt.
 """
 import json
 import math
@@ -399,4 +399,6 @@ if __name__ == '__main__':
     table().write_all()
     made = room()
     made.write_all()
-    made.write('_sky.pfm', b'PF\n2 1\n-1\n' + struct.pack('<6f', *(made.sky * 2)))
+    # Radiance's format: 3, 4, 5.5 are 96, 128, 176 times 2^-5, whose exponent is 3.
+    made.write('_sky.hdr', b'#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n'
+               + 2 * bytes([int(c * 32) for c in made.sky] + [128 + 3]))
