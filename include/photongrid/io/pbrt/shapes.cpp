@@ -125,7 +125,7 @@ mesh shape_reader::bilinear_mesh(const shape_entity& s)
             to.clear();
             for (const auto& at : patch.texture_coordinates) {
                 const auto wide = [&](std::size_t n) { return glm::vec<vector::length(), double>(of[indices[i + n]]); };
-                to.push_back(vector(blend(wide(0), wide(1), wide(2), wide(3), at.x, at.y)));
+                to.push_back(vector(blend(wide(0), wide(1), wide(2), wide(3), double(at.x), double(at.y))));
             }
         };
         each(corners.normals, patch.normals);
