@@ -5,8 +5,8 @@
 #
 # FOLDER has cornell-box, water-caustic and veach-ajar, each with pbrt/scene-v4.pbrt and pbrt/TungstenRender.exr
 # (Benedikt Bitterli's rendering resources). Pictures of 1024 x 1024 pixels (Veach Ajar: 1280 x 720) are left in
-# out/scenes_of_others. Errors are those of means over 4 x 4 pixels, since pixel filters differ. The depths are those of
-# the scenes' integrators.
+# out/scenes_of_others. They have the filter of that renderer, a tent, and errors are those of means over 4 x 4 pixels.
+# The depths are those of the scenes' integrators.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 folder=${1:-} program=${2:-build/photongrid}
@@ -26,7 +26,7 @@ draw() { # NAME SIZE OPTIONS...
   echo "--- $name: $size $*"
   "$program" check "$scene"
   local begin=$SECONDS
-  "$program" render "$scene" --backend cpu --size "$size" "$@" --quiet -o "$picture.exr" -o "$picture.png"
+  "$program" render "$scene" --backend cpu --size "$size" --pixel-filter tent "$@" --quiet -o "$picture.exr" -o "$picture.png"
   echo "$((SECONDS - begin)) s"
   "$program" compare "$picture.exr" "$folder/$name/pbrt/TungstenRender.exr" --average 4
 }
