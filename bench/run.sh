@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Speed and error, measured. Prints Markdown; fails where a row misses what it must reach.
 #
-#   bench/run.sh [--algorithms] [--peers] [--paper] [--interactive] [--estimates] [--error] [--inclusion] [--write] [--no-install]     some of it, or all
+#   bench/run.sh [--algorithms] [--peers] [--paper] [--interactive] [--estimates] [--error] [--inclusion] [--files] [--write] [--no-install]     some of it, or all
 #   bench/run.sh --gpu [--no-install]               each part that a device runs, on the hardware devices of vulkan and gl; refuses software
 #   bench/run.sh --smoke [--no-install]             all of it on little data, to see that it runs
 #
@@ -13,6 +13,7 @@
 #   --estimates   error and cost of searches, filters, leak policies and edge correction, on whole pictures
 #   --error       time against relMSE of every kind of estimate: CSV and plots in out/error/
 #   --inclusion   what including the headers costs a user's compiler, and the size of the smallest programs
+#   --files       how fast scene files are read, and with how much memory
 #   --write       puts what is printed, and the Cornell box's plot, into docs/ too (bench/write_measures.sh)
 #
 # Whether another commit drew the same pictures as this tree, and as fast: bench/against.sh.
@@ -21,14 +22,14 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
 
 usage() {
-  sed -n '2,19s/^# \{0,1\}//p' bench/run.sh >&2
+  sed -n '2,20s/^# \{0,1\}//p' bench/run.sh >&2
   exit 2
 }
 build=build-bench
 install=yes gpu=no smoke=no write=no parts=()
 for argument in "$@"; do
   case $argument in
-    --algorithms | --peers | --paper | --interactive | --estimates | --error | --inclusion) parts+=("${argument#--}") ;;
+    --algorithms | --peers | --paper | --interactive | --estimates | --error | --inclusion | --files) parts+=("${argument#--}") ;;
     --gpu) gpu=yes ;;
     --smoke) smoke=yes ;;
     --write) write=yes ;;
@@ -36,7 +37,7 @@ for argument in "$@"; do
     *) usage ;;
   esac
 done
-((${#parts[@]})) || parts=(algorithms peers paper interactive estimates error inclusion)
+((${#parts[@]})) || parts=(algorithms peers paper interactive estimates error inclusion files)
 asked() { [[ " ${parts[*]} " == *" $1 "* ]]; }
 packages=("${program_packages[@]}" "${smoke_packages[@]}" "${bench_packages[@]}")
 [[ $smoke == yes ]] || ! asked peers || packages+=(povray)
@@ -173,6 +174,10 @@ fi
 if asked inclusion; then
   title "What including it costs"
   must bench/inclusion.sh
+fi
+if asked files; then
+  title "Reading scene files"
+  must $build/bench/scene_files
 fi
 if asked algorithms; then
   title "Algorithms"
