@@ -1,5 +1,7 @@
 #include <photongrid/io/export/gltf_buffer.hpp>
 
+#include <glm/geometric.hpp>
+
 #include <bit>
 
 namespace photongrid::gltf_export {
