@@ -61,7 +61,8 @@ class Surface:
             angle = 2 * math.pi * s / segments
             c, n = math.cos(angle), math.sin(angle)
             for radius, height, along, up in profile:
-                self.add((center[0] + radius * c, center[1] + height, center[2] - radius * n), (along * c, up, -along * n))
+                self.add((center[0] + radius * c, center[1] + height, center[2] - radius * n),
+                         (along * c, up, -along * n))
         count = len(profile)
         for s in range(segments):
             for p in range(count):
@@ -196,7 +197,8 @@ class Scene:
 
     def write_mitsuba(self):
         text = '<!-- made by make_table.py -->\n<scene version="3.0.0">\n<sensor type="perspective">\n'
-        text += f'<string name="fov_axis" value="y"/><float name="fov" value="{self.fov}"/>\n<transform name="to_world">'
+        text += f'<string name="fov_axis" value="y"/><float name="fov" value="{self.fov}"/>\n'
+        text += '<transform name="to_world">'
         text += '<lookat origin="%s" target="%s" up="0, 1, 0"/></transform>\n' % (numbers(self.eye, ', '),
                                                                                numbers(self.target, ', '))
         text += '<film type="hdrfilm"><integer name="width" value="640"/><integer name="height" value="480"/></film>\n'
@@ -366,7 +368,8 @@ def table():
         Surface('top', 'wood').block((-0.7, -0.05, -0.45), (0.7, 0, 0.45), True),
         Surface('floor', 'floor').quad((-4, -0.75, 4), (8, 0, 0), (0, 0, -8)),
         tray,
-        water('water', 'water', (low[0] + sunk, 0.006, low[2] + sunk), (high[0] - sunk, 0, high[2] - sunk), 0.05, (28, 22)),
+        water('water', 'water', (low[0] + sunk, 0.006, low[2] + sunk), (high[0] - sunk, 0, high[2] - sunk), 0.05,
+              (28, 22)),
         Surface('glass', 'crystal').turned(tumbler, (0.3, 0, -0.06), 36),
         Surface('ring', 'gold').turned(band, (0.28, 0, 0.2), 56),
         Surface('lamp', 'lamp').quad((-0.7, 1.0, -0.5), (0.08, 0, -0.1), (0.06, 0.0656, 0.048))])

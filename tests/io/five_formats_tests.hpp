@@ -86,8 +86,8 @@ namespace {
                 + text(target, ", ") + R"(" up="0, 1, 0"/></transform></sensor>)";
             for (const auto& s : surfaces)
                 all += R"(<shape type="obj"><string name="filename" value=")" + std::string(s.name)
-                    + R"(.obj"/><boolean name="face_normals" value="true"/><bsdf type="diffuse"><rgb name="reflectance" value=")"
-                    + text(s.colour, ", ") + R"("/></bsdf></shape>)";
+                    + R"(.obj"/><boolean name="face_normals" value="true"/><bsdf type="diffuse">)"
+                    + R"(<rgb name="reflectance" value=")" + text(s.colour, ", ") + R"("/></bsdf></shape>)";
             return all + R"(<shape type="obj"><string name="filename" value="lamp.obj"/><bsdf type="diffuse">)"
                 + R"(<rgb name="reflectance" value="0"/></bsdf><emitter type="area"><rgb name="radiance" value=")"
                 + text(radiance) + R"("/></emitter></shape></scene>)";

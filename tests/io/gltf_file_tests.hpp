@@ -296,7 +296,8 @@ namespace {
             {R"("pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.8, 0.7, 1], "roughnessFactor": 0.5})", "metal",
                 material_kind::metal, {0.9, 0.8, 0.7}, 1.5, 0.5},
             {R"("pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0}, "extensions":
-                {"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_volume": {"thicknessFactor": 1},
+                {"KHR_materials_transmission": {"transmissionFactor": 1},
+                "KHR_materials_volume": {"thicknessFactor": 1},
                 "KHR_materials_ior": {"ior": 1.4}})",
                 "glass", material_kind::glass, dvec3(1), 1.4, 0},
         };

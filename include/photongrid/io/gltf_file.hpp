@@ -11,8 +11,8 @@ namespace photongrid {
 
 /// Reads the scene in `bytes`, of a .gltf or a .glb; `file` is its name in messages, and files that it names are sought
 /// in its folder.
-/// \throws scene_error for what is no glTF 2.0, names files that cannot be read, or describes a scene that cannot be drawn;
-///         std::invalid_argument for settings out of range.
+/// \throws scene_error for what is no glTF 2.0, names files that cannot be read, or describes a scene that cannot be
+///         drawn; std::invalid_argument for settings out of range.
 imported_scene parse_gltf(const std::string& file, std::string_view bytes, const import_settings& settings = {});
 
 /// Reads a file.

@@ -10,8 +10,8 @@
 namespace photongrid {
 
 /// Reads the scene in `text`; `file` is its name in messages, and files that it names are sought in its folder.
-/// \throws scene_error for what is no scene of Mitsuba, names files that cannot be read, or describes a scene that cannot be drawn;
-///         std::invalid_argument for settings out of range.
+/// \throws scene_error for what is no scene of Mitsuba, names files that cannot be read, or describes a scene that
+///         cannot be drawn; std::invalid_argument for settings out of range.
 imported_scene parse_mitsuba(const std::string& file, std::string_view text, const import_settings& settings = {});
 
 /// Reads a file.

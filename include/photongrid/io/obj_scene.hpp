@@ -11,8 +11,8 @@ namespace photongrid {
 
 /// Reads the scene in `text`, of an OBJ file; `file` is its name in messages, and files that it names are sought in its
 /// folder.
-/// \throws scene_error for what is no OBJ file, names files that cannot be read, or describes a scene that cannot be drawn;
-///         std::invalid_argument for settings out of range.
+/// \throws scene_error for what is no OBJ file, names files that cannot be read, or describes a scene that cannot be
+///         drawn; std::invalid_argument for settings out of range.
 imported_scene parse_obj_scene(const std::string& file, std::string_view text, const import_settings& settings = {});
 
 /// The same of a file.

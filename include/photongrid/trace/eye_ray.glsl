@@ -1,7 +1,7 @@
 // The ray from the camera through a pixel (2.4): through the pixel's centre if it is the only one, else through a
-// random point of the ray's own stratum of the pixel or of the filter's area. Of n eye rays no two are in the same n-th of the pixel's width,
-// nor of its height, so edges along rows and columns are smooth (Chiu, Shirley and Wang, Multi-Jittered Sampling,
-// 1994).
+// random point of the ray's own stratum of the pixel or of the filter's area. Of n eye rays no two are in the same n-th
+// of its width, nor of its height, so edges along rows and columns are smooth (Chiu, Shirley and Wang, Multi-Jittered
+// Sampling, 1994).
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 

@@ -82,4 +82,22 @@ mesh disk_mesh(double height, double radius, double inner_radius, double angle)
         nullptr);
 }
 
+mesh with_corner_coordinates(const mesh& m, const std::array<glm::vec2, 3>& corners)
+{
+    mesh made;
+    for (const auto& t : m.triangles) {
+        for (int c = 0; c < 3; ++c) {
+            made.positions.push_back(m.positions[t[c]]);
+            if (!m.normals.empty())
+                made.normals.push_back(m.normals[t[c]]);
+            if (!m.colors.empty())
+                made.colors.push_back(m.colors[t[c]]);
+            made.texture_coordinates.push_back(corners[static_cast<std::size_t>(c)]);
+        }
+        const auto n = static_cast<std::uint32_t>(made.positions.size());
+        made.triangles.emplace_back(n - 3, n - 2, n - 1);
+    }
+    return made;
+}
+
 } // namespace photongrid

@@ -3,6 +3,7 @@
 
 #include <photongrid/scene/mesh.hpp>
 
+#include <array>
 #include <functional>
 
 namespace photongrid {
@@ -21,5 +22,8 @@ mesh cylinder_mesh(double radius, double low, double high, double angle);
 
 /// A disk at z = `height`, with a hole of `inner_radius`; it faces +z. u goes around the axis, v inwards.
 mesh disk_mesh(double height, double radius, double inner_radius, double angle);
+
+/// The surface with three vertices for each triangle, whose corners have these texture coordinates.
+mesh with_corner_coordinates(const mesh& m, const std::array<glm::vec2, 3>& corners);
 
 } // namespace photongrid

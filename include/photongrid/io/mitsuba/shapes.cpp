@@ -63,26 +63,8 @@ namespace {
         }
     }
 
-    /// The corners of each triangle get the texture coordinates of Mitsuba's meshes without any, (0, 0), (1, 0) and (0,
-    /// 1), with v reversed.
-    mesh with_corner_coordinates(const mesh& m)
-    {
-        mesh made;
-        constexpr std::array<glm::vec2, 3> corners{glm::vec2(0, 1), glm::vec2(1, 1), glm::vec2(0, 0)};
-        for (const auto& t : m.triangles) {
-            for (int c = 0; c < 3; ++c) {
-                made.positions.push_back(m.positions[t[c]]);
-                if (!m.normals.empty())
-                    made.normals.push_back(m.normals[t[c]]);
-                if (!m.colors.empty())
-                    made.colors.push_back(m.colors[t[c]]);
-                made.texture_coordinates.push_back(corners[static_cast<std::size_t>(c)]);
-            }
-            const auto n = static_cast<std::uint32_t>(made.positions.size());
-            made.triangles.emplace_back(n - 3, n - 2, n - 1);
-        }
-        return made;
-    }
+    /// Texture coordinates of Mitsuba's meshes without any, (0, 0), (1, 0) and (0, 1) in each triangle; v reversed.
+    constexpr std::array corner_coordinates{glm::vec2(0, 1), glm::vec2(1, 1), glm::vec2(0, 0)};
 
     std::shared_ptr<const mesh> shared(mesh m) { return std::make_shared<const mesh>(std::move(m)); }
 } // namespace
@@ -166,7 +148,7 @@ shape_surface shape_reader::file_surface(const object& o, const surface_needs& n
             known.file.clear();
         }
         if (needs.coordinates && m.texture_coordinates.empty()) {
-            m = with_corner_coordinates(m);
+            m = with_corner_coordinates(m, corner_coordinates);
             known.file.clear();
         } else if (reverse_v) {
             for (auto& at : m.texture_coordinates)

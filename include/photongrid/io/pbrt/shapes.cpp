@@ -220,21 +220,8 @@ std::shared_ptr<const mesh> shape_reader::triangles_of(const shape_entity& s, co
 
 std::shared_ptr<const mesh> shape_reader::with_coordinates(const mesh& m)
 {
-    mesh made;
-    constexpr std::array<glm::vec2, 3> corners{glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(1, 1)};
-    for (const auto& t : m.triangles) {
-        for (int c = 0; c < 3; ++c) {
-            made.positions.push_back(m.positions[t[c]]);
-            if (!m.normals.empty())
-                made.normals.push_back(m.normals[t[c]]);
-            if (!m.colors.empty())
-                made.colors.push_back(m.colors[t[c]]);
-            made.texture_coordinates.push_back(corners[static_cast<std::size_t>(c)]);
-        }
-        const auto n = static_cast<std::uint32_t>(made.positions.size());
-        made.triangles.emplace_back(n - 3, n - 2, n - 1);
-    }
-    return std::make_shared<const mesh>(std::move(made));
+    return std::make_shared<const mesh>(
+        with_corner_coordinates(m, {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(1, 1)}));
 }
 
 shape_surface shape_reader::surface_of(const shape_entity& s)
