@@ -21,7 +21,7 @@
 #   sanitizers  the serial backend under clang's address and undefined behaviour sanitizers (build-asan/); in full every
 #               backend under g++'s (build-asan-gcc/)
 #   clang       headers, kernels and a smoke test with clang 14 (build-clang/)
-#   fuzzing     clang's fuzzer on the scene reader for 20 s (build-asan/), in full 300 s (build-fuzz/, optimized)
+#   fuzzing     clang's fuzzer on the readers of scenes, 4 s for each format (build-asan/), in full 50 s (build-fuzz/)
 #   tests       everything with g++, assertions on (build-tests/), but for what the sanitizers have run, unless in full
 # and with --full:
 #   gpu_assisted  the Vulkan backend under GPU-assisted validation
@@ -124,9 +124,9 @@ elif [[ -n $only ]] || ((${#words[@]} > 0)); then
 fi
 
 short=(--label-exclude "long|full") sanitized=(--label-exclude "long|heavy|full")
-sanitized_target=photongrid_quick_tests fuzz_seconds=20 everything=OFF together=ON clang_targets=(photongrid_smoke)
+sanitized_target=photongrid_quick_tests everything=OFF together=ON clang_targets=(photongrid_smoke)
 if [[ $full == yes ]]; then
-  short=() sanitized=(--label-exclude long) sanitized_target=all fuzz_seconds=300 everything=ON
+  short=() sanitized=(--label-exclude long) sanitized_target=all everything=ON
   together=OFF # so that a file that lacks an include is seen
   clang_targets+=(all_verify_interface_header_sets)
 fi
@@ -199,18 +199,12 @@ stage_clang() {
   fi
 }
 stage_fuzzing() {
-  local folder=build-asan # which has the library already
   if [[ $full == yes ]]; then
-    folder=build-fuzz
-    configure fuzz
+    tests/fuzz.sh --seconds 50
   else
-    configure asan
+    configure asan # which has the library already
+    tests/fuzz.sh --seconds 4 --folder build-asan
   fi
-  cmake --build "$folder" --target fuzz_scene
-  # New inputs go to the first folder, one that breaks the reader to its parent, as crash-….
-  mkdir -p "$folder/corpus"
-  "$folder/tests/fuzz_scene" -verbosity=0 -print_final_stats=1 -max_total_time=$fuzz_seconds -max_len=4096 \
-    -dict=tests/io/scene_corpus.dict "-artifact_prefix=$folder/" "$folder/corpus" tests/io/scene_corpus
 }
 stage_tests() {
   configure tests -DPHOTONGRID_FULL_TESTS=$everything -DCMAKE_UNITY_BUILD=$together

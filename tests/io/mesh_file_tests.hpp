@@ -112,6 +112,8 @@ namespace {
                  {"4 0 1 2 3", "2 0 1", ":14:2", "2 corners"}, {"4 0 1 2 3", "6 0 1 2 3", "", "with 1 corners"},
                  {"4 0 1 2 3", "900 0 1", "", "more bytes"}, {"4 0 1 2 3", "4 0 1 2 4", "", "is vertex 4; there are 4"},
                  {"4 0 1 2 3", "4 0 1 2 -3", ":14:11", "whole number"},
+                 {"4 0 1 2 3", "inf 0 1 2 3", ":14:4", "from 0 to 2^32 - 1"},
+                 {"4 0 1 2 3", "1e30 0 1 2 3", ":14:5", "from 0 to 2^32 - 1"},
                  {"4 0 1 2 3", "4 0 1 2 1.5", ":14:12", "whole number"}}) {
             const auto said = ply_refusal(replaced(ascii_square, b.from, b.to));
             EXPECT_TRUE(said.starts_with("m.ply" + b.place)) << b.to << ": " << said;

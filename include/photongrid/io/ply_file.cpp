@@ -117,8 +117,8 @@ namespace ply {
             void read_list(const property& p)
             {
                 const double length = next(*p.count);
-                if (!(length >= 0 && length == std::floor(length)))
-                    fail("the length of a list is not a whole number");
+                if (!(length >= 0 && length <= 4294967295.0 && length == std::floor(length)))
+                    fail("the length of a list is not a whole number from 0 to 2^32 - 1");
                 if (length * (format_ == format::ascii ? 2 : static_cast<double>(size_of(p.type)))
                     > static_cast<double>(bytes_.size() - at_) + 1)
                     fail("a list of " + std::to_string(static_cast<std::uint64_t>(length))
