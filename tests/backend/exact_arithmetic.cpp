@@ -69,6 +69,29 @@ namespace {
             }
     }
 
+    TEST(exact_arithmetic, takes_powers_of_two_out_of_very_large_and_small_numbers)
+    {
+        std::mt19937 random(9);
+        const float loose = std::numeric_limits<float>::quiet_NaN(), least = std::numeric_limits<float>::min();
+        const auto number = [&] { // normal
+            const auto bits = static_cast<std::uint32_t>(random());
+            return std::bit_cast<float>((bits & 0x807FFFFFu) | (1u + bits % 254u) << 23u);
+        };
+        std::size_t normal = 0;
+        for (int i = 0; i < 1000000; ++i) {
+            const float a = number(), b = number(), q = exact_functions::scaled_quotient(a, b, loose);
+            ASSERT_EQ(exact_functions::scaled_root(std::abs(a), loose), std::sqrt(std::abs(a))) << a;
+            if (std::isinf(a / b) || std::abs(a / b) < least) {
+                ASSERT_TRUE(std::isnan(q) || q == a / b) << a << " / " << b; // 2^-126 is what some round up to
+            } else {
+                ASSERT_EQ(q, a / b) << a << " / " << b;
+                ++normal;
+            }
+        }
+        EXPECT_GT(normal, 500000u);
+        EXPECT_TRUE(std::isnan(exact_functions::scaled_root(-1.0f, loose)));
+    }
+
     TEST(exact_arithmetic, leaves_what_has_no_exact_residual_to_the_device)
     {
         const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN(),

@@ -1,7 +1,7 @@
 // Correctly rounded quotients and square roots for devices whose own may be off by a few units in the last place.
 // with_exact_arithmetic() (exact_arithmetic.hpp) replaces `a / b` and `sqrt(x)` in kernels by these functions. They
-// need a fused fma. Outside of 2^-79 to 2^100, where residuals would lose bits or overflow, they return the device's
-// result.
+// need a fused fma. Outside of 2^-79 to 2^100, where residuals would lose bits or overflow, they take the operands' powers
+// of two out first. Subnormal operands and quotients, infinities and NaNs are left to the device.
 inline bool has_exact_residuals(float least, float most)
 {
     return least >= 1.6543612e-24f && most <= 1.2676506e30f;
@@ -33,19 +33,53 @@ inline float refined_root(float x, float approximate)
     return over <= 0.0f ? below : root;
 }
 
+inline uint exponent_of(float x) { return floatBitsToUint(x) >> 23u & 255u; }
+// 2^e, and 0 below 2^-126.
+inline float power_of_2(int e) { return uintBitsToFloat(uint(max(e + 127, 0)) << 23u); }
+// x with its sign, times a power of two that moves its size to 1 and below 2.
+inline float mantissa_of(float x) { return uintBitsToFloat((floatBitsToUint(x) & 0x807FFFFFu) | 0x3F800000u); }
+
+// a / b of any size. `rounded_loosely` where a, b or a / b is 0, subnormal, infinite or NaN.
+inline float scaled_quotient(float a, float b, float rounded_loosely)
+{
+    uint of_a = exponent_of(a), of_b = exponent_of(b);
+    if (min(of_a, of_b) == 0u || max(of_a, of_b) == 255u)
+        return rounded_loosely;
+    float divisor = mantissa_of(b);
+    float quotient = refined_quotient(mantissa_of(a), divisor, 1.0f / divisor);
+    int power = int(of_a) - int(of_b);
+    int half_of_it = power / 2; // 2^power may be too large or small for a number
+    precise float sized = quotient * power_of_2(half_of_it) * power_of_2(power - half_of_it);
+    uint of_it = exponent_of(sized);
+    return of_it == 0u || of_it == 255u ? rounded_loosely : sized;
+}
+
+// The square root of x of any size; `rounded_loosely` where x is 0, subnormal, infinite or NaN.
+inline float scaled_root(float x, float rounded_loosely)
+{
+    uint exponent = exponent_of(x);
+    if (exponent == 0u || exponent == 255u || x < 0.0f)
+        return rounded_loosely;
+    int power = int(exponent) - 127;
+    int half_of_it = power >> 1; // rounds down
+    float part = mantissa_of(x) * (power - 2 * half_of_it == 1 ? 2.0f : 1.0f);
+    precise float root = refined_root(part, sqrt(part)) * power_of_2(half_of_it);
+    return root;
+}
+
 inline float exact_quotient(float a, float b)
 {
     float size_a = abs(a), size_b = abs(b);
     precise float quotient = refined_quotient(a, b, 1.0f / b);
     float size = abs(quotient);
     if (!has_exact_residuals(min(min(size_a, size_b), size), max(max(size_a, size_b), size)))
-        return a / b;
+        return scaled_quotient(a, b, a / b);
     return quotient;
 }
 
 inline float exact_root(float x)
 {
-    return has_exact_residuals(x, x) ? refined_root(x, sqrt(x)) : sqrt(x);
+    return has_exact_residuals(x, x) ? refined_root(x, sqrt(x)) : scaled_root(x, sqrt(x));
 }
 
 inline vec2 exact_quotient(vec2 a, vec2 b) { return vec2(exact_quotient(a.x, b.x), exact_quotient(a.y, b.y)); }
