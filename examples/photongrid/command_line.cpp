@@ -245,6 +245,9 @@ namespace {
               "programs matter less")
             ->type_name("N")
             ->check(CLI::Range(1, 1024).description(""));
+        to.add_flag("--noise", o.noise,
+            "also print what relMSE the noise of each picture makes, told from that picture alone; blotches of photon "
+            "maps are not found");
         add_exposure(to, o.exposure, "compare the looks of pixel values times 2^EV; default: auto, fitted to B");
     }
 

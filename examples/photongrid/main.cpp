@@ -9,6 +9,7 @@
 #include <photongrid/backends/any/any.hpp>
 #include <photongrid/io/image_difference.hpp>
 #include <photongrid/io/image_file.hpp>
+#include <photongrid/io/picture_noise.hpp>
 #include <photongrid/io/structural_similarity.hpp>
 #include <photongrid/io/tone_map.hpp>
 
@@ -76,6 +77,8 @@ namespace {
         std::cout << "MSE     " << d.mse << "\nrelMSE  " << d.relmse << "\nlargest " << d.largest << " at pixel " << d.x
                   << "," << d.y << "\nSSIM    " << structural_similarity(a, b, exposure) << " at " << exposure
                   << " EV\n";
+        if (o.noise)
+            std::cout << "noise   " << picture_noise(a) << " and " << picture_noise(b) << ", of each by itself\n";
         if (d.not_finite > 0)
             std::cout << "skipped " << d.not_finite << " pixels that are not finite\n";
         if (d.compared == 0) {

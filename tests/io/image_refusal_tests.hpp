@@ -88,5 +88,47 @@ namespace {
         EXPECT_THROW(compare_images(a, image{.width = 5, .height = 7, .pixels = b.pixels}), std::invalid_argument);
     }
 
+    /// 128 x 128 pixels of a radiance, with Gaussian noise of a share of it.
+    image noisy(double share, const std::function<double(std::uint32_t, std::uint32_t)>& radiance)
+    {
+        std::mt19937 bits(11);
+        std::normal_distribution<double> gaussian(0, share);
+        image p{.width = 128, .height = 128, .pixels = {}};
+        for (std::uint32_t y = 0; y < p.height; ++y)
+            for (std::uint32_t x = 0; x < p.width; ++x) {
+                glm::dvec3 pixel(radiance(x, y));
+                for (int c = 0; c < 3; ++c)
+                    pixel[c] *= 1 + gaussian(bits);
+                p.pixels.emplace_back(pixel);
+            }
+        return p;
+    }
+
+    TEST(picture_noise, is_the_relmse_against_a_perfect_picture)
+    {
+        const auto even = [](auto, auto) { return 3.0; };
+        const auto slope = [](auto x, auto y) { return 20 + 0.05 * x + 0.1 * y; };
+        const auto edges = [](auto x, auto y) { return x / 20 % 2 == y / 20 % 2 ? 1.0 : 8.0; };
+        EXPECT_EQ(picture_noise(noisy(0, even)), 0);
+        EXPECT_LT(picture_noise(noisy(0, slope)), 1e-12);
+        for (const double share : {0.2, 0.03, 0.002}) {
+            EXPECT_NEAR(
+                picture_noise(noisy(share, even)) / compare_images(noisy(share, even), noisy(0, even)).relmse, 1, 0.05)
+                << share;
+            EXPECT_NEAR(picture_noise(noisy(share, slope)) / (share * share), 1, 0.07) << share;
+            EXPECT_NEAR(picture_noise(noisy(share, edges)) / (share * share), 1, 0.7)
+                << share; // edges in half the tiles
+        }
+    }
+
+    TEST(picture_noise, leaves_out_what_is_not_finite)
+    {
+        auto p = noisy(0.1, [](auto, auto) { return 1.0; });
+        const double before = picture_noise(p);
+        p.pixels[70 * 128 + 5].y = std::numeric_limits<float>::infinity();
+        EXPECT_NEAR(picture_noise(p) / before, 1, 0.02);
+        EXPECT_TRUE(std::isnan(picture_noise({.width = 2, .height = 9, .pixels = std::vector<glm::vec3>(18)})));
+    }
+
 } // namespace
 } // namespace photongrid

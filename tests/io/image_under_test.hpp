@@ -3,6 +3,7 @@
 
 #include <photongrid/io/image_difference.hpp>
 #include <photongrid/io/image_file.hpp>
+#include <photongrid/io/picture_noise.hpp>
 #include <photongrid/io/tone_map.hpp>
 
 #include <ImfChannelList.h>
@@ -18,7 +19,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <limits>
+#include <random>
 
 #include <sys/resource.h>
 #include <unistd.h>

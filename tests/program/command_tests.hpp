@@ -308,6 +308,9 @@ namespace {
         const auto means = run({"compare", "uneven.pfm", "even.pfm", "--average", "2", "--max-relmse", "0"});
         EXPECT_EQ(means.code, 0) << means.out << means.err;
         EXPECT_EQ(run({"compare", "uneven.pfm", "even.pfm", "--average", "5"}).code, 5);
+        const auto noise = run({"compare", "uneven.pfm", "even.pfm", "--noise"}).out;
+        EXPECT_NE(noise.find("\nnoise   "), std::string::npos) << noise;
+        EXPECT_NE(noise.find(" and 0, of each by itself\n"), std::string::npos) << noise;
     }
 
     TEST_F(program, renders_several_passes)
