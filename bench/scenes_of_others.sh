@@ -42,7 +42,8 @@ judge() {
   error=$(relmse "$1" "$3") theirs=$(noise "$3")
   awk -v e="$error" -v ours="$2" -v theirs="$theirs" 'BEGIN {
     most = 2 * (ours + theirs)
-    printf "noise of ours %.2g, of the reference %.2g: relMSE %.2g, wanted at most %.2g: %s\n", ours, theirs, e, most, (e <= most ? "PASS" : "FAIL")
+    printf "noise of ours %.2g, of the reference %.2g: relMSE %.2g, wanted at most %.2g: ", ours, theirs, e, most
+    print (e <= most ? "PASS" : "FAIL")
     exit e > most }' || missed=1
 }
 # draw_map NAME OPTIONS...: by a photon map, with two seeds
@@ -58,7 +59,8 @@ if is_there cornell-box; then
   "$program" check "$folder/cornell-box/pbrt/scene-v4.pbrt"
   draw_map cornell-box --spp 16 --light-samples 8 --photons 2000000 --k 1000
   draw "$folder/cornell-box/pbrt/scene-v4.pbrt" "$out/cornell-box-paths" reference --size 1024x1024 --spp 64
-  judge "$out/cornell-box-paths.exr" "$(noise "$out/cornell-box-paths.exr")" "$folder/cornell-box/pbrt/TungstenRender.exr"
+  judge "$out/cornell-box-paths.exr" "$(noise "$out/cornell-box-paths.exr")" \
+    "$folder/cornell-box/pbrt/TungstenRender.exr"
 fi
 if is_there water-caustic; then
   "$program" check "$folder/water-caustic/pbrt/scene-v4.pbrt"
@@ -78,7 +80,8 @@ if is_there veach-ajar; then
   sed '/^MakeNamedMaterial "Floor"/,/"rgb eta"/c\
 Texture "squares" "spectrum" "checkerboard" "rgb tex1" [ 0.5 0.5 0.5 ] "rgb tex2" [ 0.15 0.15 0.15 ]\
     "float uscale" [ 20 ] "float vscale" [ 20 ]\
-MakeNamedMaterial "Floor" "string type" [ "diffuse" ] "texture reflectance" [ "squares" ]' "$scene" >"$matte/scene-v4.pbrt"
+MakeNamedMaterial "Floor" "string type" [ "diffuse" ] "texture reflectance" [ "squares" ]' "$scene" \
+    >"$matte/scene-v4.pbrt"
   draw "$matte/scene-v4.pbrt" "$matte" "${options[@]}" --allow-outside
   "$program" compare "$matte.exr" "${scene%/*}/TungstenRender.exr" --average 4
 fi

@@ -19,7 +19,7 @@ if git rev-parse --git-dir >/dev/null 2>&1; then
 else # a copy without its history
   find . -type d \( -name 'build*' -o -name out \) -prune -o -type f -print | sed 's|^\./||' >"$work/paths"
 fi
-sources() { grep -E "$1" "$work/paths" | grep -vxE 'tests/doc_words\.txt|tests/doc_names\.sh|tests/io/scene_corpus/.*' | tr '\n' '\0' | xargs -0 cat; }
+sources() { grep -E "$1" "$work/paths" | grep -vxE 'tests/doc_words\.txt|tests/doc_names\.sh|tests/io/scene_corpus/.*/.*' | tr '\n' '\0' | xargs -0 cat; }
 {
   sources '\.(hpp|cpp|glsl)$' | sed -E 's|(^\|[^:])//.*|\1|'
   sources '(\.(cmake|sh|in|supp)|CMakeLists\.txt|Doxyfile|\.ci/run)$' | sed -E 's/(^|[[:space:]])#.*//'

@@ -8,9 +8,9 @@
 #   --folder FOLDER  a build folder: build-fuzz/ (optimized) if not given, which is configured first
 #   FORMAT           folders of tests/io/scene_corpus; all if none is given
 #
-# New inputs that reach new code stay in FOLDER/corpus/FORMAT, where the next run starts from them. An input that breaks a
-# guarantee stops the run and is kept as FOLDER/FORMAT-crash-… (or -timeout-…, -oom-…): once its cause is mended, it belongs
-# in tests/io/scene_corpus/FORMAT. The exit status is then 1.
+# New inputs that reach new code stay in FOLDER/corpus/FORMAT, where the next run starts from them. An input that breaks
+# a guarantee stops its format and is kept as FOLDER/FORMAT-crash-… (or -timeout-…, -oom-…): once its cause is mended, it
+# belongs in tests/io/scene_corpus/FORMAT. The exit status is then 1.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -53,15 +53,15 @@ cmake --build "$folder" --target fuzz_scene
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# Each input has 5 s and 1 GiB, and no allocation is larger than 256 MiB. Without -entropic=0 the fuzzer takes as long to
-# choose an input as the readers take to read it.
+# Each input has 20 s, for machines that do other work too, and 1 GiB; no allocation is larger than 256 MiB. Without
+# -entropic=0 the fuzzer takes as long to choose an input as the readers take to read it.
 total=0 found=0
 printf '| format | inputs | a second | found |\n|---|---|---|---|\n'
 for format in "${formats[@]}"; do
   mkdir -p "$folder/corpus/$format"
   status=0
   "$folder/tests/fuzz_scene" "--format=$format" -verbosity=0 -print_final_stats=1 -entropic=0 -max_len=4096 \
-    -timeout=5 -rss_limit_mb=1024 -malloc_limit_mb=256 "${limit[@]}" "-dict=tests/io/scene_corpus/$format.dict" \
+    -timeout=20 -rss_limit_mb=1024 -malloc_limit_mb=256 "${limit[@]}" "-dict=tests/io/scene_corpus/$format.dict" \
     "-artifact_prefix=$folder/$format-" "$folder/corpus/$format" "tests/io/scene_corpus/$format" \
     >"$work/output" 2>&1 || status=$?
   inputs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$work/output")

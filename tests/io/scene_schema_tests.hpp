@@ -153,7 +153,7 @@ namespace {
     TEST(scene_writer, what_it_writes_reads_as_the_same_scene)
     {
         std::size_t scenes_read = 0;
-        for (const auto& folder : {scenes, std::string(PHOTONGRID_SCENE_CORPUS)})
+        for (const auto& folder : {scenes, std::string(PHOTONGRID_SCENE_CORPUS) + "/photongrid"})
             for (const auto& f : std::filesystem::directory_iterator(folder)) {
                 if (f.path().extension() != ".json" || f.path().filename() == "photongrid-scene.schema.json")
                     continue;
