@@ -1,8 +1,8 @@
 #include <photongrid/io/import/checked_parts.hpp>
+#include <photongrid/io/import/token_reader.hpp>
 #include <photongrid/io/mitsuba/materials.hpp>
 #include <photongrid/io/mitsuba/shapes.hpp>
 #include <photongrid/io/mitsuba_file.hpp>
-#include <photongrid/io/pbrt/tokens.hpp>
 #include <photongrid/io/whole_file.hpp>
 
 #include <algorithm>
@@ -143,7 +143,7 @@ namespace mitsuba {
                     text.remove_suffix(2);
                 while (text.ends_with(" "))
                     text.remove_suffix(1);
-                const auto length = pbrt::token_reader::number_of(text);
+                const auto length = token_reader::number_of(text);
                 if (!length || !(*length > 0))
                     fail_at(p->place, "found a focal_length that is not one number of mm above 0, as 50mm");
                 return length;

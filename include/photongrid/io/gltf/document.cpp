@@ -1,38 +1,14 @@
 #include <photongrid/io/gltf/document.hpp>
+#include <photongrid/io/gltf/uri.hpp>
 #include <photongrid/io/whole_file.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 
 namespace photongrid::gltf {
 
 namespace {
     constexpr json_limits limits{.bytes = std::size_t{1} << 31, .depth = 64, .values = 8'000'000};
-
-    std::string range_text(double low, double high)
-    {
-        const auto text = [](double v) {
-            auto t = std::to_string(v);
-            t.erase(t.find_last_not_of('0') + 1);
-            return t.ends_with('.') ? t.substr(0, t.size() - 1) : t;
-        };
-        return low > -1e18 && high < 1e18 ? " from " + text(low) + " to " + text(high)
-            : low > -1e18                 ? " of " + text(low) + " or more"
-                                          : " below 10^18";
-    }
-
-    /// The value of a character of base64 (RFC 4648), or -1.
-    int base64_value(char c)
-    {
-        if (c >= 'A' && c <= 'Z')
-            return c - 'A';
-        if (c >= 'a' && c <= 'z')
-            return c - 'a' + 26;
-        if (c >= '0' && c <= '9')
-            return c - '0' + 52;
-        return c == '+' ? 62 : c == '/' ? 63 : -1;
-    }
 
     std::uint32_t word_at(std::string_view bytes, std::size_t offset) // little-endian
     {
@@ -56,132 +32,6 @@ namespace {
         return std::find(list.begin(), list.end(), name) != list.end();
     }
 } // namespace
-
-// --- part ---
-
-source_place part::place() const { return all_->place_of(value_->place); }
-
-const json_value* part::find(std::string_view key, json_kind kind, const char* expected) const
-{
-    const auto* v = value_->find(key);
-    if (v != nullptr && v->kind != kind)
-        part(*all_, *v).fail(
-            '"' + std::string(key) + "\": found " + photongrid::described(*v) + "; expected " + expected);
-    return v;
-}
-
-std::optional<part> part::object(std::string_view key) const
-{
-    const auto* v = find(key, json_kind::object, "an object");
-    return v == nullptr ? std::nullopt : std::optional(part(*all_, *v));
-}
-
-std::vector<part> part::items(std::string_view key) const
-{
-    std::vector<part> all;
-    if (const auto* v = find(key, json_kind::array, "an array")) {
-        all.reserve(v->items.size());
-        for (const auto& i : v->items)
-            all.emplace_back(*all_, i);
-    }
-    return all;
-}
-
-double part::as_number(double low, double high) const
-{
-    if (value_->kind != json_kind::number || !(value_->number >= low && value_->number <= high))
-        fail("found " + described() + "; expected a number" + range_text(low, high));
-    return value_->number;
-}
-
-double part::number(std::string_view key, double if_absent, double low, double high) const
-{
-    const auto* v = find(key, json_kind::number, "a number");
-    if (v == nullptr)
-        return if_absent;
-    if (!(v->number >= low && v->number <= high))
-        part(*all_, *v).fail('"' + std::string(key) + "\": found " + photongrid::described(*v) + "; expected a number"
-            + range_text(low, high));
-    return v->number;
-}
-
-std::optional<std::size_t> part::whole(std::string_view key, std::size_t most) const
-{
-    const auto* v = find(key, json_kind::number, "a whole number");
-    if (v == nullptr)
-        return std::nullopt;
-    if (!(v->number >= 0 && v->number <= static_cast<double>(most)) || v->number != std::floor(v->number))
-        part(*all_, *v).fail('"' + std::string(key) + "\": found " + photongrid::described(*v)
-            + "; expected a whole number from 0 to " + std::to_string(most));
-    return static_cast<std::size_t>(v->number);
-}
-
-std::size_t part::as_index(const char* list) const
-{
-    const auto count = all_->count(list);
-    if (value_->kind != json_kind::number || !(value_->number >= 0 && value_->number < static_cast<double>(count))
-        || value_->number != std::floor(value_->number))
-        fail("found " + described() + "; expected an index of \"" + list + "\", of which there are "
-            + std::to_string(count));
-    return static_cast<std::size_t>(value_->number);
-}
-
-std::optional<std::size_t> part::index(std::string_view key, const char* list) const
-{
-    const auto* v = value_->find(key);
-    return v == nullptr ? std::nullopt : std::optional(part(*all_, *v).as_index(list));
-}
-
-std::string part::as_text() const
-{
-    if (value_->kind != json_kind::string)
-        fail("found " + described() + "; expected a text");
-    return value_->text;
-}
-
-std::optional<std::string> part::text(std::string_view key) const
-{
-    const auto* v = find(key, json_kind::string, "a text");
-    return v == nullptr ? std::nullopt : std::optional(v->text);
-}
-
-bool part::truth(std::string_view key, bool if_absent) const
-{
-    const auto* v = find(key, json_kind::boolean, "true or false");
-    return v == nullptr ? if_absent : v->truth;
-}
-
-void part::numbers_into(std::string_view key, double low, double high, double* to, std::size_t count) const
-{
-    const auto* v = find(key, json_kind::array, "an array");
-    if (v->items.size() != count)
-        part(*all_, *v).fail('"' + std::string(key) + "\": found " + photongrid::described(*v) + "; expected "
-            + std::to_string(count) + " numbers");
-    for (const auto& i : v->items)
-        *to++ = part(*all_, i).as_number(low, high);
-}
-
-std::optional<dvec3> part::colour(std::string_view key, double most) const
-{
-    const auto c = numbers<3>(key, 0, most);
-    return c ? std::optional(dvec3((*c)[0], (*c)[1], (*c)[2])) : std::nullopt;
-}
-
-std::optional<part> part::extension(std::string_view name) const
-{
-    const auto all = object("extensions");
-    return all ? all->object(name) : std::nullopt;
-}
-
-std::vector<std::string> part::keys() const
-{
-    std::vector<std::string> all;
-    for (const auto& i : value_->items)
-        all.push_back(i.key);
-    return all;
-}
-
-// --- document ---
 
 document::document(const std::string& file, std::string_view bytes, scene_builder& builder)
     : builder_(builder), file_(std::make_shared<const std::string>(file)),
@@ -307,54 +157,6 @@ void document::count_numbers(const part& p, std::size_t more)
         p.fail("the accessors that are read have more numbers than a file of this size may have: 16 for each byte, and "
                "2^22; place a mesh several times by nodes");
     numbers_ += more;
-}
-
-std::string document::file_name(std::string_view uri)
-{
-    const auto digit = [](char c) {
-        return c >= '0' && c <= '9' ? c - '0'
-            : c >= 'a' && c <= 'f'  ? c - 'a' + 10
-            : c >= 'A' && c <= 'F'  ? c - 'A' + 10
-                                    : -1;
-    };
-    std::string made;
-    for (std::size_t i = 0; i < uri.size(); ++i) {
-        if (uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0) {
-            made += static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2]));
-            i += 2;
-        } else {
-            made += uri[i];
-        }
-    }
-    return made;
-}
-
-std::optional<std::string> document::data_of(const part& p, std::string_view uri) const
-{
-    if (!uri.starts_with("data:"))
-        return std::nullopt;
-    const auto comma = uri.find(',');
-    if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64"))
-        p.fail("found data that is not in base64");
-    uri.remove_prefix(comma + 1);
-    while (uri.ends_with('='))
-        uri.remove_suffix(1);
-    std::string made;
-    made.reserve(uri.size() / 4 * 3 + 3);
-    std::uint32_t bits = 0;
-    int held = 0;
-    for (const char c : uri) {
-        const int value = base64_value(c);
-        if (value < 0)
-            p.fail("found a character in its data that base64 does not have");
-        bits = (bits & 0xFFFu) << 6 | static_cast<std::uint32_t>(value);
-        held += 6;
-        if (held >= 8) {
-            held -= 8;
-            made += static_cast<char>(bits >> held & 0xFFu);
-        }
-    }
-    return made;
 }
 
 const std::string& document::buffer(std::size_t index)

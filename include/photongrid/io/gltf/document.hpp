@@ -97,10 +97,6 @@ public:
 
     /// The bytes of a buffer view.
     byte_range view(std::size_t index);
-    /// The bytes of a text "data:…;base64,…"; none if it is no such text.
-    std::optional<std::string> data_of(const part& p, std::string_view uri) const;
-    /// The name of a file: "%20" is a space.
-    static std::string file_name(std::string_view uri);
 
     scene_builder& builder() const { return builder_; }
     /// The place of a value in the text. In a .glb, whose lines nobody can look up, it has a JSON pointer.

@@ -1,4 +1,5 @@
 #include <photongrid/io/gltf/textures.hpp>
+#include <photongrid/io/gltf/uri.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -53,10 +54,10 @@ std::optional<texture_use> texture_reader::picture(const part& info, std::size_t
     try {
         const auto uri = i.text("uri");
         const auto name = "data:image " + std::to_string(*source); // no file has this name, which "data:" would begin
-        if (const auto data = uri ? all_.data_of(i.at("uri"), *uri) : std::nullopt) {
+        if (const auto data = uri ? data_of(i.at("uri"), *uri) : std::nullopt) {
             made.map = builder.files().texture_of(name, *data, holds);
         } else if (uri) {
-            const auto file = builder.texture(i.at("uri").place(), document::file_name(*uri), holds);
+            const auto file = builder.texture(i.at("uri").place(), file_name(*uri), holds);
             if (!file)
                 return std::nullopt;
             made = *file;

@@ -1,3 +1,4 @@
+#include <photongrid/io/import/included_files.hpp>
 #include <photongrid/io/mitsuba/xml_file.hpp>
 #include <photongrid/io/mitsuba/xml_values.hpp>
 
@@ -9,7 +10,7 @@
 namespace photongrid::mitsuba {
 
 namespace {
-    constexpr std::size_t max_include_depth = 16, max_includes = 10'000, max_depth = 64;
+    constexpr std::size_t max_depth = 64;
     constexpr std::size_t max_objects = std::size_t{1} << 22;
     constexpr std::string_view object_tags[] = {"bsdf", "emitter", "film", "integrator", "medium", "phase", "rfilter",
         "sampler", "sensor", "shape", "spectrum", "subsurface", "texture", "volume"};
@@ -95,15 +96,7 @@ namespace {
             const auto place = f.place_of(node);
             check_attributes(f, node, {"filename"});
             const auto name = attribute(f, node, "filename");
-            if (f.include_depth == max_include_depth || ++includes_ > max_includes)
-                fail_at(place, "files include each other more than 16 deep, or 10,000 times; does one include itself?");
-            std::string path, text;
-            try {
-                path = files_.path_of(name);
-                text = files_.bytes_of(name);
-            } catch (const file_error& e) {
-                fail_at(place, e.what());
-            }
+            const auto [path, text] = files_.read(name, place, f.include_depth);
             read_file(
                 source_file(std::make_shared<const std::string>(path), text, f.include_depth + 1), text, &outer, depth);
         }
@@ -403,12 +396,11 @@ namespace {
             return made;
         }
 
-        const scene_files& files_;
+        included_files files_;
         import_log& log_;
         description made_;
         std::map<std::string, const object*, std::less<>> ids_;
         parameter_table parameters_;
-        std::size_t includes_ = 0;
     };
 } // namespace
 

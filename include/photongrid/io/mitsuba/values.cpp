@@ -1,6 +1,6 @@
+#include <photongrid/io/import/token_reader.hpp>
 #include <photongrid/io/mitsuba/values.hpp>
 #include <photongrid/io/mitsuba/xml_values.hpp>
-#include <photongrid/io/pbrt/tokens.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +48,7 @@ sampled_spectrum value_reader::spectrum(const property& p) const
     } catch (const file_error& e) {
         fail_at(p.place, e.what());
     }
-    pbrt::token_reader t(std::make_shared<const std::string>(builder_.files().path_of(p.text)), text);
+    token_reader t(std::make_shared<const std::string>(builder_.files().path_of(p.text)), text);
     std::vector<double> wavelengths, values;
     while (t.peek()) {
         wavelengths.push_back(t.number("a wavelength, nm"));

@@ -1,5 +1,5 @@
+#include <photongrid/io/import/token_reader.hpp>
 #include <photongrid/io/mitsuba/xml_values.hpp>
-#include <photongrid/io/pbrt/tokens.hpp>
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -95,7 +95,7 @@ std::vector<double> numbers_of(const source_place& place, std::string_view text)
 {
     std::vector<double> all;
     for (const auto& word : words_of(text)) {
-        const auto number = pbrt::token_reader::number_of(word);
+        const auto number = token_reader::number_of(word);
         if (!number)
             fail_at(place, "found " + shown_word(word) + "; expected a number");
         all.push_back(*number);
@@ -134,8 +134,8 @@ sampled_spectrum samples_of(const source_place& place, std::string_view text)
     std::vector<double> wavelengths, values;
     for (const auto& word : words_of(text)) {
         const auto colon = word.find(':');
-        const auto wavelength = pbrt::token_reader::number_of(word.substr(0, colon)),
-                   value = colon == word.npos ? std::nullopt : pbrt::token_reader::number_of(word.substr(colon + 1));
+        const auto wavelength = token_reader::number_of(word.substr(0, colon)),
+                   value = colon == word.npos ? std::nullopt : token_reader::number_of(word.substr(colon + 1));
         if (!wavelength || !value)
             fail_at(place, "found " + shown_word(word) + "; expected a wavelength, nm, and a value, as 500:0.6");
         wavelengths.push_back(*wavelength);

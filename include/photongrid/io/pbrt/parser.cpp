@@ -1,13 +1,10 @@
 // The directives of pbrt-v4 files, as its users' guide lists them.
 #include <photongrid/io/pbrt/description.hpp>
-#include <photongrid/io/pbrt/tokens.hpp>
+#include <photongrid/io/pbrt/parameter_reader.hpp>
+#include <photongrid/io/pbrt/transformations.hpp>
 
+#include <photongrid/io/import/included_files.hpp>
 #include <photongrid/io/json_tree.hpp>
-
-#include <glm/ext/matrix_transform.hpp>
-#include <glm/geometric.hpp>
-#include <glm/gtc/type_ptr.hpp>
-#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <span>
@@ -16,8 +13,7 @@
 namespace photongrid::pbrt {
 
 namespace {
-    // Against files that include themselves, and files whose every line begins a block.
-    constexpr std::size_t max_include_depth = 16, max_includes = 10'000, max_blocks = 100'000;
+    constexpr std::size_t max_blocks = 100'000; // against files whose every line begins one
 
     /// What AttributeBegin saves.
     struct graphics_state {
@@ -144,68 +140,6 @@ namespace {
         }
 
         // --- values ---
-        static bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words)
-        {
-            return std::find(words.begin(), words.end(), word) != words.end();
-        }
-
-        parameter read_parameter(token_reader& t)
-        {
-            const auto place = t.place();
-            const auto declared = t.quoted("a parameter: a text of its type and name");
-            const auto begin = std::min(declared.find_first_not_of(" \t"), declared.size()),
-                       end = std::min(declared.find_first_of(" \t", begin), declared.size()),
-                       name = std::min(declared.find_first_not_of(" \t", end), declared.size()),
-                       past = std::min(declared.find_first_of(" \t", name), declared.size());
-            parameter p{.type = declared.substr(begin, end - begin),
-                .name = declared.substr(name, past - name),
-                .place = place};
-            if (p.name.empty())
-                fail_at(
-                    place, "found the text " + shown_word(declared) + "; expected the type and name of a parameter");
-            if (!is_one_of(p.type,
-                    {"float", "integer", "bool", "string", "texture", "point2", "vector2", "point3", "vector3", "point",
-                        "vector", "normal", "normal3", "rgb", "spectrum", "blackbody"}))
-                fail_at(place, "found the type " + shown_word(p.type) + "; expected one of pbrt-v4, such as float");
-            if (!t.peek() || t.peek()->is != token::kind::open) {
-                read_value(t, p);
-                return p;
-            }
-            const auto open = t.place();
-            t.next();
-            while (t.peek() && t.peek()->is != token::kind::close)
-                read_value(t, p);
-            if (!t.next())
-                fail_at(open, "found [ without its ]");
-            return p;
-        }
-
-        static void read_value(token_reader& t, parameter& p)
-        {
-            if (is_one_of(p.type, {"string", "texture"})) {
-                p.texts.push_back(t.quoted("a text in quotes"));
-            } else if (p.type == "bool") {
-                const auto& next = t.peek();
-                const bool is_value = next && (next->is == token::kind::word || next->is == token::kind::quoted)
-                    && (next->text == "true" || next->text == "false");
-                if (!is_value)
-                    t.fail_at_next("true or false");
-                p.truths.push_back(t.next()->text == "true");
-            } else if (p.type == "spectrum" && t.peek() && t.peek()->is == token::kind::quoted) {
-                p.texts.push_back(t.quoted(""));
-            } else {
-                p.numbers.push_back(t.number("a number"));
-            }
-        }
-
-        parameter_list read_parameters(token_reader& t)
-        {
-            parameter_list all;
-            while (t.peek() && t.peek()->is == token::kind::quoted)
-                all.add(read_parameter(t));
-            return all;
-        }
-
         /// A directive's type and parameters. `defaults`: the name of those in Attribute, or "".
         entity read_entity(token_reader& t, const source_place& place, const char* what, const char* defaults = "")
         {
@@ -222,62 +156,16 @@ namespace {
             if (state_.moves_start)
                 state_.to_world = state_.to_world * m;
         }
-        template <std::size_t N>
-        static std::array<double, N> read_numbers(token_reader& t)
-        {
-            std::array<double, N> all{};
-            for (auto& v : all)
-                v = t.number("a number");
-            return all;
-        }
-        static glm::dmat4 read_matrix(token_reader& t)
-        {
-            const bool in_brackets = t.peek() && t.peek()->is == token::kind::open;
-            if (in_brackets)
-                t.next();
-            const auto all = read_numbers<16>(t);
-            if (in_brackets && (!t.peek() || t.peek()->is != token::kind::close))
-                t.fail_at_next("], since a matrix has 16 numbers");
-            if (in_brackets)
-                t.next();
-            return glm::make_mat4(all.data()); // both column by column
-        }
 
         void read_identity(token_reader&, const source_place&)
         {
             if (state_.moves_start)
                 state_.to_world = glm::dmat4(1);
         }
-        void read_translate(token_reader& t, const source_place&)
-        {
-            const auto v = read_numbers<3>(t);
-            apply(glm::translate(glm::dmat4(1), dvec3(v[0], v[1], v[2])));
-        }
-        void read_scale(token_reader& t, const source_place&)
-        {
-            const auto v = read_numbers<3>(t);
-            apply(glm::scale(glm::dmat4(1), dvec3(v[0], v[1], v[2])));
-        }
-        void read_rotate(token_reader& t, const source_place& place)
-        {
-            const auto v = read_numbers<4>(t);
-            const dvec3 axis(v[1], v[2], v[3]);
-            if (!(glm::length(axis) > 0))
-                fail_at(place, "Rotate about an axis of length 0");
-            apply(glm::rotate(glm::dmat4(1), glm::radians(v[0]), axis));
-        }
-        void read_look_at(token_reader& t, const source_place& place)
-        {
-            const auto v = read_numbers<9>(t);
-            const dvec3 eye(v[0], v[1], v[2]), at(v[3], v[4], v[5]), up(v[6], v[7], v[8]);
-            const dvec3 forward = at - eye, right = glm::cross(up, forward);
-            if (!(glm::length(right) > 0))
-                fail_at(place, "LookAt: the direction of view is parallel to the upward one, or 0");
-            const dvec3 z = glm::normalize(forward), x = glm::normalize(right);
-            const glm::dmat4 camera_to_world(
-                glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), glm::dvec4(eye, 1));
-            apply(glm::inverse(camera_to_world));
-        }
+        void read_translate(token_reader& t, const source_place&) { apply(read_translation(t)); }
+        void read_scale(token_reader& t, const source_place&) { apply(read_scaling(t)); }
+        void read_rotate(token_reader& t, const source_place& place) { apply(read_rotation(t, place)); }
+        void read_look_at(token_reader& t, const source_place& place) { apply(read_view(t, place)); }
         void read_coordinate_system(token_reader& t, const source_place&)
         {
             systems_[t.quoted("the name of a coordinate system")] = state_.to_world;
@@ -390,16 +278,7 @@ namespace {
         }
         void include(token_reader& t, const source_place& place, std::size_t depth, bool apart)
         {
-            const auto name = t.quoted("a file's name");
-            if (depth == max_include_depth || ++includes_ > max_includes)
-                fail_at(place, "files include each other more than 16 deep, or 10,000 times; does one include itself?");
-            std::string path, text;
-            try {
-                path = files_.path_of(name);
-                text = files_.bytes_of(name);
-            } catch (const file_error& e) {
-                fail_at(place, e.what());
-            }
+            const auto [path, text] = files_.read(t.quoted("a file's name"), place, depth);
             const auto state = state_;
             const auto outer = std::exchange(outer_blocks_, blocks_.size());
             read(path, text, depth + 1);
@@ -487,7 +366,7 @@ namespace {
             state_.in_medium = !inside.empty() || !outside.empty();
         }
 
-        const scene_files& files_;
+        included_files files_;
         import_log& log_;
         description made_;
         graphics_state state_;
@@ -496,7 +375,6 @@ namespace {
         std::map<std::string, glm::dmat4> systems_;
         std::optional<std::string> object_; ///< the one that is being defined
         bool in_world_ = false;
-        std::size_t includes_ = 0;
     };
 } // namespace
 

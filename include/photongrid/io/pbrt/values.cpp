@@ -1,4 +1,4 @@
-#include <photongrid/io/pbrt/tokens.hpp>
+#include <photongrid/io/import/token_reader.hpp>
 #include <photongrid/io/pbrt/values.hpp>
 #include <photongrid/io/whole_file.hpp>
 

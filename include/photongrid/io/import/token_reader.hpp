@@ -1,4 +1,4 @@
-// The words of pbrt files.
+// Reads text word by word, as files of pbrt are, and the spectra in files that other formats use too.
 #pragma once
 
 #include <photongrid/io/import/import_log.hpp>
@@ -11,9 +11,9 @@
 #include <string>
 #include <string_view>
 
-namespace photongrid::pbrt {
+namespace photongrid {
 
-/// A word, a text in quotes, or a bracket.
+/// A word, a text in quotes, or a bracket. "#" begins a comment.
 struct token {
     enum class kind { word, quoted, open, close } is = kind::word;
     std::string_view text; ///< of a quoted one without its quotes, with its escapes
@@ -163,4 +163,4 @@ private:
     std::optional<token> peek_;
 };
 
-} // namespace photongrid::pbrt
+} // namespace photongrid
