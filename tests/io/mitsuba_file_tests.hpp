@@ -4,6 +4,7 @@
 
 #include "pbrt_file_tests.hpp"
 
+#include <photongrid/io/import/coat.hpp>
 #include <photongrid/io/mitsuba_file.hpp>
 
 namespace photongrid {
@@ -438,6 +439,15 @@ namespace {
                                         "value=\"1\"/></bsdf>");
         const dvec3 base(0.2, 0.5, 1);
         expect_near(m.reflectance / (1.0 - m.reflectance * back), base / (1 - back), 1e-3);
+        // A rough coat throws another share back.
+        auto rough = mitsuba_material("<bsdf type=\"roughplastic\"><rgb name=\"diffuse_reflectance\" value=\".2 .5 "
+                                      "1\"/><float name=\"alpha\" value=\".5\"/></bsdf>");
+        EXPECT_GT(std::abs(rough.reflectance.x - m.reflectance.x), 1e-3);
+        set_reflectance_above_coat(rough);
+        expect_near(rough.reflectance, base, 1e-9);
+        EXPECT_EQ(mitsuba_material("<bsdf type=\"roughplastic\"><boolean name=\"nonlinear\" value=\"true\"/></bsdf>")
+                      .reflectance,
+            dvec3(0.5));
     }
 
     TEST(mitsuba_file, what_is_replaced_or_left_out_is_noted_with_its_place)

@@ -161,9 +161,9 @@ TEST_F(window, the_picture_and_the_mouse_follow_its_size)
                     first.brightness(part - 0.04, part + 0.04, down - 0.04, down + 0.04), 4)
                     << part << ", " << down;
         EXPECT_EQ(requests(), before) << "the window's size changes the screen alone";
-        click(px(0.27), py(0.285)); // selects the lamp, where it is now
+        click(px(lamp_x), py(lamp_y)); // selects the lamp, where it is now
         const auto maps_before = maps();
-        drag(px(0.27), py(0.285), px(0.73), py(0.285));
+        drag(px(lamp_x), py(lamp_y), px(0.73), py(lamp_y));
         ASSERT_TRUE(rests(before));
         EXPECT_GT(maps(), maps_before) << "the lamp was not where the picture shows it";
         const auto moved = take_screenshot();

@@ -182,8 +182,8 @@ TEST_F(window_of_scenes, what_was_moved_is_not_lost_in_silence)
     ASSERT_NO_FATAL_FAILURE(open_window({}, "cpu"));
     const auto first = first_screenshot();
     auto before = requests();
-    click(px(0.25), py(0.256)); // the lamp, from its edge
-    drag(px(0.25), py(0.256), px(0.73), py(0.256));
+    click(px(lamp_x), py(lamp_y));
+    drag(px(lamp_x), py(lamp_y), px(0.73), py(lamp_y));
     key(XK_Escape);
     mouse_to(px(0.1), py(0.2));
     ASSERT_TRUE(rests(before));

@@ -34,9 +34,9 @@ TEST_F(window, follows_camera_lamp_and_keys)
 
     // The lamp is taken and moved to the right: photons are traced anew, and the shadow falls to the left.
     before = requests();
-    click(px(0.27), py(0.285));
+    click(px(lamp_x), py(lamp_y));
     EXPECT_EQ(requests(), before) << "to select is not to draw";
-    drag(px(0.27), py(0.285), px(0.73), py(0.285));
+    drag(px(lamp_x), py(lamp_y), px(0.73), py(lamp_y));
     ASSERT_TRUE(rests(before));
     const auto moved = take_screenshot();
     EXPECT_GT(maps(), maps_at_first);

@@ -105,6 +105,10 @@ const char* const scene = R"({"photongrid": 1, "name": "ball", "units": {"length
  "lights": [{"type": "rectangle", "name": "lamp", "corner": [-1.1, 1.3, -0.1], "edge_u": [0.3, 0, 0], "edge_v": [0, 0, 0.3], "power": [20, 20, 20]}],
  "render": {"size": [160, 120], "photons": 4000, "k": 60, "grid": [24, 12, 18], "max_radius": 0.4, "light_samples": 4}})";
 
+/// Where its picture shows the middle of the lamp, in parts of the width and height. It is seen from its edge, a
+/// hundredth of the height.
+constexpr double lamp_x = 0.25, lamp_y = 0.256;
+
 class window : public ::testing::Test {
 protected:
     static constexpr int width = 1000, height = 800; // of the screen

@@ -1,6 +1,6 @@
+#include <photongrid/io/import/coat.hpp>
 #include <photongrid/io/mitsuba/materials.hpp>
 #include <photongrid/io/whole_file.hpp>
-#include <photongrid/trace/coat_layout.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -166,12 +166,9 @@ void material_reader::make_plastic(const object& o, material& m)
     m.index_of_refraction = relative_index(o, "polypropylene");
     m.roughness = o.type == "roughplastic" ? roughness(o, nullptr) : 0;
     note_unless_one(o, "specular_reflectance");
-    auto base = values_.reflectance(o, "diffuse_reflectance", dvec3(0.5));
-    if (!o.truth("nonlinear", false)) {
-        const double back = photongrid::detail::shares_of_coat(m.index_of_refraction, 0).thrown_back;
-        base = changed(base, [&](const dvec3& r) { return r / (1 - back + back * r); });
-    }
-    reflect(m, base);
+    reflect(m, values_.reflectance(o, "diffuse_reflectance", dvec3(0.5)));
+    if (!o.truth("nonlinear", false))
+        set_reflectance_below_coat(m);
 }
 
 void material_reader::make_principled(const object& o, material& m)
