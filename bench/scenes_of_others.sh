@@ -8,8 +8,8 @@
 # out/scenes_of_others. They have the filter of that renderer, a tent, and errors are those of means over 4 x 4 pixels.
 # The depths are those of the scenes' integrators.
 #
-# Wanted is a relMSE of at most twice the noise of both pictures. That of a photon map's is half the relMSE of two seeds
-# against each other; that of a picture of paths it has by itself (`compare --noise`). The exit status is 1 if one scene
+# Wanted is a relMSE of at most twice the noise of both pictures. That of a photon map's is told from two seeds
+# (`compare --again`), that of a picture of paths from itself (`compare --noise`). The exit status is 1 if one scene
 # misses it. Veach Ajar has no such row, since the pbrt file is another scene than the picture's.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -22,6 +22,7 @@ out=out/scenes_of_others
 mkdir -p "$out"
 missed=0
 relmse() { "$program" compare "$1" "$2" --average 4 | sed -n 's/^relMSE *//p'; }
+seeds() { "$program" compare "$1" "$3" --average 4 --again "$2" | sed -n 's/^seeds *\([^ ]*\) of.*/\1/p'; }
 noise() { "$program" compare "$1" "$1" --average 4 --noise | sed -n 's/^noise *\([^ ]*\) and.*/\1/p'; }
 # draw SCENE PICTURE OPTIONS...: PICTURE.exr and .png
 draw() {
@@ -52,7 +53,7 @@ draw_map() {
   shift
   draw "$scene" "$out/$name" render --backend cpu --size 1024x1024 "$@"
   draw "$scene" "$out/$name-2" render --backend cpu --size 1024x1024 "$@" --seed 2
-  judge "$out/$name.exr" "$(relmse "$out/$name.exr" "$out/$name-2.exr" | awk '{ print $1 / 2 }')" \
+  judge "$out/$name.exr" "$(seeds "$out/$name.exr" "$out/$name-2.exr" "$folder/$name/pbrt/TungstenRender.exr")" \
     "$folder/$name/pbrt/TungstenRender.exr"
 }
 if is_there cornell-box; then

@@ -245,6 +245,9 @@ namespace {
               "programs matter less")
             ->type_name("N")
             ->check(CLI::Range(1, 1024).description(""));
+        to.add_option("--again", o.again,
+              "a picture like A with another seed: also print what part of relMSE is noise of A, blotches too")
+            ->type_name("A2.exr|.pfm");
         to.add_flag("--noise", o.noise,
             "also print what relMSE the noise of each picture makes, told from that picture alone; blotches of photon "
             "maps are not found");

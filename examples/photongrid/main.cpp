@@ -19,6 +19,7 @@
 #include <ctime>
 #include <iostream>
 #include <new>
+#include <optional>
 
 #include <sys/stat.h>
 
@@ -65,11 +66,14 @@ namespace {
     {
         auto a = read_image(o.a), b = read_image(o.b);
         image_difference d;
+        std::optional<double> noise;
         const double exposure = exposure_for(b, o.exposure);
         try {
             a = averaged(a, o.average);
             b = averaged(b, o.average);
             d = compare_images(a, b);
+            if (!o.again.empty())
+                noise = noise_of_two(a, averaged(read_image(o.again), o.average), b);
         } catch (const std::invalid_argument& e) {
             std::cerr << "photongrid: error: " << o.a << ", " << o.b << ": " << e.what() << '\n';
             return file_failure;
@@ -77,6 +81,8 @@ namespace {
         std::cout << "MSE     " << d.mse << "\nrelMSE  " << d.relmse << "\nlargest " << d.largest << " at pixel " << d.x
                   << "," << d.y << "\nSSIM    " << structural_similarity(a, b, exposure) << " at " << exposure
                   << " EV\n";
+        if (noise)
+            std::cout << "seeds   " << *noise << " of relMSE is noise of " << o.a << '\n';
         if (o.noise)
             std::cout << "noise   " << picture_noise(a) << " and " << picture_noise(b) << ", of each by itself\n";
         if (d.not_finite > 0)

@@ -121,6 +121,27 @@ namespace {
         }
     }
 
+    TEST(noise_of_two, is_the_part_of_the_error_that_is_no_bias)
+    {
+        const auto radiance = [](auto x, auto y) { return x < 64 ? 5.0 : 1 + 0.01 * y; };
+        const auto truth = noisy(0, radiance);
+        auto a = noisy(0.1, radiance), other = a; // noise and, below, a bias of 20 %
+        std::mt19937 bits(5);
+        std::normal_distribution<float> gaussian(0, 0.1f);
+        for (std::size_t i = 0; i < a.pixels.size(); ++i)
+            for (int c = 0; c < 3; ++c)
+                other.pixels[i][c] = truth.pixels[i][c] * (1 + gaussian(bits));
+        for (auto* p : {&a, &other})
+            for (auto& pixel : p->pixels)
+                pixel *= 1.2f;
+        EXPECT_NEAR(noise_of_two(a, other, truth), 0.0144, 0.0005);
+        EXPECT_NEAR(compare_images(a, truth).relmse, 0.0144 + 0.04, 0.002);
+        other.pixels[3].x = std::numeric_limits<float>::infinity();
+        EXPECT_NEAR(noise_of_two(a, other, truth), 0.0144, 0.0005);
+        EXPECT_THROW(
+            noise_of_two(a, image{.width = 1, .height = 1, .pixels = {{1, 1, 1}}}, truth), std::invalid_argument);
+    }
+
     TEST(picture_noise, leaves_out_what_is_not_finite)
     {
         auto p = noisy(0.1, [](auto, auto) { return 1.0; });

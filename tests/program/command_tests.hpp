@@ -308,6 +308,10 @@ namespace {
         const auto means = run({"compare", "uneven.pfm", "even.pfm", "--average", "2", "--max-relmse", "0"});
         EXPECT_EQ(means.code, 0) << means.out << means.err;
         EXPECT_EQ(run({"compare", "uneven.pfm", "even.pfm", "--average", "5"}).code, 5);
+        const auto again
+            = run({"compare", "uneven.pfm", "even.pfm", "--again", "even.pfm"}).out; // (+-1)^2 / 2.01^2 / 2
+        EXPECT_NE(again.find("\nseeds   0.123759 of relMSE is noise of uneven.pfm\n"), std::string::npos) << again;
+        EXPECT_EQ(run({"compare", "uneven.pfm", "even.pfm", "--again", "none.pfm"}).code, 5);
         const auto noise = run({"compare", "uneven.pfm", "even.pfm", "--noise"}).out;
         EXPECT_NE(noise.find("\nnoise   "), std::string::npos) << noise;
         EXPECT_NE(noise.find(" and 0, of each by itself\n"), std::string::npos) << noise;

@@ -61,4 +61,21 @@ image_difference compare_images(const image& a, const image& b)
     return d;
 }
 
+double noise_of_two(const image& a, const image& other, const image& b)
+{
+    detail::require_same_size(a, b);
+    detail::require_same_size(other, b);
+    double sum = 0;
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        const glm::dvec3 p(a.pixels[i]), q(other.pixels[i]), r(b.pixels[i]);
+        if (!detail::finite(p) || !detail::finite(q) || !detail::finite(r))
+            continue;
+        for (int c = 0; c < 3; ++c)
+            sum += (p[c] - q[c]) * (p[c] - q[c]) / ((r[c] + 0.01) * (r[c] + 0.01));
+        count += 3;
+    }
+    return sum / static_cast<double>(count) / 2;
+}
+
 } // namespace photongrid
