@@ -29,9 +29,9 @@ namespace detail {
 /// \throws std::invalid_argument if the sizes differ.
 image_difference compare_images(const image& a, const image& b);
 
-/// The relMSE against the reference b that noise makes in a, and as much in a picture like a with another seed: half the
-/// mean of (a - other)^2 / (b + 0.01)^2, over the pixels that are finite in all. What a's relMSE has more is bias, and b's
-/// own error. \throws std::invalid_argument if the sizes differ.
+/// The relMSE against the reference b that noise makes in a, and as much in a picture like a with another seed: half
+/// the mean of (a - other)^2 / (b + 0.01)^2, over the pixels that are finite in all. What a's relMSE has more is bias,
+/// and b's own error. \throws std::invalid_argument if the sizes differ.
 double noise_of_two(const image& a, const image& other, const image& b);
 
 } // namespace photongrid
