@@ -1,17 +1,34 @@
 #include <photongrid/io/import/coat.hpp>
 #include <photongrid/trace/coat_layout.hpp>
 
+#include <map>
 #include <memory>
+#include <mutex>
+#include <utility>
 
 namespace photongrid {
 
 namespace {
+    /// The share of diffuse light from below that the coat of a plastic throws back. A rough coat's takes some ms, and
+    /// files have many materials but few coats: each is computed once.
+    double thrown_back_by(const material& plastic)
+    {
+        static std::mutex one_at_a_time;
+        static std::map<std::pair<double, double>, double> known;
+        const std::pair coat(plastic.index_of_refraction, plastic.roughness * plastic.roughness);
+        const std::lock_guard lock(one_at_a_time);
+        if (const auto found = known.find(coat); found != known.end())
+            return found->second;
+        if (known.size() == 4096) // a file with as many coats
+            known.clear();
+        return known[coat] = detail::shares_of_coat(coat.first, coat.second).thrown_back;
+    }
+
     /// `change`: of a colour, with the share of light from below that the coat throws back.
     template <class Change>
     void change_reflectance(material& plastic, Change change)
     {
-        const double thrown_back
-            = detail::shares_of_coat(plastic.index_of_refraction, plastic.roughness * plastic.roughness).thrown_back;
+        const double thrown_back = thrown_back_by(plastic);
         if (!plastic.texture.map) {
             plastic.reflectance = change(plastic.reflectance, thrown_back);
             return;
