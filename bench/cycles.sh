@@ -8,6 +8,7 @@
 # those of means over 4 x 4 pixels; wanted is at most twice the noise of both pictures, as they have it by themselves.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source bench/programs.sh
 program=${1:-build/photongrid} samples=${2:-256}
 if ! command -v blender >/dev/null; then
   echo "cycles.sh: SKIPPED: no blender (Debian packages blender, python3-numpy)" >&2
@@ -22,12 +23,8 @@ for name in cornell_blocks cornell_box; do
   blender -b --factory-startup -P bench/cycles.py -- "$out/$name.gltf" "$out/$name-cycles.exr" 256 256 "$samples" \
     >"$out/$name.log" 2>&1 || { cat "$out/$name.log" >&2; exit 2; }
   "$program" reference "$scene" --size 256x256 --spp "$samples" --quiet -o "$out/$name.exr" >/dev/null
-  "$program" compare "$out/$name-cycles.exr" "$out/$name.exr" --average 4 --noise |
-    awk -v name="$name" '/^relMSE/ { error = $2 } /^noise/ { most = 2 * ($2 + $4); a = $2; b = $4 }
-      END {
-        printf "%s: relMSE %.2g; noise of Cycles %.2g, of ours %.2g; wanted at most %.2g: ", name, error, a, b, most
-        print (error <= most ? "PASS" : "FAIL")
-        exit error > most
-      }' || missed=1
+  read -r error theirs ours < <("$program" compare "$out/$name-cycles.exr" "$out/$name.exr" --average 4 --noise |
+    awk '/^relMSE/ { error = $2 } /^noise/ { print error, $2, $4 }')
+  judge "$name" "$error" "$ours" "$theirs" || missed=1
 done
 exit $missed

@@ -29,7 +29,9 @@ build=build-bench
 install=yes gpu=no smoke=no write=no parts=()
 for argument in "$@"; do
   case $argument in
-    --algorithms | --peers | --paper | --interactive | --estimates | --error | --inclusion | --files) parts+=("${argument#--}") ;;
+    --algorithms | --peers | --paper | --interactive | --estimates | --error | --inclusion | --files)
+      parts+=("${argument#--}")
+      ;;
     --gpu) gpu=yes ;;
     --smoke) smoke=yes ;;
     --write) write=yes ;;

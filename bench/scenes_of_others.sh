@@ -8,12 +8,13 @@
 # out/scenes_of_others. They have the filter of that renderer, a tent, and errors are those of means over 4 x 4 pixels.
 # The depths are those of the scenes' integrators.
 #
-# Wanted of the Cornell box's paths and of Water Caustic is a relMSE of at most twice the noise of both pictures. That of
-# a photon map's is told from two seeds (`compare --again`), that of a picture of paths from itself (`compare --noise`).
-# The exit status is 1 if one misses it. The Cornell box's map has bias besides, and Veach Ajar's pbrt file is another
-# scene than its picture.
+# Wanted of the Cornell box's paths and of Water Caustic is a relMSE of at most twice the noise of both pictures. That
+# of a photon map's is told from two seeds (`compare --again`), that of a picture of paths from itself (`compare
+# --noise`). The exit status is 1 if one misses it. The Cornell box's map has bias besides, and Veach Ajar's pbrt file
+# is another scene than its picture.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source bench/programs.sh
 folder=${1:-} program=${2:-build/photongrid}
 if [[ ! -d $folder ]]; then
   echo "scenes_of_others.sh: SKIPPED: \"$folder\" is no folder of scenes" >&2
@@ -22,7 +23,7 @@ fi
 out=out/scenes_of_others
 mkdir -p "$out"
 missed=0
-relmse() { "$program" compare "$1" "$2" --average 4 | sed -n 's/^relMSE *//p'; }
+relmse() { "$program" compare "$1" "$2" --average 4 | tee /dev/stderr | sed -n 's/^relMSE *//p'; } # shows all of it
 seeds() { "$program" compare "$1" "$3" --average 4 --again "$2" | sed -n 's/^seeds *\([^ ]*\) of.*/\1/p'; }
 noise() { "$program" compare "$1" "$1" --average 4 --noise | sed -n 's/^noise *\([^ ]*\) and.*/\1/p'; }
 # draw SCENE PICTURE OPTIONS...: PICTURE.exr and .png
@@ -37,17 +38,6 @@ is_there() {
   echo "--- $1"
   [[ -e $folder/$1/pbrt/scene-v4.pbrt ]] || { echo "scenes_of_others.sh: SKIPPED: there is no $1" >&2; return 1; }
 }
-# judge PICTURE NOISE REFERENCE: relMSE against twice the noise of both
-judge() {
-  local error theirs
-  "$program" compare "$1" "$3" --average 4
-  error=$(relmse "$1" "$3") theirs=$(noise "$3")
-  awk -v e="$error" -v ours="$2" -v theirs="$theirs" 'BEGIN {
-    most = 2 * (ours + theirs)
-    printf "noise of ours %.2g, of the reference %.2g: relMSE %.2g, wanted at most %.2g: ", ours, theirs, e, most
-    print (e <= most ? "PASS" : "FAIL")
-    exit e > most }' || missed=1
-}
 # draw_map NAME OPTIONS...: by a photon map, with two seeds
 draw_map() {
   local name=$1 scene=$folder/$1/pbrt/scene-v4.pbrt
@@ -61,14 +51,16 @@ if is_there cornell-box; then
   "$program" compare "$out/cornell-box.exr" "$folder/cornell-box/pbrt/TungstenRender.exr" --average 4 \
     --again "$out/cornell-box-2.exr"
   draw "$folder/cornell-box/pbrt/scene-v4.pbrt" "$out/cornell-box-paths" reference --size 1024x1024 --spp 64
-  judge "$out/cornell-box-paths.exr" "$(noise "$out/cornell-box-paths.exr")" \
-    "$folder/cornell-box/pbrt/TungstenRender.exr"
+  theirs=$folder/cornell-box/pbrt/TungstenRender.exr
+  judge cornell-box-paths "$(relmse "$out/cornell-box-paths.exr" "$theirs")" "$(noise "$out/cornell-box-paths.exr")" \
+    "$(noise "$theirs")" || missed=1
 fi
 if is_there water-caustic; then
   "$program" check "$folder/water-caustic/pbrt/scene-v4.pbrt"
   draw_map water-caustic --spp 16 --photons 8000000 --k 200 --photon-depth 9 --depth 9
   theirs=$folder/water-caustic/pbrt/TungstenRender.exr
-  judge "$out/water-caustic.exr" "$(seeds "$out/water-caustic.exr" "$out/water-caustic-2.exr" "$theirs")" "$theirs"
+  judge water-caustic "$(relmse "$out/water-caustic.exr" "$theirs")" \
+    "$(seeds "$out/water-caustic.exr" "$out/water-caustic-2.exr" "$theirs")" "$(noise "$theirs")" || missed=1
 fi
 if is_there veach-ajar; then
   scene=$folder/veach-ajar/pbrt/scene-v4.pbrt

@@ -1,7 +1,7 @@
 // Correctly rounded quotients and square roots for devices whose own may be off by a few units in the last place.
 // with_exact_arithmetic() (exact_arithmetic.hpp) replaces `a / b` and `sqrt(x)` in kernels by these functions. They
-// need a fused fma. Outside of 2^-79 to 2^100, where residuals would lose bits or overflow, they take the operands' powers
-// of two out first. Subnormal operands and quotients, infinities and NaNs are left to the device.
+// need a fused fma. Outside of 2^-79 to 2^100, where residuals would lose bits or overflow, they take the operands'
+// powers of two out first. Subnormal operands and quotients, infinities and NaNs are left to the device.
 inline bool has_exact_residuals(float least, float most)
 {
     return least >= 1.6543612e-24f && most <= 1.2676506e30f;

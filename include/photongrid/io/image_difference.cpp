@@ -25,6 +25,14 @@ image averaged(const image& picture, std::uint32_t n)
     return made;
 }
 
+namespace {
+    /// What a channel adds to relMSE.
+    double relative_square(double error, double reference)
+    {
+        return error * error / ((reference + relmse_floor) * (reference + relmse_floor));
+    }
+} // namespace
+
 void detail::require_same_size(const image& a, const image& b)
 {
     if (a.width != b.width || a.height != b.height)
@@ -47,7 +55,7 @@ image_difference compare_images(const image& a, const image& b)
         for (int c = 0; c < 3; ++c) {
             const double error = p[c] - q[c];
             d.mse += error * error;
-            d.relmse += error * error / ((q[c] + 0.01) * (q[c] + 0.01));
+            d.relmse += relative_square(error, q[c]);
             if (std::abs(error) > d.largest) {
                 d.largest = std::abs(error);
                 d.x = static_cast<std::uint32_t>(i % a.width);
@@ -72,7 +80,7 @@ double noise_of_two(const image& a, const image& other, const image& b)
         if (!detail::finite(p) || !detail::finite(q) || !detail::finite(r))
             continue;
         for (int c = 0; c < 3; ++c)
-            sum += (p[c] - q[c]) * (p[c] - q[c]) / ((r[c] + 0.01) * (r[c] + 0.01));
+            sum += relative_square(p[c] - q[c], r[c]);
         count += 3;
     }
     return sum / static_cast<double>(count) / 2;

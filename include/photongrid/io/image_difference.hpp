@@ -7,10 +7,13 @@
 
 namespace photongrid {
 
+/// What relMSE adds to the radiance that it divides by.
+inline constexpr double relmse_floor = 0.01;
+
 /// The errors of picture a against the reference b, over all channels of the pixels that are finite in both.
 struct image_difference {
     double mse = 0;               ///< mean of (a - b)^2
-    double relmse = 0;            ///< mean of (a - b)^2 / (b + 0.01)^2, as pbrt's MRSE
+    double relmse = 0;            ///< mean of (a - b)^2 / (b + relmse_floor)^2, as pbrt's MRSE
     double largest = 0;           ///< largest |a - b|
     std::uint32_t x = 0, y = 0;   ///< its pixel
     std::uint64_t compared = 0;   ///< pixels compared
@@ -30,8 +33,8 @@ namespace detail {
 image_difference compare_images(const image& a, const image& b);
 
 /// The relMSE against the reference b that noise makes in a, and as much in a picture like a with another seed: half
-/// the mean of (a - other)^2 / (b + 0.01)^2, over the pixels that are finite in all. What a's relMSE has more is bias,
-/// and b's own error. \throws std::invalid_argument if the sizes differ.
+/// the mean of (a - other)^2 / (b + relmse_floor)^2, over the pixels that are finite in all. What a's relMSE has more
+/// is bias, and b's own error. \throws std::invalid_argument if the sizes differ.
 double noise_of_two(const image& a, const image& other, const image& b);
 
 } // namespace photongrid

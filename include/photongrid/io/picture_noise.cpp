@@ -1,3 +1,4 @@
+#include <photongrid/io/image_difference.hpp>
 #include <photongrid/io/picture_noise.hpp>
 #include <photongrid/scene/check.hpp>
 
@@ -23,7 +24,7 @@ namespace {
                 detail += static_cast<double>(mask[row][column]) * pixel;
                 sum += pixel;
             }
-        return detail / 6.0 / (sum / 9.0 + 0.01); // relMSE divides by as much
+        return detail / 6.0 / (sum / 9.0 + relmse_floor);
     }
 } // namespace
 

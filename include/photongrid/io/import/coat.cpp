@@ -15,7 +15,7 @@ namespace {
     {
         static std::mutex one_at_a_time;
         static std::map<std::pair<double, double>, double> known;
-        const std::pair coat(plastic.index_of_refraction, plastic.roughness * plastic.roughness);
+        const std::pair coat(plastic.index_of_refraction, alpha_of(plastic));
         const std::lock_guard lock(one_at_a_time);
         if (const auto found = known.find(coat); found != known.end())
             return found->second;
