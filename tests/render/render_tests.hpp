@@ -3,6 +3,7 @@
 #pragma once
 
 #include "equal_picture_tests.hpp"
+#include "final_gather_tests.hpp"
 #include "known_energy_tests.hpp"
 #include "known_picture_tests.hpp"
 #include "photon_account_tests.hpp"
@@ -82,6 +83,10 @@ REGISTER_TYPED_TEST_SUITE_P(pictures, a_closed_diffuse_sphere_has_the_known_radi
     a_ball_of_each_material_amid_lamps_has_the_known_radiance, a_floor_under_a_bulb_has_the_known_radiance,
     photons_have_the_power_that_their_surfaces_left_them, eye_rays_of_a_pixel_share_out_the_choices_in_glass,
     direct_light_alone_traces_no_photon, scenes_beyond_the_loop_limit_are_refused,
-    a_light_that_stores_no_photon_is_named);
+    a_light_that_stores_no_photon_is_named, the_irradiance_at_the_nearest_photon_has_the_right_mean,
+    irradiance_at_photons_equals_brute_force, a_final_gather_in_a_closed_sphere_has_the_known_radiance,
+    a_final_gather_below_a_coat_has_the_known_radiance, the_parts_of_a_gathered_picture_add_up,
+    a_final_gather_equals_serials, a_gathered_picture_does_not_depend_on_bands,
+    a_view_of_a_map_without_a_gather_is_refused);
 
 } // namespace photongrid::testing

@@ -10,16 +10,25 @@
 
 namespace photongrid::detail {
 
-/// The search in the photon map for a picture with settings `s`.
-inline knn_settings search_for(const render_settings& s)
+/// The search in a photon map that the settings of the estimate ask for.
+inline knn_settings search_for(const estimate_settings& s)
 {
     knn_settings k;
-    k.k = s.estimate.k;
-    k.max_radius = s.output.only == light_part::direct ? 0.0f : static_cast<float>(s.estimate.max_radius);
-    k.search = s.estimate.search;
-    k.filter = s.estimate.filter;
-    k.bias = s.estimate.bias;
-    k.leaks = s.estimate.leaks;
+    k.k = s.k;
+    k.max_radius = static_cast<float>(s.max_radius);
+    k.search = s.search;
+    k.filter = s.filter;
+    k.bias = s.bias;
+    k.leaks = s.leaks;
+    return k;
+}
+
+/// The search in the photon map where eye rays end, for a picture with settings `s`.
+inline knn_settings search_for(const render_settings& s)
+{
+    knn_settings k = search_for(s.estimate);
+    if (s.output.only == light_part::direct || (gathers(s) && s.output.only == light_part::indirect))
+        k.max_radius = 0; // nothing of the map is seen
     k.errors = s.output.aov;
     return k;
 }

@@ -30,6 +30,7 @@ step_list map_steps(map_building<B>& m)
     step_list steps;
     steps.add("trace_photons", [&m] { return m.trace_photons(); }); // 2.1
     steps.add("build_map", [&m] { return m.build_map(); });         // 2.2
+    steps.add("build_map", [&m] { return m.estimate_at_photons(); });
     return steps;
 }
 
@@ -44,8 +45,9 @@ step_list view_steps(view_pass<B>& v)
         step_list stages;
         stages.add("trace_eye", [&v, ray] { return v.trace_eye(ray); });       // 2.4
         stages.add("direct_light", [&v, ray] { return v.direct_light(ray); }); // 2.4
-        stages.add("irradiance", [&v, ray] { return v.irradiance(ray); });     // 2.3
-        stages.add("shade", [&v, ray] { return v.shade(ray); });               // 2.4
+        stages.add("gather", [&v, ray] { return v.gather(ray); });
+        stages.add("irradiance", [&v, ray] { return v.irradiance(ray); }); // 2.3
+        stages.add("shade", [&v, ray] { return v.shade(ray); });           // 2.4
         return stages;
     });
     return steps;

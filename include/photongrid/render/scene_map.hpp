@@ -3,6 +3,7 @@
 #pragma once
 
 #include <photongrid/map/map_builders.hpp>
+#include <photongrid/render/final_gather.hpp>
 #include <photongrid/render/stage_clock.hpp>
 #include <photongrid/trace/trace_photons.hpp>
 
@@ -15,16 +16,25 @@ namespace photongrid {
 /// The result of build_map and the input of draw: the scene on the device and its photon map.
 template <backend B>
 struct built_map {
-    device_scene<B> scene;   ///< recentred
-    map_buffers<B> map;      ///< in the coordinates of `scene`
-    traced_photons<B> trace; ///< without the photons, which are in `map`
-    render_stats stats;      ///< trace_photons, build_map and map
+    device_scene<B> scene;               ///< recentred
+    map_buffers<B> map;                  ///< in the coordinates of `scene`; with `gather` of caustic photons alone
+    traced_photons<B> trace;             ///< without the photons, which are in `map`
+    render_stats stats;                  ///< trace_photons, build_map and map
+    std::optional<gather_map<B>> gather; ///< of all photons, for a final gather
 };
 
 /// The parts of the light (map_buffers.hpp) that a picture of `only` needs in its map.
 constexpr uint parts_of(light_part only)
 {
     return only == light_part::caustic ? caustic_part : only == light_part::indirect ? other_part : every_part;
+}
+/// The parts of the light in the map that is searched where rays end, for a picture with settings `s`.
+inline uint parts_at_ends(const render_settings& s) { return gathers(s) ? caustic_part : parts_of(s.output.only); }
+/// Whether the irradiance at photons is the same with settings `a` and `b` of the estimate, for a final gather.
+inline bool same_irradiance(estimate_settings a, const estimate_settings& b)
+{
+    a.gather_rays = b.gather_rays;
+    return a == b;
 }
 
 /// Whether the photon map of scene `a` with settings `as` can be used for scene `b` with `bs`: same shapes, materials
@@ -35,7 +45,8 @@ inline bool same_map(const scene& a, const render_settings& as, const scene& b, 
     return same_light_paths(a, b) && as.seed == bs.seed && as.map.in_use() == bs.map.in_use()
         && (!fitted || as.estimate.k == bs.estimate.k) // a fitted map depends on k
         && (as.estimate.leaks.needs_photon_normals() || !bs.estimate.leaks.needs_photon_normals())
-        && parts_of(as.output.only) == parts_of(bs.output.only)
+        && parts_of(as.output.only) == parts_of(bs.output.only) && gathers(as) == gathers(bs)
+        && (!gathers(as) || same_irradiance(as.estimate, bs.estimate))
         && (as.output.only != light_part::direct || bs.output.only == light_part::direct); // it has no photons
 }
 
@@ -79,9 +90,23 @@ public:
         }
         return true;
     }
+    /// Computes the irradiance at photons for a final gather, if there is one; returns whether it is done.
+    /// \throws backend_error.
+    bool estimate_at_photons()
+    {
+        if (!gather_)
+            return true;
+        detail::time_stage(device_, built_.stats.build_map, [&] {
+            if (gather_->advance()) {
+                built_.gather = gather_->take();
+                gather_.reset();
+            }
+        });
+        return !gather_;
+    }
 
     /// Whether take() may be called.
-    bool finished() const { return !tracing_; }
+    bool finished() const { return !tracing_ && !gather_; }
     /// The fraction of the photons that have been traced.
     double fraction() const { return tracing_ ? tracing_->fraction() : 1.0; }
 
@@ -92,7 +117,9 @@ private:
     void build()
     {
         photons<B> p = std::move(built_.trace.photons);
-        built_.map = map_of(std::move(p), parts_of(settings_.output.only));
+        if (gathers(settings_))
+            gather_.emplace(device_, built_.scene, detail::copy(device_, p), settings_);
+        built_.map = map_of(std::move(p), parts_at_ends(settings_));
         auto& made = built_.stats.map;
         made.builder = settings_.map.builder;
         if (made.builder == map_builder::automatic)
@@ -125,7 +152,8 @@ private:
     B& device_;
     render_settings settings_;
     built_map<B> built_;
-    std::optional<photon_tracing<B>> tracing_; // of built_.scene
+    std::optional<photon_tracing<B>> tracing_;     // of built_.scene
+    std::optional<gather_map_building<B>> gather_; // of built_.scene
 };
 
 } // namespace photongrid

@@ -48,6 +48,10 @@ public:
         check(view);
         if (const auto& p = how_.preview; p && (p->divisor < 1 || p->k_divisor < 1))
             throw std::invalid_argument("view_pass: preview: divisor and k_divisor must be at least 1");
+        if (settings.output.only != light_part::direct && gathers(settings) != built.gather.has_value())
+            throw std::invalid_argument(std::string("view_pass: the map was built ")
+                + (built.gather ? "with" : "without") + " a final gather, which the settings "
+                + (built.gather ? "do not ask for" : "ask for") + "; build it with the settings of the picture");
         auto r = detail::raster_of(settings_, divisor());
         if (how_.band && *how_.band != row_band{0, r.height}) {
             r.first_row = how_.band->first;
@@ -78,6 +82,9 @@ public:
 
     /// Traces shadow rays from there to the lights (2.4).
     bool direct_light(uint ray);
+
+    /// Adds the light of a final gather there, if the picture has one (final_gather.hpp).
+    bool gather(uint ray);
 
     /// Estimates the irradiance there from the photon map (2.3).
     bool irradiance(uint)
@@ -212,7 +219,8 @@ private:
     // Data passed from stage to stage.
     std::optional<eye_samples<B>> samples_;
     buffer_of<B, uint> own_branches_;         ///< which branches of an eye ray have light of their own (eye_rays.hpp)
-    bool lit_ = false;                        ///< the samples already have their direct light
+    bool lit_ = false;                        ///< the samples already have their direct and gathered light
+    uint gathered_ = 0;                       ///< rays of the final gather that are done
     std::size_t done_ = 0;                    ///< pixels that the stage has finished
     std::optional<running_search<B>> search_; ///< of the eye ray that is drawn
     uint running_pictures_ = 0;
@@ -265,6 +273,23 @@ bool view_pass<B>::direct_light(uint ray)
             device_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->hits.emissions));
         }
     });
+}
+
+template <backend B>
+bool view_pass<B>::gather(uint ray)
+{
+    if (lit_ || !gathers(settings_))
+        return true;
+    const bool all_pixels = over_pixels(stats_.trace_rays, [&](launch pixels) {
+        add_gather_rays(device_, built_.scene, *built_.gather, built_.map, samples_->hits, settings_, ray, gathered_,
+            pixels, samples_->direct);
+    });
+    if (all_pixels)
+        ++gathered_;
+    const bool finished = gathered_ == settings_.estimate.gather_rays;
+    if (finished)
+        gathered_ = 0;
+    return finished;
 }
 
 template <backend B>

@@ -59,6 +59,10 @@ struct map_settings {
     bool operator==(const map_settings&) const = default;
 };
 
+/// How indirect light that no mirror or glass focuses is computed where eye rays end: from the photons there; or by a
+/// final gather, which looks at the photons of all other surfaces from there (final_gather.hpp).
+enum class indirect_kind { map, gather };
+
 /// The irradiance estimate (the paper's radiance estimate) of a picture (2.3).
 struct estimate_settings {
     std::uint32_t k = 500;                         ///< photons sought per estimate
@@ -68,6 +72,8 @@ struct estimate_settings {
     bias_kind bias = bias_kind::unbiased;          ///< whether the photon that sets the radius counts
     leak_policy leaks{.side = true};               ///< which photons are rejected
     edge_correction edges = edge_correction::none; ///< polygons: needs leak_policy::min_cosine above 0
+    indirect_kind indirect = indirect_kind::map;   ///< how indirect light is computed
+    std::uint32_t gather_rays = 16;                ///< rays of a final gather per eye ray
 
     bool operator==(const estimate_settings&) const = default;
 };
@@ -114,10 +120,19 @@ struct render_settings {
     bool operator==(const render_settings&) const = default;
 };
 
+/// Whether a picture with settings `s` has light from a final gather.
+inline bool gathers(const render_settings& s)
+{
+    return s.estimate.indirect == indirect_kind::gather
+        && (s.output.only == light_part::all || s.output.only == light_part::indirect);
+}
+/// Whether photons keep the normals of their surfaces.
+inline bool keeps_normals(const render_settings& s) { return s.estimate.leaks.needs_photon_normals() || gathers(s); }
+
 /// The settings that reproduce the paper's method: its estimate (2.3: at least k, constant filter, no leak policy, no
-/// edge correction), one pass with one eye ray per pixel, which takes all shadow rays of the pixel (light_samples times
-/// spp: by default 32, as in the paper's Cornell box); routed cells redistribute power alone (2.2.2). Other settings
-/// are unchanged.
+/// edge correction, no final gather), one pass with one eye ray per pixel, which takes all shadow rays of the pixel
+/// (light_samples times spp: by default 32, as in the paper's Cornell box); routed cells redistribute power alone
+/// (2.2.2). Other settings are unchanged.
 /// \snippet snippets.cpp as_paper
 inline render_settings as_paper(render_settings s)
 {
@@ -126,6 +141,7 @@ inline render_settings as_paper(render_settings s)
     s.estimate.bias = bias_kind::paper;
     s.estimate.leaks = {};
     s.estimate.edges = edge_correction::none;
+    s.estimate.indirect = indirect_kind::map;
     s.map.surplus = surplus_kind::power;
     s.output.passes = 1;
     s.view.light_samples = static_cast<std::uint32_t>(

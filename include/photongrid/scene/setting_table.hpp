@@ -222,6 +222,12 @@ namespace setting_table {
         in_scenes::optional,
         "polygons: divide estimates by the share of their disc that lies on the surface, so that polygons are not "
         "darker near their edges; needs min_cosine in --leaks"};
+    inline constexpr setting indirect{"indirect", of(&estimate_settings::indirect),
+        one_of{{named{"map", indirect_kind::map}, {"gather", indirect_kind::gather}}}, in_scenes::optional,
+        "indirect light that is no caustic: from the photons where eye rays end (map), or by a final gather of the "
+        "light of all other surfaces (gather)"};
+    inline constexpr setting gather_rays{"gather_rays", of(&estimate_settings::gather_rays), whole_range{1, 65536},
+        in_scenes::optional, "rays of a final gather per eye ray"};
     inline constexpr setting only{"only", of(&output_settings::only),
         one_of{{named{"all", light_part::all}, {"direct", light_part::direct}, {"caustic", light_part::caustic},
             {"indirect", light_part::indirect}}},
@@ -236,7 +242,7 @@ constexpr void for_each_setting(const Visit& visit)
     const auto all = [&](const auto&... row) { (visit(row), ...); };
     all(t::size, t::photons, t::k, t::grid, t::max_radius, t::light_samples, t::spp, t::pixel_filter, t::passes,
         t::depth, t::photon_depth, t::seed, t::map, t::slots, t::surplus, t::exposure, t::search, t::filter, t::bias,
-        t::leaks, t::edge_correction, t::only);
+        t::leaks, t::edge_correction, t::indirect, t::gather_rays, t::only);
 }
 
 /// \throws std::invalid_argument "name: must be …" for a setting out of its range, or for two incompatible settings.

@@ -215,6 +215,50 @@ void light_rough_surfaces(
     }
 }
 
+/// How rays are traced to their ends: see the Params of eye_bounce.glsl.
+struct path_choices {
+    uint branch = 0;
+    uint splits = 0;
+    uint depth = 0;
+    uint sample_id = 0;
+    float light_samples = 0;
+    float stratum = 0;
+    uint seed = 0;
+};
+
+/// Traces rays that eye_ray.glsl or final_gather_ray.glsl started to their ends.
+template <backend B>
+void trace_to_ends(B& device, const device_scene<B>& s, launch pixels, const path_choices& how, eye_hits<B>& hits,
+    buffer_of<B, uint>& branches)
+{
+    mesh_hits<B> on_meshes(device, s, pixels.elements);
+    mesh_rays<B> rays(device, s.has_meshes() ? pixels.elements : 0);
+    for (bool finished = false; !finished;) {
+        if (s.has_meshes()) {
+            device.template run<kernels::eye_ray_to_search>(pixels.elements, {.first = pixels.first},
+                reads(hits.points, hits.directions), writes(rays.origins, rays.directions));
+            rays.find(device, s, on_meshes);
+        }
+        finished
+            = device
+                  .template run_until_done<kernels::eye_bounce>({pixels.elements, pixels.first, s.layout.features},
+                      {.branch = how.branch,
+                          .splits = how.splits,
+                          .depth = how.depth,
+                          .sample_id = how.sample_id,
+                          .light_samples = how.light_samples,
+                          .stratum = how.stratum,
+                          .seed = how.seed,
+                          .first_pixel = hits.first_pixel,
+                          .first = pixels.first},
+                      reads(s.records, on_meshes.places, on_meshes.normals, on_meshes.shadings, s.environment,
+                          on_meshes.colors),
+                      writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches),
+                      s.has_meshes() ? 1u : all_passes)
+                  .finished;
+    }
+}
+
 /// Traces eye rays to their ends, for the pixels of `pixels`: `ray` is sample x branches + branch. Bit b of `branches`
 /// is set for the pixels for which branch b must be traced; rays of other pixels end at once. Branch 0 sets its own
 /// bit, and a ray that splits sets that of its other branch, so the branches of a sample must be traced in order.
@@ -227,32 +271,15 @@ void trace_eye_rays(B& device, const device_scene<B>& s, const camera& view, con
     const uint sampled_at_rough = samples_choose_lights(layout) ? 0 : settings.view.light_samples;
     device.template run<kernels::eye_ray>(pixels, eye_params(view, layout.center, settings, r, ray, splits), reads(),
         writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
-    mesh_hits<B> on_meshes(device, s, pixels.elements);
-    mesh_rays<B> rays(device, s.has_meshes() ? pixels.elements : 0);
-    for (bool finished = false; !finished;) {
-        if (s.has_meshes()) {
-            device.template run<kernels::eye_ray_to_search>(pixels.elements, {.first = pixels.first},
-                reads(hits.points, hits.directions), writes(rays.origins, rays.directions));
-            rays.find(device, s, on_meshes);
-        }
-        finished
-            = device
-                  .template run_until_done<kernels::eye_bounce>({pixels.elements, pixels.first, layout.features},
-                      {.branch = ray & ((1u << splits) - 1u),
-                          .splits = splits,
-                          .depth = settings.view.depth,
-                          .sample_id = sample,
-                          .light_samples = static_cast<float>(sampled_at_rough),
-                          .stratum = static_cast<float>(sample) / static_cast<float>(settings.view.spp),
-                          .seed = settings.seed,
-                          .first_pixel = hits.first_pixel,
-                          .first = pixels.first},
-                      reads(s.records, on_meshes.places, on_meshes.normals, on_meshes.shadings, s.environment,
-                          on_meshes.colors),
-                      writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches),
-                      s.has_meshes() ? 1u : all_passes)
-                  .finished;
-    }
+    trace_to_ends(device, s, pixels,
+        {.branch = ray & ((1u << splits) - 1u),
+            .splits = splits,
+            .depth = settings.view.depth,
+            .sample_id = sample,
+            .light_samples = static_cast<float>(sampled_at_rough),
+            .stratum = static_cast<float>(sample) / static_cast<float>(settings.view.spp),
+            .seed = settings.seed},
+        hits, branches);
     if ((layout.features & has_rough) != 0)
         light_rough_surfaces(device, s, settings, ray, pixels, hits);
 }

@@ -44,10 +44,11 @@ inline bool event_is_diffuse(vec4 position)
 {
     return event_kind(position) >= DIFFUSE_SURFACE;
 }
-// Whether the photon is stored: one straight from a light, or through clear surfaces, is left to the direct light.
-inline bool event_is_stored(vec4 position)
+// Whether the photon is stored. One straight from a light, or through clear surfaces, is a first hit. First hits are
+// left to the direct light, unless a final gather looks at them.
+inline bool event_is_stored(vec4 position, bool stores_first_hits)
 {
-    return event_is_diffuse(position) && event_before(position) != NOTHING_BEFORE;
+    return event_is_diffuse(position) && (stores_first_hits || event_before(position) != NOTHING_BEFORE);
 }
 // Of BOTH_SURFACES, the power that leaves over that which was stored, which differ by shading normals: at most 256, in
 // steps of 2^-8. `u` in [0, 1) rounds it so that its mean is right.

@@ -1,6 +1,6 @@
 // The index in the frames of stored photon i. Photons are stored in the order of (path, bounce): a binary search in the
 // prefix sums finds the path, a loop its r-th diffuse hit. Included by kernels after their inputs `sums` and
-// `positions`; args: paths, frames, stored_before.
+// `positions`; args: paths, frames, stored_before, first_hits.
 uint stored_photon(uint i)
 {
     uint rank = i - args.stored_before;
@@ -16,9 +16,9 @@ uint stored_photon(uint i)
     // Count down from the path's last photon, whose rank is sums(low) - 1.
     uint skip = sums(low) - 1u - rank;
     uint found = low;
-    for (uint frame = args.frames - 1u; frame >= 2u; --frame) {
+    for (uint frame = args.frames - 1u; frame >= 1u; --frame) {
         uint at = frame * args.paths + low;
-        if (event_is_stored(positions(at))) {
+        if (event_is_stored(positions(at), args.first_hits != 0u)) {
             if (skip == 0u) {
                 found = at;
                 break;

@@ -1,16 +1,17 @@
-// Counts for path i, over all its frames: how it ended, and its diffuse hits. Photons straight from a light are not
-// stored, because direct light is computed by shadow rays.
+// Counts for path i, over all its frames: how it ended, and its diffuse hits. Photons straight from a light are stored
+// only for a final gather; else shadow rays compute their light.
 #include <photongrid/trace/photon_event.glsl>
 
 struct Params {
     uint paths;
-    uint frames; // traced so far, frame 0 included
+    uint frames;     // traced so far, frame 0 included
+    uint first_hits; // 1: they are stored, too
 };
 PARAMS(Params)
 INPUT(0, vec4, positions)
 OUTPUT(0, uint, storable) // diffuse hits that are stored
 OUTPUT(1, uvec4, ends)    // a 1 for its end: absorbed, escaped, cut off, not a number
-OUTPUT(2, uvec4, hits)    // diffuse hits; those straight from a light
+OUTPUT(2, uvec4, hits)    // diffuse hits; those left to the direct light
 
 void kernel(uint i)
 {
@@ -24,7 +25,7 @@ void kernel(uint i)
             break;
         if (event_is_diffuse(p)) {
             ++hits.x;
-            if (event_is_stored(p))
+            if (event_is_stored(p, args.first_hits != 0u))
                 ++storable;
             else
                 ++hits.y;

@@ -32,7 +32,7 @@ namespace photongrid {
 template <backend B>
 struct path_tally {
     buffer_of<B, glm::uvec4> ends; ///< absorbed, escaped, cut off, invalid
-    buffer_of<B, glm::uvec4> hits; ///< diffuse hits; those straight from a light
+    buffer_of<B, glm::uvec4> hits; ///< diffuse hits; those left to the direct light
 };
 
 /// The stored photons and the counts of all paths.
@@ -127,8 +127,8 @@ enum class if_none_stored { fail, trace_none };
 
 /// Photon tracing in batches, which can be interrupted between batches. It emits paths in id order until map.photons
 /// photons are stored, in the order of (path, bounce); for a picture of direct light alone it emits none. The powers
-/// are divided by the number of emitted paths. Positions have w = 1 for caustic photons (light_part). Normals are
-/// stored only if the leak policy needs them.
+/// are divided by the number of emitted paths. Positions have w = 1 for caustic photons (light_part). Photons straight
+/// from a light are stored only for a final gather, normals only for that or for a leak policy that needs them.
 template <backend B>
 class photon_tracing {
 public:
@@ -159,11 +159,13 @@ public:
     traced_photons<B> take() { return std::move(t_); }
 
 private:
+    /// As kernels read it.
+    uint first_hits() const { return gathers(settings_) ? 1u : 0u; }
     void make_photons()
     {
         const auto make = [&] { return device_.template make<glm::vec4>(wanted_); };
         t_.photons = {make(), make(), make(), {}};
-        if (settings_.estimate.leaks.needs_photon_normals())
+        if (keeps_normals(settings_))
             t_.photons.normals = make();
     }
     /// Makes room for at least so many paths, or as many as a batch may have.
@@ -187,9 +189,10 @@ private:
             make_photons();
         } else if (none || t_.emitted >= most_paths) {
             throw std::runtime_error("trace_photons: " + std::to_string(t_.emitted) + " paths from " + lights_
-                + " stored " + std::to_string(stored_) + " of the " + std::to_string(wanted_)
-                + " photons requested. Only indirect light is stored: check that the lights reach a mirror, glass, or "
-                  "a second diffuse surface");
+                + " stored " + std::to_string(stored_) + " of the " + std::to_string(wanted_) + " photons requested. "
+                + (gathers(settings_) ? "Check that the lights reach a diffuse surface"
+                                      : "Only indirect light is stored: check that the lights reach a mirror, glass, "
+                                        "or a second diffuse surface"));
         }
     }
 
@@ -223,8 +226,8 @@ void photon_tracing<B>::advance()
 
     auto storable = device_.template make<uint>(paths_);
     path_tally<B> tally{device_.template make<glm::uvec4>(paths_), device_.template make<glm::uvec4>(paths_)};
-    device_.template run<kernels::tally_path>(paths_, {.paths = paths_, .frames = frames}, reads(frames_->positions),
-        writes(storable, tally.ends, tally.hits));
+    device_.template run<kernels::tally_path>(paths_, {.paths = paths_, .frames = frames, .first_hits = first_hits()},
+        reads(frames_->positions), writes(storable, tally.ends, tally.hits));
     const auto sums = prefix_sums(device_, storable);
 
     const uint emitted
@@ -237,12 +240,12 @@ void photon_tracing<B>::advance()
         device_, std::size_t{missing} + settings_.map.photon_depth, {.emitted = emitted}, reads(sums));
     const uint taken = std::min(found, missing);
     device_.template run<kernels::gather_photon>({taken, stored_},
-        {.paths = paths_, .frames = frames, .stored_before = stored_},
+        {.paths = paths_, .frames = frames, .stored_before = stored_, .first_hits = first_hits()},
         reads(sums, frames_->positions, frames_->powers, frames_->directions),
         writes(t_.photons.positions, t_.photons.powers, t_.photons.directions));
-    if (settings_.estimate.leaks.needs_photon_normals())
+    if (keeps_normals(settings_))
         device_.template run<kernels::gather_normal>({taken, stored_},
-            {.paths = paths_, .frames = frames, .stored_before = stored_},
+            {.paths = paths_, .frames = frames, .stored_before = stored_, .first_hits = first_hits()},
             reads(sums, frames_->positions, frames_->powers, frames_->next_origins, frames_->next_directions),
             writes(t_.photons.normals));
     t_.tallies.push_back(detail::sum_tally(device_, std::move(tally), emitted));
