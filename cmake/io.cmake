@@ -18,10 +18,11 @@ add_library(photongrid::io ALIAS photongrid_io)
 set_target_properties(photongrid_io PROPERTIES EXPORT_NAME io POSITION_INDEPENDENT_CODE ON)
 set(folder ${PROJECT_SOURCE_DIR}/include/photongrid/io)
 target_sources(photongrid_io PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include
-  FILES ${folder}/exported_scene.hpp ${folder}/files.hpp ${folder}/gltf_file.hpp ${folder}/gltf_writer.hpp
+  FILES ${folder}/error_map.hpp ${folder}/error_sheet.hpp ${folder}/exported_scene.hpp ${folder}/false_colors.hpp
+  ${folder}/files.hpp ${folder}/flip.hpp ${folder}/gltf_file.hpp ${folder}/gltf_writer.hpp
   ${folder}/image_difference.hpp ${folder}/image_file.hpp ${folder}/imported_scene.hpp ${folder}/mitsuba_file.hpp
   ${folder}/obj_scene.hpp ${folder}/pbrt_file.hpp ${folder}/pbrt_writer.hpp ${folder}/picture_noise.hpp
-  ${folder}/scene_edit.hpp ${folder}/scene_error.hpp ${folder}/scene_export.hpp ${folder}/scene_file.hpp
+  ${folder}/picture_regions.hpp ${folder}/scene_edit.hpp ${folder}/scene_error.hpp ${folder}/scene_export.hpp ${folder}/scene_file.hpp
   ${folder}/scene_import.hpp ${folder}/scene_writer.hpp ${folder}/structural_similarity.hpp ${folder}/tone_map.hpp)
 target_link_libraries(photongrid_io PUBLIC photongrid PRIVATE $<BUILD_INTERFACE:photongrid_warnings>
   $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> OpenEXR::OpenEXR PNG::PNG ZLIB::ZLIB pugixml::pugixml)

@@ -16,7 +16,7 @@ mapfile -t pages < <(find README.md CONTRIBUTING.md docs -name '*.md' | sort)
 cmake_names=$(find CMakeLists.txt cmake tests bench backends examples include \( -name CMakeLists.txt -o -name '*.cmake' \) -print0 |
   xargs -0 sed 's/#.*//' | grep -oE '[A-Za-z_][A-Za-z0-9_]*' | sort -u)
 program_options=$({
-  grep -ohE -e '"--[a-z][a-z-]*' examples/photongrid/command_line.cpp examples/photongrid/scene_options.cpp | tr -d '"'
+  grep -ohE -e '"--[a-z][a-z-]*' examples/photongrid/{command_line,error_options,scene_options}.cpp | tr -d '"'
   sed -n 's/.* setting \([a-z_]*\)\b.*/--\1/p' include/photongrid/scene/setting_table.hpp | tr _ -
 } | sort -u)
 

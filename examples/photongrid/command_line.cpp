@@ -2,6 +2,7 @@
 // options and checks.
 #include "command_line.hpp"
 
+#include "error_options.hpp"
 #include "option_values.hpp"
 #include "scene_options.hpp"
 
@@ -18,7 +19,8 @@
 namespace photongrid {
 
 namespace {
-    constexpr const char* commands[] = {"render", "view", "reference", "compare", "check", "convert", "devices"};
+    constexpr const char* commands[]
+        = {"render", "view", "reference", "compare", "error", "check", "convert", "devices"};
 
     constexpr std::string_view examples[] = {"render examples/scenes/cornell_box.json -o cornell.png",
         "render ring.json --backend vulkan --map route -o ring.exr -o ring.png --stats ring-stats.json",
@@ -27,9 +29,10 @@ namespace {
         "render cornell_box.json --spp 256 --resume unfinished -o box.exr",
         "render ring.json --only caustic --filter silverman --leaks side,min_cosine=0.7 --aov -o ring.exr",
         "reference ring.json -o reference.exr --error error.exr --paths 1e8",
-        "compare ring.exr reference.exr --max-relmse 1e-3", "check my_scene.json",
-        "convert examples/scenes/still_life.pbrt still_life.json", "convert cornell_box.json cornell_box.glb",
-        "view cornell_box.json --size 320x320"};
+        "compare ring.exr reference.exr --max-relmse 1e-3",
+        "error ring.exr reference.exr --region caustics=caustic.exr --region shadows!=direct.exr -o errors.png",
+        "check my_scene.json", "convert examples/scenes/still_life.pbrt still_life.json",
+        "convert cornell_box.json cornell_box.glb", "view cornell_box.json --size 320x320"};
 
     constexpr const char* exit_codes = R"(Exit codes:
   0    done
@@ -37,7 +40,8 @@ namespace {
   2    the command line is wrong
   3    the scene file is wrong
   4    the backend or device is not available, or it failed
-  5    a picture or statistics file could not be read or written, or pictures of different sizes were compared
+  5    a picture or statistics file could not be read or written, or pictures of different sizes were compared,
+       or a region is empty
   130  interrupted (Ctrl-C); the best picture so far is written, if there is one; no file is left half-written
 )";
 
@@ -96,19 +100,6 @@ namespace {
               },
               std::string(row.description) + without(row.use))
             ->type_name(type_of(row.values));
-    }
-
-    /// --exposure of commands that take no other settings.
-    template <class Exposure>
-    void add_exposure(CLI::App& to, Exposure& target, const std::string& description)
-    {
-        to.add_option_function<std::string>(
-              "--exposure",
-              [&target](const std::string& text) {
-                  target = parsed_setting("--exposure", text, setting_table::exposure.values);
-              },
-              description)
-            ->type_name(type_of(setting_table::exposure.values));
     }
 
     /// Options for scene, backend and settings, common to `render` and `view`.
@@ -277,6 +268,18 @@ namespace {
 
     void check_files(const convert_options& o) { files_of_command(o.scene_path, o.how).add("OUT", o.output); }
 
+    void check_files(const error_options& o)
+    {
+        files_of_command files;
+        files.read(o.picture);
+        files.read(o.reference);
+        for (const auto& region : o.regions)
+            files.read(region.path);
+        for (const auto& output : o.outputs)
+            files.add("-o", output);
+        files.add("--stats", o.stats);
+    }
+
     void check_device(const render_options& o)
     {
         if (!o.device.empty() && o.backend != "vulkan")
@@ -332,6 +335,12 @@ command read_command_line(int argc, char** argv)
         "pictures, and their structural similarity (SSIM) as PNG files: 1 if they look the same");
     add_compare(compare_command, compare);
 
+    error_options error;
+    auto& error_command = *app.add_subcommand("error",
+        "Draws what differs between a picture and its reference, and where: both, the difference of luminance, the "
+        "relative error in false colours, what is visible of it (FLIP) and regions; prints statistics of each region");
+    add_error(error_command, error);
+
     check_options check_scene;
     auto& check_command = *app.add_subcommand("check", "Reads and checks a scene file");
     add_scene(check_command, check_scene.scene_path, check_scene.how);
@@ -360,6 +369,7 @@ command read_command_line(int argc, char** argv)
         check_files(render);
         check_files(view.picture, view.journal);
         check_files(reference);
+        check_files(error);
         check_files(convert);
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? success : usage_error;
@@ -372,6 +382,8 @@ command read_command_line(int argc, char** argv)
         return reference;
     if (compare_command.parsed())
         return compare;
+    if (error_command.parsed())
+        return error;
     if (check_command.parsed())
         return check_scene;
     if (convert_command.parsed())

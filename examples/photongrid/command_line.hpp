@@ -3,9 +3,12 @@
 
 #include "picture_series.hpp"
 
+#include <photongrid/io/flip.hpp>
 #include <photongrid/io/imported_scene.hpp>
 #include <photongrid/reference/settings.hpp>
 #include <photongrid/scene/scene.hpp>
+
+#include <glm/vec2.hpp>
 
 #include <functional>
 #include <limits>
@@ -75,6 +78,24 @@ struct compare_options {
     bool noise = false;             ///< whether the pictures' own noise is told
 };
 
+/// A region that a picture gives `error`.
+struct region_source {
+    std::string name, path;
+    bool outside = false; ///< the pixels that are not bright
+};
+
+struct error_options {
+    std::string picture, reference;
+    std::vector<std::string> outputs;
+    std::string stats;
+    std::optional<double> exposure; ///< EV; none: fitted to the reference
+    double pixels_per_degree = usual_pixels_per_degree;
+    glm::dvec2 range{1e-3, 1}; ///< relative errors with the ends of the false colours
+    std::uint32_t average = 1; ///< blocks of so many pixels a side are compared
+    std::vector<region_source> regions;
+    double region_level = 0.1; ///< pixels of a region are brighter than its picture's mean times this
+};
+
 struct check_options {
     std::string scene_path;
     import_settings how; ///< scenes of other programs are read
@@ -88,8 +109,8 @@ struct convert_options {
 struct devices_options {};
 
 /// The command to run, or the exit code if parsing has already printed the answer (help, version, mistake).
-using command = std::variant<exit_code, render_options, view_options, reference_options, compare_options, check_options,
-    convert_options, devices_options>;
+using command = std::variant<exit_code, render_options, view_options, reference_options, compare_options, error_options,
+    check_options, convert_options, devices_options>;
 
 command read_command_line(int argc, char** argv);
 

@@ -2,6 +2,7 @@
 #include "advice.hpp"
 #include "command_line.hpp"
 #include "convert_command.hpp"
+#include "error_command.hpp"
 #include "reference_command.hpp"
 #include "render_command.hpp"
 #include "scene_notes.hpp"
@@ -106,6 +107,7 @@ namespace {
     }
 
     exit_code run(const convert_options& o) { return run_convert(o); }
+    exit_code run(const error_options& o) { return run_error(o); }
 
     exit_code run(const devices_options&)
     {

@@ -86,4 +86,16 @@ std::string type_of(const setting_table::one_of<Value, N>& words)
     return all;
 }
 
+/// --exposure of commands that take no other settings.
+template <class Exposure>
+void add_exposure(CLI::App& to, Exposure& target, const std::string& description)
+{
+    to.add_option_function<std::string>(
+          "--exposure",
+          [&target](
+              const std::string& text) { target = parsed_setting("--exposure", text, setting_table::exposure.values); },
+          description)
+        ->type_name(type_of(setting_table::exposure.values));
+}
+
 } // namespace photongrid

@@ -38,9 +38,14 @@ void add_scene(CLI::App& to, std::string& path, import_settings& how)
 files_of_command::files_of_command(const std::string& scene, const import_settings& how)
 {
     files_.push_back({"the scene", resolved(scene)});
-    for (const auto& read : {how.camera_from, how.environment})
-        if (!read.empty())
-            files_.push_back({"a file that is read", resolved(read)});
+    read(how.camera_from);
+    read(how.environment);
+}
+
+void files_of_command::read(const std::string& path)
+{
+    if (!path.empty())
+        files_.push_back({"a file that is read", resolved(path)});
 }
 
 void files_of_command::add(const std::string& option, const std::string& path)

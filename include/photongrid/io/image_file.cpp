@@ -31,6 +31,7 @@ namespace {
 } // namespace
 
 bool holds_layers(const std::string& path) { return ending(path) == ".exr"; }
+bool is_for_display(const std::string& path) { return ending(path) == ".png"; }
 
 void check_image_path(const std::string& path)
 {

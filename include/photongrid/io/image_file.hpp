@@ -22,6 +22,9 @@ void check_image_path(const std::string& path);
 /// Whether the format of `path` can hold image::layers. EXR can.
 bool holds_layers(const std::string& path);
 
+/// Whether the format of `path` holds what a screen shows, not linear numbers: PNG.
+bool is_for_display(const std::string& path);
+
 /// Writes a picture in the format given by the extension of `path`. On an error, or if the program dies, the old file
 /// remains. `exposure` (EV) applies to PNG only. EXR also has the picture's layers, as single precision channels
 /// estimate.radius (m), estimate.count, estimate.relative_error and, for several passes, noise; PNG and PFM do not.
