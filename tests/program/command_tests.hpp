@@ -11,7 +11,7 @@ namespace {
     {
         const auto help = run({"--help"});
         EXPECT_EQ(help.code, 0);
-        for (const auto* word : {"render", "view", "compare", "check", "devices", "Exit codes", "130"})
+        for (const auto* word : {"render", "view", "compare", "error", "check", "devices", "Exit codes", "130"})
             EXPECT_NE(help.out.find(word), std::string::npos) << word;
         const auto render = run({"render", "--help"});
         EXPECT_EQ(render.code, 0);
@@ -38,8 +38,8 @@ namespace {
         const auto unknown = run({"rendr", "ring.json"});
         EXPECT_EQ(unknown.code, 2);
         EXPECT_EQ(unknown.err,
-            "photongrid: \"rendr\" is not a command; expected render, view, reference, compare, check, convert or "
-            "devices\n"
+            "photongrid: \"rendr\" is not a command; expected render, view, reference, compare, error, check, convert "
+            "or devices\n"
             "Run with --help for more information.\n");
         EXPECT_EQ(run({"render"}).code, 2);
         for (const auto& wrong : std::vector<std::vector<std::string>>{{"--backend", "cuda"}, {"--size", "32"},
