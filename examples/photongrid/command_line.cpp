@@ -36,7 +36,8 @@ namespace {
 
     constexpr const char* exit_codes = R"(Exit codes:
   0    done
-  1    compare: relMSE above --max-relmse; render, reference: the picture could not be made
+  1    compare: relMSE above --max-relmse; compare, error: no pixel is finite in both pictures; render, reference: the
+       picture could not be made
   2    the command line is wrong
   3    the scene file is wrong
   4    the backend or device is not available, or it failed

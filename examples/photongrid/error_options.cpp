@@ -88,11 +88,17 @@ void add_error(CLI::App& to, error_options& o)
     to.add_option("--average", o.average, "compare the means of blocks of N x N pixels, as `photongrid compare` does")
         ->type_name("N")
         ->check(CLI::Range(1, 1024).description(""));
-    to.add_option("--pixels-per-degree", o.pixels_per_degree,
+    to.add_option_function<std::string>(
+          "--pixels-per-degree",
+          [&o](const std::string& text) {
+              constexpr const char* expected = "a number from 1 to 1000";
+              o.pixels_per_degree = parsed_number("--pixels-per-degree", text, expected);
+              if (o.pixels_per_degree < 1 || o.pixels_per_degree > 1000)
+                  throw CLI::ValidationError("--pixels-per-degree", "\"" + text + "\" given; expected " + expected);
+          },
           "how many pixels a degree of the eye's field has, for FLIP: more with a finer screen or from farther away; "
           "default: 67, a screen 0.7 m wide of 3840 pixels from 0.7 m")
-        ->type_name("N")
-        ->check(CLI::Range(1.0, 1000.0).description(""));
+        ->type_name("N");
     add_exposure(
         to, o.exposure, "show pixel values times 2^EV, to the eye and to FLIP; default: auto, fitted to REFERENCE");
 }

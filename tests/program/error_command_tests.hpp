@@ -151,7 +151,7 @@ namespace {
                  {"--region", "c=lit.pfm", "--stats", "lit.pfm"}}) {
             auto arguments = std::vector<std::string>{"picture.pfm", "reference.pfm"};
             arguments.insert(arguments.end(), wrong.begin(), wrong.end());
-            fails(2, wrong.front(), arguments);
+            fails(2, wrong[wrong.size() - 2], arguments);
         }
         fails(2, "REFERENCE", {"picture.pfm"});
     }
