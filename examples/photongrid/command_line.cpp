@@ -30,7 +30,7 @@ namespace {
         "render ring.json --only caustic --filter silverman --leaks side,min_cosine=0.7 --aov -o ring.exr",
         "reference ring.json -o reference.exr --error error.exr --paths 1e8",
         "compare ring.exr reference.exr --max-relmse 1e-3",
-        "error ring.exr reference.exr --region caustics=caustic.exr --region shadows!=direct.exr -o errors.png",
+        "error ring.exr reference.exr --region shadows!=direct.exr --region caustics=caustic.exr,1 -o errors.png",
         "check my_scene.json", "convert examples/scenes/still_life.pbrt still_life.json",
         "convert cornell_box.json cornell_box.glb", "view cornell_box.json --size 320x320"};
 

@@ -82,6 +82,7 @@ struct compare_options {
 struct region_source {
     std::string name, path;
     bool outside = false; ///< the pixels that are not bright
+    double level = 0.1;   ///< bright is more than the picture's mean luminance times this
 };
 
 struct error_options {
@@ -93,7 +94,6 @@ struct error_options {
     glm::dvec2 range{1e-3, 1}; ///< relative errors with the ends of the false colours
     std::uint32_t average = 1; ///< blocks of so many pixels a side are compared
     std::vector<region_source> regions;
-    double region_level = 0.1; ///< pixels of a region are brighter than its picture's mean times this
 };
 
 struct check_options {

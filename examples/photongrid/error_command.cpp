@@ -52,7 +52,7 @@ namespace {
         const auto picture = read_averaged(r.path, o.average);
         try {
             detail::require_same_size(picture, reference);
-            return region_of(r.name, picture, o.region_level, r.outside);
+            return region_of(r.name, picture, r.level, r.outside);
         } catch (const std::invalid_argument& e) {
             fail_file(r.path, "--region " + r.name + ": " + e.what());
         }
@@ -200,8 +200,10 @@ namespace {
             std::cout << (std::isinf(bin->to) ? text_of("%-9.3g and more    ", bin->from)
                                               : text_of("%-9.3g to %-9.3g", bin->from, bin->to))
                       << text_of(" %8.2f %%", 100 * share)
-                      << (all.squares > 0 ? text_of(" %8.2f %%  ", 100 * bin->squares / all.squares) : "          -  ")
-                      << std::string(static_cast<std::size_t>(std::lround(40 * share)), '#') << '\n';
+                      << (all.squares > 0 ? text_of(" %8.2f %%", 100 * bin->squares / all.squares) : "          -");
+            if (const auto length = static_cast<std::size_t>(std::lround(40 * share)); length > 0)
+                std::cout << "  " << std::string(length, '#');
+            std::cout << '\n';
         }
     }
 

@@ -8,10 +8,10 @@
 namespace photongrid {
 
 namespace {
-    /// NAME=PICTURE or NAME!=PICTURE. The second form is one that a shell leaves alone.
+    /// NAME=PICTURE[,LEVEL] or NAME!=PICTURE[,LEVEL]. The second form is one that a shell leaves alone.
     region_source parsed_region(const std::string& text)
     {
-        constexpr const char* expected = "NAME=PICTURE, or NAME!=PICTURE for the pixels that are not bright";
+        constexpr const char* expected = "NAME=PICTURE, NAME=PICTURE,LEVEL, or != for the pixels that are not bright";
         const auto equals = text.find('=');
         region_source region;
         if (equals != std::string::npos) {
@@ -19,8 +19,13 @@ namespace {
             region.name = text.substr(0, region.outside ? equals - 1 : equals);
             region.path = text.substr(equals + 1);
         }
+        if (const auto comma = region.path.rfind(','); comma != std::string::npos) {
+            region.level = parsed_number("--region", region.path.substr(comma + 1), expected);
+            region.path.resize(comma);
+        }
         constexpr std::string_view allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-        if (region.name.empty() || region.path.empty() || region.name.find_first_not_of(allowed) != std::string::npos)
+        if (region.level < 0 || region.name.empty() || region.path.empty()
+            || region.name.find_first_not_of(allowed) != std::string::npos)
             throw CLI::ValidationError("--region",
                 "\"" + text + "\" given; expected " + expected + ", with a name of letters, digits, _ and -");
         for (const auto* used : {"all", "edges", "surfaces", "dark", "middle", "bright"})
@@ -67,20 +72,10 @@ void add_error(CLI::App& to, error_options& o)
               for (const auto& text : texts)
                   add_region(o, text);
           },
-          "also measure where a picture is bright: with caustics=caustic.exr, made with --only caustic, in caustics; "
-          "NAME!=PICTURE: where it is not; may be given several times")
+          "also measure where a picture is bright, brighter than its mean luminance times LEVEL (default: 0.1): "
+          "caustics=caustic.exr, made with --only caustic; NAME!=PICTURE: where it is not; may be given several times")
         ->allow_extra_args(false)
-        ->type_name("NAME=PICTURE.exr|.pfm");
-    to.add_option_function<std::string>(
-          "--region-level",
-          [&o](const std::string& text) {
-              constexpr const char* expected = "a number, 0 or above";
-              o.region_level = parsed_number("--region-level", text, expected);
-              if (o.region_level < 0)
-                  throw CLI::ValidationError("--region-level", "\"" + text + "\" given; expected " + expected);
-          },
-          "share of the mean luminance of a --region's picture above which its pixels are bright; default: 0.1")
-        ->type_name("SHARE");
+        ->type_name("NAME=PICTURE.exr|.pfm[,LEVEL]");
     to.add_option_function<std::string>(
           "--range", [&o](const std::string& text) { o.range = parsed_range(text); },
           "relative errors with the darkest and the lightest of the false colours; default: 0.001,1")

@@ -141,14 +141,16 @@ namespace {
             5, "other.pfm: --region c: the sizes differ", {"picture.pfm", "reference.pfm", "--region", "c=other.pfm"});
         fails(
             5, "black.pfm: --region c: no pixel is above", {"picture.pfm", "reference.pfm", "--region", "c=black.pfm"});
+        fails(5, "lit.pfm: --region c: no pixel is above", {"picture.pfm", "reference.pfm", "--region", "c=lit.pfm,2"});
         fails(5, "has no block of 5 x 5", {"picture.pfm", "reference.pfm", "--average", "5"});
-        for (const auto& wrong : std::vector<std::vector<std::string>>{{"--region", "caustics"},
-                 {"--region", "=lit.pfm"}, {"--region", "c="}, {"--region", "a b=lit.pfm"},
-                 {"--region", "edges=lit.pfm"}, {"--region", "c=lit.pfm", "--region", "c!=lit.pfm"},
-                 {"--region-level", "-1"}, {"--region-level", "x"}, {"--range", "1"}, {"--range", "1,0.1"},
-                 {"--range", "0,1"}, {"--range", "nan,1"}, {"--pixels-per-degree", "0"}, {"--pixels-per-degree", "nan"},
-                 {"--average", "0"}, {"--exposure", "x"}, {"-o", "picture.pfm"}, {"-o", "e.png", "--stats", "e.png"},
-                 {"--region", "c=lit.pfm", "--stats", "lit.pfm"}}) {
+        for (const auto& wrong :
+            std::vector<std::vector<std::string>>{{"--region", "caustics"}, {"--region", "=lit.pfm"},
+                {"--region", "c="}, {"--region", "a b=lit.pfm"}, {"--region", "edges=lit.pfm"},
+                {"--region", "c=lit.pfm", "--region", "c!=lit.pfm"}, {"--region", "c=lit.pfm,-1"},
+                {"--region", "c=lit.pfm,x"}, {"--region", "c=lit.pfm,"}, {"--range", "1"}, {"--range", "1,0.1"},
+                {"--range", "0,1"}, {"--range", "nan,1"}, {"--pixels-per-degree", "0"}, {"--pixels-per-degree", "nan"},
+                {"--average", "0"}, {"--exposure", "x"}, {"-o", "picture.pfm"}, {"-o", "e.png", "--stats", "e.png"},
+                {"--region", "c=lit.pfm", "--stats", "lit.pfm"}}) {
             auto arguments = std::vector<std::string>{"picture.pfm", "reference.pfm"};
             arguments.insert(arguments.end(), wrong.begin(), wrong.end());
             fails(2, wrong[wrong.size() - 2], arguments);
