@@ -60,8 +60,8 @@ namespace {
         return {lab.x, 0.01 * lab.x * lab.y, 0.01 * lab.x * lab.z};
     }
 
-    /// The difference of two such colours by HyAB, to the power of 0.7: lightness and colour are added up. What is less
-    /// than 10^-4 is rounding of single precision. It must not count: where an edge appears, any difference is visible.
+    /// The difference of two such colours by HyAB, to the power of 0.7: lightness and colour are added up. Less than
+    /// 10^-4 counts as none: it may be rounding, and where an edge appears any difference would become visible.
     double color_distance(const glm::dvec3& p, const glm::dvec3& q)
     {
         const double apart = std::abs(p.x - q.x) + std::hypot(p.y - q.y, p.z - q.z);
