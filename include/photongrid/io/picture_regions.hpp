@@ -8,9 +8,9 @@ namespace photongrid {
 /// What a reference tells by itself, from its luminance after a median over 5 x 5 pixels, so that the noise of a
 /// reference makes no regions. Every pixel is in one of edges and surfaces, and in one of dark, middle and bright,
 /// unless it is not finite: such pixels are in none.
-/// - edges: at most 2 pixels, across and down, from a step: a pixel about which Sobel's filter finds the luminance, plus
-///   relmse_floor, changed by a factor of 1.5 or more from its one side to the other. Outlines, borders of shadows and
-///   of caustics, coarse textures.
+/// - edges: at most 2 pixels, across and down, from a step: a pixel about which Sobel's filter finds the luminance,
+///   plus relmse_floor, changed by a factor of 1.5 or more from its one side to the other. Outlines, borders of shadows
+///   and of caustics, coarse textures.
 /// - surfaces: all else.
 /// - dark, bright: more than 2 EV from the geometric mean of the luminance of all pixels that are not black, which
 ///   fitting_exposure() makes middle grey. Shadows; lamps, highlights and the brightest caustics.
