@@ -8,6 +8,7 @@
 #include "vulkan_kernels.hpp"
 
 #include <all_kernels.hpp>
+#include <photongrid/render/add_gathered.kernel.hpp>
 #include <photongrid/render/shade.kernel.hpp>
 
 #include <algorithm>
@@ -41,6 +42,72 @@ TYPED_TEST(hard_cases_of_shading, h2_many_samples_of_a_constant_stay_that_consta
         this->report("H2_" + std::to_string(samples),
             "mean of " + std::to_string(samples) + " equal samples, relative error:", largest);
         EXPECT_LE(largest, (0.5 * samples + 2) * 0x1p-24); // partial sums are half the whole on the average
+    }
+}
+
+TYPED_TEST(hard_cases_of_shading, look_ups_of_a_final_gather_equal_their_formula)
+{
+    // Two photons: irradiances 1, 2, 4 and 8, squared radii 0.04 and 1.
+    struct ray {
+        glm::vec4 start, end;
+        float surfaces;
+        uint nearest;
+        float distance2;
+        glm::vec3 added; // to the irradiance, for the weights, throughputs and share below
+        float left;      // w of the end after the pass
+    };
+    constexpr uint none = 0xFFFFFFFFu;
+    const glm::vec4 origin(0, 0, 0, 1);
+    const ray rays[] = {
+        {origin, {1, 0, 0, 1}, 0, 0, 0.01f, {1, 2, 4}, -1},        // far: looked up
+        {origin, {1, 0, 0, 1}, 0, 0, 0.16f, {0.25f, 0.5f, 1}, -1}, // twice as far from the photon as its radius
+        {origin, {0.1f, 0.1f, 0, 1}, 0, 0, 0.01f, {0, 0, 0}, 1},   // near: left
+        {origin, {0.1f, 0.1f, 0, 1}, 2, 0, 0.01f, {1, 2, 4}, -1},  // near, but by way of a mirror
+        {origin, {0.9f, 0, 0, 1}, 0, 1, 0.5f, {0, 0, 0}, 1},       // nearer than the other photon's radius
+        {origin, {1, 1, 1, 1}, 0, 1, 0.5f, {8, 8, 8}, -1},
+        {origin, {1, 0, 0, 1}, 0, none, 0, {0, 0, 0}, -1},             // no photon
+        {origin, {1, 0, 0, -1}, 0, 0, 0.01f, {0, 0, 0}, -1},           // it met no diffuse surface
+        {{0.5f, 0, 0, 1}, {0.6f, 0, 0, 1}, 0, 0, 0.01f, {0, 0, 0}, 1}, // distances are from the start
+    };
+    auto& b = this->b();
+    constexpr uint before = 2; // elements of `starts` before those of the rays
+    std::vector<glm::vec4> starts(before, glm::vec4(-9)), ends, directions, throughputs, weights, gathered;
+    std::vector<uint> nearest;
+    std::vector<float> distances2;
+    for (const auto& r : rays) {
+        starts.push_back(r.start);
+        ends.push_back(r.end);
+        directions.emplace_back(0, 0, 1, r.surfaces);
+        throughputs.emplace_back(0.5f, 0.25f, 1, 0);
+        weights.emplace_back(0.5f, 1, 0.125f, 0);
+        gathered.emplace_back(10, 20, 30, 0);
+        nearest.push_back(r.nearest);
+        distances2.push_back(r.distance2);
+    }
+    const auto up
+        = [&](const auto& v) { return b.upload(std::span<const typename std::decay_t<decltype(v)>::value_type>(v)); };
+    const std::vector<glm::vec4> irradiances = {{1, 2, 4, 0.04f}, {8, 8, 8, 1}};
+    for (const bool leaves_near : {true, false}) {
+        auto end = up(ends), weight = up(weights), sum = up(gathered);
+        b.template run<kernels::add_gathered>(ends.size(),
+            {.share = 0.25f, .first = before, .leaves_near = leaves_near ? 1u : 0u},
+            reads(up(starts), up(directions), up(throughputs), up(nearest), up(distances2), up(irradiances)),
+            writes(end, weight, sum));
+        const auto left = b.download(end), weighted = b.download(weight), light = b.download(sum);
+        for (std::size_t i = 0; i < ends.size(); ++i) {
+            const auto& r = rays[i];
+            const bool is_left = leaves_near && r.left > 0;
+            EXPECT_EQ(left[i].w, is_left ? 1.0f : -1.0f) << i;
+            if (r.end.w > 0) {
+                EXPECT_EQ(glm::vec3(weighted[i]), glm::vec3(0.25f, 0.25f, 0.125f)) << i;
+            }
+            glm::vec3 found = r.added;
+            if (!leaves_near && r.left > 0)
+                found = glm::vec3(irradiances[r.nearest]);
+            const glm::vec3 added = found * glm::vec3(0.25f, 0.25f, 0.125f) * 0.25f;
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(light[i][c], gathered[i][c] + added[c], 1e-5f) << i << ", channel " << c;
+        }
     }
 }
 
