@@ -27,6 +27,7 @@ namespace {
         "render ring.json --size 128x96 --photons 4000 --exposure 1 --quiet",
         "render glass_ball.json --progressive steps --every 50 --strip figure8.png --crop 96x96+180+150",
         "render cornell_box.json --spp 256 --resume unfinished -o box.exr",
+        "render cornell_box.json --until-error 0.02 --seconds 600 -o box.exr",
         "render ring.json --only caustic --filter silverman --leaks side,min_cosine=0.7 --aov -o ring.exr",
         "reference ring.json -o reference.exr --error error.exr --paths 1e8",
         "compare ring.exr reference.exr --max-relmse 1e-3",
@@ -98,6 +99,10 @@ namespace {
                       o.settings.push_back([value](render_settings& s) { s.map.use_grid(value); });
                   else
                       o.settings.push_back([row, value](render_settings& s) { row.of(s) = value; });
+                  // A stop rule that is asked for here lifts the scene's limit, but not one that is given as well.
+                  if constexpr (std::is_same_v<std::decay_t<decltype(row.values)>, real_range>)
+                      if (value > 0 && row.name != std::string_view(setting_table::percentile.name))
+                          o.settings.insert(o.settings.begin(), [](render_settings& s) { s.output.passes = 1; });
               },
               std::string(row.description) + without(row.use))
             ->type_name(type_of(row.values));
@@ -118,7 +123,8 @@ namespace {
         to.add_flag("--as-paper", o.as_paper,
             "the paper's method: --search at_least_k --filter constant --bias paper --leaks none --edge-correction "
             "none "
-            "--surplus power --passes 1 --spp 1 with the shadow rays of all eye rays, and what the scene has under "
+            "--surplus power --passes 1 --until-error 0 --spp 1 with the shadow rays of all eye rays, and what the "
+            "scene has under "
             "\"as_paper\"; any option that is given as well takes precedence");
         to.add_option("--shader-cache", o.shader_cache,
               "folder in which compiled Vulkan kernels are kept for later runs; default: photongrid in "
@@ -165,7 +171,8 @@ namespace {
             ->type_name("REF.exr|.pfm");
         to.add_option("--resume", o.resume,
               "file for the unfinished picture if the render is interrupted; if it exists, the render continues from "
-              "it, and the result has the same bytes as without the interruption; removed when the picture is done")
+              "it, and the result has the same bytes as without the interruption; removed when the picture is done, "
+              "unless --until-error or --seconds ended it: a smaller error or a longer time then goes on from it")
             ->type_name("FILE");
     }
 

@@ -130,6 +130,10 @@ double parsed_setting(const std::string& option, const std::string& text, const 
 {
     return parsed_number(option, text, "a number");
 }
+double parsed_setting(const std::string& option, const std::string& text, const real_range&)
+{
+    return parsed_number(option, text, "a number");
+}
 std::optional<double> parsed_setting(
     const std::string& option, const std::string& text, const setting_table::real_or_auto&)
 {

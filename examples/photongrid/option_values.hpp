@@ -57,6 +57,7 @@ void add_number(CLI::App& to, const std::string& option, std::optional<double>& 
 // A setting's value, and the type that --help shows for it.
 std::uint32_t parsed_setting(const std::string& option, const std::string& text, const setting_table::whole_range&);
 double parsed_setting(const std::string& option, const std::string& text, const setting_table::any_length&);
+double parsed_setting(const std::string& option, const std::string& text, const real_range&);
 std::optional<double> parsed_setting(
     const std::string& option, const std::string& text, const setting_table::real_or_auto&);
 /// Default settings with this width and height.
@@ -74,6 +75,7 @@ Value parsed_setting(const std::string& option, const std::string& text, const s
 inline std::string type_of(const setting_table::whole_range&) { return "N"; }
 inline std::string type_of(const setting_table::real_or_auto& r) { return std::string(r.range.unit + 1) + "|auto"; }
 inline std::string type_of(const setting_table::any_length&) { return "METRES"; }
+inline std::string type_of(const real_range& r) { return r.unit[0] == ' ' ? r.unit + 1 : "NUMBER"; }
 inline std::string type_of(const setting_table::pixels&) { return "WxH"; }
 inline std::string type_of(const setting_table::cells&) { return "X,Y,Z|auto"; }
 inline std::string type_of(const setting_table::policies&) { return "LIST"; }

@@ -17,7 +17,7 @@ namespace photongrid {
 
 namespace {
     using json = nlohmann::ordered_json;
-    constexpr const char* first_line = "photongrid unfinished picture 4";
+    constexpr const char* first_line = "photongrid unfinished picture 5";
 
     /// The vectors of an unfinished pass, in the file's order.
     template <class Pass>
@@ -72,8 +72,14 @@ namespace {
 
 std::string picture_identity(const scene& s, const render_settings& settings, const capabilities& caps)
 {
+    // What ends a picture does not change its passes. Whether it may have several does: of one, an eye ray may go
+    // through the pixel's middle.
+    auto of_passes = settings;
+    of_passes.output.passes = settings.output.passes_at_most();
+    of_passes.output.until_error = of_passes.output.seconds = 0;
+    of_passes.output.percentile = output_settings{}.percentile;
     const json all = {{"version", PHOTONGRID_VERSION}, {"backend", caps.backend}, {"device", caps.device},
-        {"scene", json::parse(scene_text(s, {}))}, {"set of settings", json::parse(settings_text(settings))},
+        {"scene", json::parse(scene_text(s, {}))}, {"set of settings", json::parse(settings_text(of_passes))},
         {"choice of layers", settings.output.aov}};
     return all.dump();
 }
@@ -89,7 +95,7 @@ void write_resume_file(const std::string& path, const std::string& identity, con
     }
     bytes += film;
     const json head = {{"pass", state.pass.number}, {"rows", state.pass.rows}, {"rays", state.pass.rays},
-        {"sizes", sizes}, {"film", film.size()}, {"hash", detail::fnv1a(identity + bytes)}};
+        {"sizes", sizes}, {"film", film.size()}, {"seconds", state.seconds}, {"hash", detail::fnv1a(identity + bytes)}};
     write_file(path, std::string(first_line) + "\n" + identity + "\n" + head.dump() + "\n" + bytes);
 }
 
@@ -128,6 +134,8 @@ std::optional<render_state> read_resume_file(const std::string& path, const std:
     s.pass.number = static_cast<std::uint32_t>(number("pass"));
     s.pass.rows = static_cast<std::uint32_t>(number("rows"));
     s.pass.rays = static_cast<std::uint32_t>(number("rays"));
+    if (head.contains("seconds") && head["seconds"].is_number())
+        s.seconds = head["seconds"].get<double>();
     const char* from = bytes.data();
     for (auto* part : parts_of(s.pass)) {
         if (!part->empty())

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <fstream>
 
 #include <sys/resource.h>
@@ -16,6 +17,19 @@ namespace {
     json stage_json(const stage_stats& s)
     {
         return {{"ms", s.ms}, {"compile_ms", s.compile_ms}, {"passes", s.passes}, {"device_bytes", s.device_bytes}};
+    }
+    /// JSON has no infinity.
+    json number_or_null(double x) { return std::isfinite(x) ? json(x) : json(); }
+
+    const char* word_for(ended_by by)
+    {
+        switch (by) {
+        case ended_by::passes: return "passes";
+        case ended_by::error: return "error";
+        case ended_by::seconds: return "seconds";
+        case ended_by::nothing: break;
+        }
+        return "nothing";
     }
 } // namespace
 
@@ -37,6 +51,9 @@ std::string stats_json(
     const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.scene.name}, {"notes", notes},
         {"backend", result.caps().backend}, {"device", result.caps().device}, {"seed", settings.seed},
         {"settings", json::parse(settings_text(settings))},
+        {"picture",
+            {{"passes", r.end.passes}, {"error", number_or_null(r.end.error)},
+                {"percentile", settings.output.percentile}, {"ended_by", word_for(r.end.by)}}},
         {"photons",
             {{"emitted", p.emitted}, {"absorbed", p.absorbed}, {"escaped", p.escaped}, {"cut_off", p.cut_off},
                 {"invalid", p.invalid}, {"stored", p.stored}, {"direct", p.direct}, {"dropped", p.dropped}}},
@@ -60,6 +77,7 @@ image_notes picture_notes(const scene& s, const render_settings& settings, const
 {
     return {{"scene", s.name}, {"backend", result.caps().backend}, {"device", result.caps().device},
         {"seed", std::to_string(settings.seed)}, {"settings", settings_text(settings)},
+        {"passes", std::to_string(result.stats().end.passes)},
         {"version", std::string("photongrid ") + PHOTONGRID_VERSION}};
 }
 

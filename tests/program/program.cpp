@@ -4,3 +4,4 @@
 #include "estimate_option_tests.hpp"
 #include "interrupt_tests.hpp"
 #include "module_tests.hpp"
+#include "stop_rule_option_tests.hpp"

@@ -1,6 +1,7 @@
 // Sums of passes, lists of steps and schedules of previews: the parts of a picture, without a device.
 #include "exact_sum_tests.hpp"
 #include "film_tests.hpp"
+#include "picture_error_tests.hpp"
 
 #include <photongrid/render/previews.hpp>
 #include <photongrid/render/render_state.hpp>

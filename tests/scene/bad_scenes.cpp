@@ -580,6 +580,12 @@ namespace {
                 for (const double bad : {std::nextafter(range.least, -infinity), std::nextafter(range.most, infinity),
                          nan, infinity, -infinity})
                     is(std::optional(bad), false);
+            } else if constexpr (std::is_same_v<values, real_range>) {
+                is(row.values.least, true);
+                is(row.values.most, true);
+                for (const double bad : {std::nextafter(row.values.least, -infinity),
+                         std::nextafter(row.values.most, infinity), nan, infinity, -infinity})
+                    is(bad, false);
             } else if constexpr (std::is_same_v<values, t::any_length>) {
                 is(1e-9, true);
                 for (const double bad : {0.0, -1.0, nan, infinity, -infinity})

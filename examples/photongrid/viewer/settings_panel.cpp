@@ -121,6 +121,12 @@ void settings_panel::draw(double shown_exposure)
     number(setting_table::passes, "passes", 1, 1024,
         "The picture is the mean of this many passes, each with its own photons and rays. Speed: time in proportion. "
         "Error: noise and blotches fade with every pass.");
+    measure(setting_table::until_error, "until error", 0.0f, 0.2f, "%.3f", false,
+        "Passes are added until the noise of most pixels is at most this part of their light; 0: off. passes is then "
+        "the "
+        "limit, and 1 is none.");
+    measure(setting_table::seconds, "seconds", 0.0f, 600.0f, "%.0f", false,
+        "Passes are added for this time; 0: off. passes is then the limit, and 1 is none.");
     number(setting_table::light_samples, "light samples", 1, 256,
         "Shadow rays per lamp and eye ray. Speed: time in proportion, for direct light. Error: smoother penumbras.");
     choice(setting_table::indirect, "indirect light",

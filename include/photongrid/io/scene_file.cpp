@@ -291,6 +291,7 @@ namespace {
             else
                 to = in_range(v, r.range);
         }
+        void set(const json_value& v, const real_range& r, double& to) const { to = in_range(v, r); }
         void set(const json_value& v, const setting_table::any_length&, double& to) const { to = radius(v); }
         template <class Value, std::size_t N>
         void set(const json_value& v, const setting_table::one_of<Value, N>& choice, Value& to) const

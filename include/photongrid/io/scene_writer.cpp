@@ -95,6 +95,7 @@ namespace {
         return v ? json(*v) : json("auto");
     }
     json written(const setting_table::any_length&, double v) { return v; }
+    json written(const real_range&, double v) { return v; }
     template <class Value, std::size_t N>
     json written(const setting_table::one_of<Value, N>& choice, Value v)
     {
@@ -110,6 +111,17 @@ namespace {
     {
         json all = json::object();
         for_each_setting([&](const auto& row) { all[row.name] = written(row.values, row.of(s)); });
+        return all;
+    }
+
+    /// Those that scene files have.
+    json settings_of_scene(const render_settings& s)
+    {
+        auto all = settings_json(s);
+        for_each_setting([&](const auto& row) {
+            if (row.use == in_scenes::never)
+                all.erase(row.name);
+        });
         return all;
     }
 
@@ -212,18 +224,14 @@ std::string scene_text(const scene& s, const render_settings& settings)
     for (auto& light : lights)
         if (light["name"] == "")
             light.erase("name");
-    auto render = settings_json(settings);
-    render.erase("only");
     json all
         = {{"photongrid", 1}, {"name", s.name.empty() ? "scene" : s.name}, {"units", {{"length", "m"}, {"power", "W"}}},
             {"camera",
                 {{"position", three(s.camera.position)}, {"look_at", three(s.camera.look_at)},
                     {"up", three(s.camera.up)}, {"vertical_fov", s.camera.vertical_fov}}},
-            {"materials", materials}, {"shapes", shapes}, {"lights", lights}, {"render", render}};
-    if (s.paper) {
-        all["as_paper"] = settings_json(*s.paper);
-        all["as_paper"].erase("only");
-    }
+            {"materials", materials}, {"shapes", shapes}, {"lights", lights}, {"render", settings_of_scene(settings)}};
+    if (s.paper)
+        all["as_paper"] = settings_of_scene(*s.paper);
     return all.dump(2) + "\n";
 }
 

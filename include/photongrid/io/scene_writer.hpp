@@ -7,11 +7,11 @@
 
 namespace photongrid {
 
-/// The text of a scene file that reads as `s` with `settings`, with all numbers exact. Scene files do not have `only`
-/// and `aov`. Materials without a name, or with a duplicate name, are numbered.
+/// The text of a scene file that reads as `s` with `settings`, with all numbers exact. Scene files do not have `only`,
+/// `seconds` and `aov`. Materials without a name, or with a duplicate name, are numbered.
 std::string scene_text(const scene& s, const render_settings& settings);
 
-/// Settings as in a scene file, with `only`, in one line of JSON.
+/// Settings as in a scene file, with `only` and `seconds`, in one line of JSON.
 std::string settings_text(const render_settings& s);
 
 } // namespace photongrid

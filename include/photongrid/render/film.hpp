@@ -186,6 +186,22 @@ public:
         return out;
     }
 
+    /// Calls visit(mean, standard_error) for every pixel, row by row: the mean of its channels, and the standard error
+    /// of that mean from the spread of the passes, W/(m^2 sr). The error is infinite where the spread is unknown, so in
+    /// a film of one pass.
+    template <class Visit>
+    void visit_spread(const Visit& visit) const
+    {
+        if (only_)
+            for (const auto& p : only_->pixels)
+                visit(finite(p) ? static_cast<double>(p.x + p.y + p.z) / 3 : 0.0,
+                    std::numeric_limits<double>::infinity());
+        for (const auto& sum : sums_) {
+            const double all = sum.rgb[0].value() + sum.rgb[1].value() + sum.rgb[2].value();
+            visit(all * unit_ / (3 * static_cast<double>(passes_.size())), standard_error_of(sum, all));
+        }
+    }
+
 private:
     struct pixel_sums {
         exact_sum rgb[3];
@@ -284,13 +300,8 @@ private:
             out.invalid_pixels += sum.invalid;
             const glm::dvec3 total(sum.rgb[0].value(), sum.rgb[1].value(), sum.rgb[2].value());
             out.picture.pixels.emplace_back(total * (unit_ / n));
-            if (layers_) {
-                const double all = total.x + total.y + total.z;
-                const double variance = (sum.squares.value() / square_scale - all * all / n) / (n - 1);
-                layers.noise.push_back(sum.spread_is_unknown == 0
-                        ? static_cast<float>(std::sqrt(std::max(variance, 0.0) / n) / 3 * unit_)
-                        : std::numeric_limits<float>::infinity());
-            }
+            if (layers_)
+                layers.noise.push_back(static_cast<float>(standard_error_of(sum, total.x + total.y + total.z)));
         }
         for (const auto& sum : layer_sums_) {
             const double searches = sum.searches.value(), mean = searches > 0 ? 1 / searches : 0;
@@ -298,6 +309,16 @@ private:
             layers.count.push_back(static_cast<float>(sum.count.value() * mean));
             layers.relative_error.push_back(static_cast<float>(sum.error.value() * mean / std::sqrt(n)));
         }
+    }
+
+    /// Of the mean of a pixel's channels; `all`: the sum of its channels over all passes, in units.
+    double standard_error_of(const pixel_sums& sum, double all) const
+    {
+        if (sum.spread_is_unknown != 0)
+            return std::numeric_limits<double>::infinity();
+        const double n = static_cast<double>(passes_.size());
+        const double variance = (sum.squares.value() / square_scale - all * all / n) / (n - 1);
+        return std::sqrt(std::max(variance, 0.0) / n) / 3 * unit_;
     }
 
     // Terms of exact_sum are below 2^46.

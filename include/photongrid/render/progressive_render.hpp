@@ -36,6 +36,7 @@ public:
         stop_asked_ = false;
         scene_ = s;
         settings_ = settings;
+        settings_.output.passes = settings.output.passes_at_most();
         previews_ = previews;
         begin_picture();
         started_ = true;
@@ -49,13 +50,16 @@ public:
         unfinished_ = std::move(s.pass);
         light_ = std::move(unfinished_.light);
         previews_.enabled = false;
+        clock_ = work_clock(s.seconds);
+        judge_.resume(film_, s.seconds);
+        stats_.end = judge_.result();
         if (film_.passes() > 0)
             ++pictures_;
         steps_ = picture_steps();
     }
     render_state state() override
     {
-        render_state s{film_, unfinished_};
+        render_state s{film_, unfinished_, clock_.seconds()};
         if (unfinished_.empty()) // otherwise resume()'s state has not been consumed
             s.pass = {pass_, rows_done()};
         if (view_ && !view_->is_preview()) {
@@ -73,10 +77,13 @@ public:
         if (!started_)
             throw std::logic_error("progressive_render::step: no picture was started; call start()");
         const auto begin = std::chrono::steady_clock::now();
+        clock_.go_on();
         try {
             while (!finished()) {
                 steps_.advance();
                 note_new_picture();
+                judge_.during_pass(clock_.seconds(), pictures_ > 0);
+                stats_.end = judge_.result();
                 if (stop_asked_.exchange(false) || std::chrono::steady_clock::now() - begin >= budget)
                     break;
             }
@@ -86,6 +93,7 @@ public:
             begin_picture();
             throw;
         }
+        clock_.pause();
         return finished();
     }
 
@@ -113,6 +121,19 @@ public:
 
     render_progress progress() const override
     {
+        auto p = progress_of_stage();
+        const auto foreseen = forecast(p);
+        p.whole = foreseen.fraction;
+        p.seconds_left = foreseen.seconds_left;
+        return p;
+    }
+    std::uint64_t maps() const override { return maps_.begun(); }
+    const capabilities& caps() const override { return device_.caps(); }
+    const std::map<std::string, kernel_cost>& costs() const override { return device_.costs(); }
+
+private:
+    render_progress progress_of_stage() const
+    {
         const std::uint64_t pixels = std::uint64_t{settings_.output.width} * settings_.output.height;
         if (finished())
             return {"finished", 1, 0, 1, settings_.map.photons, film_.passes()};
@@ -128,11 +149,18 @@ public:
             pixels - above - band + (view_ ? view_->unfinished() : 0), 1, maps_.of().settings.map.photons,
             film_.passes()};
     }
-    std::uint64_t maps() const override { return maps_.begun(); }
-    const capabilities& caps() const override { return device_.caps(); }
-    const std::map<std::string, kernel_cost>& costs() const override { return device_.costs(); }
+    /// A pass takes as long as those before. Within the first, what is drawn of it tells how long the rest takes.
+    picture_forecast forecast(const render_progress& now) const
+    {
+        const double seconds = clock_.seconds(), since = seconds - judge_.last_end();
+        double of_pass = judge_.pass_seconds();
+        if (of_pass == 0 && now.stage == "radiance_estimate" && now.fraction > 0)
+            of_pass = drawing_since_ + (seconds - drawing_since_) / now.fraction - judge_.last_end();
+        if (!(of_pass > 0))
+            return judge_.forecast(0, std::numeric_limits<double>::infinity(), seconds);
+        return judge_.forecast(std::clamp(since / of_pass, 0.0, 1.0), of_pass, seconds);
+    }
 
-private:
     void begin_picture()
     {
         view_.reset();
@@ -142,12 +170,16 @@ private:
         unfinished_ = {};
         light_ = {};
         pictures_ = 0;
+        judge_ = picture_judge(settings_.output);
+        clock_ = work_clock();
+        drawing_since_ = 0;
         if (!maps_.serves(pass(next_pass())))
             stats_ = {};
         stats_.trace_rays = stats_.radiance_estimate = {};
         stats_.estimate = {};
         stats_.photons = {};
         stats_.invalid_pixels = 0;
+        stats_.end = {};
         steps_ = picture_steps();
     }
 
@@ -165,15 +197,18 @@ private:
     {
         step_list steps;
         steps.expand([this] { return early_preview_steps(); });
-        steps.expand([this] { return steps_to_map(pass(next_pass())); });
+        steps.expand([this] { return steps_to_map(pass(first_pass())); });
         steps.expand([this] { return preview_steps(); });
-        steps.repeat(film_.passes(), settings_.output.passes, [this](uint) { return pass_steps(next_pass()); });
+        steps.repeat(film_.passes(), settings_.output.passes, [this](uint) {
+            judge_.before_pass(film_, clock_.seconds());
+            return judge_.ended() ? step_list() : pass_steps(next_pass());
+        });
         return steps;
     }
     /// If there is no map yet and tracing all photons would take long: a preview with fewer photons.
     step_list early_preview_steps()
     {
-        auto fewer = pass(next_pass());
+        auto fewer = pass(first_pass());
         if (!has_previews() || maps_.serves(fewer) || settings_.output.only == light_part::direct)
             return {};
         step_list steps;
@@ -197,7 +232,7 @@ private:
         const uint photons = maps_.of().settings.map.photons;
         const bool early_shown = pictures_ > 0; // before the map with all photons there is no other picture
         for (const auto& p : preview_schedule(settings_, photons, early_shown, costs_, previews_.target_ms)) {
-            steps.expand([this, p] { return steps_of_view(next_pass(), p); });
+            steps.expand([this, p] { return steps_of_view(first_pass(), p); });
             steps.expand([this] { return end_preview(); });
         }
         return steps;
@@ -221,17 +256,28 @@ private:
     uint rows_done() const { return static_cast<uint>(light_.pixels.size() / settings_.output.width); }
 
     /// The pass to draw next: first one that was begun, then one for the map in use, then one that needs another map.
+    /// With a stop rule the one for the map in use has to wait: which passes a picture has must depend on their number
+    /// alone.
     uint next_pass() const
     {
         if (!unfinished_.empty())
             return unfinished_.number;
-        const uint kept = maps_.of().pass;
-        if (kept < settings_.output.passes && !film_.holds(kept) && maps_.serves(pass(kept)))
-            return kept;
+        if (!settings_.output.has_stop_rule() && has_map_of_unfinished_pass())
+            return maps_.of().pass;
         uint first = 0;
         while (film_.holds(first))
             ++first;
         return first;
+    }
+    bool has_map_of_unfinished_pass() const
+    {
+        const uint kept = maps_.of().pass;
+        return kept < settings_.output.passes && !film_.holds(kept) && maps_.serves(pass(kept));
+    }
+    /// The pass of the map before passes begin: previews may have any.
+    uint first_pass() const
+    {
+        return has_previews() && unfinished_.empty() && has_map_of_unfinished_pass() ? maps_.of().pass : next_pass();
     }
     /// The inputs of the map for pass `number`.
     map_source pass(uint number) const { return {scene_, settings_of_pass(settings_, number), number}; }
@@ -259,12 +305,15 @@ private:
 
     step_list steps_of_view(uint number, std::optional<preview> p, std::optional<row_band> band = {})
     {
-        pass_ = number;
+        if (std::exchange(pass_, number) != number)
+            kept_.clear(); // of a preview of another pass
         auto with = settings_of_pass(settings_, number);
         if (p)
             with.estimate.k
                 = std::max(1u, with.estimate.k / std::max(1u, with.map.photons / maps_.of().settings.map.photons));
         ms_before_ = ms_of_views();
+        if (!p && rows_done() == 0)
+            drawing_since_ = clock_.seconds();
         samples_shown_ = grown_shown_ = 0;
         view_.emplace(device_, maps_.map(), scene_.camera, with,
             view_pass_settings{p, step_size::small, previews_.enabled && !has_bands(), shows_running_estimates(), band},
@@ -305,6 +354,7 @@ private:
         if (film_.size() == 0)
             film_ = film_for(scene_, maps_.map().scene.layout, settings_.output);
         film_.add(number, std::exchange(light_, {}));
+        judge_.after_pass(film_, clock_.seconds(), stats_);
         unfinished_ = {};
         shown_.reset();
         ++pictures_;
@@ -336,6 +386,9 @@ private:
     preview_settings previews_;
     work_costs costs_;
     step_list steps_; ///< those of the whole picture
+    picture_judge judge_;
+    work_clock clock_;         ///< of the picture
+    double drawing_since_ = 0; ///< when the light of a pass began to be drawn, s
 
     map_keeper<B> maps_;
 

@@ -9,6 +9,7 @@
 
 #include <photongrid/render/film.hpp>
 #include <photongrid/render/passes.hpp>
+#include <photongrid/render/picture_end.hpp>
 #include <photongrid/render/scene_map.hpp>
 #include <photongrid/render/step_list.hpp>
 #include <photongrid/render/view_pass.hpp>
@@ -160,7 +161,7 @@ template <backend B>
 }
 
 /// Draws a picture with the scene's own camera: the mean of output.passes passes, each with its own photons, eye rays
-/// and shadow rays.
+/// and shadow rays, or of as many as a stop rule asks for (picture_end.hpp); at least one is whole.
 /// \throws what build_map and draw throw.
 /// \snippet snippets.cpp render
 template <backend B>
@@ -170,16 +171,24 @@ template <backend B>
     check(settings);
     rendered out;
     film sum;
-    for (uint pass = 0; pass < settings.output.passes; ++pass) {
-        const auto own = settings_of_pass(settings, pass);
+    picture_judge judge(settings.output);
+    work_clock clock;
+    clock.go_on();
+    auto every = settings;
+    every.output.passes = settings.output.passes_at_most();
+    for (uint pass = 0; !judge.ended(); ++pass) {
+        const auto own = settings_of_pass(every, pass);
         const auto map = build_map(device, s, own, observer);
         detail::add_map(out.stats, map.stats);
         if (pass == 0)
             sum = film_for(s, map.scene.layout, settings.output);
         sum.add(pass, draw_pass(device, map, s.camera, own, observer, out.stats));
-        if (observer.intermediate && pass + 1 < settings.output.passes)
+        judge.after_pass(sum, clock.seconds(), out.stats);
+        judge.before_pass(sum, clock.seconds());
+        if (observer.intermediate && !judge.ended())
             observer.intermediate(sum.picture().picture);
     }
+    out.stats.end = judge.result();
     finish_picture(sum, out);
     return out;
 }

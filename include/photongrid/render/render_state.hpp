@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -22,6 +23,8 @@ struct render_progress {
     std::uint32_t divisor = 1;    ///< side of the pixels being drawn, in pixels of the picture
     std::uint32_t photons = 0;    ///< of the map in use or being built
     std::uint32_t passes = 0;     ///< passes in the picture
+    double whole = 0;             ///< of the whole picture, 0 to 1, as far as that can be foreseen
+    double seconds_left = std::numeric_limits<double>::infinity(); ///< by the measured times; infinity: not known yet
 };
 
 /// An unfinished pass: its finished rows, and the light of the first rays of the band of rows after them.
@@ -40,6 +43,7 @@ struct unfinished_pass {
 struct render_state {
     photongrid::film film;
     unfinished_pass pass;
+    double seconds = 0; ///< of drawing so far, which output_settings::seconds counts
 
     /// Whether there is nothing to resume.
     bool empty() const { return film.passes() == 0 && pass.empty(); }
@@ -51,15 +55,18 @@ struct render_state {
 inline void check(const render_state& s, const render_settings& settings)
 {
     const auto& o = settings.output;
+    const auto passes = o.passes_at_most();
     const auto fail = [&](const std::string& what) {
         throw std::invalid_argument("render_state: " + what + "; the picture has " + std::to_string(o.width) + " x "
             + std::to_string(o.height) + " pixels" + (o.aov ? " with layers" : "") + " and passes 0 to "
-            + std::to_string(o.passes - 1));
+            + std::to_string(passes - 1));
     };
+    if (!(s.seconds >= 0) || std::isinf(s.seconds))
+        fail("seconds: must be finite and not negative");
     if (s.film.size() > 0 && !s.film.is_for(o.width, o.height, o.aov))
         fail("film: its size or its layers differ");
     std::uint32_t known = 0; // of the film's passes
-    for (std::uint32_t number = 0; number < o.passes; ++number)
+    for (std::uint32_t number = 0; number < passes; ++number)
         known += s.film.holds(number) ? 1u : 0u;
     if (known != s.film.passes())
         fail("film: " + std::to_string(s.film.passes() - known) + " of its " + std::to_string(s.film.passes())
@@ -68,7 +75,7 @@ inline void check(const render_state& s, const render_settings& settings)
     const auto& p = s.pass;
     if (p.empty() && p.light.pixels.empty() && p.light.searches.empty() && p.light.errors.empty())
         return;
-    if (p.number >= o.passes || s.film.holds(p.number))
+    if (p.number >= passes || s.film.holds(p.number))
         fail("pass: number " + std::to_string(p.number) + " is finished or not the picture's");
     const auto has = [&](const pass_pixels& pixels, std::size_t rows, bool searches) {
         const std::size_t n = rows * o.width;

@@ -7,6 +7,7 @@
 #include <photongrid/trace/render_observer.hpp>
 
 #include <cstdint>
+#include <limits>
 
 #include <photongrid/backend/exact_begin.hpp>
 
@@ -39,6 +40,17 @@ struct estimate_stats {
     std::uint64_t points = 0; ///< number of searches
 };
 
+/// What ended a picture: its number of passes, or a stop rule (output_settings).
+enum class ended_by { nothing, passes, error, seconds };
+
+/// The end of a picture of passes.
+struct end_stats {
+    std::uint32_t passes = 0; ///< in the picture
+    /// Of the picture, by picture_error() at output_settings::percentile; infinity: not known, as of a single pass.
+    double error = std::numeric_limits<double>::infinity();
+    ended_by by = ended_by::nothing;
+};
+
 /// Statistics of build_map and draw, which `--stats` writes.
 struct render_stats {
     photon_stats photons;                ///< of the map, independent of the view
@@ -48,6 +60,7 @@ struct render_stats {
     stage_stats trace_rays;              ///< eye rays and direct light (2.4)
     stage_stats radiance_estimate;       ///< 2.3
     estimate_stats estimate;             ///< the searches
+    end_stats end;                       ///< of render() and progressive_render
     std::uint64_t invalid_pixels = 0;    ///< pixels that were NaN or infinite before they were set to 0
     std::uint64_t peak_device_bytes = 0; ///< most bytes in buffers since the backend was created
 };

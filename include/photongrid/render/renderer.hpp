@@ -53,8 +53,9 @@ public:
     /// starts a new picture.
     void cancel() { stop_asked_ = true; }
 
-    /// Whether picture() is the finished picture.
-    bool finished() const { return started_ && film_.passes() >= settings_.output.passes; }
+    /// Whether picture() is the finished picture: all its passes are done, or a stop rule has ended it. A picture that
+    /// output_settings::seconds ended within its first pass is the best so far, and stats().end has no passes.
+    bool finished() const { return started_ && stats_.end.by != ended_by::nothing; }
     /// The number of pictures since start(), each better than the one before; 0: there is none yet. A resumed state
     /// with finished passes is one.
     std::uint64_t pictures() const { return pictures_; }

@@ -96,8 +96,15 @@ struct view_settings {
 struct output_settings {
     std::uint32_t width = 512;  ///< pixels, 1 to 16384
     std::uint32_t height = 512; ///< pixels, 1 to 16384
-    /// The picture is the mean of so many passes, each with its own photons, eye rays and shadow rays.
+    /// The picture is the mean of so many passes, each with its own photons, eye rays and shadow rays. With until_error
+    /// or seconds it is the mean of at most so many, and 1 then means most_passes.
     std::uint32_t passes = 1;
+    /// The picture ends once its error is at most this (picture_error.hpp): a share of the radiance; 0: off.
+    double until_error = 0;
+    double percentile = 0.95; ///< share of the pixels whose errors are to be at most until_error, 0 to 1
+    /// The picture ends before a pass that would end later than after this time of drawing, s; 0: off. Not stored in
+    /// scene files, because the picture depends on the machine.
+    double seconds = 0;
     light_part only = light_part::all; ///< the part of the light to draw
     /// EV for tone-mapped output: pixel values times 2^exposure; none: fitted to the picture.
     std::optional<double> exposure{};
@@ -106,6 +113,12 @@ struct output_settings {
     /// scene files.
     std::uint32_t band = 1u << 20;
 
+    /// The most passes that a picture may have.
+    static constexpr std::uint32_t most_passes = 65536;
+    /// Whether something else than the number of passes may end the picture.
+    bool has_stop_rule() const { return until_error > 0 || seconds > 0; }
+    /// The number of passes after which the picture ends at the latest.
+    std::uint32_t passes_at_most() const { return has_stop_rule() && passes == 1 ? most_passes : passes; }
     bool operator==(const output_settings&) const = default;
 };
 
@@ -144,6 +157,7 @@ inline render_settings as_paper(render_settings s)
     s.estimate.indirect = indirect_kind::map;
     s.map.surplus = surplus_kind::power;
     s.output.passes = 1;
+    s.output.until_error = s.output.seconds = 0;
     s.view.light_samples = static_cast<std::uint32_t>(
         std::min<std::uint64_t>(std::uint64_t{s.view.light_samples} * std::max(s.view.spp, 1u), 65536));
     s.view.spp = 1;

@@ -180,8 +180,18 @@ namespace setting_table {
     inline constexpr setting pixel_filter{"pixel_filter", of(&view_settings::filter),
         one_of{{named{"box", photongrid::pixel_filter::box}, {"tent", photongrid::pixel_filter::tent}}},
         in_scenes::optional, "weight of an eye ray by its place: even over its pixel (box), or a tent of two pixels"};
-    inline constexpr setting passes{"passes", of(&output_settings::passes), whole_range{1, 65536}, in_scenes::optional,
-        "the picture is the mean of so many passes, each with its own photons, eye rays and shadow rays"};
+    inline constexpr setting passes{"passes", of(&output_settings::passes),
+        whole_range{1, output_settings::most_passes}, in_scenes::optional,
+        "the picture is the mean of so many passes, each with its own photons, eye rays and shadow rays; with "
+        "--until-error or --seconds, of at most so many (1: no limit)"};
+    inline constexpr setting until_error{"until_error", of(&output_settings::until_error), real_range{0, 1, ""},
+        in_scenes::optional,
+        "add passes until the noise of --percentile of the pixels is at most this part of their light, as 0.02; 0: "
+        "off"};
+    inline constexpr setting percentile{"percentile", of(&output_settings::percentile), real_range{0, 1, ""},
+        in_scenes::optional, "part of the pixels that --until-error asks for"};
+    inline constexpr setting seconds{"seconds", of(&output_settings::seconds), real_range{0, 1e8, " s"},
+        in_scenes::never, "add passes as long as they end within this time of drawing; 0: off"};
     inline constexpr setting depth{"depth", of(&view_settings::depth), whole_range{0, 64}, in_scenes::optional,
         "most reflections and refractions of an eye ray"};
     inline constexpr setting photon_depth{"photon_depth", of(&map_settings::photon_depth), whole_range{1, 64},
@@ -241,8 +251,8 @@ constexpr void for_each_setting(const Visit& visit)
     namespace t = setting_table;
     const auto all = [&](const auto&... row) { (visit(row), ...); };
     all(t::size, t::photons, t::k, t::grid, t::max_radius, t::light_samples, t::spp, t::pixel_filter, t::passes,
-        t::depth, t::photon_depth, t::seed, t::map, t::slots, t::surplus, t::exposure, t::search, t::filter, t::bias,
-        t::leaks, t::edge_correction, t::indirect, t::gather_rays, t::only);
+        t::until_error, t::percentile, t::depth, t::photon_depth, t::seed, t::map, t::slots, t::surplus, t::exposure,
+        t::search, t::filter, t::bias, t::leaks, t::edge_correction, t::indirect, t::gather_rays, t::only, t::seconds);
 }
 
 /// \throws std::invalid_argument "name: must be …" for a setting out of its range, or for two incompatible settings.

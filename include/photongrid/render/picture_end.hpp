@@ -1,0 +1,172 @@
+// When a picture of several passes ends: after its last pass, or before by a stop rule (output_settings::until_error
+// and seconds). And how long that will take.
+#pragma once
+
+#include <photongrid/render/picture_error.hpp>
+#include <photongrid/render/render_stats.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// A stopwatch that can be paused.
+class work_clock {
+public:
+    /// It is paused at `seconds`.
+    explicit work_clock(double seconds = 0) : before_(seconds) {}
+    void go_on()
+    {
+        if (!std::exchange(runs_, true))
+            since_ = clock::now();
+    }
+    void pause()
+    {
+        before_ = seconds();
+        runs_ = false;
+    }
+    /// The time while it ran, s.
+    double seconds() const
+    {
+        return before_ + (runs_ ? std::chrono::duration<double>(clock::now() - since_).count() : 0.0);
+    }
+
+private:
+    using clock = std::chrono::steady_clock;
+    double before_;
+    bool runs_ = false;
+    clock::time_point since_{};
+};
+
+/// What is known of a picture's remaining work.
+struct picture_forecast {
+    double fraction = 0;                                           ///< done, of the whole picture, 0 to 1
+    double seconds_left = std::numeric_limits<double>::infinity(); ///< infinity: not known yet
+};
+
+/// Decides when a picture ends. Times are in s, since the picture was begun.
+class picture_judge {
+public:
+    /// Fewer passes do not tell the error well enough to stop by it.
+    static constexpr std::uint32_t least_passes = 4;
+
+    picture_judge() = default;
+    explicit picture_judge(const output_settings& o) : output_(o) {}
+
+    /// Whether and how the picture has ended.
+    const end_stats& result() const { return result_; }
+    bool ended() const { return result_.by != ended_by::nothing; }
+
+    /// The picture goes on from `sum`.
+    void resume(const film& sum, double seconds)
+    {
+        begun_with_ = sum.passes();
+        judge(sum);
+        if (sum.passes() > 0)
+            before_pass(sum, seconds);
+    }
+    /// `sum` has one more pass. `stats`: of all passes of this run.
+    void after_pass(const film& sum, double seconds, const render_stats& stats)
+    {
+        const auto own = sum.passes() - begun_with_; // passes of this run
+        if (own == 1) {                              // its time has a compilation and previews in it
+            pass_seconds_
+                = (stats.trace_photons.ms + stats.build_map.ms + stats.trace_rays.ms + stats.radiance_estimate.ms)
+                / 1000;
+            first_end_ = seconds;
+        } else {
+            pass_seconds_ = (seconds - first_end_) / (own - 1);
+        }
+        last_end_ = seconds;
+        judge(sum);
+    }
+    /// Ends the picture if the next pass would end too late. The first pass always begins.
+    void before_pass(const film& sum, double seconds)
+    {
+        if (ended() || output_.seconds == 0 || result_.passes == 0 || seconds + pass_seconds_ < output_.seconds)
+            return;
+        find_error(sum);
+        end(ended_by::seconds);
+    }
+    /// Ends a picture whose first pass takes too long, once there is something to see.
+    void during_pass(double seconds, bool has_picture)
+    {
+        if (output_.seconds > 0 && result_.passes == 0 && has_picture && seconds >= output_.seconds)
+            end(ended_by::seconds);
+    }
+
+    /// The mean time of a pass so far, s; 0: there was none in this run.
+    double pass_seconds() const { return pass_seconds_; }
+    /// When the last pass ended.
+    double last_end() const { return last_end_; }
+    /// `part`: what is done of the pass that is being drawn, 0 to 1. `pass_seconds`: the time that a pass takes,
+    /// infinity if that is unknown.
+    picture_forecast forecast(double part, double pass_seconds, double seconds) const
+    {
+        if (ended())
+            return {1, 0};
+        picture_forecast f;
+        const double done = result_.passes + part, all = passes_needed();
+        f.fraction = std::min(done / all, 1.0);
+        if (output_.until_error == 0 || result_.passes > 1)
+            f.seconds_left = std::max(all - done, 0.0) * pass_seconds;
+        if (output_.seconds > 0) {
+            f.fraction = std::min(std::max(f.fraction, seconds / output_.seconds), 1.0);
+            f.seconds_left = std::max(std::min(f.seconds_left, output_.seconds - seconds), 0.0);
+        }
+        return f;
+    }
+
+private:
+    /// Whether the error is found after this pass: after each, then after one in sixteen of those before, because
+    /// finding it takes time and it hardly changes.
+    static bool is_looked_at(std::uint32_t passes) { return passes % std::bit_floor(std::max(passes / 16, 1u)) == 0; }
+
+    void judge(const film& sum)
+    {
+        result_.passes = sum.passes();
+        const bool last = result_.passes >= output_.passes_at_most();
+        if (last || (output_.has_stop_rule() && is_looked_at(result_.passes)))
+            find_error(sum);
+        if (output_.until_error > 0 && result_.passes >= least_passes && result_.error <= output_.until_error)
+            end(ended_by::error);
+        else if (last)
+            end(ended_by::passes);
+    }
+    void find_error(const film& sum)
+    {
+        if (std::exchange(error_of_, result_.passes) != result_.passes)
+            result_.error = picture_error(sum, output_.percentile);
+    }
+    void end(ended_by by)
+    {
+        if (!ended())
+            result_.by = by;
+    }
+    /// As the error falls with the root of the passes.
+    double passes_needed() const
+    {
+        const double most = output_.passes_at_most();
+        if (output_.until_error == 0 || result_.passes < 2)
+            return most;
+        const double ratio = result_.error / output_.until_error;
+        return std::clamp(std::ceil(error_of_ * ratio * ratio), std::min(double{least_passes}, most), most);
+    }
+
+    output_settings output_;
+    end_stats result_;
+    std::uint32_t begun_with_ = 0;
+    std::uint32_t error_of_ = 0; ///< the number of passes whose error is known
+    double pass_seconds_ = 0, first_end_ = 0, last_end_ = 0;
+};
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>
