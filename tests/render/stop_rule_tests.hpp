@@ -10,16 +10,18 @@ TYPED_TEST_P(progressive, a_picture_that_its_error_ends_has_the_bytes_of_as_many
 {
     using ms = typename TestFixture::ms;
     auto s = this->small_scene();
+    s.render.output.width = 24;
+    s.render.output.height = 20;
     s.render.map.photons = 1000;
     s.render.estimate.k = 100;
     s.render.view.spp = 1;
-    s.render.output.until_error = 0.5;
+    s.render.output.until_error = 0.3;
     const auto drawn = render(this->b(), s, s.render);
     const auto& end = drawn.stats.end;
     EXPECT_EQ(end.by, ended_by::error);
-    EXPECT_LE(end.error, 0.5);
-    ASSERT_GE(end.passes, 4u);
-    ASSERT_LE(end.passes, 100u);
+    EXPECT_LE(end.error, 0.3);
+    ASSERT_GE(end.passes, 5u);
+    ASSERT_LE(end.passes, 30u);
     auto counted = s.render;
     counted.output.until_error = 0;
     counted.output.passes = end.passes;
@@ -59,7 +61,7 @@ TYPED_TEST_P(progressive, a_picture_that_its_error_ends_has_the_bytes_of_as_many
 
     // From states in the middle, the last of them of a picture that a larger error ended.
     auto larger = s.render;
-    larger.output.until_error = 0.8;
+    larger.output.until_error = 0.5;
     drawing.start(s, larger);
     while (drawing.progress().passes < 2)
         drawing.step(ms(0));
@@ -89,6 +91,8 @@ TYPED_TEST_P(progressive, a_picture_that_its_error_ends_has_the_bytes_of_as_many
 TYPED_TEST_P(progressive, a_picture_that_time_ends_has_the_bytes_of_as_many_passes)
 {
     auto s = this->small_scene();
+    s.render.output.width = 24;
+    s.render.output.height = 20;
     s.render.map.photons = 1000;
     s.render.view.spp = 2; // so that one pass has no other eye rays than each of several
     s.render.output.seconds = 0.5;
