@@ -96,14 +96,14 @@ TEST(picture_error, is_what_the_spread_of_each_pixel_says)
     }
 }
 
-/// The claim: a share of the pixels is within the error of the truth. Few passes know their own noise badly, which
-/// makes the claim at 0.95 larger by 6 % at 4 passes, 3 % at 8 (numbers whose deviation is itself that of a few
-/// numbers).
+/// The claim: a share of the pixels is within the error of the truth. Few passes know their own noise badly: a pixel's
+/// deviation found from n passes is the true one times the root of chi^2 / (n - 1), which makes the claim a few percent
+/// larger at 0.95 and smaller at 0.9.
 TEST(picture_error, covers_the_share_of_pixels_that_it_names)
 {
     for (const int passes : {4, 8, 64})
         for (const double share : {0.9, 0.95}) {
-            double within = 0, claimed = 0, known = 0;
+            double within = 0, claimed = 0, expected = 0, known = 0;
             constexpr int pictures = 5;
             for (unsigned seed = 0; seed < pictures; ++seed) {
                 noisy_picture p(10 + seed);
@@ -112,22 +112,28 @@ TEST(picture_error, covers_the_share_of_pixels_that_it_names)
                 double radiance = 0;
                 for (const double t : p.truth)
                     radiance += t / static_cast<double>(p.n);
-                std::vector<double> errors;
-                for (std::size_t i = 0; i < p.n; ++i)
+                std::vector<double> errors, found;
+                std::chi_squared_distribution<double> chi(passes - 1);
+                for (std::size_t i = 0; i < p.n; ++i) {
                     errors.push_back(p.sigma[i] / std::sqrt(passes) / (p.truth[i] + 0.01 * radiance));
+                    found.push_back(errors.back() * std::sqrt(chi(p.random) / (passes - 1)));
+                }
                 const double error = picture_error(p.sum, share);
                 claimed += error / pictures;
                 known += bound_of(errors, share) / pictures;
+                expected += bound_of(found, share) / pictures;
                 for (std::size_t i = 0; i < p.n; ++i)
                     within += std::abs(p.mean(i) - p.truth[i]) <= error * (p.truth[i] + 0.01 * radiance) ? 1 : 0;
             }
             within /= pictures * static_cast<double>(noisy_picture::n);
-            EXPECT_GT(claimed, 0.97 * known) << passes << " passes, " << share;
+            // The mean that the errors are divided by has noise, too.
+            EXPECT_NEAR(claimed, expected, 0.03 * expected) << passes << " passes, " << share;
+            EXPECT_GT(claimed, 0.95 * known) << passes << " passes, " << share;
             EXPECT_LT(claimed, 1.09 * known) << passes << " passes, " << share;
-            // Four standard deviations of a share of so many pixels, and what a claim larger by 9 % covers besides.
+            // Four standard deviations of a share of so many pixels, and what a claim so far off covers besides.
             const double spread
                 = 4 * std::sqrt(share * (1 - share) / (pictures * static_cast<double>(noisy_picture::n)));
-            EXPECT_GT(within, share - spread) << passes << " passes";
+            EXPECT_GT(within, share - spread - (passes < 64 ? 0.01 : 0)) << passes << " passes";
             EXPECT_LT(within, share + spread + (passes < 64 ? 0.02 : 0.004)) << passes << " passes";
         }
 }
