@@ -52,8 +52,8 @@ public:
         const bool negative = (high_ >> 63) != 0;
         const std::uint64_t low = negative ? ~low_ + 1 : low_;
         const std::uint64_t high = negative ? ~high_ + (low == 0 ? 1u : 0u) : high_;
-        const double size = std::ldexp(static_cast<double>(high), 64 - fraction_bits)
-            + std::ldexp(static_cast<double>(low), -fraction_bits);
+        static_assert(fraction_bits == 64);
+        const double size = static_cast<double>(high) + static_cast<double>(low) * 0x1p-64; // ldexp would be a call
         return negative ? -size : size;
     }
 
