@@ -252,6 +252,24 @@ TYPED_TEST_P(pictures, a_gathered_picture_does_not_depend_on_bands)
     EXPECT_LE(relative_mse(this->picture(s, settings), whole), 1e-9);
 }
 
+TYPED_TEST_P(pictures, the_rays_of_a_gather_are_progress)
+{
+    const auto s = small_cornell();
+    auto settings = gathering(s.render, 5);
+    settings.output.width = settings.output.height = 8;
+    std::vector<double> fractions;
+    render_observer watch;
+    watch.cancelled = [] { return false; }; // small steps
+    watch.progress = [&](std::string_view stage, double fraction) {
+        if (stage == "radiance_estimate")
+            fractions.push_back(fraction);
+    };
+    (void)render(this->b(), s, settings, watch);
+    EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+    EXPECT_GE(std::count_if(fractions.begin(), fractions.end(), [](double f) { return f > 0 && f < 0.2; }), 4);
+    EXPECT_EQ(fractions.back(), 1);
+}
+
 TYPED_TEST_P(pictures, a_view_of_a_map_without_a_gather_is_refused)
 {
     auto& b = this->b();

@@ -2,8 +2,8 @@
 // photon nearest there. Farther from that photon than the radius of its estimate, the surface is darker: there the
 // light falls as the density of photons does, with the square of the distance.
 //
-// A ray that ends closer to its start than that radius, as in a corner, sees the estimate's blur. Such near ends are left
-// for a gather of their own, as points with w > 0.
+// A ray that ends closer to its start than that radius, as in a corner, sees the estimate's blur. Such near ends are
+// left for a gather of their own, as points with w > 0.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/none.glsl>
 

@@ -114,8 +114,11 @@ public:
     double fraction() const
     {
         const double pixels = static_cast<double>(canvas_.raster.size());
-        const double of_this_ray = search_ ? 1.0 - static_cast<double>(unfinished()) / pixels : 0.0;
-        return (canvas_.rays + of_this_ray) / rays();
+        // As if each ray of a final gather and the search at the end of the eye ray took the same time.
+        const double gather_rays = gathers(settings_) ? settings_.estimate.gather_rays : 0;
+        const double finished
+            = search_ ? gather_rays + 1.0 - static_cast<double>(unfinished()) / pixels : static_cast<double>(gathered_);
+        return (canvas_.rays + finished / (gather_rays + 1)) / rays();
     }
     /// The number of pixels whose estimates for the current eye ray are not finished.
     std::uint64_t unfinished() const { return search_ ? search_->unfinished() : 0; }
