@@ -75,8 +75,11 @@ protected:
         const auto used = b.download(e.used);
         const auto standard_error = b.download(e.standard_error);
         for (std::size_t q = 0; q < s.points.size(); ++q) {
+            auto own = settings;
+            if (settings.radii_at_points) // all are powers of two
+                own.max_radius = std::min(std::sqrt(s.points[q].w), settings.max_radius);
             const auto expected = estimate_by_force(
-                s, m.ids, m.powers, q, settings, m.map.has_blocks() ? std::optional<float>() : irradiance[q].w);
+                s, m.ids, m.powers, q, own, m.map.has_blocks() ? std::optional<float>() : irradiance[q].w);
             const auto where = " at point " + std::to_string(q);
             if (used[q].x != expected.ids.size())
                 return "used " + std::to_string(used[q].x) + ", not " + std::to_string(expected.ids.size()) + where;

@@ -117,6 +117,9 @@ TYPED_TEST_P(estimators, searches_throw_for_wrong_settings)
     EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument);
     k.leaks = {.flattening = std::numeric_limits<float>::quiet_NaN()};
     EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument);
+    k.leaks = {};
+    k.radii_at_points = true; // of the k nearest, no radius is given
+    EXPECT_THROW(knn_grid_estimate(b, map, points, points, k), std::invalid_argument);
 }
 
 TYPED_TEST_P(estimators, searches_can_be_watched_and_resumed)

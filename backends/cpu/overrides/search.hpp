@@ -87,6 +87,7 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
     j.search = s.search;
     j.searching = in.searching();
     j.k = s.k;
+    j.radii_at_points = s.radii_at_points;
     j.max_radius2 = in.max_radius2();
     j.min_radius2 = in.min_radius2();
     j.filter = s.filter;

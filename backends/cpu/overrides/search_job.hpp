@@ -25,11 +25,12 @@ struct search_job {
     const uint* order = nullptr;              ///< order of the points; it should keep neighbours in space together
 
     search_kind search = search_kind::exact_k;
-    bool searching = true; ///< false: nothing can be found
-    uint k = 0;            ///< photons sought
-    float max_radius2 = 0; ///< m^2
-    float min_radius2 = 0; ///< m^2; see least_disc2 (search_radius.glsl)
-    bool side = false;     ///< leak policies, see photon_distance.glsl
+    bool searching = true;        ///< false: nothing can be found
+    uint k = 0;                   ///< photons sought
+    bool radii_at_points = false; ///< fixed_radius: the w of a point is its squared radius, m^2
+    float max_radius2 = 0;        ///< m^2
+    float min_radius2 = 0;        ///< m^2; see least_disc2 (search_radius.glsl)
+    bool side = false;            ///< leak policies, see photon_distance.glsl
     bool needs_photon_normals = false;
     float min_cosine = -1;
     float flattening = 0; ///< c^2 - 1

@@ -73,6 +73,12 @@ inline float guess(const search_job& j, uint point)
     return detail::guessed_radius2(j.cells_of, j.cells, glm::vec3(j.points[point]), j.k, j.max_radius2);
 }
 
+/// The given squared radius of a point, or the largest one allowed.
+inline float given_radius2(const search_job& j, uint point)
+{
+    return j.radii_at_points ? std::min(j.points[point].w, j.max_radius2) : j.max_radius2;
+}
+
 /// Searches for the points order[begin] to order[end - 1]. It is one function, because most of its variables pass from
 /// point to point and from packet to packet.
 template <int POLICIES>
@@ -140,7 +146,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
         }
         bool guessed = false;
         if (!exact)
-            expected = max_radius;
+            expected = std::sqrt(given_radius2(j, first));
         else if (expected < 0 && last_radius > 0)
             expected
                 = last_radius + std::min(surplus * last_radius, distance_between(glm::vec3(j.points[first]), last.at));
@@ -165,6 +171,8 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
                             h = glm::max(high, glm::vec3(j.points[point]));
             if (!(distance_between(l, h) <= widest))
                 break;
+            if (j.radii_at_points && !(given_radius2(j, point) <= 2 * expected * expected))
+                break; // its photons are too many for the others
             low = l;
             high = h;
         }
@@ -174,9 +182,11 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
         }
         const glm::vec3 center = 0.5f * low + 0.5f * high;
         float packet_radius = expected;
-        for (std::size_t i = o; i < past; ++i)
-            packet_radius
-                = std::max(packet_radius, expected + distance_between(glm::vec3(j.points[j.order[i]]), center));
+        for (std::size_t i = o; i < past; ++i) {
+            const uint point = j.order[i];
+            const float own = j.radii_at_points ? std::sqrt(given_radius2(j, point)) : expected;
+            packet_radius = std::max(packet_radius, own + distance_between(glm::vec3(j.points[point]), center));
+        }
         // Where photons get much denser near the points, a packet has many more than the points need.
         const std::size_t most
             = in_tree && exact ? 512 + 16 * std::size_t{j.k} : std::numeric_limits<std::size_t>::max();
@@ -193,8 +203,9 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             const query q = query_at<POLICIES>(j, point);
             // The packet contains all photons within this distance of the point.
             const float sure = std::max((packet_radius - distance_between(q.at, center) * 1.000001f) * 0.999998f, 0.0f);
-            const float sure2 = std::min(begun_with >= max_radius ? j.max_radius2 : sure * sure, j.max_radius2);
-            chosen_radius r{j.max_radius2, false};
+            const float limit2 = exact ? j.max_radius2 : given_radius2(j, point);
+            const float sure2 = exact && begun_with < max_radius ? std::min(sure * sure, limit2) : limit2;
+            chosen_radius r{limit2, false};
             float kth2 = -1; // squared distance of the k-th photon; none: -1
             float low2 = -1, high2 = sure2;
             if (exact && last_radius > 0 && (POLICIES == 0 || q.normal == last.normal)) {

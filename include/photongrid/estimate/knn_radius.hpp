@@ -78,8 +78,9 @@ knn_radius<B>::knn_radius(const detail::search_inputs<B>& in) : in_(in)
     }
     radius = in_.template make<glm::vec4>();
     chosen = in_.template make<glm::uvec4>();
-    in_.device->template run<kernels::given_radius>(
-        in_.points->size(), {.radius2 = in_.max_radius2()}, reads(), writes(radius, chosen));
+    in_.device->template run<kernels::given_radius>(in_.points->size(),
+        {.radius2 = in_.max_radius2(), .at_points = in_.s.radii_at_points ? 1u : 0u}, reads(*in_.points),
+        writes(radius, chosen));
 }
 
 template <backend B>

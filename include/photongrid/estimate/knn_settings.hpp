@@ -17,7 +17,9 @@ struct knn_settings {
                                                                ///< none is found. fixed_radius needs a finite one
     float min_radius = 0; ///< m; least radius of the estimate's disc. It is never below 2^-24 of the point's largest
                           ///< coordinate, by which rounding may have moved photons, nor below 1e-18 m
-    search_kind search = search_kind::exact_k;  ///< which photons count
+    search_kind search = search_kind::exact_k; ///< which photons count
+    /// fixed_radius: each point has a radius of its own. Its w is the square, m^2; max_radius is the largest allowed.
+    bool radii_at_points = false;
     filter_kind filter = filter_kind::constant; ///< weight by distance
     bias_kind bias = bias_kind::unbiased;       ///< whether the photon that sets the radius counts
     leak_policy leaks{};                        ///< leak rejection; none by default
@@ -56,7 +58,9 @@ namespace detail {
     {
         if (std::isnan(s.max_radius) || std::isnan(s.min_radius))
             throw std::invalid_argument("knn_search: max_radius, min_radius: NaN");
-        if (s.search == search_kind::fixed_radius && std::isinf(s.max_radius) && s.max_radius > 0)
+        if (s.radii_at_points && s.search != search_kind::fixed_radius)
+            throw std::invalid_argument("knn_search: radii_at_points: only search_kind::fixed_radius has given radii");
+        if (s.search == search_kind::fixed_radius && !s.radii_at_points && std::isinf(s.max_radius) && s.max_radius > 0)
             throw std::invalid_argument(
                 "knn_search: max_radius: infinite; search_kind::fixed_radius takes all photons within it, so set one");
         if (s.k < 1 && s.search != search_kind::fixed_radius)
@@ -118,7 +122,7 @@ namespace detail {
         const double area = std::max({e.x * e.y, e.y * e.z, e.z * e.x});
         const double photons = std::max(1.0, static_cast<double>(map.photons.size()));
         double disc = 3.14159265 * static_cast<double>(max_radius2(s));
-        if (s.search != search_kind::fixed_radius)
+        if (s.search != search_kind::fixed_radius || s.radii_at_points) // those are mostly of about k photons
             disc = std::min(disc, area * static_cast<double>(s.k) / photons);
         return disc / 3.14159265 * static_cast<double>(points) >= 64 * area;
     }
