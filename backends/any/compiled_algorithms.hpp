@@ -51,14 +51,17 @@
         const buffer_of<B, glm::vec4>&, const buffer_of<B, glm::vec4>&, filter_kind, float);                           \
     EXTERN template void correct_edges(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&,                     \
         const buffer_of<B, glm::vec4>&, knn_estimates<B>&, filter_kind, float);                                        \
+    EXTERN template class gather_map_building<B>;                                                                      \
+    EXTERN template void add_gather_rays(B&, const device_scene<B>&, const gather_map<B>&, const map_buffers<B>&,      \
+        const detail::eye_hits<B>&, render_settings, uint, uint, launch, buffer_of<B, glm::vec4>&);                    \
     EXTERN template built_map<B> build_map(                                                                            \
         B&, const scene&, const render_settings&, const render_observer&, if_none_stored);                             \
     EXTERN template rendered draw(                                                                                     \
         B&, const built_map<B>&, const camera&, const render_settings&, const render_observer&);                       \
     EXTERN template class running_search<B>;                                                                           \
     EXTERN template class view_pass<B>;                                                                                \
-    EXTERN template pass_pixels draw_pass(                                                                             \
-        B&, const built_map<B>&, const camera&, const render_settings&, const render_observer&, render_stats&);        \
+    EXTERN template pass_pixels draw_pass(B&, const built_map<B>&, const camera&, const render_settings&,              \
+        const render_observer&, render_stats&, const pass_radii<B>&);                                                  \
     EXTERN template rendered render(B&, const scene&, const render_settings&, const render_observer&);                 \
     EXTERN template class progressive_render<B>;
 // NOLINTEND(bugprone-macro-parentheses)

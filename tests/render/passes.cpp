@@ -5,9 +5,21 @@
 
 #include <photongrid/render/previews.hpp>
 #include <photongrid/render/render_state.hpp>
+#include <photongrid/render/shrinking_radii.hpp>
 #include <photongrid/render/step_list.hpp>
 
 namespace {
+
+TEST(shrinking_radii, follow_their_sequence)
+{
+    // The product of (i - 1 + alpha) / i is Gamma(n + alpha) / (Gamma(alpha) Gamma(n + 1)).
+    EXPECT_EQ(shrunk_share2(0), 1);
+    EXPECT_NEAR(shrunk_share2(1), 2.0 / 3, 1e-15);
+    for (const std::uint32_t n : {2u, 10u, 100u, 65535u})
+        EXPECT_NEAR(shrunk_share2(n), std::exp(std::lgamma(n + 2.0 / 3) - std::lgamma(2.0 / 3) - std::lgamma(n + 1.0)),
+            1e-9 * shrunk_share2(n))
+            << n;
+}
 
 TEST(step_list, runs_steps_in_order_until_each_is_done)
 {

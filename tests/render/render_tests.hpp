@@ -7,6 +7,7 @@
 #include "known_energy_tests.hpp"
 #include "known_picture_tests.hpp"
 #include "photon_account_tests.hpp"
+#include "shrinking_radii_tests.hpp"
 
 namespace photongrid::testing {
 
@@ -87,6 +88,8 @@ REGISTER_TYPED_TEST_SUITE_P(pictures, a_closed_diffuse_sphere_has_the_known_radi
     irradiance_at_photons_equals_brute_force, a_final_gather_in_a_closed_sphere_has_the_known_radiance,
     a_final_gather_below_a_coat_has_the_known_radiance, a_final_gather_has_the_known_radiance_in_a_corner,
     the_parts_of_a_gathered_picture_add_up, a_final_gather_equals_serials, a_gathered_picture_does_not_depend_on_bands,
+    passes_have_the_radii_of_the_first_map_made_smaller, shrinking_radii_equal_serials,
+    shrinking_radii_do_not_depend_on_how_passes_are_run, blur_fades_with_shrinking_radii,
     the_rays_of_a_gather_are_progress, a_view_of_a_map_without_a_gather_is_refused);
 
 } // namespace photongrid::testing

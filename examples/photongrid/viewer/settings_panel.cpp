@@ -127,6 +127,10 @@ void settings_panel::draw(double shown_exposure)
         "limit, and 1 is none.");
     measure(setting_table::seconds, "seconds", 0.0f, 600.0f, "%.0f", false,
         "Passes are added for this time; 0: off. passes is then the limit, and 1 is none.");
+    choice(setting_table::radii, "radii",
+        "From pass to pass: each pass finds its own (per_pass), or they shrink (shrinking). Speed: shrinking radii "
+        "take "
+        "a search more. Error: blur fades with every pass, too.");
     number(setting_table::light_samples, "light samples", 1, 256,
         "Shadow rays per lamp and eye ray. Speed: time in proportion, for direct light. Error: smoother penumbras.");
     choice(setting_table::indirect, "indirect light",

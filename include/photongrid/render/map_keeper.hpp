@@ -33,8 +33,11 @@ struct map_source {
 template <backend B>
 class map_keeper {
 public:
+    /// The steps to a map.
+    using way = step_list (*)(map_building<B>&);
+
     /// `device` must outlive it.
-    explicit map_keeper(B& device) : device_(device) {}
+    explicit map_keeper(B& device, way steps = map_steps<B>) : device_(device), way_(steps) {}
 
     /// The map in use; there must be one.
     const built_map<B>& map() const { return *built_; }
@@ -72,7 +75,7 @@ public:
             making_.emplace(device_, making_of_.scene, making_of_.settings);
             ++begun_;
         }
-        auto steps = map_steps(*making_);
+        auto steps = way_(*making_);
         steps.expand([this, use = std::move(use)] {
             use();
             built_.emplace(making_->take());
@@ -91,6 +94,7 @@ public:
 
 private:
     B& device_;
+    way way_;
     std::optional<built_map<B>> built_;
     map_source of_; ///< inputs of built_
     std::optional<map_building<B>> making_;

@@ -27,7 +27,9 @@ template <backend B>
 class progressive_render : public renderer {
 public:
     /// `device` must outlive it.
-    explicit progressive_render(B& device) : device_(device), maps_(device) {}
+    explicit progressive_render(B& device) : device_(device), maps_(device), radius_maps_(device, radius_map_steps<B>)
+    {
+    }
 
     void start(const scene& s, const render_settings& settings, const preview_settings& previews = {}) override
     {
@@ -90,6 +92,7 @@ public:
         } catch (...) {
             view_.reset();
             maps_.clear();
+            radius_maps_.clear();
             begin_picture();
             throw;
         }
@@ -189,7 +192,8 @@ private:
     bool has_previews() const { return previews_.enabled && !shows_running_estimates(); }
     bool shows_running_estimates() const
     {
-        return previews_.running_estimates && !has_bands() && detail::sums_while_growing(detail::search_for(settings_));
+        return previews_.running_estimates && !has_bands() && !has_shrinking_radii(settings_)
+            && detail::sums_while_growing(detail::search_for(settings_));
     }
 
     /// A preview with few photons, the map, previews with all photons, then the passes.
@@ -199,6 +203,7 @@ private:
         steps.expand([this] { return early_preview_steps(); });
         steps.expand([this] { return steps_to_map(pass(first_pass())); });
         steps.expand([this] { return preview_steps(); });
+        steps.expand([this] { return steps_to_radii(); });
         steps.repeat(film_.passes(), settings_.output.passes, [this](uint) {
             judge_.before_pass(film_, clock_.seconds());
             return judge_.ended() ? step_list() : pass_steps(next_pass());
@@ -290,6 +295,21 @@ private:
         steps.expand([this] { return use_map(); });
         return steps;
     }
+    /// The map that gives the first radii of all passes.
+    step_list steps_to_radii()
+    {
+        const auto source = pass(radius_pass);
+        if (!has_shrinking_radii(settings_) || radius_maps_.serves(source))
+            return {};
+        auto steps = radius_maps_.steps_to(source, [this] { view_.reset(); });
+        steps.expand([this] {
+            const auto& made = radius_maps_.map().stats;
+            detail::add(stats_.trace_photons, made.trace_photons);
+            detail::add(stats_.build_map, made.build_map);
+            return step_list();
+        });
+        return steps;
+    }
     step_list use_map()
     {
         const auto& made = maps_.map().stats;
@@ -318,6 +338,8 @@ private:
         view_.emplace(device_, maps_.map(), scene_.camera, with,
             view_pass_settings{p, step_size::small, previews_.enabled && !has_bands(), shows_running_estimates(), band},
             kept_, stats_);
+        if (!p && has_shrinking_radii(settings_))
+            view_->use_radii({&radius_maps_.map().map, shrunk_share2(number)});
         if (!p && !unfinished_.empty()) {
             const auto& light = unfinished_.band;
             if (unfinished_.rays > 0)
@@ -391,6 +413,7 @@ private:
     double drawing_since_ = 0; ///< when the light of a pass began to be drawn, s
 
     map_keeper<B> maps_;
+    map_keeper<B> radius_maps_; ///< shrinking_radii.hpp
 
     // Pictures.
     unfinished_pass unfinished_; ///< to resume from

@@ -34,6 +34,15 @@ step_list map_steps(map_building<B>& m)
     steps.add("build_map", [&m] { return m.estimate_at_photons(); });
     return steps;
 }
+/// The steps to a map that only gives the first radii (shrinking_radii.hpp).
+template <backend B>
+step_list radius_map_steps(map_building<B>& m)
+{
+    step_list steps;
+    steps.add("trace_photons", [&m] { return m.trace_photons(); });
+    steps.add("build_map", [&m] { return m.build_map(); });
+    return steps;
+}
 
 /// The right side of figure 1, which runs for every view: traces eye rays, computes direct light and irradiance at
 /// their hits, and adds both to the pixels. `v` must outlive the steps.
@@ -97,7 +106,7 @@ built_map<B> build_map(B& device, const scene& s, const render_settings& setting
 /// \throws what draw throws.
 template <backend B>
 pass_pixels draw_pass(B& device, const built_map<B>& built, const camera& view, const render_settings& settings,
-    const render_observer& observer, render_stats& stats)
+    const render_observer& observer, render_stats& stats, const pass_radii<B>& radii = {})
 {
     check(settings);
     check(view);
@@ -120,6 +129,7 @@ pass_pixels draw_pass(B& device, const built_map<B>& built, const camera& view, 
     const auto begin = [&](row_band rows) {
         band.emplace(
             device, built, view, settings, view_pass_settings{{}, size, shows_estimates, false, rows}, reusable, stats);
+        band->use_radii(radii);
         return view_steps(*band);
     };
     const auto report = [&] {
@@ -145,8 +155,21 @@ pass_pixels draw_pass(B& device, const built_map<B>& built, const camera& view, 
     return light;
 }
 
-/// Draws one pass over a view, from an existing map: no photons are traced. Pixels that are NaN or infinite are set to
-/// 0 and counted in stats.invalid_pixels. The statistics include those of the map.
+/// Builds the map that gives the first radii of all passes.
+/// \throws what build_map throws.
+template <backend B>
+map_buffers<B> build_radius_map(
+    B& device, const scene& s, const render_settings& settings, const render_observer& observer, render_stats& stats)
+{
+    map_building<B> building(device, s, settings_of_pass(settings, radius_pass));
+    run(radius_map_steps(building), observer, [](std::string_view) {});
+    auto built = building.take();
+    detail::add_map(stats, built.stats);
+    return std::move(built.map);
+}
+
+/// Draws one pass over a view, from an existing map: no photons are traced, and radii are those of the map. Pixels that
+/// are NaN or infinite are set to 0 and counted in stats.invalid_pixels. The statistics include those of the map.
 /// \throws std::invalid_argument for a camera or settings that check() rejects, backend_error, render_cancelled.
 /// \snippet snippets.cpp draw
 template <backend B>
@@ -176,13 +199,17 @@ template <backend B>
     clock.go_on();
     auto every = settings;
     every.output.passes = settings.output.passes_at_most();
+    std::optional<map_buffers<B>> radii;
+    if (has_shrinking_radii(every))
+        radii = build_radius_map(device, s, every, observer, out.stats);
     for (uint pass = 0; !judge.ended(); ++pass) {
         const auto own = settings_of_pass(every, pass);
         const auto map = build_map(device, s, own, observer);
         detail::add_map(out.stats, map.stats);
         if (pass == 0)
             sum = film_for(s, map.scene.layout, settings.output);
-        sum.add(pass, draw_pass(device, map, s.camera, own, observer, out.stats));
+        const pass_radii<B> of_pass{radii ? &*radii : nullptr, shrunk_share2(pass)};
+        sum.add(pass, draw_pass(device, map, s.camera, own, observer, out.stats, of_pass));
         judge.after_pass(sum, clock.seconds(), out.stats);
         judge.before_pass(sum, clock.seconds());
         if (observer.intermediate && !judge.ended())

@@ -13,6 +13,8 @@
 #include <photongrid/render/running_search.hpp>
 #include <photongrid/render/scene_map.hpp>
 #include <photongrid/render/shade.kernel.hpp>
+#include <photongrid/render/shrinking_radii.hpp>
+#include <photongrid/render/shrunk_radius.kernel.hpp>
 #include <photongrid/render/tally_error.kernel.hpp>
 
 #include <optional>
@@ -74,6 +76,9 @@ public:
     view_pass(const view_pass&) = delete;
     view_pass& operator=(const view_pass&) = delete;
 
+    /// Gives the estimates of a picture radii from another map, which must outlive this pass. Previews find their own.
+    void use_radii(const pass_radii<B>& radii) { radii_ = is_preview() ? pass_radii<B>{} : radii; }
+
     /// The number of eye rays per pixel, counting each combination of Fresnel branches. A preview has one sample.
     uint rays() const { return (is_preview() ? 1u : settings_.view.spp) * branches_; }
 
@@ -91,9 +96,11 @@ public:
     {
         bool finished = false;
         detail::time_stage(device_, stats_.radiance_estimate, [&] {
+            if (!search_ && radii_.first != nullptr && !find_radii())
+                return;
             if (!search_)
-                search_.emplace(device_, built_.map, samples_->hits.points, samples_->hits.surfaces, search_settings(),
-                    shown_while_running(), how_.size);
+                search_.emplace(device_, built_.map, radii_.first != nullptr ? own_radii_ : samples_->hits.points,
+                    samples_->hits.surfaces, search_settings(), shown_while_running(), how_.size);
             // Previews have the light of all branches; running estimates among them must, too.
             if (search_->is_shown() && (how_.may_search_twice || canvas_.rays + 1 == branches_))
                 ++running_pictures_;
@@ -178,7 +185,17 @@ private:
             picture_search(), how_.wants_running_estimates && !is_preview(), how_.may_search_twice);
     }
     /// The search of the picture itself, not of a preview.
-    knn_settings picture_search() const { return detail::search_for(settings_); }
+    knn_settings picture_search() const
+    {
+        auto k = detail::search_for(settings_);
+        if (radii_.first != nullptr) {
+            k.search = search_kind::fixed_radius;
+            k.radii_at_points = true;
+        }
+        return k;
+    }
+    /// Finds the radius of each point in the first map. Returns whether it is done.
+    bool find_radii();
     knn_settings search_settings() const
     {
         const auto k = picture_search();
@@ -221,11 +238,14 @@ private:
 
     // Data passed from stage to stage.
     std::optional<eye_samples<B>> samples_;
-    buffer_of<B, uint> own_branches_;         ///< which branches of an eye ray have light of their own (eye_rays.hpp)
-    bool lit_ = false;                        ///< the samples already have their direct and gathered light
-    uint gathered_ = 0;                       ///< rays of the final gather that are done
-    std::size_t done_ = 0;                    ///< pixels that the stage has finished
-    std::optional<running_search<B>> search_; ///< of the eye ray that is drawn
+    buffer_of<B, uint> own_branches_; ///< which branches of an eye ray have light of their own (eye_rays.hpp)
+    bool lit_ = false;                ///< the samples already have their direct and gathered light
+    uint gathered_ = 0;               ///< rays of the final gather that are done
+    std::size_t done_ = 0;            ///< pixels that the stage has finished
+    pass_radii<B> radii_;
+    std::optional<running_search<B>> radius_search_; ///< in the first map
+    buffer_of<B, glm::vec4> own_radii_;              ///< the hits with their radii
+    std::optional<running_search<B>> search_;        ///< of the eye ray that is drawn
     uint running_pictures_ = 0;
     canvas<B> canvas_;
 };
@@ -293,6 +313,25 @@ bool view_pass<B>::gather(uint ray)
     if (finished)
         gathered_ = 0;
     return finished;
+}
+
+template <backend B>
+bool view_pass<B>::find_radii()
+{
+    const auto& hits = samples_->hits;
+    auto k = detail::search_for(settings_);
+    k.errors = false;
+    if (!radius_search_)
+        radius_search_.emplace(
+            device_, *radii_.first, hits.points, hits.surfaces, k, running_estimate_kind::none, how_.size);
+    if (!radius_search_->advance())
+        return false;
+    own_radii_ = device_.template make<glm::vec4>(hits.points.size());
+    device_.template run<kernels::shrunk_radius>(hits.points.size(),
+        {.share2 = static_cast<float>(radii_.share2), .max_radius2 = detail::max_radius2(k)},
+        reads(hits.points, radius_search_->take().irradiance), writes(own_radii_));
+    radius_search_.reset();
+    return true;
 }
 
 template <backend B>

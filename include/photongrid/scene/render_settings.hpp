@@ -63,6 +63,10 @@ struct map_settings {
 /// final gather, which looks at the photons of all other surfaces from there (final_gather.hpp).
 enum class indirect_kind { map, gather };
 
+/// How the radii of estimates change from pass to pass: each pass finds its own by its search; or they shrink from
+/// those that the search finds in a map of its own (shrinking_radii.hpp).
+enum class radius_kind { per_pass, shrinking };
+
 /// The irradiance estimate (the paper's radiance estimate) of a picture (2.3).
 struct estimate_settings {
     std::uint32_t k = 500;                         ///< photons sought per estimate
@@ -74,6 +78,7 @@ struct estimate_settings {
     edge_correction edges = edge_correction::none; ///< polygons: needs leak_policy::min_cosine above 0
     indirect_kind indirect = indirect_kind::map;   ///< how indirect light is computed
     std::uint32_t gather_rays = 16;                ///< rays of a final gather per eye ray
+    radius_kind radii = radius_kind::per_pass;     ///< from pass to pass
 
     bool operator==(const estimate_settings&) const = default;
 };
@@ -155,6 +160,7 @@ inline render_settings as_paper(render_settings s)
     s.estimate.leaks = {};
     s.estimate.edges = edge_correction::none;
     s.estimate.indirect = indirect_kind::map;
+    s.estimate.radii = radius_kind::per_pass;
     s.map.surplus = surplus_kind::power;
     s.output.passes = 1;
     s.output.until_error = s.output.seconds = 0;

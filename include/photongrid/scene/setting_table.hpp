@@ -238,6 +238,10 @@ namespace setting_table {
         "light of all other surfaces (gather)"};
     inline constexpr setting gather_rays{"gather_rays", of(&estimate_settings::gather_rays), whole_range{1, 65536},
         in_scenes::optional, "rays of a final gather per eye ray"};
+    inline constexpr setting radii{"radii", of(&estimate_settings::radii),
+        one_of{{named{"per_pass", radius_kind::per_pass}, {"shrinking", radius_kind::shrinking}}}, in_scenes::optional,
+        "radii of estimates: found by each pass (per_pass), or shrinking from pass to pass, so that the picture "
+        "converges"};
     inline constexpr setting only{"only", of(&output_settings::only),
         one_of{{named{"all", light_part::all}, {"direct", light_part::direct}, {"caustic", light_part::caustic},
             {"indirect", light_part::indirect}}},
@@ -252,7 +256,8 @@ constexpr void for_each_setting(const Visit& visit)
     const auto all = [&](const auto&... row) { (visit(row), ...); };
     all(t::size, t::photons, t::k, t::grid, t::max_radius, t::light_samples, t::spp, t::pixel_filter, t::passes,
         t::until_error, t::percentile, t::depth, t::photon_depth, t::seed, t::map, t::slots, t::surplus, t::exposure,
-        t::search, t::filter, t::bias, t::leaks, t::edge_correction, t::indirect, t::gather_rays, t::only, t::seconds);
+        t::search, t::filter, t::bias, t::leaks, t::edge_correction, t::indirect, t::gather_rays, t::radii, t::only,
+        t::seconds);
 }
 
 /// \throws std::invalid_argument "name: must be …" for a setting out of its range, or for two incompatible settings.

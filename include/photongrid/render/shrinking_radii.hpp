@@ -1,0 +1,43 @@
+// Radii that shrink from pass to pass (Knaus and Zwicker, Progressive Photon Mapping: A Probabilistic Approach, ACM
+// Transactions on Graphics 30(3), 2011), so that the blur of estimates goes to 0 as passes are added. The first radius
+// of a point is what the search of the settings finds there in a map of its own, whose photons are in no pass. All
+// points' radii shrink by the same given sequence, so that passes do not depend on each other.
+#pragma once
+
+#include <photongrid/map/map_buffers.hpp>
+#include <photongrid/scene/render_settings.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// The number of the pass whose photons give the first radii.
+inline constexpr std::uint32_t radius_pass = 0xFFFFFFFFu;
+
+/// Whether passes of a picture with settings `s` have shrinking radii.
+inline bool has_shrinking_radii(const render_settings& s)
+{
+    return s.estimate.radii == radius_kind::shrinking && s.output.only != light_part::direct;
+}
+
+/// The share of the first squared radius in pass number `pass`: the product of (i - 1 + alpha) / i for i from 1 to
+/// `pass`, with alpha = 2/3. It falls as pass^(alpha - 1), by which noise and blur fall at the same rate.
+inline double shrunk_share2(std::uint32_t pass)
+{
+    constexpr double alpha = 2.0 / 3;
+    double share2 = 1;
+    for (double i = 1; i <= pass; ++i)
+        share2 *= (i - 1 + alpha) / i;
+    return share2;
+}
+
+/// The radii of a pass.
+template <backend B>
+struct pass_radii {
+    const map_buffers<B>* first = nullptr; ///< map that gives the first radii; null: each pass finds its own
+    double share2 = 1;                     ///< shrunk_share2 of the pass
+};
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

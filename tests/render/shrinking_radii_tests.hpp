@@ -1,0 +1,136 @@
+// Radii that shrink from pass to pass (their sequence: passes.cpp): the radii used, and pictures that do not depend on
+// how passes are run.
+#pragma once
+
+#include "final_gather_tests.hpp"
+
+#include <photongrid/render/progressive_render.hpp>
+
+namespace photongrid::testing {
+
+inline render_settings shrinking(render_settings s, std::uint32_t passes)
+{
+    s.estimate.radii = radius_kind::shrinking;
+    s.output.passes = passes;
+    return s;
+}
+
+/// The layer of radii tells them: with the same map for both, a pass with a quarter of the squared radius has half the
+/// radius of the search for k at every pixel, and finds a quarter of its photons on the average.
+TYPED_TEST_P(pictures, passes_have_the_radii_of_the_first_map_made_smaller)
+{
+    auto& b = this->b();
+    const auto s = small_cornell();
+    auto settings = s.render;
+    settings.output.width = 24;
+    settings.output.height = 18;
+    settings.output.aov = true;
+    settings.estimate.k = 40;
+    settings.estimate.max_radius = 2;
+    const auto first = build_map(b, s, settings_of_pass(settings, radius_pass));
+    auto other = settings_of_pass(settings, 5);
+    const auto map = build_map(b, s, other);
+    const auto layers = [&](const built_map<typename TestFixture::B>& of, const auto& radii) {
+        render_stats stats;
+        film sum(settings.output.width, settings.output.height, 1, true);
+        sum.add(0, draw_pass(b, of, s.camera, other, {}, stats, radii));
+        return sum.picture().picture.layers;
+    };
+    using radii = pass_radii<typename TestFixture::B>;
+    const auto whole = layers(first, radii{});
+    for (const auto* of : {&first, &map}) {
+        const auto half = layers(*of, radii{&first.map, 0.25});
+        double photons = 0, of_whole = 0;
+        for (std::size_t i = 0; i < whole.radius.size(); ++i) {
+            ASSERT_NEAR(half.radius[i], 0.5f * whole.radius[i], 1e-5f * whole.radius[i]) << i;
+            photons += static_cast<double>(half.count[i]);
+            of_whole += static_cast<double>(whole.count[i]);
+        }
+        EXPECT_GT(of_whole, 1000);
+        EXPECT_NEAR(photons / of_whole, 0.25, 0.05);
+    }
+}
+
+TYPED_TEST_P(pictures, shrinking_radii_equal_serials)
+{
+    auto& b = this->b();
+    if (!b.caps().exact_division || !b.caps().exact_sqrt)
+        GTEST_SKIP() << "this device rounds division or square root loosely";
+    serial_backend serial;
+    for (const auto& s : {small_cornell(), all_shapes()})
+        for (const bool gathers : {false, true}) {
+            auto settings = shrinking(gathers ? gathering(s.render, 2) : s.render, 3);
+            settings.map.photons /= 4;
+            settings.output.width = 24;
+            settings.output.height = 18;
+            EXPECT_LE(relative_mse(render(b, s, settings).picture, render(serial, s, settings).picture), 1e-9)
+                << s.name << (gathers ? ", gathering" : "");
+        }
+}
+
+/// Step by step, and from a pass in the middle on, a picture has the same bytes.
+TYPED_TEST_P(pictures, shrinking_radii_do_not_depend_on_how_passes_are_run)
+{
+    auto& b = this->b();
+    const auto s = small_cornell();
+    auto settings = shrinking(s.render, 3);
+    settings.map.photons /= 4;
+    settings.output.width = 24;
+    settings.output.height = 18;
+    const auto whole = this->picture(s, settings);
+    progressive_render<typename TestFixture::B> steps(b);
+    steps.start(s, settings);
+    while (!steps.step(renderer::milliseconds(0)) && steps.progress().passes < 1) {}
+    const auto state = steps.state();
+    steps.start(s, settings);
+    steps.resume(state);
+    steps.step();
+    EXPECT_TRUE(same_bytes(steps.picture(), whole));
+    settings.estimate.radii = radius_kind::per_pass;
+    EXPECT_FALSE(same_bytes(this->picture(s, settings), whole));
+}
+
+/// Under a bulb a floor's irradiance is known. What estimates of a fixed k have too much or too little at its edge and
+/// at the rim of a shadow is blur, which passes do not take away; shrinking radii do.
+TYPED_TEST_P(pictures, blur_fades_with_shrinking_radii)
+{
+    // A caustic with a sharp rim: the mirror sends the sun's light back up against a ceiling, in a square. Only caustic
+    // photons are drawn. 10 % of the pixels lie along the rim.
+    scene s;
+    s.name = "square_caustic";
+    s.materials = {{"white", material_kind::lambertian, dvec3(0.5)}, {"mirror", material_kind::mirror, dvec3(1)}};
+    s.polygons = {{{{-1, 1, -1}, {1, 1, -1}, {1, 1, 1}, {-1, 1, 1}}, 0},
+        {{{-0.4, 0, -0.4}, {-0.4, 0, 0.4}, {0.4, 0, 0.4}, {0.4, 0, -0.4}}, 1}};
+    s.directional_lights = {{"sun", {0.5, -1, 0}, dvec3(4)}};
+    s.camera = {{0.5, -1, 0}, {0.5, 1, 0}, {0, 0, 1}, 30};
+    s.render = {.map = {.photons = 3000, .grid = {8, 4, 8}},
+        .estimate = {.k = 60, .max_radius = 1},
+        .view = {.spp = 1, .light_samples = 1},
+        .output = {.width = 24, .height = 24}};
+    s.render.output.only = light_part::caustic;
+    const double known = 0.5 / M_PI * 4 * std::cos(std::atan(0.5));
+    // Sum of squared errors of pixels whose middles are at least a tenth of their distance from the rim.
+    const auto error = [&](radius_kind kind) {
+        auto settings = s.render;
+        settings.estimate.radii = kind;
+        settings.output.passes = 40;
+        const auto drawn = this->picture(s, settings);
+        double squares = 0;
+        for (std::uint32_t y = 0; y < 24; ++y)
+            for (std::uint32_t x = 0; x < 24; ++x) {
+                const dvec3 d = through_pixel(s.camera, settings.output, x, y);
+                const dvec3 p = s.camera.position + d * (2 / d.y);
+                const double inside = std::min(0.4 - std::abs(p.x - 0.5), 0.4 - std::abs(p.z)); // of the square
+                if (std::abs(inside) < 0.05)
+                    continue; // the rim runs through some of its pixels
+                const double e = static_cast<double>(drawn.pixels[y * 24 + x].x) - (inside > 0 ? known : 0);
+                squares += e * e / (known * known);
+            }
+        return squares;
+    };
+    const double fixed = error(radius_kind::per_pass), shrunk = error(radius_kind::shrinking);
+    EXPECT_GT(fixed, 1);
+    EXPECT_LT(shrunk, 0.5 * fixed);
+}
+
+} // namespace photongrid::testing
