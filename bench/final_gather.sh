@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Indirect light from the photon map and by a final gather: relMSE against the reference renderer, of pixels and of means over
-# 4 x 4 pixels, in which noise counts less and blur the same; and the time of the picture on cpu. Prints Markdown. Pictures of
-# 128 x 128 pixels are left in out/final_gather.
+# Ways to compute indirect light and caustics: relMSE against the reference renderer, of pixels and of means over 4 x 4 pixels, in
+# which noise counts less and blur the same; the mean's relative bias; and the time of the picture on cpu. All have 16 eye rays a
+# pixel. Prints Markdown. Pictures of 128 x 128 pixels are left in out/final_gather.
 #
 #   bench/final_gather.sh [--quick] [PHOTONGRID]      --quick: a reference with few paths, to see that it runs
 set -euo pipefail
@@ -17,24 +17,28 @@ program=${1:-build/photongrid}
 out=out/final_gather
 mkdir -p "$out"
 
-echo "| scene | indirect light | k | eye rays | seconds | relMSE | relMSE of 4 x 4 | bias of the mean |"
-echo "|---|---|---|---|---|---|---|---|"
+ways=(
+  "--spp 16"
+  "--spp 16 --k 200"
+  "--spp 16 --indirect gather --k 50"
+  "--spp 16 --indirect gather --k 200"
+  "--spp 1 --passes 16 --k 50"
+  "--spp 1 --passes 16 --k 50 --radii shrinking"
+  "--spp 1 --passes 16 --k 50 --radii shrinking --indirect gather"
+)
+echo "| scene | options | seconds | relMSE | relMSE of 4 x 4 | bias of the mean |"
+echo "|---|---|---|---|---|---|"
 for scene in cornell_blocks cornell_box; do
-  file=examples/scenes/$scene.json
-  "$program" reference "$file" --size 128x128 --spp "$paths" --quiet -o "$out/$scene.exr" >/dev/null
-  while read -r indirect k spp rays; do
-    options=(--size 128x128 --indirect "$indirect" --k "$k" --spp "$spp" --gather-rays "$rays" --backend cpu --quiet)
-    picture=$out/$scene-$indirect-$k.exr
-    "$program" render "$file" "${options[@]}" -o "$picture" --stats "$out/stats.json" >/dev/null
-    error=$("$program" compare "$picture" "$out/$scene.exr" | awk '/^relMSE/ { print $2 }')
-    smooth=$("$program" compare "$picture" "$out/$scene.exr" --average 4 | awk '/^relMSE/ { print $2 }')
-    mean=$("$program" error "$picture" "$out/$scene.exr" --stats "$out/error.json" -o "$out/error.png" >/dev/null &&
-      awk '/"bias"/ { print $2 + 0; exit }' "$out/error.json")
-    [[ $indirect == map ]] || indirect="gather, $rays rays"
-    printf '| %s | %s | %d | %d | %.2f | %.5f | %.5f | %+.4f |\n' \
-      "$scene" "$indirect" "$k" "$spp" "$(seconds_of "$out/stats.json")" "$error" "$smooth" "$mean"
-  done <<<"map 200 16 1
-map 750 16 1
-gather 50 16 16
-gather 200 16 16"
+  file=examples/scenes/$scene.json reference=$out/$scene.exr picture=$out/picture.exr
+  "$program" reference "$file" --size 128x128 --spp "$paths" --quiet -o "$reference" >/dev/null
+  for way in "${ways[@]}"; do
+    read -ra options <<<"$way"
+    "$program" render "$file" --size 128x128 "${options[@]}" --backend cpu --quiet -o "$picture" --stats "$out/stats.json" >/dev/null
+    error=$("$program" compare "$picture" "$reference" | awk '/^relMSE/ { print $2 }')
+    smooth=$("$program" compare "$picture" "$reference" --average 4 | awk '/^relMSE/ { print $2 }')
+    "$program" error "$picture" "$reference" --stats "$out/error.json" -o "$out/error.png" >/dev/null
+    bias=$(awk '/"bias"/ { print $2 + 0; exit }' "$out/error.json")
+    printf '| %s | `%s` | %.2f | %.5f | %.5f | %+.4f |\n' \
+      "$scene" "$way" "$(seconds_of "$out/stats.json")" "$error" "$smooth" "$bias"
+  done
 done

@@ -27,9 +27,7 @@ template <backend B>
 class progressive_render : public renderer {
 public:
     /// `device` must outlive it.
-    explicit progressive_render(B& device) : device_(device), maps_(device), radius_maps_(device, radius_map_steps<B>)
-    {
-    }
+    explicit progressive_render(B& device);
 
     void start(const scene& s, const render_settings& settings, const preview_settings& previews = {}) override
     {
@@ -426,6 +424,15 @@ private:
     uint samples_shown_ = 0, grown_shown_ = 0; ///< of view_
     double ms_before_ = 0;                     ///< time spent on views before view_
 };
+
+// Defined outside the class: functions defined inside are implicitly inline, and `extern template` does not suppress
+// them.
+
+template <backend B>
+progressive_render<B>::progressive_render(B& device)
+    : device_(device), maps_(device), radius_maps_(device, radius_map_steps<B>)
+{
+}
 
 } // namespace photongrid
 
