@@ -3,7 +3,7 @@
 # which noise counts less and blur the same; the mean's relative bias; and the time of the picture on cpu. All have 16 eye rays a
 # pixel. Prints Markdown. Pictures of 128 x 128 pixels are left in out/final_gather.
 #
-#   bench/final_gather.sh [--quick] [PHOTONGRID]      --quick: a reference with few paths, to see that it runs
+#   bench/final_gather.sh [--quick]      --quick: a reference with few paths, to see that it runs
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source bench/programs.sh
@@ -12,8 +12,8 @@ if [[ ${1:-} == --quick ]]; then
   paths=4
   shift
 fi
-program=${1:-build/photongrid}
-[[ -x $program ]] || { echo "$0: $program is not there; examples/run.sh builds it" >&2; exit 2; }
+need photongrid
+program=$build/photongrid
 out=out/final_gather
 mkdir -p "$out"
 

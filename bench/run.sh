@@ -157,6 +157,7 @@ if [[ $smoke == yes ]]; then
   must bench/convergence.sh --quick cpu
   must bench/defaults.sh --quick
   must bench/lamps.sh --quick
+  must bench/final_gather.sh --quick
   must bench/inclusion.sh --smoke
   must $build/bench/interactive examples/scenes/cornell_box.json 1 cpu
   must bench/window.sh cpu
@@ -246,6 +247,7 @@ if asked estimates; then
   must bench/edge_correction.sh
   title "One lamp and a hundred"
   must bench/lamps.sh
+  must bench/final_gather.sh
 fi
 if asked error; then
   title "Time against error"
