@@ -247,6 +247,7 @@ if asked estimates; then
   must bench/edge_correction.sh
   title "One lamp and a hundred"
   must bench/lamps.sh
+  title "Indirect light and caustics: one map, a final gather, shrinking radii"
   must bench/final_gather.sh
 fi
 if asked error; then
