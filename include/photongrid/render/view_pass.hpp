@@ -240,7 +240,7 @@ private:
     std::optional<eye_samples<B>> samples_;
     buffer_of<B, uint> own_branches_; ///< which branches of an eye ray have light of their own (eye_rays.hpp)
     bool lit_ = false;                ///< the samples already have their direct and gathered light
-    uint gathered_ = 0;               ///< rays of the final gather that are done
+    uint gathered_ = 0;               ///< rays of this eye ray's final gather that are done
     std::size_t done_ = 0;            ///< pixels that the stage has finished
     pass_radii<B> radii_;
     std::optional<running_search<B>> radius_search_; ///< in the first map
@@ -309,10 +309,7 @@ bool view_pass<B>::gather(uint ray)
     });
     if (all_pixels)
         ++gathered_;
-    const bool finished = gathered_ == settings_.estimate.gather_rays;
-    if (finished)
-        gathered_ = 0;
-    return finished;
+    return gathered_ == settings_.estimate.gather_rays;
 }
 
 template <backend B>
@@ -345,6 +342,7 @@ bool view_pass<B>::shade(uint ray)
                 reads(samples_->hits.points, found.irradiance, found.standard_error), writes(canvas_.errors));
     });
     search_.reset();
+    gathered_ = 0;
     if (is_preview()) {
         kept_[ray] = std::move(samples_); // the next pass may have the same pixels
         samples_.reset();
