@@ -129,13 +129,14 @@ namespace detail {
     /// Light at the near ends of gather rays, which are gathered from in their turn.
     template <backend B>
     void light_near_ends(B& device, const device_scene<B>& s, const map_buffers<B>& caustics, const eye_hits<B>& ends,
-        const buffer_of<B, glm::vec4>& weights, const render_settings& settings, uint eye_ray,
+        const buffer_of<B, glm::vec4>& weights, const render_settings& settings, uint eye_ray, uint number,
         buffer_of<B, glm::vec4>& gathered)
     {
         const std::size_t n = ends.points.size();
         auto direct = device.template make<glm::vec4>(n);
         auto one_sample = settings;
         one_sample.view.light_samples = 1;
+        one_sample.seed ^= (number + 1) * 0xC2B2AE35u; // else rays of one point would see the same point of a lamp
         direct_light(device, s, ends, one_sample, eye_ray, launch(n, 0), direct);
         auto found = knn_grid_estimate(device, caustics, ends.points, ends.surfaces, search_for(settings.estimate));
         if (settings.estimate.edges != edge_correction::none)
@@ -198,7 +199,7 @@ void add_gather_rays(B& device, const device_scene<B>& s, const gather_map<B>& m
             writes(hits.points, weights, gathered));
         if (nth + 1 == most_rays || detail::checked_count<kernels::is_near_end>(device, n, {}, reads(hits.points)) == 0)
             break;
-        detail::light_near_ends(device, s, caustics, hits, weights, settings, eye_ray, gathered);
+        detail::light_near_ends(device, s, caustics, hits, weights, settings, eye_ray, number, gathered);
         ends.emplace(std::move(hits));
     }
     device.template run<kernels::add_light>(pixels, {.first = pixels.first}, reads(gathered), writes(light));

@@ -34,6 +34,7 @@ inline uint parts_at_ends(const render_settings& s) { return gathers(s) ? causti
 inline bool same_irradiance(estimate_settings a, const estimate_settings& b)
 {
     a.gather_rays = b.gather_rays;
+    a.radii = b.radii;
     return a == b;
 }
 
