@@ -115,7 +115,10 @@ TYPED_TEST_P(pictures, a_final_gather_in_a_closed_sphere_has_the_known_radiance)
     const dvec3 reflectance(0.5, 0.25, 0.75);
     auto s = integrating_sphere(reflectance);
     auto settings = gathering(s.render, 8);
+    settings.map.photons = 10000;
     settings.estimate.k = 50;
+    settings.output.width = 16;
+    settings.output.height = 12;
     for (const auto part : {light_part::all, light_part::indirect}) {
         settings.output.only = part;
         render_stats stats;
@@ -142,8 +145,10 @@ TYPED_TEST_P(pictures, a_final_gather_below_a_coat_has_the_known_radiance)
     s.spheres.push_back({dvec3(0, 0.5, 0), 0.01, 1});
     s.camera = {{0.05, 0.5, 0}, {0, 0.5, 0}, {0, 1, 0}, 12};
     auto settings = gathering(s.render, 16);
-    settings.map.photons = 20000;
+    settings.map.photons = 10000;
     settings.estimate.k = 50;
+    settings.output.width = 16;
+    settings.output.height = 12;
     settings.view.depth = 0; // what the coat reflects is left out
     settings.output.only = light_part::indirect;
     const auto drawn = this->picture(s, settings);
@@ -200,6 +205,7 @@ TYPED_TEST_P(pictures, the_parts_of_a_gathered_picture_add_up)
 {
     const auto s = small_cornell();
     auto settings = gathering(s.render, 4);
+    settings.output.width = settings.output.height = 24;
     const auto all = this->picture(s, settings);
     std::vector<dvec3> sum(all.pixels.size(), dvec3(0));
     for (const auto part : {light_part::direct, light_part::caustic, light_part::indirect}) {
