@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Ways to compute indirect light and caustics: relMSE against the reference renderer, of pixels and of means over 4 x 4 pixels, in
-# which noise counts less and blur the same; the mean's relative bias; and the time of the picture on cpu. All have 16 eye rays a
-# pixel. Prints Markdown. Pictures of 128 x 128 pixels are left in out/final_gather.
+# Ways to compute indirect light and caustics: relMSE against the reference renderer, of pixels and of means over 4 x 4
+# pixels, in which noise counts less and blur the same; the mean's relative bias; and the time of the picture on cpu. All
+# have 16 eye rays a pixel. Prints Markdown. Pictures of 128 x 128 pixels are left in out/final_gather.
 #
 #   bench/final_gather.sh [--quick]      --quick: a reference with few paths, to see that it runs
 set -euo pipefail
@@ -33,7 +33,8 @@ for scene in cornell_blocks cornell_box; do
   "$program" reference "$file" --size 128x128 --spp "$paths" --quiet -o "$reference" >/dev/null
   for way in "${ways[@]}"; do
     read -ra options <<<"$way"
-    "$program" render "$file" --size 128x128 "${options[@]}" --backend cpu --quiet -o "$picture" --stats "$out/stats.json" >/dev/null
+    "$program" render "$file" --size 128x128 "${options[@]}" --backend cpu --quiet -o "$picture" \
+      --stats "$out/stats.json" >/dev/null
     error=$("$program" compare "$picture" "$reference" | awk '/^relMSE/ { print $2 }')
     smooth=$("$program" compare "$picture" "$reference" --average 4 | awk '/^relMSE/ { print $2 }')
     "$program" error "$picture" "$reference" --stats "$out/error.json" -o "$out/error.png" >/dev/null

@@ -23,24 +23,23 @@
 
 namespace photongrid {
 
-/// The left side of figure 1, which runs again only if geometry, materials or lights change: photons are traced from
-/// the lights and sorted or routed into a grid. `m` must outlive the steps.
-template <backend B>
-step_list map_steps(map_building<B>& m)
-{
-    step_list steps;
-    steps.add("trace_photons", [&m] { return m.trace_photons(); }); // 2.1
-    steps.add("build_map", [&m] { return m.build_map(); });         // 2.2
-    steps.add("build_map", [&m] { return m.estimate_at_photons(); });
-    return steps;
-}
-/// The steps to a map that only gives the first radii (shrinking_radii.hpp).
+/// The steps to a map that only gives the first radii (shrinking_radii.hpp): photons are traced from the lights and
+/// sorted or routed into a grid. `m` must outlive the steps.
 template <backend B>
 step_list radius_map_steps(map_building<B>& m)
 {
     step_list steps;
-    steps.add("trace_photons", [&m] { return m.trace_photons(); });
-    steps.add("build_map", [&m] { return m.build_map(); });
+    steps.add("trace_photons", [&m] { return m.trace_photons(); }); // 2.1
+    steps.add("build_map", [&m] { return m.build_map(); });         // 2.2
+    return steps;
+}
+/// The left side of figure 1, which runs again only if geometry, materials or lights change: the same, and the
+/// irradiance at photons for a final gather.
+template <backend B>
+step_list map_steps(map_building<B>& m)
+{
+    auto steps = radius_map_steps(m);
+    steps.add("build_map", [&m] { return m.estimate_at_photons(); });
     return steps;
 }
 
