@@ -41,7 +41,7 @@
     EXTERN template traced_photons<B> trace_photons(                                                                   \
         B&, const scene&, const device_scene<B>&, const render_settings&, const render_observer&);                     \
     EXTERN template uint trace_batch(                                                                                  \
-        B&, const device_scene<B>&, detail::photon_frames<B>&, uint, uint, const render_settings&);                    \
+        B&, const device_scene<B>&, detail::photon_frames<B>&, const path_batch<B>&, const render_settings&);          \
     EXTERN template void detail::trace_eye_rays(B&, const device_scene<B>&, const camera&, const render_settings&,     \
         const detail::raster&, uint, launch, detail::eye_hits<B>&, buffer_of<B, uint>&);                               \
     EXTERN template void detail::direct_light(B&, const device_scene<B>&, const detail::eye_hits<B>&,                  \

@@ -26,7 +26,7 @@ int smoke(B& b)
         std::printf("%s: mean radiance %.4f, %llu paths\n", b.caps().device.c_str(), sum / 768,
             static_cast<unsigned long long>(p.emitted));
         if (p.emitted != p.absorbed + p.escaped + p.cut_off + p.invalid
-            || p.diffuse_hits != p.stored + p.direct + p.dropped || !(sum > 0))
+            || p.diffuse_hits != p.stored + p.direct + p.left_to_caustics + p.dropped || !(sum > 0))
             return 1;
     }
     return 0;

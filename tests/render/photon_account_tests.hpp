@@ -13,7 +13,7 @@ TYPED_TEST_P(pictures, every_photon_and_every_watt_is_accounted_for)
         auto& b = this->b();
         const auto device = upload_scene(b, s);
         const auto t = trace_photons(b, s, device, s.render);
-        const auto stats = count_photons(b, t, t.photons.size());
+        const auto stats = count_photons(b, t);
         expect_an_exact_account(stats, s.render.map.photons);
         EXPECT_GT(stats.absorbed, 0u);
         EXPECT_GT(stats.escaped, 0u);
@@ -36,7 +36,7 @@ TYPED_TEST_P(pictures, paths_that_overflow_are_counted_as_invalid)
     auto& b = this->b();
     const auto device = upload_scene(b, s);
     const auto t = trace_photons(b, s, device, s.render);
-    const auto stats = count_photons(b, t, t.photons.size());
+    const auto stats = count_photons(b, t);
     EXPECT_EQ(stats.emitted, stats.absorbed + stats.escaped + stats.cut_off + stats.invalid);
     EXPECT_EQ(stats.diffuse_hits, stats.stored + stats.direct + stats.dropped);
     const double paths = static_cast<double>(stats.emitted), share = 1e37 / 6.1e38;
@@ -54,7 +54,7 @@ TYPED_TEST_P(pictures, power_balances_per_channel)
         const auto device = upload_scene(b, s);
         const uint paths = 16384;
         detail::photon_frames<typename TestFixture::B> f(b, std::size_t{paths} * 7);
-        const uint frames = trace_batch(b, device, f, paths, 0, s.render);
+        const uint frames = trace_batch(b, device, f, {paths}, s.render);
         const auto positions = b.download(f.positions), powers = b.download(f.powers),
                    directions = b.download(f.directions);
         dvec3 mean(0), squares(0);

@@ -47,7 +47,7 @@ inline dvec3 power_of_lights(const scene& s)
 inline void expect_an_exact_account(const photon_stats& p, std::uint64_t photons)
 {
     EXPECT_EQ(p.emitted, p.absorbed + p.escaped + p.cut_off + p.invalid);
-    EXPECT_EQ(p.diffuse_hits, p.stored + p.direct + p.dropped);
+    EXPECT_EQ(p.diffuse_hits, p.stored + p.direct + p.left_to_caustics + p.dropped);
     EXPECT_EQ(p.stored, photons);
     EXPECT_EQ(p.invalid, 0u);
 }

@@ -2,6 +2,7 @@
 // backend's picture. Included by each on_<backend>.cpp.
 #pragma once
 
+#include "caustic_map_tests.hpp"
 #include "equal_picture_tests.hpp"
 #include "final_gather_tests.hpp"
 #include "known_energy_tests.hpp"
@@ -73,14 +74,18 @@ TYPED_TEST_P(pictures, running_estimates_are_shown_and_a_render_can_be_cancelled
     EXPECT_NO_THROW(this->picture(s));
 }
 
-REGISTER_TYPED_TEST_SUITE_P(pictures, a_closed_diffuse_sphere_has_the_known_radiance,
-    direct_light_of_a_rectangle_equals_the_form_factor, a_glass_ball_focuses_the_power_that_optics_predicts,
-    every_photon_and_every_watt_is_accounted_for, paths_that_overflow_are_counted_as_invalid,
-    power_balances_per_channel, a_photon_takes_the_memory_that_is_stated, long_statistics_of_a_picture_equal_serials,
-    cut_off_paths_are_counted, equal_the_serial_backends, sorting_and_routing_agree, sorting_and_blocks_agree,
-    an_automatic_map_of_a_room_is_in_a_fitted_grid, a_moved_camera_runs_no_photon_pass,
-    a_view_without_pixels_or_direction_is_refused, the_same_seed_gives_the_same_bytes,
-    running_estimates_are_shown_and_a_render_can_be_cancelled,
+REGISTER_TYPED_TEST_SUITE_P(pictures, caustic_photons_of_their_own_have_the_power_that_optics_predicts,
+    the_account_is_exact_with_a_map_of_caustic_photons, maps_end_with_fewer_photons_rather_than_trace_for_ever,
+    the_parts_of_a_picture_with_a_map_of_caustic_photons_add_up,
+    a_map_of_caustic_photons_brings_the_light_of_the_map_of_all, maps_of_caustic_photons_equal_serials,
+    maps_of_caustic_photons_do_not_depend_on_how_passes_are_run, a_view_of_a_map_without_its_caustics_is_refused,
+    a_closed_diffuse_sphere_has_the_known_radiance, direct_light_of_a_rectangle_equals_the_form_factor,
+    a_glass_ball_focuses_the_power_that_optics_predicts, every_photon_and_every_watt_is_accounted_for,
+    paths_that_overflow_are_counted_as_invalid, power_balances_per_channel, a_photon_takes_the_memory_that_is_stated,
+    long_statistics_of_a_picture_equal_serials, cut_off_paths_are_counted, equal_the_serial_backends,
+    sorting_and_routing_agree, sorting_and_blocks_agree, an_automatic_map_of_a_room_is_in_a_fitted_grid,
+    a_moved_camera_runs_no_photon_pass, a_view_without_pixels_or_direction_is_refused,
+    the_same_seed_gives_the_same_bytes, running_estimates_are_shown_and_a_render_can_be_cancelled,
     a_ball_of_each_material_amid_lamps_has_the_known_radiance, a_floor_under_a_bulb_has_the_known_radiance,
     photons_have_the_power_that_their_surfaces_left_them, eye_rays_of_a_pixel_share_out_the_choices_in_glass,
     direct_light_alone_traces_no_photon, scenes_beyond_the_loop_limit_are_refused,

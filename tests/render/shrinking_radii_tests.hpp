@@ -39,7 +39,7 @@ TYPED_TEST_P(pictures, passes_have_the_radii_of_the_first_map_made_smaller)
     using radii = pass_radii<typename TestFixture::B>;
     const auto whole = layers(first, radii{});
     for (const auto* of : {&first, &map}) {
-        const auto half = layers(*of, radii{&first.map, 0.25});
+        const auto half = layers(*of, radii{.first = &first.map, .share2 = 0.25});
         double photons = 0, of_whole = 0;
         for (std::size_t i = 0; i < whole.radius.size(); ++i) {
             ASSERT_NEAR(half.radius[i], 0.5f * whole.radius[i], 1e-5f * whole.radius[i]) << i;

@@ -130,7 +130,7 @@ TEST(double_oracle, photons_after_eight_bounces)
     serial_backend b;
     const auto device = upload_scene(b, s);
     detail::photon_frames<serial_backend> f(b, std::size_t{paths} * frames);
-    trace_batch(b, device, f, paths, 0, s.render);
+    trace_batch(b, device, f, {paths}, s.render);
     const auto positions = b.download(f.positions);
     const auto layout = lay_out(s);
     const auto p = photons_in_double(double_scene(layout), paths, frames, s.render.seed);

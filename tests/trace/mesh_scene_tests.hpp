@@ -16,7 +16,7 @@ protected:
         auto& b = this->b();
         const auto device = upload_scene(b, s);
         const auto t = trace_photons(b, s, device, s.render);
-        return count_photons(b, t, s.render.map.photons);
+        return count_photons(b, t);
     }
 
     /// Under a pane that refracts nothing the photon map has the light that shadow rays find without it: all pixels

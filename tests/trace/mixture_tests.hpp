@@ -164,7 +164,7 @@ TYPED_TEST_P(mixtures, store_all_photons_that_reach_a_matte_part)
         auto& b = this->b();
         const auto device = upload_scene(b, s);
         detail::photon_frames<typename TestFixture::B> f(b, std::size_t{paths} * 3);
-        trace_batch(b, device, f, paths, 0, s.render);
+        trace_batch(b, device, f, {paths}, s.render);
         return std::tuple{b.download(f.positions), b.download(f.powers), static_cast<float>(device.layout.center.y)};
     };
     const auto [positions, powers, height] = frames_of(plain);
@@ -178,7 +178,7 @@ TYPED_TEST_P(mixtures, store_all_photons_that_reach_a_matte_part)
         if (is_on_floor(positions[paths + p]) || !is_on_floor(positions[second]))
             continue;
         ++stored;
-        ASSERT_TRUE(kernels::event_is_stored(mixed_positions[second], false)) << p;
+        ASSERT_TRUE(kernels::event_is_stored(mixed_positions[second], kernels::CAUSTICS | kernels::OTHER_PHOTONS)) << p;
         ASSERT_EQ(glm::vec3(mixed_positions[second]), glm::vec3(positions[second])) << p;
         for (int c = 0; c < 3; ++c) // colours are rounded to 2^-12 where there are mixtures
             ASSERT_LE(std::abs(mixed_powers[second][c] - powers[second][c]), 1e-3f * powers[second].x) << p;

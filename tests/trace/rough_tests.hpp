@@ -186,7 +186,7 @@ namespace {
             auto settings = s.render;
             settings.map.photon_depth = 2;
             detail::photon_frames<serial_backend> f(b, std::size_t{paths} * 3);
-            trace_batch(b, device, f, paths, 0, settings);
+            trace_batch(b, device, f, {paths}, settings);
             positions = b.download(f.positions);
             directions = b.download(f.directions);
             powers = b.download(f.powers);

@@ -88,7 +88,7 @@ namespace {
         auto settings = s.render;
         settings.map.photon_depth = frames - 1;
         detail::photon_frames<serial_backend> f(b, std::size_t{n} * frames);
-        trace_batch(b, device, f, n, 0, settings);
+        trace_batch(b, device, f, {n}, settings);
         const auto positions = b.download(f.positions), powers = b.download(f.powers),
                    directions = b.download(f.directions);
 

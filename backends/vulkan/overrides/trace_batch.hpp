@@ -3,9 +3,8 @@
 
 #include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/trace/bounce_photon.kernel.hpp>
-#include <photongrid/trace/emit_photon.kernel.hpp>
 #include <photongrid/trace/photon_event.kernel.hpp>
-#include <photongrid/trace/trace_photons.hpp>
+#include <photongrid/trace/photon_frames.hpp>
 
 namespace photongrid {
 
@@ -13,15 +12,14 @@ namespace photongrid {
 /// earlier are not written.
 template <backend B>
 requires std::same_as<B, vulkan_backend> uint trace_batch(B& device, const device_scene<B>& s,
-    detail::photon_frames<B>& f, uint paths, uint first, const render_settings& settings)
+    detail::photon_frames<B>& f, const path_batch<B>& batch, const render_settings& settings)
 {
     const auto& layout = s.layout;
+    const uint paths = batch.paths;
     if (s.has_meshes()) // other passes come between bounces
-        return detail::trace_batch_by_passes(device, s, f, paths, first, settings);
+        return detail::trace_batch_by_passes(device, s, f, batch, settings);
     const detail::mesh_hits<B> none(device, s, 0);
-    device.template run<kernels::emit_photon>({paths, 0u, layout.features},
-        {.first_path = first, .seed = settings.seed}, detail::inputs_of_emission(s),
-        writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
+    detail::emit_photons(device, s, f, batch, settings.seed);
     constexpr uint together = 8;
     uint frame = 1;
     for (bool finished = false; !finished && frame <= settings.map.photon_depth;) {
@@ -32,7 +30,11 @@ requires std::same_as<B, vulkan_backend> uint trace_batch(B& device, const devic
         device.fill(f.positions, std::size_t{frame} * paths, std::size_t{passes} * paths, ended);
         const auto p
             = device.template run_frames<kernels::bounce_photon>({paths, frame * paths, layout.features}, paths,
-                {.paths = paths, .first_path = first, .last_frame = settings.map.photon_depth, .seed = settings.seed},
+                {.paths = paths,
+                    .first_path = batch.first,
+                    .last_frame = settings.map.photon_depth,
+                    .seed = settings.seed,
+                    .to_diffuse = batch.to_diffuse ? 1u : 0u},
                 reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, none.places,
                     none.normals, none.shadings, none.colors),
                 writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions), passes);

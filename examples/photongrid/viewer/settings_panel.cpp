@@ -88,6 +88,14 @@ void settings_panel::draw(double shown_exposure)
     number(setting_table::k, "k", 1, 4000,
         "Photons per estimate (K, k). Speed: more take longer. Error: with more, estimates are smoother, but shadows "
         "and caustics are more blurred.");
+    number(setting_table::caustic_photons, "caustic photons", 0, 1 << 20,
+        "Caustic photons stored in a map of their own; 0: they are among the photons. Error: sharper caustics.");
+    if (s.map.caustic_photons > 0)
+        number(setting_table::caustic_k, "caustic k", 1, 2000,
+            "Photons per estimate in that map. Error: with more photons caustics are smoother and more blurred.");
+    choice(setting_table::emission, "emission",
+        "Photons leave the lights in proportion to power alone, or more often where pilot paths stored photons. Speed: "
+        "guided paths are fewer where most would be in vain.");
     measure(setting_table::max_radius, "radius, m", 1e-3f, 10.0f, "%.4f", true,
         "Largest search radius (R, r). Speed: searches in dark regions go this far. Error: where fewer than k photons "
         "lie within it, estimates are noisier instead of more blurred.");

@@ -8,13 +8,13 @@
 //                        ^---------- direct light, caustics <-- near ends <------|
 #pragma once
 
+#include <photongrid/backend/copy_vectors.kernel.hpp>
 #include <photongrid/backend/zero_vectors.kernel.hpp>
 #include <photongrid/estimate/knn_neighbours.hpp>
 #include <photongrid/map/fitted_map.hpp>
 #include <photongrid/render/add_gathered.kernel.hpp>
 #include <photongrid/render/add_light.kernel.hpp>
 #include <photongrid/render/add_near_light.kernel.hpp>
-#include <photongrid/render/copy_light.kernel.hpp>
 #include <photongrid/render/edge_correction.hpp>
 #include <photongrid/render/is_near_end.kernel.hpp>
 #include <photongrid/render/photon_point.kernel.hpp>
@@ -39,7 +39,7 @@ namespace detail {
     {
         const auto same = [&](const buffer_of<B, glm::vec4>& attribute) {
             auto copied = device.template make<glm::vec4>(attribute.size());
-            device.template run<kernels::copy_light>(attribute.size(), {}, reads(attribute), writes(copied));
+            device.template run<kernels::copy_vectors>(attribute.size(), {}, reads(attribute), writes(copied));
             return copied;
         };
         return {same(p.positions), same(p.powers), same(p.directions), same(p.normals)};
@@ -137,8 +137,10 @@ namespace detail {
         auto one_sample = settings;
         one_sample.view.light_samples = 1;
         one_sample.seed ^= (number + 1) * 0xC2B2AE35u; // else rays of one point would see the same point of a lamp
+        auto near_search = search_for_caustics(settings);
+        near_search.errors = false;
         direct_light(device, s, ends, one_sample, eye_ray, launch(n, 0), direct);
-        auto found = knn_grid_estimate(device, caustics, ends.points, ends.surfaces, search_for(settings.estimate));
+        auto found = knn_grid_estimate(device, caustics, ends.points, ends.surfaces, near_search);
         if (settings.estimate.edges != edge_correction::none)
             correct_edges(device, s, ends.points, ends.surfaces, found, settings.estimate.filter);
         device.template run<kernels::add_near_light>(n,

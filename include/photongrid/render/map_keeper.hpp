@@ -24,7 +24,9 @@ struct map_source {
     {
         auto with = settings;
         with.map.photons = whole.settings.map.photons;
+        with.map.caustic_photons = whole.settings.map.caustic_photons;
         with.estimate.k = whole.settings.estimate.k;
+        with.estimate.caustic_k = whole.settings.estimate.caustic_k;
         return settings.map.photons < whole.settings.map.photons && same_map(scene, with, whole.scene, whole.settings);
     }
 };
@@ -36,8 +38,11 @@ public:
     /// The steps to a map.
     using way = step_list (*)(map_building<B>&);
 
-    /// `device` must outlive it.
-    explicit map_keeper(B& device, way steps = map_steps<B>) : device_(device), way_(steps) {}
+    /// `device` and `guides` must outlive it.
+    explicit map_keeper(B& device, guide_keeper& guides, way steps = map_steps<B>)
+        : device_(device), guides_(guides), way_(steps)
+    {
+    }
 
     /// The map in use; there must be one.
     const built_map<B>& map() const { return *built_; }
@@ -72,7 +77,7 @@ public:
                 built_.reset();
             }
             making_of_ = source;
-            making_.emplace(device_, making_of_.scene, making_of_.settings);
+            making_.emplace(device_, making_of_.scene, making_of_.settings, guides_);
             ++begun_;
         }
         auto steps = way_(*making_);
@@ -94,6 +99,7 @@ public:
 
 private:
     B& device_;
+    guide_keeper& guides_;
     way way_;
     std::optional<built_map<B>> built_;
     map_source of_; ///< inputs of built_

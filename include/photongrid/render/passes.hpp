@@ -55,6 +55,7 @@ namespace detail {
         sum.diffuse_hits += p.diffuse_hits;
         sum.stored += p.stored;
         sum.direct += p.direct;
+        sum.left_to_caustics += p.left_to_caustics;
         sum.dropped += p.dropped;
     }
 
@@ -116,7 +117,9 @@ void finish_band(B& device, const view_pass<B>& view, pass_pixels& light, render
 template <backend B>
 void finish_pass(B& device, const built_map<B>& built, render_stats& stats)
 {
-    detail::add(stats.photons, count_photons(device, built.trace, built.map.photons.size()));
+    detail::add(stats.photons, count_photons(device, built.trace));
+    if (built.caustics)
+        detail::add(stats.photons, count_photons(device, built.caustics->trace));
     stats.map = built.stats.map;
     if (built.stats.map.builder == map_builder::route)
         stats.map.redistributed_power = redistributed_power(device, built.map);

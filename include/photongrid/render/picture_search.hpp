@@ -32,6 +32,15 @@ inline knn_settings search_for(const render_settings& s)
     k.errors = s.output.aov;
     return k;
 }
+/// The search for caustic photons, in the map of their own if there is one.
+inline knn_settings search_for_caustics(const render_settings& s)
+{
+    knn_settings k = search_for(s.estimate);
+    if (has_caustic_map(s))
+        k.k = s.estimate.caustic_k;
+    k.errors = s.output.aov;
+    return k;
+}
 
 /// The search for a preview of a picture that searches with `k`.
 inline knn_settings search_for_preview(knn_settings k, const preview& p)

@@ -220,7 +220,10 @@ private:
             const uint photons = preview_photons(with, costs_, previews_.target_ms);
             if (photons == with.map.photons || maps_.is_making(fewer))
                 return {};
-            with.estimate.k = std::max(1u, with.estimate.k / (with.map.photons / photons));
+            const uint divisor = with.map.photons / photons;
+            divide_k(with.estimate, divisor);
+            if (with.map.caustic_photons > 0)
+                with.map.caustic_photons = std::max(1u, with.map.caustic_photons / divisor);
             with.map.photons = photons;
             steps.expand([this, fewer] { return steps_to_map(fewer); });
         }
@@ -253,6 +256,12 @@ private:
         return steps;
     }
 
+    /// For a map with so many times fewer photons.
+    static void divide_k(estimate_settings& e, uint divisor)
+    {
+        e.k = std::max(1u, e.k / divisor);
+        e.caustic_k = std::max(1u, e.caustic_k / divisor);
+    }
     std::size_t picture_size() const { return std::size_t{settings_.output.width} * settings_.output.height; }
     bool has_bands() const { return bands_of(settings_.output).size() > 1; }
     /// Of the pass that is drawn.
@@ -327,8 +336,7 @@ private:
             kept_.clear(); // of a preview of another pass
         auto with = settings_of_pass(settings_, number);
         if (p)
-            with.estimate.k
-                = std::max(1u, with.estimate.k / std::max(1u, with.map.photons / maps_.of().settings.map.photons));
+            divide_k(with.estimate, std::max(1u, with.map.photons / maps_.of().settings.map.photons));
         ms_before_ = ms_of_views();
         if (!p && rows_done() == 0)
             drawing_since_ = clock_.seconds();
@@ -337,7 +345,7 @@ private:
             view_pass_settings{p, step_size::small, previews_.enabled && !has_bands(), shows_running_estimates(), band},
             kept_, stats_);
         if (!p && has_shrinking_radii(settings_))
-            view_->use_radii({&radius_maps_.map().map, shrunk_share2(number)});
+            view_->use_radii(radii_of_pass(radius_maps_.map(), number));
         if (!p && !unfinished_.empty()) {
             const auto& light = unfinished_.band;
             if (unfinished_.rays > 0)
@@ -410,6 +418,7 @@ private:
     work_clock clock_;         ///< of the picture
     double drawing_since_ = 0; ///< when the light of a pass began to be drawn, s
 
+    guide_keeper guides_;
     map_keeper<B> maps_;
     map_keeper<B> radius_maps_; ///< shrinking_radii.hpp
 
@@ -430,7 +439,7 @@ private:
 
 template <backend B>
 progressive_render<B>::progressive_render(B& device)
-    : device_(device), maps_(device), radius_maps_(device, radius_map_steps<B>)
+    : device_(device), maps_(device, guides_), radius_maps_(device, guides_, radius_map_steps<B>)
 {
 }
 

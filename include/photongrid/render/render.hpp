@@ -86,19 +86,28 @@ inline step_list band_steps(const output_settings& output, std::uint32_t rows_do
 
 /// Traces photons and builds the map for a pass. A scene without indirect light has an empty map, unless that is an
 /// error for the caller.
+/// `guides`: emission guides of earlier passes, to which those that are missing are added.
 /// \throws std::invalid_argument for a scene or settings that check() rejects, std::runtime_error if too few
 ///         photons are stored, backend_error, render_cancelled.
-/// \snippet snippets.cpp build_map
 template <backend B>
-built_map<B> build_map(B& device, const scene& s, const render_settings& settings, const render_observer& observer = {},
-    if_none_stored none = if_none_stored::trace_none)
+built_map<B> build_map(B& device, const scene& s, const render_settings& settings, guide_keeper& guides,
+    const render_observer& observer = {}, if_none_stored none = if_none_stored::trace_none)
 {
-    map_building<B> map(device, s, settings, none);
+    map_building<B> map(device, s, settings, guides, none);
     run(map_steps(map), observer, [&](std::string_view stage) {
         if (observer.progress)
             observer.progress(stage, map.fraction());
     });
     return map.take();
+}
+/// The same with guides of its own.
+/// \snippet snippets.cpp build_map
+template <backend B>
+built_map<B> build_map(B& device, const scene& s, const render_settings& settings, const render_observer& observer = {},
+    if_none_stored none = if_none_stored::trace_none)
+{
+    guide_keeper guides;
+    return build_map(device, s, settings, guides, observer, none);
 }
 
 /// The pixels of one pass over a view. Times and counts are added to `stats`.
@@ -157,14 +166,14 @@ pass_pixels draw_pass(B& device, const built_map<B>& built, const camera& view, 
 /// Builds the map that gives the first radii of all passes.
 /// \throws what build_map throws.
 template <backend B>
-map_buffers<B> build_radius_map(
-    B& device, const scene& s, const render_settings& settings, const render_observer& observer, render_stats& stats)
+built_map<B> build_radius_map(B& device, const scene& s, const render_settings& settings, guide_keeper& guides,
+    const render_observer& observer, render_stats& stats)
 {
-    map_building<B> building(device, s, settings_of_pass(settings, radius_pass));
+    map_building<B> building(device, s, settings_of_pass(settings, radius_pass), guides);
     run(radius_map_steps(building), observer, [](std::string_view) {});
     auto built = building.take();
     detail::add_map(stats, built.stats);
-    return std::move(built.map);
+    return built;
 }
 
 /// Draws one pass over a view, from an existing map: no photons are traced, and radii are those of the map. Pixels that
@@ -198,16 +207,17 @@ template <backend B>
     clock.go_on();
     auto every = settings;
     every.output.passes = settings.output.passes_at_most();
-    std::optional<map_buffers<B>> radii;
+    guide_keeper guides;
+    std::optional<built_map<B>> radii;
     if (has_shrinking_radii(every))
-        radii = build_radius_map(device, s, every, observer, out.stats);
+        radii = build_radius_map(device, s, every, guides, observer, out.stats);
     for (uint pass = 0; !judge.ended(); ++pass) {
         const auto own = settings_of_pass(every, pass);
-        const auto map = build_map(device, s, own, observer);
+        const auto map = build_map(device, s, own, guides, observer);
         detail::add_map(out.stats, map.stats);
         if (pass == 0)
             sum = film_for(s, map.scene.layout, settings.output);
-        const pass_radii<B> of_pass{radii ? &*radii : nullptr, shrunk_share2(pass)};
+        const auto of_pass = radii ? radii_of_pass(*radii, pass) : pass_radii<B>{};
         sum.add(pass, draw_pass(device, map, s.camera, own, observer, out.stats, of_pass));
         judge.after_pass(sum, clock.seconds(), out.stats);
         judge.before_pass(sum, clock.seconds());

@@ -4,23 +4,40 @@
 
 #include <photongrid/map/map_builders.hpp>
 #include <photongrid/render/final_gather.hpp>
+#include <photongrid/render/shrinking_radii.hpp>
 #include <photongrid/render/stage_clock.hpp>
+#include <photongrid/trace/pilot_tracing.hpp>
 #include <photongrid/trace/trace_photons.hpp>
 
+#include <map>
 #include <optional>
 
 #include <photongrid/backend/exact_begin.hpp>
 
 namespace photongrid {
 
+/// A map of caustic photons alone.
+template <backend B>
+struct caustic_map {
+    map_buffers<B> map;
+    traced_photons<B> trace; ///< without the photons, which are in `map`
+};
+
 /// The result of build_map and the input of draw: the scene on the device and its photon map.
 template <backend B>
 struct built_map {
-    device_scene<B> scene;               ///< recentred
-    map_buffers<B> map;                  ///< in the coordinates of `scene`; with `gather` of caustic photons alone
-    traced_photons<B> trace;             ///< without the photons, which are in `map`
-    render_stats stats;                  ///< trace_photons, build_map and map
-    std::optional<gather_map<B>> gather; ///< of all photons, for a final gather
+    device_scene<B> scene; ///< recentred
+    /// In the coordinates of `scene`: all photons; without caustic ones if there is `caustics`; only those with
+    /// `gather`; none with both.
+    map_buffers<B> map;
+    traced_photons<B> trace;                ///< without the photons, which are in the maps
+    render_stats stats;                     ///< trace_photons, build_map and map
+    std::optional<gather_map<B>> gather;    ///< of all photons, for a final gather
+    std::optional<caustic_map<B>> caustics; ///< if the settings ask for it and the scene has mirrors or glass
+    bool has_caustics_apart = false;        ///< `map` has no caustic photons; they are in `caustics`, if there are any
+
+    /// The map with the caustic photons.
+    const map_buffers<B>& map_of_caustics() const { return caustics ? caustics->map : map; }
 };
 
 /// The parts of the light (map_buffers.hpp) that a picture of `only` needs in its map.
@@ -34,6 +51,7 @@ inline uint parts_at_ends(const render_settings& s) { return gathers(s) ? causti
 inline bool same_irradiance(estimate_settings a, const estimate_settings& b)
 {
     a.gather_rays = b.gather_rays;
+    a.caustic_k = b.caustic_k;
     a.radii = b.radii;
     return a == b;
 }
@@ -45,28 +63,54 @@ inline bool same_map(const scene& a, const render_settings& as, const scene& b, 
     const bool fitted = !as.map.has_given_grid() && as.map.builder != map_builder::blocks;
     return same_light_paths(a, b) && as.seed == bs.seed && as.map.in_use() == bs.map.in_use()
         && (!fitted || as.estimate.k == bs.estimate.k) // a fitted map depends on k
+        && (!fitted || as.map.caustic_photons == 0 || as.estimate.caustic_k == bs.estimate.caustic_k)
         && (as.estimate.leaks.needs_photon_normals() || !bs.estimate.leaks.needs_photon_normals())
         && parts_of(as.output.only) == parts_of(bs.output.only) && gathers(as) == gathers(bs)
         && (!gathers(as) || same_irradiance(as.estimate, bs.estimate))
         && (as.output.only != light_part::direct || bs.output.only == light_part::direct); // it has no photons
 }
 
+/// Keeps the emission guides of a scene for the passes of its pictures.
+class guide_keeper {
+public:
+    /// The guide of paths for `request`, if it was added for this scene; else null.
+    const emission_guide* find(const scene& s, const render_settings& with, const photon_request& request) const
+    {
+        const auto at = guides_.find(request.kinds);
+        return at != guides_.end() && depth_ == with.map.photon_depth && same_light_paths(scene_, s) ? &at->second
+                                                                                                     : nullptr;
+    }
+    void add(const scene& s, const render_settings& with, const photon_request& request, emission_guide guide)
+    {
+        if (depth_ != with.map.photon_depth || !same_light_paths(scene_, s))
+            guides_.clear();
+        scene_ = s;
+        depth_ = with.map.photon_depth;
+        guides_[request.kinds] = std::move(guide);
+    }
+
+private:
+    scene scene_;
+    uint depth_ = 0;
+    std::map<uint, emission_guide> guides_; // by kinds
+};
+
 /// Builds a photon map batch by batch, so that it can be interrupted.
 template <backend B>
 class map_building {
 public:
     /// Uploads the scene. It traces nothing yet. In a scene that has no indirect light the map has no photons, unless
-    /// that is an error for the caller.
+    /// that is an error for the caller. `guides`: those of earlier passes; it must outlive this object.
     /// \throws std::invalid_argument for a scene or settings that check() rejects, backend_error.
-    map_building(
-        B& device, const scene& s, const render_settings& settings, if_none_stored none = if_none_stored::trace_none)
-        : device_(device), settings_(settings)
+    map_building(B& device, const scene& s, const render_settings& settings, guide_keeper& guides,
+        if_none_stored none = if_none_stored::trace_none)
+        : device_(device), source_(s), settings_(settings), guides_(guides), none_(none)
     {
         check(settings);
         built_.scene = upload_scene(device, s);
-        detail::stage_clock<B> clock(device, built_.stats.trace_photons);
-        tracing_.emplace(device, s, built_.scene, settings, none);
-        clock.stop();
+        built_.has_caustics_apart = settings_.map.caustic_photons > 0;
+        request_ = request_of(settings_);
+        detail::time_stage(device, built_.stats.trace_photons, [&] { begin_tracing(); });
     }
     map_building(const map_building&) = delete;
     map_building& operator=(const map_building&) = delete;
@@ -75,20 +119,26 @@ public:
     /// \throws std::runtime_error if the lights store too few photons, backend_error.
     bool trace_photons()
     {
-        if (!tracing_)
-            return true;
-        detail::time_stage(device_, built_.stats.trace_photons, [&] { tracing_->advance(); });
-        return tracing_->finished();
+        detail::time_stage(device_, built_.stats.trace_photons, [&] {
+            if (tracing_) {
+                tracing_->advance();
+            } else if (pilot_ && pilot_->advance()) {
+                guides_.add(source_, settings_, request_, pilot_->guide());
+                pilot_.reset();
+                begin_tracing();
+            }
+            if (tracing_ && tracing_->finished())
+                end_tracing();
+        });
+        return !pilot_ && !tracing_;
     }
     /// Builds the map of the photons (2.2) in one step. Returns true.
     /// \throws backend_error.
     bool build_map()
     {
-        if (tracing_) {
-            built_.trace = tracing_->take();
-            tracing_.reset();
+        if (!is_built_)
             detail::time_stage(device_, built_.stats.build_map, [&] { build(); });
-        }
+        is_built_ = true;
         return true;
     }
     /// Computes the irradiance at photons for a final gather, if there is one; returns whether it is done.
@@ -107,20 +157,67 @@ public:
     }
 
     /// Whether take() may be called.
-    bool finished() const { return !tracing_ && !gather_; }
+    bool finished() const { return is_built_ && !gather_; }
     /// The fraction of the photons that have been traced.
-    double fraction() const { return tracing_ ? tracing_->fraction() : 1.0; }
+    double fraction() const
+    {
+        if (!pilot_ && !tracing_)
+            return 1.0;
+        const double caustics = caustic_request_of(settings_, built_.scene.layout).photons;
+        const double all = request_of(settings_).photons + caustics, now = request_.photons;
+        const double before = is_of_caustics() ? all - caustics : 0;
+        return all > 0 ? (before + (tracing_ ? tracing_->fraction() : 0.0) * now) / all : 0.0;
+    }
 
     /// The finished map.
     built_map<B> take() { return std::move(built_); }
 
 private:
+    bool is_of_caustics() const { return request_.kinds == kernels::CAUSTICS; }
+    /// Begins to trace the photons of request_, or pilot paths if a guide is wanted that there is not yet.
+    void begin_tracing()
+    {
+        const bool guided = is_guided(settings_, request_);
+        const auto* guide = guided ? guides_.find(source_, settings_, request_) : nullptr;
+        if (guided && guide == nullptr) {
+            pilot_.emplace(device_, built_.scene, settings_, request_);
+            return;
+        }
+        auto with = settings_;
+        if (is_of_caustics())
+            with.seed ^= 0xB5297A4Du; // else they would be on the paths of the other photons
+        tracing_.emplace(
+            device_, source_, built_.scene, with, request_, guide != nullptr ? *guide : emission_guide{}, none_);
+    }
+    /// Ends tracing for a request, and begins with the caustic photons if they come next.
+    void end_tracing()
+    {
+        auto traced = tracing_->take();
+        tracing_.reset();
+        if (is_of_caustics()) {
+            built_.caustics->trace = std::move(traced);
+            return;
+        }
+        built_.trace = std::move(traced);
+        const auto caustics = caustic_request_of(settings_, built_.scene.layout);
+        if (caustics.photons == 0)
+            return;
+        built_.caustics.emplace();
+        request_ = caustics;
+        begin_tracing();
+    }
     void build()
     {
         photons<B> p = std::move(built_.trace.photons);
-        if (gathers(settings_))
+        if (gathers(settings_) && built_.has_caustics_apart) // all photons are the gather's alone
+            gather_.emplace(device_, built_.scene, std::exchange(p, no_photons()), settings_);
+        else if (gathers(settings_))
             gather_.emplace(device_, built_.scene, detail::copy(device_, p), settings_);
-        built_.map = map_of(std::move(p), parts_at_ends(settings_));
+        const uint parts = built_.has_caustics_apart ? every_part : parts_at_ends(settings_);
+        built_.map = map_of(std::move(p), parts, settings_.estimate.k);
+        if (built_.caustics)
+            built_.caustics->map
+                = map_of(std::move(built_.caustics->trace.photons), every_part, settings_.estimate.caustic_k);
         auto& made = built_.stats.map;
         made.builder = settings_.map.builder;
         if (made.builder == map_builder::automatic)
@@ -132,10 +229,14 @@ private:
         made.left_out = built_.map.left_out;
     }
 
-    map_buffers<B> map_of(photons<B> p, uint parts)
+    photons<B> no_photons()
+    {
+        const auto make = [&] { return device_.template make<glm::vec4>(0); };
+        return {make(), make(), make(), make()};
+    }
+    map_buffers<B> map_of(photons<B> p, uint parts, uint k)
     {
         const auto& m = settings_.map;
-        const uint k = settings_.estimate.k;
         switch (m.builder) {
         case map_builder::blocks: return block_map(device_, std::move(p), parts);
         case map_builder::automatic: return fitted_map(device_, std::move(p), k, parts);
@@ -151,11 +252,24 @@ private:
     }
 
     B& device_;
+    scene source_;
     render_settings settings_;
+    guide_keeper& guides_;
+    if_none_stored none_;
+    photon_request request_; // that is traced
+    bool is_built_ = false;
     built_map<B> built_;
+    std::optional<pilot_tracing<B>> pilot_;        // of built_.scene
     std::optional<photon_tracing<B>> tracing_;     // of built_.scene
     std::optional<gather_map_building<B>> gather_; // of built_.scene
 };
+
+/// The radii of pass number `pass`, with `first` the map of pass number radius_pass, which must outlive them.
+template <backend B>
+pass_radii<B> radii_of_pass(const built_map<B>& first, uint pass)
+{
+    return {&first.map, first.caustics ? &first.caustics->map : nullptr, shrunk_share2(pass)};
+}
 
 } // namespace photongrid
 

@@ -35,7 +35,8 @@ inline double shrunk_share2(std::uint32_t pass)
 template <backend B>
 struct pass_radii {
     const map_buffers<B>* first = nullptr; ///< map that gives the first radii; null: each pass finds its own
-    double share2 = 1;                     ///< shrunk_share2 of the pass
+    const map_buffers<B>* first_of_caustics = nullptr; ///< the same in the map of caustic photons, if there is one
+    double share2 = 1;                                 ///< shrunk_share2 of the pass
 };
 
 } // namespace photongrid

@@ -2,9 +2,11 @@
 // runs them in order. The file is long because it is one class: the stages share its buffers.
 #pragma once
 
+#include <photongrid/backend/copy_vectors.kernel.hpp>
 #include <photongrid/backend/zero_vectors.kernel.hpp>
+#include <photongrid/render/add_error.kernel.hpp>
+#include <photongrid/render/add_estimate.kernel.hpp>
 #include <photongrid/render/canvas.hpp>
-#include <photongrid/render/copy_light.kernel.hpp>
 #include <photongrid/render/edge_correction.hpp>
 #include <photongrid/render/picture_search.hpp>
 #include <photongrid/render/preview_image.hpp>
@@ -54,6 +56,12 @@ public:
             throw std::invalid_argument(std::string("view_pass: the map was built ")
                 + (built.gather ? "with" : "without") + " a final gather, which the settings "
                 + (built.gather ? "do not ask for" : "ask for") + "; build it with the settings of the picture");
+        if (settings.output.only != light_part::direct
+            && (settings.map.caustic_photons > 0) != built.has_caustics_apart)
+            throw std::invalid_argument(std::string("view_pass: the map was built ")
+                + (built.has_caustics_apart ? "with caustic photons in a map of their own" : "of all photons together")
+                + ", unlike what the settings ask for (caustic_photons " + std::to_string(settings.map.caustic_photons)
+                + "); build it with the settings of the picture");
         auto r = detail::raster_of(settings_, divisor());
         if (how_.band && *how_.band != row_band{0, r.height}) {
             r.first_row = how_.band->first;
@@ -99,12 +107,19 @@ public:
             if (!search_ && radii_.first != nullptr && !find_radii())
                 return;
             if (!search_)
-                search_.emplace(device_, built_.map, radii_.first != nullptr ? own_radii_ : samples_->hits.points,
-                    samples_->hits.surfaces, search_settings(), shown_while_running(), how_.size);
+                search_.emplace(device_, is_of_caustics() ? built_.caustics->map : built_.map,
+                    radii_.first != nullptr ? own_radii_ : samples_->hits.points, samples_->hits.surfaces,
+                    search_settings(), is_of_caustics() ? running_estimate_kind::none : shown_while_running(),
+                    how_.size);
             // Previews have the light of all branches; running estimates among them must, too.
             if (search_->is_shown() && (how_.may_search_twice || canvas_.rays + 1 == branches_))
                 ++running_pictures_;
             finished = search_->advance();
+            if (finished && is_of_caustics()) { // the search in the other map comes next
+                caustics_ = corrected(search_->take());
+                search_.reset();
+                finished = false;
+            }
         });
         return finished;
     }
@@ -184,10 +199,17 @@ private:
         return running_estimate_of<B>(
             picture_search(), how_.wants_running_estimates && !is_preview(), how_.may_search_twice);
     }
+    /// Whether the next search is that in the map of caustic photons, which is the first.
+    bool is_of_caustics() const { return built_.caustics && !caustics_; }
+    /// The search in the map where photons' radii are those of the pass.
+    knn_settings search_of_pass() const
+    {
+        return is_of_caustics() ? detail::search_for_caustics(settings_) : detail::search_for(settings_);
+    }
     /// The search of the picture itself, not of a preview.
     knn_settings picture_search() const
     {
-        auto k = detail::search_for(settings_);
+        auto k = search_of_pass();
         if (radii_.first != nullptr) {
             k.search = search_kind::fixed_radius;
             k.radii_at_points = true;
@@ -221,6 +243,8 @@ private:
         return done_ == 0;
     }
 
+    /// Estimates with the correction of edges that the settings ask for.
+    knn_estimates<B> corrected(knn_estimates<B> found);
     knn_estimates<B> shade(
         knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches);
 
@@ -246,6 +270,7 @@ private:
     std::optional<running_search<B>> radius_search_; ///< in the first map
     buffer_of<B, glm::vec4> own_radii_;              ///< the hits with their radii
     std::optional<running_search<B>> search_;        ///< of the eye ray that is drawn
+    std::optional<knn_estimates<B>> caustics_;       ///< its light from the map of caustic photons
     uint running_pictures_ = 0;
     canvas<B> canvas_;
 };
@@ -304,8 +329,8 @@ bool view_pass<B>::gather(uint ray)
     if (lit_ || !gathers(settings_))
         return true;
     const bool all_pixels = over_pixels(stats_.trace_rays, [&](launch pixels) {
-        add_gather_rays(device_, built_.scene, *built_.gather, built_.map, samples_->hits, settings_, ray, gathered_,
-            pixels, samples_->direct);
+        add_gather_rays(device_, built_.scene, *built_.gather, built_.map_of_caustics(), samples_->hits, settings_, ray,
+            gathered_, pixels, samples_->direct);
     });
     if (all_pixels)
         ++gathered_;
@@ -316,11 +341,11 @@ template <backend B>
 bool view_pass<B>::find_radii()
 {
     const auto& hits = samples_->hits;
-    auto k = detail::search_for(settings_);
+    auto k = search_of_pass();
     k.errors = false;
     if (!radius_search_)
-        radius_search_.emplace(
-            device_, *radii_.first, hits.points, hits.surfaces, k, running_estimate_kind::none, how_.size);
+        radius_search_.emplace(device_, is_of_caustics() ? *radii_.first_of_caustics : *radii_.first, hits.points,
+            hits.surfaces, k, running_estimate_kind::none, how_.size);
     if (!radius_search_->advance())
         return false;
     own_radii_ = device_.template make<glm::vec4>(hits.points.size());
@@ -342,6 +367,7 @@ bool view_pass<B>::shade(uint ray)
                 reads(samples_->hits.points, found.irradiance, found.standard_error), writes(canvas_.errors));
     });
     search_.reset();
+    caustics_.reset();
     gathered_ = 0;
     if (is_preview()) {
         kept_[ray] = std::move(samples_); // the next pass may have the same pixels
@@ -352,12 +378,27 @@ bool view_pass<B>::shade(uint ray)
 }
 
 template <backend B>
-knn_estimates<B> view_pass<B>::shade(
-    knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches)
+knn_estimates<B> view_pass<B>::corrected(knn_estimates<B> found)
 {
     const auto& hits = samples_->hits;
     if (settings_.estimate.edges != edge_correction::none)
         correct_edges(device_, built_.scene, hits.points, hits.surfaces, found, settings_.estimate.filter);
+    return found;
+}
+
+template <backend B>
+knn_estimates<B> view_pass<B>::shade(
+    knn_estimates<B> estimates, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches)
+{
+    const auto& hits = samples_->hits;
+    auto found = corrected(std::move(estimates));
+    if (caustics_) {
+        device_.template run<kernels::add_estimate>(
+            pixels.size(), {}, reads(caustics_->irradiance), writes(found.irradiance));
+        if (found.standard_error.size() > 0)
+            device_.template run<kernels::add_error>(
+                pixels.size(), {}, reads(caustics_->standard_error), writes(found.standard_error));
+    }
     device_.template run<kernels::shade>(pixels.size(), {.share = share},
         reads(hits.points, hits.throughputs, hits.emissions, samples_->direct, found.irradiance, found.used),
         writes(pixels, searches));
@@ -376,7 +417,7 @@ template <backend B>
 buffer_of<B, glm::vec4> view_pass<B>::copy(const buffer_of<B, glm::vec4>& original)
 {
     auto light = device_.template make<glm::vec4>(original.size());
-    device_.template run<kernels::copy_light>(original.size(), {}, reads(original), writes(light));
+    device_.template run<kernels::copy_vectors>(original.size(), {}, reads(original), writes(light));
     return light;
 }
 

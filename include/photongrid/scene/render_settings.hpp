@@ -18,17 +18,24 @@ namespace photongrid {
 /// fitted grid and a block map suits the photons (fitted_map).
 enum class map_builder { sort, route, blocks, automatic };
 
+/// How photons leave the lights: in proportion to power alone; or more often where pilot paths stored photons
+/// (trace/emission_guide.hpp).
+enum class photon_emission { power, guided };
+
 /// Which part of the light a picture shows. Photons are divided by their paths: a caustic photon has hit mirrors and
 /// glass only, an indirect photon a diffuse surface too. Lamps that are directly visible count as direct light.
 enum class light_part { all, direct, caustic, indirect };
 
 /// The photon map (2.1, 2.2).
 struct map_settings {
-    std::uint32_t photons = 65000;                ///< photons stored
-    std::uint32_t photon_depth = 32;              ///< the most surfaces that a photon path hits
-    map_builder builder = map_builder::sort;      ///< how the map is built
-    std::uint32_t slots = 4;                      ///< m: routed cells have m x m slots
-    surplus_kind surplus = surplus_kind::photons; ///< photons for which a routed cell has no slot
+    std::uint32_t photons = 65000; ///< photons stored
+    /// Caustic photons stored in a map of their own; 0: they are in the map of all photons.
+    std::uint32_t caustic_photons = 0;
+    std::uint32_t photon_depth = 32;                    ///< the most surfaces that a photon path hits
+    photon_emission emission = photon_emission::guided; ///< how photons leave the lights
+    map_builder builder = map_builder::sort;            ///< how the map is built
+    std::uint32_t slots = 4;                            ///< m: routed cells have m x m slots
+    surplus_kind surplus = surplus_kind::photons;       ///< photons for which a routed cell has no slot
     /// Cells of a sorted or routed map over the scene; 0, 0, 0: fitted to the photons and k (fitting_grid.hpp).
     glm::uvec3 grid{25, 25, 50};
 
@@ -70,6 +77,7 @@ enum class radius_kind { per_pass, shrinking };
 /// The irradiance estimate (the paper's radiance estimate) of a picture (2.3).
 struct estimate_settings {
     std::uint32_t k = 500;                         ///< photons sought per estimate
+    std::uint32_t caustic_k = 100;                 ///< the same in a map of caustic photons of its own
     double max_radius = 0.1;                       ///< m
     search_kind search = search_kind::exact_k;     ///< which photons an estimate uses
     filter_kind filter = filter_kind::silverman;   ///< weight by distance
@@ -144,6 +152,11 @@ inline bool gathers(const render_settings& s)
     return s.estimate.indirect == indirect_kind::gather
         && (s.output.only == light_part::all || s.output.only == light_part::indirect);
 }
+/// Whether a picture with settings `s` needs a map of caustic photons beside that of other photons.
+inline bool has_caustic_map(const render_settings& s)
+{
+    return s.map.caustic_photons > 0 && (s.output.only == light_part::all || s.output.only == light_part::caustic);
+}
 /// Whether photons keep the normals of their surfaces.
 inline bool keeps_normals(const render_settings& s) { return s.estimate.leaks.needs_photon_normals() || gathers(s); }
 
@@ -162,6 +175,8 @@ inline render_settings as_paper(render_settings s)
     s.estimate.indirect = indirect_kind::map;
     s.estimate.radii = radius_kind::per_pass;
     s.map.surplus = surplus_kind::power;
+    s.map.emission = photon_emission::power;
+    s.map.caustic_photons = 0;
     s.output.passes = 1;
     s.output.until_error = s.output.seconds = 0;
     s.view.light_samples = static_cast<std::uint32_t>(

@@ -166,6 +166,11 @@ namespace setting_table {
     inline constexpr setting size{"size", of(&render_settings::output), pixels{16384}, in_scenes::required, "pixels"};
     inline constexpr setting photons{
         "photons", of(&map_settings::photons), whole_range{1, 1u << 27}, in_scenes::required, "photons stored"};
+    inline constexpr setting caustic_photons{"caustic_photons", of(&map_settings::caustic_photons),
+        whole_range{0, 1u << 27}, in_scenes::optional,
+        "caustic photons stored in a map of their own; 0: they are among --photons"};
+    inline constexpr setting caustic_k{"caustic_k", of(&estimate_settings::caustic_k), whole_range{1, 1u << 24},
+        in_scenes::optional, "photons sought per estimate in the map of --caustic-photons"};
     inline constexpr setting k{"k", of(&estimate_settings::k), whole_range{1, 1u << 24}, in_scenes::required,
         "photons sought per estimate; not used by fixed_radius"};
     inline constexpr setting grid{"grid", of(&map_settings::grid), cells{1u << 20, 0x1p31}, in_scenes::optional,
@@ -196,6 +201,10 @@ namespace setting_table {
         "most reflections and refractions of an eye ray"};
     inline constexpr setting photon_depth{"photon_depth", of(&map_settings::photon_depth), whole_range{1, 64},
         in_scenes::optional, "most surfaces that a photon path hits"};
+    inline constexpr setting emission{"emission", of(&map_settings::emission),
+        one_of{{named{"power", photon_emission::power}, {"guided", photon_emission::guided}}}, in_scenes::optional,
+        "photons leave the lights in proportion to power alone, or more often where pilot paths stored photons "
+        "(guided)"};
     inline constexpr setting seed{"seed", of(&render_settings::seed), whole_range{0, 0xFFFFFFFFu}, in_scenes::optional,
         "same seed, same picture"};
     inline constexpr setting map{"map", of(&map_settings::builder),
@@ -254,10 +263,10 @@ constexpr void for_each_setting(const Visit& visit)
 {
     namespace t = setting_table;
     const auto all = [&](const auto&... row) { (visit(row), ...); };
-    all(t::size, t::photons, t::k, t::grid, t::max_radius, t::light_samples, t::spp, t::pixel_filter, t::passes,
-        t::until_error, t::percentile, t::depth, t::photon_depth, t::seed, t::map, t::slots, t::surplus, t::exposure,
-        t::search, t::filter, t::bias, t::leaks, t::edge_correction, t::indirect, t::gather_rays, t::radii, t::only,
-        t::seconds);
+    all(t::size, t::photons, t::caustic_photons, t::k, t::caustic_k, t::grid, t::max_radius, t::light_samples, t::spp,
+        t::pixel_filter, t::passes, t::until_error, t::percentile, t::depth, t::photon_depth, t::emission, t::seed,
+        t::map, t::slots, t::surplus, t::exposure, t::search, t::filter, t::bias, t::leaks, t::edge_correction,
+        t::indirect, t::gather_rays, t::radii, t::only, t::seconds);
 }
 
 /// \throws std::invalid_argument "name: must be …" for a setting out of its range, or for two incompatible settings.

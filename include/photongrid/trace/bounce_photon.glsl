@@ -13,6 +13,7 @@ struct Params {
     uint first_path; // id of the path of a frame's element 0
     uint last_frame; // the last bounce allowed
     uint seed;
+    uint to_diffuse; // 1: paths end at the first diffuse surface, as those of a map of caustic photons
 };
 PARAMS(Params)
 SWITCH(4, MIRRORS)
@@ -190,7 +191,8 @@ void kernel(uint i)
     power.w = facing.x;
     next_origin.w = facing.y;
     next_direction.w = facing.z;
-    if (!(r.x < largest3(material.reflectance))) {
+    bool is_end = args.to_diffuse != 0u && surface == DIFFUSE_SURFACE;
+    if (is_end || !(r.x < largest3(material.reflectance))) {
         position.w = event_code(surface, ABSORBED, hit_before);
         return;
     }

@@ -74,11 +74,12 @@ namespace detail {
         to.environment_shares = upload_some(device, e.shares);
     }
 
-    /// What kernels read that choose points of lights: the INPUTs of emit_photon.
+    /// The INPUTs of emit_photon. `guide`: the boxes of an emission guide, if there is one.
     template <backend B>
-    auto inputs_of_emission(const device_scene<B>& s)
+    auto inputs_of_emission(const device_scene<B>& s, const buffer_of<B, glm::vec4>* guide = nullptr)
     {
-        return reads(s.records, s.faces, s.planes, s.vertices, s.shares, s.environment, s.environment_shares);
+        return reads(s.records, s.faces, s.planes, s.vertices, s.shares, s.environment, s.environment_shares,
+            guide != nullptr ? *guide : s.records);
     }
 
     /// A bound on the loop iterations of the least that a pass takes: a shadow ray to each light, or of many lights to

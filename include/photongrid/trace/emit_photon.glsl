@@ -2,10 +2,12 @@
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
+#include <photongrid/trace/emission_guide.glsl>
 
 struct Params {
     uint first_path; // id of the path of element 0
     uint seed;
+    uint boxes; // of the guide; 0: none
 };
 PARAMS(Params)
 SWITCH(6, POINT_LIGHTS)
@@ -21,12 +23,14 @@ INPUT(3, vec4, vertices)
 INPUT(4, uint, shares)
 INPUT(5, vec4, environment)        // see environment.glsl ...
 INPUT(6, uint, environment_shares) // ... and environment_sample.glsl
+INPUT(7, vec4, guide)              // see emission_guide.glsl
 OUTPUT(0, vec4, position)       // xyz, m; w: event, see photon_event.glsl
 OUTPUT(1, vec4, power)          // rgb, W, not yet divided by the number of paths
 OUTPUT(2, vec4, direction)      // of the photon
 OUTPUT(3, vec4, next_origin)    // origin of the path's next ray ...
 OUTPUT(4, vec4, next_direction) // ... and its direction
 
+#include <photongrid/trace/emission_numbers.glsl>
 #include <photongrid/trace/lights.glsl>
 #include <photongrid/trace/mesh_light.glsl>
 #include <photongrid/trace/spot_light.glsl>
@@ -38,8 +42,9 @@ OUTPUT(4, vec4, next_direction) // ... and its direction
 void kernel(uint i)
 {
     uint id = args.first_path + i;
-    vec4 r = random4(uvec4(id, 0u, 0u, args.seed));
-    vec4 s = random4(uvec4(id, 0u, 1u, args.seed));
+    EmissionNumbers drawn = emission_numbers(id);
+    vec4 r = drawn.first;
+    vec4 s = drawn.second;
 
     // Choose a light with a probability proportional to its power.
     Table lights = table_of(scene(LIGHT_TABLE));
@@ -93,6 +98,8 @@ void kernel(uint i)
         d = cosine_direction(light.normal, r.x, r.y);
         origin = ray_at(origin, light.normal, off);
     }
+    precise vec4 weighted = power * drawn.weight;
+    power = weighted;
     position = vec4(origin.x, origin.y, origin.z, 0.0f);
     direction = vec4(d.x, d.y, d.z, 0.0f);
     next_origin = vec4(origin.x, origin.y, origin.z, 0.0f);

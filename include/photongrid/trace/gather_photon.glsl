@@ -5,7 +5,7 @@ struct Params {
     uint paths;
     uint frames;
     uint stored_before; // photons of earlier batches
-    uint first_hits;    // 1: they are stored, too
+    uint kinds;         // of photons that are stored (photon_event.glsl)
 };
 PARAMS(Params)
 INPUT(0, uint, sums) // storable photons of paths 0 to i

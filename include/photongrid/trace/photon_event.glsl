@@ -44,11 +44,13 @@ inline bool event_is_diffuse(vec4 position)
 {
     return event_kind(position) >= DIFFUSE_SURFACE;
 }
-// Whether the photon is stored. One straight from a light, or through clear surfaces, is a first hit. First hits are
-// left to the direct light, unless a final gather looks at them.
-inline bool event_is_stored(vec4 position, bool stores_first_hits)
+// Which photons a map stores, as a sum of these. One straight from a light, or through clear surfaces, is a first hit.
+const uint FIRST_HITS = 1u;   // else left to the direct light
+const uint CAUSTICS = 2u;     // else left to a map of caustic photons
+const uint OTHER_PHOTONS = 4u;
+inline bool event_is_stored(vec4 position, uint kinds)
 {
-    return event_is_diffuse(position) && (stores_first_hits || event_before(position) != NOTHING_BEFORE);
+    return event_is_diffuse(position) && ((kinds >> event_before(position)) & 1u) != 0u;
 }
 // Of BOTH_SURFACES, the power that leaves over that which was stored, which differ by shading normals: at most 256, in
 // steps of 2^-8. `u` in [0, 1) rounds it so that its mean is right.

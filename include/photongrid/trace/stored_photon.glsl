@@ -1,6 +1,6 @@
 // The index in the frames of stored photon i. Photons are stored in the order of (path, bounce): a binary search in the
 // prefix sums finds the path, a loop its r-th diffuse hit. Included by kernels after their inputs `sums` and
-// `positions`; args: paths, frames, stored_before, first_hits.
+// `positions`; args: paths, frames, stored_before, kinds.
 uint stored_photon(uint i)
 {
     uint rank = i - args.stored_before;
@@ -18,7 +18,7 @@ uint stored_photon(uint i)
     uint found = low;
     for (uint frame = args.frames - 1u; frame >= 1u; --frame) {
         uint at = frame * args.paths + low;
-        if (event_is_stored(positions(at), args.first_hits != 0u)) {
+        if (event_is_stored(positions(at), args.kinds)) {
             if (skip == 0u) {
                 found = at;
                 break;

@@ -1,17 +1,17 @@
-// Counts for path i, over all its frames: how it ended, and its diffuse hits. Photons straight from a light are stored
-// only for a final gather; else shadow rays compute their light.
+// Counts for path i, over all its frames: how it ended, and its diffuse hits. Those that are not stored are left to
+// shadow rays or to a map of caustic photons.
 #include <photongrid/trace/photon_event.glsl>
 
 struct Params {
     uint paths;
-    uint frames;     // traced so far, frame 0 included
-    uint first_hits; // 1: they are stored, too
+    uint frames; // traced so far, frame 0 included
+    uint kinds;  // of photons that are stored (photon_event.glsl)
 };
 PARAMS(Params)
 INPUT(0, vec4, positions)
 OUTPUT(0, uint, storable) // diffuse hits that are stored
 OUTPUT(1, uvec4, ends)    // a 1 for its end: absorbed, escaped, cut off, not a number
-OUTPUT(2, uvec4, hits)    // diffuse hits; those left to the direct light
+OUTPUT(2, uvec4, hits)    // diffuse hits; those left to the direct light; to a map of caustic photons
 
 void kernel(uint i)
 {
@@ -25,10 +25,12 @@ void kernel(uint i)
             break;
         if (event_is_diffuse(p)) {
             ++hits.x;
-            if (event_is_stored(p, args.first_hits != 0u))
+            if (event_is_stored(p, args.kinds))
                 ++storable;
-            else
+            else if (event_before(p) == NOTHING_BEFORE)
                 ++hits.y;
+            else
+                ++hits.z;
         }
         if (end == ABSORBED)
             ends.x = 1u;

@@ -1,0 +1,199 @@
+// Caustic photons in a map of their own, and guided emission: known light, accounts, parts of the light.
+#pragma once
+
+#include "final_gather_tests.hpp"
+#include "photon_account_tests.hpp"
+
+#include <photongrid/render/progressive_render.hpp>
+
+namespace photongrid::testing {
+
+inline render_settings with_caustic_map(render_settings s, std::uint32_t photons, std::uint32_t k = 50)
+{
+    s.map.caustic_photons = photons;
+    s.estimate.caustic_k = k;
+    return s;
+}
+
+TYPED_TEST_P(pictures, caustic_photons_of_their_own_have_the_power_that_optics_predicts)
+{
+    auto& b = this->b();
+    const ball_over_floor ball;
+    const auto s = ball.as_scene();
+    double paths[2] = {};
+    for (const auto emission : {photon_emission::power, photon_emission::guided}) {
+        auto settings = with_caustic_map(s.render, 20000);
+        settings.map.emission = emission;
+        const auto built = build_map(b, s, settings);
+        ASSERT_TRUE(built.caustics.has_value());
+        const auto& p = built.caustics->map.photons;
+        const auto positions = b.download(p.positions), powers = b.download(p.powers);
+        ASSERT_EQ(positions.size(), 20000u);
+        const double within = 0.12, expected = ball.power_on_floor(within);
+        double power = 0, squares = 0;
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            const dvec3 at = dvec3(positions[i]) + built.scene.layout.center;
+            const auto w = static_cast<double>(powers[i].x);
+            if (std::hypot(at.x, at.z) <= within) {
+                power += w;
+                squares += w * w;
+            }
+        }
+        EXPECT_GT(power, expected - 4 * std::sqrt(squares));
+        EXPECT_LT(power, expected * 1.02 + 4 * std::sqrt(squares)); // reflected twice and more inside the ball
+        const auto counted = count_photons(b, built.caustics->trace);
+        expect_an_exact_account(counted, 20000);
+        EXPECT_EQ(counted.left_to_caustics, 0u);
+        paths[emission == photon_emission::guided] = static_cast<double>(counted.emitted);
+    }
+    EXPECT_GT(paths[0], 8 * paths[1]); // the ball fills 2 % of the directions
+}
+
+TYPED_TEST_P(pictures, the_account_is_exact_with_a_map_of_caustic_photons)
+{
+    for (const auto& s : {small_cornell(), all_shapes()})
+        for (const bool gathers : {false, true}) {
+            auto settings = with_caustic_map(gathers ? gathering(s.render, 1) : s.render, 3000);
+            settings.map.photons = 5000;
+            settings.map.photon_depth = 5;
+            settings.output.width = settings.output.height = 8;
+            render_stats stats;
+            (void)this->picture(s, settings, &stats);
+            expect_an_exact_account(stats.photons, 8000);
+            EXPECT_GT(stats.photons.cut_off, 0u);
+            EXPECT_EQ(stats.photons.left_to_caustics > 0, !gathers); // a gather's photons have caustics, too
+        }
+}
+
+/// A bulb over a small mirror: few photons are on a second diffuse surface, and few paths are spent on them.
+TYPED_TEST_P(pictures, maps_end_with_fewer_photons_rather_than_trace_for_ever)
+{
+    auto s = bulb_over_a_floor();
+    s.materials.push_back({"mirror", material_kind::mirror, dvec3(1)});
+    s.spheres.push_back({{0.5, 0.05, 0}, 0.01, 1});
+    auto settings = with_caustic_map(s.render, 4000);
+    settings.map.photons = 2000;
+    settings.map.emission = photon_emission::power;
+    render_stats stats;
+    (void)this->picture(s, settings, &stats);
+    expect_an_exact_account(stats.photons, stats.photons.stored);
+    EXPECT_GT(stats.photons.stored, 0u);
+    EXPECT_LT(stats.photons.stored, 2000u);
+    EXPECT_EQ(stats.photons.emitted, 8 * 2000u + 64 * 4000u);
+}
+
+TYPED_TEST_P(pictures, the_parts_of_a_picture_with_a_map_of_caustic_photons_add_up)
+{
+    const auto s = small_cornell();
+    auto settings = with_caustic_map(s.render, 4000);
+    settings.output.width = settings.output.height = 24;
+    const auto all = this->picture(s, settings);
+    std::vector<dvec3> sum(all.pixels.size(), dvec3(0));
+    double brightest = 0;
+    for (const auto part : {light_part::direct, light_part::caustic, light_part::indirect}) {
+        settings.output.only = part;
+        const auto drawn = this->picture(s, settings);
+        double most = 0;
+        for (std::size_t i = 0; i < sum.size(); ++i) {
+            sum[i] += dvec3(drawn.pixels[i]);
+            most = std::max(most, static_cast<double>(drawn.pixels[i].y));
+        }
+        EXPECT_GT(most, 0) << static_cast<int>(part);
+        brightest = std::max(brightest, most);
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i)
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(sum[i][c], static_cast<double>(all.pixels[i][c]), 1e-5 * brightest) << i;
+}
+
+/// The same light as from one map of all photons: with or without a guide, a gather, shrinking radii.
+TYPED_TEST_P(pictures, a_map_of_caustic_photons_brings_the_light_of_the_map_of_all)
+{
+    auto s = small_cornell();
+    s.render.output.width = s.render.output.height = 16;
+    s.render.estimate.max_radius = 0.3;
+    s.render.map.emission = photon_emission::power;
+    const auto part = [&](render_settings settings, light_part only) {
+        settings.output.only = only;
+        return mean_of(this->picture(s, settings));
+    };
+    auto own = with_caustic_map(s.render, 20000, 100);
+    own.map.emission = photon_emission::guided;
+    auto shrinking = own;
+    shrinking.estimate.radii = radius_kind::shrinking;
+    shrinking.output.passes = 2;
+    for (const auto only : {light_part::caustic, light_part::indirect}) {
+        const auto expected = part(s.render, only);
+        for (const auto& settings : {own, shrinking}) {
+            const auto mean = part(settings, only);
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(mean[c], expected[c], 0.04 * expected[c]) << static_cast<int>(only) << " channel " << c;
+        }
+    }
+}
+
+TYPED_TEST_P(pictures, maps_of_caustic_photons_equal_serials)
+{
+    auto& b = this->b();
+    if (!b.caps().exact_division || !b.caps().exact_sqrt)
+        GTEST_SKIP() << "this device rounds division or square root loosely";
+    serial_backend serial;
+    for (const auto& s : {small_cornell(), all_shapes()})
+        for (const bool gathers : {false, true}) {
+            auto settings = with_caustic_map(gathers ? gathering(s.render, 2) : s.render, 2000);
+            settings.map.photons /= 4;
+            settings.output.width = 24;
+            settings.output.height = 18;
+            settings.output.aov = true;
+            const auto mine = render(b, s, settings), theirs = render(serial, s, settings);
+            EXPECT_LE(relative_mse(mine.picture, theirs.picture), 1e-9) << s.name;
+            EXPECT_EQ(mine.stats.photons.emitted, theirs.stats.photons.emitted);
+            EXPECT_EQ(mine.stats.photons.left_to_caustics, theirs.stats.photons.left_to_caustics);
+            for (std::size_t i = 0; i < mine.picture.layers.relative_error.size(); ++i)
+                ASSERT_NEAR(mine.picture.layers.relative_error[i], theirs.picture.layers.relative_error[i], 1e-4) << i;
+        }
+}
+
+/// Step by step, with previews, and from a pass in the middle on, a picture has the same bytes.
+TYPED_TEST_P(pictures, maps_of_caustic_photons_do_not_depend_on_how_passes_are_run)
+{
+    auto& b = this->b();
+    const auto s = small_cornell();
+    auto settings = with_caustic_map(s.render, 2000);
+    settings.map.photons /= 4;
+    settings.output.width = 24;
+    settings.output.height = 18;
+    settings.output.passes = 3;
+    const auto whole = this->picture(s, settings);
+    progressive_render<typename TestFixture::B> drawing(b);
+    drawing.start(s, settings);
+    while (!drawing.step(renderer::milliseconds(0))) {}
+    EXPECT_TRUE(same_bytes(drawing.picture(), whole));
+
+    drawing.start(s, settings);
+    while (!drawing.step(renderer::milliseconds(0)) && drawing.progress().passes < 1) {}
+    const auto state = drawing.state();
+    drawing.start(s, settings);
+    drawing.resume(state);
+    drawing.step();
+    EXPECT_TRUE(same_bytes(drawing.picture(), whole));
+}
+
+TYPED_TEST_P(pictures, a_view_of_a_map_without_its_caustics_is_refused)
+{
+    auto& b = this->b();
+    const auto s = small_cornell();
+    const auto apart = with_caustic_map(s.render, 1000);
+    const auto plain = build_map(b, s, s.render), with = build_map(b, s, apart);
+    EXPECT_FALSE(same_map(s, s.render, s, apart));
+    EXPECT_THROW((void)draw(b, plain, s.camera, apart), std::invalid_argument);
+    EXPECT_THROW((void)draw(b, with, s.camera, s.render), std::invalid_argument);
+    EXPECT_NO_THROW((void)draw(b, with, s.camera, apart));
+    // A scene without mirrors or glass has no caustics and needs no map of them.
+    const auto dull = bulb_over_a_floor();
+    const auto none = build_map(b, dull, with_caustic_map(dull.render, 1000));
+    EXPECT_FALSE(none.caustics.has_value());
+    EXPECT_NO_THROW((void)draw(b, none, dull.camera, with_caustic_map(dull.render, 1000)));
+}
+
+} // namespace photongrid::testing
