@@ -49,6 +49,7 @@ private:
     render_settings settings_;
     photon_request request_;
     uint useful_ = 0;
+    std::uint64_t stored_ = 0; // photons that paths would store
     std::vector<pilot_path> paths_;
 };
 
@@ -66,9 +67,12 @@ pilot_tracing<B>::pilot_tracing(
 template <backend B>
 bool pilot_tracing<B>::is_done() const
 {
-    const auto n = paths_.size();
+    const auto n = static_cast<double>(paths_.size());
     // Where half of the paths are useful, a guide gains little.
-    return n >= most_paths || useful_ >= enough_useful || (n >= first_batch && useful_ >= n / 2);
+    const bool gains_little = useful_ >= n / 2;
+    // Pilot paths must not cost more than they save: at most a quarter of the paths of even emission.
+    const bool are_many = 4 * stored_ >= request_.photons;
+    return n >= most_paths || useful_ >= enough_useful || gains_little || are_many;
 }
 
 template <backend B>
@@ -95,6 +99,7 @@ bool pilot_tracing<B>::advance()
                 path.numbers[half * 4 + c] = u[static_cast<int>(c)];
         }
         useful_ += path.useful ? 1 : 0;
+        stored_ += stored[i];
         paths_.push_back(path);
     }
     return is_done();
