@@ -28,7 +28,11 @@ TYPED_TEST_P(pictures, caustic_photons_of_their_own_have_the_power_that_optics_p
         ASSERT_TRUE(built.caustics.has_value());
         const auto& p = built.caustics->map.photons;
         const auto positions = b.download(p.positions), powers = b.download(p.powers);
-        ASSERT_EQ(positions.size(), 20000u);
+        // The ball is 1.4 % of all directions, so that even emission stores somewhat fewer with 64 paths each.
+        if (emission == photon_emission::guided)
+            EXPECT_EQ(positions.size(), 20000u);
+        else
+            EXPECT_NEAR(static_cast<double>(positions.size()), 18000, 800);
         const double within = 0.12, expected = ball.power_on_floor(within);
         double power = 0, squares = 0;
         for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -42,7 +46,7 @@ TYPED_TEST_P(pictures, caustic_photons_of_their_own_have_the_power_that_optics_p
         EXPECT_GT(power, expected - 4 * std::sqrt(squares));
         EXPECT_LT(power, expected * 1.02 + 4 * std::sqrt(squares)); // reflected twice and more inside the ball
         const auto counted = count_photons(b, built.caustics->trace);
-        expect_an_exact_account(counted, 20000);
+        expect_an_exact_account(counted, positions.size());
         EXPECT_EQ(counted.left_to_caustics, 0u);
         paths[emission == photon_emission::guided] = static_cast<double>(counted.emitted);
     }
@@ -59,7 +63,9 @@ TYPED_TEST_P(pictures, the_account_is_exact_with_a_map_of_caustic_photons)
             settings.output.width = settings.output.height = 8;
             render_stats stats;
             (void)this->picture(s, settings, &stats);
-            expect_an_exact_account(stats.photons, 8000);
+            expect_an_exact_account(stats.photons, stats.photons.stored);
+            EXPECT_LE(stats.photons.stored, 8000u);
+            EXPECT_GT(stats.photons.stored, gathers ? 7999u : 6000u); // other photons end after 8 paths each
             EXPECT_GT(stats.photons.cut_off, 0u);
             EXPECT_EQ(stats.photons.left_to_caustics > 0, !gathers); // a gather's photons have caustics, too
         }
@@ -106,29 +112,31 @@ TYPED_TEST_P(pictures, the_parts_of_a_picture_with_a_map_of_caustic_photons_add_
             ASSERT_NEAR(sum[i][c], static_cast<double>(all.pixels[i][c]), 1e-5 * brightest) << i;
 }
 
-/// The same light as from one map of all photons: with or without a guide, a gather, shrinking radii.
+/// The same light with or without a guide, from a map of all photons, and with given radii. All estimates are of the
+/// same radius, so that their blur is the same.
 TYPED_TEST_P(pictures, a_map_of_caustic_photons_brings_the_light_of_the_map_of_all)
 {
     auto s = small_cornell();
     s.render.output.width = s.render.output.height = 16;
-    s.render.estimate.max_radius = 0.3;
+    s.render.estimate.search = search_kind::fixed_radius;
+    s.render.estimate.max_radius = 0.1;
     s.render.map.emission = photon_emission::power;
+    s.render.map.photons = 40000;
     const auto part = [&](render_settings settings, light_part only) {
         settings.output.only = only;
         return mean_of(this->picture(s, settings));
     };
-    auto own = with_caustic_map(s.render, 20000, 100);
-    own.map.emission = photon_emission::guided;
-    auto shrinking = own;
-    shrinking.estimate.radii = radius_kind::shrinking;
-    shrinking.output.passes = 2;
+    const auto own = with_caustic_map(s.render, 20000);
+    auto guided = own, given = own;
+    guided.map.emission = photon_emission::guided;
+    given.estimate.radii = radius_kind::shrinking;
+    given.output.passes = 2; // of the first radius, and of 2/3 of its square
     for (const auto only : {light_part::caustic, light_part::indirect}) {
-        const auto expected = part(s.render, only);
-        for (const auto& settings : {own, shrinking}) {
-            const auto mean = part(settings, only);
+        const auto of_all = part(s.render, only), expected = part(own, only);
+        for (const auto& mean : {part(guided, only), part(given, only), of_all})
             for (int c = 0; c < 3; ++c)
-                EXPECT_NEAR(mean[c], expected[c], 0.04 * expected[c]) << static_cast<int>(only) << " channel " << c;
-        }
+                EXPECT_NEAR(mean[c], expected[c], (only == light_part::caustic ? 0.06 : 0.03) * expected[c])
+                    << static_cast<int>(only) << " channel " << c;
     }
 }
 

@@ -183,6 +183,8 @@ private:
             pilot_.emplace(device_, built_.scene, settings_, request_);
             return;
         }
+        if (guide != nullptr && guide->has_none_useful && request_.most_paths > 0)
+            request_.most_paths = request_.photons; // what there is may be rare, but is dim
         auto with = settings_;
         if (is_of_caustics())
             with.seed ^= 0xB5297A4Du; // else they would be on the paths of the other photons

@@ -47,6 +47,7 @@ struct emission_guide {
     std::vector<emission_box> boxes;
     /// How many times as many paths even emission would need for the same noise, as far as the pilot paths tell.
     double gain = 1;
+    bool has_none_useful = false; ///< no pilot path was useful
 
     /// The boxes as kernels read them (trace/emission_guide.glsl).
     std::vector<glm::vec4> records() const

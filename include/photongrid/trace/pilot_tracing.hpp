@@ -108,12 +108,12 @@ bool pilot_tracing<B>::advance()
 template <backend B>
 emission_guide pilot_tracing<B>::guide() const
 {
+    emission_guide even;
+    even.has_none_useful = useful_ == 0;
     if (useful_ == 0 || useful_ >= paths_.size() / 2)
-        return {};
+        return even;
     auto guide = guide_by(paths_);
-    if (guide.gain < least_gain)
-        return {};
-    return guide;
+    return guide.gain < least_gain ? even : guide;
 }
 
 } // namespace photongrid
