@@ -29,6 +29,15 @@ inline render_settings settings_of_pass(render_settings s, std::uint32_t pass)
     return s;
 }
 
+/// The settings of the map that gives the first radii of all passes.
+inline render_settings settings_of_radius_map(const render_settings& s)
+{
+    auto with = settings_of_pass(s, radius_pass);
+    if (gathers(s) && s.map.caustic_photons > 0)
+        with.output.only = light_part::caustic; // rays end in the map of caustic photons alone
+    return with;
+}
+
 /// A power of two near the mean radiance of a scene, as the unit of a film: the power of all lights divided by the
 /// square of the extent of the diffuse surfaces.
 inline double typical_radiance(const scene& s, const scene_layout& layout)

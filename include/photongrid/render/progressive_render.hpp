@@ -305,7 +305,7 @@ private:
     /// The map that gives the first radii of all passes.
     step_list steps_to_radii()
     {
-        const auto source = pass(radius_pass);
+        const map_source source{scene_, settings_of_radius_map(settings_), radius_pass};
         if (!has_shrinking_radii(settings_) || radius_maps_.serves(source))
             return {};
         auto steps = radius_maps_.steps_to(source, [this] { view_.reset(); });

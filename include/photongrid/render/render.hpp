@@ -169,7 +169,7 @@ template <backend B>
 built_map<B> build_radius_map(B& device, const scene& s, const render_settings& settings, guide_keeper& guides,
     const render_observer& observer, render_stats& stats)
 {
-    map_building<B> building(device, s, settings_of_pass(settings, radius_pass), guides);
+    map_building<B> building(device, s, settings_of_radius_map(settings), guides);
     run(radius_map_steps(building), observer, [](std::string_view) {});
     auto built = building.take();
     detail::add_map(stats, built.stats);
