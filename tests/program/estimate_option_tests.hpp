@@ -33,9 +33,9 @@ namespace {
 
     // Settings of the estimate, as the statistics have them.
     const json by_default = json::parse(
-        R"({"search": "exact_k", "filter": "silverman", "bias": "unbiased", "leaks": {"side": true}, "edge_correction": "none", "only": "all", "surplus": "photons"})");
+        R"({"search": "exact_k", "filter": "silverman", "bias": "unbiased", "leaks": {"side": true}, "edge_correction": "none", "only": "all", "surplus": "photons", "emission": "guided"})");
     const json paper = json::parse(
-        R"({"search": "at_least_k", "filter": "constant", "bias": "paper", "leaks": {}, "edge_correction": "none", "only": "all", "surplus": "power"})");
+        R"({"search": "at_least_k", "filter": "constant", "bias": "paper", "leaks": {}, "edge_correction": "none", "only": "all", "surplus": "power", "emission": "power"})");
     json but(json all, const char* more)
     {
         all.update(json::parse(more));
@@ -84,6 +84,9 @@ namespace {
             {{"--only", "indirect"}, but(by_default, R"({"only": "indirect"})")},
             {{"--surplus", "power"}, but(by_default, R"({"surplus": "power"})")},
             {{"--as-paper"}, paper},
+            {{"--emission", "power"}, but(by_default, R"({"emission": "power"})")},
+            {{"--caustic-photons", "50", "--caustic-k", "7"},
+                but(by_default, R"({"caustic_photons": 50, "caustic_k": 7})")},
             {{"--as-paper", "--surplus", "photons"}, but(paper, R"({"surplus": "photons"})")},
             {{"--filter", "cone", "--as-paper", "--leaks", "side"},
                 but(paper, R"({"filter": "cone", "leaks": {"side": true}})")},
