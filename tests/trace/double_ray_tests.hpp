@@ -97,6 +97,7 @@ inline std::vector<glm::dvec4> photons_in_double(const double_scene& wide, uint 
     double_kernels::emit_photon emit;
     emit.args.first_path = 0;
     emit.args.seed = seed;
+    emit.args.boxes = 0;
     turn_switches(emit, wide.features);
     emit.scene_data = wide.records;
     for (uint i = 0; i < paths; ++i) {
@@ -108,6 +109,7 @@ inline std::vector<glm::dvec4> photons_in_double(const double_scene& wide, uint 
     bounce.args.first_path = 0;
     bounce.args.last_frame = frames - 1;
     bounce.args.seed = seed;
+    bounce.args.to_diffuse = 0;
     turn_switches(bounce, wide.features);
     bounce.scene_data = wide.records;
     bounce.positions_data = p;

@@ -113,9 +113,7 @@ namespace {
         serial_backend b;
         const auto device = upload_scene(b, s);
         detail::photon_frames<serial_backend> f(b, paths);
-        b.run<kernels::emit_photon>({paths, 0u, device.layout.features}, {.first_path = first, .seed = s.render.seed},
-            detail::inputs_of_emission(device),
-            writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
+        detail::emit_photons(b, device, f, {paths, first}, s.render.seed);
         emission e{{}, {}, b.download(f.powers)};
         for (const auto& p : b.download(f.positions))
             e.positions.push_back(dvec3(glm::vec3(p)) + device.layout.center);
