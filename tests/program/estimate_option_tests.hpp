@@ -85,8 +85,7 @@ namespace {
             {{"--surplus", "power"}, but(by_default, R"({"surplus": "power"})")},
             {{"--as-paper"}, paper},
             {{"--emission", "power"}, but(by_default, R"({"emission": "power"})")},
-            {{"--caustic-photons", "50", "--caustic-k", "7"},
-                but(by_default, R"({"caustic_photons": 50, "caustic_k": 7})")},
+            {{"--caustic-k", "7"}, but(by_default, R"({"caustic_photons": 0, "caustic_k": 7})")},
             {{"--as-paper", "--surplus", "photons"}, but(paper, R"({"surplus": "photons"})")},
             {{"--filter", "cone", "--as-paper", "--leaks", "side"},
                 but(paper, R"({"filter": "cone", "leaks": {"side": true}})")},
@@ -154,14 +153,33 @@ namespace {
         EXPECT_EQ(contents(folder / "b.exr").find("estimate."), std::string::npos);
     }
 
+    TEST_F(program, caustic_photons_have_a_map_of_their_own)
+    {
+        const auto photons = [&](std::vector<std::string> more) {
+            std::vector<std::string> arguments{"render", ring, "--backend", "serial", "--size", "16x12", "--photons",
+                "300", "--caustic-photons", "400", "--caustic-k", "20", "--stats", "stats.json"};
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            EXPECT_EQ(run(arguments).code, 0);
+            const auto s = json::parse(contents(folder / "stats.json"));
+            EXPECT_GT(s.at("estimate").at("mean_count"), 10);
+            return s.at("photons");
+        };
+        const auto apart = photons({});
+        EXPECT_EQ(apart.at("stored"), 400); // the ring throws no other light
+        EXPECT_GT(apart.at("left_to_caustics"), 0);
+        const auto paths = [](const json& p) { return p.at("emitted").get<double>(); };
+        EXPECT_GT(
+            paths(photons({"--only", "caustic", "--emission", "power"})), 5 * paths(photons({"--only", "caustic"})));
+    }
+
     TEST_F(program, parts_of_the_light_add_up)
     {
         // With a given radius and a constant kernel an estimate is linear in the photons.
         const std::string box = PHOTONGRID_SCENES "/cornell_box.json";
         const auto draw = [&](std::vector<std::string> more) {
             std::vector<std::string> arguments{"render", box, "--backend", "serial", "--size", "32x32", "--photons",
-                "4000", "--search", "fixed_radius", "--max-radius", "0.2", "--filter", "constant", "--stats", "s.json",
-                "-o", "a.exr"};
+                "4000", "--caustic-photons", "0", "--search", "fixed_radius", "--max-radius", "0.2", "--filter",
+                "constant", "--stats", "s.json", "-o", "a.exr"};
             arguments.insert(arguments.end(), more.begin(), more.end());
             const auto e = run(arguments);
             EXPECT_EQ(e.code, 0) << e.err;

@@ -106,7 +106,7 @@ void finish_band(B& device, const view_pass<B>& view, pass_pixels& light, render
     };
     const auto& band = view.light();
     const auto searches = device.download(band.searches);
-    const double searched = static_cast<double>(searches.size()) * view.rays();
+    const double searched = static_cast<double>(searches.size()) * view.searches();
     glm::dvec4 sum(0);
     for (const auto& s : searches)
         sum += glm::dvec4(s);

@@ -24,7 +24,8 @@ void kernel(uint i)
         light.x += w.x * (d.x + e.x) * 3.18309886e-1f;
         light.y += w.y * (d.y + e.y) * 3.18309886e-1f;
         light.z += w.z * (d.z + e.z) * 3.18309886e-1f;
-        searches += vec4(float(n.x), sqrt(e.w), float(n.y), 1.0f);
+        if (e.w > 0.0f)
+            searches += vec4(float(n.x), sqrt(e.w), float(n.y), 1.0f);
     }
     pixel = vec4(pixel.x + light.x * args.share, pixel.y + light.y * args.share, pixel.z + light.z * args.share, 0.0f);
 }

@@ -18,6 +18,7 @@
 #include <photongrid/render/shrinking_radii.hpp>
 #include <photongrid/render/shrunk_radius.kernel.hpp>
 #include <photongrid/render/tally_error.kernel.hpp>
+#include <photongrid/render/tally_search.kernel.hpp>
 
 #include <optional>
 
@@ -89,6 +90,9 @@ public:
 
     /// The number of eye rays per pixel, counting each combination of Fresnel branches. A preview has one sample.
     uint rays() const { return (is_preview() ? 1u : settings_.view.spp) * branches_; }
+
+    /// The most searches per pixel: one in each map where rays end.
+    uint searches() const { return rays() * (built_.caustics ? 2u : 1u); }
 
     /// Traces eye rays through mirrors and glass to their ends (2.4).
     bool trace_eye(uint ray);
@@ -395,6 +399,8 @@ knn_estimates<B> view_pass<B>::shade(
     if (caustics_) {
         device_.template run<kernels::add_estimate>(
             pixels.size(), {}, reads(caustics_->irradiance), writes(found.irradiance));
+        device_.template run<kernels::tally_search>(
+            pixels.size(), {}, reads(hits.points, caustics_->irradiance, caustics_->used), writes(searches));
         if (found.standard_error.size() > 0)
             device_.template run<kernels::add_error>(
                 pixels.size(), {}, reads(caustics_->standard_error), writes(found.standard_error));
