@@ -178,7 +178,7 @@ TYPED_TEST_P(light_kinds, photons_and_shadow_rays_agree)
         }
         ASSERT_GT(known.x, 0);
         for (int c = 0; c < 3; ++c)
-            EXPECT_NEAR(sum[c] / known[c], 1, 0.02) << c;
+            EXPECT_NEAR(sum[c] / known[c], 1, 0.03) << c; // the noise of 60,000 photons is 1 %
     }
 }
 
