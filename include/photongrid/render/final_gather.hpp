@@ -158,7 +158,9 @@ void add_gather_rays(B& device, const device_scene<B>& s, const gather_map<B>& m
 {
     constexpr uint most_rays = 4; // one after the other
     const std::size_t n = pixels.elements;
-    const uint rays = settings.estimate.gather_rays, seed = settings.seed;
+    const uint rays = settings.estimate.gather_rays, seed = settings.seed, pass = settings.pass.number;
+    const uint splits = detail::splits_of(s.layout);
+    const auto place = detail::place_of(settings, eye_ray, splits);
     const auto make = [&] { return device.template make<glm::vec4>(n); };
     auto weights = make(), gathered = make();
     device.template run<kernels::weight_one>(n, {}, reads(), writes(weights));
@@ -171,8 +173,12 @@ void add_gather_rays(B& device, const device_scene<B>& s, const gather_map<B>& m
     for (uint nth = 0; nth < most_rays; ++nth) {
         const auto& starts = ends ? *ends : eye_ends;
         const uint first = ends ? 0 : pixels.first;
-        // Random numbers of their own for each ray. The first ones of a point are stratified together.
-        settings.seed = seed ^ (eye_ray + 1) * 0x85EBCA6Bu ^ (nth * rays + (nth > 0 ? number : 0)) * 0x9E3779B1u;
+        // The first rays of a point are stratified together, and with those of the other passes. Later ones have random
+        // numbers of their own.
+        settings.seed = nth == 0 ? place.seed ^ (place.branch + 1) * 0x85EBCA6Bu
+                                 : seed ^ (eye_ray + 1) * 0x85EBCA6Bu ^ (nth * rays + number) * 0x9E3779B1u;
+        settings.pass = {nth == 0 ? pass : 0, 0};
+        const uint in_sequence = detail::place_of(settings, eye_ray, splits).nth;
         detail::eye_hits<B> hits(device, n, first_pixel);
         auto branches = device.template make<uint>(n);
         device.template run<kernels::final_gather_ray>({n, 0u, s.layout.features},
@@ -180,6 +186,7 @@ void add_gather_rays(B& device, const device_scene<B>& s, const gather_map<B>& m
                 .number = nth == 0 ? number : 0,
                 .first = first,
                 .first_pixel = first_pixel - first,
+                .nth = in_sequence,
                 .seed = settings.seed},
             reads(s.records, starts.points, starts.surfaces),
             writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
@@ -187,9 +194,8 @@ void add_gather_rays(B& device, const device_scene<B>& s, const gather_map<B>& m
             {.branch = 0,
                 .splits = 0,
                 .depth = settings.view.depth,
-                .sample_id = number,
                 .light_samples = 0.0f,
-                .stratum = static_cast<float>(number) / static_cast<float>(rays),
+                .nth = in_sequence * rays + number,
                 .seed = settings.seed},
             hits, branches);
         const auto found = knn_neighbours(device, map.nearest, hits.points, hits.surfaces, nearest);

@@ -127,6 +127,15 @@ struct output_settings {
     bool operator==(const output_settings&) const = default;
 };
 
+/// The pass of a picture that settings are for (settings_of_pass). The eye rays of a pixel, their shadow rays and their
+/// final gathers are stratified over all passes: each has its place in sequences that depend on the picture's seed.
+struct pass_place {
+    std::uint32_t number = 0;
+    std::uint32_t seed_change = 0; ///< the pass's seed xor the picture's
+
+    bool operator==(const pass_place&) const = default;
+};
+
 /// How to render.
 struct render_settings {
     map_settings map{};
@@ -134,6 +143,7 @@ struct render_settings {
     view_settings view{};
     output_settings output{};
     std::uint32_t seed = 1; ///< seed of all random numbers; the same seed gives the same picture
+    pass_place pass{};      ///< not a setting of the user's
 
     bool operator==(const render_settings&) const = default;
 };
