@@ -112,7 +112,7 @@ faults=(
   "samples share out a pixel's height in no order|include/photongrid/trace/eye_ray.glsl|y_in_row + float(column) / float(args.strata.x)|y_in_row|optics"
   "eye rays of all passes are the first's|include/photongrid/trace/eye_rays.hpp|s.pass.number * s.view.spp +|0 * s.view.spp +|optics"
   "strata have the seed of their pass|include/photongrid/trace/eye_rays.hpp|s.seed ^ s.pass.seed_change|s.seed|optics"
-  "gather rays of all passes are the first's|include/photongrid/render/final_gather.hpp|settings.pass = {nth == 0 ? pass : 0, 0};|settings.pass = {};"
+  "gather rays of all passes are the first's|include/photongrid/render/final_gather.hpp|settings.pass.seed_change = 0;|settings.pass = {};"
   "sequences lose a matrix|include/photongrid/backend/random.glsl|place ^= (place >> 2u) & 0x33333333u;|;|on_serial_algorithms"
   "all sequences have one order|include/photongrid/backend/random.glsl|return reversed_bits(nested_scrambled(reversed_bits(nth), seed));|return nth;|on_serial_algorithms"
   "edges of estimates not corrected|include/photongrid/render/view_pass.hpp|settings_.estimate.edges != edge_correction::none|settings_.estimate.edges == edge_correction::none"

@@ -106,13 +106,13 @@ template <class Device>
 std::vector<glm::vec4> draw_points(Device& b, const std::vector<glm::uvec4>& keys, const std::vector<uint>& nths)
 {
     auto four = b.template make<glm::vec4>(keys.size());
-    auto two = b.template make<glm::vec2>(keys.size());
+    auto two = b.template make<glm::vec4>(keys.size());
     b.template run<probes::sequence_probe>(static_cast<uint>(keys.size()), {.unused = 0u},
         reads(b.upload(std::span<const glm::uvec4>(keys)), b.upload(std::span<const uint>(nths))), writes(four, two));
     const auto points = b.download(four);
     const auto pairs = b.download(two);
     for (std::size_t i = 0; i < points.size(); ++i)
-        EXPECT_EQ(glm::vec2(points[i]), pairs[i]) << "the first pair of four is the sequence of two";
+        EXPECT_EQ(glm::vec2(points[i]), glm::vec2(pairs[i])) << "the first pair of four is the sequence of two";
     return points;
 }
 

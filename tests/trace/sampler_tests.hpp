@@ -533,6 +533,33 @@ namespace {
         }
     }
 
+    /// A lamp of which something covers a half, the nearer one. For a final gather a lamp that is so near is taken
+    /// whole, and seen or not by its sample; for paths the mean is exact.
+    TEST(samplers, paths_see_the_part_of_a_lamp_that_is_not_covered)
+    {
+        auto s = floor_scene();
+        s.rectangle_lights = {{"lamp", {-1, 1, -0.5}, {2, 0, 0}, {0, 0, 1}, dvec3(3)}};
+        s.polygons.push_back({{{-1.5, 0.99, -2}, {0, 0.99, -2}, {0, 0.99, 2}, {-1.5, 0.99, 2}}, 0});
+        const dvec3 point(-0.9, 0, 0);
+        // Quadrature over the lamp: what covers it hides x < 0, up to the parallax over 1 cm.
+        double known = 0;
+        constexpr int steps = 1000;
+        for (int i = 0; i < steps; ++i)
+            for (int j = 0; j < steps; ++j) {
+                const dvec3 at(-1 + 2 * (i + 0.5) / steps, 1, -0.5 + (j + 0.5) / steps), to = at - point;
+                if ((point + 0.99 * to).x > 0)
+                    known += 3 / pi / std::pow(glm::dot(to, to), 2) / (steps * steps);
+            }
+        auto settings = with_samples(s.render, 1, 1);
+        const auto mean = [&](indirect_kind kind) {
+            settings.estimate.indirect = kind;
+            return moments_of(estimates(s, point, settings, 0, 65536));
+        };
+        const auto exact = mean(indirect_kind::paths), whole = mean(indirect_kind::gather);
+        EXPECT_NEAR(exact.mean, known, far_off * std::sqrt(exact.variance / 65536));
+        EXPECT_GT(std::abs(whole.mean - known), 2 * far_off * std::sqrt(whole.variance / 65536));
+    }
+
     /// The first rays of a final gather are stratified over eye rays and passes, each in its stratum of the hemisphere.
     TEST(samplers, gather_rays_are_stratified_over_eye_rays_and_passes)
     {

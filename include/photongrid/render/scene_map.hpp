@@ -17,7 +17,7 @@ namespace photongrid {
 template <backend B>
 struct built_map {
     device_scene<B> scene;               ///< recentred
-    map_buffers<B> map;                  ///< in the coordinates of `scene`; with `gather` of caustic photons alone
+    map_buffers<B> map;                  ///< in the coordinates of `scene`; with gather rays of caustic photons alone
     traced_photons<B> trace;             ///< without the photons, which are in `map`
     render_stats stats;                  ///< trace_photons, build_map and map
     std::optional<gather_map<B>> gather; ///< of all photons, for a final gather
@@ -29,7 +29,10 @@ constexpr uint parts_of(light_part only)
     return only == light_part::caustic ? caustic_part : only == light_part::indirect ? other_part : every_part;
 }
 /// The parts of the light in the map that is searched where rays end, for a picture with settings `s`.
-inline uint parts_at_ends(const render_settings& s) { return gathers(s) ? caustic_part : parts_of(s.output.only); }
+inline uint parts_at_ends(const render_settings& s)
+{
+    return has_gather_rays(s) ? caustic_part : parts_of(s.output.only);
+}
 /// Whether the irradiance at photons is the same with settings `a` and `b` of the estimate, for a final gather.
 inline bool same_irradiance(estimate_settings a, const estimate_settings& b)
 {
@@ -46,8 +49,8 @@ inline bool same_map(const scene& a, const render_settings& as, const scene& b, 
     return same_light_paths(a, b) && as.seed == bs.seed && as.map.in_use() == bs.map.in_use()
         && (!fitted || as.estimate.k == bs.estimate.k) // a fitted map depends on k
         && (as.estimate.leaks.needs_photon_normals() || !bs.estimate.leaks.needs_photon_normals())
-        && parts_of(as.output.only) == parts_of(bs.output.only) && gathers(as) == gathers(bs)
-        && (!gathers(as) || same_irradiance(as.estimate, bs.estimate))
+        && parts_of(as.output.only) == parts_of(bs.output.only) && parts_at_ends(as) == parts_at_ends(bs)
+        && gathers(as) == gathers(bs) && (!gathers(as) || same_irradiance(as.estimate, bs.estimate))
         && (as.output.only != light_part::direct || bs.output.only == light_part::direct); // it has no photons
 }
 

@@ -60,8 +60,9 @@ struct map_settings {
 };
 
 /// How indirect light that no mirror or glass focuses is computed where eye rays end: from the photons there; or by a
-/// final gather, which looks at the photons of all other surfaces from there (final_gather.hpp).
-enum class indirect_kind { map, gather };
+/// final gather, which looks at the photons of all other surfaces from there (final_gather.hpp); or by paths that go on
+/// from there and look at caustic photons alone (gathered_paths.hpp).
+enum class indirect_kind { map, gather, paths };
 
 /// How the radii of estimates change from pass to pass: each pass finds its own by its search; or they shrink from
 /// those that the search finds in a map of its own (shrinking_radii.hpp).
@@ -77,7 +78,7 @@ struct estimate_settings {
     leak_policy leaks{.side = true};               ///< which photons are rejected
     edge_correction edges = edge_correction::none; ///< polygons: needs leak_policy::min_cosine above 0
     indirect_kind indirect = indirect_kind::map;   ///< how indirect light is computed
-    std::uint32_t gather_rays = 16;                ///< rays of a final gather per eye ray
+    std::uint32_t gather_rays = 16;                ///< rays or paths of a final gather per eye ray
     radius_kind radii = radius_kind::per_pass;     ///< from pass to pass
 
     bool operator==(const estimate_settings&) const = default;
@@ -154,6 +155,14 @@ inline bool gathers(const render_settings& s)
     return s.estimate.indirect == indirect_kind::gather
         && (s.output.only == light_part::all || s.output.only == light_part::indirect);
 }
+/// Whether it has light from paths that go on.
+inline bool follows_paths(const render_settings& s)
+{
+    return s.estimate.indirect == indirect_kind::paths
+        && (s.output.only == light_part::all || s.output.only == light_part::indirect);
+}
+/// Whether rays start where eye rays end, for indirect light.
+inline bool has_gather_rays(const render_settings& s) { return gathers(s) || follows_paths(s); }
 /// Whether photons keep the normals of their surfaces.
 inline bool keeps_normals(const render_settings& s) { return s.estimate.leaks.needs_photon_normals() || gathers(s); }
 
@@ -177,6 +186,22 @@ inline render_settings as_paper(render_settings s)
     s.view.light_samples = static_cast<std::uint32_t>(
         std::min<std::uint64_t>(std::uint64_t{s.view.light_samples} * std::max(s.view.spp, 1u), 65536));
     s.view.spp = 1;
+    return s;
+}
+
+/// The settings of a consistent picture: its error goes to 0 as passes are added. Radii shrink, indirect light comes
+/// from paths, and the picture has the most passes that it may have unless `s` has more than one or a stop rule. A
+/// routed map becomes an automatic one, since it drops photons. First radii are of at most 50 photons. Other settings
+/// are unchanged.
+inline render_settings as_exact(render_settings s)
+{
+    s.estimate.radii = radius_kind::shrinking;
+    s.estimate.indirect = indirect_kind::paths;
+    s.estimate.k = std::min(s.estimate.k, 50u);
+    if (s.map.builder == map_builder::route)
+        s.map.builder = map_builder::automatic;
+    if (s.output.passes == 1 && !s.output.has_stop_rule())
+        s.output.passes = output_settings::most_passes;
     return s;
 }
 

@@ -315,8 +315,11 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
     // What direct_light.glsl does not know.
     constexpr uint others
         = has_meshes | has_sphere_lights | has_spot_lights | has_directional_lights | has_environment | has_coats;
-    if ((s.layout.features & others) != 0 || samples_choose_lights(s.layout)) {
-        const lit_points<B> lit{hits.points, hits.surfaces, pixels.first, hits.first_pixel};
+    // A part of a lamp that is taken whole is seen whole or not at all: where something covers a part of it, the mean
+    // of many passes is not exact.
+    const bool takes_whole = settings.estimate.indirect != indirect_kind::paths;
+    if ((s.layout.features & others) != 0 || samples_choose_lights(s.layout) || !takes_whole) {
+        const lit_points<B> lit{hits.points, hits.surfaces, pixels.first, hits.first_pixel, takes_whole ? 1u : 0u};
         add_light_samples(device, s, settings, ray, pixels, lit, light, [](const auto&, auto&) {});
         return;
     }

@@ -122,6 +122,12 @@ uint trace_batch(B& device, const device_scene<B>& s, detail::photon_frames<B>& 
     return detail::trace_batch_by_passes(device, s, f, paths, first, settings);
 }
 
+/// Whether a scene has surfaces that may make caustics.
+inline bool may_have_caustics(const scene_layout& layout)
+{
+    return (layout.features & (has_mirrors | has_glass | has_rough | has_coats)) != 0;
+}
+
 /// What photon tracing does in a scene where no path stores a photon, as under a bulb over a bare floor.
 enum class if_none_stored { fail, trace_none };
 
@@ -136,7 +142,10 @@ public:
     photon_tracing(B& device, const scene& s, const device_scene<B>& uploaded, const render_settings& settings,
         if_none_stored none = if_none_stored::fail)
         : device_(device), scene_(uploaded), settings_(settings), lights_(detail::names_of_lights(s)), none_(none),
-          wanted_(settings.output.only == light_part::direct ? 0u : settings.map.photons),
+          wanted_(settings.output.only == light_part::direct
+                      || (follows_paths(settings) && !may_have_caustics(uploaded.layout))
+                  ? 0u
+                  : settings.map.photons),
           most_paths_(detail::most_paths(device.caps(), settings.map.photon_depth))
     {
         make_photons();
