@@ -184,8 +184,8 @@ inline scene sunlit_corner(double wall, double floor, double height, double sun)
     return s;
 }
 
-/// The rays of 16 passes are spread over the hemisphere as those of one would be: they find the wall with far less noise
-/// than rays that know nothing of each other.
+/// The rays of 16 passes are spread over the hemisphere as those of one would be: they find the wall with far less
+/// noise than rays that know nothing of each other.
 TYPED_TEST_P(pictures, gather_rays_are_stratified_over_passes)
 {
     auto& b = this->b();
