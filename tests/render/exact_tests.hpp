@@ -3,6 +3,8 @@
 
 #include "shrinking_radii_tests.hpp"
 
+#include <map>
+
 namespace photongrid::testing {
 
 inline render_settings by_paths(render_settings s, std::uint32_t paths)
@@ -93,8 +95,8 @@ TYPED_TEST_P(pictures, an_exact_picture_does_not_depend_on_how_it_is_run)
 }
 
 /// Sums of squared errors relative to `known`, after some numbers of passes.
-template <class Fixture>
-std::map<std::uint32_t, double> errors_after(Fixture& f, const scene& s, render_settings settings,
+template <class Device>
+std::map<std::uint32_t, double> errors_after(Device& b, const scene& s, render_settings settings,
     const std::vector<double>& known, const std::vector<std::uint32_t>& numbers)
 {
     std::map<std::uint32_t, double> errors;
@@ -102,7 +104,7 @@ std::map<std::uint32_t, double> errors_after(Fixture& f, const scene& s, render_
         for (const auto passes : numbers) {
             settings.output.passes = passes;
             settings.seed = seed;
-            const auto drawn = f.picture(s, settings);
+            const auto drawn = render(b, s, settings).picture;
             for (std::size_t i = 0; i < known.size(); ++i)
                 errors[passes] += std::pow(static_cast<double>(drawn.pixels[i].x) / known[i] - 1, 2);
         }
@@ -133,7 +135,7 @@ TYPED_TEST_P(pictures, an_exact_caustic_converges_at_the_rate_of_theory)
             const dvec3 to = dvec3(1.6, 0.5, 0) - (s.camera.position - d * (s.camera.position.y / d.y));
             known.push_back(0.5 / M_PI * to.y / std::pow(glm::length(to), 3));
         }
-    const auto errors = errors_after(*this, s, s.render, known, {4, 64});
+    const auto errors = errors_after(this->b(), s, s.render, known, {4, 64});
     const double slope = std::log(errors.at(64) / errors.at(4)) / std::log(16);
     EXPECT_NEAR(slope, -2.0 / 3, 0.1);
     EXPECT_LT(errors.at(64) / (4 * 144), 0.02);
@@ -152,7 +154,7 @@ TYPED_TEST_P(pictures, exact_indirect_light_converges_as_fast_as_noise)
             const double from_wall = (s.camera.position - d * (s.camera.position.y / d.y)).x;
             known.push_back(0.02 / M_PI * (1 - from_wall / std::hypot(from_wall, 1)) / 2 * 0.8 * 3);
         }
-    const auto errors = errors_after(*this, s, s.render, known, {4, 64});
+    const auto errors = errors_after(this->b(), s, s.render, known, {4, 64});
     EXPECT_LT(std::log(errors.at(64) / errors.at(4)) / std::log(16), -0.9);
 }
 
