@@ -53,7 +53,9 @@
         const buffer_of<B, glm::vec4>&, knn_estimates<B>&, filter_kind, float);                                        \
     EXTERN template class gather_map_building<B>;                                                                      \
     EXTERN template void add_gather_rays(B&, const device_scene<B>&, const gather_map<B>&, const map_buffers<B>&,      \
-        const detail::eye_hits<B>&, render_settings, uint, uint, launch, buffer_of<B, glm::vec4>&);                    \
+        const detail::eye_hits<B>&, const render_settings&, uint, uint, launch, buffer_of<B, glm::vec4>&);             \
+    EXTERN template void add_path(B&, const device_scene<B>&, const map_buffers<B>&, const pass_radii<B>&,             \
+        const detail::eye_hits<B>&, const render_settings&, uint, uint, launch, buffer_of<B, glm::vec4>&);             \
     EXTERN template built_map<B> build_map(                                                                            \
         B&, const scene&, const render_settings&, const render_observer&, if_none_stored);                             \
     EXTERN template rendered draw(                                                                                     \

@@ -126,6 +126,11 @@ namespace {
             "--surplus power --passes 1 --until-error 0 --spp 1 with the shadow rays of all eye rays, and what the "
             "scene has under "
             "\"as_paper\"; any option that is given as well takes precedence");
+        to.add_flag("--exact", o.exact,
+              "a picture whose error goes to 0 as passes are added: --radii shrinking --indirect paths, --k at most "
+              "50, "
+              "no routed map, and passes without end unless --passes, --until-error or --seconds ends it")
+            ->excludes("--as-paper");
         to.add_option("--shader-cache", o.shader_cache,
               "folder in which compiled Vulkan kernels are kept for later runs; default: photongrid in "
               "$XDG_CACHE_HOME or ~/.cache")
@@ -404,6 +409,8 @@ render_settings settings_for(const scene& s, const render_options& o)
     auto settings = o.as_paper ? as_paper(s) : s.render;
     for (const auto& give : o.settings)
         give(settings);
+    if (o.exact)
+        settings = as_exact(settings);
     settings.output.aov = o.aov;
     check(settings);
     return settings;

@@ -36,7 +36,7 @@ struct render_options {
     import_settings how; ///< scenes of other programs are read
     std::optional<std::uint32_t> threads;
     std::vector<std::function<void(render_settings&)>> settings; ///< the settings given; each changes the scene's
-    bool aov = false, as_paper = false;
+    bool aov = false, as_paper = false, exact = false;
     std::vector<std::string> outputs;
     std::string stats, progressive, strip, reference, resume;
     std::optional<crop> strip_crop;

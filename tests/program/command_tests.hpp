@@ -15,11 +15,12 @@ namespace {
             EXPECT_NE(help.out.find(word), std::string::npos) << word;
         const auto render = run({"render", "--help"});
         EXPECT_EQ(render.code, 0);
-        for (const auto* option : {"--backend", "--device", "--map", "--slots", "--surplus", "--photons", "--k",
-                 "--grid", "--max-radius", "--size", "--spp", "--light-samples", "--depth", "--seed", "--exposure",
-                 "-o", "--search", "--filter", "--bias", "--leaks", "--edge-correction", "--only", "--until-error",
-                 "--percentile", "--seconds", "--aov", "--as-paper", "--stats", "--shader-cache", "--time-passes",
-                 "--progressive", "--every", "--strip", "--crop", "--reference", "--resume", "--quiet"})
+        for (const auto* option :
+            {"--backend", "--device", "--map", "--slots", "--surplus", "--photons", "--k", "--grid", "--max-radius",
+                "--size", "--spp", "--light-samples", "--depth", "--seed", "--exposure", "-o", "--search", "--filter",
+                "--bias", "--leaks", "--edge-correction", "--only", "--until-error", "--percentile", "--seconds",
+                "--aov", "--as-paper", "--exact", "--stats", "--shader-cache", "--time-passes", "--progressive",
+                "--every", "--strip", "--crop", "--reference", "--resume", "--quiet"})
             EXPECT_NE(render.out.find(option), std::string::npos) << option;
         EXPECT_EQ(render.out.find("photongrid check my_scene.json"), std::string::npos) << "another command's example";
         EXPECT_NE(run({"check", "--help"}).out.find("photongrid check my_scene.json"), std::string::npos);

@@ -46,6 +46,26 @@ namespace {
             EXPECT_EQ(run(small_with({wrong, "-1"})).code, 2) << wrong;
     }
 
+    TEST_F(program_with_stop_rules, exact_pictures_end_by_a_rule_or_a_number_of_passes)
+    {
+        const auto draw = [&](std::vector<std::string> options) {
+            options.insert(options.begin(),
+                {"render", ring, "--backend", "serial", "--size", "16x12", "--photons", "300", "--gather-rays", "1",
+                    "--exact", "--stats", "stats.json", "-o", "a.pfm"});
+            const auto e = run(options);
+            EXPECT_EQ(e.code, 0) << e.err;
+            return stats();
+        };
+        const auto three = draw({"--passes", "3"});
+        EXPECT_EQ(three.at("picture").at("passes"), 3);
+        EXPECT_EQ(three.at("settings").at("indirect"), "paths");
+        EXPECT_EQ(three.at("settings").at("radii"), "shrinking");
+        EXPECT_EQ(three.at("settings").at("k"), 50);
+        EXPECT_EQ(draw({"--passes", "2", "--k", "8"}).at("settings").at("k"), 8);
+        EXPECT_EQ(draw({"--until-error", "0.9"}).at("picture").at("ended_by"), "error");
+        EXPECT_EQ(run({"render", ring, "--exact", "--as-paper", "-o", "a.pfm"}).code, 2);
+    }
+
     /// A scene's limit holds for its own rule, and not for one of the command line.
     TEST_F(program_with_stop_rules, scenes_have_an_error_to_reach)
     {

@@ -166,12 +166,9 @@ TYPED_TEST_P(pictures, a_final_gather_below_a_coat_has_the_known_radiance)
     }
 }
 
-/// The floor before a wall that the sun lights from the front, and which alone lights the floor. At a distance x from a
-/// wall of height h, its form factor is (1 - x / sqrt(x^2 + h^2)) / 2. The floor seen is nearer to the wall than the
-/// radius of estimates there, which are half too dark at its lower edge.
-TYPED_TEST_P(pictures, a_final_gather_has_the_known_radiance_in_a_corner)
+/// A floor before a wall that the sun lights from the front, and which alone lights the floor; seen from above.
+inline scene sunlit_corner(double wall, double floor, double height, double sun)
 {
-    const double wall = 0.8, floor = 0.02, height = 1, sun = 3;
     scene s;
     s.name = "corner";
     s.materials
@@ -184,6 +181,49 @@ TYPED_TEST_P(pictures, a_final_gather_has_the_known_radiance_in_a_corner)
         .estimate = {.k = 50, .max_radius = 1},
         .view = {.spp = 1, .light_samples = 1},
         .output = {.width = 8, .height = 8}};
+    return s;
+}
+
+/// The rays of 16 passes are spread over the hemisphere as those of one would be: they find the wall with far less
+/// noise than rays that know nothing of each other.
+TYPED_TEST_P(pictures, gather_rays_are_stratified_over_passes)
+{
+    auto& b = this->b();
+    const auto s = sunlit_corner(0.8, 0.02, 1, 3);
+    auto settings = gathering(s.render, 1);
+    settings.output.only = light_part::indirect;
+    const auto map = build_map(b, s, settings);
+    const auto drawn = [&](std::uint32_t rays, std::uint32_t pass) { // each eye ray through the middle of its pixel
+        auto with = settings;
+        with.estimate.gather_rays = rays;
+        with.pass.number = pass;
+        return draw(b, map, s.camera, with).picture;
+    };
+    const auto known = drawn(1024, 0);
+    constexpr std::uint32_t passes = 16;
+    std::vector<double> mean(known.pixels.size());
+    double alone = 0, together = 0;
+    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+        const auto one = drawn(1, pass);
+        for (std::size_t i = 0; i < mean.size(); ++i) {
+            const double e = static_cast<double>(one.pixels[i].x - known.pixels[i].x);
+            mean[i] += e / passes;
+            alone += e * e / passes;
+        }
+    }
+    for (const double e : mean)
+        together += e * e;
+    EXPECT_GT(alone, 0);
+    EXPECT_LT(together, 0.5 * alone / passes);
+}
+
+/// The floor before a wall that the sun lights from the front, and which alone lights the floor. At a distance x from a
+/// wall of height h, its form factor is (1 - x / sqrt(x^2 + h^2)) / 2. The floor seen is nearer to the wall than the
+/// radius of estimates there, which are half too dark at its lower edge.
+TYPED_TEST_P(pictures, a_final_gather_has_the_known_radiance_in_a_corner)
+{
+    const double wall = 0.8, floor = 0.02, height = 1, sun = 3;
+    const auto s = sunlit_corner(wall, floor, height, sun);
     auto settings = gathering(s.render, 256);
     settings.output.only = light_part::indirect;
     const auto drawn = this->picture(s, settings);

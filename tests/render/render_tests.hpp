@@ -4,11 +4,11 @@
 
 #include "caustic_map_tests.hpp"
 #include "equal_picture_tests.hpp"
+#include "exact_tests.hpp"
 #include "final_gather_tests.hpp"
 #include "known_energy_tests.hpp"
 #include "known_picture_tests.hpp"
 #include "photon_account_tests.hpp"
-#include "shrinking_radii_tests.hpp"
 
 namespace photongrid::testing {
 
@@ -95,6 +95,9 @@ REGISTER_TYPED_TEST_SUITE_P(pictures, caustic_photons_of_their_own_have_the_powe
     the_parts_of_a_gathered_picture_add_up, a_final_gather_equals_serials, a_gathered_picture_does_not_depend_on_bands,
     passes_have_the_radii_of_the_first_map_made_smaller, shrinking_radii_equal_serials,
     shrinking_radii_do_not_depend_on_how_passes_are_run, blur_fades_with_shrinking_radii,
-    the_rays_of_a_gather_are_progress, a_view_of_a_map_without_a_gather_is_refused);
+    the_rays_of_a_gather_are_progress, gather_rays_are_stratified_over_passes,
+    paths_in_a_closed_sphere_have_the_known_radiance, paths_have_the_known_radiance_in_a_corner, paths_equal_serials,
+    an_exact_picture_does_not_depend_on_how_it_is_run, an_exact_caustic_converges_at_the_rate_of_theory,
+    exact_indirect_light_converges_as_fast_as_noise, a_view_of_a_map_without_a_gather_is_refused);
 
 } // namespace photongrid::testing

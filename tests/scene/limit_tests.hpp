@@ -128,4 +128,29 @@ TEST(paper_settings, one_eye_ray_takes_all_shadow_rays_of_a_pixel)
     EXPECT_EQ(as_paper(as_paper(s)), as_paper(s));
 }
 
+TEST(exact_settings, have_what_makes_a_picture_consistent)
+{
+    render_settings s;
+    s.map.builder = map_builder::route;
+    s.estimate.k = 200;
+    const auto exact = as_exact(s);
+    EXPECT_EQ(exact.estimate.radii, radius_kind::shrinking);
+    EXPECT_EQ(exact.estimate.indirect, indirect_kind::paths);
+    EXPECT_EQ(exact.estimate.k, 50u);
+    EXPECT_EQ(exact.map.builder, map_builder::automatic);
+    EXPECT_EQ(exact.output.passes, output_settings::most_passes);
+    EXPECT_EQ(as_exact(exact), exact);
+    s.estimate.k = 7;
+    s.output.passes = 3;
+    s.map.builder = map_builder::blocks;
+    EXPECT_EQ(as_exact(s).estimate.k, 7u);
+    EXPECT_EQ(as_exact(s).output.passes, 3u);
+    EXPECT_EQ(as_exact(s).map.builder, map_builder::blocks);
+    s.output.passes = 1;
+    s.output.until_error = 0.1;
+    EXPECT_EQ(as_exact(s).output.passes, 1u) << "a stop rule ends it";
+    EXPECT_EQ(as_exact(s).output.passes_at_most(), output_settings::most_passes);
+    EXPECT_EQ(as_paper(exact).estimate.indirect, indirect_kind::map);
+}
+
 } // namespace photongrid::testing

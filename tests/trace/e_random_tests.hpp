@@ -101,6 +101,100 @@ TYPED_TEST_P(hard_cases, e3_streams_are_uniform_in_pairs)
     this->report("E3", "largest chi-squared deviate of pairs, standard deviations:", worst);
 }
 
+/// What sequence_probe.glsl makes of keys and numbers.
+template <class Device>
+std::vector<glm::vec4> draw_points(Device& b, const std::vector<glm::uvec4>& keys, const std::vector<uint>& nths)
+{
+    auto four = b.template make<glm::vec4>(keys.size());
+    auto two = b.template make<glm::vec4>(keys.size());
+    b.template run<probes::sequence_probe>(static_cast<uint>(keys.size()), {.unused = 0u},
+        reads(b.upload(std::span<const glm::uvec4>(keys)), b.upload(std::span<const uint>(nths))), writes(four, two));
+    const auto points = b.download(four);
+    const auto pairs = b.download(two);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        EXPECT_EQ(glm::vec2(points[i]), glm::vec2(pairs[i])) << "the first pair of four is the sequence of two";
+    return points;
+}
+
+/// Of 2^m successive points from a multiple of 2^m on, each of the 2^m equal rectangles of each of the m + 1
+/// proportions has one: this is what a (0,2)-sequence is. The last block ends with the last number of 32 bits.
+TYPED_TEST_P(hard_cases, e4_sequences_have_a_point_in_each_elementary_interval)
+{
+    for (const uint m : {1u, 3u, 6u, 8u}) {
+        const uint n = 1u << m;
+        for (const uint first : {0u, n, 7u * n, 0u - n}) {
+            std::vector<glm::uvec4> keys;
+            std::vector<uint> nths;
+            for (uint key = 0; key < 8; ++key)
+                for (uint i = 0; i < n; ++i) {
+                    keys.emplace_back(key, 3u, 1u, 77u);
+                    nths.push_back(first + i);
+                }
+            const auto points = draw_points(this->b(), keys, nths);
+            for (uint key = 0; key < 8; ++key)
+                for (uint across = 0; across <= m; ++across) {
+                    std::vector<uint> hits(n), others(n);
+                    const float columns = static_cast<float>(1u << across), rows = static_cast<float>(n >> across);
+                    for (uint i = 0; i < n; ++i) {
+                        const auto p = points[std::size_t{key} * n + i];
+                        ++hits[static_cast<uint>(p.x * columns) * (n >> across) + static_cast<uint>(p.y * rows)];
+                        ++others[static_cast<uint>(p.z * columns) * (n >> across) + static_cast<uint>(p.w * rows)];
+                    }
+                    ASSERT_EQ(hits, std::vector<uint>(n, 1)) << first << " " << columns << " x " << rows;
+                    ASSERT_EQ(others, std::vector<uint>(n, 1)) << first << " " << columns << " x " << rows;
+                }
+        }
+    }
+}
+
+/// Each point of a sequence is uniform over keys, and so are its pairs with a point of the same number in another
+/// sequence: that of a neighbouring key, or the other pair of the same.
+TYPED_TEST_P(hard_cases, e4_sequences_are_independent_of_each_other)
+{
+    constexpr uint n = 1u << 18;
+    double worst = 0;
+    for (const uint nth : {0u, 1u, 37u}) {
+        const auto points = [&](auto make) {
+            std::vector<glm::uvec4> k(n);
+            for (uint i = 0; i < n; ++i)
+                k[i] = make(i);
+            return draw_points(this->b(), k, std::vector<uint>(n, nth));
+        };
+        const auto base = points([](uint i) { return glm::uvec4(i, 1u, 0u, 1u); });
+        const auto compare = [&](const std::string& what, const std::vector<glm::vec4>& other) {
+            for (int a = 0; a < 4; ++a)
+                for (int c = 0; c < 4; ++c) {
+                    if (&other == &base && a >= c)
+                        continue;
+                    std::vector<std::pair<float, float>> pairs(n);
+                    for (uint i = 0; i < n; ++i)
+                        pairs[i] = {base[i][a], other[i][c]};
+                    const double z = chi_squared_deviate(pairs);
+                    worst = std::max(worst, std::abs(z));
+                    EXPECT_LE(std::abs(z), 5.0) << what << ", numbers " << a << " and " << c << " of point " << nth;
+                }
+        };
+        compare("within a point", base);
+        compare("pixel + 1", points([](uint i) { return glm::uvec4(i + 1u, 1u, 0u, 1u); }));
+        compare("dimension + 1", points([](uint i) { return glm::uvec4(i, 1u, 1u, 1u); }));
+        compare("seed + 1", points([](uint i) { return glm::uvec4(i, 1u, 0u, 2u); }));
+    }
+    // Over one sequence of 64 points, four dimensions of two of its keys: 4^4 boxes fill as evenly as at random.
+    std::vector<glm::uvec4> keys;
+    std::vector<uint> nths;
+    for (uint i = 0; i < n; ++i) {
+        keys.emplace_back(i / 64u, 1u, 0u, 1u);
+        nths.push_back(i % 64u);
+    }
+    std::vector<double> boxes(256);
+    for (const auto& p : draw_points(this->b(), keys, nths))
+        ++boxes[static_cast<std::size_t>(p.x * 4) * 64 + static_cast<std::size_t>(p.y * 4) * 16
+            + static_cast<std::size_t>(p.z * 4) * 4 + static_cast<std::size_t>(p.w * 4)];
+    for (const double count : boxes)
+        EXPECT_NEAR(count, n / 256.0, 5 * std::sqrt(n / 256.0));
+    this->report("E4", "largest chi-squared deviate of pairs, standard deviations:", worst);
+}
+
 TYPED_TEST_P(hard_cases, e6_seeds_are_independent)
 {
     // Variance of the mean over P seeds of a path's integrand falls as 1/P: log-log slope -1 +- 0.15.

@@ -8,6 +8,7 @@
 
 #include <photongrid/backends/serial/serial.hpp>
 #include <photongrid/trace/eye_rays.hpp>
+#include <photongrid/trace/final_gather_ray.kernel.hpp>
 #include <photongrid/trace/trace_photons.hpp>
 
 #include <gtest/gtest.h>
@@ -312,13 +313,13 @@ namespace {
 
     TEST(samplers, eye_rays_of_other_pixels_samples_and_seeds_are_independent)
     {
-        render_settings settings{.view = {.spp = 4}, .output = {.width = 256, .height = 128}};
+        render_settings settings{.view = {.spp = 9}, .output = {.width = 256, .height = 128}};
         const auto offsets = [&](uint seed, uint sample) {
             auto with = settings;
             with.seed = seed;
             std::vector<double> x;
             for (const auto& r : eye_rays(oblique, with, sample))
-                x.push_back(2 * r.x - std::floor(2 * r.x));
+                x.push_back(3 * r.x - std::floor(3 * r.x));
             return x;
         };
         const auto first = offsets(1, 0);
@@ -329,15 +330,66 @@ namespace {
         std::rotate(shifted.begin(), shifted.begin() + 255, shifted.end());
         EXPECT_LE(std::abs(correlation(first, shifted)), limit) << "pixels of neighbouring rows";
         EXPECT_LE(std::abs(correlation(first, offsets(1, 1))), limit) << "samples of another column";
-        EXPECT_LE(std::abs(correlation(first, offsets(1, 3))), limit) << "samples of another column and row";
+        EXPECT_LE(std::abs(correlation(first, offsets(1, 4))), limit) << "samples of another column and row";
         EXPECT_LE(std::abs(correlation(first, offsets(2, 0))), limit) << "seeds";
+    }
+
+    /// The settings of a pass, as settings_of_pass makes them but with seeds that are easy to read.
+    render_settings in_pass(render_settings s, uint pass)
+    {
+        s.output.passes = 64;
+        s.pass = {pass, pass * 1000};
+        s.seed ^= s.pass.seed_change;
+        return s;
+    }
+
+    /// How often places in the unit square are in each of `across` columns of the rows that 64 such rectangles have; -1
+    /// if one of them is near an edge of its rectangle, where rounding may have moved it.
+    std::vector<int> in_rectangles(const std::vector<glm::dvec2>& places, std::size_t across)
+    {
+        std::vector<int> hits(places.size());
+        for (const auto& p : places) {
+            const double x = p.x * static_cast<double>(across), y = p.y * static_cast<double>(places.size() / across);
+            if (std::abs(x - std::round(x)) < 0.01 || std::abs(y - std::round(y)) < 0.01)
+                return {};
+            ++hits.at(static_cast<std::size_t>(x) * (places.size() / across) + static_cast<std::size_t>(y));
+        }
+        return hits;
+    }
+
+    /// The rays of several passes are spread as those of one would be: of 64, each of 64 equal rectangles of a pixel
+    /// has one, whatever their proportions. Of 9 rays per pass the first stratum has so many of its own.
+    TEST(samplers, eye_rays_are_stratified_over_passes)
+    {
+        for (const uint spp : {1u, 4u, 9u, 16u}) {
+            SCOPED_TRACE(spp);
+            const render_settings settings{.view = {.spp = spp}, .output = {.width = 16, .height = 8}};
+            const uint of_pass = spp == 9 ? 1 : spp, passes = 64 / of_pass;
+            const double scale = spp == 9 ? 3 : 1;
+            std::vector<std::vector<glm::dvec2>> places(128);
+            for (uint pass = passes; pass < 2 * passes; ++pass)
+                for (uint sample = 0; sample < of_pass; ++sample) {
+                    const auto rays = eye_rays(oblique, in_pass(settings, pass), sample);
+                    for (std::size_t i = 0; i < rays.size(); ++i)
+                        places[i].push_back(
+                            scale * (rays[i] - glm::dvec2(static_cast<double>(i % 16), static_cast<double>(i / 16))));
+                }
+            std::size_t seen = 0;
+            for (const auto& of_pixel : places)
+                for (const std::size_t across : {1u, 2u, 4u, 8u, 16u, 32u, 64u})
+                    if (const auto hits = in_rectangles(of_pixel, across); !hits.empty()) {
+                        ASSERT_EQ(hits, std::vector<int>(64, 1)) << across;
+                        ++seen;
+                    }
+            EXPECT_GT(seen, 50u);
+        }
     }
 
     // Shadow rays.
 
     /// Irradiance of direct light at one point of the floor, estimated by each of many pixels.
     std::vector<double> estimates(
-        const scene& s, const dvec3& point, uint samples, uint ray = 0, uint seed = 1, std::size_t pixels = 16384)
+        const scene& s, const dvec3& point, const render_settings& settings, uint ray, std::size_t pixels)
     {
         serial_backend b;
         const auto device = upload_scene(b, s);
@@ -346,15 +398,22 @@ namespace {
             std::vector<glm::vec4>(pixels, glm::vec4(glm::vec3(point - device.layout.center), 1.0f))));
         hits.surfaces
             = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(pixels, glm::vec4(0.0f, 1.0f, 0.0f, 0.0f))));
-        auto settings = s.render;
-        settings.view.light_samples = samples;
-        settings.seed = seed;
         auto light = b.make<glm::vec4>(pixels);
         detail::direct_light(b, device, hits, settings, ray, launch(pixels), light);
         std::vector<double> out;
         for (const auto& e : b.download(light))
             out.push_back(static_cast<double>(e.x));
         return out;
+    }
+    render_settings with_samples(render_settings settings, uint samples, uint seed)
+    {
+        settings.view.light_samples = samples;
+        settings.seed = seed;
+        return settings;
+    }
+    std::vector<double> estimates(const scene& s, const dvec3& point, uint samples, uint seed = 1)
+    {
+        return estimates(s, point, with_samples(s.render, samples, seed), 0, 16384);
     }
 
     struct moments {
@@ -425,7 +484,7 @@ namespace {
         }
     }
 
-    TEST(samplers, shadow_rays_of_other_pixels_rays_lights_and_seeds_are_independent)
+    TEST(samplers, shadow_rays_of_other_pixels_lights_and_seeds_are_independent)
     {
         const auto s = lamp_over_floor();
         const dvec3 point(-0.2, 0, 0.3);
@@ -434,14 +493,106 @@ namespace {
         auto shifted = first;
         std::rotate(shifted.begin(), shifted.begin() + 1, shifted.end());
         EXPECT_LE(std::abs(correlation(first, shifted)), limit) << "neighbouring pixels";
-        EXPECT_LE(std::abs(correlation(first, estimates(s, point, 4, 1))), limit) << "eye rays";
-        EXPECT_LE(std::abs(correlation(first, estimates(s, point, 4, 0, 2))), limit) << "seeds";
+        EXPECT_LE(std::abs(correlation(first, estimates(s, point, 4, 2))), limit) << "seeds";
         // Two lamps in the same place: variances add. With the same jitter the variance would be four times one's.
         auto two = s;
         two.rectangle_lights.push_back(s.rectangle_lights[0]);
         const auto known = expected_of(s.rectangle_lights[0], point, detail::strata_of(4));
         EXPECT_NEAR(
             moments_of(estimates(two, point, 4)).variance / (2 * known.variance), 1, far_off * std::sqrt(2.0 / 16384));
+    }
+
+    /// The samples of several eye rays and passes are spread over each stratum of a lamp: the variance of the mean of
+    /// 16 is far below a sixteenth, and how they are divided among passes does not matter. It is so for a lamp as it is
+    /// (direct_light.glsl), and for all kinds of lights together (shadow_ray.glsl).
+    TEST(samplers, shadow_rays_are_stratified_over_eye_rays_and_passes)
+    {
+        auto lamp = lamp_over_floor(), lamps = lamp;
+        lamps.sphere_lights = {{"ball", {-0.6, 1.2, 0.4}, 0.3, dvec3(2)}};
+        const dvec3 point(-0.2, 0, 0.3);
+        for (const auto& s : {lamp, lamps}) {
+            const auto mean_of = [&](uint passes, uint spp) {
+                std::vector<double> mean(4096);
+                for (uint pass = 0; pass < passes; ++pass)
+                    for (uint ray = 0; ray < spp; ++ray) {
+                        auto settings = with_samples(in_pass(s.render, pass), 2, 1 ^ (pass * 1000));
+                        settings.view.spp = spp;
+                        const auto e = estimates(s, point, settings, ray, mean.size());
+                        for (std::size_t i = 0; i < mean.size(); ++i)
+                            mean[i] += e[i] / (passes * spp);
+                    }
+                return mean;
+            };
+            const auto alone = mean_of(1, 1), passes = mean_of(16, 1), mixed = mean_of(4, 4);
+            EXPECT_LT(moments_of(passes).variance, 0.2 * moments_of(alone).variance / 16);
+            EXPECT_NEAR(moments_of(passes).mean / moments_of(alone).mean, 1, 0.01);
+            for (std::size_t i = 0; i < passes.size(); ++i)
+                ASSERT_NEAR(passes[i], mixed[i], 1e-6 * passes[i]) << i;
+        }
+    }
+
+    /// A lamp of which something covers a half, the nearer one. For a final gather a lamp that is so near is taken
+    /// whole, and seen or not by its sample; for paths the mean is exact.
+    TEST(samplers, paths_see_the_part_of_a_lamp_that_is_not_covered)
+    {
+        auto s = floor_scene();
+        s.rectangle_lights = {{"lamp", {-1, 1, -0.5}, {2, 0, 0}, {0, 0, 1}, dvec3(3)}};
+        s.polygons.push_back({{{-1.5, 0.99, -2}, {0, 0.99, -2}, {0, 0.99, 2}, {-1.5, 0.99, 2}}, 0});
+        const dvec3 point(-0.9, 0, 0);
+        // Quadrature over the lamp: what covers it hides x < 0, up to the parallax over 1 cm.
+        double known = 0;
+        constexpr int steps = 1000;
+        for (int i = 0; i < steps; ++i)
+            for (int j = 0; j < steps; ++j) {
+                const dvec3 at(-1 + 2 * (i + 0.5) / steps, 1, -0.5 + (j + 0.5) / steps), to = at - point;
+                if ((point + 0.99 * to).x > 0)
+                    known += 3 / pi / std::pow(glm::dot(to, to), 2) / (steps * steps);
+            }
+        auto settings = with_samples(s.render, 1, 1);
+        const auto mean = [&](indirect_kind kind) {
+            settings.estimate.indirect = kind;
+            return moments_of(estimates(s, point, settings, 0, 65536));
+        };
+        const auto exact = mean(indirect_kind::paths), whole = mean(indirect_kind::gather);
+        EXPECT_NEAR(exact.mean, known, far_off * std::sqrt(exact.variance / 65536));
+        EXPECT_GT(std::abs(whole.mean - known), 2 * far_off * std::sqrt(whole.variance / 65536));
+    }
+
+    /// The first rays of a final gather are stratified over eye rays and passes, each in its stratum of the hemisphere.
+    TEST(samplers, gather_rays_are_stratified_over_eye_rays_and_passes)
+    {
+        constexpr uint pixels = 64, rays = 4;
+        serial_backend b;
+        const auto device = upload_scene(b, floor_scene());
+        const std::vector<glm::vec4> ends(pixels, {0, 0, 0, 1}), up(pixels, {0, 0, 1, 0});
+        const auto points = b.upload(std::span<const glm::vec4>(ends)),
+                   normals = b.upload(std::span<const glm::vec4>(up));
+        std::size_t seen = 0;
+        for (uint number = 0; number < rays; ++number) {
+            std::vector<std::vector<glm::dvec2>> places(pixels);
+            for (uint nth = 64; nth < 128; ++nth) {
+                detail::eye_hits<serial_backend> hits(b, pixels);
+                auto branches = b.make<uint>(pixels);
+                b.run<kernels::final_gather_ray>({pixels, 0u, device.layout.features},
+                    {.strata = {2, 2}, .number = number, .first = 0, .first_pixel = 0, .nth = nth, .seed = 3},
+                    reads(device.records, points, normals),
+                    writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
+                const auto directions = b.download(hits.directions);
+                const auto axes = kernels::basis_about(glm::vec3(0, 0, 1));
+                for (uint i = 0; i < pixels; ++i) {
+                    const dvec3 d{glm::vec3(directions[i])};
+                    const glm::dvec2 at(1 - d.z * d.z, turn(glm::dot(d, dvec3(axes.v)), glm::dot(d, dvec3(axes.u))));
+                    places[i].push_back(2.0 * at - glm::dvec2(number % 2, number / 2));
+                }
+            }
+            for (const auto& of_pixel : places)
+                for (const std::size_t across : {4u, 8u, 16u})
+                    if (const auto hits = in_rectangles(of_pixel, across); !hits.empty()) {
+                        ASSERT_EQ(hits, std::vector<int>(64, 1)) << across;
+                        ++seen;
+                    }
+        }
+        EXPECT_GT(seen, 50u);
     }
 
     TEST(samplers, a_bulbs_direct_light_is_the_inverse_square_law)
@@ -451,7 +602,7 @@ namespace {
         for (const auto& point : {dvec3(0.5, 0, -0.25), dvec3(-1, 0, 1), dvec3(2.5, 0, 2.5)}) {
             const dvec3 to = s.point_lights[0].position - point;
             const double known = 7 / (4 * pi) * to.y / std::pow(glm::length(to), 3);
-            EXPECT_NEAR(estimates(s, point, 1, 0, 1, 1)[0], known, 2e-6 * known);
+            EXPECT_NEAR(estimates(s, point, with_samples(s.render, 1, 1), 0, 1)[0], known, 2e-6 * known);
         }
     }
 

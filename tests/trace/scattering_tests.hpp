@@ -146,7 +146,8 @@ namespace {
     /// How eye rays take one step.
     struct step_settings {
         uint branch = 0, splits = 0;
-        float throughput = 1, stratum = 0;
+        float throughput = 1;
+        uint nth = 0;
     };
 
     /// One step of eye rays from these origins in these directions.
@@ -170,9 +171,8 @@ namespace {
             {.branch = how.branch,
                 .splits = how.splits,
                 .depth = 8,
-                .sample_id = 0,
                 .light_samples = 0,
-                .stratum = how.stratum,
+                .nth = how.nth,
                 .seed = 1,
                 .first_pixel = 0,
                 .first = 0},
@@ -185,10 +185,10 @@ namespace {
         std::vector<glm::vec4> points, directions, throughputs;
     };
     eye_step step(const scene& s, const std::vector<dvec3>& origins, const std::vector<dvec3>& ways, uint branch,
-        uint splits, float throughput = 1, float stratum = 0)
+        uint splits, float throughput = 1, uint nth = 0)
     {
         serial_backend b;
-        const auto hits = hits_of_step(b, upload_scene(b, s), origins, ways, {branch, splits, throughput, stratum});
+        const auto hits = hits_of_step(b, upload_scene(b, s), origins, ways, {branch, splits, throughput, nth});
         return {b.download(hits.points), b.download(hits.directions), b.download(hits.throughputs)};
     }
 
@@ -309,7 +309,7 @@ namespace {
         aim(origins, ways, outwards, 0.7);
         std::vector<double> reflections(origins.size());
         for (uint sample = 0; sample < n; ++sample) {
-            const auto e = step(ball_of(m, {1.5, 0.5, 1}), origins, ways, 0, 0, 1, float(sample) / float(n));
+            const auto e = step(ball_of(m, {1.5, 0.5, 1}), origins, ways, 0, 0, 1, sample);
             for (std::size_t i = 0; i < origins.size(); ++i)
                 reflections[i]
                     += glm::dot(dvec3(glm::vec3(e.directions[i])), incidence(ways[i], outwards[i], m).normal) > 0;

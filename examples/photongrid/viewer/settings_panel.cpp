@@ -142,9 +142,11 @@ void settings_panel::draw(double shown_exposure)
     number(setting_table::light_samples, "light samples", 1, 256,
         "Shadow rays per lamp and eye ray. Speed: time in proportion, for direct light. Error: smoother penumbras.");
     choice(setting_table::indirect, "indirect light",
-        "From the photons where eye rays end (map), or by a final gather of the light of all other surfaces. Speed: a "
-        "gather takes longer. Error: it has noise instead of blotches, and corners are not dark.");
-    if (s.estimate.indirect == indirect_kind::gather)
+        "From the photons where eye rays end (map), or by a final gather of the light of all other surfaces, whose "
+        "rays "
+        "look at photons (gather) or go on as paths (paths). Speed: a gather takes longer, paths longer still. Error: "
+        "noise instead of blotches; of paths the mean is exact.");
+    if (s.estimate.indirect != indirect_kind::map)
         number(setting_table::gather_rays, "gather rays", 1, 1024,
             "Rays of the final gather per eye ray. Speed: time in proportion. Error: less noise.");
     choice(setting_table::only, "light",

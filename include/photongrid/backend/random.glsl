@@ -1,5 +1,6 @@
 // Counter-based random numbers: a hash of a key and a seed, so that results depend neither on the backend nor on the
 // order or the number of threads. Jarzynski and Olano, Hash Functions for GPU Rendering, JCGT 9(3), 2020 (pcg4d).
+// And sequences whose points are spread more evenly than random ones.
 #ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
 
 inline uvec4 hash4(uvec4 key)
@@ -88,6 +89,74 @@ inline uint shuffled(uint index, uint n, uint seed)
         }
     } while (x >= n);
     return x;
+}
+
+// Sobol's (0,2)-sequence, scrambled as by Owen (Scrambled Net Variance for Integrals of Smooth Functions, 1997): for
+// all n and m its points m 2^n to (m + 1) 2^n - 1 lie one in each of the 2^n equal rectangles into which halving
+// divides the square, whatever their proportions. So any number of points from the first on is spread evenly. By itself
+// each point is random. Points of sequences with keys of their own are independent of each other, because each
+// sequence has an order of its own (Burley, Practical Hash-based Owen Scrambling, JCGT 9(4), 2020).
+
+inline uint reversed_bits(uint x)
+{
+    x = ((x >> 1u) & 0x55555555u) | ((x & 0x55555555u) << 1u);
+    x = ((x >> 2u) & 0x33333333u) | ((x & 0x33333333u) << 2u);
+    x = ((x >> 4u) & 0x0F0F0F0Fu) | ((x & 0x0F0F0F0Fu) << 4u);
+    x = ((x >> 8u) & 0x00FF00FFu) | ((x & 0x00FF00FFu) << 8u);
+    return (x >> 16u) | (x << 16u);
+}
+
+// A seeded bijection in which a bit of the result depends on the bits of x up to its own place: a nested uniform
+// scramble of a number whose bits are in reverse (Laine and Karras 2011, with the constants of Vegdahl, Building a
+// Better LK Hash, 2021).
+inline uint nested_scrambled(uint x, uint seed)
+{
+    x ^= x * 0x3D20ADEAu;
+    x += seed;
+    x *= (seed >> 16u) | 1u;
+    x ^= x * 0x05526C56u;
+    x ^= x * 0x53A22864u;
+    return x;
+}
+
+// The place of point `nth` in its sequence's own order.
+inline uint place_in_sequence(uint nth, uint seed)
+{
+    return reversed_bits(nested_scrambled(reversed_bits(nth), seed));
+}
+
+// The coordinates of the point at a place.
+inline float sequence_x(uint place, uint seed)
+{
+    return unit_float(reversed_bits(nested_scrambled(place, seed)));
+}
+inline float sequence_y(uint place, uint seed)
+{
+    // Sobol's second generator matrix is Pascal's triangle modulo 2, a product of these five.
+    place ^= (place >> 1u) & 0x55555555u;
+    place ^= (place >> 2u) & 0x33333333u;
+    place ^= (place >> 4u) & 0x0F0F0F0Fu;
+    place ^= (place >> 8u) & 0x00FF00FFu;
+    place ^= place >> 16u;
+    return unit_float(reversed_bits(nested_scrambled(place, seed)));
+}
+
+// Point `nth` of the sequence of a key.
+inline vec2 sequence2(uint nth, uvec4 key)
+{
+    uvec4 h = hash4(key);
+    uint place = place_in_sequence(nth, h.x);
+    return vec2(sequence_x(place, h.y), sequence_y(place, h.z));
+}
+
+// Points `nth` of two sequences of a key: xy and zw.
+inline vec4 sequence4(uint nth, uvec4 key)
+{
+    uvec4 h = hash4(key);
+    uint place = place_in_sequence(nth, h.x);
+    uint other = place_in_sequence(nth, scrambled(h.x ^ h.w));
+    return vec4(sequence_x(place, h.y), sequence_y(place, h.z), sequence_x(other, scrambled(h.y ^ h.w)),
+        sequence_y(other, scrambled(h.z ^ h.w)));
 }
 
 #endif

@@ -19,6 +19,7 @@
 #include <photongrid/render/is_near_end.kernel.hpp>
 #include <photongrid/render/photon_point.kernel.hpp>
 #include <photongrid/render/picture_search.hpp>
+#include <photongrid/render/shrinking_radii.hpp>
 #include <photongrid/render/weight_one.kernel.hpp>
 #include <photongrid/trace/eye_rays.hpp>
 #include <photongrid/trace/final_gather_ray.kernel.hpp>
@@ -126,21 +127,81 @@ void gather_map_building<B>::finish(knn_estimates<B> found)
 }
 
 namespace detail {
-    /// Light at the near ends of gather rays, which are gathered from in their turn.
+    /// The settings by which ray `nth` of the path that gather ray `number` begins is traced.
+    inline render_settings settings_of_gather_ray(
+        render_settings settings, const scene_layout& layout, uint eye_ray, uint number, uint nth)
+    {
+        // The first rays of a point are stratified together, and with those of the other passes. Later ones have random
+        // numbers of their own.
+        if (nth == 0) {
+            const auto place = place_of(settings, eye_ray, splits_of(layout));
+            settings.seed = place.seed ^ (place.branch + 1) * 0x85EBCA6Bu;
+            settings.pass.seed_change = 0;
+        } else {
+            settings.seed ^= (eye_ray + 1) * 0x85EBCA6Bu ^ (nth * settings.estimate.gather_rays + number) * 0x9E3779B1u;
+            settings.pass = {};
+        }
+        return settings;
+    }
+
+    /// Traces that ray from `starts`, from element `first` on, to its ends. `settings`: settings_of_gather_ray.
     template <backend B>
-    void light_near_ends(B& device, const device_scene<B>& s, const map_buffers<B>& caustics, const eye_hits<B>& ends,
-        const buffer_of<B, glm::vec4>& weights, const render_settings& settings, uint eye_ray, uint number,
-        buffer_of<B, glm::vec4>& gathered)
+    eye_hits<B> gather_hits(B& device, const device_scene<B>& s, const eye_hits<B>& starts, uint first,
+        const render_settings& settings, uint eye_ray, uint number, uint nth, launch pixels)
+    {
+        const uint rays = settings.estimate.gather_rays;
+        const auto place = place_of(settings, eye_ray, splits_of(s.layout));
+        eye_hits<B> hits(device, pixels.elements, starts.first_pixel + first);
+        auto branches = device.template make<uint>(pixels.elements);
+        device.template run<kernels::final_gather_ray>({pixels.elements, 0u, s.layout.features},
+            {.strata = nth == 0 ? strata_of(rays) : glm::uvec2(1),
+                .number = nth == 0 ? number : 0,
+                .first = first,
+                .first_pixel = starts.first_pixel,
+                .nth = place.nth,
+                .seed = settings.seed},
+            reads(s.records, starts.points, starts.surfaces),
+            writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
+        trace_to_ends(device, s, pixels,
+            {.branch = 0,
+                .splits = 0,
+                .depth = settings.view.depth,
+                .light_samples = 0.0f,
+                .nth = place.nth * rays + number,
+                .seed = settings.seed},
+            hits, branches);
+        return hits;
+    }
+
+    /// The irradiance of caustics at ends of gather rays.
+    template <backend B>
+    knn_estimates<B> caustics_at(B& device, const map_buffers<B>& caustics, const pass_radii<B>& radii,
+        const eye_hits<B>& ends, const render_settings& settings)
+    {
+        auto k = search_for_caustics(settings);
+        k.errors = false;
+        if (radii.first == nullptr)
+            return knn_grid_estimate(device, caustics, ends.points, ends.surfaces, k);
+        const auto firsts = knn_grid_estimate(device, radii.map_of_caustics(), ends.points, ends.surfaces, k);
+        const auto points = points_with_radii(device, ends.points, firsts.irradiance, radii, max_radius2(k));
+        k.search = search_kind::fixed_radius;
+        k.radii_at_points = true;
+        return knn_grid_estimate(device, caustics, points, ends.surfaces, k);
+    }
+
+    /// Adds direct light and caustics at the ends of gather rays that are gathered from in their turn.
+    template <backend B>
+    void light_gather_ends(B& device, const device_scene<B>& s, const map_buffers<B>& caustics,
+        const pass_radii<B>& radii, const eye_hits<B>& ends, const buffer_of<B, glm::vec4>& weights,
+        const render_settings& settings, uint eye_ray, uint number, buffer_of<B, glm::vec4>& gathered)
     {
         const std::size_t n = ends.points.size();
         auto direct = device.template make<glm::vec4>(n);
         auto one_sample = settings;
         one_sample.view.light_samples = 1;
         one_sample.seed ^= (number + 1) * 0xC2B2AE35u; // else rays of one point would see the same point of a lamp
-        auto near_search = search_for_caustics(settings);
-        near_search.errors = false;
         direct_light(device, s, ends, one_sample, eye_ray, launch(n, 0), direct);
-        auto found = knn_grid_estimate(device, caustics, ends.points, ends.surfaces, near_search);
+        auto found = caustics_at(device, caustics, radii, ends, settings);
         if (settings.estimate.edges != edge_correction::none)
             correct_edges(device, s, ends.points, ends.surfaces, found, settings.estimate.filter);
         device.template run<kernels::add_near_light>(n,
@@ -155,12 +216,12 @@ namespace detail {
 /// A ray that ends nearer than the radius of the estimates there goes on, up to three times, as a path does.
 template <backend B>
 void add_gather_rays(B& device, const device_scene<B>& s, const gather_map<B>& map, const map_buffers<B>& caustics,
-    const detail::eye_hits<B>& eye_ends, render_settings settings, uint eye_ray, uint number, launch pixels,
+    const detail::eye_hits<B>& eye_ends, const render_settings& settings, uint eye_ray, uint number, launch pixels,
     buffer_of<B, glm::vec4>& light)
 {
     constexpr uint most_rays = 4; // one after the other
     const std::size_t n = pixels.elements;
-    const uint rays = settings.estimate.gather_rays, seed = settings.seed;
+    const uint rays = settings.estimate.gather_rays;
     const auto make = [&] { return device.template make<glm::vec4>(n); };
     auto weights = make(), gathered = make();
     device.template run<kernels::weight_one>(n, {}, reads(), writes(weights));
@@ -168,32 +229,12 @@ void add_gather_rays(B& device, const device_scene<B>& s, const gather_map<B>& m
     knn_settings nearest;
     nearest.k = 1;
     nearest.leaks.min_cosine = detail::same_surface_cosine;
-    const uint first_pixel = eye_ends.first_pixel + pixels.first;
     std::optional<detail::eye_hits<B>> ends; // of the rays before
     for (uint nth = 0; nth < most_rays; ++nth) {
         const auto& starts = ends ? *ends : eye_ends;
         const uint first = ends ? 0 : pixels.first;
-        // Random numbers of their own for each ray. The first ones of a point are stratified together.
-        settings.seed = seed ^ (eye_ray + 1) * 0x85EBCA6Bu ^ (nth * rays + (nth > 0 ? number : 0)) * 0x9E3779B1u;
-        detail::eye_hits<B> hits(device, n, first_pixel);
-        auto branches = device.template make<uint>(n);
-        device.template run<kernels::final_gather_ray>({n, 0u, s.layout.features},
-            {.strata = nth == 0 ? detail::strata_of(rays) : glm::uvec2(1),
-                .number = nth == 0 ? number : 0,
-                .first = first,
-                .first_pixel = first_pixel - first,
-                .seed = settings.seed},
-            reads(s.records, starts.points, starts.surfaces),
-            writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
-        detail::trace_to_ends(device, s, launch(n, 0),
-            {.branch = 0,
-                .splits = 0,
-                .depth = settings.view.depth,
-                .sample_id = number,
-                .light_samples = 0.0f,
-                .stratum = static_cast<float>(number) / static_cast<float>(rays),
-                .seed = settings.seed},
-            hits, branches);
+        const auto of_ray = detail::settings_of_gather_ray(settings, s.layout, eye_ray, number, nth);
+        auto hits = detail::gather_hits(device, s, starts, first, of_ray, eye_ray, number, nth, launch(n, 0));
         const auto found = knn_neighbours(device, map.nearest, hits.points, hits.surfaces, nearest);
         device.template run<kernels::add_gathered>(n,
             {.share = 1.0f / static_cast<float>(rays), .first = first, .leaves_near = nth + 1 < most_rays ? 1u : 0u},
@@ -201,7 +242,7 @@ void add_gather_rays(B& device, const device_scene<B>& s, const gather_map<B>& m
             writes(hits.points, weights, gathered));
         if (nth + 1 == most_rays || detail::checked_count<kernels::is_near_end>(device, n, {}, reads(hits.points)) == 0)
             break;
-        detail::light_near_ends(device, s, caustics, hits, weights, settings, eye_ray, number, gathered);
+        detail::light_gather_ends(device, s, caustics, {}, hits, weights, of_ray, eye_ray, number, gathered);
         ends.emplace(std::move(hits));
     }
     device.template run<kernels::add_light>(pixels, {.first = pixels.first}, reads(gathered), writes(light));

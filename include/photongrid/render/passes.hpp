@@ -13,7 +13,8 @@
 
 namespace photongrid {
 
-/// The settings of pass number `pass`, with a seed of its own. Pass 0 has the seed of `s`.
+/// The settings of pass number `pass` of a picture with settings `s`, with a seed of its own. Pass 0 has the seed of
+/// `s`.
 inline render_settings settings_of_pass(render_settings s, std::uint32_t pass)
 {
     if (pass > 0) {
@@ -24,7 +25,9 @@ inline render_settings settings_of_pass(render_settings s, std::uint32_t pass)
             x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
             x ^= x >> 31;
         }
-        s.seed = static_cast<std::uint32_t>(x >> 32);
+        const auto seed = static_cast<std::uint32_t>(x >> 32);
+        s.pass = {pass, seed ^ s.seed};
+        s.seed = seed;
     }
     return s;
 }

@@ -27,7 +27,7 @@ inline knn_settings search_for(const estimate_settings& s)
 inline knn_settings search_for(const render_settings& s)
 {
     knn_settings k = search_for(s.estimate);
-    if (s.output.only == light_part::direct || (gathers(s) && s.output.only == light_part::indirect))
+    if (s.output.only == light_part::direct || (has_gather_rays(s) && s.output.only == light_part::indirect))
         k.max_radius = 0; // nothing of the map is seen
     k.errors = s.output.aov;
     return k;

@@ -27,8 +27,8 @@ struct caustic_map {
 template <backend B>
 struct built_map {
     device_scene<B> scene; ///< recentred
-    /// In the coordinates of `scene`: all photons; without caustic ones if there is `caustics`; only those with
-    /// `gather`; none with both.
+    /// In the coordinates of `scene`: all photons; without caustic ones if there is `caustics`; only those if rays of a
+    /// final gather start where eye rays end; none with both.
     map_buffers<B> map;
     traced_photons<B> trace;                ///< without the photons, which are in the maps
     render_stats stats;                     ///< trace_photons, build_map and map
@@ -46,7 +46,10 @@ constexpr uint parts_of(light_part only)
     return only == light_part::caustic ? caustic_part : only == light_part::indirect ? other_part : every_part;
 }
 /// The parts of the light in the map that is searched where rays end, for a picture with settings `s`.
-inline uint parts_at_ends(const render_settings& s) { return gathers(s) ? caustic_part : parts_of(s.output.only); }
+inline uint parts_at_ends(const render_settings& s)
+{
+    return has_gather_rays(s) ? caustic_part : parts_of(s.output.only);
+}
 /// Whether the irradiance at photons is the same with settings `a` and `b` of the estimate, for a final gather.
 inline bool same_irradiance(estimate_settings a, const estimate_settings& b)
 {
@@ -65,8 +68,8 @@ inline bool same_map(const scene& a, const render_settings& as, const scene& b, 
         && (!fitted || as.estimate.k == bs.estimate.k) // a fitted map depends on k
         && (!fitted || as.map.caustic_photons == 0 || as.estimate.caustic_k == bs.estimate.caustic_k)
         && (as.estimate.leaks.needs_photon_normals() || !bs.estimate.leaks.needs_photon_normals())
-        && parts_of(as.output.only) == parts_of(bs.output.only) && gathers(as) == gathers(bs)
-        && (!gathers(as) || same_irradiance(as.estimate, bs.estimate))
+        && parts_of(as.output.only) == parts_of(bs.output.only) && parts_at_ends(as) == parts_at_ends(bs)
+        && gathers(as) == gathers(bs) && (!gathers(as) || same_irradiance(as.estimate, bs.estimate))
         && (as.output.only != light_part::direct || bs.output.only == light_part::direct); // it has no photons
 }
 
@@ -109,7 +112,7 @@ public:
         check(settings);
         built_.scene = upload_scene(device, s);
         built_.has_caustics_apart = settings_.map.caustic_photons > 0;
-        request_ = request_of(settings_);
+        request_ = request_of(settings_, built_.scene.layout);
         detail::time_stage(device, built_.stats.trace_photons, [&] { begin_tracing(); });
     }
     map_building(const map_building&) = delete;
@@ -164,8 +167,8 @@ public:
         if (!pilot_ && !tracing_)
             return 1.0;
         const double caustics = caustic_request_of(settings_, built_.scene.layout).photons;
-        const double all = request_of(settings_).photons + caustics, now = request_.photons;
-        const double before = is_of_caustics() ? all - caustics : 0;
+        const double all = request_of(settings_, built_.scene.layout).photons + caustics, now = request_.photons;
+        const double before = is_of_caustics_ ? all - caustics : 0;
         return all > 0 ? (before + (tracing_ ? tracing_->fraction() : 0.0) * now) / all : 0.0;
     }
 
@@ -173,7 +176,6 @@ public:
     built_map<B> take() { return std::move(built_); }
 
 private:
-    bool is_of_caustics() const { return request_.kinds == kernels::CAUSTICS; }
     /// Begins to trace the photons of request_, or pilot paths if a guide is wanted that there is not yet.
     void begin_tracing()
     {
@@ -186,7 +188,7 @@ private:
         if (guide != nullptr && guide->has_none_useful && request_.most_paths > 0)
             request_.most_paths = request_.photons; // what there is may be rare, but is dim
         auto with = settings_;
-        if (is_of_caustics())
+        if (is_of_caustics_)
             with.seed ^= 0xB5297A4Du; // else they would be on the paths of the other photons
         tracing_.emplace(
             device_, source_, built_.scene, with, request_, guide != nullptr ? *guide : emission_guide{}, none_);
@@ -196,7 +198,7 @@ private:
     {
         auto traced = tracing_->take();
         tracing_.reset();
-        if (is_of_caustics()) {
+        if (is_of_caustics_) {
             built_.caustics->trace = std::move(traced);
             return;
         }
@@ -206,6 +208,7 @@ private:
             return;
         built_.caustics.emplace();
         request_ = caustics;
+        is_of_caustics_ = true;
         begin_tracing();
     }
     void build()
@@ -258,7 +261,8 @@ private:
     render_settings settings_;
     guide_keeper& guides_;
     if_none_stored none_;
-    photon_request request_; // that is traced
+    photon_request request_;      // that is traced
+    bool is_of_caustics_ = false; // it is that of the caustic photons
     bool is_built_ = false;
     built_map<B> built_;
     std::optional<pilot_tracing<B>> pilot_;        // of built_.scene

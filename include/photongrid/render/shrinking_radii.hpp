@@ -5,6 +5,7 @@
 #pragma once
 
 #include <photongrid/map/map_buffers.hpp>
+#include <photongrid/render/shrunk_radius.kernel.hpp>
 #include <photongrid/scene/render_settings.hpp>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -37,7 +38,24 @@ struct pass_radii {
     const map_buffers<B>* first = nullptr; ///< map that gives the first radii; null: each pass finds its own
     const map_buffers<B>* first_of_caustics = nullptr; ///< the same in the map of caustic photons, if there is one
     double share2 = 1;                                 ///< shrunk_share2 of the pass
+
+    /// The map with the caustic photons; `first` is not null.
+    const map_buffers<B>& map_of_caustics() const { return first_of_caustics != nullptr ? *first_of_caustics : *first; }
 };
+
+namespace detail {
+    /// Points with the radii of a pass. `firsts`: w: squared radii in the first map, m^2.
+    template <backend B>
+    buffer_of<B, glm::vec4> points_with_radii(B& device, const buffer_of<B, glm::vec4>& points,
+        const buffer_of<B, glm::vec4>& firsts, const pass_radii<B>& radii, float max_radius2)
+    {
+        auto own = device.template make<glm::vec4>(points.size());
+        device.template run<kernels::shrunk_radius>(points.size(),
+            {.share2 = static_cast<float>(radii.share2), .max_radius2 = max_radius2}, reads(points, firsts),
+            writes(own));
+        return own;
+    }
+} // namespace detail
 
 } // namespace photongrid
 

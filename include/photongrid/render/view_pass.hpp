@@ -8,6 +8,7 @@
 #include <photongrid/render/add_estimate.kernel.hpp>
 #include <photongrid/render/canvas.hpp>
 #include <photongrid/render/edge_correction.hpp>
+#include <photongrid/render/gathered_paths.hpp>
 #include <photongrid/render/picture_search.hpp>
 #include <photongrid/render/preview_image.hpp>
 #include <photongrid/render/previews.hpp>
@@ -16,7 +17,6 @@
 #include <photongrid/render/scene_map.hpp>
 #include <photongrid/render/shade.kernel.hpp>
 #include <photongrid/render/shrinking_radii.hpp>
-#include <photongrid/render/shrunk_radius.kernel.hpp>
 #include <photongrid/render/tally_error.kernel.hpp>
 #include <photongrid/render/tally_search.kernel.hpp>
 
@@ -141,7 +141,7 @@ public:
     {
         const double pixels = static_cast<double>(canvas_.raster.size());
         // As if each ray of a final gather and the search at the end of the eye ray took the same time.
-        const double gather_rays = gathers(settings_) ? settings_.estimate.gather_rays : 0;
+        const double gather_rays = has_gather_rays(settings_) ? settings_.estimate.gather_rays : 0;
         const double finished
             = search_ ? gather_rays + 1.0 - static_cast<double>(unfinished()) / pixels : static_cast<double>(gathered_);
         return (canvas_.rays + finished / (gather_rays + 1)) / rays();
@@ -204,7 +204,10 @@ private:
             picture_search(), how_.wants_running_estimates && !is_preview(), how_.may_search_twice);
     }
     /// Whether the next search is that in the map of caustic photons, which is the first.
-    bool is_of_caustics() const { return built_.caustics && !caustics_; }
+    bool is_of_caustics() const
+    {
+        return built_.caustics && !caustics_ && settings_.output.only != light_part::indirect;
+    }
     /// The search in the map where photons' radii are those of the pass.
     knn_settings search_of_pass() const
     {
@@ -330,11 +333,15 @@ bool view_pass<B>::direct_light(uint ray)
 template <backend B>
 bool view_pass<B>::gather(uint ray)
 {
-    if (lit_ || !gathers(settings_))
+    if (lit_ || !has_gather_rays(settings_))
         return true;
     const bool all_pixels = over_pixels(stats_.trace_rays, [&](launch pixels) {
-        add_gather_rays(device_, built_.scene, *built_.gather, built_.map_of_caustics(), samples_->hits, settings_, ray,
-            gathered_, pixels, samples_->direct);
+        if (follows_paths(settings_))
+            add_path(device_, built_.scene, built_.map_of_caustics(), radii_, samples_->hits, settings_, ray, gathered_,
+                pixels, samples_->direct);
+        else
+            add_gather_rays(device_, built_.scene, *built_.gather, built_.map_of_caustics(), samples_->hits, settings_,
+                ray, gathered_, pixels, samples_->direct);
     });
     if (all_pixels)
         ++gathered_;
@@ -352,10 +359,8 @@ bool view_pass<B>::find_radii()
             hits.surfaces, k, running_estimate_kind::none, how_.size);
     if (!radius_search_->advance())
         return false;
-    own_radii_ = device_.template make<glm::vec4>(hits.points.size());
-    device_.template run<kernels::shrunk_radius>(hits.points.size(),
-        {.share2 = static_cast<float>(radii_.share2), .max_radius2 = detail::max_radius2(k)},
-        reads(hits.points, radius_search_->take().irradiance), writes(own_radii_));
+    own_radii_ = detail::points_with_radii(
+        device_, hits.points, radius_search_->take().irradiance, radii_, detail::max_radius2(k));
     radius_search_.reset();
     return true;
 }
@@ -373,8 +378,8 @@ bool view_pass<B>::shade(uint ray)
     search_.reset();
     caustics_.reset();
     gathered_ = 0;
-    if (is_preview()) {
-        kept_[ray] = std::move(samples_); // the next pass may have the same pixels
+    if (is_preview() && !follows_paths(settings_)) { // its paths saw caustics with radii of their own
+        kept_[ray] = std::move(samples_);            // the next pass may have the same pixels
         samples_.reset();
     }
     ++canvas_.rays;

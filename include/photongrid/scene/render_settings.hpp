@@ -67,8 +67,9 @@ struct map_settings {
 };
 
 /// How indirect light that no mirror or glass focuses is computed where eye rays end: from the photons there; or by a
-/// final gather, which looks at the photons of all other surfaces from there (final_gather.hpp).
-enum class indirect_kind { map, gather };
+/// final gather, which looks at the photons of all other surfaces from there (final_gather.hpp); or by paths that go on
+/// from there and look at caustic photons alone (gathered_paths.hpp).
+enum class indirect_kind { map, gather, paths };
 
 /// How the radii of estimates change from pass to pass: each pass finds its own by its search; or they shrink from
 /// those that the search finds in a map of its own (shrinking_radii.hpp).
@@ -85,7 +86,7 @@ struct estimate_settings {
     leak_policy leaks{.side = true};               ///< which photons are rejected
     edge_correction edges = edge_correction::none; ///< polygons: needs leak_policy::min_cosine above 0
     indirect_kind indirect = indirect_kind::map;   ///< how indirect light is computed
-    std::uint32_t gather_rays = 16;                ///< rays of a final gather per eye ray
+    std::uint32_t gather_rays = 16;                ///< rays or paths of a final gather per eye ray
     radius_kind radii = radius_kind::per_pass;     ///< from pass to pass
 
     bool operator==(const estimate_settings&) const = default;
@@ -135,6 +136,15 @@ struct output_settings {
     bool operator==(const output_settings&) const = default;
 };
 
+/// The pass of a picture that settings are for (settings_of_pass). The eye rays of a pixel, their shadow rays and their
+/// final gathers are stratified over all passes: each has its place in sequences that depend on the picture's seed.
+struct pass_place {
+    std::uint32_t number = 0;
+    std::uint32_t seed_change = 0; ///< the pass's seed xor the picture's
+
+    bool operator==(const pass_place&) const = default;
+};
+
 /// How to render.
 struct render_settings {
     map_settings map{};
@@ -142,6 +152,7 @@ struct render_settings {
     view_settings view{};
     output_settings output{};
     std::uint32_t seed = 1; ///< seed of all random numbers; the same seed gives the same picture
+    pass_place pass{};      ///< not a setting of the user's
 
     bool operator==(const render_settings&) const = default;
 };
@@ -152,10 +163,19 @@ inline bool gathers(const render_settings& s)
     return s.estimate.indirect == indirect_kind::gather
         && (s.output.only == light_part::all || s.output.only == light_part::indirect);
 }
-/// Whether a picture with settings `s` needs a map of caustic photons beside that of other photons.
+/// Whether it has light from paths that go on.
+inline bool follows_paths(const render_settings& s)
+{
+    return s.estimate.indirect == indirect_kind::paths
+        && (s.output.only == light_part::all || s.output.only == light_part::indirect);
+}
+/// Whether rays start where eye rays end, for indirect light.
+inline bool has_gather_rays(const render_settings& s) { return gathers(s) || follows_paths(s); }
+/// Whether it needs a map of caustic photons beside that of other photons.
 inline bool has_caustic_map(const render_settings& s)
 {
-    return s.map.caustic_photons > 0 && (s.output.only == light_part::all || s.output.only == light_part::caustic);
+    return s.map.caustic_photons > 0
+        && (s.output.only == light_part::all || s.output.only == light_part::caustic || has_gather_rays(s));
 }
 /// Whether photons keep the normals of their surfaces.
 inline bool keeps_normals(const render_settings& s) { return s.estimate.leaks.needs_photon_normals() || gathers(s); }
@@ -182,6 +202,23 @@ inline render_settings as_paper(render_settings s)
     s.view.light_samples = static_cast<std::uint32_t>(
         std::min<std::uint64_t>(std::uint64_t{s.view.light_samples} * std::max(s.view.spp, 1u), 65536));
     s.view.spp = 1;
+    return s;
+}
+
+/// The settings of a consistent picture: its error goes to 0 as passes are added. Radii shrink, indirect light comes
+/// from paths, and the picture has the most passes that it may have unless `s` has more than one or a stop rule. A
+/// routed map becomes an automatic one, since it drops photons. First radii are of at most 50 photons. Other settings
+/// are unchanged.
+inline render_settings as_exact(render_settings s)
+{
+    s.estimate.radii = radius_kind::shrinking;
+    s.estimate.indirect = indirect_kind::paths;
+    s.estimate.k = std::min(s.estimate.k, 50u);
+    s.estimate.caustic_k = std::min(s.estimate.caustic_k, 50u);
+    if (s.map.builder == map_builder::route)
+        s.map.builder = map_builder::automatic;
+    if (s.output.passes == 1 && !s.output.has_stop_rule())
+        s.output.passes = output_settings::most_passes;
     return s;
 }
 

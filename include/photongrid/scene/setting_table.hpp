@@ -242,11 +242,13 @@ namespace setting_table {
         "polygons: divide estimates by the share of their disc that lies on the surface, so that polygons are not "
         "darker near their edges; needs min_cosine in --leaks"};
     inline constexpr setting indirect{"indirect", of(&estimate_settings::indirect),
-        one_of{{named{"map", indirect_kind::map}, {"gather", indirect_kind::gather}}}, in_scenes::optional,
+        one_of{{named{"map", indirect_kind::map}, {"gather", indirect_kind::gather},
+            named{"paths", indirect_kind::paths}}},
+        in_scenes::optional,
         "indirect light that is no caustic: from the photons where eye rays end (map), or by a final gather of the "
-        "light of all other surfaces (gather)"};
+        "light of all other surfaces (gather), whose rays may go on as paths in place of looking at photons (paths)"};
     inline constexpr setting gather_rays{"gather_rays", of(&estimate_settings::gather_rays), whole_range{1, 65536},
-        in_scenes::optional, "rays of a final gather per eye ray"};
+        in_scenes::optional, "rays or paths of a final gather per eye ray"};
     inline constexpr setting radii{"radii", of(&estimate_settings::radii),
         one_of{{named{"per_pass", radius_kind::per_pass}, {"shrinking", radius_kind::shrinking}}}, in_scenes::optional,
         "radii of estimates: found by each pass (per_pass), or shrinking from pass to pass, so that the picture "

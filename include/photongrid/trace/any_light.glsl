@@ -1,5 +1,5 @@
 // A sample of a light of any kind as seen from a point (2.4). Included by kernels after trace/intersect.glsl and the
-// SWITCHes, INPUTs and args that it reads: strata, light, sample_id, ray_id, seed, first_pixel.
+// SWITCHes, INPUTs and args that it reads: strata, light, sample_id, branch, nth, seed, first_pixel.
 #include <photongrid/trace/lights.glsl>
 #include <photongrid/trace/lit_point.glsl>
 #include <photongrid/trace/light_sample.glsl>
@@ -10,11 +10,11 @@
 #include <photongrid/trace/environment.glsl>
 #include <photongrid/trace/environment_sample.glsl>
 
-// The random numbers of this sample.
+// The random numbers of this sample, in pairs.
 vec4 sample_numbers(uint i)
 {
-    return random4(
-        uvec4(i + args.first_pixel, args.ray_id, 3000u + args.light, args.seed ^ (args.sample_id * 0x9E3779B1u)));
+    return sequence4(args.nth,
+        uvec4(i + args.first_pixel, args.branch, 3000u + args.light, args.seed ^ (args.sample_id * 0x9E3779B1u)));
 }
 
 // The share of a sample among all samples.
@@ -40,7 +40,7 @@ LightSample mesh_light_sample(uint at, uint i, LitPoint lit)
     vec4 r = sample_numbers(i);
     float share = sample_share();
     precise float u = (float(args.sample_id) + r.x) * share;
-    EmittingPoint e = emitting_point(at, min(u, 0.99999994f), r.y, r.z);
+    EmittingPoint e = emitting_point(at, min(u, 0.99999994f), r.z, r.w);
     LightWay way = way_to(e.position, lit);
     float leaving = -dot3(way.direction, e.normal);
     if (!(way.distance2 > 0.0f) || !(way.cosine > 0.0f) || !(leaving > 0.0f))

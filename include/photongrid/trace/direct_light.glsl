@@ -8,7 +8,8 @@ struct Params {
     uvec2 strata;     // strata along the two edges of an area light; their product is the number of samples
     uint first;       // this pass takes samples first ...
     uint past;        // ... to past - 1
-    uint ray_id;      // sample x branches + branch
+    uint branch;      // Fresnel branch of the eye rays (eye_bounce.glsl)
+    uint nth;         // of the eye rays of a pixel, in all passes
     uint seed;
     uint first_pixel; // pixel of element 0
 };

@@ -13,9 +13,8 @@ struct Params {
                      // surface or not (0); the second (1) or first part of a mixture; meets a surface (1) or passes
     uint splits;     // how often a ray splits at most
     uint depth;      // surfaces a ray passes at most
-    uint sample_id;  // number of the eye ray in its pixel
     float light_samples; // of each light with a size at rough surfaces; 0: such lights are left to rays
-    float stratum;   // number of the eye ray in its pixel / eye rays per pixel: shifts its random numbers
+    uint nth;        // of the eye rays of a pixel, in all passes
     uint seed;
     uint first_pixel; // pixel of element 0
     uint first;       // the eye ray of mesh hit 0
@@ -124,23 +123,13 @@ void end_on_rough(Hit hit, vec3 shading, float alpha, vec3 weighted, bool counte
 // A random number that is stratified over the eye rays of a pixel.
 float stratified_number(uint i, uint what)
 {
-    vec4 r = random4(uvec4(i + args.first_pixel, args.branch, what, args.seed));
-    precise float u = r.x + args.stratum;
-    return u < 1.0f ? u : u - 1.0f;
+    return sequence2(args.nth, uvec4(i + args.first_pixel, args.branch, what, args.seed)).x;
 }
 
-// Numbers that choose a facet, the same in all passes that trace this ray. On the first surface those of a pixel's eye
-// rays are spread evenly from a random start on, by the generalized golden ratio (Roberts, The Unreasonable
-// Effectiveness of Quasirandom Sequences, 2018).
+// Numbers that choose a facet, stratified too, and the same in all branches.
 vec2 facet_numbers(uint i, uint hits)
 {
-    bool first = hits == 0u;
-    uvec4 bits = hash4(uvec4(i + args.first_pixel, first ? 0u : args.sample_id, 4000u + hits, args.seed));
-    if (first) {
-        bits.x += args.sample_id * 0xC13FA9A9u;
-        bits.y += args.sample_id * 0x91E10DA5u;
-    }
-    return vec2(unit_float(bits.x), unit_float(bits.y));
+    return sequence2(args.nth, uvec4(i + args.first_pixel, 0u, 4000u + hits, args.seed));
 }
 
 // The branch that a ray takes where it may be one of two, and the factor on its throughput. At glass and coats the

@@ -1,7 +1,7 @@
 // The ray from the camera through a pixel (2.4): through the pixel's centre if it is the only one, else through a
-// random point of the ray's own stratum of the pixel or of the filter's area. Of n eye rays no two are in the same n-th
-// of its width, nor of its height, so edges along rows and columns are smooth (Chiu, Shirley and Wang, Multi-Jittered
-// Sampling, 1994).
+// random point of the ray's own stratum of the pixel or of the filter's area. Of the n eye rays of a pass no two are in
+// the same n-th of its width, nor of its height, so edges along rows and columns are smooth (Chiu, Shirley and Wang,
+// Multi-Jittered Sampling, 1994). From pass to pass the points of a stratum follow a (0,2)-sequence.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/backend/random.glsl>
 
@@ -11,8 +11,9 @@ struct Params {
     vec4 right;     // ... and the step from pixel to pixel along a row ...
     vec4 down;      // ... and along a column
     uint width;     // pixels in a row
-    uint sample_id; // number of the eye ray in its pixel
-    uvec2 strata;   // columns and rows of a pixel, one eye ray in each; 0, 0: one ray through its middle
+    uvec2 strata;   // columns and rows of a pixel; 0, 0: one ray through its middle
+    uint stratum;   // of this ray, row by row
+    uint nth;       // of the rays in that stratum, in all passes
     uint branch;    // Fresnel branch (eye_bounce.glsl)
     uint seed;
     uint first_pixel; // pixel of element 0
@@ -54,17 +55,16 @@ void kernel(uint i)
     float dx = 0.5f;
     float dy = 0.5f;
     if (args.strata.x > 0u) {
-        vec4 r = random4(uvec4(pixel, args.sample_id, 1000u, args.seed));
-        uint row = args.sample_id / args.strata.x;
-        uint column = args.sample_id - row * args.strata.x;
-        // Strata in one column get distinct x sub-offsets, cyclically from a random start; strata in one row get
-        // distinct y sub-offsets.
-        uint first_x = uint(random4(uvec4(pixel, column, 1001u, args.seed)).x * float(args.strata.y));
-        uint first_y = uint(random4(uvec4(pixel, row, 1002u, args.seed)).x * float(args.strata.x));
-        uint nth_x = column * args.strata.y + (row + first_x) % args.strata.y;
-        uint nth_y = row * args.strata.x + (column + first_y) % args.strata.x;
-        precise float across = (float(nth_x) + r.x) / float(args.strata.x * args.strata.y);
-        precise float along_column = (float(nth_y) + r.y) / float(args.strata.x * args.strata.y);
+        uint row = args.stratum / args.strata.x;
+        uint column = args.stratum - row * args.strata.x;
+        uint place = place_in_sequence(args.nth, hash4(uvec4(pixel, 0u, 1000u, args.seed)).x);
+        float x_in_column = sequence_x(place, hash4(uvec4(pixel, column, 1001u, args.seed)).x);
+        float y_in_row = sequence_y(place, hash4(uvec4(pixel, row, 1002u, args.seed)).x);
+        // Strata in one column have x at equal intervals, cyclically; strata in one row have y so.
+        precise float x_shifted = x_in_column + float(row) / float(args.strata.y);
+        precise float y_shifted = y_in_row + float(column) / float(args.strata.x);
+        precise float across = (float(column) + x_shifted - floor(x_shifted)) / float(args.strata.x);
+        precise float along_column = (float(row) + y_shifted - floor(y_shifted)) / float(args.strata.y);
         dx = args.tent != 0u ? under_tent(across) : across;
         dy = args.tent != 0u ? under_tent(along_column) : along_column;
     }

@@ -14,6 +14,7 @@
 #include <photongrid/trace/shadow_ray.kernel.hpp>
 #include <photongrid/trace/shadow_through.kernel.hpp>
 
+#include <bit>
 #include <optional>
 
 #include <photongrid/backend/exact_begin.hpp>
@@ -69,6 +70,19 @@ inline uint splits_of(const scene_layout& layout)
     return (layout.features & (has_glass | has_coats | has_mixtures | has_clear)) != 0 ? 2u : 0u;
 }
 
+/// Where an eye ray is in the sequences of its pixel's random numbers, which go on from pass to pass.
+struct ray_place {
+    uint branch = 0;
+    uint nth = 0;  ///< of the pixel's eye rays of that branch, in all passes
+    uint seed = 0; ///< of the sequences: the picture's
+};
+
+/// `ray` is sample x branches + branch.
+inline ray_place place_of(const render_settings& s, uint ray, uint splits)
+{
+    return {ray & ((1u << splits) - 1u), s.pass.number * s.view.spp + (ray >> splits), s.seed ^ s.pass.seed_change};
+}
+
 /// The camera as eye_ray.glsl reads it. `ray` is sample x branches + branch.
 inline kernels::eye_ray::Params eye_params(
     const camera& c, const dvec3& center, const render_settings& s, const raster& r, uint ray, uint splits = 0)
@@ -78,15 +92,22 @@ inline kernels::eye_ray::Params eye_params(
     const double height = 2 * std::tan(glm::radians(c.vertical_fov) / 2);
     const double width = height * s.output.width / s.output.height;
     const auto narrow = [](const dvec3& v) { return glm::vec4(glm::vec3(v), 0.0f); };
+    const auto place = place_of(s, ray, splits);
+    const bool middle = s.view.spp == 1 && s.output.passes <= 1;
+    // The sequence itself gives each stratum of a power of two a point.
+    const bool stratified = !std::has_single_bit(s.view.spp);
     return {.position = narrow(c.position - center),
         .corner = narrow(forward - 0.5 * width * right + 0.5 * height * up),
         .right = narrow(right * (width / s.output.width * r.divisor)),
         .down = narrow(-up * (height / s.output.height * r.divisor)),
         .width = r.width,
-        .sample_id = ray >> splits,
-        .strata = s.view.spp > 1 || s.output.passes > 1 ? strata_of(s.view.spp) : glm::uvec2(0),
-        .branch = ray & ((1u << splits) - 1u),
-        .seed = s.seed,
+        .strata = middle ? glm::uvec2(0)
+            : stratified ? strata_of(s.view.spp)
+                         : glm::uvec2(1),
+        .stratum = stratified ? ray >> splits : 0u,
+        .nth = stratified ? s.pass.number : place.nth,
+        .branch = place.branch,
+        .seed = place.seed,
         .first_pixel = r.first_pixel(),
         .tent = s.view.filter == pixel_filter::tent ? 1u : 0u};
 }
@@ -119,14 +140,14 @@ inline bool samples_choose_lights(const scene_layout& layout)
 /// Calls add(light_sampling) for each sample of direct light at a point: `light_samples` of each light with a size, one
 /// of each other light; or, of many lights, samples that choose one.
 template <class Add>
-void for_each_light_sample(const scene_layout& layout, const render_settings& settings, Add add)
+void for_each_light_sample(const scene_layout& layout, const render_settings& settings, uint seed, Add add)
 {
     const auto lights = layout.table(kernels::LIGHT_TABLE);
     const uint samples = settings.view.light_samples;
     if (samples_choose_lights(layout)) {
         // Each sample is the only one of its light, so it may be anywhere on it.
         for (uint choice = 0; choice < samples; ++choice)
-            add({.seed = settings.seed ^ (choice + 1) * 0x9E3779B1u, .choice = choice, .choices = samples});
+            add({.seed = seed ^ (choice + 1) * 0x9E3779B1u, .choice = choice, .choices = samples});
         return;
     }
     for (uint number = 0; number < lights.count; ++number) {
@@ -135,7 +156,7 @@ void for_each_light_sample(const scene_layout& layout, const render_settings& se
             || form == kernels::SPHERE_LIGHT || form == kernels::ENVIRONMENT_LIGHT;
         const uint of_this = has_size ? samples : 1u;
         for (uint sample = 0; sample < of_this; ++sample)
-            add({.strata = strata_of(of_this), .light = number, .sample_id = sample, .seed = settings.seed});
+            add({.strata = strata_of(of_this), .light = number, .sample_id = sample, .seed = seed});
     }
 }
 
@@ -167,13 +188,15 @@ void add_light_samples(B& device, const device_scene<B>& s, const render_setting
     std::optional<mesh_hits<B>> met;
     if (through)
         met.emplace(device, s, pixels.elements);
-    for_each_light_sample(s.layout, settings, [&](const light_sampling& how) {
+    const auto place = place_of(settings, ray, splits_of(s.layout));
+    for_each_light_sample(s.layout, settings, place.seed, [&](const light_sampling& how) {
         device.template run<kernels::shadow_ray>({pixels.elements, 0u, s.layout.features},
             {.strata = how.strata,
                 .light = how.light,
                 .sample_id = how.sample_id,
                 .first = lit.first,
-                .ray_id = ray,
+                .branch = place.branch,
+                .nth = place.nth,
                 .seed = how.seed,
                 .first_pixel = lit.first_pixel,
                 .choice = how.choice,
@@ -220,9 +243,8 @@ struct path_choices {
     uint branch = 0;
     uint splits = 0;
     uint depth = 0;
-    uint sample_id = 0;
     float light_samples = 0;
-    float stratum = 0;
+    uint nth = 0;
     uint seed = 0;
 };
 
@@ -245,9 +267,8 @@ void trace_to_ends(B& device, const device_scene<B>& s, launch pixels, const pat
                       {.branch = how.branch,
                           .splits = how.splits,
                           .depth = how.depth,
-                          .sample_id = how.sample_id,
                           .light_samples = how.light_samples,
-                          .stratum = how.stratum,
+                          .nth = how.nth,
                           .seed = how.seed,
                           .first_pixel = hits.first_pixel,
                           .first = pixels.first},
@@ -267,18 +288,18 @@ void trace_eye_rays(B& device, const device_scene<B>& s, const camera& view, con
     const raster& r, uint ray, launch pixels, eye_hits<B>& hits, buffer_of<B, uint>& branches)
 {
     const auto& layout = s.layout;
-    const uint splits = splits_of(layout), sample = ray >> splits;
+    const uint splits = splits_of(layout);
+    const auto place = place_of(settings, ray, splits);
     const uint sampled_at_rough = samples_choose_lights(layout) ? 0 : settings.view.light_samples;
     device.template run<kernels::eye_ray>(pixels, eye_params(view, layout.center, settings, r, ray, splits), reads(),
         writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
     trace_to_ends(device, s, pixels,
-        {.branch = ray & ((1u << splits) - 1u),
+        {.branch = place.branch,
             .splits = splits,
             .depth = settings.view.depth,
-            .sample_id = sample,
             .light_samples = static_cast<float>(sampled_at_rough),
-            .stratum = static_cast<float>(sample) / static_cast<float>(settings.view.spp),
-            .seed = settings.seed},
+            .nth = place.nth,
+            .seed = place.seed},
         hits, branches);
     if ((layout.features & has_rough) != 0)
         light_rough_surfaces(device, s, settings, ray, pixels, hits);
@@ -294,12 +315,16 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
     // What direct_light.glsl does not know.
     constexpr uint others
         = has_meshes | has_sphere_lights | has_spot_lights | has_directional_lights | has_environment | has_coats;
-    if ((s.layout.features & others) != 0 || samples_choose_lights(s.layout)) {
-        const lit_points<B> lit{hits.points, hits.surfaces, pixels.first, hits.first_pixel};
+    // A part of a lamp that is taken whole is seen whole or not at all: where something covers a part of it, the mean
+    // of many passes is not exact.
+    const bool takes_whole = settings.estimate.indirect != indirect_kind::paths;
+    if ((s.layout.features & others) != 0 || samples_choose_lights(s.layout) || !takes_whole) {
+        const lit_points<B> lit{hits.points, hits.surfaces, pixels.first, hits.first_pixel, takes_whole ? 1u : 0u};
         add_light_samples(device, s, settings, ray, pixels, lit, light, [](const auto&, auto&) {});
         return;
     }
     const uint samples = (s.layout.features & has_area_lights) != 0 ? settings.view.light_samples : 1u;
+    const auto place = place_of(settings, ray, splits_of(s.layout));
     // Well below the 65,535 iterations, of all loops of an invocation, after which some drivers end loops
     // (docs/design/decisions.md, "How many iterations").
     const uint per_pass = std::max(1u, static_cast<uint>(16384 / steps_of_shadow_rays(s.layout)));
@@ -308,8 +333,9 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
             {.strata = strata_of(samples),
                 .first = first,
                 .past = std::min(samples, first + per_pass),
-                .ray_id = ray,
-                .seed = settings.seed,
+                .branch = place.branch,
+                .nth = place.nth,
+                .seed = place.seed,
                 .first_pixel = hits.first_pixel},
             reads(s.records, hits.points, hits.surfaces), writes(light));
 }

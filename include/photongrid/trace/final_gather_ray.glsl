@@ -10,6 +10,7 @@ struct Params {
     uint number;      // of this ray among those of its point
     uint first;       // eye ray of element 0
     uint first_pixel; // pixel of eye ray 0
+    uint nth;         // of the eye rays of a pixel, in all passes
     uint seed;
 };
 PARAMS(Params)
@@ -41,7 +42,8 @@ void kernel(uint i)
     if (!(end.w > 0.0f))
         return;
     vec3 normal = vec3(lit);
-    vec4 r = random4(uvec4(args.first + i + args.first_pixel, args.number, 5000u, args.seed));
+    vec2 r = sequence2(args.nth,
+        uvec4(args.first + i + args.first_pixel, args.number, 5000u, args.seed));
     uint row = args.number / args.strata.x;
     uint column = args.number - row * args.strata.x;
     precise float u = (float(column) + r.x) / float(args.strata.x);

@@ -1,6 +1,6 @@
 // A sample of a point or rectangle light as seen from a point of a surface (2.4). Included by kernels after
-// trace/lights.glsl, trace/lit_point.glsl and the SWITCHes POINT_LIGHTS and AREA_LIGHTS; args: strata, ray_id, seed,
-// first_pixel.
+// trace/lights.glsl, trace/lit_point.glsl and the SWITCHes POINT_LIGHTS and AREA_LIGHTS; args: strata, branch, nth,
+// seed, first_pixel.
 
 // A light as seen from a point: what all samples have in common.
 struct SeenLight {
@@ -106,7 +106,8 @@ LightSample light_sample(SeenLight seen, uint number, uint s, uint i, LitPoint l
     vec3 stratum = corner;
     bool close = false;
     if (seen.area) {
-        vec4 r = random4(uvec4(i + args.first_pixel, args.ray_id, 3000u + number, args.seed ^ (s * 0x9E3779B1u)));
+        vec2 r = sequence2(
+            args.nth, uvec4(i + args.first_pixel, args.branch, 3000u + number, args.seed ^ (s * 0x9E3779B1u)));
         uint row = s / args.strata.x;
         precise float u = float(s - row * args.strata.x);
         precise float v = float(row);

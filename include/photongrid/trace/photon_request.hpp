@@ -23,17 +23,32 @@ struct photon_request {
     bool operator==(const photon_request&) const = default;
 };
 
+/// Whether a scene has surfaces that may make caustics.
+inline bool may_have_caustics(const scene_layout& layout)
+{
+    return (layout.features & (has_mirrors | has_glass | has_rough | has_coats)) != 0;
+}
+
+/// A request for caustic photons alone.
+inline photon_request request_of_caustics(uint photons)
+{
+    constexpr uint paths_per_photon = 64; // at most
+    return {photons, kernels::CAUSTICS, std::uint64_t{photons} * paths_per_photon};
+}
 /// The photons of a picture with settings `s`, without those of a map of caustic photons.
-inline photon_request request_of(const render_settings& s)
+inline photon_request request_of(const render_settings& s, const scene_layout& layout)
 {
     constexpr uint paths_per_photon = 8; // at most, else other light would take long where there is little of it
+    const bool are_caustics_apart = s.map.caustic_photons > 0;
     photon_request r;
-    const bool none
-        = s.output.only == light_part::direct || (s.map.caustic_photons > 0 && s.output.only == light_part::caustic);
-    r.photons = none ? 0u : s.map.photons;
-    if (gathers(s)) {
+    r.photons = s.map.photons;
+    if (s.output.only == light_part::direct || (are_caustics_apart && s.output.only == light_part::caustic)) {
+        r.photons = 0;
+    } else if (gathers(s)) {
         r.kinds |= kernels::FIRST_HITS;
-    } else if (s.map.caustic_photons > 0) {
+    } else if (follows_paths(s)) {
+        r = request_of_caustics(are_caustics_apart || !may_have_caustics(layout) ? 0 : r.photons);
+    } else if (are_caustics_apart) {
         r.kinds = kernels::OTHER_PHOTONS;
         r.most_paths = std::uint64_t{r.photons} * paths_per_photon;
     }
@@ -42,13 +57,7 @@ inline photon_request request_of(const render_settings& s)
 /// Those of a map of caustic photons; none if the picture has no such map, or the scene no caustics.
 inline photon_request caustic_request_of(const render_settings& s, const scene_layout& layout)
 {
-    constexpr uint paths_per_photon = 64; // at most
-    const bool none = !has_caustic_map(s) || (layout.features & (has_mirrors | has_glass)) == 0;
-    photon_request r;
-    r.photons = none ? 0u : s.map.caustic_photons;
-    r.kinds = kernels::CAUSTICS;
-    r.most_paths = std::uint64_t{r.photons} * paths_per_photon;
-    return r;
+    return request_of_caustics(has_caustic_map(s) && may_have_caustics(layout) ? s.map.caustic_photons : 0);
 }
 
 } // namespace photongrid

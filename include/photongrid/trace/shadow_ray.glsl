@@ -9,7 +9,8 @@ struct Params {
     uint light;       // number of the light
     uint sample_id;   // number of its sample
     uint first;       // the eye ray of element 0
-    uint ray_id;      // sample x branches + branch
+    uint branch;      // Fresnel branch of the eye rays (eye_bounce.glsl)
+    uint nth;         // of the eye rays of a pixel, in all passes
     uint seed;
     uint first_pixel; // pixel of eye ray 0
     uint choice;      // with `choices` the number of a sample, whose light is chosen (chosen_light.glsl)
@@ -58,7 +59,7 @@ void kernel(uint i)
     uint number = args.light;
     float scale = 1.0f;
     if (args.choices > 0u) {
-        vec4 r = random4(uvec4(args.first + i + args.first_pixel, args.ray_id, 2999u, args.seed));
+        vec2 r = sequence2(args.nth, uvec4(args.first + i + args.first_pixel, args.branch, 2999u, args.seed));
         precise float u = (float(args.choice) + r.x) / float(args.choices);
         ChosenLight c = chosen_light(lit, u);
         if (!(c.probability > 0.0f))

@@ -55,7 +55,7 @@ public:
     }
     /// With the request of the settings, by even emission whatever they say.
     photon_tracing(B& device, const scene& s, const device_scene<B>& uploaded, const render_settings& settings)
-        : photon_tracing(device, s, uploaded, settings, request_of(settings), {}, if_none_stored::fail)
+        : photon_tracing(device, s, uploaded, settings, request_of(settings, uploaded.layout), {}, if_none_stored::fail)
     {
     }
 
@@ -213,7 +213,7 @@ traced_photons<B> trace_photons(B& device, const scene& s, const device_scene<B>
         if (observer.cancelled && observer.cancelled())
             throw render_cancelled();
     };
-    const auto request = request_of(settings);
+    const auto request = request_of(settings, uploaded.layout);
     emission_guide guide;
     if (is_guided(settings, request)) {
         pilot_tracing<B> pilot(device, uploaded, settings, request);

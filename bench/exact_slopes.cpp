@@ -1,0 +1,239 @@
+// How fast the error of exact pictures (as_exact) falls with passes and with time: in two scenes whose light is known,
+// or in scenes from files against the reference renderer. relMSE of the pixels in which caustics are at least a tenth
+// of the light, and of those in which they are less than a thousandth; the reference's own noise is subtracted. Prints
+// the errors after 1, 2, 4 ... passes, the mean of several seeds, and the slopes of their logarithms. One eye ray,
+// shadow ray and path per pixel and pass.
+//
+//   exact_slopes PASSES SEEDS [SIZE EYE_PATHS LIGHT_PATHS SCENE...]
+//
+//   EYE_PATHS, LIGHT_PATHS: of the reference, per pixel and in all
+//
+//   exact_slopes 2048 4
+//   exact_slopes 1024 2 48x36 65536 1e9 examples/scenes/cornell_box.json
+#include <photongrid/backends/any/any.hpp>
+#include <photongrid/io/scene_file.hpp>
+#include <photongrid/reference/reference.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numbers>
+#include <numeric>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace photongrid;
+
+struct row {
+    double passes = 0, seconds = 0, caustics = 0, others = 0;
+};
+
+double relative(double difference, double known) { return difference / (known + 0.01); }
+
+/// The pixels in which caustics are at least `least` and less than `most` of the light.
+std::vector<std::size_t> pixels_with(const image& caustics, const image& all, double least, double most)
+{
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < all.pixels.size(); ++i) {
+        const auto light = [&](const image& im) { return double{im.pixels[i].x + im.pixels[i].y + im.pixels[i].z}; };
+        if (light(caustics) >= least * light(all) && light(caustics) < most * light(all))
+            found.push_back(i);
+    }
+    return found;
+}
+
+/// relMSE of some pixels, less the reference's own.
+double error_of(const image& drawn, const reference_picture& known, const std::vector<std::size_t>& pixels)
+{
+    double sum = 0;
+    for (const auto i : pixels)
+        for (int c = 0; c < 3; ++c) {
+            const double right{known.mean.pixels[i][c]}, own{known.standard_error.pixels[i][c]};
+            sum += std::pow(relative(double{drawn.pixels[i][c]} - right, right), 2) - std::pow(relative(own, right), 2);
+        }
+    return sum / (3.0 * static_cast<double>(pixels.size()));
+}
+
+double slope(const std::vector<row>& rows, double row::*x, double row::*y, double from)
+{
+    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (const auto& r : rows)
+        if (r.*x >= from && r.*y > 0) {
+            const double a = std::log(r.*x), b = std::log(r.*y);
+            ++n, sx += a, sy += b, sxx += a * a, sxy += a * b;
+        }
+    return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+/// Draws up to so many passes, and adds the errors after 1, 2, 4 ... of them.
+void add_errors(renderer& drawing, const scene& s, const render_settings& settings, const reference_picture& known,
+    const std::vector<std::size_t>& bright, const std::vector<std::size_t>& dark, std::vector<row>& rows, double seeds)
+{
+    drawing.start(s, settings, {.enabled = false});
+    for (auto& r : rows) {
+        while (drawing.progress().passes < static_cast<std::uint32_t>(r.passes))
+            drawing.step(renderer::milliseconds(0));
+        const auto drawn = drawing.picture();
+        r.seconds += drawing.state().seconds / seeds;
+        r.caustics += error_of(drawn, known, bright) / seeds;
+        r.others += error_of(drawn, known, dark) / seeds;
+    }
+}
+
+void measure(renderer& drawing, const scene& s, render_settings settings, const reference_picture& known,
+    const std::vector<std::size_t>& bright, const std::vector<std::size_t>& dark, std::uint32_t seeds)
+{
+    std::vector<row> rows;
+    for (std::uint32_t passes = 1; passes <= settings.output.passes; passes *= 2)
+        rows.push_back({static_cast<double>(passes), 0, 0, 0});
+    for (settings.seed = 1; settings.seed <= seeds; ++settings.seed)
+        add_errors(drawing, s, settings, known, bright, dark, rows, seeds);
+    std::printf("%s, %zu pixels with caustics, %zu without\n\n", s.name.c_str(), bright.size(), dark.size());
+    std::printf("| passes | seconds | relMSE with caustics | without |\n|---|---|---|---|\n");
+    for (const auto& r : rows)
+        std::printf("| %.0f | %.2f | %.3g | %.3g |\n", r.passes, r.seconds, r.caustics, r.others);
+    for (const bool last : {false, true}) {
+        const auto slopes = [&](const char* by, double row::*x) {
+            const double from = last ? rows.back().*x / 10 : 0;
+            std::printf("| slope over %s, by %s | | %.2f | %.2f |\n", last ? "the last decade" : "all", by,
+                slope(rows, x, &row::caustics, from), slope(rows, x, &row::others, from));
+        };
+        slopes("passes", &row::passes);
+        slopes("seconds", &row::seconds);
+    }
+    std::printf("\n");
+    std::fflush(stdout);
+}
+
+std::vector<std::size_t> all_pixels(const image& im)
+{
+    std::vector<std::size_t> all(im.pixels.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return all;
+}
+
+/// A picture of known light over a plane y = 0, seen straight from above: means over pixels by quadrature.
+template <class Radiance>
+reference_picture known_from_above(const scene& s, const Radiance& radiance)
+{
+    const auto& o = s.render.output;
+    reference_picture known;
+    known.mean = {o.width, o.height, std::vector<glm::vec3>(std::size_t{o.width} * o.height)};
+    known.standard_error = known.mean;
+    const double pixel = 2 * s.camera.position.y * std::tan(s.camera.vertical_fov * std::numbers::pi / 360) / o.height;
+    const dvec3 right = glm::normalize(glm::cross(s.camera.look_at - s.camera.position, s.camera.up));
+    constexpr int steps = 8;
+    for (std::uint32_t y = 0; y < o.height; ++y)
+        for (std::uint32_t x = 0; x < o.width; ++x) {
+            double sum = 0;
+            for (int i = 0; i < steps * steps; ++i) {
+                const double across = x + (i % steps + 0.5) / steps - 0.5 * o.width,
+                             down = y + std::floor(i / steps) / steps + 0.5 / steps - 0.5 * o.height;
+                sum += radiance(s.camera.look_at + pixel * (across * right - down * s.camera.up));
+            }
+            known.mean.pixels[std::size_t{y} * o.width + x] = glm::vec3(static_cast<float>(sum / (steps * steps)));
+        }
+    return known;
+}
+
+/// A floor seen straight from above, before a wall in the plane x = 1.
+scene floor_before_a_wall(const char* name)
+{
+    scene s;
+    s.name = name;
+    s.materials = {{"white", material_kind::lambertian, dvec3(0.5)}, {"wall", material_kind::mirror, dvec3(1)}};
+    s.polygons
+        = {{{{-3, 0, -3}, {-3, 0, 3}, {1, 0, 3}, {1, 0, -3}}, 0}, {{{1, 0, -3}, {1, 0, 3}, {1, 3, 3}, {1, 3, -3}}, 1}};
+    s.camera = {{0.3, 2, 0}, {0.3, 0, 0}, {0, 0, 1}, 30};
+    s.render = {.map = {.photons = 1000, .builder = map_builder::automatic, .grid = glm::uvec3(0)},
+        .estimate = {.k = 20, .max_radius = 2, .gather_rays = 1},
+        .view = {.spp = 1, .light_samples = 1},
+        .output = {.width = 16, .height = 16}};
+    return s;
+}
+
+/// A mirror shows the floor a second bulb, behind it: its light is a caustic.
+void measure_second_bulb(renderer& drawing, std::uint32_t passes, std::uint32_t seeds)
+{
+    auto s = floor_before_a_wall("a second bulb in a mirror");
+    s.point_lights = {{"bulb", {0.4, 0.5, 0}, dvec3(4 * std::numbers::pi)}};
+    s.render = as_exact(s.render);
+    s.render.output.only = light_part::caustic;
+    s.render.output.passes = passes;
+    const auto known = known_from_above(s, [](const dvec3& p) {
+        const dvec3 to = dvec3(1.6, 0.5, 0) - p;
+        return 0.5 / std::numbers::pi * to.y / std::pow(glm::length(to), 3);
+    });
+    measure(drawing, s, s.render, known, all_pixels(known.mean), {}, seeds);
+}
+
+/// A dark floor before a diffuse wall that the sun lights.
+void measure_sunlit_wall(renderer& drawing, std::uint32_t passes, std::uint32_t seeds)
+{
+    auto s = floor_before_a_wall("a floor before a sunlit wall");
+    s.materials[0].reflectance = dvec3(1e-4); // else the wall would have light from the floor
+    s.materials[1] = {"wall", material_kind::lambertian, dvec3(0.8)};
+    s.directional_lights = {{"sun", {1, 0, 0}, dvec3(3e5)}};
+    s.render = as_exact(s.render);
+    s.render.output.only = light_part::indirect;
+    s.render.output.passes = passes;
+    // The form factor of a rectangle that stands on the floor's plane, for a point of the floor (Lambert's formula).
+    const auto known = known_from_above(s, [](const dvec3& p) {
+        const double x = 1 - p.x, top = std::hypot(x, 3.0), a = 3 - p.z, b = 3 + p.z;
+        const double factor
+            = (std::atan(a / x) + std::atan(b / x) - x / top * (std::atan(a / top) + std::atan(b / top)))
+            / (2 * std::numbers::pi);
+        return 1e-4 / std::numbers::pi * factor * 0.8 * 3e5;
+    });
+    measure(drawing, s, s.render, known, {}, all_pixels(known.mean), seeds);
+}
+
+void measure_file(renderer& drawing, const std::string& path, char** arguments)
+{
+    const auto s = read_scene(path);
+    unsigned width = 0, height = 0;
+    if (std::sscanf(arguments[2], "%ux%u", &width, &height) != 2)
+        throw std::invalid_argument("SIZE: must be WIDTHxHEIGHT");
+    const auto count = [&](int i) { return static_cast<std::uint32_t>(std::atof(arguments[i])); };
+    auto settings = as_exact(s.render);
+    settings.output.width = width;
+    settings.output.height = height;
+    settings.output.passes = count(0);
+    settings.output.until_error = settings.output.seconds = 0;
+    settings.view.spp = settings.view.light_samples = settings.estimate.gather_rays = 1;
+
+    auto fine = reference_settings_for(settings);
+    fine.spp = count(3);
+    fine.paths = static_cast<std::uint64_t>(std::atof(arguments[4]));
+    fine.seed = 99;
+    const auto known = render_reference(s, s.camera, fine);
+    auto only = settings;
+    only.output.only = light_part::caustic;
+    only.output.passes = 64;
+    drawing.start(s, only, {.enabled = false});
+    drawing.step();
+    const auto caustics = drawing.picture();
+    measure(drawing, s, settings, known, pixels_with(caustics, known.mean, 0.1, 1e30),
+        pixels_with(caustics, known.mean, -1, 1e-3), count(1));
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    if (argc != 3 && argc < 7) {
+        std::fprintf(stderr, "exact_slopes PASSES SEEDS [SIZE EYE_PATHS LIGHT_PATHS SCENE...]\n");
+        return 2;
+    }
+    const auto drawing = make_renderer(chosen({.backend = "cpu"}));
+    const auto count = [&](int i) { return static_cast<std::uint32_t>(std::atoi(argv[i])); };
+    if (argc == 3) {
+        measure_second_bulb(*drawing, count(1), count(2));
+        measure_sunlit_wall(*drawing, count(1), count(2));
+    }
+    for (int i = 6; i < argc; ++i)
+        measure_file(*drawing, argv[i], argv + 1);
+    return 0;
+}
