@@ -1,10 +1,7 @@
 // Whether the noise and the bias that a picture tells of its pixels cover its true error, where the light is known.
 #pragma once
 
-#include "../backends/serial_picture.hpp"
-
-#include <photongrid/render/film.hpp>
-#include <photongrid/render/passes.hpp>
+#include "../backends/serial_pictures.hpp"
 
 namespace photongrid::testing {
 namespace {
@@ -65,20 +62,10 @@ namespace {
             s.render.estimate.radii = r.radii;
             s.render.output.passes = 24;
             auto settings = s.render;
-            film sum;
-            std::optional<map_buffers<serial_backend>> first;
-            render_stats stats;
-            if (has_shrinking_radii(settings))
-                first = build_radius_map(b, s, settings, {}, stats);
-            for (std::uint32_t pass = 0; pass < settings.output.passes; ++pass) {
-                const auto own = settings_of_pass(settings, pass);
-                const auto map = build_map(b, s, own);
-                if (pass == 0)
-                    sum = film_for(s, map.scene.layout, settings);
-                sum.add(pass,
-                    draw_pass(b, map, s.camera, own, {}, stats,
-                        pass_radii<serial_backend>{first ? &*first : nullptr, shrunk_share2(pass)}));
-            }
+            progressive_render<serial_backend> drawing(b);
+            drawing.start(s, s.render, {.enabled = false});
+            drawing.step();
+            const film sum = drawing.state().film;
             double covered = 0, by_noise = 0, difference = 0, interval = 0, n = 0;
             std::size_t next = 0;
             sum.visit_spread([&](double mean, double noise) {

@@ -89,7 +89,7 @@ REGISTER_TYPED_TEST_SUITE_P(pictures, a_closed_diffuse_sphere_has_the_known_radi
     a_final_gather_below_a_coat_has_the_known_radiance, a_final_gather_has_the_known_radiance_in_a_corner,
     the_parts_of_a_gathered_picture_add_up, a_final_gather_equals_serials, a_gathered_picture_does_not_depend_on_bands,
     passes_have_the_radii_of_the_first_map_made_smaller, shrinking_radii_equal_serials,
-    shrinking_radii_do_not_depend_on_how_passes_are_run, blur_fades_with_shrinking_radii,
+    shrinking_radii_do_not_depend_on_how_passes_are_run, biases_equal_serials, blur_fades_with_shrinking_radii,
     the_rays_of_a_gather_are_progress, a_view_of_a_map_without_a_gather_is_refused);
 
 } // namespace photongrid::testing
