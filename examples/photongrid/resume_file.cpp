@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -17,14 +16,17 @@ namespace photongrid {
 
 namespace {
     using json = nlohmann::ordered_json;
-    constexpr const char* first_line = "photongrid unfinished picture 5";
+    constexpr const char* first_line = "photongrid unfinished picture 6";
 
     /// The vectors of an unfinished pass, in the file's order.
     template <class Pass>
     auto parts_of(Pass& p)
     {
-        return std::array{
-            &p.light.pixels, &p.light.searches, &p.light.errors, &p.band.pixels, &p.band.searches, &p.band.errors};
+        std::vector<typename decltype(p.light.parts())::value_type> all;
+        for (auto* pixels : {&p.light, &p.band})
+            for (auto* part : pixels->parts())
+                all.push_back(part);
+        return all;
     }
 
     /// The file's three lines of text, and what follows.
@@ -80,7 +82,7 @@ std::string picture_identity(const scene& s, const render_settings& settings, co
     of_passes.output.percentile = output_settings{}.percentile;
     const json all = {{"version", PHOTONGRID_VERSION}, {"backend", caps.backend}, {"device", caps.device},
         {"scene", json::parse(scene_text(s, {}))}, {"set of settings", json::parse(settings_text(of_passes))},
-        {"choice of layers", settings.output.aov}};
+        {"choice of layers", settings.output.aov}, {"choice of biases", tells_bias(settings)}};
     return all.dump();
 }
 

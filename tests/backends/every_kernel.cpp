@@ -10,8 +10,10 @@
 #include <all_kernels.hpp>
 #include <photongrid/render/add_gathered.kernel.hpp>
 #include <photongrid/render/shade.kernel.hpp>
+#include <photongrid/render/shade_bias.kernel.hpp>
 
 #include <algorithm>
+#include <numbers>
 
 namespace photongrid::testing {
 
@@ -108,6 +110,37 @@ TYPED_TEST(hard_cases_of_shading, look_ups_of_a_final_gather_equal_their_formula
             for (int c = 0; c < 3; ++c)
                 EXPECT_NEAR(light[i][c], gathered[i][c] + added[c], 1e-5f) << i << ", channel " << c;
         }
+    }
+}
+
+TYPED_TEST(hard_cases_of_shading, biases_add_up_as_the_light_does)
+{
+    // If the bias of the irradiance is the irradiance itself, that of the pixel is the pixel.
+    auto& b = this->b();
+    const auto up = [&](const std::vector<glm::vec4>& v) { return b.upload(std::span<const glm::vec4>(v)); };
+    const auto points = up({{0, 0, 0, 1}, {0, 0, 0, 2}, {0, 0, 0, 0}});
+    const auto throughputs = up({{0.5f, 0.25f, 1, 0}, {1, 1, 1, 0}, {1, 1, 1, 0}});
+    const auto light = up({{4, -2, 1, 0}, {0.5f, 0, 0, 0}, {9, 9, 9, 9}}), none = up(std::vector<glm::vec4>(3));
+    const auto moments = up({{1, 2, -3, 0}, {0, 1, 0, 0}, {9, 9, 9, 9}});
+    const auto used = b.upload(std::span<const glm::uvec2>(std::vector<glm::uvec2>(3)));
+    auto pixel = up(std::vector<glm::vec4>(3)), searches = up(std::vector<glm::vec4>(3)),
+         bias = up({{}, {1, 1, 1, 0}, {}}), tilt = up(std::vector<glm::vec4>(3)), jump = up(std::vector<glm::vec4>(3));
+    for (int ray = 0; ray < 2; ++ray) {
+        b.template run<kernels::shade>(
+            3, {.share = 0.25f}, reads(points, throughputs, none, none, light, used), writes(pixel, searches));
+        b.template run<kernels::shade_bias>(
+            3, {.share = 0.25f}, reads(points, throughputs, light, moments, light), writes(bias, tilt, jump));
+    }
+    const auto pixels = b.download(pixel), biases = b.download(bias), tilts = b.download(tilt),
+               jumps = b.download(jump);
+    for (std::size_t i = 0; i < 3; ++i)
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(biases[i][c] - (i == 1 ? 1.0f : 0.0f), pixels[i][c], 1e-6f) << i << ", channel " << c;
+    const float mean = 0.5f / std::numbers::pi_v<float> * 1.75f / 3; // of two rays, and of the throughputs
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(tilts[0][c], mean * glm::vec4(1, 2, -3, 0)[c], 1e-6f);
+        EXPECT_NEAR(jumps[0][c], mean * glm::vec4(4, -2, 1, 0)[c], 1e-6f);
+        EXPECT_EQ(tilts[2][c], 0);
     }
 }
 

@@ -69,6 +69,55 @@ TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
         }
 }
 
+/// Where a disc lies partly off its surface, both estimates whose difference tells the bias are corrected, each by its
+/// own share: even light has none. Uncorrected, the difference and the moments see the edge.
+TYPED_TEST_P(edges, even_light_has_no_bias_beside_an_edge)
+{
+    auto& b = this->b();
+    const squares all;
+    const auto scene = upload_scene(b, all.s);
+    const uint n = all.rows * all.rows, photons_each = 400;
+    random_source u(6);
+    photon_set set;
+    set.g = make_grid(scene.layout.low, scene.layout.high, {96, 1, 96});
+    for (uint i = 0; i < n * photons_each; ++i) {
+        const dvec3 p = all.corner(u.below(n)) + dvec3(u(), 0, u()) - scene.layout.center;
+        set.positions.emplace_back(glm::vec3(p), 0.0f);
+        set.powers.emplace_back(1.0f / photons_each);
+    }
+    const auto map = sorted_map(b, upload_photons(b, set), set.g);
+    std::vector<glm::vec4> points, normals;
+    for (uint i = 0; i < n; ++i)
+        for (const double at : {0.1, 0.5, 0.9}) {
+            points.emplace_back(glm::vec3(all.corner(i) + dvec3(at, 0, 0.5) - scene.layout.center), 1.0f);
+            normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
+        }
+    const auto p = b.upload(std::span<const glm::vec4>(points)), np = b.upload(std::span<const glm::vec4>(normals));
+    const knn_settings k{
+        .max_radius = 0.3f, .search = search_kind::fixed_radius, .filter = filter_kind::silverman, .biases = true};
+    auto e = knn_grid_estimate(b, map, p, np, k);
+    const auto uncorrected = b.download(e.biases.bias), tilted = b.download(e.biases.tilt);
+    correct_edges(b, scene, p, np, e, k.filter);
+    const auto corrected = b.download(e.biases.bias), tilt = b.download(e.biases.tilt),
+               jump = b.download(e.biases.jump);
+    double sum = 0, squares = 0, before = 0, m = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (i % 3 == 1) { // in the middle
+            EXPECT_EQ(corrected[i], uncorrected[i]);
+            EXPECT_EQ(tilt[i], tilted[i]);
+            continue;
+        }
+        const double bias = static_cast<double>(corrected[i].x);
+        sum += bias, squares += bias * bias, m += 1;
+        before += static_cast<double>(uncorrected[i].x);
+        EXPECT_EQ(tilt[i], glm::vec4(0)) << i;
+        EXPECT_EQ(jump[i], glm::vec4(0)) << i;
+    }
+    const double spread = std::sqrt(squares / m - sum * sum / (m * m));
+    EXPECT_NEAR(sum / m, 0, 4 * spread / std::sqrt(m));
+    EXPECT_GT(std::abs(before / m), 8 * spread / std::sqrt(m)) << "the test sees enough";
+}
+
 // A bulb below a mirror: caustic light falls onto the floor as from a bulb as far above the mirror.
 inline constexpr double bulb_height = 1.5, bulb_power = 100; ///< m above the floor, in the mirror; W
 inline scene floor_lit_by_a_mirror()

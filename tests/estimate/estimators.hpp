@@ -68,12 +68,14 @@ protected:
         // Errors always, but for the paper's own estimate, which has a path of its own without them.
         settings.errors = settings.search != search_kind::at_least_k || settings.filter != filter_kind::constant
             || settings.bias != bias_kind::paper;
+        settings.biases = settings.errors;
         const auto points = b.upload(std::span<const vec4>(s.points));
         const auto normals = b.upload(std::span<const vec4>(s.point_normals));
         const auto e = knn_grid_estimate(b, m.map, points, normals, settings);
         const auto irradiance = b.download(e.irradiance);
         const auto used = b.download(e.used);
         const auto standard_error = b.download(e.standard_error);
+        const auto told = biases_of(e);
         for (std::size_t q = 0; q < s.points.size(); ++q) {
             auto own = settings;
             if (settings.radii_at_points) // all are powers of two
@@ -100,7 +102,40 @@ protected:
                         <= 4e-6 * expected.standard_error[c] + 1e-6 * expected.irradiance.x))
                     return "standard error " + std::to_string(c) + " is " + std::to_string(standard_error[q][c])
                         + ", not " + std::to_string(expected.standard_error[c]) + where;
+            if (settings.biases)
+                if (const auto wrong = other_biases(told, q, expected); !wrong.empty())
+                    return wrong + where;
         }
+        return {};
+    }
+
+    /// Biases, downloaded.
+    struct told_biases {
+        std::vector<vec4> bias, tilt, jump, constant;
+    };
+    told_biases biases_of(const knn_estimates<B>& e)
+    {
+        auto& b = this->b();
+        return {b.download(e.biases.bias), b.download(e.biases.tilt), b.download(e.biases.jump),
+            b.download(e.biases.constant)};
+    }
+    /// What differs between the biases of a point and what brute force finds, or nothing. Their sums have terms of
+    /// either sign.
+    static std::string other_biases(const told_biases& told, std::size_t q, const brute_estimate& expected)
+    {
+        const double all = std::max({expected.constant.x, expected.constant.y, expected.constant.z});
+        const auto differ = [&](const char* name, const vec4& found, const glm::dvec3& known) {
+            for (int c = 0; c < 3; ++c)
+                if (!(std::abs(static_cast<double>(found[c]) - known[c]) <= 1e-5 * all))
+                    return std::string(name) + " " + std::to_string(c) + " is " + std::to_string(found[c]) + ", not "
+                        + std::to_string(known[c]);
+            return std::string();
+        };
+        for (const auto& wrong :
+            {differ("bias", told.bias[q], expected.bias), differ("tilt", told.tilt[q], expected.tilt),
+                differ("jump", told.jump[q], expected.jump), differ("constant", told.constant[q], expected.constant)})
+            if (!wrong.empty())
+                return wrong;
         return {};
     }
 

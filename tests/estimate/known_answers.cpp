@@ -153,6 +153,23 @@ brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>&
     }
     const double per_area = norms[static_cast<int>(k.filter)] / (M_PI * disc2);
     e.irradiance *= per_area;
+    const glm::dvec3 at(s.points[q]), normal(s.point_normals[q]);
+    constexpr double mean_distance2[] = {1 / 2.0, 3 / 10.0, 1 / 3.0, 1 / 4.0};
+    for (const auto& [d2, id] : near) {
+        if (static_cast<double>(d2) >= e.radius2)
+            continue;
+        const double t = static_cast<double>(d2) / disc2;
+        const glm::dvec3 power = glm::dvec3(powers[id]) / (M_PI * disc2);
+        e.constant += power;
+        e.bias += power * (1 - 2 * (1 - t)); // by the constant filter less by Epanechnikov's
+        glm::dvec3 offset = (glm::dvec3(s.photons.positions[id]) - at) / std::sqrt(disc2);
+        offset -= glm::dot(offset, normal) * normal;
+        offset *= (power.x + power.y + power.z) / 3;
+        e.tilt += offset;
+        if (t > 0)
+            e.jump += offset * (1 / std::sqrt(t) - 4.0 / 3);
+    }
+    e.bias *= 6 * mean_distance2[static_cast<int>(k.filter)];
     // If the n-th photon sets the radius and all have one power, n / (pi r^2) has the relative variance 1 / (n - 2).
     // The sum of their squares gives 1 / (the number summed) in its place.
     const double n = static_cast<double>(near.size());

@@ -34,6 +34,8 @@ struct brute_estimate {
     bool kth = false; ///< a photon set the radius
     glm::dvec3 irradiance{0};
     glm::dvec4 standard_error{0}; ///< w: of the sum of the channels
+    // Of the photons nearer than the radius: estimate_biases.
+    glm::dvec3 bias{0}, tilt{0}, jump{0}, constant{0};
 };
 
 /// Squared distance as the search measures it, or nothing where a policy rejects the photon. Written out in single

@@ -131,7 +131,7 @@ TYPED_TEST_P(estimators, searches_can_be_watched_and_resumed)
     for (const auto search : all_searches) {
         knn_settings k{.k = 200, .max_radius = 0.3f};
         k.search = search;
-        k.errors = true;
+        k.errors = k.biases = true;
         const auto whole = knn_grid_estimate(b, map, at, k);
         k.visits_per_pass = 100; // another budget, the same result
         k.ranges_per_pass = 20;
@@ -148,6 +148,8 @@ TYPED_TEST_P(estimators, searches_can_be_watched_and_resumed)
                 ASSERT_TRUE(std::isfinite(e.w) && e.w >= 0);
             for (const auto& u : b.download(now.used))
                 ASSERT_LE(u.x, 4000u);
+            for (const auto& e : b.download(now.biases.bias))
+                ASSERT_TRUE(std::isfinite(e.x));
         }
         EXPECT_GT(passes, 4u);
         EXPECT_EQ(count_different_bits(b.download(watched.estimates().irradiance), b.download(whole.irradiance)), 0u)
@@ -155,7 +157,52 @@ TYPED_TEST_P(estimators, searches_can_be_watched_and_resumed)
         EXPECT_EQ(
             count_different_bits(b.download(watched.estimates().standard_error), b.download(whole.standard_error)), 0u);
         EXPECT_EQ(count_different_bits(b.download(watched.estimates().used), b.download(whole.used)), 0u);
+        EXPECT_EQ(count_different_bits(b.download(watched.estimates().biases.bias), b.download(whole.biases.bias)), 0u);
+        EXPECT_EQ(count_different_bits(b.download(watched.estimates().biases.jump), b.download(whole.biases.jump)), 0u);
         EXPECT_TRUE(watched.advance(5).finished);
+    }
+}
+
+/// The paper's estimate, which has a path of its own where no bias is asked for; and points without normals or photons.
+TYPED_TEST_P(estimators, biases_do_not_change_what_they_are_of)
+{
+    auto& b = this->b();
+    const auto s = make_oriented(distribution::planar, 2000, {8, 8, 8}, 200, 3);
+    const auto m = this->known(s, map_kind::sorted);
+    auto points = s.points;
+    points[0].w = 0;
+    points[1].x = std::numeric_limits<float>::quiet_NaN();
+    const auto at = b.upload(std::span<const vec4>(points)), normals = b.upload(std::span<const vec4>(s.point_normals));
+    for (const auto search : all_searches) {
+        knn_settings k{.k = 40, .max_radius = 0.2f};
+        k.search = search;
+        k.bias = bias_kind::paper;
+        const auto plain = knn_grid_estimate(b, m.map, at, normals, k);
+        EXPECT_EQ(plain.biases.bias.size() + plain.biases.jump.size(), 0u);
+        k.biases = true;
+        const auto e = knn_grid_estimate(b, m.map, at, normals, k);
+        EXPECT_EQ(count_different_bits(b.download(e.used), b.download(plain.used)), 0u) << int(search);
+        const auto light = b.download(e.irradiance), plain_light = b.download(plain.irradiance);
+        const auto told = this->biases_of(e);
+        for (std::size_t q = 0; q < 2; ++q)
+            EXPECT_EQ(told.bias[q] + told.tilt[q] + told.jump[q] + told.constant[q], vec4(0)) << q;
+        double largest = 0;
+        for (std::size_t q = 2; q < s.points.size(); ++q) {
+            ASSERT_NEAR(light[q].x, plain_light[q].x, 1e-6f * plain_light[q].x);
+            const auto expected = estimate_by_force(s, m.ids, m.powers, q, k, std::optional<float>(light[q].w));
+            EXPECT_EQ(this->other_biases(told, q, expected), "") << int(search) << ", point " << q;
+            largest = std::max(largest, std::abs(expected.bias.x));
+        }
+        EXPECT_GT(largest, 0);
+        // Without normals, offsets from the point count whole.
+        const auto without = this->biases_of(knn_grid_estimate(b, m.map, at, k));
+        auto no_normals = s;
+        no_normals.point_normals.assign(s.points.size(), vec4(0));
+        for (std::size_t q = 2; q < s.points.size(); ++q)
+            EXPECT_EQ(this->other_biases(without, q,
+                          estimate_by_force(no_normals, m.ids, m.powers, q, k, std::optional<float>(light[q].w))),
+                "")
+                << int(search) << ", point " << q;
     }
 }
 
@@ -172,15 +219,16 @@ TYPED_TEST_P(estimators, equal_the_serial_backends_bit_for_bit)
                     k.search = search;
                     k.filter = filter_kind::epanechnikov;
                     k.leaks = {.side = true, .flattening = 2};
-                    k.errors = true;
+                    k.errors = k.biases = true;
                     const auto map = sorted_map(device, upload_photons(device, s), s.photons.g);
                     const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(s.points)),
                         device.upload(std::span<const vec4>(s.point_normals)), k);
-                    return std::tuple{
-                        device.download(e.irradiance), device.download(e.used), device.download(e.standard_error)};
+                    return std::tuple{device.download(e.irradiance), device.download(e.used),
+                        device.download(e.standard_error), device.download(e.biases.bias),
+                        device.download(e.biases.tilt), device.download(e.biases.jump)};
                 };
-                const auto [irradiance, used, errors] = run(b);
-                const auto [irradiance_s, used_s, errors_s] = run(serial);
+                const auto [irradiance, used, errors, bias, tilt, jump] = run(b);
+                const auto [irradiance_s, used_s, errors_s, bias_s, tilt_s, jump_s] = run(serial);
                 const auto where = std::string(name_of(d)) + " search " + std::to_string(int(search));
                 const bool exact = b.caps().exact_division && b.caps().exact_sqrt;
                 float largest_power = 0;
@@ -203,6 +251,9 @@ TYPED_TEST_P(estimators, equal_the_serial_backends_bit_for_bit)
                     EXPECT_EQ(count_different_bits(irradiance, irradiance_s), 0u) << where;
                     EXPECT_EQ(count_different_bits(used, used_s), 0u) << where;
                     EXPECT_EQ(count_different_bits(errors, errors_s), 0u) << where;
+                    EXPECT_EQ(count_different_bits(bias, bias_s), 0u) << where;
+                    EXPECT_EQ(count_different_bits(tilt, tilt_s), 0u) << where;
+                    EXPECT_EQ(count_different_bits(jump, jump_s), 0u) << where;
                 }
             }
 }

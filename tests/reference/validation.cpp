@@ -7,3 +7,4 @@
 #include "mixed_light_tests.hpp"
 #include "nearest_tests.hpp"
 #include "shading_normal_tests.hpp"
+#include "told_bias_tests.hpp"

@@ -2,6 +2,7 @@
 #include "exact_sum_tests.hpp"
 #include "film_tests.hpp"
 #include "picture_error_tests.hpp"
+#include "pixel_bias_tests.hpp"
 
 #include <photongrid/render/previews.hpp>
 #include <photongrid/render/render_state.hpp>

@@ -94,7 +94,7 @@ REGISTER_TYPED_TEST_SUITE_P(pictures, caustic_photons_of_their_own_have_the_powe
     a_final_gather_below_a_coat_has_the_known_radiance, a_final_gather_has_the_known_radiance_in_a_corner,
     the_parts_of_a_gathered_picture_add_up, a_final_gather_equals_serials, a_gathered_picture_does_not_depend_on_bands,
     passes_have_the_radii_of_the_first_map_made_smaller, shrinking_radii_equal_serials,
-    shrinking_radii_do_not_depend_on_how_passes_are_run, blur_fades_with_shrinking_radii,
+    shrinking_radii_do_not_depend_on_how_passes_are_run, biases_equal_serials, blur_fades_with_shrinking_radii,
     the_rays_of_a_gather_are_progress, gather_rays_are_stratified_over_passes,
     paths_in_a_closed_sphere_have_the_known_radiance, paths_have_the_known_radiance_in_a_corner, paths_equal_serials,
     an_exact_picture_does_not_depend_on_how_it_is_run, an_exact_caustic_converges_at_the_rate_of_theory,

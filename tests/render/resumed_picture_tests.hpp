@@ -11,6 +11,7 @@ TYPED_TEST_P(progressive, a_picture_goes_on_from_its_state)
     auto s = this->small_scene();
     s.render.view.spp = 4;
     s.render.output.aov = true;
+    s.render.output.tell_bias = bias_telling::yes;
     const auto expected = this->whole(s, s.render);
     render_state state;
     uint least = 1;
@@ -29,15 +30,18 @@ TYPED_TEST_P(progressive, a_picture_goes_on_from_its_state)
         if (drawing.finished()) {
             EXPECT_TRUE(same_bytes(drawing.picture(), expected));
             EXPECT_EQ(drawing.picture().layers.relative_error, expected.layers.relative_error);
+            EXPECT_EQ(drawing.picture().layers.bias, expected.layers.bias);
         }
     }
     EXPECT_GE(lives, 4);
+    EXPECT_TRUE(std::any_of(expected.layers.bias.begin(), expected.layers.bias.end(), [](float b) { return b != 0; }));
 
     typename TestFixture::loop other(this->b());
-    auto larger = s.render, without_layers = s.render;
+    auto larger = s.render, without_layers = s.render, without_biases = s.render;
+    without_biases.output.tell_bias = bias_telling::no;
     larger.output.width += 1;
     without_layers.output.aov = false;
-    for (const auto& settings : {larger, without_layers}) {
+    for (const auto& settings : {larger, without_layers, without_biases}) {
         other.start(s, settings);
         EXPECT_THROW(other.resume(state), std::invalid_argument);
         EXPECT_THROW(other.resume({{}, {0, 0, 1, {}, {}}}), std::invalid_argument);
@@ -46,7 +50,7 @@ TYPED_TEST_P(progressive, a_picture_goes_on_from_its_state)
     other.start(s, s.render);
     const auto n = expected.pixels.size();
     const std::vector<glm::vec4> some(n);
-    other.resume({{}, {0, 0, 17, {}, {some, some, some}}}); // more rays than there are
+    other.resume({{}, {0, 0, 17, {}, {some, some, some, {some, some, some}}}}); // more rays than there are
     EXPECT_THROW(other.step(), std::invalid_argument);
 }
 

@@ -68,6 +68,44 @@ TYPED_TEST_P(pictures, shrinking_radii_equal_serials)
         }
 }
 
+/// The layer of biases is serial's, in all of its parts, and asking for it leaves the light alone. Where there is no
+/// estimate, or no photon is seen, it is 0.
+TYPED_TEST_P(pictures, biases_equal_serials)
+{
+    auto& b = this->b();
+    serial_backend serial;
+    for (const auto& s : {small_cornell(), all_shapes()})
+        for (const auto edges : {edge_correction::none, edge_correction::polygons}) {
+            auto settings = shrinking(s.render, 3);
+            settings.map.photons /= 4;
+            settings.output.width = 24;
+            settings.output.height = 18;
+            settings.estimate.edges = edges;
+            settings.estimate.leaks.min_cosine = 0.5f;
+            const auto plain = this->picture(s, settings);
+            EXPECT_TRUE(plain.layers.bias.empty());
+            settings.output.tell_bias = bias_telling::yes;
+            const auto told = this->picture(s, settings);
+            EXPECT_TRUE(same_bytes(told, plain));
+            const auto& bias = told.layers.bias;
+            ASSERT_EQ(bias.size(), told.pixels.size());
+            if (!b.caps().exact_division || !b.caps().exact_sqrt)
+                continue;
+            const auto expected = render(serial, s, settings).picture.layers.bias;
+            double squares = 0, differences = 0;
+            for (std::size_t i = 0; i < bias.size(); ++i) {
+                const double known = static_cast<double>(expected[i]), off = static_cast<double>(bias[i]) - known;
+                squares += known * known;
+                differences += off * off;
+            }
+            EXPECT_GT(squares, 0);
+            EXPECT_LE(differences, 1e-6 * squares) << s.name;
+            settings.output.only = light_part::direct;
+            for (const float none : this->picture(s, settings).layers.bias)
+                ASSERT_EQ(none, 0);
+        }
+}
+
 /// Step by step, and from a pass in the middle on, a picture has the same bytes.
 TYPED_TEST_P(pictures, shrinking_radii_do_not_depend_on_how_passes_are_run)
 {

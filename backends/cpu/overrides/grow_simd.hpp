@@ -257,7 +257,7 @@ HWY_INLINE void visit_rings(const search_job& j, const glm::vec4& point, Growth&
 template <int POLICIES>
 HWY_NOINLINE void grow_points(const search_job& j, std::size_t begin, std::size_t end)
 {
-    const bool store = j.filter != filter_kind::constant || j.leave_out || j.errors;
+    const bool store = j.filter != filter_kind::constant || j.leave_out || j.errors || j.biases.bias != nullptr;
     packet held;
     std::vector<uint> at_radius;
     for (std::size_t o = begin; o < end; ++o) {
@@ -280,6 +280,8 @@ HWY_NOINLINE void grow_points(const search_job& j, std::size_t begin, std::size_
             j.errors ? gather<true>(j, point, found.chosen(), held, at_radius)
                      : gather<false>(j, point, found.chosen(), held, at_radius),
             found.visited());
+        if (j.biases.bias != nullptr)
+            tell_bias(j, point, found.chosen(), held);
     }
 }
 

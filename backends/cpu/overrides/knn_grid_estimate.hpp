@@ -33,6 +33,10 @@ inline
     unfinished(e_.irradiance, glm::vec4(0, 0, 0, in_.max_radius2()));
     unfinished(e_.used, glm::uvec2(0));
     unfinished(e_.standard_error, glm::vec4(0));
+    for (auto* buffer : e_.biases.all()) {
+        *buffer = device.make<glm::vec4>(s.biases ? n : 0);
+        unfinished(*buffer, glm::vec4(0));
+    }
     const cpu_backend::stopwatch watch;
     order_ = cpu::order_for_search(device, map, points);
     device.count_passes("knn_search", 0, watch);
@@ -56,6 +60,11 @@ inline
         job.used = device.elements_to_write(e_.used).data();
         if (job.errors)
             job.standard_error = device.elements_to_write(e_.standard_error).data();
+        if (in_.s.biases) {
+            auto& b = e_.biases;
+            job.biases = {device.elements_to_write(b.bias).data(), device.elements_to_write(b.tilt).data(),
+                device.elements_to_write(b.jump).data(), device.elements_to_write(b.constant).data()};
+        }
         device.threads().for_blocks(done_ - begin, cpu::search_block_size,
             [&](std::size_t first, std::size_t past) { cpu::search_block(job, begin + first, begin + past); });
     }
@@ -70,7 +79,10 @@ inline
     knn_search<cpu_backend>::estimates() &
 {
     auto& device = *in_.device;
-    return {cpu::copy(device, e_.irradiance), cpu::copy(device, e_.used), cpu::copy(device, e_.standard_error)};
+    const auto& b = e_.biases;
+    return {cpu::copy(device, e_.irradiance), cpu::copy(device, e_.used), cpu::copy(device, e_.standard_error),
+        {cpu::copy(device, b.bias), cpu::copy(device, b.tilt), cpu::copy(device, b.jump),
+            cpu::copy(device, b.constant)}};
 }
 
 #if !defined(PHOTONGRID_CPU_COMPILED)

@@ -190,7 +190,7 @@ public:
         size_ = n;
         return last_id;
     }
-    /// Loads the powers of all photons that add() has added.
+    /// Loads the powers of all photons that add() has added, and their positions if biases are told.
     HWY_INLINE void fetch_powers(const search_job& j)
     {
         const floats d;
@@ -211,6 +211,11 @@ public:
             hn::Store(hn::GatherIndex(d, j.powers.x, at), d, of(red) + i);
             hn::Store(hn::GatherIndex(d, j.powers.y, at), d, of(green) + i);
             hn::Store(hn::GatherIndex(d, j.powers.z, at), d, of(blue) + i);
+            if (j.biases.bias != nullptr) {
+                hn::Store(hn::GatherIndex(d, j.positions.x, at), d, of(x) + i);
+                hn::Store(hn::GatherIndex(d, j.positions.y, at), d, of(y) + i);
+                hn::Store(hn::GatherIndex(d, j.positions.z, at), d, of(z) + i);
+            }
         }
     }
 

@@ -81,7 +81,9 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
         j.normals = device.components(photons.normals);
     j.list = device.elements(in.map->list).data();
     j.points = device.elements(*in.points).data();
-    if (s.leaks.needs_point_normals())
+    j.in_plane = s.biases && in.normals != nullptr;
+    j.bias_factor = detail::bias_factor(s.filter);
+    if (s.leaks.needs_point_normals() || j.in_plane)
         j.point_normals = device.elements(*in.normals).data();
     j.order = device.elements(order).data();
     j.search = s.search;

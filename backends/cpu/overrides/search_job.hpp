@@ -21,7 +21,7 @@ struct search_job {
     soa_vectors<const float> positions, powers, directions, normals; ///< the last two only if a policy needs them
     const uint* list = nullptr;
     const glm::vec4* points = nullptr;
-    const glm::vec4* point_normals = nullptr; ///< only if a policy needs them
+    const glm::vec4* point_normals = nullptr; ///< only if a policy or biases need them
     const uint* order = nullptr;              ///< order of the points; it should keep neighbours in space together
 
     search_kind search = search_kind::exact_k;
@@ -43,6 +43,11 @@ struct search_job {
     glm::vec4* irradiance = nullptr;
     glm::uvec2* used = nullptr;
     glm::vec4* standard_error = nullptr; ///< only with errors
+    struct bias_places {
+        glm::vec4 *bias = nullptr, *tilt = nullptr, *jump = nullptr, *constant = nullptr;
+    } biases;              ///< null, or where biases are stored (estimate_biases)
+    float bias_factor = 0; ///< of the filter
+    bool in_plane = false; ///< offsets are projected to the surface: point_normals are there
 
     uint* ids = nullptr;         ///< if not null, lists are made instead of estimates: k entries per point here ...
     float* distances2 = nullptr; ///< ... and here

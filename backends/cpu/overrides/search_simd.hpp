@@ -105,6 +105,8 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
             finish(j, point, r,
                 j.errors ? gather<true>(j, point, r, near, at_radius) : gather<false>(j, point, r, near, at_radius),
                 visited);
+        if (j.biases.bias != nullptr)
+            tell_bias(j, point, r, near);
     };
     const auto search_alone = [&](const query& q, uint point) HWY_ATTR {
         float bound2 = j.max_radius2;

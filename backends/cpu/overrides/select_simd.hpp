@@ -1,6 +1,6 @@
 // SIMD code that selects and lists the photons of a packet. Included once per instruction set, so it has no include
 // guard; other files include simd.hpp.
-#include <photongrid/backends/cpu/overrides/gather_simd.hpp>
+#include <photongrid/backends/cpu/overrides/bias_simd.hpp>
 
 #include <bit>
 

@@ -139,6 +139,10 @@ void settings_panel::draw(double shown_exposure)
         "From pass to pass: each pass finds its own (per_pass), or they shrink (shrinking). Speed: shrinking radii "
         "take "
         "a search more. Error: blur fades with every pass, too.");
+    choice(setting_table::tell_bias, "tell bias",
+        "Whether until error counts the blur of each pixel, and not its noise alone; auto: if radii shrink. Speed: "
+        "searches "
+        "take a little longer. Error: none.");
     number(setting_table::light_samples, "light samples", 1, 256,
         "Shadow rays per lamp and eye ray. Speed: time in proportion, for direct light. Error: smoother penumbras.");
     choice(setting_table::indirect, "indirect light",

@@ -23,15 +23,16 @@ enum class filter_kind : std::uint8_t {
 struct filter_entry {
     const char* name; ///< in scene files and on the command line
     filter_kind kind;
-    float norm; ///< 1 / mean of the weights in filter.glsl over the disc
+    float norm;           ///< 1 / mean of the weights in filter.glsl over the disc
+    float mean_distance2; ///< mean of d^2 / r^2 over the disc, weighted by the filter
 };
 
 /// All filters, in the order of filter_kind.
 inline constexpr std::array filters{
-    filter_entry{"constant", filter_kind::constant, 1},
-    filter_entry{"cone", filter_kind::cone, 3},
-    filter_entry{"epanechnikov", filter_kind::epanechnikov, 2},
-    filter_entry{"silverman", filter_kind::silverman, 3},
+    filter_entry{"constant", filter_kind::constant, 1, 1 / 2.0f},
+    filter_entry{"cone", filter_kind::cone, 3, 3 / 10.0f},
+    filter_entry{"epanechnikov", filter_kind::epanechnikov, 2, 1 / 3.0f},
+    filter_entry{"silverman", filter_kind::silverman, 3, 1 / 4.0f},
 };
 
 static_assert(
@@ -45,6 +46,14 @@ static_assert(
 
 namespace detail {
     constexpr const filter_entry& entry_of(filter_kind f) { return filters[static_cast<std::size_t>(f)]; }
+
+    /// By how much the bias of an estimate by filter `f` is larger than the difference of the estimates by the constant
+    /// and by Epanechnikov's filter. Light with a Laplacian L raises an estimate by L r^2 / 4 times its mean_distance2.
+    constexpr float bias_factor(filter_kind f)
+    {
+        return entry_of(f).mean_distance2
+            / (entry_of(filter_kind::constant).mean_distance2 - entry_of(filter_kind::epanechnikov).mean_distance2);
+    }
 
     /// The SWITCH of filter.glsl, as a bit of launch::switches.
     constexpr uint filter_switch(filter_kind f)

@@ -7,9 +7,12 @@
 //                             \-> grown_radius -> gather_photons -> irradiance_estimate
 //     exact_k:      kth_guess -> kth_distance -> kth_result -> kth_tie -> gather_photons -> irradiance_estimate
 //     fixed_radius: given_radius -------------------------------------> gather_photons -> irradiance_estimate
+//
+// Their biases, if they are asked for, come last (bias_sums.hpp).
 #pragma once
 
 #include <photongrid/backend/zero_vectors.kernel.hpp>
+#include <photongrid/estimate/bias_sums.hpp>
 #include <photongrid/estimate/gather_photons.kernel.hpp>
 #include <photongrid/estimate/gather_start.kernel.hpp>
 #include <photongrid/estimate/grown_radius.kernel.hpp>
@@ -36,6 +39,7 @@ struct knn_estimates {
     /// the variance is infinite. In a routed map a photon that stands for s photons of its cell counts as one of s
     /// times the power: where cells overflow, the error is up to sqrt(s) times too large.
     buffer_of<B, glm::vec4> standard_error;
+    estimate_biases<B> biases{}; ///< empty unless requested; 0 if no photon was found, and while the search runs
 };
 
 /// A search for many points at once, which advances step by step; estimates so far can be read in between.
@@ -86,7 +90,7 @@ public:
     knn_estimates<B> estimates();
 
 private:
-    enum class stage { grow, radius, gather, finished };
+    enum class stage { grow, radius, gather, bias, finished };
 
     knn_search_by_kernels(
         B& device, const map_buffers<B>& map, const vectors& points, const vectors* normals, const knn_settings& s)
@@ -119,9 +123,19 @@ private:
 
     progress run_stage(uint passes);
 
+    knn_estimates<B> without_biases();
+    /// After the last photon is summed.
+    void begin_biases()
+    {
+        if (in_.s.biases)
+            bias_sums_.emplace(in_, without_biases().irradiance);
+        stage_ = in_.s.biases ? stage::bias : stage::finished;
+    }
+
     detail::search_inputs<B> in_;
     stage stage_ = stage::finished;
     std::optional<knn_radius<B>> radius_search_;
+    std::optional<detail::bias_sums<B>> bias_sums_;
     // States. Each stage has its own and releases those of the stage before.
     vectors gathered_, radius_, sum_, compensation_, squares_;
     buffer_of<B, glm::uvec4> found_, chosen_, cursor_, tally_;
@@ -133,13 +147,23 @@ private:
 template <backend B>
 knn_estimates<B> knn_search_by_kernels<B>::estimates()
 {
+    auto e = without_biases();
+    if (in_.s.biases)
+        e.biases
+            = stage_ == stage::finished ? bias_sums_->biases() : detail::no_biases<B>(*in_.device, in_.points->size());
+    return e;
+}
+
+template <backend B>
+knn_estimates<B> knn_search_by_kernels<B>::without_biases()
+{
     B& device = *in_.device;
     const auto n = in_.points->size();
     const auto& s = in_.s;
     knn_estimates<B> e{device.template make<glm::vec4>(n), device.template make<glm::uvec2>(n),
         device.template make<glm::vec4>(s.errors ? n : 0)};
     // Errors are 0 until photons are gathered; the contents of a new buffer are undefined.
-    if (s.errors && stage_ != stage::gather && stage_ != stage::finished)
+    if (s.errors && (stage_ == stage::grow || stage_ == stage::radius))
         device.template run<kernels::zero_vectors>(n, {}, reads(), writes(e.standard_error));
     if (gathered_.size() > 0 || n == 0) {
         device.template run<kernels::knn_result>(n,
@@ -194,7 +218,7 @@ void knn_search_by_kernels<B>::next_stage()
     switch (stage_) {
     case stage::grow:
         if (shows_running_estimate(in_.s)) {
-            stage_ = stage::finished; // the growing search has already summed the photons
+            begin_biases(); // the growing search has already summed the photons
             return;
         }
         radius_ = in_.template make<glm::vec4>();
@@ -212,10 +236,11 @@ void knn_search_by_kernels<B>::next_stage()
         start_gathering();
         return;
     case stage::gather:
-        stage_ = stage::finished;
         compensation_ = {};
         cursor_ = {};
+        begin_biases();
         return;
+    case stage::bias: stage_ = stage::finished; return;
     case stage::finished: return;
     }
 }
@@ -254,6 +279,7 @@ progress knn_search_by_kernels<B>::run_stage(uint passes)
                 in_.photon_normals(), m.list, m.photons.powers, m.boxes),
             writes(radius_, chosen_, sum_, compensation_, squares_, cursor_, tally_), passes);
     }
+    case stage::bias: return bias_sums_->advance(passes);
     case stage::finished: break;
     }
     progress nothing;

@@ -24,6 +24,7 @@ struct knn_settings {
     bias_kind bias = bias_kind::unbiased;       ///< whether the photon that sets the radius counts
     leak_policy leaks{};                        ///< leak rejection; none by default
     bool errors = false;                        ///< compute standard errors
+    bool biases = false;                        ///< compute biases (bias_sums.hpp)
     /// The most photons that one query examines in a pass, at least 1. Results depend neither on this nor on
     /// ranges_per_pass. llvmpipe and lavapipe silently end loops after 65,535 iterations, counted over all 16 lanes of
     /// a subgroup: there, visits_per_pass + ranges_per_pass must be at most 3,968, which is 4,095 per lane less 127 for

@@ -57,7 +57,8 @@ namespace {
         const auto& l = picture.layers;
         std::vector<layer_channel> all;
         for (const auto& c : {layer_channel{"estimate.radius", l.radius}, layer_channel{"estimate.count", l.count},
-                 layer_channel{"estimate.relative_error", l.relative_error}, layer_channel{"noise", l.noise}})
+                 layer_channel{"estimate.relative_error", l.relative_error}, layer_channel{"noise", l.noise},
+                 layer_channel{"bias", l.bias}})
             if (!c.values.empty())
                 all.push_back(c);
         return all;

@@ -9,6 +9,15 @@
 
 namespace photongrid {
 
+/// The bias of pixels, and the moments that find steps of the light (estimate_biases): sums over eye rays as those of
+/// the light, W/(m^2 sr). Empty if they are not told.
+template <backend B>
+struct pixel_biases {
+    buffer_of<B, glm::vec4> bias; ///< rgb
+    buffer_of<B, glm::vec4> tilt; ///< xyz
+    buffer_of<B, glm::vec4> jump; ///< xyz
+};
+
 /// The pixels to which a pass adds light, row by row as in `raster`.
 template <backend B>
 struct canvas {
@@ -17,6 +26,7 @@ struct canvas {
     buffer_of<B, glm::vec4> pixels; ///< rgb: radiance, W/(m^2 sr)
     buffer_of<B, glm::vec4> searches; ///< sums: photons used, radius, photons visited, searches
     buffer_of<B, glm::vec4> errors;   ///< x: sum of relative errors; empty without layers
+    pixel_biases<B> biases{};
 };
 
 /// One eye ray per pixel: its hit, and the direct light there.

@@ -5,6 +5,7 @@
 
 #include <photongrid/backend/zero_vectors.kernel.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
+#include <photongrid/render/correct_bias.kernel.hpp>
 #include <photongrid/render/covered_share.kernel.hpp>
 #include <photongrid/render/divide_by_share.kernel.hpp>
 #include <photongrid/trace/device_scene.hpp>
@@ -71,9 +72,9 @@ buffer_of<B, glm::vec4> covered_shares(B& device, const device_scene<B>& s, cons
     return cover;
 }
 
-/// Corrects estimates, and their standard errors if there are any, at points on polygons. Shares below 2^-8 (a corner
-/// of 1.4 degrees) count as 2^-8. The search must reject photons of adjoining surfaces (leak_policy::min_cosine), so
-/// that all photons lie on the corrected surface. Radius and counts do not change.
+/// Corrects estimates, and their standard errors and biases if there are any, at points on polygons. Shares below 2^-8
+/// (a corner of 1.4 degrees) count as 2^-8. The search must reject photons of adjoining surfaces
+/// (leak_policy::min_cosine), so that all photons lie on the corrected surface. Radius and counts do not change.
 /// \throws std::invalid_argument as covered_shares does.
 /// \snippet snippets.cpp correct_edges
 template <backend B>
@@ -86,6 +87,15 @@ void correct_edges(B& device, const device_scene<B>& s, const buffer_of<B, glm::
         estimates.irradiance.size(), {.least = least, .keeps_w = 1u}, reads(cover), writes(estimates.irradiance));
     device.template run<kernels::divide_by_share>(estimates.standard_error.size(), {.least = least, .keeps_w = 0u},
         reads(cover), writes(estimates.standard_error));
+    auto& b = estimates.biases;
+    if (b.bias.size() == 0)
+        return;
+    const auto shares = [&](filter_kind f) {
+        return covered_shares(device, s, points, normals, estimates.irradiance, f, min_radius);
+    };
+    device.template run<kernels::correct_bias>(b.bias.size(), {.factor = detail::bias_factor(filter), .least = least},
+        reads(shares(filter_kind::constant), shares(filter_kind::epanechnikov), b.constant),
+        writes(b.bias, b.tilt, b.jump));
 }
 
 } // namespace photongrid

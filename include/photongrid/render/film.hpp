@@ -4,6 +4,7 @@
 
 #include <photongrid/render/exact_sum.hpp>
 #include <photongrid/render/image.hpp>
+#include <photongrid/render/pixel_bias.hpp>
 #include <photongrid/scene/scene.hpp>
 
 #include <algorithm>
@@ -27,6 +28,17 @@ struct pass_pixels {
     // Empty unless output_settings::aov.
     std::vector<glm::vec4> searches; ///< sums over a pixel's searches: photons used, radius, photons visited, searches
     std::vector<glm::vec4> errors;   ///< x: sum of relative standard errors
+    pass_biases biases{};            ///< empty unless they are told (tells_bias)
+
+    /// All of its vectors, in the order of a film's bytes.
+    std::array<std::vector<glm::vec4>*, 6> parts()
+    {
+        return {&pixels, &searches, &errors, &biases.bias, &biases.tilt, &biases.jump};
+    }
+    std::array<const std::vector<glm::vec4>*, 6> parts() const
+    {
+        return {&pixels, &searches, &errors, &biases.bias, &biases.tilt, &biases.jump};
+    }
 };
 
 /// A picture, and the number of pixels that were NaN or infinite in some pass. Those count as black in that pass.
@@ -42,9 +54,9 @@ public:
     film() = default;
     /// For pictures of width x height pixels. `unit` is a typical radiance, a power of two: sums have a resolution of
     /// 2^-64 units, and pixels above 2^40 units count as infinite. `layers`: also sum the layers
-    /// (output_settings::aov).
-    film(std::uint32_t width, std::uint32_t height, double unit, bool layers)
-        : width_(width), height_(height), unit_(unit), layers_(layers)
+    /// (output_settings::aov). `biases`: also sum the biases of pixels (tells_bias).
+    film(std::uint32_t width, std::uint32_t height, double unit, bool layers, bool biases = false)
+        : width_(width), height_(height), unit_(unit), layers_(layers), biases_(biases)
     {
     }
 
@@ -53,7 +65,8 @@ public:
     void add(std::uint32_t pass, pass_pixels p)
     {
         const std::size_t n = size(), layer = layers_ ? n : 0;
-        if (p.pixels.size() != n || p.searches.size() != layer || p.errors.size() != layer)
+        if (p.pixels.size() != n || p.searches.size() != layer || p.errors.size() != layer
+            || !p.biases.have(biases_ ? n : 0))
             throw std::invalid_argument("film::add: pass " + std::to_string(pass) + ": has "
                 + std::to_string(p.pixels.size()) + " pixels; the film has " + std::to_string(n));
         if (!passes_.insert(pass).second)
@@ -72,7 +85,7 @@ public:
     {
         if (other.passes_.empty())
             return;
-        if (!other.is_for(width_, height_, layers_) || other.unit_ != unit_)
+        if (!other.is_for(width_, height_, layers_, biases_) || other.unit_ != unit_)
             throw std::invalid_argument("film::add: the other film has another size, unit or layers");
         for (const auto pass : other.passes_)
             if (holds(pass))
@@ -87,6 +100,8 @@ public:
                 sums_[i].add(other.sums_[i]);
             for (std::size_t i = 0; i < layer_sums_.size(); ++i)
                 layer_sums_[i].add(other.layer_sums_[i]);
+            for (std::size_t i = 0; i < bias_sums_.size(); ++i)
+                bias_sums_[i].add(other.bias_sums_[i]);
             passes_.merge(other.passes_);
         }
     }
@@ -94,9 +109,9 @@ public:
     /// Whether pass number `pass` was added.
     bool holds(std::uint32_t pass) const { return passes_.contains(pass); }
     /// Whether pictures of it have this size and these layers.
-    bool is_for(std::uint32_t width, std::uint32_t height, bool layers) const
+    bool is_for(std::uint32_t width, std::uint32_t height, bool layers, bool biases = false) const
     {
-        return width == width_ && height == height_ && layers == layers_;
+        return width == width_ && height == height_ && layers == layers_ && biases == biases_;
     }
     /// The number of passes added.
     std::uint32_t passes() const { return static_cast<std::uint32_t>(passes_.size()); }
@@ -111,16 +126,17 @@ public:
             if (size > 0)
                 out.append(static_cast<const char*>(data), size);
         };
-        const std::uint32_t head[] = {width_, height_, layers_ ? 1u : 0u, passes()};
+        const std::uint32_t head[] = {width_, height_, (layers_ ? 1u : 0u) | (biases_ ? 2u : 0u), passes()};
         put(head, sizeof head);
         put(&unit_, sizeof unit_);
         for (const auto pass : passes_)
             put(&pass, sizeof pass);
         if (only_)
-            for (const auto* part : {&only_->pixels, &only_->searches, &only_->errors})
+            for (const auto* part : std::as_const(*only_).parts())
                 put(part->data(), part->size() * sizeof(glm::vec4));
         put(sums_.data(), sums_.size() * sizeof(pixel_sums));
         put(layer_sums_.data(), layer_sums_.size() * sizeof(layer_sums));
+        put(bias_sums_.data(), bias_sums_.size() * sizeof(detail::pixel_bias_sums));
         return out;
     }
     /// The film from its bytes.
@@ -138,30 +154,36 @@ public:
         double unit = 0;
         take(head, sizeof head);
         take(&unit, sizeof unit);
-        if (head[0] > 16384 || head[1] > 16384 || head[2] > 1 || head[3] > 65536 || !(unit > 0) || std::isinf(unit))
+        if (head[0] > 16384 || head[1] > 16384 || head[2] > 3 || head[3] > 65536 || !(unit > 0) || std::isinf(unit))
             throw std::invalid_argument("film: the data are not a film's");
-        film f(head[0], head[1], unit, head[2] != 0);
-        const std::size_t n = f.size();
+        film f(head[0], head[1], unit, (head[2] & 1) != 0, (head[2] & 2) != 0);
+        const std::size_t n = f.size(), layer = f.layers_ ? n : 0, biases = f.biases_ ? n : 0;
         for (std::uint32_t i = 0; i < head[3]; ++i) {
             std::uint32_t pass = 0;
             take(&pass, sizeof pass);
             f.passes_.insert(pass);
         }
         if (head[3] == 1) {
-            const std::size_t layer = f.layers_ ? n : 0;
-            if (in.size() != (n + 2 * layer) * sizeof(glm::vec4))
+            if (in.size() != (n + 2 * layer + 3 * biases) * sizeof(glm::vec4))
                 throw std::invalid_argument("film: the data have the wrong length");
-            f.only_
-                = pass_pixels{std::vector<glm::vec4>(n), std::vector<glm::vec4>(layer), std::vector<glm::vec4>(layer)};
-            for (auto* part : {&f.only_->pixels, &f.only_->searches, &f.only_->errors})
+            f.only_.emplace();
+            f.only_->pixels.resize(n);
+            f.only_->searches.resize(layer);
+            f.only_->errors.resize(layer);
+            for (auto* part : f.only_->biases.parts())
+                part->resize(biases);
+            for (auto* part : f.only_->parts())
                 take(part->data(), part->size() * sizeof(glm::vec4));
         } else if (head[3] > 1) {
-            if (in.size() != n * (sizeof(pixel_sums) + (f.layers_ ? sizeof(layer_sums) : 0)))
+            if (in.size()
+                != n * sizeof(pixel_sums) + layer * sizeof(layer_sums) + biases * sizeof(detail::pixel_bias_sums))
                 throw std::invalid_argument("film: the data have the wrong length");
             f.sums_.resize(n);
-            f.layer_sums_.resize(f.layers_ ? n : 0);
+            f.layer_sums_.resize(layer);
+            f.bias_sums_.resize(biases);
             take(f.sums_.data(), n * sizeof(pixel_sums));
-            take(f.layer_sums_.data(), f.layer_sums_.size() * sizeof(layer_sums));
+            take(f.layer_sums_.data(), layer * sizeof(layer_sums));
+            take(f.bias_sums_.data(), biases * sizeof(detail::pixel_bias_sums));
         }
         if (f.passes() != head[3] || !in.empty())
             throw std::invalid_argument("film: the data are not a film's");
@@ -183,6 +205,8 @@ public:
             develop_one(out);
         else
             develop_many(out);
+        for (std::size_t i = 0; biases_ && i < size(); ++i)
+            out.picture.layers.bias.push_back(static_cast<float>(bias_of(i)));
         return out;
     }
 
@@ -200,6 +224,20 @@ public:
             const double all = sum.rgb[0].value() + sum.rgb[1].value() + sum.rgb[2].value();
             visit(all * unit_ / (3 * static_cast<double>(passes_.size())), standard_error_of(sum, all));
         }
+    }
+
+    /// Whether the biases of pixels are told.
+    bool has_biases() const { return biases_; }
+    /// The bias of the mean of the passes at a pixel, W/(m^2 sr), mean of the channels: detail::pixel_bias_sums::value.
+    /// 0 if biases are not told.
+    double bias_of(std::size_t pixel) const
+    {
+        if (!bias_sums_.empty())
+            return bias_sums_[pixel].value(static_cast<double>(passes_.size())) * unit_;
+        if (!biases_ || !only_)
+            return 0;
+        const auto& b = only_->biases.bias[pixel];
+        return finite(b) ? static_cast<double>(b.x + b.y + b.z) / 3 : std::numeric_limits<double>::infinity();
     }
 
 private:
@@ -240,6 +278,8 @@ private:
         sums_.resize(size());
         if (layers_)
             layer_sums_.resize(size());
+        if (biases_)
+            bias_sums_.resize(size());
         add_up(*std::exchange(only_, std::nullopt));
     }
     void add_up(const pass_pixels& p)
@@ -272,6 +312,14 @@ private:
             if (const double error = static_cast<double>(p.errors[i].x); exact_sum::holds(error))
                 sum.error.add(error);
         }
+        add_up(p.biases);
+    }
+
+    void add_up(const pass_biases& p)
+    {
+        for (std::size_t i = 0; i < bias_sums_.size(); ++i)
+            bias_sums_[i].add(
+                glm::dvec4(p.bias[i]) / unit_, glm::dvec4(p.tilt[i]) / unit_, glm::dvec4(p.jump[i]) / unit_);
     }
 
     void develop_one(developed_picture& out) const
@@ -328,11 +376,12 @@ private:
 
     std::uint32_t width_ = 0, height_ = 0;
     double unit_ = 1;
-    bool layers_ = false;
+    bool layers_ = false, biases_ = false;
     std::set<std::uint32_t> passes_;
     std::optional<pass_pixels> only_; ///< the floats of the only pass, while there is one
     std::vector<pixel_sums> sums_;
     std::vector<layer_sums> layer_sums_;
+    std::vector<detail::pixel_bias_sums> bias_sums_;
 };
 
 } // namespace photongrid

@@ -179,7 +179,7 @@ namespace detail {
         const eye_hits<B>& ends, const render_settings& settings)
     {
         auto k = search_for_caustics(settings);
-        k.errors = false;
+        k.errors = k.biases = false;
         if (radii.first == nullptr)
             return knn_grid_estimate(device, caustics, ends.points, ends.surfaces, k);
         const auto firsts = knn_grid_estimate(device, radii.map_of_caustics(), ends.points, ends.surfaces, k);

@@ -17,6 +17,9 @@ struct estimate_layers {
     /// of eye rays and shadow rays is in `noise` only.
     std::vector<float> relative_error;
     std::vector<float> noise; ///< standard error of the mean of the passes, mean of the channels; empty for one pass
+    /// How much too bright the blur of estimates makes a pixel on the average, W/(m^2 sr), mean of the channels; where
+    /// it is found by a step of the light, the sign tells nothing (film::bias_of). Empty unless tells_bias().
+    std::vector<float> bias;
 };
 
 /// A picture: linear radiance, W/(m^2 sr), rgb, row by row from the top left.
@@ -24,7 +27,7 @@ struct image {
     std::uint32_t width = 0;       ///< pixels
     std::uint32_t height = 0;      ///< pixels
     std::vector<glm::vec3> pixels; ///< width x height
-    estimate_layers layers{};      ///< empty unless output_settings::aov
+    estimate_layers layers{};      ///< empty unless output_settings::aov or tells_bias()
 };
 
 } // namespace photongrid

@@ -51,9 +51,10 @@ inline double typical_radiance(const scene& s, const scene_layout& layout)
 }
 
 /// The film for the passes of a picture.
-inline film film_for(const scene& s, const scene_layout& layout, const output_settings& output)
+inline film film_for(const scene& s, const scene_layout& layout, const render_settings& settings)
 {
-    return film(output.width, output.height, typical_radiance(s, layout), output.aov);
+    const auto& output = settings.output;
+    return film(output.width, output.height, typical_radiance(s, layout), output.aov, tells_bias(settings));
 }
 
 namespace detail {
@@ -121,6 +122,11 @@ void finish_band(B& device, const view_pass<B>& view, pass_pixels& light, render
     if (band.errors.size() > 0) {
         append(light.searches, searches);
         append(light.errors, device.download(band.errors));
+    }
+    if (const auto& b = band.biases; b.bias.size() > 0) {
+        append(light.biases.bias, device.download(b.bias));
+        append(light.biases.tilt, device.download(b.tilt));
+        append(light.biases.jump, device.download(b.jump));
     }
 }
 

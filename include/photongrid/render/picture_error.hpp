@@ -26,11 +26,10 @@ namespace detail {
     inline bool is_noisy(double mean, double standard_error) { return standard_error > least_spread * std::abs(mean); }
 
     /// The error of a pixel: its root mean square difference from the converged pixel, as a part of its radiance plus
-    /// `dark`. An estimate of its bias belongs here: the root of the sum of both squares takes the standard error's
-    /// place.
-    inline double error_of_pixel(double mean, double standard_error, double dark)
+    /// `dark`.
+    inline double error_of_pixel(double mean, double standard_error, double bias, double dark)
     {
-        return standard_error / (std::abs(mean) + dark);
+        return std::hypot(standard_error, bias) / (std::abs(mean) + dark);
     }
 
     /// Numbers by their size, 32 bins to a factor of two: the errors of the pixels of a picture.
@@ -76,7 +75,8 @@ namespace detail {
 /// picture that more passes converge to, as a part of their radiance (mean of the channels) plus 1 % of the picture's.
 /// Pixels in which all passes agree do not count. Of a percentile of 1, as of any that asks for more than half a pixel
 /// less than all, the largest difference is as likely above as below. Infinite for fewer than two passes, 0 if all
-/// passes agree. It does not contain the bias that all passes share.
+/// passes agree. The bias that all passes share is in it if the film tells biases; a pixel then is expected to differ
+/// by a normal number with the root of the sum of both squares as its size.
 inline double picture_error(const film& sum, double percentile)
 {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -93,9 +93,11 @@ inline double picture_error(const film& sum, double percentile)
         return 0;
     const double dark = detail::dark_share * radiance / noisy;
     detail::error_histogram errors;
+    std::size_t next = 0;
     sum.visit_spread([&](double mean, double standard_error) {
+        const auto i = next++;
         if (detail::is_noisy(mean, standard_error))
-            errors.add(detail::error_of_pixel(mean, standard_error, dark));
+            errors.add(detail::error_of_pixel(mean, standard_error, sum.bias_of(i), dark));
     });
     const double allowed = std::max((1 - percentile) * noisy, 0.5);
     double low = -44, high = 44; // powers of 2

@@ -30,6 +30,7 @@ inline knn_settings search_for(const render_settings& s)
     if (s.output.only == light_part::direct || (has_gather_rays(s) && s.output.only == light_part::indirect))
         k.max_radius = 0; // nothing of the map is seen
     k.errors = s.output.aov;
+    k.biases = tells_bias(s);
     return k;
 }
 /// The search for caustic photons, in the map of their own if there is one.
@@ -39,6 +40,7 @@ inline knn_settings search_for_caustics(const render_settings& s)
     if (has_caustic_map(s))
         k.k = s.estimate.caustic_k;
     k.errors = s.output.aov;
+    k.biases = tells_bias(s);
     return k;
 }
 
@@ -46,7 +48,7 @@ inline knn_settings search_for_caustics(const render_settings& s)
 inline knn_settings search_for_preview(knn_settings k, const preview& p)
 {
     k.k = std::min(k.k, std::max(8u, k.k / p.k_divisor));
-    k.errors = false;
+    k.errors = k.biases = false;
     if (k.search == search_kind::exact_k)
         k.bias = bias_kind::unbiased; // the paper's is too high by k / (k - 1), which is visible for small k
     return k;

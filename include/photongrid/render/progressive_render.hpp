@@ -66,7 +66,9 @@ public:
             const auto& band = view_->light();
             s.pass.rays = band.rays;
             s.pass.band
-                = {device_.download(band.pixels), device_.download(band.searches), device_.download(band.errors)};
+                = {device_.download(band.pixels), device_.download(band.searches), device_.download(band.errors),
+                    {device_.download(band.biases.bias), device_.download(band.biases.tilt),
+                        device_.download(band.biases.jump)}};
         }
         s.pass.light = light_;
         return s;
@@ -350,7 +352,9 @@ private:
             const auto& light = unfinished_.band;
             if (unfinished_.rays > 0)
                 view_->resume({{}, unfinished_.rays, upload(device_, light.pixels), upload(device_, light.searches),
-                    upload(device_, light.errors)});
+                    upload(device_, light.errors),
+                    {upload(device_, light.biases.bias), upload(device_, light.biases.tilt),
+                        upload(device_, light.biases.jump)}});
             unfinished_ = {};
         }
         return view_steps(*view_);
@@ -380,7 +384,7 @@ private:
     {
         finish_pass(device_, maps_.map(), stats_);
         if (film_.size() == 0)
-            film_ = film_for(scene_, maps_.map().scene.layout, settings_.output);
+            film_ = film_for(scene_, maps_.map().scene.layout, settings_);
         film_.add(number, std::exchange(light_, {}));
         judge_.after_pass(film_, clock_.seconds(), stats_);
         unfinished_ = {};

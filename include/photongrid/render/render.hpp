@@ -185,7 +185,7 @@ template <backend B>
     const render_observer& observer = {})
 {
     rendered out{{}, built.stats};
-    film sum(settings.output.width, settings.output.height, 1, settings.output.aov);
+    film sum(settings.output.width, settings.output.height, 1, settings.output.aov, tells_bias(settings));
     sum.add(0, draw_pass(device, built, view, settings, observer, out.stats));
     finish_picture(sum, out);
     return out;
@@ -216,7 +216,7 @@ template <backend B>
         const auto map = build_map(device, s, own, guides, observer);
         detail::add_map(out.stats, map.stats);
         if (pass == 0)
-            sum = film_for(s, map.scene.layout, settings.output);
+            sum = film_for(s, map.scene.layout, settings);
         const auto of_pass = radii ? radii_of_pass(*radii, pass) : pass_radii<B>{};
         sum.add(pass, draw_pass(device, map, s.camera, own, observer, out.stats, of_pass));
         judge.after_pass(sum, clock.seconds(), out.stats);

@@ -16,6 +16,7 @@
 #include <photongrid/render/running_search.hpp>
 #include <photongrid/render/scene_map.hpp>
 #include <photongrid/render/shade.kernel.hpp>
+#include <photongrid/render/shade_bias.kernel.hpp>
 #include <photongrid/render/shrinking_radii.hpp>
 #include <photongrid/render/tally_error.kernel.hpp>
 #include <photongrid/render/tally_search.kernel.hpp>
@@ -71,7 +72,8 @@ public:
         }
         detail::time_stage(device_, stats_.trace_rays, [&] {
             const std::size_t layers = !is_preview() && settings_.output.aov ? r.size() : 0;
-            canvas_ = {r, 0, dark(r.size()), dark(r.size()), dark(layers)};
+            const std::size_t biases = !is_preview() && tells_bias(settings_) ? r.size() : 0;
+            canvas_ = {r, 0, dark(r.size()), dark(r.size()), dark(layers), {dark(biases), dark(biases), dark(biases)}};
         });
         kept_.resize(branches_);
         for (auto& k : kept_)
@@ -178,7 +180,7 @@ public:
         return detail::to_image(device_.download(canvas_.pixels), canvas_.raster, settings_, scale, invalid);
     }
     /// A copy of the light so far, for display.
-    canvas<B> snapshot() { return {canvas_.raster, canvas_.rays, copy(canvas_.pixels), {}, {}}; }
+    canvas<B> snapshot() { return {canvas_.raster, canvas_.rays, copy(canvas_.pixels), {}, {}, {}}; }
 
     /// The light of all rays so far.
     const canvas<B>& light() const { return canvas_; }
@@ -189,7 +191,8 @@ public:
     {
         const auto n = canvas_.raster.size();
         if (c.rays > rays() || c.pixels.size() != n || c.searches.size() != n
-            || c.errors.size() != canvas_.errors.size())
+            || c.errors.size() != canvas_.errors.size() || c.biases.bias.size() != canvas_.biases.bias.size()
+            || c.biases.tilt.size() != canvas_.biases.tilt.size() || c.biases.jump.size() != canvas_.biases.jump.size())
             throw std::invalid_argument("view_pass::resume: the state is of another picture: "
                 + std::to_string(c.pixels.size()) + " pixels and " + std::to_string(c.rays)
                 + " rays per pixel; this one has " + std::to_string(n) + " and " + std::to_string(rays()));
@@ -254,6 +257,9 @@ private:
     knn_estimates<B> corrected(knn_estimates<B> found);
     knn_estimates<B> shade(
         knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches);
+
+    /// Adds the biases of estimates to those of the pixels, if the settings ask for them.
+    void shade_bias(const estimate_biases<B>& of, float share);
 
     buffer_of<B, glm::vec4> dark(std::size_t n);
     buffer_of<B, glm::vec4> copy(const buffer_of<B, glm::vec4>& original);
@@ -353,7 +359,7 @@ bool view_pass<B>::find_radii()
 {
     const auto& hits = samples_->hits;
     auto k = search_of_pass();
-    k.errors = false;
+    k.errors = k.biases = false;
     if (!radius_search_)
         radius_search_.emplace(device_, is_of_caustics() ? *radii_.first_of_caustics : *radii_.first, hits.points,
             hits.surfaces, k, running_estimate_kind::none, how_.size);
@@ -374,6 +380,9 @@ bool view_pass<B>::shade(uint ray)
         if (canvas_.errors.size() > 0)
             device_.template run<kernels::tally_error>(canvas_.errors.size(), {},
                 reads(samples_->hits.points, found.irradiance, found.standard_error), writes(canvas_.errors));
+        shade_bias(found.biases, share);
+        if (caustics_)
+            shade_bias(caustics_->biases, share);
     });
     search_.reset();
     caustics_.reset();
@@ -414,6 +423,16 @@ knn_estimates<B> view_pass<B>::shade(
         reads(hits.points, hits.throughputs, hits.emissions, samples_->direct, found.irradiance, found.used),
         writes(pixels, searches));
     return found;
+}
+
+template <backend B>
+void view_pass<B>::shade_bias(const estimate_biases<B>& of, float share)
+{
+    auto& told = canvas_.biases;
+    if (told.bias.size() > 0)
+        device_.template run<kernels::shade_bias>(told.bias.size(), {.share = share},
+            reads(samples_->hits.points, samples_->hits.throughputs, of.bias, of.tilt, of.jump),
+            writes(told.bias, told.tilt, told.jump));
 }
 
 template <backend B>

@@ -75,6 +75,9 @@ enum class indirect_kind { map, gather, paths };
 /// those that the search finds in a map of its own (shrinking_radii.hpp).
 enum class radius_kind { per_pass, shrinking };
 
+/// Whether a picture tells the bias of its pixels (tells_bias).
+enum class bias_telling { automatic, no, yes };
+
 /// The irradiance estimate (the paper's radiance estimate) of a picture (2.3).
 struct estimate_settings {
     std::uint32_t k = 500;                         ///< photons sought per estimate
@@ -120,6 +123,9 @@ struct output_settings {
     /// scene files, because the picture depends on the machine.
     double seconds = 0;
     light_part only = light_part::all; ///< the part of the light to draw
+    /// Whether the picture has the layer `bias`, and until_error counts it. Automatic: with until_error, of a picture
+    /// whose radii shrink; others do not end by an error that their blur exceeds.
+    bias_telling tell_bias = bias_telling::automatic;
     /// EV for tone-mapped output: pixel values times 2^exposure; none: fitted to the picture.
     std::optional<double> exposure{};
     bool aov = false; ///< radius, count and relative standard error of the estimate per pixel
@@ -176,6 +182,13 @@ inline bool has_caustic_map(const render_settings& s)
 {
     return s.map.caustic_photons > 0
         && (s.output.only == light_part::all || s.output.only == light_part::caustic || has_gather_rays(s));
+}
+/// Whether it tells the bias of its pixels.
+inline bool tells_bias(const render_settings& s)
+{
+    const bool shrinks = s.estimate.radii == radius_kind::shrinking && s.output.only != light_part::direct;
+    return s.output.tell_bias == bias_telling::yes
+        || (s.output.tell_bias == bias_telling::automatic && s.output.until_error > 0 && shrinks);
 }
 /// Whether photons keep the normals of their surfaces.
 inline bool keeps_normals(const render_settings& s) { return s.estimate.leaks.needs_photon_normals() || gathers(s); }

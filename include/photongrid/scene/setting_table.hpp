@@ -253,6 +253,12 @@ namespace setting_table {
         one_of{{named{"per_pass", radius_kind::per_pass}, {"shrinking", radius_kind::shrinking}}}, in_scenes::optional,
         "radii of estimates: found by each pass (per_pass), or shrinking from pass to pass, so that the picture "
         "converges"};
+    inline constexpr setting tell_bias{"tell_bias", of(&output_settings::tell_bias),
+        one_of{{named{"auto", bias_telling::automatic}, {"no", bias_telling::no}, {"yes", bias_telling::yes}}},
+        in_scenes::optional,
+        "find the blur's part in each pixel, as a layer of EXRs, and count it in --until-error; auto: with "
+        "--until-error "
+        "if --radii are shrinking"};
     inline constexpr setting only{"only", of(&output_settings::only),
         one_of{{named{"all", light_part::all}, {"direct", light_part::direct}, {"caustic", light_part::caustic},
             {"indirect", light_part::indirect}}},
@@ -268,7 +274,7 @@ constexpr void for_each_setting(const Visit& visit)
     all(t::size, t::photons, t::caustic_photons, t::k, t::caustic_k, t::grid, t::max_radius, t::light_samples, t::spp,
         t::pixel_filter, t::passes, t::until_error, t::percentile, t::depth, t::photon_depth, t::emission, t::seed,
         t::map, t::slots, t::surplus, t::exposure, t::search, t::filter, t::bias, t::leaks, t::edge_correction,
-        t::indirect, t::gather_rays, t::radii, t::only, t::seconds);
+        t::indirect, t::gather_rays, t::radii, t::tell_bias, t::only, t::seconds);
 }
 
 /// \throws std::invalid_argument "name: must be …" for a setting out of its range, or for two incompatible settings.
