@@ -52,6 +52,15 @@ class Mesh:
     def __init__(self, positions, triangles, normals=None):
         self.positions, self.triangles, self.normals = positions, triangles, normals
 
+    def is_flat(self):
+        """Whether its normals are those of its triangles, on either side."""
+        p = self.positions
+        for a, b, c in self.triangles:
+            normal = cross(sub(p[b], p[a]), sub(p[c], p[a]))
+            if any(abs(dot(normal, self.normals[i])) < 0.9999 * length(normal) for i in (a, b, c)):
+                return False
+        return True
+
     def area(self):
         p = self.positions
         return sum(length(cross(sub(p[b], p[a]), sub(p[c], p[a]))) / 2 for a, b, c in self.triangles)
@@ -140,6 +149,8 @@ class Scene:
                 mesh.normals = [unit([sum(turned[j][i] * n[j] for j in range(3)) for i in range(3)])
                                 for n in mesh.normals]
         mesh.positions = [self.point(p) for p in mesh.positions]
+        if mesh.normals and mesh.is_flat():
+            mesh.normals = None
         return mesh
 
     def add_shape(self, shape):
@@ -190,8 +201,10 @@ class Scene:
         """Its kind (matte, mirror, glass), colour and index of refraction."""
         m = self.materials[name]
         known = {"type", "comment", "reflectance", "transmittance", "index_of_refraction"}
-        if set(m) - known:
-            raise Unsupported(f"material {name}: {', '.join(sorted(set(m) - known))}")
+        usual = {"roughness": 0, "opacity": 1}
+        other = sorted(key for key in m if key not in known and (key not in usual or m[key] != usual[key]))
+        if other:
+            raise Unsupported(f"material {name}: {', '.join(other)}")
         white = [1, 1, 1]
         if m["type"] == "lambertian":
             return "matte", m["reflectance"], None

@@ -16,7 +16,10 @@ skip() { echo "peers.sh: SKIPPED: $*" >&2; }
 # sources NAME ADDRESS COMMIT: the program's sources, in the folder NAME
 sources() {
   if [[ ! -e $folder/$1/.git ]]; then
-    git clone --quiet "$2" "$folder/$1" && git -C "$folder/$1" checkout --quiet "$3" || { skip "no sources of $1 from $2"; return 1; }
+    if ! git clone --quiet "$2" "$folder/$1" || ! git -C "$folder/$1" checkout --quiet "$3"; then
+      skip "no sources of $1 from $2"
+      return 1
+    fi
   fi
 }
 # built NAME COMMAND...: with the output in log/NAME
@@ -28,12 +31,14 @@ built() {
 
 build_smallvcm() {
   sources SmallVCM https://github.com/SmallVCM/SmallVCM a13690f03d3414f76ba32b5f0e259e6e5d10ed7b || return
-  # Its scenes are built in: a line makes it read one, others let the size, the depth and the radius be set.
+  # Its scenes are built in: this makes it read one, and lets the size, the depth and the radius be set.
   local copy=$folder/build-smallvcm
   rm -rf "$copy"
   cp -r "$folder/SmallVCM/src" "$copy"
   sed -i 's|^class Scene$|#include "smallvcm_scene.hpp"\n&|; /mSceneName = GetSceneName(aBoxMask/a if (read_photongrid_scene(*this, aResolution)) return;' "$copy/scene.hxx"
   sed -i 's|= Vec2i(512, 512)|= Vec2i(int(photongrid_setting("PHOTONGRID_SIZE", 512)))|; s|mMaxPathLength = 10;|mMaxPathLength = int(photongrid_setting("PHOTONGRID_DEPTH", 10));|; s|= 0.003f;|= photongrid_setting("PHOTONGRID_RADIUS", 0.003f);|; s|= 0.75f;|= photongrid_setting("PHOTONGRID_ALPHA", 0.75f);|' "$copy/config.hxx"
+  # Its matte triangles are black behind.
+  sed -i 's|oResult.normal = mNormal;|oResult.normal = Dot(mNormal, aRay.dir) > 0 ? -mNormal : mNormal;|' "$copy/geometry.hxx"
   built smallvcm g++ -O3 -march=native -std=c++11 -fopenmp -I "$here" -o "$folder/smallvcm" "$copy/smallvcm.cxx"
 }
 

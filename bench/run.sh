@@ -100,6 +100,7 @@ loses_a_quarter_at_most() {
 }
 
 # time_to_error OPTION...: against the other programs that there are
+# shellcheck disable=SC2317 # `must` calls it
 time_to_error() {
   command -v python3 >/dev/null || { echo "bench/run.sh: SKIPPED time to error against other programs: no python3" >&2; return; }
   python3 bench/time_to_error.py "$@"
