@@ -235,7 +235,8 @@ PEERS = {
 for _scene in PEERS:
     # Its author's radius, and one that suits fewer paths.
     PEERS[_scene] += [(SmallVcm, kind, dict(radius=radius, alpha=0.75))
-                      for kind, radius in (("ppm", 0.003), ("ppm", 0.01), ("bpm", 0.003), ("bpm", 0.01), ("vcm", 0.003))]
+                      for kind, radius in (("ppm", 0.003), ("ppm", 0.01), ("bpm", 0.003), ("bpm", 0.01),
+                                           ("vcm", 0.003))]
 
 
 def peers_of(folder, scene, path, size, cache):
