@@ -116,7 +116,13 @@ def measure(name):
         backends = options.backends.split(",") if way == photongrid_ways(name, "best")[0] else ["cpu"]
         for backend in backends:
             ours = Photongrid(program, path, way, backend)
-            curve = curve_of(runner, ours, reference, scene, options.size, out, None)
+            try:
+                curve = curve_of(runner, ours, reference, scene, options.size, out, None)
+            except RuntimeError as e:
+                if backend == "cpu":
+                    raise
+                say(f"time_to_error.py: SKIPPED {ours.name}, {name}: {e}")
+                continue
             say(f"  {ours.name} {way}: {curve.summary()}")
             curves.append(curve)
     if options.peers != "none":
@@ -125,7 +131,11 @@ def measure(name):
                 say(f"time_to_error.py: SKIPPED {peer.name}, {name}: {peer.missing}")
                 continue
             kept = os.path.join(cache, "curves")
-            curve = curve_of(runner, peer, reference, scene, options.size, kept, options.peers)
+            try:
+                curve = curve_of(runner, peer, reference, scene, options.size, kept, options.peers)
+            except (RuntimeError, OSError) as e:
+                say(f"time_to_error.py: SKIPPED {peer.name}, {name}: {e}")
+                continue
             say(f"  {peer.name} {peer.settings}: {curve.summary()}")
             curves.append(curve)
     return curves, [note, reference]
