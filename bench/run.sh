@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Speed and error, measured. Prints Markdown; fails where a row misses what it must reach.
 #
-#   bench/run.sh [--algorithms] [--peers] [--paper] [--interactive] [--estimates] [--error] [--inclusion] [--files] [--write] [--no-install]     some of it, or all
+#   bench/run.sh [--algorithms] [--peers] [--paper] [--interactive] [--estimates] [--error] [--convergence] [--inclusion] [--files] [--write] [--no-install]     some of it, or all
 #   bench/run.sh --gpu [--no-install]               each part that a device runs, on the hardware devices of vulkan and gl; refuses software
 #   bench/run.sh --smoke [--no-install]             all of it on little data, to see that it runs
 #
@@ -12,6 +12,8 @@
 #   --interactive how soon a change is seen, and when a picture looks converged
 #   --estimates   error and cost of searches, filters, leak policies and edge correction, on whole pictures
 #   --error       time against relMSE of every kind of estimate: CSV and plots in out/error/
+#   --convergence time to error against other programs, which bench/peers.sh builds in $PHOTONGRID_PEERS: CSV and plots in
+#                 out/time_to_error/
 #   --inclusion   what including the headers costs a user's compiler, and the size of the smallest programs
 #   --files       how fast scene files are read, and with how much memory
 #   --write       puts what is printed, and the Cornell box's plot, into docs/ too (bench/write_measures.sh)
@@ -22,14 +24,14 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
 
 usage() {
-  sed -n '2,20s/^# \{0,1\}//p' bench/run.sh >&2
+  sed -n '2,22s/^# \{0,1\}//p' bench/run.sh >&2
   exit 2
 }
 build=build-bench
 install=yes gpu=no smoke=no write=no parts=()
 for argument in "$@"; do
   case $argument in
-    --algorithms | --peers | --paper | --interactive | --estimates | --error | --inclusion | --files)
+    --algorithms | --peers | --paper | --interactive | --estimates | --error | --convergence | --inclusion | --files)
       parts+=("${argument#--}")
       ;;
     --gpu) gpu=yes ;;
@@ -39,7 +41,7 @@ for argument in "$@"; do
     *) usage ;;
   esac
 done
-((${#parts[@]})) || parts=(algorithms peers paper interactive estimates error inclusion files)
+((${#parts[@]})) || parts=(algorithms peers paper interactive estimates error convergence inclusion files)
 asked() { [[ " ${parts[*]} " == *" $1 "* ]]; }
 packages=("${program_packages[@]}" "${smoke_packages[@]}" "${bench_packages[@]}")
 [[ $smoke == yes ]] || ! asked peers || packages+=(povray)
@@ -95,6 +97,13 @@ loses_a_quarter_at_most() {
     file == 2 && !shown++ { print "| set | native, 1000/s | plain, 1000/s | plain over native | wanted | |\n|---|---|---|---|---|---|" }
     { share = $6 / native[$2]; printf "| %s | %s | %s | %.2f | 0.75 | %s |\n", $2, native[$2], $6, share, (share >= 0.75 ? "PASS" : "FAIL"); slow += (share < 0.75) }
     END { exit (slow > 0) }' "$1" "$2"
+}
+
+# time_to_error OPTION...: against the other programs that there are
+# shellcheck disable=SC2317 # `must` calls it
+time_to_error() {
+  command -v python3 >/dev/null || { echo "bench/run.sh: SKIPPED time to error against other programs: no python3" >&2; return; }
+  python3 bench/time_to_error.py "$@"
 }
 
 machine
@@ -172,6 +181,7 @@ if [[ $smoke == yes ]]; then
   must bench/estimator_errors.sh --quick
   must bench/edge_correction.sh --quick
   must bench/error.sh --quick
+  must time_to_error --quick
   exit $failed
 fi
 if asked inclusion; then
@@ -253,5 +263,9 @@ fi
 if asked error; then
   title "Time against error"
   must bench/error.sh
+fi
+if asked convergence; then
+  title "Time to error against other programs"
+  must time_to_error
 fi
 exit $failed
