@@ -65,6 +65,8 @@ WAYS = {
         "--spp 1 --k 50 --indirect gather --radii shrinking",
     ],
     "cornell_box": [
+        "--spp 4 --k 50 --radii shrinking --photons 65000 --caustic-photons 65000 --caustic-k 30",
+        "--spp 16 --k 50 --radii shrinking --photons 250000 --caustic-photons 100000 --caustic-k 30",
         "--spp 16 --k 50 --radii shrinking --photons 250000",
         "--spp 4 --k 50 --radii shrinking",
         "--spp 4 --k 50 --radii shrinking --photons 250000",
@@ -73,18 +75,23 @@ WAYS = {
         "--spp 1 --k 50 --radii shrinking",
     ],
     "ring": [
+        "--spp 4 --k 30 --radii shrinking --photons 2000 --caustic-photons 100000 --caustic-k 50",
+        "--spp 4 --k 30 --radii shrinking --photons 2000 --caustic-photons 300000 --caustic-k 50",
         "--spp 4 --k 50 --radii shrinking --photons 100000",
         "--spp 16 --k 50 --radii shrinking --photons 100000",
         "--spp 4 --k 20 --radii shrinking --photons 100000",
         "--spp 1 --k 50 --radii shrinking",
     ],
     "glass_ball": [
+        "--spp 4 --k 30 --radii shrinking --photons 5000 --caustic-photons 60000 --caustic-k 30",
+        "--spp 16 --k 30 --radii shrinking --photons 10000 --caustic-photons 200000 --caustic-k 30",
         "--spp 4 --k 50 --radii shrinking --photons 50000",
         "--spp 16 --k 50 --radii shrinking --photons 50000",
         "--spp 4 --k 20 --radii shrinking --photons 50000",
         "--spp 1 --k 50 --radii shrinking",
     ],
     "water_caustic": [
+        "--spp 4 --k 50 --radii shrinking --photons 10000 --caustic-photons 1000000 --caustic-k 50",
         "--spp 4 --k 50 --radii shrinking --photons 1000000",
         "--spp 1 --k 50 --radii shrinking --photons 250000",
         "--spp 16 --k 20 --radii shrinking --photons 1000000",
@@ -109,10 +116,11 @@ class Photongrid:
     def command(self, passes, size, picture):
         words = self.settings.split()
         if size <= 8:  # that what is subtracted has no photons in it
-            if "--photons" in words:
-                at = words.index("--photons")
-                del words[at:at + 2]
-            words += ["--photons", "100"]
+            for option in ("--photons", "--caustic-photons"):
+                if option in words:
+                    at = words.index(option)
+                    del words[at:at + 2]
+            words += ["--photons", "100", "--caustic-photons", "0", "--emission", "power"]
         return ([self.program, "render", self.path, "--backend", self.backend, "--size", f"{size}x{size}", "--quiet",
                  "--passes", str(passes), *words, "-o", picture], {"NODEVICE_SELECT": "1"})
 
