@@ -30,7 +30,7 @@ namespace params_detail {
     void for_each_member(const T& t, F f)
     {
         constexpr auto n = member_count<T>();
-        static_assert(n >= 1 && n <= 11, "Params with more members: add a line here");
+        static_assert(n >= 1 && n <= 12, "Params with more members: add a line here");
         const auto all = [&](const auto&... m) { (f(m), ...); };
         if constexpr (n == 1) {
             const auto& [a] = t;
@@ -75,6 +75,10 @@ namespace params_detail {
         if constexpr (n == 11) {
             const auto& [a, b, c, d, e, g, h, i, j, k, l] = t;
             all(a, b, c, d, e, g, h, i, j, k, l);
+        }
+        if constexpr (n == 12) {
+            const auto& [a, b, c, d, e, g, h, i, j, k, l, m12] = t;
+            all(a, b, c, d, e, g, h, i, j, k, l, m12);
         }
     }
 } // namespace params_detail
