@@ -61,7 +61,6 @@ namespace {
             auto s = r.floor.of();
             s.render.estimate.radii = r.radii;
             s.render.output.passes = 24;
-            auto settings = s.render;
             progressive_render<serial_backend> drawing(b);
             drawing.start(s, s.render, {.enabled = false});
             drawing.step();
