@@ -109,8 +109,12 @@ inline uint reversed_bits(uint x)
 // A seeded bijection in which a bit of the result depends on the bits of x up to its own place: a nested uniform
 // scramble of a number whose bits are in reverse (Laine and Karras 2011, with the constants of Vegdahl, Building a
 // Better LK Hash, 2021).
-inline uint nested_scrambled(uint x, uint seed)
+//
+// It needs seeds whose every bit is random: those of hash4 by themselves, over neighbouring keys, tied sequences to
+// each other.
+inline uint nested_scrambled(uint x, uint key)
 {
+    uint seed = scrambled(key);
     x ^= x * 0x3D20ADEAu;
     x += seed;
     x *= (seed >> 16u) | 1u;
