@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Ways to compute indirect light and caustics: relMSE against the reference renderer, of pixels and of means over 4 x 4
-# pixels, in which noise counts less and blur the same; the mean's relative bias; and the time of the picture on cpu. All
-# have 16 eye rays a pixel. Prints Markdown. Pictures of 128 x 128 pixels are left in out/final_gather.
+# pixels, in which noise counts less and blur the same; the mean's relative bias; the time of the picture on cpu, and the
+# number of its photon paths. All have 16 eye rays a pixel. Prints Markdown. Pictures of 128 x 128 pixels are left in out/final_gather.
 #
 #   bench/final_gather.sh [--quick]      --quick: a reference with few paths, to see that it runs
 set -euo pipefail
@@ -17,20 +17,25 @@ program=$build/photongrid
 out=out/final_gather
 mkdir -p "$out"
 
-ways=(
-  "--spp 16"
-  "--spp 16 --k 200"
-  "--spp 16 --indirect gather --k 50"
-  "--spp 16 --indirect gather --k 200"
-  "--spp 1 --passes 16 --k 50"
+# A scene, the options of its reference, and ways to draw it.
+cornell_blocks=("--spp 16" "--spp 16 --k 200" "--spp 16 --indirect gather --k 50" "--spp 1 --passes 16 --k 50"
+  "--spp 1 --passes 16 --k 50 --radii shrinking" "--spp 1 --passes 16 --k 50 --radii shrinking --indirect gather")
+cornell_box=("--spp 16 --caustic-photons 0" "--spp 16 --caustic-photons 0 --k 200" "--spp 16"
+  "--spp 16 --indirect gather --k 50 --caustic-photons 0" "--spp 16 --indirect gather --k 50"
+  "--spp 1 --passes 16 --k 50 --caustic-photons 0" "--spp 1 --passes 16 --k 50"
   "--spp 1 --passes 16 --k 50 --radii shrinking"
-  "--spp 1 --passes 16 --k 50 --radii shrinking --indirect gather"
-)
-echo "| scene | options | seconds | relMSE | relMSE of 4 x 4 | bias of the mean |"
-echo "|---|---|---|---|---|---|"
-for scene in cornell_blocks cornell_box; do
+  "--spp 1 --passes 16 --k 50 --radii shrinking --indirect gather")
+ring=("--spp 16 --caustic-photons 0 --emission power" "--spp 16 --caustic-photons 0" "--spp 16"
+  "--spp 1 --passes 16 --k 30 --caustic-photons 0 --emission power" "--spp 1 --passes 16 --k 30 --caustic-photons 0"
+  "--spp 1 --passes 16 --radii shrinking")
+glass_ball=("${ring[@]}")
+echo "| scene | options | photon paths | seconds | relMSE | relMSE of 4 x 4 | bias of the mean |"
+echo "|---|---|---|---|---|---|---|"
+for scene in cornell_blocks cornell_box ring glass_ball; do
   file=examples/scenes/$scene.json reference=$out/$scene.exr picture=$out/picture.exr
-  "$program" reference "$file" --size 128x128 --spp "$paths" --quiet -o "$reference" >/dev/null
+  "$program" reference "$file" --size 128x128 --spp "$paths" --caustics bins --paths $((paths * 30000)) --quiet \
+    -o "$reference" >/dev/null
+  declare -n ways=$scene
   for way in "${ways[@]}"; do
     read -ra options <<<"$way"
     "$program" render "$file" --size 128x128 "${options[@]}" --backend cpu --quiet -o "$picture" \
@@ -39,7 +44,8 @@ for scene in cornell_blocks cornell_box; do
     smooth=$("$program" compare "$picture" "$reference" --average 4 | awk '/^relMSE/ { print $2 }')
     "$program" error "$picture" "$reference" --stats "$out/error.json" -o "$out/error.png" >/dev/null
     bias=$(awk '/"bias"/ { print $2 + 0; exit }' "$out/error.json")
-    printf '| %s | `%s` | %.2f | %.5f | %.5f | %+.4f |\n' \
-      "$scene" "$way" "$(seconds_of "$out/stats.json")" "$error" "$smooth" "$bias"
+    emitted=$(awk '/"emitted"/ { print $2 + 0; exit }' "$out/stats.json")
+    printf '| %s | `%s` | %d | %.2f | %.5f | %.5f | %+.4f |\n' \
+      "$scene" "$way" "$emitted" "$(seconds_of "$out/stats.json")" "$error" "$smooth" "$bias"
   done
 done
