@@ -68,7 +68,7 @@ protected:
         // Errors always, but for the paper's own estimate, which has a path of its own without them.
         settings.errors = settings.search != search_kind::at_least_k || settings.filter != filter_kind::constant
             || settings.bias != bias_kind::paper;
-        settings.biases = settings.errors;
+        settings.biases = settings.errors && compares_biases_;
         const auto points = b.upload(std::span<const vec4>(s.points));
         const auto normals = b.upload(std::span<const vec4>(s.point_normals));
         const auto e = knn_grid_estimate(b, m.map, points, normals, settings);
@@ -108,6 +108,9 @@ protected:
         }
         return {};
     }
+
+    /// Off where photons are so close to points that the weights of moments, r / |d|, round badly.
+    bool compares_biases_ = true;
 
     /// Biases, downloaded.
     struct told_biases {

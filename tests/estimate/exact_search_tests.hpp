@@ -209,6 +209,7 @@ TYPED_TEST_P(estimators, ties_of_repeated_photons_go_by_id)
 TYPED_TEST_P(estimators, squared_distances_too_small_for_a_float_count_as_zero)
 {
     // Points that follow each other, so close to a photon that from one to the next its squared distance underflows.
+    this->compares_biases_ = false;
     oriented_set s;
     s.photons.g = make_grid(glm::vec3(0), glm::vec3(1), {3, 3, 3});
     s.photons.positions = {{0.5f, 0, 0, 0}, {1.1e-19f, 0, 0, 0}, {0.25f, 0, 0, 0}, {1.12e-19f, 0, 0, 0}};
@@ -261,6 +262,7 @@ TYPED_TEST_P(estimators, estimates_in_small_clusters_ignore_far_photons)
 {
     // Clusters from 1e-3 to 1e-9 m about 0, and photons 1e6 m away. Without them the estimates would be the same: the
     // least radius of a disc follows the point's own coordinates, by which rounding moves photons there.
+    this->compares_biases_ = false;
     oriented_set s;
     s.photons.g = make_grid(glm::vec3(-1), glm::vec3(1e6f), {4, 4, 4});
     random_source u(31);

@@ -161,7 +161,7 @@ namespace {
             arguments.insert(arguments.end(), more.begin(), more.end());
             EXPECT_EQ(run(arguments).code, 0);
             const auto s = json::parse(contents(folder / "stats.json"));
-            EXPECT_GT(s.at("estimate").at("mean_count"), 10);
+            EXPECT_GT(s.at("estimate").at("mean_count"), 1); // most of the table gets no caustic
             return s.at("photons");
         };
         const auto apart = photons({});

@@ -91,7 +91,7 @@ namespace {
         for (const int signal : {SIGINT, SIGTERM}) {
             const auto begun = std::chrono::steady_clock::now();
             const auto child = start({"render", ring, "--backend", "serial", "--size", "64x64", "--spp", "60000",
-                "--photons", "300", "-o", "a.pfm", "--stats", "a.json"});
+                "--photons", "300", "--caustic-photons", "0", "-o", "a.pfm", "--stats", "a.json"});
             std::this_thread::sleep_for(std::chrono::milliseconds(700));
             interrupt(child, signal);
             const auto e = wait(child);
@@ -100,8 +100,9 @@ namespace {
             EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(30));
             ASSERT_EQ(files(), 1u) << "statistics of an unfinished picture, or a part of a file";
             const auto kept = read_image((folder / "a.pfm").string());
-            ASSERT_EQ(
-                run({"render", ring, "--backend", "serial", "--size", "64x64", "--photons", "300", "-o", "b.pfm"}).code,
+            ASSERT_EQ(run({"render", ring, "--backend", "serial", "--size", "64x64", "--photons", "300",
+                              "--caustic-photons", "0", "-o", "b.pfm"})
+                          .code,
                 0);
             const auto whole = read_image((folder / "b.pfm").string());
             double sum = 0, expected = 0;

@@ -311,7 +311,7 @@ TYPED_TEST_P(light_kinds, of_which_samples_choose_add_up)
             for (const auto& e : this->light_at(with_one_light(s, n), std::vector<dvec3>(256, point), normal, 16))
                 known += dvec3(e) / 256.0;
         ASSERT_GT(known.x, 0.01);
-        EXPECT_LE(this->mean_error(s, point, normal, 32, known), 0.02) << point.x;
+        EXPECT_LE(this->mean_error(s, point, normal, 32, known), 0.04) << point.x; // of 1.2 % of noise
     }
 }
 

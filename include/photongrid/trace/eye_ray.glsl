@@ -10,8 +10,8 @@ struct Params {
     vec4 corner;    // direction to the picture's top left corner ...
     vec4 right;     // ... and the step from pixel to pixel along a row ...
     vec4 down;      // ... and along a column
-    uint width;     // pixels in a row
     uvec2 strata;   // columns and rows of a pixel; 0, 0: one ray through its middle
+    uint width;     // pixels in a row
     uint stratum;   // of this ray, row by row
     uint nth;       // of the rays in that stratum, in all passes
     uint branch;    // Fresnel branch (eye_bounce.glsl)

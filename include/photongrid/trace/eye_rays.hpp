@@ -100,10 +100,10 @@ inline kernels::eye_ray::Params eye_params(
         .corner = narrow(forward - 0.5 * width * right + 0.5 * height * up),
         .right = narrow(right * (width / s.output.width * r.divisor)),
         .down = narrow(-up * (height / s.output.height * r.divisor)),
-        .width = r.width,
         .strata = middle ? glm::uvec2(0)
             : stratified ? strata_of(s.view.spp)
                          : glm::uvec2(1),
+        .width = r.width,
         .stratum = stratified ? ray >> splits : 0u,
         .nth = stratified ? s.pass.number : place.nth,
         .branch = place.branch,
