@@ -378,7 +378,7 @@ namespace {
                 const auto chosen = mean_highlight(lit(0, 24), material, normal, d, outside, 1u << 14);
                 ASSERT_GT(few.x, 0.01);
                 for (int c = 0; c < 3; ++c)
-                    EXPECT_NEAR(chosen[c] / few[c], 1, 0.02) << material << outside;
+                    EXPECT_NEAR(chosen[c] / few[c], 1, 0.05) << material << outside; // of up to 1.4 % of noise
             }
     }
 
