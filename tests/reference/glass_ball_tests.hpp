@@ -139,7 +139,9 @@ namespace {
     {
         serial_backend b;
         const auto device = upload_scene(b, s);
-        auto t = trace_photons(b, s, device, s.render);
+        auto settings = s.render;
+        settings.map.emission = photon_emission::power; // photons of equal power, whose noise is known
+        auto t = trace_photons(b, s, device, settings);
         const auto map
             = sorted_map(b, std::move(t.photons), make_grid(device.layout.low, device.layout.high, s.render.map.grid));
         std::vector<dvec3> points;

@@ -29,11 +29,15 @@ namespace {
         dvec3 at, direction;
     };
 
+    /// Of equal power, so that they lie as dense as the light.
     std::vector<landed_photon> traced(const scene& s)
     {
         serial_backend b;
         const auto device = upload_scene(b, s);
-        const auto t = trace_photons(b, s, device, s.render);
+        auto settings = s.render;
+        settings.map.emission = photon_emission::power;
+        settings.map.caustic_photons = 0;
+        const auto t = trace_photons(b, s, device, settings);
         const auto positions = b.download(t.photons.positions), directions = b.download(t.photons.directions);
         std::vector<landed_photon> out;
         for (std::size_t i = 0; i < positions.size(); ++i)

@@ -57,7 +57,7 @@ namespace {
         const mirrored_floor even{}, square{.mirror = 0.06};
         for (const auto& r :
             {row{"even", even, radius_kind::per_pass, 0}, row{"square", square, radius_kind::per_pass, 0.1},
-                row{"square, shrinking", square, radius_kind::shrinking, 0.1}}) {
+                row{"square, shrinking", square, radius_kind::shrinking, 0.02}}) {
             auto s = r.floor.of();
             s.render.estimate.radii = r.radii;
             s.render.output.passes = 24;
