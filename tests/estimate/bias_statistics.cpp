@@ -192,13 +192,15 @@ namespace {
             EXPECT_NEAR(r.bias, told, 4 * own / std::sqrt(maps));
             EXPECT_NEAR(told / bias, 1, r.radius < 0.15 ? 0.06 : 0.15);
             EXPECT_LT(std::abs(bias), 0.5);
-            const auto squares = [&](const std::function<double(double)>& weight) {
-                return means_of([&](double rho) {
-                    return weight(rho) * weight(rho) * (light(0, 0) + rise(r.radius * rho));
-                }).first;
+            // Variance of a sum with these weights; the number of photons of a map is given.
+            const auto variance = [&](const std::function<double(double)>& weight) {
+                const auto here = [&](double rho) { return light(0, 0) + rise(r.radius * rho); };
+                const double mean = means_of([&](double rho) { return weight(rho) * here(rho); }).first,
+                             second = means_of([&](double rho) { return std::pow(weight(rho), 2) * here(rho); }).first;
+                return second / (pi * r.radius * r.radius) - mean * mean;
             };
-            const double known = std::sqrt(squares([&](double rho) { return factor * (2 * rho * rho - 1); })
-                / squares([&](double rho) { return even ? 1 : 3 * std::pow(1 - rho * rho, 2); }));
+            const double known = std::sqrt(variance([&](double rho) { return factor * (2 * rho * rho - 1); })
+                / variance([&](double rho) { return even ? 1 : 3 * std::pow(1 - rho * rho, 2); }));
             EXPECT_NEAR(own / noise, known, 0.1 * known);
             EXPECT_NEAR(known, r.noise, 0.2 * r.noise); // in even light
         }

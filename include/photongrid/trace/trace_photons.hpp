@@ -1,5 +1,5 @@
-// Photon tracing (section 2.1), in batches of paths (photon_frames.hpp). No pixels are read back: the host learns the
-// progress from two counts per batch, by occlusion query.
+// Photon tracing (section 2.1), in batches of paths (photon_frames.hpp). No photons are read back: the host learns the
+// progress from two counts per batch, by occlusion query. Of pilot paths, if there are any, it reads which are useful.
 #pragma once
 
 #include <photongrid/backend/copy_vectors.kernel.hpp>
