@@ -25,6 +25,7 @@ inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintB
 #include <photongrid/backend/begin.hpp>
 #include <photongrid/backend/natural_log.kernel.hpp>
 #include <photongrid/map/grid.kernel.hpp>
+#include <photongrid/trace/emission_guide.kernel.hpp>
 #include <photongrid/trace/photon_event.kernel.hpp>
 #include <photongrid/trace/ray_state.kernel.hpp>
 #include <photongrid/trace/ray_tests.kernel.hpp>
@@ -42,6 +43,7 @@ inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintB
 #include <photongrid/estimate/search_tally.glsl>
 #include <photongrid/map/block_tree.glsl>
 #include <photongrid/map/grid.glsl>
+#include <photongrid/trace/emission_guide.glsl>
 #include <photongrid/trace/photon_event.glsl>
 #include <photongrid/trace/ray_state.glsl>
 #include <photongrid/trace/ray_tests.glsl>
