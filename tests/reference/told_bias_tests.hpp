@@ -24,8 +24,8 @@ namespace {
                     1}};
             s.point_lights = {{"bulb", {0, lamp, 0}, glm::dvec3(power)}};
             s.camera = {{0, 0.9, 0}, {0, 0, 0}, {0, 0, -1}, glm::degrees(2 * std::atan(0.5 / 0.9))};
-            s.render = {.map = {.photons = 8000, .grid = {16, 4, 16}},
-                .estimate = {.k = 60, .max_radius = 0.5},
+            s.render = {.map = {.photons = 1500, .grid = {16, 4, 16}},
+                .estimate = {.k = 30, .max_radius = 0.5},
                 .view = {.spp = 1, .light_samples = 1},
                 .output = {.width = 24, .height = 24}};
             s.render.output.only = light_part::caustic;
@@ -60,7 +60,7 @@ namespace {
                 row{"square, shrinking", square, radius_kind::shrinking, 0.1}}) {
             auto s = r.floor.of();
             s.render.estimate.radii = r.radii;
-            s.render.output.passes = 24;
+            s.render.output.passes = 16;
             progressive_render<serial_backend> drawing(b);
             drawing.start(s, s.render, {.enabled = false});
             drawing.step();
