@@ -1,8 +1,8 @@
 // Whether the noise and the bias that pictures tell of their pixels cover the true error: against the mean of many
-// passes of another seed, whose radii are much smaller. Prints a table: the share of the pixels whose true error is
-// within 2 (noise + |bias|), the same with the noise alone, the error that picture_error claims of 95 % of them, the
-// one that they have, and means over the picture, as parts of its mean light: of the true difference, and of noise and
-// |bias|.
+// passes of another seed, whose radii are much smaller; the noise of that mean counts with the pixels' own. Prints a
+// table: the share of the pixels whose true error is within 2 (noise + |bias|), the same with the noise alone, the
+// error that picture_error claims of 95 % of them, the one that they have, and means over the picture, as parts of its
+// mean light: of the true difference, and of noise and |bias|.
 //
 //   told_biases SIZE TRUTH_PASSES PASSES... -- SCENE...
 //
@@ -76,9 +76,10 @@ void measure(renderer& drawing, const std::string& path, std::uint32_t size, std
             double covered = 0, by_noise = 0, difference = 0, noise = 0, bias = 0;
             std::vector<double> errors;
             for (const auto i : noisy) {
-                const double error = std::abs(found[i].mean - truth[i].mean);
-                covered += error <= 2 * (found[i].noise + found[i].bias) ? 1 : 0;
-                by_noise += error <= 2 * found[i].noise ? 1 : 0;
+                const double error = std::abs(found[i].mean - truth[i].mean),
+                             of_both = std::hypot(found[i].noise, truth[i].noise);
+                covered += error <= 2 * (of_both + found[i].bias) ? 1 : 0;
+                by_noise += error <= 2 * of_both ? 1 : 0;
                 difference += found[i].mean - truth[i].mean;
                 noise += found[i].noise;
                 bias += found[i].bias;

@@ -37,7 +37,7 @@ namespace {
     public:
         explicit lattice(const field& light)
         {
-            constexpr int n = 401;
+            constexpr int n = 301;
             constexpr double side = 2.2 / n;
             photon_set s;
             s.g = make_grid(glm::vec3(-1.1f, 0, -1.1f), glm::vec3(1.1f, 0, 1.1f), {40, 1, 40});
