@@ -168,6 +168,18 @@ namespace {
             EXPECT_NEAR(static_cast<double>(in_second), n / 4, 2) << first;
             for (const auto& p : e.powers)
                 EXPECT_NEAR(p.x, p.x > 3 ? 3 * 2.0 : 3 * 2.0 / 3, 1e-5);
+            // The boxes are half spheres, and photons of the second box leave into the second half.
+            int axes = 0;
+            for (int axis = 0; axis < 3; ++axis) {
+                const auto on_one_side = [&](float sign) {
+                    for (uint i = 0; i < n; ++i)
+                        if ((sign * e.directions[i][axis] > 0) != (e.powers[i].x > 3))
+                            return false;
+                    return true;
+                };
+                axes += on_one_side(1) || on_one_side(-1) ? 1 : 0;
+            }
+            EXPECT_EQ(axes, 1) << first;
         }
     }
 
