@@ -25,12 +25,7 @@ TYPED_TEST_P(pictures, paths_in_a_closed_sphere_have_the_known_radiance)
     for (const auto part : {light_part::all, light_part::indirect}) {
         settings.output.only = part;
         render_stats stats;
-        const auto mean = mean_of(this->picture(s, settings, &stats));
-        for (int c = 0; c < 3; ++c) {
-            const double direct = reflectance[c], all = reflectance[c] / (1 - reflectance[c]);
-            const double known = part == light_part::all ? all : all - direct;
-            EXPECT_NEAR(mean[c], known, 0.02 * known) << "channel " << c;
-        }
+        expect_radiance_in_a_sphere(this->picture(s, settings, &stats), reflectance, part);
         EXPECT_EQ(stats.photons.emitted, 0u) << "nothing in the sphere makes caustics";
     }
 }
@@ -72,7 +67,6 @@ TYPED_TEST_P(pictures, paths_equal_serials)
 /// Previews, bands and states change no byte of an exact picture.
 TYPED_TEST_P(pictures, an_exact_picture_does_not_depend_on_how_it_is_run)
 {
-    auto& b = this->b();
     const auto s = small_cornell();
     auto settings = s.render;
     settings.output.passes = 2;
@@ -81,15 +75,7 @@ TYPED_TEST_P(pictures, an_exact_picture_does_not_depend_on_how_it_is_run)
     settings.map.photons /= 4;
     settings.output.width = 24;
     settings.output.height = 18;
-    const auto whole = this->picture(s, settings);
-    progressive_render<typename TestFixture::B> steps(b);
-    steps.start(s, settings, {.enabled = true});
-    while (!steps.step(renderer::milliseconds(0)) && steps.progress().passes < 1) {}
-    const auto state = steps.state();
-    steps.start(s, settings);
-    steps.resume(state);
-    steps.step();
-    EXPECT_TRUE(same_bytes(steps.picture(), whole));
+    const auto whole = this->expect_the_same_however_it_is_run(s, settings, {.enabled = true});
     settings.output.band = 100;
     EXPECT_LE(relative_mse(this->picture(s, settings), whole), 1e-9);
 }

@@ -23,6 +23,18 @@ inline dvec3 mean_of(const image& im)
     return mean;
 }
 
+/// All or the indirect light of integrating_sphere(): at each point direct light is 1 / (1 - reflectance) times less
+/// than all light.
+inline void expect_radiance_in_a_sphere(const image& drawn, const dvec3& reflectance, light_part part)
+{
+    const auto mean = mean_of(drawn);
+    for (int c = 0; c < 3; ++c) {
+        const double direct = reflectance[c], all = reflectance[c] / (1 - reflectance[c]);
+        const double known = part == light_part::all ? all : all - direct;
+        EXPECT_NEAR(mean[c], known, 0.02 * known) << "channel " << c;
+    }
+}
+
 /// Photons of equal power at random places of the unit square in the plane y = 0, which come from above: even light.
 struct even_light {
     std::vector<glm::vec4> positions, powers, directions, normals;
@@ -111,7 +123,6 @@ TYPED_TEST_P(pictures, irradiance_at_photons_equals_brute_force)
 
 TYPED_TEST_P(pictures, a_final_gather_in_a_closed_sphere_has_the_known_radiance)
 {
-    // At each point direct light is 1 / (1 - reflectance) times less than all light.
     const dvec3 reflectance(0.5, 0.25, 0.75);
     auto s = integrating_sphere(reflectance);
     auto settings = gathering(s.render, 8);
@@ -122,12 +133,7 @@ TYPED_TEST_P(pictures, a_final_gather_in_a_closed_sphere_has_the_known_radiance)
     for (const auto part : {light_part::all, light_part::indirect}) {
         settings.output.only = part;
         render_stats stats;
-        const auto mean = mean_of(this->picture(s, settings, &stats));
-        for (int c = 0; c < 3; ++c) {
-            const double direct = reflectance[c], all = reflectance[c] / (1 - reflectance[c]);
-            const double known = part == light_part::all ? all : all - direct;
-            EXPECT_NEAR(mean[c], known, 0.02 * known) << "channel " << c;
-        }
+        expect_radiance_in_a_sphere(this->picture(s, settings, &stats), reflectance, part);
         expect_an_exact_account(stats.photons, settings.map.photons);
         EXPECT_EQ(stats.photons.direct, 0u); // first hits are stored
         EXPECT_EQ(stats.photons.escaped, 0u);

@@ -7,7 +7,7 @@
 #include "../scene/test_scenes.hpp"
 #include "ball_over_floor.hpp"
 
-#include <photongrid/render/render.hpp>
+#include <photongrid/render/progressive_render.hpp>
 
 #include <cstring>
 
@@ -69,16 +69,20 @@ protected:
     /// The photons within a circle on the floor have the power that two refractions bring there.
     void expect_focus(const scene& s, const ball_over_floor& ball)
     {
+        auto& b = this->b();
+        const auto device = upload_scene(b, s);
+        expect_focus(trace_photons(b, s, device, s.render).photons, device.layout.center, ball);
+    }
+    void expect_focus(const photons<B>& found, const dvec3& center, const ball_over_floor& ball)
+    {
         const double within = 0.12; // m from the axis on the floor
         const double expected = ball.power_on_floor(within);
         auto& b = this->b();
-        const auto device = upload_scene(b, s);
-        const auto t = trace_photons(b, s, device, s.render);
-        const auto positions = b.download(t.photons.positions);
-        const auto powers = b.download(t.photons.powers);
+        const auto positions = b.download(found.positions);
+        const auto powers = b.download(found.powers);
         double power = 0, squares = 0;
         for (std::size_t i = 0; i < positions.size(); ++i) {
-            const dvec3 p = dvec3(positions[i]) + device.layout.center;
+            const dvec3 p = dvec3(positions[i]) + center;
             if (std::hypot(p.x, p.z) > within)
                 continue;
             power += static_cast<double>(powers[i].x);
@@ -88,6 +92,22 @@ protected:
         EXPECT_GT(power, expected - 4 * std::sqrt(squares));
         EXPECT_LT(power, expected * 1.02 + 4 * std::sqrt(squares));
         EXPECT_GT(expected, 0.01);
+    }
+
+    /// The picture of `settings`, which has the same bytes step by step, and resumed from a pass in the middle on.
+    image expect_the_same_however_it_is_run(
+        const scene& s, const render_settings& settings, const preview_settings& previews = {})
+    {
+        const auto whole = picture(s, settings);
+        progressive_render<B> steps(this->b());
+        steps.start(s, settings, previews);
+        while (!steps.step(renderer::milliseconds(0)) && steps.progress().passes < 1) {}
+        const auto state = steps.state();
+        steps.start(s, settings);
+        steps.resume(state);
+        steps.step();
+        EXPECT_TRUE(same_bytes(steps.picture(), whole));
+        return whole;
     }
 
     /// Traced photons and the picture made of them, equal to serial's: bit for bit where arithmetic rounds correctly.
