@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Ways to compute indirect light and caustics: relMSE against the reference renderer, of pixels and of means over 4 x 4
 # pixels, in which noise counts less and blur the same; the mean's relative bias; the time of the picture on cpu, and the
-# number of its photon paths. All have 16 eye rays a pixel. Prints Markdown. Pictures of 128 x 128 pixels are left in out/final_gather.
+# number of its photon paths. All have 16 eye rays a pixel. Prints Markdown. Pictures of 128 x 128 pixels are left in
+# out/final_gather.
 #
 #   bench/final_gather.sh [--quick]      --quick: a reference with few paths, to see that it runs
 set -euo pipefail

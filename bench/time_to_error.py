@@ -47,7 +47,8 @@ if options.peers != "none" and not os.path.isdir(peers_folder):
 cache = os.path.join(peers_folder, "kept") if options.peers != "none" else out
 program = os.environ.get("PHOTONGRID", "build/photongrid")
 if not os.access(program, os.X_OK):
-    print(f"time_to_error.py: {program} is not there; bench/run.sh builds it (PHOTONGRID names another)", file=sys.stderr)
+    print(f"time_to_error.py: {program} is not there; bench/run.sh builds it (PHOTONGRID names another)",
+          file=sys.stderr)
     sys.exit(2)
 runner = Runner(options.limit, options.clock)
 

@@ -23,7 +23,7 @@ struct estimate_biases {
     /// tells. It has noise of its own: by Silverman's filter 0.65 of the estimate's, by the constant one 1.73.
     buffer_of<B, glm::vec4> bias;
     // Two moments of the light over the disc, W/m^2, mean of the channels, which find steps of the light
-    // (picture_bias.hpp). Where the light steps by H on a line through the point, across the line:
+    // (render/pixel_bias.hpp). Where the light steps by H on a line through the point, across the line:
     buffer_of<B, glm::vec4> tilt;     ///< xyz: the first moment, 2 H / (3 pi). A slope of g, W/m^3, gives g r / 4
     buffer_of<B, glm::vec4> jump;     ///< xyz: one that is 0 where light has a slope, H / (9 pi)
     buffer_of<B, glm::vec4> constant; ///< rgb: the irradiance by the constant filter, W/m^2
