@@ -33,6 +33,16 @@ class Runner:
                                + said.decode(errors="replace")[-2000:])
         return wall, (used.ru_utime + used.ru_stime) / 2
 
+    def run_again_if_it_crashes(self, command, environment=None):
+        """The same, up to three times: some programs crash now and then."""
+        for attempt in range(3):
+            try:
+                return self.run(command, environment)
+            except RuntimeError as e:
+                if attempt == 2:
+                    raise
+                print(f"error_curves.py: again: {e}", file=sys.stderr, flush=True)
+
     def seconds(self, point):
         return point.wall if self.clock == "wall" else point.cpu
 
@@ -164,11 +174,11 @@ def curve_of(runner, program, reference, scene, size, folder, use):
         if all(kept[key] == about[key] for key in about if key != "limit") and kept["limit"] >= runner.limit:
             return Curve(program.name, program.settings, [Point(**p) for p in kept["points"]])
     for attempt in range(2):  # the first compiles kernels and fills the file system's cache
-        reading = runner.run(*program.command(program.first, 8, picture))
+        reading = runner.run_again_if_it_crashes(*program.command(program.first, 8, picture))
     points, cost = [], program.first
     lowest = min(t.relmse for t in scene.targets)
     while True:
-        wall, cpu = runner.run(*program.command(cost, size, picture))
+        wall, cpu = runner.run_again_if_it_crashes(*program.command(cost, size, picture))
         seconds = max(wall - reading[0], 1e-4), max(cpu - reading[1], 1e-4)
         points.append(point_of(cost, seconds, picture, reference))
         if runner.seconds(points[-1]) * 2 > runner.limit * 1.05 or points[-1].relmse < 0.7 * lowest:

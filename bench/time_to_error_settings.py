@@ -43,12 +43,12 @@ class Scene:
 
 
 SCENES = {s.name: s for s in (
-    Scene("cornell_blocks", [Target(0.003, 10)], "--spp 4096"),
+    Scene("cornell_blocks", [Target(0.003, 10)], "--spp 2048"),
     Scene("cornell_box", [Target(0.005, 10), Target(0.001, 10, within=5)],
           "--spp 4096 --caustics bins --paths 100000000"),
     Scene("ring", [Target(0.01, 10)], "--spp 1024 --paths 100000000"),
     # SmallVCM's glass does not absorb, so nobody's does.
-    Scene("glass_ball", [Target(0.01, 10)], "--spp 4096 --caustics bins --paths 100000000", clear_glass=True),
+    Scene("glass_ball", [Target(0.01, 10)], "--spp 1024 --caustics bins --paths 100000000", clear_glass=True),
     Scene("water_caustic", [Target(0.02, 5, rival="Tungsten PPM")], "--spp 1024 --caustics bins --paths 100000000",
           folder="water-caustic/pbrt/scene-v4.pbrt"),
 )}

@@ -61,6 +61,8 @@
     EXTERN template rendered draw(                                                                                     \
         B&, const built_map<B>&, const camera&, const render_settings&, const render_observer&);                       \
     EXTERN template class running_search<B>;                                                                           \
+    EXTERN template class point_estimates<B>;                                                                          \
+    EXTERN template class interpolated_estimates<B>;                                                                   \
     EXTERN template class view_pass<B>;                                                                                \
     EXTERN template pass_pixels draw_pass(B&, const built_map<B>&, const camera&, const render_settings&,              \
         const render_observer&, render_stats&, const pass_radii<B>&);                                                  \

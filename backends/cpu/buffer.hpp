@@ -90,7 +90,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t least_kept = std::size_t{64} << 10, most_kept = std::size_t{128} << 20;
+    static constexpr std::size_t least_kept = std::size_t{64} << 10, most_kept = std::size_t{512} << 20;
     std::vector<storage> kept_;
     std::size_t bytes_kept_ = 0;
 };

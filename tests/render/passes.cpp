@@ -103,18 +103,18 @@ TEST(previews, trace_fewer_photons_where_that_takes_long)
     EXPECT_EQ(preview_photons(s, slow, 40), 1000u) << "few are traced at once";
 }
 
-/// A picture of 4 x 6 pixels in bands of 4, 2 rows, and of 3 passes.
+/// A picture of 4 x 12 pixels in bands of 8, 4 rows, and of 3 passes.
 TEST(render_state, of_another_picture_is_refused)
 {
     render_settings settings;
     settings.output.width = 4;
-    settings.output.height = 6;
+    settings.output.height = 12;
     settings.output.passes = 3;
-    settings.output.band = 4 * 4;
+    settings.output.band = 4 * 8;
     const auto with_passes = [](std::initializer_list<std::uint32_t> passes, std::uint32_t width = 4) {
-        film f(width, 6, 1, false);
+        film f(width, 12, 1, false);
         for (const auto pass : passes)
-            f.add(pass, random_pass(pass, std::size_t{width} * 6, false));
+            f.add(pass, random_pass(pass, std::size_t{width} * 12, false));
         return f;
     };
     const auto refusal = [&](const render_state& s) -> std::string {
@@ -126,24 +126,24 @@ TEST(render_state, of_another_picture_is_refused)
         }
     };
     const auto rows = [](std::uint32_t n) { return random_pass(0, std::size_t{4} * n, false); };
-    auto band = rows(2);
+    auto band = rows(4);
     band.searches.resize(band.pixels.size());
     for (const auto& good : {render_state{}, render_state{with_passes({2, 0}), {}},
-             render_state{with_passes({0, 1, 2}), {}}, render_state{with_passes({1}), {2, 4, 0, rows(4), {}}},
-             render_state{with_passes({1}), {0, 6, 0, rows(6), {}}}, render_state{{}, {0, 4, 5, rows(4), band}}})
+             render_state{with_passes({0, 1, 2}), {}}, render_state{with_passes({1}), {2, 8, 0, rows(8), {}}},
+             render_state{with_passes({1}), {0, 12, 0, rows(12), {}}}, render_state{{}, {0, 8, 5, rows(8), band}}})
         EXPECT_EQ(refusal(good), "");
     const std::vector<std::pair<render_state, std::string>> all{
         {{with_passes({0}, 5), {}}, "film: its size or its layers differ"},
         {{with_passes({0, 1, 2, 3}), {}}, "film: 1 of its 4 passes are not the picture's"},
         {{with_passes({7}), {}}, "film: 1 of its 1 passes are not the picture's"},
-        {{with_passes({1}), {1, 4, 0, rows(4), {}}}, "pass: number 1 is finished"},
-        {{{}, {3, 4, 0, rows(4), {}}}, "pass: number 3 is finished or not the picture's"},
+        {{with_passes({1}), {1, 8, 0, rows(8), {}}}, "pass: number 1 is finished"},
+        {{{}, {3, 8, 0, rows(8), {}}}, "pass: number 3 is finished or not the picture's"},
         {{{}, {0, 2, 0, rows(2), {}}}, "pass: 2 finished rows"},
-        {{{}, {0, 4, 0, rows(2), {}}}, "pass: 4 finished rows"},
+        {{{}, {0, 8, 0, rows(2), {}}}, "pass: 8 finished rows"},
         {{{}, {0, 0, 0, rows(2), {}}}, "pass: 0 finished rows"},
-        {{{}, {0, 8, 0, rows(8), {}}}, "pass: 8 finished rows"},
-        {{{}, {0, 6, 1, rows(6), {}}}, "pass: 6 finished rows"},
-        {{{}, {0, 4, 1, rows(4), rows(2)}}, "pass: the band after row 4 has another size"}};
+        {{{}, {0, 16, 0, rows(16), {}}}, "pass: 16 finished rows"},
+        {{{}, {0, 12, 1, rows(12), {}}}, "pass: 12 finished rows"},
+        {{{}, {0, 8, 1, rows(8), rows(2)}}, "pass: the band after row 8 has another size"}};
     for (const auto& [state, words] : all)
         EXPECT_NE(refusal(state).find("render_state: " + words), std::string::npos) << words << ": " << refusal(state);
 }

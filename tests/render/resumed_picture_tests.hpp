@@ -54,7 +54,7 @@ TYPED_TEST_P(progressive, a_picture_goes_on_from_its_state)
     EXPECT_THROW(other.step(), std::invalid_argument);
 }
 
-/// A scene of 48 x 40 pixels in bands of 9, 9, 9, 9 and 4 rows.
+/// A scene of 48 x 40 pixels in five bands of 8 rows.
 inline scene in_bands(scene s)
 {
     s.render.view.spp = 2;
@@ -97,10 +97,10 @@ TYPED_TEST_P(progressive, bands_of_rows_are_shown_from_the_top)
         while (drawing.pictures() < band)
             drawing.step(ms(0));
         const auto part = drawing.picture();
-        EXPECT_GT(part.pixels[48 * (9 * band - 5) + 20].x, 0.0f) << band;
-        EXPECT_EQ(part.pixels[48 * 9 * band + 20].x, 0.0f) << band;
-        EXPECT_GE(drawing.progress().fraction, 9 * band / 40.0);
-        EXPECT_LE(drawing.progress().unfinished, 48u * (40 - 9 * band));
+        EXPECT_GT(part.pixels[48 * (8 * band - 5) + 20].x, 0.0f) << band;
+        EXPECT_EQ(part.pixels[48 * 8 * band + 20].x, 0.0f) << band;
+        EXPECT_GE(drawing.progress().fraction, 8 * band / 40.0);
+        EXPECT_LE(drawing.progress().unfinished, 48u * (40 - 8 * band));
     }
     drawing.step();
     expect_same_light(drawing.picture(), this->whole(s, s.render));
@@ -133,10 +133,10 @@ TYPED_TEST_P(progressive, bands_of_rows_go_on_from_their_states)
     EXPECT_GE(lives, 10);
     auto other_bands = s.render;
     other_bands.output.aov = false;
-    other_bands.output.band = 48 * 7;
+    other_bands.output.band = 48 * 16;
     typename TestFixture::loop other(this->b());
     other.start(s, other_bands);
-    EXPECT_THROW(other.resume({{}, {0, 9, 0, {std::vector<glm::vec4>(48 * 9), {}, {}}, {}}}), std::invalid_argument);
+    EXPECT_THROW(other.resume({{}, {0, 8, 0, {std::vector<glm::vec4>(48 * 8), {}, {}}, {}}}), std::invalid_argument);
 }
 
 /// A finished picture is shown; one with passes that the picture does not have, or with more, would never end.

@@ -139,6 +139,9 @@ void settings_panel::draw(double shown_exposure)
         "From pass to pass: each pass finds its own (per_pass), or they shrink (shrinking). Speed: shrinking radii "
         "take "
         "a search more. Error: blur fades with every pass, too.");
+    measure(setting_table::interpolation, "interpolation", 0.0f, 0.5f, "%.2f", false,
+        "Estimates are interpolated between those that are at most so many of their radii away; 0: none are. Speed: "
+        "fewer searches. Error: a little more blur.");
     choice(setting_table::tell_bias, "tell bias",
         "Whether until error counts the blur of each pixel, and not its noise alone; auto: if radii shrink. Speed: "
         "searches "

@@ -15,11 +15,10 @@
 #include <photongrid/render/add_gathered.kernel.hpp>
 #include <photongrid/render/add_light.kernel.hpp>
 #include <photongrid/render/add_near_light.kernel.hpp>
-#include <photongrid/render/edge_correction.hpp>
 #include <photongrid/render/is_near_end.kernel.hpp>
 #include <photongrid/render/photon_point.kernel.hpp>
 #include <photongrid/render/picture_search.hpp>
-#include <photongrid/render/shrinking_radii.hpp>
+#include <photongrid/render/point_estimates.hpp>
 #include <photongrid/render/weight_one.kernel.hpp>
 #include <photongrid/trace/eye_rays.hpp>
 #include <photongrid/trace/final_gather_ray.kernel.hpp>
@@ -175,18 +174,21 @@ namespace detail {
 
     /// The irradiance of caustics at ends of gather rays.
     template <backend B>
-    knn_estimates<B> caustics_at(B& device, const map_buffers<B>& caustics, const pass_radii<B>& radii,
-        const eye_hits<B>& ends, const render_settings& settings)
+    knn_estimates<B> caustics_at(B& device, const device_scene<B>& s, const map_buffers<B>& caustics,
+        const pass_radii<B>& radii, const eye_hits<B>& ends, const render_settings& settings)
     {
-        auto k = search_for_caustics(settings);
-        k.errors = k.biases = false;
-        if (radii.first == nullptr)
-            return knn_grid_estimate(device, caustics, ends.points, ends.surfaces, k);
-        const auto firsts = knn_grid_estimate(device, radii.map_of_caustics(), ends.points, ends.surfaces, k);
-        const auto points = points_with_radii(device, ends.points, firsts.irradiance, radii, max_radius2(k));
-        k.search = search_kind::fixed_radius;
-        k.radii_at_points = true;
-        return knn_grid_estimate(device, caustics, points, ends.surfaces, k);
+        estimate_sources<B> from{.scene = &s,
+            .map = &caustics,
+            .first_radii = radii.first != nullptr ? &radii.map_of_caustics() : nullptr,
+            .share2 = radii.share2,
+            .search = search_for_caustics(settings),
+            .edges = settings.estimate.edges};
+        from.search.errors = from.search.biases = false;
+        point_estimates<B> search(
+            device, from, ends.points, ends.surfaces, running_estimate_kind::none, step_size::largest);
+        while (!search.advance()) {
+        }
+        return search.take();
     }
 
     /// Adds direct light and caustics at the ends of gather rays that are gathered from in their turn.
@@ -201,9 +203,7 @@ namespace detail {
         one_sample.view.light_samples = 1;
         one_sample.seed ^= (number + 1) * 0xC2B2AE35u; // else rays of one point would see the same point of a lamp
         direct_light(device, s, ends, one_sample, eye_ray, launch(n, 0), direct);
-        auto found = caustics_at(device, caustics, radii, ends, settings);
-        if (settings.estimate.edges != edge_correction::none)
-            correct_edges(device, s, ends.points, ends.surfaces, found, settings.estimate.filter);
+        const auto found = caustics_at(device, s, caustics, radii, ends, settings);
         device.template run<kernels::add_near_light>(n,
             {.share = 1.0f / static_cast<float>(settings.estimate.gather_rays)},
             reads(ends.points, weights, direct, found.irradiance), writes(gathered));

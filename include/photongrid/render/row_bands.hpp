@@ -18,11 +18,14 @@ struct row_band {
     bool operator==(const row_band&) const = default;
 };
 
-/// The bands of a picture, from the top: as many rows each as output_settings::band has room for, at least one. The
-/// picture must have at least one pixel.
+/// The side of the largest tiles in which estimates are interpolated (interpolated_estimates.hpp), pixels.
+inline constexpr std::uint32_t largest_tile = 8;
+
+/// The bands of a picture, from the top: as many rows of whole tiles each as output_settings::band has room for, at
+/// least one. The picture must have at least one pixel.
 inline std::vector<row_band> bands_of(const output_settings& o)
 {
-    const std::uint32_t most = std::max(1u, o.band / o.width);
+    const std::uint32_t most = std::max(1u, o.band / o.width / largest_tile) * largest_tile;
     std::vector<row_band> all;
     for (std::uint32_t first = 0; first < o.height; first += most)
         all.push_back({first, std::min(most, o.height - first)});

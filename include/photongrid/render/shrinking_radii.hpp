@@ -44,15 +44,14 @@ struct pass_radii {
 };
 
 namespace detail {
-    /// Points with the radii of a pass. `firsts`: w: squared radii in the first map, m^2.
+    /// Points with the radii of a pass. `firsts`: w: squared radii in the first map, m^2; `share2`: of them.
     template <backend B>
     buffer_of<B, glm::vec4> points_with_radii(B& device, const buffer_of<B, glm::vec4>& points,
-        const buffer_of<B, glm::vec4>& firsts, const pass_radii<B>& radii, float max_radius2)
+        const buffer_of<B, glm::vec4>& firsts, double share2, float max_radius2)
     {
         auto own = device.template make<glm::vec4>(points.size());
         device.template run<kernels::shrunk_radius>(points.size(),
-            {.share2 = static_cast<float>(radii.share2), .max_radius2 = max_radius2}, reads(points, firsts),
-            writes(own));
+            {.share2 = static_cast<float>(share2), .max_radius2 = max_radius2}, reads(points, firsts), writes(own));
         return own;
     }
 } // namespace detail

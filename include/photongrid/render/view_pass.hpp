@@ -7,17 +7,15 @@
 #include <photongrid/render/add_error.kernel.hpp>
 #include <photongrid/render/add_estimate.kernel.hpp>
 #include <photongrid/render/canvas.hpp>
-#include <photongrid/render/edge_correction.hpp>
 #include <photongrid/render/gathered_paths.hpp>
+#include <photongrid/render/interpolated_estimates.hpp>
 #include <photongrid/render/picture_search.hpp>
 #include <photongrid/render/preview_image.hpp>
 #include <photongrid/render/previews.hpp>
 #include <photongrid/render/row_bands.hpp>
-#include <photongrid/render/running_search.hpp>
 #include <photongrid/render/scene_map.hpp>
 #include <photongrid/render/shade.kernel.hpp>
 #include <photongrid/render/shade_bias.kernel.hpp>
-#include <photongrid/render/shrinking_radii.hpp>
 #include <photongrid/render/tally_error.kernel.hpp>
 #include <photongrid/render/tally_search.kernel.hpp>
 
@@ -106,23 +104,20 @@ public:
     bool gather(uint ray);
 
     /// Estimates the irradiance there from the photon map (2.3).
-    bool irradiance(uint)
+    bool irradiance(uint ray)
     {
         bool finished = false;
         detail::time_stage(device_, stats_.radiance_estimate, [&] {
-            if (!search_ && radii_.first != nullptr && !find_radii())
-                return;
             if (!search_)
-                search_.emplace(device_, is_of_caustics() ? built_.caustics->map : built_.map,
-                    radii_.first != nullptr ? own_radii_ : samples_->hits.points, samples_->hits.surfaces,
-                    search_settings(), is_of_caustics() ? running_estimate_kind::none : shown_while_running(),
+                search_.emplace(device_, sources(), pixels_of(ray), samples_->hits.points,
+                    samples_->hits.surfaces, is_of_caustics() ? running_estimate_kind::none : shown_while_running(),
                     how_.size);
             // Previews have the light of all branches; running estimates among them must, too.
             if (search_->is_shown() && (how_.may_search_twice || canvas_.rays + 1 == branches_))
                 ++running_pictures_;
             finished = search_->advance();
             if (finished && is_of_caustics()) { // the search in the other map comes next
-                caustics_ = corrected(search_->take());
+                caustics_ = search_->take();
                 search_.reset();
                 finished = false;
             }
@@ -165,7 +160,7 @@ public:
         auto running = copy(canvas_.pixels);
         auto ignored = device_.template make<glm::vec4>(running.size());
         const float share = 1.0f / static_cast<float>(settings_.view.spp);
-        if (search_)
+        if (search_ && search_->has_running_estimates())
             shade(search_->running_estimates(), share, running, ignored);
         return detail::to_image(
             device_.download(running), canvas_.raster, settings_, static_cast<float>(settings_.view.spp), invalid);
@@ -204,34 +199,24 @@ private:
     running_estimate_kind shown_while_running() const
     {
         return running_estimate_of<B>(
-            picture_search(), how_.wants_running_estimates && !is_preview(), how_.may_search_twice);
+            sources().search_in_map(), how_.wants_running_estimates && !is_preview(), how_.may_search_twice);
     }
     /// Whether the next search is that in the map of caustic photons, which is the first.
     bool is_of_caustics() const
     {
         return built_.caustics && !caustics_ && settings_.output.only != light_part::indirect;
     }
-    /// The search in the map where photons' radii are those of the pass.
-    knn_settings search_of_pass() const
+    /// What the next estimates come from.
+    estimate_sources<B> sources() const
     {
-        return is_of_caustics() ? detail::search_for_caustics(settings_) : detail::search_for(settings_);
-    }
-    /// The search of the picture itself, not of a preview.
-    knn_settings picture_search() const
-    {
-        auto k = search_of_pass();
-        if (radii_.first != nullptr) {
-            k.search = search_kind::fixed_radius;
-            k.radii_at_points = true;
-        }
-        return k;
-    }
-    /// Finds the radius of each point in the first map. Returns whether it is done.
-    bool find_radii();
-    knn_settings search_settings() const
-    {
-        const auto k = picture_search();
-        return how_.preview ? detail::search_for_preview(k, *how_.preview) : k;
+        const bool caustic = is_of_caustics();
+        const auto k = caustic ? detail::search_for_caustics(settings_) : detail::search_for(settings_);
+        return {.scene = &built_.scene,
+            .map = caustic ? &built_.caustics->map : &built_.map,
+            .first_radii = caustic ? radii_.first_of_caustics : radii_.first,
+            .share2 = radii_.share2,
+            .search = how_.preview ? detail::search_for_preview(k, *how_.preview) : k,
+            .edges = settings_.estimate.edges};
     }
     /// Settings with fewer shadow rays if pixels are large.
     render_settings light_settings() const
@@ -240,6 +225,14 @@ private:
         if (divisor() > 1)
             s.view.light_samples = std::max(1u, s.view.light_samples / 4);
         return s;
+    }
+
+    /// Branches but the first are of few pixels, mostly.
+    estimate_pixels pixels_of(uint ray) const
+    {
+        const bool are_few = ray % branches_ != 0;
+        return {{canvas_.raster.width, canvas_.raster.height},
+            is_preview() || are_few ? 0.0 : settings_.estimate.interpolation, are_few};
     }
 
     /// Runs `stage` over the next part of the pixels. Returns whether it was the last part.
@@ -253,8 +246,6 @@ private:
         return done_ == 0;
     }
 
-    /// Estimates with the correction of edges that the settings ask for.
-    knn_estimates<B> corrected(knn_estimates<B> found);
     knn_estimates<B> shade(
         knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches);
 
@@ -280,10 +271,8 @@ private:
     uint gathered_ = 0;               ///< rays of this eye ray's final gather that are done
     std::size_t done_ = 0;            ///< pixels that the stage has finished
     pass_radii<B> radii_;
-    std::optional<running_search<B>> radius_search_; ///< in the first map
-    buffer_of<B, glm::vec4> own_radii_;              ///< the hits with their radii
-    std::optional<running_search<B>> search_;        ///< of the eye ray that is drawn
-    std::optional<knn_estimates<B>> caustics_;       ///< its light from the map of caustic photons
+    std::optional<interpolated_estimates<B>> search_; ///< of the eye ray that is drawn
+    std::optional<knn_estimates<B>> caustics_;        ///< its light from the map of caustic photons
     uint running_pictures_ = 0;
     canvas<B> canvas_;
 };
@@ -355,23 +344,6 @@ bool view_pass<B>::gather(uint ray)
 }
 
 template <backend B>
-bool view_pass<B>::find_radii()
-{
-    const auto& hits = samples_->hits;
-    auto k = search_of_pass();
-    k.errors = k.biases = false;
-    if (!radius_search_)
-        radius_search_.emplace(device_, is_of_caustics() ? *radii_.first_of_caustics : *radii_.first, hits.points,
-            hits.surfaces, k, running_estimate_kind::none, how_.size);
-    if (!radius_search_->advance())
-        return false;
-    own_radii_ = detail::points_with_radii(
-        device_, hits.points, radius_search_->take().irradiance, radii_, detail::max_radius2(k));
-    radius_search_.reset();
-    return true;
-}
-
-template <backend B>
 bool view_pass<B>::shade(uint ray)
 {
     detail::time_stage(device_, stats_.radiance_estimate, [&] {
@@ -396,20 +368,10 @@ bool view_pass<B>::shade(uint ray)
 }
 
 template <backend B>
-knn_estimates<B> view_pass<B>::corrected(knn_estimates<B> found)
-{
-    const auto& hits = samples_->hits;
-    if (settings_.estimate.edges != edge_correction::none)
-        correct_edges(device_, built_.scene, hits.points, hits.surfaces, found, settings_.estimate.filter);
-    return found;
-}
-
-template <backend B>
 knn_estimates<B> view_pass<B>::shade(
-    knn_estimates<B> estimates, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches)
+    knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches)
 {
     const auto& hits = samples_->hits;
-    auto found = corrected(std::move(estimates));
     if (caustics_) {
         device_.template run<kernels::add_estimate>(
             pixels.size(), {}, reads(caustics_->irradiance), writes(found.irradiance));

@@ -91,6 +91,9 @@ struct estimate_settings {
     indirect_kind indirect = indirect_kind::map;   ///< how indirect light is computed
     std::uint32_t gather_rays = 16;                ///< rays or paths of a final gather per eye ray
     radius_kind radii = radius_kind::per_pass;     ///< from pass to pass
+    /// Estimates are interpolated between those that are at most so many of their radii away (2.4, 4.5;
+    /// interpolated_estimates.hpp), at most 0.5; 0: none are.
+    double interpolation = 0.5;
 
     bool operator==(const estimate_settings&) const = default;
 };
@@ -194,9 +197,9 @@ inline bool tells_bias(const render_settings& s)
 inline bool keeps_normals(const render_settings& s) { return s.estimate.leaks.needs_photon_normals() || gathers(s); }
 
 /// The settings that reproduce the paper's method: its estimate (2.3: at least k, constant filter, no leak policy, no
-/// edge correction, no final gather), one pass with one eye ray per pixel, which takes all shadow rays of the pixel
-/// (light_samples times spp: by default 32, as in the paper's Cornell box); routed cells redistribute power alone
-/// (2.2.2). Other settings are unchanged.
+/// edge correction, no interpolation, no final gather), one pass with one eye ray per pixel, which takes all shadow
+/// rays of the pixel (light_samples times spp: by default 32, as in the paper's Cornell box); routed cells redistribute
+/// power alone (2.2.2). Other settings are unchanged.
 /// \snippet snippets.cpp as_paper
 inline render_settings as_paper(render_settings s)
 {
@@ -207,6 +210,7 @@ inline render_settings as_paper(render_settings s)
     s.estimate.edges = edge_correction::none;
     s.estimate.indirect = indirect_kind::map;
     s.estimate.radii = radius_kind::per_pass;
+    s.estimate.interpolation = 0;
     s.map.surplus = surplus_kind::power;
     s.map.emission = photon_emission::power;
     s.map.caustic_photons = 0;

@@ -253,6 +253,9 @@ namespace setting_table {
         one_of{{named{"per_pass", radius_kind::per_pass}, {"shrinking", radius_kind::shrinking}}}, in_scenes::optional,
         "radii of estimates: found by each pass (per_pass), or shrinking from pass to pass, so that the picture "
         "converges"};
+    inline constexpr setting interpolation{"interpolation", of(&estimate_settings::interpolation),
+        real_range{0, 0.5, ""}, in_scenes::optional,
+        "estimates are interpolated between those that are at most so many of their radii away; 0: none are"};
     inline constexpr setting tell_bias{"tell_bias", of(&output_settings::tell_bias),
         one_of{{named{"auto", bias_telling::automatic}, {"no", bias_telling::no}, {"yes", bias_telling::yes}}},
         in_scenes::optional,
@@ -274,7 +277,7 @@ constexpr void for_each_setting(const Visit& visit)
     all(t::size, t::photons, t::caustic_photons, t::k, t::caustic_k, t::grid, t::max_radius, t::light_samples, t::spp,
         t::pixel_filter, t::passes, t::until_error, t::percentile, t::depth, t::photon_depth, t::emission, t::seed,
         t::map, t::slots, t::surplus, t::exposure, t::search, t::filter, t::bias, t::leaks, t::edge_correction,
-        t::indirect, t::gather_rays, t::radii, t::tell_bias, t::only, t::seconds);
+        t::indirect, t::gather_rays, t::radii, t::interpolation, t::tell_bias, t::only, t::seconds);
 }
 
 /// \throws std::invalid_argument "name: must be …" for a setting out of its range, or for two incompatible settings.

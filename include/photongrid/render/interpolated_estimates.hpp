@@ -1,0 +1,187 @@
+// The estimates at the hits of one eye ray, of which those between others that are near are interpolated (the paper's
+// section 4.5; docs/design/decisions.md, "Interpolated estimates"). Three rounds, from coarse to fine:
+//
+//     round 0: search at the corners of tiles of 8 x 8 pixels
+//     round 1: interpolate in those tiles; elsewhere, search at the corners of tiles of 4 x 4, 8 x 1 or 1 x 8 pixels
+//     round 2: interpolate in those tiles; search at all other pixels
+//
+// A pixel's estimate is interpolated if the four corners of its tile are on the same surface, each at most
+// estimate_settings::interpolation radii of its own estimate away. The distance to the k-th nearest photon changes by
+// at most the way that one goes, so that a search there would have found a radius of at least 1 - interpolation of
+// those at the corners: photons that crowd between corners are not missed.
+#pragma once
+
+#include <photongrid/map/prefix_sums.hpp>
+#include <photongrid/render/interpolation_round.kernel.hpp>
+#include <photongrid/render/is_searched.kernel.hpp>
+#include <photongrid/render/point_estimates.hpp>
+#include <photongrid/render/row_bands.hpp>
+#include <photongrid/render/searched_point.kernel.hpp>
+#include <photongrid/render/searched_words.kernel.hpp>
+#include <photongrid/render/take_estimate.kernel.hpp>
+#include <photongrid/render/take_vector.kernel.hpp>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// Whether the estimates of a search are interpolated, if they may be `spacing` radii apart. Not where the radius is
+/// that of the paper's search: it depends on the cells of the grid.
+inline bool is_interpolated(const knn_settings& s, double spacing)
+{
+    return spacing > 0 && s.search != search_kind::at_least_k;
+}
+
+/// The pixels of an eye ray's hits.
+struct estimate_pixels {
+    glm::uvec2 size{};  ///< of the band of the picture
+    double spacing = 0; ///< largest distance of an estimate that others are interpolated from, in its radius; 0: none are
+    bool are_few = false; ///< few of them want an estimate; these are searched for apart from the others
+};
+
+/// The estimates at the hits of one eye ray, one per pixel.
+template <backend B>
+class interpolated_estimates {
+public:
+    /// A buffer of points or normals.
+    using vectors = buffer_of<B, glm::vec4>;
+
+    /// `points` (recentred, m; w > 0: an estimate is wanted) and their unit `normals` must outlive it. `kind`: what is
+    /// shown while estimates are computed; of those that are interpolated, nothing is.
+    /// \throws std::invalid_argument as knn_search does, backend_error.
+    interpolated_estimates(B& device, const estimate_sources<B>& from, const estimate_pixels& pixels,
+        const vectors& points, const vectors& normals, running_estimate_kind kind, step_size step);
+
+    /// Runs a step. Returns whether the estimates are finished.
+    bool advance();
+
+    /// Whether the next step improves the estimates that are shown.
+    bool is_shown() const { return whole_ && whole_->is_shown(); }
+    /// Whether there are estimates to show.
+    bool has_running_estimates() const { return whole_ && whole_->has_running_estimates(); }
+    /// The estimates so far, for display, if there are any.
+    knn_estimates<B> running_estimates() { return whole_->running_estimates(); }
+    /// About the number of points whose estimates are not finished.
+    std::uint64_t unfinished() const
+    {
+        return whole_ ? whole_->unfinished() : points_.size() / 3 * (3 - round_ % only_round);
+    }
+
+    /// The estimates. They must be finished.
+    knn_estimates<B> take() { return whole_ ? whole_->take() : std::move(estimates_); }
+
+private:
+    static constexpr uint last_round = 2, only_round = 3; ///< see interpolation_round.glsl
+
+    void begin_round();
+    void end_round();
+    void take(const vectors& found, vectors& values);
+
+    B& device_;
+    estimate_sources<B> from_;
+    float spacing2_;
+    glm::uvec2 size_;
+    const vectors& points_;
+    const vectors& normals_;
+    step_size step_;
+    std::optional<point_estimates<B>> whole_; ///< where nothing is interpolated
+    uint round_ = 0;
+    knn_estimates<B> estimates_; ///< those of the rounds so far
+    buffer_of<B, uint> states_, searched_, ends_; ///< see interpolation_round.glsl, searched_words.glsl
+    vectors places_, place_normals_;              ///< points of the round's search
+    std::optional<point_estimates<B>> of_round_;
+};
+
+// Defined outside the class: functions defined inside are implicitly inline, and `extern template` does not suppress
+// them.
+
+template <backend B>
+interpolated_estimates<B>::interpolated_estimates(B& device, const estimate_sources<B>& from,
+    const estimate_pixels& pixels, const vectors& points, const vectors& normals, running_estimate_kind kind,
+    step_size step)
+    : device_(device), from_(from), spacing2_(static_cast<float>(pixels.spacing * pixels.spacing)), size_(pixels.size),
+      points_(points), normals_(normals), step_(step)
+{
+    if (!is_interpolated(from_.search, pixels.spacing))
+        round_ = only_round;
+    // The paper's search may be shown while it runs.
+    if (round_ == only_round && (!pixels.are_few || from_.search.search == search_kind::at_least_k)) {
+        whole_.emplace(device_, from_, points_, normals_, kind, step_);
+        return;
+    }
+    const auto n = points_.size();
+    const auto make = [&](bool wanted) { return device_.template make<glm::vec4>(wanted ? n : 0); };
+    const bool errors = from_.search.errors, biases = from_.search.biases;
+    // Contents are undefined; the first round reads none of them.
+    estimates_ = {make(true), device_.template make<glm::uvec2>(n), make(errors),
+        {make(biases), make(biases), make(biases), make(biases)}};
+    states_ = device_.template make<uint>(n);
+}
+
+template <backend B>
+void interpolated_estimates<B>::begin_round()
+{
+    const auto n = points_.size();
+    auto states = device_.template make<uint>(n);
+    device_.template run<kernels::interpolation_round>(n,
+        {.size = size_, .number = round_, .spacing2 = spacing2_}, reads(points_, normals_, states_, estimates_.irradiance), writes(states));
+    states_ = std::move(states);
+    const auto count = detail::checked_count<kernels::is_searched>(device_, n, {}, reads(states_));
+    const auto words = static_cast<uint>((n + 31) / 32);
+    auto bits = device_.template make<uint>(words);
+    searched_ = device_.template make<uint>(words);
+    device_.template run<kernels::searched_words>(
+        words, {.pixels = static_cast<uint>(n)}, reads(states_), writes(searched_, bits));
+    ends_ = prefix_sums(device_, bits);
+    places_ = device_.template make<glm::vec4>(count);
+    place_normals_ = device_.template make<glm::vec4>(count);
+    device_.template run<kernels::searched_point>(
+        count, {.words = words}, reads(searched_, ends_, points_, normals_), writes(places_, place_normals_));
+    of_round_.emplace(device_, from_, places_, place_normals_, running_estimate_kind::none, step_);
+}
+
+template <backend B>
+bool interpolated_estimates<B>::advance()
+{
+    if (whole_)
+        return whole_->advance();
+    if (!of_round_)
+        begin_round();
+    if (!of_round_->advance())
+        return false;
+    end_round();
+    return round_++ >= last_round;
+}
+
+template <backend B>
+void interpolated_estimates<B>::take(const vectors& found, vectors& values)
+{
+    auto taken = device_.template make<glm::vec4>(values.size());
+    device_.template run<kernels::take_vector>(values.size(), {.size = size_},
+        reads(states_, searched_, ends_, found, values), writes(taken));
+    values = std::move(taken);
+}
+
+template <backend B>
+void interpolated_estimates<B>::end_round()
+{
+    const auto n = points_.size();
+    const auto found = of_round_->take();
+    of_round_.reset();
+    auto irradiance = device_.template make<glm::vec4>(n);
+    auto used = device_.template make<glm::uvec2>(n);
+    device_.template run<kernels::take_estimate>(n, {.size = size_},
+        reads(states_, searched_, ends_, found.irradiance, found.used, estimates_.irradiance, estimates_.used),
+        writes(irradiance, used));
+    estimates_.irradiance = std::move(irradiance);
+    estimates_.used = std::move(used);
+    take(found.standard_error, estimates_.standard_error);
+    take(found.biases.bias, estimates_.biases.bias);
+    take(found.biases.tilt, estimates_.biases.tilt);
+    take(found.biases.jump, estimates_.biases.jump);
+    take(found.biases.constant, estimates_.biases.constant);
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

@@ -1,0 +1,119 @@
+// The estimates at points on surfaces that a picture needs, in steps: their radii first, if those are given by another
+// map (shrinking_radii.hpp); then the search in the photon map; then the correction of edges.
+#pragma once
+
+#include <photongrid/render/edge_correction.hpp>
+#include <photongrid/render/running_search.hpp>
+#include <photongrid/render/shrinking_radii.hpp>
+
+#include <optional>
+
+#include <photongrid/backend/exact_begin.hpp>
+
+namespace photongrid {
+
+/// What estimates at points come from. What it points to must outlive their computation.
+template <backend B>
+struct estimate_sources {
+    const device_scene<B>* scene = nullptr;
+    const map_buffers<B>* map = nullptr;         ///< the photons
+    const map_buffers<B>* first_radii = nullptr; ///< map that gives the first radii; null: `search` finds the radii
+    double share2 = 1;                           ///< of the squared first radii: shrunk_share2 of the pass
+    knn_settings search{};                       ///< finds the radii
+    edge_correction edges = edge_correction::none;
+
+    /// The search in `map`.
+    knn_settings search_in_map() const
+    {
+        auto k = search;
+        if (first_radii != nullptr) {
+            k.search = search_kind::fixed_radius;
+            k.radii_at_points = true;
+        }
+        return k;
+    }
+};
+
+/// The estimates at some points.
+template <backend B>
+class point_estimates {
+public:
+    /// A buffer of points or normals.
+    using vectors = buffer_of<B, glm::vec4>;
+
+    /// `points` (recentred, m; w > 0: an estimate is wanted) and their unit `normals` must outlive it.
+    /// \throws std::invalid_argument as knn_search does, backend_error.
+    point_estimates(B& device, const estimate_sources<B>& from, const vectors& points, const vectors& normals,
+        running_estimate_kind kind, step_size size);
+
+    /// Runs a step. Returns whether the estimates are finished.
+    bool advance();
+
+    /// Whether the next step improves the estimates that are shown.
+    bool is_shown() const { return search_ && search_->is_shown(); }
+    /// Whether there are estimates to show.
+    bool has_running_estimates() const { return search_.has_value(); }
+    /// The estimates so far, for display, if there are any.
+    knn_estimates<B> running_estimates() { return corrected(search_->running_estimates()); }
+    /// The number of points whose estimates are not finished.
+    std::uint64_t unfinished() const { return search_ ? search_->unfinished() : points_.size(); }
+
+    /// The estimates. They must be finished.
+    knn_estimates<B> take() { return corrected(search_->take()); }
+
+private:
+    knn_estimates<B> corrected(knn_estimates<B> found);
+
+    B& device_;
+    estimate_sources<B> from_;
+    const vectors& points_;
+    const vectors& normals_;
+    running_estimate_kind kind_;
+    step_size size_;
+    std::optional<running_search<B>> radius_search_; ///< in the first map
+    vectors own_radii_;                              ///< the points with their radii
+    std::optional<running_search<B>> search_;
+};
+
+// Defined outside the class: functions defined inside are implicitly inline, and `extern template` does not suppress
+// them.
+
+template <backend B>
+point_estimates<B>::point_estimates(B& device, const estimate_sources<B>& from, const vectors& points,
+    const vectors& normals, running_estimate_kind kind, step_size size)
+    : device_(device), from_(from), points_(points), normals_(normals), kind_(kind), size_(size)
+{
+    if (from_.first_radii == nullptr) {
+        search_.emplace(device_, *from_.map, points_, normals_, from_.search, kind_, size_);
+        return;
+    }
+    auto k = from_.search;
+    k.errors = k.biases = false;
+    radius_search_.emplace(device_, *from_.first_radii, points_, normals_, k, running_estimate_kind::none, size_);
+}
+
+template <backend B>
+bool point_estimates<B>::advance()
+{
+    if (search_)
+        return search_->advance();
+    if (radius_search_->advance()) {
+        own_radii_ = detail::points_with_radii(device_, points_, radius_search_->take().irradiance, from_.share2,
+            detail::max_radius2(from_.search));
+        radius_search_.reset();
+        search_.emplace(device_, *from_.map, own_radii_, normals_, from_.search_in_map(), kind_, size_);
+    }
+    return false;
+}
+
+template <backend B>
+knn_estimates<B> point_estimates<B>::corrected(knn_estimates<B> found)
+{
+    if (from_.edges != edge_correction::none)
+        correct_edges(device_, *from_.scene, points_, normals_, found, from_.search.filter);
+    return found;
+}
+
+} // namespace photongrid
+
+#include <photongrid/backend/exact_end.hpp>

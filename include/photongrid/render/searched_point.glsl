@@ -1,0 +1,36 @@
+// The point of search number i of a round, and its surface normal.
+struct Params {
+    uint words;
+};
+PARAMS(Params)
+INPUT(0, uint, searched) // searched_words.glsl
+INPUT(1, uint, ends)     // inclusive prefix sums of their bits
+INPUT(2, vec4, points)
+INPUT(3, vec4, surfaces)
+OUTPUT(0, vec4, point)
+OUTPUT(1, vec4, surface)
+
+uint searched_pixel(uint i)
+{
+    uint low = 0u;
+    uint high = args.words - 1u;
+    while (low < high) {
+        uint middle = (low + high) / 2u;
+        if (ends(middle) > i)
+            high = middle;
+        else
+            low = middle + 1u;
+    }
+    uint word = searched(low);
+    uint left = i + uint(bitCount(word)) - ends(low); // bits of the word before it
+    for (uint b = 0u; b < left; ++b)
+        word &= word - 1u; // clears the lowest
+    return 32u * low + uint(findLSB(word));
+}
+
+void kernel(uint i)
+{
+    uint pixel = searched_pixel(i);
+    point = points(pixel);
+    surface = surfaces(pixel);
+}
