@@ -64,7 +64,7 @@ public:
     /// About the number of points whose estimates are not finished.
     std::uint64_t unfinished() const
     {
-        return whole_ ? whole_->unfinished() : points_.size() / 3 * (3 - round_ % only_round);
+        return whole_ ? whole_->unfinished() : round_ <= last_round ? points_.size() * (3 - round_) / 3 : 0;
     }
 
     /// The estimates. They must be finished.

@@ -15,12 +15,6 @@ namespace photongrid {
 /// The number of the pass whose photons give the first radii.
 inline constexpr std::uint32_t radius_pass = 0xFFFFFFFFu;
 
-/// Whether passes of a picture with settings `s` have shrinking radii.
-inline bool has_shrinking_radii(const render_settings& s)
-{
-    return s.estimate.radii == radius_kind::shrinking && s.output.only != light_part::direct;
-}
-
 /// The share of the first squared radius in pass number `pass`: the product of (i - 1 + alpha) / i for i from 1 to
 /// `pass`, with alpha = 2/3. It falls as pass^(alpha - 1), by which noise and blur fall at the same rate.
 inline double shrunk_share2(std::uint32_t pass)

@@ -72,7 +72,7 @@ struct map_settings {
 enum class indirect_kind { map, gather, paths };
 
 /// How the radii of estimates change from pass to pass: each pass finds its own by its search; or they shrink from
-/// those that the search finds in a map of its own (shrinking_radii.hpp).
+/// those that the search finds in a map of its own (shrinking_radii.hpp), if the picture has several passes.
 enum class radius_kind { per_pass, shrinking };
 
 /// Whether a picture tells the bias of its pixels (tells_bias).
@@ -90,7 +90,7 @@ struct estimate_settings {
     edge_correction edges = edge_correction::none; ///< polygons: needs leak_policy::min_cosine above 0
     indirect_kind indirect = indirect_kind::map;   ///< how indirect light is computed
     std::uint32_t gather_rays = 16;                ///< rays or paths of a final gather per eye ray
-    radius_kind radii = radius_kind::per_pass;     ///< from pass to pass
+    radius_kind radii = radius_kind::shrinking;    ///< from pass to pass, if there are several
     /// Estimates are interpolated between those that are at most so many of their radii away (2.4, 4.5;
     /// interpolated_estimates.hpp), at most 0.5; 0: none are.
     double interpolation = 0.5;
@@ -186,12 +186,17 @@ inline bool has_caustic_map(const render_settings& s)
     return s.map.caustic_photons > 0
         && (s.output.only == light_part::all || s.output.only == light_part::caustic || has_gather_rays(s));
 }
+/// Whether the radii of its passes shrink. A picture of one pass would only lose by it.
+inline bool has_shrinking_radii(const render_settings& s)
+{
+    return s.estimate.radii == radius_kind::shrinking && s.output.only != light_part::direct
+        && s.output.passes_at_most() > 1;
+}
 /// Whether it tells the bias of its pixels.
 inline bool tells_bias(const render_settings& s)
 {
-    const bool shrinks = s.estimate.radii == radius_kind::shrinking && s.output.only != light_part::direct;
     return s.output.tell_bias == bias_telling::yes
-        || (s.output.tell_bias == bias_telling::automatic && s.output.until_error > 0 && shrinks);
+        || (s.output.tell_bias == bias_telling::automatic && s.output.until_error > 0 && has_shrinking_radii(s));
 }
 /// Whether photons keep the normals of their surfaces.
 inline bool keeps_normals(const render_settings& s) { return s.estimate.leaks.needs_photon_normals() || gathers(s); }

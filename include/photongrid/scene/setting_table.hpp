@@ -251,8 +251,8 @@ namespace setting_table {
         in_scenes::optional, "rays or paths of a final gather per eye ray"};
     inline constexpr setting radii{"radii", of(&estimate_settings::radii),
         one_of{{named{"per_pass", radius_kind::per_pass}, {"shrinking", radius_kind::shrinking}}}, in_scenes::optional,
-        "radii of estimates: found by each pass (per_pass), or shrinking from pass to pass, so that the picture "
-        "converges"};
+        "radii of estimates: found by each pass (per_pass), or shrinking from pass to pass, if there are several, so "
+        "that the picture converges"};
     inline constexpr setting interpolation{"interpolation", of(&estimate_settings::interpolation),
         real_range{0, 0.5, ""}, in_scenes::optional,
         "estimates are interpolated between those that are at most so many of their radii away; 0: none are"};
