@@ -56,15 +56,19 @@ SCENES = {s.name: s for s in (
 # Options of `photongrid render`, the best first: --passes is what grows.
 WAYS = {
     "cornell_blocks": [
-        "--spp 8 --k 50 --photons 250000",
+        "--spp 1 --k 200 --photons 65000 --light-samples 2",
+        "--spp 2 --k 200 --photons 65000",
+        "--spp 8 --k 50 --photons 250000 --radii per_pass",
         "--spp 4 --k 50 --radii shrinking",
         "--spp 16 --k 50 --radii shrinking --photons 250000",
-        "--spp 16 --k 200 --photons 250000",
-        "--spp 16 --k 50 --indirect gather --gather-rays 1 --light-samples 2",
-        "--spp 4 --k 50 --indirect gather --gather-rays 4",
+        "--spp 16 --k 200 --photons 250000 --radii per_pass",
+        "--spp 16 --k 50 --indirect gather --gather-rays 1 --light-samples 2 --radii per_pass",
+        "--spp 4 --k 50 --indirect gather --gather-rays 4 --radii per_pass",
         "--spp 1 --k 50 --indirect gather --radii shrinking",
     ],
     "cornell_box": [
+        "--spp 1 --k 200 --photons 65000 --caustic-photons 16000 --caustic-k 30 --light-samples 2",
+        "--spp 1 --k 200 --photons 65000 --caustic-photons 32000 --caustic-k 30",
         "--spp 4 --k 50 --radii shrinking --photons 65000 --caustic-photons 65000 --caustic-k 30",
         "--spp 16 --k 50 --radii shrinking --photons 250000 --caustic-photons 100000 --caustic-k 30",
         "--spp 16 --k 50 --radii shrinking --photons 250000",

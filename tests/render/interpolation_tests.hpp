@@ -52,8 +52,8 @@ read_estimates estimates_at(
     return {b.download(found.irradiance), b.download(found.used)};
 }
 
-/// Whether the estimate of pixel i is interpolated among the corners of its tile of these sides, as far as a tile's
-/// corners have estimates near enough.
+/// Whether the estimate of pixel i is interpolated among the corners of its tile of these sides, which are near enough,
+/// and has their least radius.
 inline bool is_bilinear(
     const read_estimates& all, const rows_of_points& rows, std::size_t i, glm::uvec2 sides, double spacing)
 {
@@ -66,6 +66,7 @@ inline bool is_bilinear(
     };
     const double u = share(x, left, right), v = share(y, top, bottom);
     double value = 0;
+    float least = std::numeric_limits<float>::infinity();
     for (const auto& [column, row, weight] : {std::tuple{left, top, (1 - u) * (1 - v)},
              std::tuple{right, top, u * (1 - v)}, std::tuple{left, bottom, (1 - u) * v},
              std::tuple{right, bottom, u * v}}) {
@@ -75,8 +76,9 @@ inline bool is_bilinear(
         if (away > spacing * std::sqrt(static_cast<double>(e.w)) * (1 + 1e-5))
             return false;
         value += weight * static_cast<double>(e.x);
+        least = std::min(least, e.w);
     }
-    return std::abs(value - static_cast<double>(all.irradiance[i].x)) <= 1e-5 * value;
+    return all.irradiance[i].w == least && std::abs(value - static_cast<double>(all.irradiance[i].x)) <= 1e-5 * value;
 }
 
 /// On a floor that is seen from above, or at a flat angle across or along its rows.
