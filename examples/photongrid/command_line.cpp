@@ -123,7 +123,8 @@ namespace {
         to.add_flag("--as-paper", o.as_paper,
             "the paper's method: --search at_least_k --filter constant --bias paper --leaks none --edge-correction "
             "none "
-            "--interpolation 0 --surplus power --passes 1 --until-error 0 --spp 1 with the shadow rays of all eye rays, and what the "
+            "--interpolation 0 --surplus power --passes 1 --until-error 0 --spp 1 with the shadow rays of all eye "
+            "rays, and what the "
             "scene has under "
             "\"as_paper\"; any option that is given as well takes precedence");
         to.add_flag("--exact", o.exact,

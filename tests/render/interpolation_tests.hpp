@@ -67,9 +67,9 @@ inline bool is_bilinear(
     const double u = share(x, left, right), v = share(y, top, bottom);
     double value = 0;
     float least = std::numeric_limits<float>::infinity();
-    for (const auto& [column, row, weight] : {std::tuple{left, top, (1 - u) * (1 - v)},
-             std::tuple{right, top, u * (1 - v)}, std::tuple{left, bottom, (1 - u) * v},
-             std::tuple{right, bottom, u * v}}) {
+    for (const auto& [column, row, weight] :
+        {std::tuple{left, top, (1 - u) * (1 - v)}, std::tuple{right, top, u * (1 - v)},
+            std::tuple{left, bottom, (1 - u) * v}, std::tuple{right, bottom, u * v}}) {
         const std::size_t corner = row * rows.size.x + column;
         const auto& e = all.irradiance[corner];
         const double away = glm::distance(dvec3(rows.points[corner]), dvec3(rows.points[i]));
@@ -89,8 +89,8 @@ TYPED_TEST_P(pictures, estimates_are_searched_for_or_interpolated_between_near_o
     const auto map = fitted_map(b, set.on(b), 50, every_part);
     const knn_settings search{.k = 50};
     const double spacing = 0.5; // the radius is about 0.063
-    for (const auto step : {glm::vec2(0.003f), glm::vec2(0.002f, 0.02f), glm::vec2(0.02f, 0.002f), glm::vec2(0.007f),
-             glm::vec2(0.05f)}) {
+    for (const auto step :
+        {glm::vec2(0.003f), glm::vec2(0.002f, 0.02f), glm::vec2(0.02f, 0.002f), glm::vec2(0.007f), glm::vec2(0.05f)}) {
         const rows_of_points rows({19, 13}, step, {0.03f, 0.03f});
         const auto plain = estimates_at(b, map, rows, search, 0);
         const auto found = estimates_at(b, map, rows, search, spacing);
@@ -126,8 +126,7 @@ TYPED_TEST_P(pictures, photons_that_crowd_between_estimates_are_not_missed)
     const std::size_t crowded = 3 * 16 + 3;
     for (std::size_t i = 0; i < 100; ++i)
         set.positions[i]
-            = rows.points[crowded]
-            + 1e-5f * glm::vec4(static_cast<float>(i % 10), 0, static_cast<float>(i / 10), 0);
+            = rows.points[crowded] + 1e-5f * glm::vec4(static_cast<float>(i % 10), 0, static_cast<float>(i / 10), 0);
     const auto map = fitted_map(b, set.on(b), 20, every_part);
     const knn_settings search{.k = 20};
     const auto plain = estimates_at(b, map, rows, search, 0);

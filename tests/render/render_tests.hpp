@@ -99,8 +99,8 @@ REGISTER_TYPED_TEST_SUITE_P(pictures, caustic_photons_of_their_own_have_the_powe
     the_rays_of_a_gather_are_progress, gather_rays_are_stratified_over_passes,
     paths_in_a_closed_sphere_have_the_known_radiance, paths_have_the_known_radiance_in_a_corner, paths_equal_serials,
     an_exact_picture_does_not_depend_on_how_it_is_run, an_exact_caustic_converges_at_the_rate_of_theory,
-    estimates_are_searched_for_or_interpolated_between_near_ones,
-    photons_that_crowd_between_estimates_are_not_missed, estimates_are_not_interpolated_over_edges,
-    interpolated_pictures_are_close_and_equal_serials, exact_indirect_light_converges_as_fast_as_noise, a_view_of_a_map_without_a_gather_is_refused);
+    estimates_are_searched_for_or_interpolated_between_near_ones, photons_that_crowd_between_estimates_are_not_missed,
+    estimates_are_not_interpolated_over_edges, interpolated_pictures_are_close_and_equal_serials,
+    exact_indirect_light_converges_as_fast_as_noise, a_view_of_a_map_without_a_gather_is_refused);
 
 } // namespace photongrid::testing

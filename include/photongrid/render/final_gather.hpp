@@ -186,8 +186,7 @@ namespace detail {
         from.search.errors = from.search.biases = false;
         point_estimates<B> search(
             device, from, ends.points, ends.surfaces, running_estimate_kind::none, step_size::largest);
-        while (!search.advance()) {
-        }
+        while (!search.advance()) {}
         return search.take();
     }
 

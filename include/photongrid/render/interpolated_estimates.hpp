@@ -34,8 +34,9 @@ inline bool is_interpolated(const knn_settings& s, double spacing)
 
 /// The pixels of an eye ray's hits.
 struct estimate_pixels {
-    glm::uvec2 size{};  ///< of the band of the picture
-    double spacing = 0; ///< largest distance of an estimate that others are interpolated from, in its radius; 0: none are
+    glm::uvec2 size{}; ///< of the band of the picture
+    double spacing
+        = 0; ///< largest distance of an estimate that others are interpolated from, in its radius; 0: none are
     bool are_few = false; ///< few of them want an estimate; these are searched for apart from the others
 };
 
@@ -86,7 +87,7 @@ private:
     step_size step_;
     std::optional<point_estimates<B>> whole_; ///< where nothing is interpolated
     uint round_ = 0;
-    knn_estimates<B> estimates_; ///< those of the rounds so far
+    knn_estimates<B> estimates_;                  ///< those of the rounds so far
     buffer_of<B, uint> states_, searched_, ends_; ///< see interpolation_round.glsl, searched_words.glsl
     vectors places_, place_normals_;              ///< points of the round's search
     std::optional<point_estimates<B>> of_round_;
@@ -123,8 +124,8 @@ void interpolated_estimates<B>::begin_round()
 {
     const auto n = points_.size();
     auto states = device_.template make<uint>(n);
-    device_.template run<kernels::interpolation_round>(n,
-        {.size = size_, .number = round_, .spacing2 = spacing2_}, reads(points_, normals_, states_, estimates_.irradiance), writes(states));
+    device_.template run<kernels::interpolation_round>(n, {.size = size_, .number = round_, .spacing2 = spacing2_},
+        reads(points_, normals_, states_, estimates_.irradiance), writes(states));
     states_ = std::move(states);
     const auto count = detail::checked_count<kernels::is_searched>(device_, n, {}, reads(states_));
     const auto words = static_cast<uint>((n + 31) / 32);
@@ -157,8 +158,8 @@ template <backend B>
 void interpolated_estimates<B>::take(const vectors& found, vectors& values)
 {
     auto taken = device_.template make<glm::vec4>(values.size());
-    device_.template run<kernels::take_vector>(values.size(), {.size = size_},
-        reads(states_, searched_, ends_, found, values), writes(taken));
+    device_.template run<kernels::take_vector>(
+        values.size(), {.size = size_}, reads(states_, searched_, ends_, found, values), writes(taken));
     values = std::move(taken);
 }
 

@@ -98,8 +98,8 @@ bool point_estimates<B>::advance()
     if (search_)
         return search_->advance();
     if (radius_search_->advance()) {
-        own_radii_ = detail::points_with_radii(device_, points_, radius_search_->take().irradiance, from_.share2,
-            detail::max_radius2(from_.search));
+        own_radii_ = detail::points_with_radii(
+            device_, points_, radius_search_->take().irradiance, from_.share2, detail::max_radius2(from_.search));
         radius_search_.reset();
         search_.emplace(device_, *from_.map, own_radii_, normals_, from_.search_in_map(), kind_, size_);
     }

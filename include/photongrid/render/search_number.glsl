@@ -1,5 +1,5 @@
-// The number of a pixel's search in a round. Included by kernels after their inputs `searched` (searched_words.glsl) and
-// `ends`, the inclusive prefix sums of its bits.
+// The number of a pixel's search in a round. Included by kernels after their inputs `searched` (searched_words.glsl)
+// and `ends`, the inclusive prefix sums of its bits.
 uint search_number(uint pixel)
 {
     uint word = pixel / 32u;

@@ -109,9 +109,8 @@ public:
         bool finished = false;
         detail::time_stage(device_, stats_.radiance_estimate, [&] {
             if (!search_)
-                search_.emplace(device_, sources(), pixels_of(ray), samples_->hits.points,
-                    samples_->hits.surfaces, is_of_caustics() ? running_estimate_kind::none : shown_while_running(),
-                    how_.size);
+                search_.emplace(device_, sources(), pixels_of(ray), samples_->hits.points, samples_->hits.surfaces,
+                    is_of_caustics() ? running_estimate_kind::none : shown_while_running(), how_.size);
             // Previews have the light of all branches; running estimates among them must, too.
             if (search_->is_shown() && (how_.may_search_twice || canvas_.rays + 1 == branches_))
                 ++running_pictures_;
