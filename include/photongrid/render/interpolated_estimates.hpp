@@ -35,8 +35,8 @@ inline bool is_interpolated(const knn_settings& s, double spacing)
 /// The pixels of an eye ray's hits.
 struct estimate_pixels {
     glm::uvec2 size{}; ///< of the band of the picture
-    double spacing
-        = 0; ///< largest distance of an estimate that others are interpolated from, in its radius; 0: none are
+    /// The largest distance of an estimate that others are interpolated from, in its radius; 0: none are.
+    double spacing = 0;
     bool are_few = false; ///< few of them want an estimate; these are searched for apart from the others
 };
 
