@@ -79,6 +79,7 @@ WAYS = {
         "--spp 1 --k 50 --radii shrinking",
     ],
     "ring": [
+        "--spp 1 --k 30 --photons 2000 --caustic-photons 200000 --caustic-k 20",
         "--spp 4 --k 30 --radii shrinking --photons 2000 --caustic-photons 100000 --caustic-k 50",
         "--spp 4 --k 30 --radii shrinking --photons 2000 --caustic-photons 300000 --caustic-k 50",
         "--spp 4 --k 50 --radii shrinking --photons 100000",
@@ -87,6 +88,7 @@ WAYS = {
         "--spp 1 --k 50 --radii shrinking",
     ],
     "glass_ball": [
+        "--spp 1 --k 50 --photons 10000 --caustic-photons 200000 --caustic-k 20",
         "--spp 4 --k 30 --radii shrinking --photons 5000 --caustic-photons 60000 --caustic-k 30",
         "--spp 16 --k 30 --radii shrinking --photons 10000 --caustic-photons 200000 --caustic-k 30",
         "--spp 4 --k 50 --radii shrinking --photons 50000",
@@ -95,6 +97,7 @@ WAYS = {
         "--spp 1 --k 50 --radii shrinking",
     ],
     "water_caustic": [
+        "--spp 1 --k 50 --photons 10000 --caustic-photons 1000000 --caustic-k 30",
         "--spp 4 --k 50 --radii shrinking --photons 10000 --caustic-photons 1000000 --caustic-k 50",
         "--spp 4 --k 50 --radii shrinking --photons 1000000",
         "--spp 1 --k 50 --radii shrinking --photons 250000",
