@@ -88,7 +88,7 @@ WAYS = {
         "--spp 1 --k 50 --radii shrinking",
     ],
     "glass_ball": [
-        "--spp 1 --k 50 --photons 10000 --caustic-photons 200000 --caustic-k 20",
+        "--spp 1 --k 100 --photons 10000 --caustic-photons 60000 --caustic-k 30",
         "--spp 4 --k 30 --radii shrinking --photons 5000 --caustic-photons 60000 --caustic-k 30",
         "--spp 16 --k 30 --radii shrinking --photons 10000 --caustic-photons 200000 --caustic-k 30",
         "--spp 4 --k 50 --radii shrinking --photons 50000",
