@@ -162,17 +162,21 @@ def point_of(cost, seconds, picture, reference):
 
 def curve_of(runner, program, reference, scene, size, folder, use):
     """The errors of a program's pictures with 1, 2, 4, ... times its least work, until the limit or the last target.
-    use: None: not kept between calls; cached: taken from the folder, where it was measured with these settings."""
+    use: None: not kept between calls; cached: taken from the folder, where it was measured with these settings; kept:
+    the same, and nothing is measured."""
     os.makedirs(folder, exist_ok=True)
     file = os.path.join(folder, f"{scene.name}-{size}-{program.file_name()}.json")
     picture = file.replace(".json", program.ending)
     about = {"settings": program.settings, "size": size, "limit": runner.limit,
              "reference": os.path.basename(reference.path)}
-    if use == "cached" and os.path.exists(file):
+    if use in ("cached", "kept") and os.path.exists(file):
         with open(file) as f:
             kept = json.load(f)
-        if all(kept[key] == about[key] for key in about if key != "limit") and kept["limit"] >= runner.limit:
+        is_same = all(kept[key] == about[key] for key in about if key != "limit")
+        if is_same and (use == "kept" or kept["limit"] >= runner.limit):
             return Curve(program.name, program.settings, [Point(**p) for p in kept["points"]])
+    if use == "kept":
+        raise RuntimeError("not measured")
     for attempt in range(2):  # the first compiles kernels and fills the file system's cache
         reading = runner.run_again_if_it_crashes(*program.command(program.first, 8, picture))
     points, cost = [], program.first

@@ -2,12 +2,13 @@
 # Prints Markdown; curves (CSV, plots) go to out/time_to_error/. Exit status 1: a floor is missed.
 #
 #   python3 bench/time_to_error.py [--quick] [--size N] [--limit SECONDS] [--clock wall|cpu] [--ways best|all]
-#                                  [--peers cached|measured|none] [--backends cpu,vulkan,gl] [--draft] [SCENE...]
+#                                  [--peers cached|kept|measured|none] [--backends cpu,vulkan,gl] [--draft] [SCENE...]
 #
 #   --quick     tiny pictures, no other programs: to see that it runs
 #   --limit     no run is longer than this, about (60)
 #   --clock     which seconds the table has: wall (what one waits; a quiet machine), or CPU seconds over two threads
-#   --peers     cached (default): other programs' curves are measured once and kept; measured: again; none: left out
+#   --peers     cached (default): other programs' curves are measured once and kept; kept: those that are not are
+#               skipped, which is said; measured: all again; none: left out
 #   --draft     references with a sixteenth of the paths
 #   --ways      photongrid's best settings of bench/time_to_error_settings.py alone (default), or all of them
 #
@@ -30,7 +31,7 @@ parser.add_argument("--quick", action="store_true")
 parser.add_argument("--size", type=int, default=512)
 parser.add_argument("--limit", type=float, default=60)
 parser.add_argument("--clock", choices=("wall", "cpu"), default="wall")
-parser.add_argument("--peers", choices=("cached", "measured", "none"), default="cached")
+parser.add_argument("--peers", choices=("cached", "kept", "measured", "none"), default="cached")
 parser.add_argument("--backends", default="cpu,vulkan,gl")
 parser.add_argument("--ways", choices=("best", "all"), default="best")
 parser.add_argument("--draft", action="store_true")
