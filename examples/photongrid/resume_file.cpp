@@ -80,6 +80,7 @@ std::string picture_identity(const scene& s, const render_settings& settings, co
     of_passes.output.passes = settings.output.passes_at_most();
     of_passes.output.until_error = of_passes.output.seconds = 0;
     of_passes.output.percentile = output_settings{}.percentile;
+    of_passes.output.tell_bias = output_settings{}.tell_bias; // what follows from it is compared below
     const json all = {{"version", PHOTONGRID_VERSION}, {"backend", caps.backend}, {"device", caps.device},
         {"scene", json::parse(scene_text(s, {}))}, {"set of settings", json::parse(settings_text(of_passes))},
         {"choice of layers", settings.output.aov}, {"choice of biases", tells_bias(settings)}};
