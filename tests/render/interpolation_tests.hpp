@@ -155,17 +155,23 @@ TYPED_TEST_P(pictures, estimates_are_not_interpolated_over_edges)
     EXPECT_EQ(in_left_tile(flat, search), 60u); // all but the corners
     auto paper = as_paper(search);
     EXPECT_EQ(in_left_tile(flat, paper), 0u);
-    for (const int fault : {0, 1, 2}) {
+    const glm::vec4 tilted(std::sin(0.2f), std::cos(0.2f), 0, 0);
+    for (const int fault : {0, 1, 2, 3}) {
         auto rows = flat;
         for (std::size_t i = 0; i < rows.points.size(); ++i) {
             if (i % 16 != 2 && i % 16 != 5) // of the columns of small tiles, those between the corners of the large one
                 continue;
             switch (fault) {
             case 0: rows.points[i].y = 0.004f; break;
-            case 1: rows.normals[i] = glm::vec4(std::sin(0.2f), std::cos(0.2f), 0, 0); break;
-            default: rows.points[i].w = -1;
+            case 1: rows.normals[i] = tilted; break;
+            case 2: rows.points[i].w = -1; break;
+            default: break;
             }
         }
+        if (fault == 3) // the corners of all tiles
+            for (std::size_t i = 0; i < rows.points.size(); ++i)
+                if (i % 4 == 0 || i % 4 == 3)
+                    rows.normals[i] = tilted;
         const auto found = estimates_at(b, map, rows, search, 0.5);
         for (std::size_t i = 0; i < rows.points.size(); ++i) {
             if (i % 16 != 2 && i % 16 != 5)

@@ -21,7 +21,7 @@ TYPED_TEST_P(progressive, a_picture_that_its_error_ends_has_the_bytes_of_as_many
     EXPECT_EQ(end.by, ended_by::error);
     EXPECT_LE(end.error, 0.3);
     ASSERT_GE(end.passes, 5u);
-    ASSERT_LE(end.passes, 30u);
+    ASSERT_LE(end.passes, 60u);
     auto counted = s.render;
     counted.output.until_error = 0;
     counted.output.passes = end.passes;
