@@ -59,7 +59,6 @@ faults=(
   "interpolation: weights of the opposite side|include/photongrid/render/pixel_tile.glsl|? 1.0f - x : x)|? x : 1.0f - x)"
   "interpolation: the radius of the last corner|include/photongrid/render/take_estimate.glsl|min(radius2, there.w)|there.w"
   "interpolation: the next pixel's search|include/photongrid/render/search_number.glsl|(1u << pixel % 32u) - 1u|(2u << pixel % 32u) - 1u"
-  "interpolation: between what is not there|include/photongrid/render/interpolation_round.glsl|befores(corner) == NO_ESTIMATE|befores(corner) == SEARCHED + 9u"
   "guided emission: paths do not make up for their share|include/photongrid/trace/emission_numbers.glsl|e.weight = guide(at).y;|e.weight = 1.0f;|emission_guide"
   "guided emission: numbers are not moved into the box|include/photongrid/trace/emission_numbers.glsl|e.first = in_emission_box(at + 1u, e.first);|e.first = e.first * 1.0f;|emission_guide"
   "guided emission: boxes drawn by chance|include/photongrid/trace/emission_numbers.glsl|float((id * 0x9E3779B1u + scrambled(args.seed)) >> 8u)|float(scrambled(id + args.seed) >> 8u)|emission_guide"
