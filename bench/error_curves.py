@@ -11,6 +11,10 @@ import time
 FLOOR = 0.01  # what relMSE adds to the radiance that it divides by (include/photongrid/io/image_difference.hpp)
 
 
+class Crashed(RuntimeError):
+    """A program that a signal ended."""
+
+
 class Runner:
     """Runs programs on two processors, and measures what that takes."""
 
@@ -29,8 +33,9 @@ class Runner:
         process.returncode = os.waitstatus_to_exitcode(status)
         wall = time.perf_counter() - begin
         if process.returncode != 0:
-            raise RuntimeError(f"{' '.join(command)}: exit status {process.returncode}\n"
-                               + said.decode(errors="replace")[-2000:])
+            kind = Crashed if process.returncode < 0 else RuntimeError
+            raise kind(f"{' '.join(command)}: exit status {process.returncode}\n"
+                       + said.decode(errors="replace")[-2000:])
         return wall, (used.ru_utime + used.ru_stime) / 2
 
     def run_again_if_it_crashes(self, command, environment=None):
@@ -38,7 +43,7 @@ class Runner:
         for attempt in range(3):
             try:
                 return self.run(command, environment)
-            except RuntimeError as e:
+            except Crashed as e:
                 if attempt == 2:
                     raise
                 print(f"error_curves.py: again: {e}", file=sys.stderr, flush=True)

@@ -88,7 +88,7 @@ private:
     std::optional<point_estimates<B>> whole_; ///< where nothing is interpolated
     uint round_ = 0;
     knn_estimates<B> estimates_;                  ///< those of the rounds so far
-    buffer_of<B, uint> states_, searched_, ends_; ///< see interpolation_round.glsl, searched_words.glsl
+    buffer_of<B, uint> states_, searched_, sums_; ///< see interpolation_round.glsl, searched_words.glsl
     vectors places_, place_normals_;              ///< points of the round's search
     std::optional<point_estimates<B>> of_round_;
 };
@@ -133,11 +133,11 @@ void interpolated_estimates<B>::begin_round()
     searched_ = device_.template make<uint>(words);
     device_.template run<kernels::searched_words>(
         words, {.pixels = static_cast<uint>(n)}, reads(states_), writes(searched_, bits));
-    ends_ = prefix_sums(device_, bits);
+    sums_ = prefix_sums(device_, bits);
     places_ = device_.template make<glm::vec4>(count);
     place_normals_ = device_.template make<glm::vec4>(count);
     device_.template run<kernels::searched_point>(
-        count, {.words = words}, reads(searched_, ends_, points_, normals_), writes(places_, place_normals_));
+        count, {.words = words}, reads(searched_, sums_, points_, normals_), writes(places_, place_normals_));
     of_round_.emplace(device_, from_, places_, place_normals_, running_estimate_kind::none, step_);
 }
 
@@ -159,7 +159,7 @@ void interpolated_estimates<B>::take(const vectors& found, vectors& values)
 {
     auto taken = device_.template make<glm::vec4>(values.size());
     device_.template run<kernels::take_vector>(
-        values.size(), {.size = size_}, reads(states_, searched_, ends_, found, values), writes(taken));
+        values.size(), {.size = size_}, reads(states_, searched_, sums_, found, values), writes(taken));
     values = std::move(taken);
 }
 
@@ -167,20 +167,19 @@ template <backend B>
 void interpolated_estimates<B>::end_round()
 {
     const auto n = points_.size();
-    const auto found = of_round_->take();
+    auto found = of_round_->take();
     of_round_.reset();
     auto irradiance = device_.template make<glm::vec4>(n);
     auto used = device_.template make<glm::uvec2>(n);
     device_.template run<kernels::take_estimate>(n, {.size = size_},
-        reads(states_, searched_, ends_, found.irradiance, found.used, estimates_.irradiance, estimates_.used),
+        reads(states_, searched_, sums_, found.irradiance, found.used, estimates_.irradiance, estimates_.used),
         writes(irradiance, used));
     estimates_.irradiance = std::move(irradiance);
     estimates_.used = std::move(used);
     take(found.standard_error, estimates_.standard_error);
-    take(found.biases.bias, estimates_.biases.bias);
-    take(found.biases.tilt, estimates_.biases.tilt);
-    take(found.biases.jump, estimates_.biases.jump);
-    take(found.biases.constant, estimates_.biases.constant);
+    const auto biases = found.biases.all(), taken = estimates_.biases.all();
+    for (std::size_t i = 0; i < biases.size(); ++i)
+        take(*biases[i], *taken[i]);
 }
 
 } // namespace photongrid

@@ -4,28 +4,22 @@ struct Params {
 };
 PARAMS(Params)
 INPUT(0, uint, searched) // searched_words.glsl
-INPUT(1, uint, ends)     // inclusive prefix sums of their bits
+INPUT(1, uint, sums)     // inclusive prefix sums of their bits
 INPUT(2, vec4, points)
 INPUT(3, vec4, surfaces)
 OUTPUT(0, vec4, point)
 OUTPUT(1, vec4, surface)
 
+#include <photongrid/map/first_sum_above.glsl>
+
 uint searched_pixel(uint i)
 {
-    uint low = 0u;
-    uint high = args.words - 1u;
-    while (low < high) {
-        uint middle = (low + high) / 2u;
-        if (ends(middle) > i)
-            high = middle;
-        else
-            low = middle + 1u;
-    }
-    uint word = searched(low);
-    uint left = i + uint(bitCount(word)) - ends(low); // bits of the word before it
+    uint at = first_sum_above(i, args.words);
+    uint word = searched(at);
+    uint left = i + uint(bitCount(word)) - sums(at); // bits of the word before it
     for (uint b = 0u; b < left; ++b)
         word &= word - 1u; // clears the lowest
-    return 32u * low + uint(findLSB(word));
+    return 32u * at + uint(findLSB(word));
 }
 
 void kernel(uint i)

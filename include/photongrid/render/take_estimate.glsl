@@ -9,7 +9,7 @@ struct Params {
 PARAMS(Params)
 INPUT(0, uint, rounds)      // pixel_tile.glsl
 INPUT(1, uint, searched)    // searched_words.glsl
-INPUT(2, uint, ends)        // inclusive prefix sums of their bits
+INPUT(2, uint, sums)        // inclusive prefix sums of their bits
 INPUT(3, vec4, founds)      // of the search; w: squared radius, m^2
 INPUT(4, uvec2, counts)     // photons used, photons visited
 INPUT(5, vec4, befores)     // of the pixels, before the round

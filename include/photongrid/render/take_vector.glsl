@@ -7,7 +7,7 @@ struct Params {
 PARAMS(Params)
 INPUT(0, uint, rounds)   // pixel_tile.glsl
 INPUT(1, uint, searched) // searched_words.glsl
-INPUT(2, uint, ends)     // inclusive prefix sums of their bits
+INPUT(2, uint, sums)     // inclusive prefix sums of their bits
 INPUT(3, vec4, founds)   // of the search
 INPUT(4, vec4, befores)
 OUTPUT(0, vec4, value)

@@ -1,18 +1,12 @@
 // The index in the frames of stored photon i. Photons are stored in the order of (path, bounce): a binary search in the
 // prefix sums finds the path, a loop its r-th diffuse hit. Included by kernels after their inputs `sums` and
 // `positions`; args: paths, frames, stored_before, kinds.
+#include <photongrid/map/first_sum_above.glsl>
+
 uint stored_photon(uint i)
 {
     uint rank = i - args.stored_before;
-    uint low = 0u;
-    uint high = args.paths - 1u;
-    while (low < high) {
-        uint middle = (low + high) / 2u;
-        if (sums(middle) > rank)
-            high = middle;
-        else
-            low = middle + 1u;
-    }
+    uint low = first_sum_above(rank, args.paths);
     // Count down from the path's last photon, whose rank is sums(low) - 1.
     uint skip = sums(low) - 1u - rank;
     uint found = low;
