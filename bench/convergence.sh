@@ -25,7 +25,7 @@ for scene in glass_ball ring cornell_box; do
   for backend in "${backends[@]}"; do
     for search in at_least_k exact_k; do
       options=("${size[@]}" --backend "$backend" --shader-cache "$work/cache" --quiet -o "$work/picture.pfm" --progressive "$work/steps")
-      [[ $search == exact_k ]] || options+=(--as-paper)
+      if [[ $search == exact_k ]]; then options+=(--passes 1); else options+=(--as-paper); fi
       for run in compiling measured; do
         rm -rf "$work/steps"
         "$build/photongrid" render "examples/scenes/$scene.json" "${options[@]}" --stats "$work/stats.json" >/dev/null

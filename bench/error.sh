@@ -52,7 +52,7 @@ row() {
   samples=$(paper_count "$scene" light_samples)
   shift 7
   # shellcheck disable=SC2086
-  "$program" render "examples/scenes/$scene.json" --backend "$backend" --size $size --map "$map" --search "$search" --filter "$filter" --k "$k" --photons "$photons" --grid auto --spp 1 ${samples:+--light-samples $samples} $plain_estimate --stats "$work/stats.json" -o "$work/picture.exr" --quiet "$@" >/dev/null
+  "$program" render "examples/scenes/$scene.json" --backend "$backend" --size $size --map "$map" --search "$search" --filter "$filter" --k "$k" --photons "$photons" --grid auto --spp 1 --passes 1 ${samples:+--light-samples $samples} $plain_estimate --stats "$work/stats.json" -o "$work/picture.exr" --quiet "$@" >/dev/null
   local seconds relmse
   seconds=$(awk '$1 == "\"ms\":" && inside { gsub(",", "", $2); sum += $2 } $1 == "\"stages\":" { inside = 1 } $1 == "\"estimate\":" { inside = 0 } END { printf "%.5f", sum / 1000 }' "$work/stats.json")
   relmse=$("$program" compare "$work/picture.exr" "$out/$scene-reference.exr" | awk '$1 == "relMSE" { print $2 }')
@@ -67,7 +67,7 @@ scene_rows() {
       "$program" reference "examples/scenes/$scene.json" --size $size --spp $([[ $quick == yes ]] && echo 16 || echo 512) --paths $([[ $quick == yes ]] && echo 100000 || echo 10000000) -o "$out/$scene-reference.exr" --quiet >/dev/null
     fi
     # The paper's.
-    photons=$(sed -n 's/.*"photons": *\([0-9]*\).*/\1/p' "examples/scenes/$scene.json" | head -n 1)
+    photons=$(paper_count "$scene" photons)
     k=$(paper_count "$scene" k)
     for factor in 1 4 16; do
       for divisor in 16 4 1; do

@@ -167,32 +167,35 @@ def point_of(cost, seconds, picture, reference):
 
 def curve_of(runner, program, reference, scene, size, folder, use):
     """The errors of a program's pictures with 1, 2, 4, ... times its least work, until the limit or the last target.
-    use: None: not kept between calls; cached: taken from the folder, where it was measured with these settings; kept:
-    the same, and nothing is measured."""
+    use: None: not kept between calls; cached: taken from the folder, where it was measured with these settings, and
+    gone on with if the limit was shorter then; kept: taken from there, and nothing is measured."""
     os.makedirs(folder, exist_ok=True)
     file = os.path.join(folder, f"{scene.name}-{size}-{program.file_name()}.json")
     picture = file.replace(".json", program.ending)
     about = {"settings": program.settings, "size": size, "limit": runner.limit,
              "reference": os.path.basename(reference.path)}
+    points = []
     if use in ("cached", "kept") and os.path.exists(file):
         with open(file) as f:
             kept = json.load(f)
-        is_same = all(kept[key] == about[key] for key in about if key != "limit")
-        if is_same and (use == "kept" or kept["limit"] >= runner.limit):
-            return Curve(program.name, program.settings, [Point(**p) for p in kept["points"]])
+        if all(kept[key] == about[key] for key in about if key != "limit"):
+            points = [Point(**p) for p in kept["points"]]
+    lowest = min(t.relmse for t in scene.targets)
+
+    def is_whole():
+        return points and (runner.seconds(points[-1]) * 2 > runner.limit * 1.05 or points[-1].relmse < 0.7 * lowest)
+
+    if is_whole() or (points and use == "kept"):
+        return Curve(program.name, program.settings, points)
     if use == "kept":
         raise RuntimeError("not measured")
     for attempt in range(2):  # the first compiles kernels and fills the file system's cache
         reading = runner.run_again_if_it_crashes(*program.command(program.first, 8, picture))
-    points, cost = [], program.first
-    lowest = min(t.relmse for t in scene.targets)
-    while True:
+    while not is_whole():
+        cost = points[-1].cost * 2 if points else program.first
         wall, cpu = runner.run_again_if_it_crashes(*program.command(cost, size, picture))
         seconds = max(wall - reading[0], 1e-4), max(cpu - reading[1], 1e-4)
         points.append(point_of(cost, seconds, picture, reference))
-        if runner.seconds(points[-1]) * 2 > runner.limit * 1.05 or points[-1].relmse < 0.7 * lowest:
-            break
-        cost *= 2
     curve = Curve(program.name, program.settings, points)
     with open(file + ".part", "w") as f:
         json.dump({**about, "points": [vars(p) for p in points]}, f, indent=1)

@@ -19,15 +19,15 @@ out=out/final_gather
 mkdir -p "$out"
 
 # A scene, the options of its reference, and ways to draw it.
-cornell_blocks=("--spp 16" "--spp 16 --k 200" "--spp 16 --indirect gather --k 50"
+cornell_blocks=("--passes 1 --spp 16" "--passes 1 --spp 16 --k 200" "--passes 1 --spp 16 --indirect gather --k 50"
   "--spp 1 --passes 16 --k 50 --radii per_pass" "--spp 1 --passes 16 --k 50 --radii shrinking"
   "--spp 1 --passes 16 --k 50 --radii shrinking --indirect gather")
-cornell_box=("--spp 16 --caustic-photons 0" "--spp 16 --caustic-photons 0 --k 200" "--spp 16"
-  "--spp 16 --indirect gather --k 50 --caustic-photons 0" "--spp 16 --indirect gather --k 50"
+cornell_box=("--passes 1 --spp 16 --caustic-photons 0" "--passes 1 --spp 16 --caustic-photons 0 --k 200" "--passes 1 --spp 16"
+  "--passes 1 --spp 16 --indirect gather --k 50 --caustic-photons 0" "--passes 1 --spp 16 --indirect gather --k 50"
   "--spp 1 --passes 16 --k 50 --caustic-photons 0 --radii per_pass" "--spp 1 --passes 16 --k 50 --radii per_pass"
   "--spp 1 --passes 16 --k 50 --radii shrinking"
   "--spp 1 --passes 16 --k 50 --radii shrinking --indirect gather")
-ring=("--spp 16 --caustic-photons 0 --emission power" "--spp 16 --caustic-photons 0" "--spp 16"
+ring=("--passes 1 --spp 16 --caustic-photons 0 --emission power" "--passes 1 --spp 16 --caustic-photons 0" "--passes 1 --spp 16"
   "--spp 1 --passes 16 --k 30 --caustic-photons 0 --emission power --radii per_pass"
   "--spp 1 --passes 16 --k 30 --caustic-photons 0 --radii per_pass"
   "--spp 1 --passes 16 --radii shrinking")

@@ -104,6 +104,7 @@ bool report(B&& b, const scene& s, uint repetitions, bool wanted)
         for (const bool paper : {true, false}) {
             auto settings = paper ? as_paper(s) : s.render;
             settings.output.width = settings.output.height = size;
+            settings.output.passes = 1; // whole: the first complete pass
             const auto w = measure(b, s, settings, repetitions);
             const bool fast = size == 160
                 ? w.first_picture <= 150 && w.camera_picture <= 1000.0 / 15 && w.light_converged <= 700

@@ -142,7 +142,7 @@ if [[ $gpu == yes ]]; then
   for backend in "${backends[@]}"; do
     for scene in cornell_box ring glass_ball terrace; do
       for run in first second third; do
-        $build/photongrid render "examples/scenes/$scene.json" --backend "$backend" --time-passes --stats $build/stats.json -o $build/picture.pfm --quiet >/dev/null
+        $build/photongrid render "examples/scenes/$scene.json" --backend "$backend" --passes 1 --time-passes --stats $build/stats.json -o $build/picture.pfm --quiet >/dev/null
         echo "$scene, $backend, $run run: $(awk '/"(trace_photons|build_map|trace_rays|radiance_estimate)":/ { name = $1 } $1 == "\"ms\":" && name != "" { gsub(",", "", $2); printf "%s %.2f ms; ", name, $2; name = "" }' $build/stats.json)"
       done
     done

@@ -78,6 +78,12 @@ namespace {
         return name;
     }
 
+    bool is_stop_rule(const char* setting)
+    {
+        return setting == std::string_view(setting_table::until_error.name)
+            || setting == std::string_view(setting_table::seconds.name);
+    }
+
     // The default that --help shows for a setting.
     const char* without(in_scenes use) { return use == in_scenes::never ? "" : "; default: the scene's"; }
 
@@ -101,7 +107,7 @@ namespace {
                       o.settings.push_back([row, value](render_settings& s) { row.of(s) = value; });
                   // A stop rule that is asked for here lifts the scene's limit, but not one that is given as well.
                   if constexpr (std::is_same_v<std::decay_t<decltype(row.values)>, real_range>)
-                      if (value > 0 && row.name != std::string_view(setting_table::percentile.name))
+                      if (value > 0 && is_stop_rule(row.name))
                           o.settings.insert(o.settings.begin(), [](render_settings& s) { s.output.passes = 1; });
               },
               std::string(row.description) + without(row.use))
@@ -122,15 +128,11 @@ namespace {
         for_each_setting([&](const auto& row) { add_setting(to, row, o); });
         to.add_flag("--as-paper", o.as_paper,
             "the paper's method: --search at_least_k --filter constant --bias paper --leaks none --edge-correction "
-            "none "
-            "--interpolation 0 --surplus power --passes 1 --until-error 0 --spp 1 with the shadow rays of all eye "
-            "rays, and what the "
-            "scene has under "
-            "\"as_paper\"; any option that is given as well takes precedence");
+            "none --interpolation 0 --surplus power --passes 1 --until-error 0 --spp 1 with the shadow rays of all eye "
+            "rays, and what the scene has under \"as_paper\"; any option that is given as well takes precedence");
         to.add_flag("--exact", o.exact,
               "a picture whose error goes to 0 as passes are added: --radii shrinking --indirect paths, --k at most "
-              "50, "
-              "no routed map, and passes without end unless --passes, --until-error or --seconds ends it")
+              "50, no routed map, and passes without end unless --passes, --until-error or --seconds ends it")
             ->excludes("--as-paper");
         to.add_option("--shader-cache", o.shader_cache,
               "folder in which compiled Vulkan kernels are kept for later runs; default: photongrid in "
@@ -408,6 +410,8 @@ command read_command_line(int argc, char** argv)
 render_settings settings_for(const scene& s, const render_options& o)
 {
     auto settings = o.as_paper ? as_paper(s) : s.render;
+    if (o.exact)
+        settings.output.passes = 1; // the scene's limit is for its usual picture
     for (const auto& give : o.settings)
         give(settings);
     if (o.exact)

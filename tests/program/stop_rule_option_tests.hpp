@@ -89,6 +89,8 @@ namespace {
         EXPECT_EQ(draw({}).at("passes"), 3);
         EXPECT_EQ(draw({"--until-error", "0"}).at("passes"), 3);
         EXPECT_GE(draw({"--until-error", "0.98"}).at("passes").get<unsigned>(), 4u);
+        EXPECT_GE(draw({"--exact", "--gather-rays", "1"}).at("passes").get<unsigned>(), 4u);
+        EXPECT_EQ(draw({"--interpolation", "0.3", "--percentile", "0.5"}).at("passes"), 3) << "no rules";
         render["seconds"] = 3;
         std::ofstream(folder / "scene.json") << scene;
         EXPECT_EQ(run({"check", "scene.json"}).code, 3) << "a scene's picture would depend on the machine";

@@ -186,6 +186,7 @@ namespace {
     {
         auto settings = s.render;
         settings.output.width = settings.output.height = 32;
+        settings.output.passes = 1;
         settings.view.spp = 32;
         settings.view.light_samples = 16; // shadow rays
         settings.estimate.max_radius = 0.5;

@@ -56,6 +56,7 @@ namespace {
             r.output.width = 64;
             r.output.height = 48;
             r.view.spp = r.view.light_samples = 1;
+            r.output.passes = 1;
             return r;
         };
         auto settings = small(s.render), paper = small(as_paper(s));
