@@ -25,7 +25,7 @@ drawn() {
 }
 # similarity: of $work/picture.exr to the scene's reference
 similarity() { "$build/photongrid" compare "$work/picture.exr" "$work/reference.exr" | sed -n 's/^SSIM *\([0-9.]*\).*/\1/p'; }
-declare -A option=([paper]=--as-paper [pass]=--passes=1 [default]=)
+declare -A option=([paper]=--as-paper [pass]=--passes=1 [default]="")
 failed=0
 echo "| scene | the paper's method | default | reference | SSIM of its first pass | seconds, paper | first pass | ratio | wanted | default | wanted | |"
 echo "|---|---|---|---|---|---|---|---|---|---|---|---|"
@@ -35,15 +35,15 @@ for i in "${!scenes[@]}"; do
     -o "$work/reference.exr" -o "$pictures/$scene-reference.png" >/dev/null
   cells=""
   for way in paper default; do
-    drawn "$scene" ${option[$way]} --size "${small[i]}" -o "$pictures/$scene-$way.png" >/dev/null
+    drawn "$scene" ${option[$way]:+"${option[$way]}"} --size "${small[i]}" -o "$pictures/$scene-$way.png" >/dev/null
     cells+=" ![$scene, $way](../defaults/$scene-$way.png) SSIM $(similarity) |"
   done
-  drawn "$scene" ${option[pass]} --size "${small[i]}" >/dev/null
+  drawn "$scene" "${option[pass]}" --size "${small[i]}" >/dev/null
   of_pass=$(similarity)
   for way in paper pass default; do : >"$work/$way"; done
   for ((r = 0; r < repetitions; ++r)); do
     for way in paper pass default; do
-      drawn "$scene" ${option[$way]} "${size[@]}" >>"$work/$way"
+      drawn "$scene" ${option[$way]:+"${option[$way]}"} "${size[@]}" >>"$work/$way"
     done
   done
   paper=$(median <"$work/paper") pass=$(median <"$work/pass") whole=$(median <"$work/default")
