@@ -22,12 +22,14 @@ mkdir -p "$out"
 cornell_blocks=("--passes 1 --spp 16" "--passes 1 --spp 16 --k 200" "--passes 1 --spp 16 --indirect gather --k 50"
   "--spp 1 --passes 16 --k 50 --radii per_pass" "--spp 1 --passes 16 --k 50 --radii shrinking"
   "--spp 1 --passes 16 --k 50 --radii shrinking --indirect gather")
-cornell_box=("--passes 1 --spp 16 --caustic-photons 0" "--passes 1 --spp 16 --caustic-photons 0 --k 200" "--passes 1 --spp 16"
+cornell_box=("--passes 1 --spp 16 --caustic-photons 0" "--passes 1 --spp 16 --caustic-photons 0 --k 200"
+  "--passes 1 --spp 16"
   "--passes 1 --spp 16 --indirect gather --k 50 --caustic-photons 0" "--passes 1 --spp 16 --indirect gather --k 50"
   "--spp 1 --passes 16 --k 50 --caustic-photons 0 --radii per_pass" "--spp 1 --passes 16 --k 50 --radii per_pass"
   "--spp 1 --passes 16 --k 50 --radii shrinking"
   "--spp 1 --passes 16 --k 50 --radii shrinking --indirect gather")
-ring=("--passes 1 --spp 16 --caustic-photons 0 --emission power" "--passes 1 --spp 16 --caustic-photons 0" "--passes 1 --spp 16"
+ring=("--passes 1 --spp 16 --caustic-photons 0 --emission power" "--passes 1 --spp 16 --caustic-photons 0"
+  "--passes 1 --spp 16"
   "--spp 1 --passes 16 --k 30 --caustic-photons 0 --emission power --radii per_pass"
   "--spp 1 --passes 16 --k 30 --caustic-photons 0 --radii per_pass"
   "--spp 1 --passes 16 --radii shrinking")

@@ -14,8 +14,8 @@ need() {
 }
 # paper_count SCENE KEY: the number at KEY in the scene's "as_paper", Table 1
 paper_count() { sed -n "s/^ *\"as_paper\":.*\"$2\": *\([0-9]*\).*/\1/p" "examples/scenes/$1.json"; }
-# paper_counts SCENE: options for one pass with Table 1's photons, k and shadow rays; the scene's own differ (bench/defaults.sh
-# compares them)
+# paper_counts SCENE: options for one pass with Table 1's photons, k and shadow rays; the scene's own differ
+# (bench/defaults.sh compares them)
 paper_counts() {
   local samples
   samples=$(paper_count "$1" light_samples)
