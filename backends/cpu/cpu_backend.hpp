@@ -21,7 +21,7 @@ inline namespace header_only {
 #endif
     /// Threads and SIMD. It sorts, builds maps and searches by its own algorithms (overrides/), with the same results
     /// as the kernels, and runs kernels for everything else. One thread at a time may use a cpu_backend and its
-    /// buffers. Results do not depend on the number of threads. It keeps up to 128 MiB of freed memory for new buffers,
+    /// buffers. Results do not depend on the number of threads. It keeps up to 512 MiB of freed memory for new buffers,
     /// which bytes() does not count.
     /// \headerfile backends/cpu/cpu.hpp <photongrid/backends/cpu/cpu.hpp>
     /// \snippet snippets_cpu.cpp cpu_backend

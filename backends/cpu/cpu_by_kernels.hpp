@@ -8,6 +8,7 @@
 #include <photongrid/backends/cpu/pool.hpp>
 
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <mutex>
 
@@ -32,6 +33,7 @@ public:
         caps_.cells_per_radius = 1;
         caps_.nearest_in_blocks = true; // nearest_simd.hpp
         caps_.max_route_slots = 16;
+        caps_.photon_batch = std::bit_ceil(4096 * pool_.threads()); // their frames stay in the caches
         caps_.exact_division = true; // IEEE 754, as C++ on every platform with std::numeric_limits<float>::is_iec559
         caps_.exact_sqrt = true;
         static_assert(std::numeric_limits<float>::is_iec559);
@@ -245,7 +247,7 @@ private:
         uint destination, payload;
         glm::vec4 amount;
     };
-    static constexpr std::size_t block = 2048, iterative_block = 256; // elements that a thread takes at a time
+    static constexpr std::size_t block = 512, iterative_block = 256; // elements that a thread takes at a time
 
     void transpose(const buffer<glm::vec4>& b, bool to_soa)
     {

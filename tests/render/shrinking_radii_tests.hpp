@@ -39,7 +39,7 @@ TYPED_TEST_P(pictures, passes_have_the_radii_of_the_first_map_made_smaller)
     using radii = pass_radii<typename TestFixture::B>;
     const auto whole = layers(first, radii{});
     for (const auto* of : {&first, &map}) {
-        const auto half = layers(*of, radii{.first = &first.map, .share2 = 0.25});
+        const auto half = layers(*of, radii{.first = {&first.map, settings.estimate.k}, .share2 = 0.25});
         double photons = 0, of_whole = 0;
         for (std::size_t i = 0; i < whole.radius.size(); ++i) {
             ASSERT_NEAR(half.radius[i], 0.5f * whole.radius[i], 1e-5f * whole.radius[i]) << i;
@@ -48,6 +48,40 @@ TYPED_TEST_P(pictures, passes_have_the_radii_of_the_first_map_made_smaller)
         }
         EXPECT_GT(of_whole, 1000);
         EXPECT_NEAR(photons / of_whole, 0.25, 0.05);
+    }
+}
+
+/// The map of the first radii has fewer photons, of which fewer are sought: radii are as large, on the average.
+TYPED_TEST_P(pictures, a_map_of_fewer_photons_gives_radii_as_large)
+{
+    auto& b = this->b();
+    const auto s = small_cornell();
+    auto settings = shrinking(with_caustic_map(s.render, 4000), 2);
+    settings.map.photons = 8000;
+    settings.output.width = 32;
+    settings.output.height = 24;
+    settings.output.aov = true;
+    settings.estimate.k = settings.estimate.caustic_k = 100;
+    settings.estimate.max_radius = 10;
+    const auto first = build_map(b, s, settings_of_radius_map(settings));
+    EXPECT_EQ(first.map.photons.size(), 2000u);
+    ASSERT_TRUE(first.caustics);
+    EXPECT_EQ(first.caustics->map.photons.size(), 1000u);
+    const auto map = build_map(b, s, settings_of_pass(settings, 0));
+    for (const auto part : {light_part::indirect, light_part::caustic}) {
+        auto of_part = settings;
+        of_part.output.only = part;
+        const auto mean_radius2 = [&](const auto& radii) {
+            render_stats stats;
+            film sum(settings.output.width, settings.output.height, 1, true);
+            sum.add(0, draw_pass(b, map, s.camera, of_part, {}, stats, radii));
+            double squares = 0;
+            for (const float r : sum.picture().picture.layers.radius)
+                squares += static_cast<double>(r) * static_cast<double>(r);
+            return squares;
+        };
+        const auto radii = radii_of_pass(first, settings_of_radius_map(settings), 0);
+        EXPECT_NEAR(mean_radius2(radii) / mean_radius2(pass_radii<typename TestFixture::B>{}), 1, 0.1);
     }
 }
 

@@ -95,7 +95,8 @@ TYPED_TEST_P(progressive, a_picture_that_time_ends_has_the_bytes_of_as_many_pass
     s.render.output.width = 24;
     s.render.output.height = 20;
     s.render.map.photons = 1000;
-    s.render.view.spp = 2; // so that one pass has no other eye rays than each of several
+    s.render.view.spp = 2;                           // so that one pass has no other eye rays than each of several
+    s.render.estimate.radii = radius_kind::per_pass; // nor other radii: on a slow machine the time is that of one pass
     s.render.output.seconds = 0.5;
     typename TestFixture::loop drawing(this->b());
     drawing.start(s, s.render);

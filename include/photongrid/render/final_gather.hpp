@@ -179,7 +179,7 @@ namespace detail {
     {
         estimate_sources<B> from{.scene = &s,
             .map = &caustics,
-            .first_radii = radii.first != nullptr ? &radii.map_of_caustics() : nullptr,
+            .radii = radii.of_caustics(),
             .share2 = radii.share2,
             .search = search_for_caustics(settings),
             .edges = settings.estimate.edges};

@@ -32,10 +32,18 @@ inline render_settings settings_of_pass(render_settings s, std::uint32_t pass)
     return s;
 }
 
-/// The settings of the map that gives the first radii of all passes.
+/// The settings of the map that gives the first radii of all passes. Where many photons are sought it has fewer, and as
+/// many times fewer are sought in it.
 inline render_settings settings_of_radius_map(const render_settings& s)
 {
     auto with = settings_of_pass(s, radius_pass);
+    const auto make_fewer = [](std::uint32_t& photons, std::uint32_t& k) {
+        const auto sought = std::min(k, most_for_first_radius);
+        photons = static_cast<std::uint32_t>((std::uint64_t{photons} * sought + k - 1) / k);
+        k = sought;
+    };
+    make_fewer(with.map.photons, with.estimate.k);
+    make_fewer(with.map.caustic_photons, with.estimate.caustic_k);
     if (gathers(s) && s.map.caustic_photons > 0)
         with.output.only = light_part::caustic; // rays end in the map of caustic photons alone
     return with;

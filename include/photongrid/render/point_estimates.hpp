@@ -16,17 +16,17 @@ namespace photongrid {
 template <backend B>
 struct estimate_sources {
     const device_scene<B>* scene = nullptr;
-    const map_buffers<B>* map = nullptr;         ///< the photons
-    const map_buffers<B>* first_radii = nullptr; ///< map that gives the first radii; null: `search` finds the radii
-    double share2 = 1;                           ///< of the squared first radii: shrunk_share2 of the pass
-    knn_settings search{};                       ///< finds the radii
+    const map_buffers<B>* map = nullptr; ///< the photons
+    first_radii<B> radii{};              ///< without a map `search` finds the radii
+    double share2 = 1;                   ///< of the squared first radii: shrunk_share2 of the pass
+    knn_settings search{};               ///< finds the radii
     edge_correction edges = edge_correction::none;
 
     /// The search in `map`.
     knn_settings search_in_map() const
     {
         auto k = search;
-        if (first_radii != nullptr) {
+        if (radii.map != nullptr) {
             k.search = search_kind::fixed_radius;
             k.radii_at_points = true;
         }
@@ -83,13 +83,14 @@ point_estimates<B>::point_estimates(B& device, const estimate_sources<B>& from, 
     const vectors& normals, running_estimate_kind kind, step_size size)
     : device_(device), from_(from), points_(points), normals_(normals), kind_(kind), size_(size)
 {
-    if (from_.first_radii == nullptr) {
+    if (from_.radii.map == nullptr) {
         search_.emplace(device_, *from_.map, points_, normals_, from_.search, kind_, size_);
         return;
     }
     auto k = from_.search;
+    k.k = from_.radii.k;
     k.errors = k.biases = false;
-    radius_search_.emplace(device_, *from_.first_radii, points_, normals_, k, running_estimate_kind::none, size_);
+    radius_search_.emplace(device_, *from_.radii.map, points_, normals_, k, running_estimate_kind::none, size_);
 }
 
 template <backend B>

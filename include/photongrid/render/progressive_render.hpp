@@ -347,7 +347,7 @@ private:
             view_pass_settings{p, step_size::small, previews_.enabled && !has_bands(), shows_running_estimates(), band},
             kept_, stats_);
         if (!p && has_shrinking_radii(settings_))
-            view_->use_radii(radii_of_pass(radius_maps_.map(), number));
+            view_->use_radii(radii_of_pass(radius_maps_.map(), settings_of_radius_map(settings_), number));
         if (!p && !unfinished_.empty()) {
             const auto& light = unfinished_.band;
             if (unfinished_.rays > 0)

@@ -217,7 +217,7 @@ template <backend B>
         detail::add_map(out.stats, map.stats);
         if (pass == 0)
             sum = film_for(s, map.scene.layout, settings);
-        const auto of_pass = radii ? radii_of_pass(*radii, pass) : pass_radii<B>{};
+        const auto of_pass = radii ? radii_of_pass(*radii, settings_of_radius_map(every), pass) : pass_radii<B>{};
         sum.add(pass, draw_pass(device, map, s.camera, own, observer, out.stats, of_pass));
         judge.after_pass(sum, clock.seconds(), out.stats);
         judge.before_pass(sum, clock.seconds());

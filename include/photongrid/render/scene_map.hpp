@@ -76,10 +76,10 @@ inline bool same_map(const scene& a, const render_settings& as, const scene& b, 
 /// Keeps the emission guides of a scene for the passes of its pictures.
 class guide_keeper {
 public:
-    /// The guide of paths for `request`, if it was added for this scene; else null.
+    /// The guide of paths for `request`, if it was added for this scene and as many photons; else null.
     const emission_guide* find(const scene& s, const render_settings& with, const photon_request& request) const
     {
-        const auto at = guides_.find(request.kinds);
+        const auto at = guides_.find(key_of(request));
         return at != guides_.end() && depth_ == with.map.photon_depth && same_light_paths(scene_, s) ? &at->second
                                                                                                      : nullptr;
     }
@@ -89,13 +89,18 @@ public:
             guides_.clear();
         scene_ = s;
         depth_ = with.map.photon_depth;
-        guides_[request.kinds] = std::move(guide);
+        guides_[key_of(request)] = std::move(guide);
     }
 
 private:
+    /// For more photons there are more pilot paths: with the guide for others, a picture would depend on which map was
+    /// made first, that of a preview or of the first radii, or that of a pass.
+    using key = std::pair<uint, uint>; // kinds, number of photons
+    static key key_of(const photon_request& r) { return {r.kinds, r.photons}; }
+
     scene scene_;
     uint depth_ = 0;
-    std::map<uint, emission_guide> guides_; // by kinds
+    std::map<key, emission_guide> guides_;
 };
 
 /// Builds a photon map batch by batch, so that it can be interrupted.
@@ -270,11 +275,15 @@ private:
     std::optional<gather_map_building<B>> gather_; // of built_.scene
 };
 
-/// The radii of pass number `pass`, with `first` the map of pass number radius_pass, which must outlive them.
+/// The radii of pass number `pass`, with `first` the map built by `settings` of pass number radius_pass, which must
+/// outlive them.
 template <backend B>
-pass_radii<B> radii_of_pass(const built_map<B>& first, uint pass)
+pass_radii<B> radii_of_pass(const built_map<B>& first, const render_settings& settings, uint pass)
 {
-    return {&first.map, first.caustics ? &first.caustics->map : nullptr, shrunk_share2(pass)};
+    pass_radii<B> radii{.first = {&first.map, settings.estimate.k}, .share2 = shrunk_share2(pass)};
+    if (first.caustics)
+        radii.first_of_caustics = {&first.caustics->map, settings.estimate.caustic_k};
+    return radii;
 }
 
 } // namespace photongrid

@@ -1,7 +1,8 @@
 // Radii that shrink from pass to pass (Knaus and Zwicker, Progressive Photon Mapping: A Probabilistic Approach, ACM
 // Transactions on Graphics 30(3), 2011), so that the blur of estimates goes to 0 as passes are added. The first radius
-// of a point is what the search of the settings finds there in a map of its own, whose photons are in no pass. All
-// points' radii shrink by the same given sequence, so that passes do not depend on each other.
+// of a point is what the search of the settings finds there in a map of its own, whose photons are in no pass. That map
+// has fewer photons, of which as many times fewer are sought. All points' radii shrink by the same given sequence, so
+// that passes do not depend on each other.
 #pragma once
 
 #include <photongrid/map/map_buffers.hpp>
@@ -26,15 +27,26 @@ inline double shrunk_share2(std::uint32_t pass)
     return share2;
 }
 
+/// The most photons sought for a first radius. The squared radius has a relative deviation of 1 / sqrt(k), which hardly
+/// changes noise or blur, and finding more takes time at every point.
+inline constexpr std::uint32_t most_for_first_radius = 25;
+
+/// Where the first radii of points come from.
+template <backend B>
+struct first_radii {
+    const map_buffers<B>* map = nullptr; ///< null: each pass finds its own radii
+    uint k = 0;                          ///< the photons sought in it
+};
+
 /// The radii of a pass.
 template <backend B>
 struct pass_radii {
-    const map_buffers<B>* first = nullptr; ///< map that gives the first radii; null: each pass finds its own
-    const map_buffers<B>* first_of_caustics = nullptr; ///< the same in the map of caustic photons, if there is one
-    double share2 = 1;                                 ///< shrunk_share2 of the pass
+    first_radii<B> first{};
+    first_radii<B> first_of_caustics{}; ///< the same in the map of caustic photons, if there is one
+    double share2 = 1;                  ///< shrunk_share2 of the pass
 
-    /// The map with the caustic photons; `first` is not null.
-    const map_buffers<B>& map_of_caustics() const { return first_of_caustics != nullptr ? *first_of_caustics : *first; }
+    /// Those of caustic photons, whichever map they are in.
+    const first_radii<B>& of_caustics() const { return first_of_caustics.map != nullptr ? first_of_caustics : first; }
 };
 
 namespace detail {

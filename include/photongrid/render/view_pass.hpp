@@ -212,7 +212,7 @@ private:
         const auto k = caustic ? detail::search_for_caustics(settings_) : detail::search_for(settings_);
         return {.scene = &built_.scene,
             .map = caustic ? &built_.caustics->map : &built_.map,
-            .first_radii = caustic ? radii_.first_of_caustics : radii_.first,
+            .radii = caustic ? radii_.first_of_caustics : radii_.first,
             .share2 = radii_.share2,
             .search = how_.preview ? detail::search_for_preview(k, *how_.preview) : k,
             .edges = settings_.estimate.edges};

@@ -62,13 +62,12 @@ namespace detail {
         return t;
     }
 
-    /// The most paths of a batch. A GPU needs many to be busy; on a CPU more only take memory.
+    /// The most paths of a batch: those with which the device is fastest, if there is memory for their frames.
     inline uint most_paths(const capabilities& caps, uint photon_depth)
     {
-        if (caps.software)
-            return 32768;
         constexpr std::size_t bytes = std::size_t{1} << 29; // of all frames
-        return static_cast<uint>(std::bit_floor(bytes / (5 * sizeof(glm::vec4) * (std::size_t{photon_depth} + 1))));
+        const std::size_t path_bytes = 5 * sizeof(glm::vec4) * (std::size_t{photon_depth} + 1);
+        return std::min(caps.photon_batch, static_cast<uint>(std::bit_floor(bytes / path_bytes)));
     }
 
     /// Frame 0 of a batch.
@@ -110,7 +109,7 @@ namespace detail {
                 reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, hits.places,
                     hits.normals, hits.shadings, hits.colors),
                 writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
-            if (frame % 8 == 0
+            if (frame % 4 == 0
                 && checked_count<kernels::path_goes_on>(device, {paths, frame * paths}, {}, reads(f.positions)) == 0)
                 return frame + 1;
         }
@@ -118,7 +117,7 @@ namespace detail {
     }
 } // namespace detail
 
-/// Traces a batch of paths, and returns the number of frames. Every 8 bounces it counts the paths that are still
+/// Traces a batch of paths, and returns the number of frames. Every 4 bounces it counts the paths that are still
 /// active, and stops if there are none.
 template <backend B>
 uint trace_batch(B& device, const device_scene<B>& s, detail::photon_frames<B>& f, const path_batch<B>& batch,

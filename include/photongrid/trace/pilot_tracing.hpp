@@ -37,8 +37,12 @@ public:
 
 private:
     bool is_done() const;
+    /// Traces so many more paths at once.
+    void trace(uint n);
 
-    static constexpr uint first_batch = 4096, most_paths = 1u << 16;
+    /// Whether there are enough paths is asked after so many, and whenever their number has doubled, so that the
+    /// guide does not depend on the device's batches.
+    static constexpr uint first_paths = 4096, most_paths = 1u << 16;
     /// So many useful paths are enough to tell where they are.
     static constexpr uint enough_useful = 4096;
     /// Emission is guided only if even emission needs so many times as many paths.
@@ -78,9 +82,17 @@ bool pilot_tracing<B>::is_done() const
 template <backend B>
 bool pilot_tracing<B>::advance()
 {
+    const uint batch = detail::most_paths(device_.caps(), settings_.map.photon_depth);
+    const auto enough = std::max(2 * static_cast<uint>(paths_.size()), uint{first_paths});
+    while (paths_.size() < enough)
+        trace(std::min(batch, enough - static_cast<uint>(paths_.size())));
+    return is_done();
+}
+
+template <backend B>
+void pilot_tracing<B>::trace(uint n)
+{
     const auto first = static_cast<uint>(paths_.size());
-    const uint n
-        = std::min(std::max(first, uint{first_batch}), detail::most_paths(device_.caps(), settings_.map.photon_depth));
     detail::photon_frames<B> frames(device_, std::size_t{n} * (settings_.map.photon_depth + 1));
     const uint traced
         = trace_batch(device_, scene_, frames, path_batch<B>{n, first, request_.to_diffuse(), nullptr}, settings_);
@@ -102,7 +114,6 @@ bool pilot_tracing<B>::advance()
         stored_ += stored[i];
         paths_.push_back(path);
     }
-    return is_done();
 }
 
 template <backend B>
