@@ -4,7 +4,8 @@
 #
 #   bench/figure7.sh [OPTION of "photongrid render"...]
 #
-# 256 pixels wide, in one pass with Table 1's counts and 4 eye rays each: as many eye rays as the paper's size. PHOTONGRID names another program than build/photongrid.
+# 256 pixels wide, in one pass with Table 1's counts and 4 eye rays each: as many eye rays as the paper's size. PHOTONGRID
+# names another program than build/photongrid.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source bench/programs.sh
@@ -31,7 +32,8 @@ for line in "${scenes[@]}"; do
   row="| $scene |"
   for map in sort route; do
     # shellcheck disable=SC2046
-    "$program" render "examples/scenes/$scene.json" --backend serial --map "$map" --size "$size" $(paper_counts "$scene") --spp 4 "$@" --quiet -o "$work/$map.exr" -o "docs/figure7/$scene-$map.png" >/dev/null
+    "$program" render "examples/scenes/$scene.json" --backend serial --map "$map" --size "$size" \
+      $(paper_counts "$scene") --spp 4 "$@" --quiet -o "$work/$map.exr" -o "docs/figure7/$scene-$map.png" >/dev/null
     row+=" ![$scene, $map](../figure7/$scene-$map.png) relMSE $(relmse "$map") |"
   done
   echo "$row ![$scene, reference](../figure7/$scene-reference.png) another seed: relMSE $(relmse again) |"

@@ -93,9 +93,9 @@ public:
         caps_.software = gl::is_software(renderer);
         caps_.max_elements = std::min(std::uint64_t{gl::row_width} * device_->max_size, (std::uint64_t{1} << 31) - 1);
         caps_.max_route_slots = std::min(16u, device_->max_point);
-        // llvmpipe ends loops silently after so many iterations of an invocation group (lp_bld_limits.h).
         if (!caps_.software)
             caps_.photon_batch = 1u << 22; // as many as there is memory for
+        // llvmpipe ends loops silently after so many iterations of an invocation group (lp_bld_limits.h).
         caps_.loop_limit = renderer.find("llvmpipe") != std::string::npos ? 65535u : 0u;
         std::tie(caps_.exact_division, caps_.exact_sqrt)
             = choose_arithmetic(*this, options.arithmetic, [&](bool rewrite) { made_->rewrite_arithmetic(rewrite); });

@@ -317,9 +317,9 @@ private:
         caps_.software = info.software;
         caps_.max_elements = context_->max_buffer_bytes() / sizeof(glm::vec4);
         caps_.max_route_slots = 16;
-        // lavapipe ends loops silently after so many iterations, counted over a group of invocations.
         if (!caps_.software)
             caps_.photon_batch = 1u << 22; // as many as there is memory for
+        // lavapipe ends loops silently after so many iterations, counted over a group of invocations.
         caps_.loop_limit = info.name.find("llvmpipe") != std::string::npos ? 65535u : 0u;
         std::tie(caps_.exact_division, caps_.exact_sqrt) = choose_arithmetic(
             *this, options.arithmetic, [&](bool rewrite) { passes_.made.rewrite_arithmetic(rewrite); });

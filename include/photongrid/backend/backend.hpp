@@ -95,7 +95,8 @@ struct capabilities {
     float cells_per_radius = 2;     ///< the grid resolution at which searches are fastest: cells per search radius
     bool nearest_in_blocks = false; ///< the nearest photon alone is found fastest in a block map, however photons lie
     uint loop_limit = 0;            ///< iterations after which the driver silently ends loops; 0: none known
-    uint photon_batch = 32768;      ///< the photon paths traced together (a power of two) with which it is fastest
+    /// The number of photon paths traced together with which it is fastest; a power of two, at least 1024.
+    uint photon_batch = 32768;
 };
 
 namespace detail {

@@ -27,8 +27,8 @@ inline double shrunk_share2(std::uint32_t pass)
     return share2;
 }
 
-/// The most photons sought for a first radius. The squared radius has a relative deviation of 1 / sqrt(k), which hardly
-/// changes noise or blur, and finding more takes time at every point.
+/// The most photons sought for a first radius. The squared radius has a relative standard deviation of 1 / sqrt(k),
+/// which adds little to noise and blur; to find more photons takes time at every point.
 inline constexpr std::uint32_t most_for_first_radius = 25;
 
 /// Where the first radii of points come from.
