@@ -67,6 +67,7 @@ WAYS = {
         "--spp 1 --k 50 --indirect gather --radii shrinking",
     ],
     "cornell_box": [
+        "--spp 1 --k 400 --photons 130000 --caustic-photons 40000 --caustic-k 50 --light-samples 4",
         "--spp 1 --k 200 --photons 65000 --caustic-photons 32000 --caustic-k 40 --light-samples 2",
         "--spp 1 --k 200 --photons 65000 --caustic-photons 16000 --caustic-k 30 --light-samples 2",
         "--spp 1 --k 200 --photons 65000 --caustic-photons 32000 --caustic-k 30",

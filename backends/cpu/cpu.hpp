@@ -13,3 +13,4 @@
 #include <photongrid/backends/cpu/overrides/ray_search.hpp>
 #include <photongrid/backends/cpu/overrides/sorted_map.hpp>
 #endif
+#include <photongrid/backends/cpu/overrides/trace_batch.hpp>

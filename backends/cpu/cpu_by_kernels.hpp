@@ -31,7 +31,7 @@ public:
         caps_.device = "this CPU, " + std::to_string(pool_.threads()) + (pool_.threads() == 1 ? " thread" : " threads");
         caps_.max_elements = std::uint64_t{1} << 31;
         caps_.cells_per_radius = 1;
-        caps_.nearest_in_blocks = true; // nearest_simd.hpp
+        caps_.prefers_blocks = true;
         caps_.max_route_slots = 16;
         caps_.photon_batch = std::bit_ceil(4096 * pool_.threads()); // their frames stay in the caches
         caps_.exact_division = true; // IEEE 754, as C++ on every platform with std::numeric_limits<float>::is_iec559
@@ -123,6 +123,30 @@ public:
         p.active.assign(p.passes, 0);
         for (std::uint64_t q = p.passes, still = 0; q > 0; --q)
             p.active[q - 1] = still += ended[q];
+        count_passes(kernel_name<K>(), p.passes, watch);
+        return p;
+    }
+
+    /// Not a verb of the concept. For each element i of the launch: computes elements i, i + stride, i + 2 stride and
+    /// so on in turn, each from the one before, until done() or `max_passes` of them; `passes` is the most for any
+    /// element. Without `active`.
+    template <iterative_kernel K, class Reads, class Writes>
+    progress run_frames(
+        launch l, uint stride, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
+    {
+        detail::check_call<K>("run_frames", l, reads, writes);
+        const stopwatch watch;
+        const K prepared = prepare<K>(l, args, reads);
+        const auto out = elements_of<K>(writes);
+        std::mutex adding;
+        progress p{.finished = true};
+        pool_.for_blocks(l.elements, iterative_block, [&](std::size_t first, std::size_t past) {
+            const progress mine = run_in_turn(prepared, l.first + static_cast<uint>(first),
+                l.first + static_cast<uint>(past), stride, max_passes, out);
+            const std::lock_guard lock(adding);
+            p.passes = std::max(p.passes, mine.passes);
+            p.finished = p.finished && mine.finished;
+        });
         count_passes(kernel_name<K>(), p.passes, watch);
         return p;
     }
@@ -296,6 +320,25 @@ private:
             k.kernel(i);
             store(k, i, out);
         }
+    }
+    template <class K, class Elements>
+    [[gnu::noinline, gnu::flatten]] static progress run_in_turn(
+        K k, uint first, uint past, uint stride, uint max_passes, const Elements& out)
+    {
+        progress p{.finished = true};
+        for (uint i = first; i != past; ++i) {
+            bool done = false;
+            uint q = 0;
+            for (uint at = i; q < max_passes && !done; ++q, at += stride) {
+                load(k, at, out);
+                k.kernel(at);
+                store(k, at, out);
+                done = k.done();
+            }
+            p.passes = std::max(p.passes, q);
+            p.finished = p.finished && done;
+        }
+        return p;
     }
     template <class K>
     [[gnu::noinline, gnu::flatten]] static void draw_all(

@@ -138,15 +138,20 @@ inline scene floor_lit_by_a_mirror()
     return s;
 }
 
+/// The radiance of its pixel.
+inline double known_radiance(uint x, uint y)
+{
+    const double fx = (x + 0.5) / 48 - 0.5, fz = (y + 0.5) / 48 - 0.5,
+                 d2 = bulb_height * bulb_height + fx * fx + fz * fz;
+    return 0.5 / M_PI * bulb_power / (4 * M_PI) * bulb_height / (d2 * std::sqrt(d2));
+}
+
 /// Means of radiance over the known: inside, along the rim without its corners, in the corners.
 inline std::array<double, 3> light_over_known(const image& picture)
 {
     std::array<double, 3> sums{}, counts{};
     for (uint y = 0; y < 48; ++y)
         for (uint x = 0; x < 48; ++x) {
-            const double fx = (x + 0.5) / 48 - 0.5, fz = (y + 0.5) / 48 - 0.5,
-                         d2 = bulb_height * bulb_height + fx * fx + fz * fz;
-            const double known = 0.5 / M_PI * bulb_power / (4 * M_PI) * bulb_height / (d2 * std::sqrt(d2)); // radiance
             const uint across = std::min(x, 47 - x), down = std::min(y, 47 - y);
             const int zone = across < 1 && down < 1                    ? 2
                 : (across < 1 && down > 5) || (down < 1 && across > 5) ? 1
@@ -154,7 +159,7 @@ inline std::array<double, 3> light_over_known(const image& picture)
                                                                        : -1;
             if (zone >= 0) {
                 const auto place = static_cast<std::size_t>(zone);
-                sums[place] += static_cast<double>(picture.pixels[y * 48 + x].x) / known;
+                sums[place] += static_cast<double>(picture.pixels[y * 48 + x].x) / known_radiance(x, y);
                 counts[place] += 1;
             }
         }
@@ -195,6 +200,41 @@ TYPED_TEST_P(edges, a_floor_lit_by_a_mirror_is_right_up_to_its_rim)
     EXPECT_EQ(count_different_bits(pictures[0].layers.radius, pictures[1].layers.radius), 0u);
     for (std::size_t i = 0; i < pictures[0].pixels.size(); ++i)
         ASSERT_NEAR(pictures[0].layers.relative_error[i], pictures[1].layers.relative_error[i], 1e-5f);
+}
+
+/// A black plate lies on the floor: photons are missing behind it, but the floor beside it is as bright as without it.
+TYPED_TEST_P(edges, a_floor_is_right_up_to_a_plate_on_it)
+{
+    scene s = floor_lit_by_a_mirror();
+    s.materials.push_back({"black", material_kind::mirror, dvec3(0)});
+    constexpr double half = 0.125, height = 1e-4; // m; the plate's rim is the rim of pixels
+    s.polygons.push_back(
+        {{{-half, height, -half}, {-half, height, half}, {half, height, half}, {half, height, -half}}, 2});
+    const auto built = build_map(this->b(), s, s.render);
+    for (const bool corrected : {false, true}) {
+        auto settings = s.render;
+        settings.estimate.edges = corrected ? edge_correction::polygons : edge_correction::none;
+        const auto picture = draw(this->b(), built, s.camera, settings).picture;
+        double sum = 0, n = 0;
+        for (uint y = 0; y < 48; ++y)
+            for (uint x = 0; x < 48; ++x) {
+                const auto value = static_cast<double>(picture.pixels[y * 48 + x].x);
+                const bool in_columns = x >= 18 && x < 30, in_rows = y >= 18 && y < 30;
+                if (in_columns && in_rows) {
+                    EXPECT_EQ(value, 0);
+                } else if ((in_columns && (y == 17 || y == 30)) || (in_rows && (x == 17 || x == 30))) {
+                    sum += value / known_radiance(x, y), n += 1;
+                }
+            }
+        std::printf(
+            "edges: light over the known beside a plate, %s: %.3f\n", corrected ? "corrected" : "as it is", sum / n);
+        EXPECT_EQ(n, 48);
+        if (corrected) {
+            EXPECT_NEAR(sum / n, 1, 0.09); // as along the rim of the floor, above
+        } else {
+            EXPECT_LT(sum / n, 0.8);
+        }
+    }
 }
 
 TYPED_TEST_P(edges, pictures_equal_the_serial_backends)

@@ -195,6 +195,52 @@ TYPED_TEST_P(edges, bent_walls_hold_together_up_to_two_degrees_and_a_half)
         }
 }
 
+/// A square of 2 m, a plate of 0.4 m x 0.6 m at a height over it, and discs beside the plate.
+TYPED_TEST_P(edges, lamps_and_mirrors_hide_what_lies_behind_them)
+{
+    const std::vector<glm::dvec2> square{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}},
+        plate{{-0.2, -0.3}, {0.2, -0.3}, {0.2, 0.3}, {-0.2, 0.3}};
+    enum class kind { lamp, mirror, glass };
+    random_source u(9);
+    const auto number = [&] { return static_cast<double>(u()); };
+    const double radius = 0.2;
+    for (const auto what : {kind::lamp, kind::mirror, kind::glass})
+        for (const double height : {1e-4, 0.01, 0.03, 0.06, -0.01}) { // 0.05: a quarter of the radius
+            const auto board = random_board(u);
+            auto s = empty_scene(board.at({0, 0}) + board.normal());
+            s.materials.push_back({"mirror", material_kind::mirror, dvec3(1)});
+            s.materials.push_back({"glass", material_kind::glass, dvec3(1)});
+            s.polygons = {board.draw(square)};
+            auto above = board;
+            above.origin += height * board.normal();
+            if (what == kind::lamp)
+                s.rectangle_lights.push_back({"lamp", above.at(plate[0]), 0.4 * board.right, 0.6 * board.up, dvec3(1)});
+            else {
+                s.polygons.push_back(above.draw(plate));
+                s.polygons.back().material = what == kind::mirror ? 2 : 3;
+            }
+            s.camera = {board.at({0, 0}) + 3.0 * board.normal(), board.at({0, 0}), board.up, 40};
+            discs d;
+            std::vector<glm::dvec2> places{{0.2, 0.3}, {0.2, 0}, {-0.1, 0.3}, {0.05, -0.1}};
+            while (places.size() < 20) // beside its longer sides
+                places.emplace_back((u() < 0.5f ? 1 : -1) * (0.2 + 0.25 * number()), 0.6 * number() - 0.3);
+            for (const auto& p : places)
+                d.add(board.at(p), board.normal(), radius);
+            const double over = height / radius,
+                         hidden = what == kind::glass || height < 0 ? 0 : std::max(1 - 16 * over * over, 0.0);
+            for (const auto& f : filters) {
+                const auto cover = this->cover(s, d, f.kind);
+                for (std::size_t i = 0; i < places.size(); ++i) {
+                    const double behind = share_by_lines(plate, places[i], radius)[static_cast<int>(f.kind)];
+                    // The fourth point is behind the plate.
+                    EXPECT_NEAR(cover[i].x, i == 3 ? 1 : 1 - hidden * behind, 2e-4)
+                        << "filter " << f.name << ", height " << height << ", point " << i;
+                    EXPECT_EQ(cover[i].y, 1.0f);
+                }
+            }
+        }
+}
+
 TYPED_TEST_P(edges, thousands_of_polygons_take_several_passes)
 {
     auto s = empty_scene({0.5, 2, 0.5});

@@ -192,7 +192,7 @@ TYPED_TEST_P(algorithms, fitted_maps_are_of_the_kind_that_suits_the_photons)
         EXPECT_TRUE(fitted_map(b, upload_photons(b, in_clusters), k).has_blocks()) << "k " << k;
         const auto evenly
             = fitted_map(b, upload_photons(b, make_photons(distribution::uniform, 10000, {8, 8, 8}, 9)), k);
-        EXPECT_EQ(evenly.has_blocks(), k == 1 && b.caps().nearest_in_blocks) << "k " << k;
+        EXPECT_EQ(evenly.has_blocks(), k == 1 && b.caps().prefers_blocks) << "k " << k;
     }
     // Photons of a cluster and others by turns: a sample at equal intervals would see the others alone.
     auto by_turns = make_photons(distribution::uniform, 65536, {8, 8, 8}, 9);

@@ -64,11 +64,10 @@ TYPED_TEST_P(pictures, power_balances_per_channel)
         dvec3 mean(0), squares(0);
         for (uint p = 0; p < paths; ++p) {
             dvec3 balance(0);
-            for (uint frame = 1; frame < frames; ++frame) {
+            uint end = kernels::GOES_ON;
+            for (uint frame = 1; frame < frames && end == kernels::GOES_ON; ++frame) {
                 const std::size_t i = std::size_t{frame} * paths + p;
-                const uint end = kernels::event_end(positions[i]);
-                if (end == kernels::ENDED_BEFORE)
-                    break;
+                end = kernels::event_end(positions[i]);
                 const dvec3 arriving(powers[i]);
                 if (kernels::event_kind(positions[i]) == kernels::NO_SURFACE) { // escaped, or on a lamp
                     balance += arriving;

@@ -63,7 +63,7 @@ TYPED_TEST_P(pictures, a_map_of_fewer_photons_gives_radii_as_large)
     settings.output.aov = true;
     settings.estimate.k = settings.estimate.caustic_k = 100;
     settings.estimate.max_radius = 10;
-    const auto first = build_map(b, s, settings_of_radius_map(settings));
+    const auto first = build_map(b, s, settings_of_radius_map(settings, b.caps()));
     EXPECT_EQ(first.map.photons.size(), 2000u);
     ASSERT_TRUE(first.caustics);
     EXPECT_EQ(first.caustics->map.photons.size(), 1000u);
@@ -80,7 +80,7 @@ TYPED_TEST_P(pictures, a_map_of_fewer_photons_gives_radii_as_large)
                 squares += static_cast<double>(r) * static_cast<double>(r);
             return squares;
         };
-        const auto radii = radii_of_pass(first, settings_of_radius_map(settings), 0);
+        const auto radii = radii_of_pass(first, settings_of_radius_map(settings, b.caps()), 0);
         EXPECT_NEAR(mean_radius2(radii) / mean_radius2(pass_radii<typename TestFixture::B>{}), 1, 0.1);
     }
 }

@@ -631,6 +631,20 @@ namespace {
         EXPECT_GE(rows, 20);
     }
 
+    TEST(bad_settings, a_message_names_the_ends_of_the_range)
+    {
+        EXPECT_EQ((real_range{0, 0.5, ""}.ends()), "0 to 0.5");
+        EXPECT_EQ((real_range{-64, 1e6, " EV"}.ends()), "-64 to 1000000 EV");
+        render_settings s;
+        s.estimate.interpolation = 0.7;
+        try {
+            check(s);
+            FAIL() << "0.7";
+        } catch (const std::invalid_argument& e) {
+            EXPECT_STREQ(e.what(), "interpolation: must be from 0 to 0.5");
+        }
+    }
+
     TEST(bad_settings, edge_correction_needs_min_cosine)
     {
         render_settings s;

@@ -175,7 +175,8 @@ TYPED_TEST_P(mixtures, store_all_photons_that_reach_a_matte_part)
     std::size_t stored = 0;
     for (std::size_t p = 0; p < paths; ++p) {
         const std::size_t second = 2 * paths + p;
-        if (is_on_floor(positions[paths + p]) || !is_on_floor(positions[second]))
+        const auto& first = positions[paths + p];
+        if (kernels::event_end(first) != kernels::GOES_ON || is_on_floor(first) || !is_on_floor(positions[second]))
             continue;
         ++stored;
         ASSERT_TRUE(kernels::event_is_stored(mixed_positions[second], kernels::CAUSTICS | kernels::OTHER_PHOTONS)) << p;

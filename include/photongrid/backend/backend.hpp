@@ -93,8 +93,9 @@ struct capabilities {
     bool exact_division = false;    ///< a / b rounds correctly, by itself or rewritten (self-test)
     bool exact_sqrt = false;        ///< sqrt rounds correctly, by itself or rewritten (self-test)
     float cells_per_radius = 2;     ///< the grid resolution at which searches are fastest: cells per search radius
-    bool nearest_in_blocks = false; ///< the nearest photon alone is found fastest in a block map, however photons lie
-    uint loop_limit = 0;            ///< iterations after which the driver silently ends loops; 0: none known
+    /// Block maps are searched about as fast as grid maps, and faster where one photon is sought or from afar.
+    bool prefers_blocks = false;
+    uint loop_limit = 0; ///< iterations after which the driver silently ends loops; 0: none known
     /// The number of photon paths traced together with which it is fastest; a power of two, at least 1024.
     uint photon_batch = 32768;
 };

@@ -38,14 +38,14 @@ namespace detail {
 
 /// Builds the map in which searches for the k nearest are expected to be fastest: a sorted map in a fitted grid
 /// (fitting_grid), or a block map. It is a block map where the photons lie in clusters, so that more than 200 + 4 k of
-/// them share a photon's cell of that grid; and where k is 1 on devices whose capabilities say `nearest_in_blocks`
+/// them share a photon's cell of that grid; and where k is 1 on devices whose capabilities say `prefers_blocks`
 /// (decisions.md, "A grid or blocks"). Reads back a sample of 16,384 positions. `parts`: as in sorted_map.
 /// \throws backend_error if the device has no room.
 /// \snippet snippets.cpp fitted_map
 template <backend B>
 map_buffers<B> fitted_map(B& device, photons<B> p, uint k, uint parts = every_part)
 {
-    if (k == 1 && device.caps().nearest_in_blocks)
+    if (k == 1 && device.caps().prefers_blocks)
         return block_map(device, std::move(p), parts);
     const auto sample = detail::sample_positions(device, p, detail::grid_sample);
     const grid g = detail::grid_fitting(sample, p.size(), k, device.caps().cells_per_radius);

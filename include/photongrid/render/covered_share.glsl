@@ -10,6 +10,10 @@
 // A polygon counts if the point lies in its plane, on either side, or if its plane is tilted by up to 2.5 degrees and
 // passes near the point within the disc, so that slightly bent walls stay connected. The photons of other polygons must
 // be rejected (leak_policy::min_cosine).
+//
+// A lamp or mirror close in front of the surface hides what lies behind it, as a lamp does that is mounted on a
+// ceiling: its share is subtracted. It holds no photons, and keeps them from the surface. Light reaches as far behind
+// its edge as it is missing beside it, so that only the square of its height over the radius is neglected.
 #include <photongrid/backend/vector.glsl>
 #include <photongrid/estimate/search_radius.glsl>
 #include <photongrid/trace/scene_layout.glsl>
@@ -60,6 +64,14 @@ float edge_share(float d, float a, float b)
     return share;
 }
 
+// The part of the surface behind a lamp or mirror that it hides, by its height above the surface over the radius: all
+// of it at height 0, none from a quarter of the radius on, where the disc sees how light fades behind the edge.
+float hidden_part(float height)
+{
+    precise float part = 1.0f - 16.0f * (height * height);
+    return part > 0.0f ? part : 0.0f;
+}
+
 void kernel(uint i)
 {
     vec4 point = points(i);
@@ -83,11 +95,26 @@ void kernel(uint i)
         precise float above = dot3(up, p) - plane.w;
         vec3 turn = cross3(n, up);
         float sine2 = dot3(turn, turn);
-        precise float tolerance = error + radius * sqrt(sine2);
-        if (!(sine2 <= 0.0019f) || !(abs(above) <= tolerance))
+        precise float rise = radius * sqrt(sine2); // of its plane over the disc
+        precise float tolerance = error + rise;
+        if (!(sine2 <= 0.0019f) || !(abs(above) <= tolerance + 0.25f * radius))
             continue;
-        if (is_light_surface(at) || !stores_photons(material_of(polygon_material(at))))
-            continue; // holds no photons
+        bool hides = is_light_surface(at);
+        bool holds_photons = false;
+        if (!hides) {
+            Material material = material_of(polygon_material(at));
+            hides = material.kind == MIRROR_SURFACE;
+            holds_photons = stores_photons(material) && abs(above) <= tolerance;
+        }
+        float counted = holds_photons ? 1.0f : 0.0f; // of its share
+        if (hides) {
+            float height = dot3(n, up) > 0.0f ? -above : above;
+            precise float over_radius = (height + rise) * inverse;
+            if (height > error)
+                counted = -hidden_part(over_radius);
+        }
+        if (counted == 0.0f)
+            continue;
 
         float nearest = 3.0e38f; // edge's line, m; positive inside
         for (uint e = 0u; e < edges; ++e) {
@@ -95,7 +122,9 @@ void kernel(uint i)
             float d = dot3(vec3(polygon_edge(at, e)), f);
             nearest = d < nearest ? d : nearest;
         }
-        if (sine2 <= 1e-10f && abs(above) <= error && nearest >= -2.0f * error)
+        if (hides && nearest > 0.0f)
+            continue; // the point is behind it
+        if (holds_photons && sine2 <= 1e-10f && abs(above) <= error && nearest >= -2.0f * error)
             found = 1.0f;
         if (nearest <= -radius)
             continue;
@@ -116,7 +145,7 @@ void kernel(uint i)
                 a = b;
             }
         }
-        precise float all = sum + share;
+        precise float all = sum + counted * share;
         sum = all;
     }
     cover = vec4(sum, found, 0.0f, 0.0f);

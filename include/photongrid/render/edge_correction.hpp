@@ -52,6 +52,8 @@ namespace detail {
 /// x: the share, 0 to about 1, of each estimate's disc that lies on polygons of the scene, weighted by the filter. y: 1
 /// for points on a polygon, 0 for others, whose share has no meaning. Polygons in one plane are one surface, whichever
 /// way they are wound; where they overlap they count twice. Mirrors, glass and lamps hold no photons and do not count.
+/// Polygons of lamps and mirrors in front of the surface, nearer to it than a quarter of the radius, hide it: their
+/// share is subtracted.
 ///
 /// `points` (recentred, m; w > 0: has an estimate), `normals` (unit) and `irradiances` (w: squared radius, m^2) are
 /// those of the estimate; `min_radius` (m) is that of its settings. The error is about 1e-6, plus 2^-22 of the scene's

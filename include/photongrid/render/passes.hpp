@@ -33,8 +33,10 @@ inline render_settings settings_of_pass(render_settings s, std::uint32_t pass)
 }
 
 /// The settings of the map that gives the first radii of all passes. Where many photons are sought it has fewer, and as
-/// many times fewer are sought in it.
-inline render_settings settings_of_radius_map(const render_settings& s)
+/// many times fewer are sought in it. It is built once and searched in every pass, also at points that are far from its
+/// photons, as most are from a caustic: a block map on devices that prefer it. Exact searches find the same radii in
+/// it.
+inline render_settings settings_of_radius_map(const render_settings& s, const capabilities& device)
 {
     auto with = settings_of_pass(s, radius_pass);
     const auto make_fewer = [](std::uint32_t& photons, std::uint32_t& k) {
@@ -44,6 +46,8 @@ inline render_settings settings_of_radius_map(const render_settings& s)
     };
     make_fewer(with.map.photons, with.estimate.k);
     make_fewer(with.map.caustic_photons, with.estimate.caustic_k);
+    if (device.prefers_blocks && s.estimate.search == search_kind::exact_k && s.map.builder != map_builder::route)
+        with.map.builder = map_builder::blocks;
     if (gathers(s) && s.map.caustic_photons > 0)
         with.output.only = light_part::caustic; // rays end in the map of caustic photons alone
     return with;

@@ -307,7 +307,7 @@ private:
     /// The map that gives the first radii of all passes.
     step_list steps_to_radii()
     {
-        const map_source source{scene_, settings_of_radius_map(settings_), radius_pass};
+        const map_source source{scene_, settings_of_radius_map(settings_, device_.caps()), radius_pass};
         if (!has_shrinking_radii(settings_) || radius_maps_.serves(source))
             return {};
         auto steps = radius_maps_.steps_to(source, [this] { view_.reset(); });
@@ -347,7 +347,8 @@ private:
             view_pass_settings{p, step_size::small, previews_.enabled && !has_bands(), shows_running_estimates(), band},
             kept_, stats_);
         if (!p && has_shrinking_radii(settings_))
-            view_->use_radii(radii_of_pass(radius_maps_.map(), settings_of_radius_map(settings_), number));
+            view_->use_radii(
+                radii_of_pass(radius_maps_.map(), settings_of_radius_map(settings_, device_.caps()), number));
         if (!p && !unfinished_.empty()) {
             const auto& light = unfinished_.band;
             if (unfinished_.rays > 0)

@@ -169,7 +169,7 @@ template <backend B>
 built_map<B> build_radius_map(B& device, const scene& s, const render_settings& settings, guide_keeper& guides,
     const render_observer& observer, render_stats& stats)
 {
-    map_building<B> building(device, s, settings_of_radius_map(settings), guides);
+    map_building<B> building(device, s, settings_of_radius_map(settings, device.caps()), guides);
     run(radius_map_steps(building), observer, [](std::string_view) {});
     auto built = building.take();
     detail::add_map(stats, built.stats);
@@ -217,7 +217,8 @@ template <backend B>
         detail::add_map(out.stats, map.stats);
         if (pass == 0)
             sum = film_for(s, map.scene.layout, settings);
-        const auto of_pass = radii ? radii_of_pass(*radii, settings_of_radius_map(every), pass) : pass_radii<B>{};
+        const auto of_pass
+            = radii ? radii_of_pass(*radii, settings_of_radius_map(every, device.caps()), pass) : pass_radii<B>{};
         sum.add(pass, draw_pass(device, map, s.camera, own, observer, out.stats, of_pass));
         judge.after_pass(sum, clock.seconds(), out.stats);
         judge.before_pass(sum, clock.seconds());

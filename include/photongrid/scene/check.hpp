@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -27,6 +28,12 @@ namespace detail {
     {
         require(finite(d) && glm::length(d) > 0, "direction: must be finite and not 0");
     }
+    /// A number with at most nine digits.
+    inline std::string text_of(double v)
+    {
+        char digits[32];
+        return {digits, std::to_chars(digits, digits + sizeof digits, v, std::chars_format::general, 9).ptr};
+    }
     inline void require_axis(const dvec3& a, const dvec3& b, const char* what)
     {
         require(finite(a) && finite(b), std::string(what) + ": must be finite");
@@ -40,10 +47,7 @@ struct real_range {
     const char* unit; ///< with a leading space
     bool has(double v) const { return v >= least && v <= most; }
     /// "-64 to 64 EV"
-    std::string ends() const
-    {
-        return std::to_string(std::lround(least)) + " to " + std::to_string(std::lround(most)) + unit;
-    }
+    std::string ends() const { return detail::text_of(least) + " to " + detail::text_of(most) + unit; }
     void check(const char* name, double v) const
     {
         detail::require(has(v), std::string(name) + ": must be from " + ends());

@@ -34,7 +34,8 @@ struct path_batch {
 };
 
 namespace detail {
-    /// The frames of the photon texture: frame f of path p is element f * paths + p.
+    /// The frames of the photon texture: frame f of path p is element f * paths + p. What follows the end of a path is
+    /// undefined.
     template <backend B>
     struct photon_frames {
         buffer_of<B, glm::vec4> positions, powers, directions, next_origins, next_directions;

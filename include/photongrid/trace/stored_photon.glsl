@@ -7,10 +7,9 @@ uint stored_photon(uint i)
 {
     uint rank = i - args.stored_before;
     uint low = first_sum_above(rank, args.paths);
-    // Count down from the path's last photon, whose rank is sums(low) - 1.
-    uint skip = sums(low) - 1u - rank;
+    uint skip = low > 0u ? rank - sums(low - 1u) : rank; // the path's photons before this one
     uint found = low;
-    for (uint frame = args.frames - 1u; frame >= 1u; --frame) {
+    for (uint frame = 1u; frame < args.frames; ++frame) {
         uint at = frame * args.paths + low;
         if (event_is_stored(positions(at), args.kinds)) {
             if (skip == 0u) {

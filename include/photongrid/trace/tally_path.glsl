@@ -18,11 +18,10 @@ void kernel(uint i)
     storable = 0u;
     ends = uvec4(0u, 0u, 0u, 0u);
     hits = uvec4(0u, 0u, 0u, 0u);
-    for (uint frame = 1u; frame < args.frames; ++frame) {
+    uint end = GOES_ON;
+    for (uint frame = 1u; frame < args.frames && end == GOES_ON; ++frame) {
         vec4 p = positions(frame * args.paths + i);
-        uint end = event_end(p);
-        if (end == ENDED_BEFORE)
-            break;
+        end = event_end(p);
         if (event_is_diffuse(p)) {
             ++hits.x;
             if (event_is_stored(p, args.kinds))
