@@ -139,7 +139,8 @@ public:
         const K prepared = prepare<K>(l, args, reads);
         const auto out = elements_of<K>(writes);
         std::mutex adding;
-        progress p{.finished = true};
+        progress p;
+        p.finished = true;
         pool_.for_blocks(l.elements, iterative_block, [&](std::size_t first, std::size_t past) {
             const progress mine = run_in_turn(prepared, l.first + static_cast<uint>(first),
                 l.first + static_cast<uint>(past), stride, max_passes, out);
@@ -325,7 +326,8 @@ private:
     [[gnu::noinline, gnu::flatten]] static progress run_in_turn(
         K k, uint first, uint past, uint stride, uint max_passes, const Elements& out)
     {
-        progress p{.finished = true};
+        progress p;
+        p.finished = true;
         for (uint i = first; i != past; ++i) {
             bool done = false;
             uint q = 0;

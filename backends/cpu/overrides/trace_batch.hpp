@@ -15,20 +15,14 @@ template <backend B>
 requires std::same_as<B, cpu_backend> uint trace_batch(B& device, const device_scene<B>& s, detail::photon_frames<B>& f,
     const path_batch<B>& batch, const render_settings& settings)
 {
-    const uint paths = batch.paths, depth = settings.map.photon_depth;
+    const uint paths = batch.paths;
     if (s.has_meshes()) // searches for hits on meshes come between bounces
         return detail::trace_batch_by_passes(device, s, f, batch, settings);
     const detail::mesh_hits<B> none(device, s, 0);
     detail::emit_photons(device, s, f, batch, settings.seed);
     const auto p = device.template run_frames<kernels::bounce_photon>({paths, paths, s.layout.features}, paths,
-        {.paths = paths,
-            .first_path = batch.first,
-            .last_frame = depth,
-            .seed = settings.seed,
-            .to_diffuse = batch.to_diffuse ? 1u : 0u},
-        reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, none.places,
-            none.normals, none.shadings, none.colors),
-        writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions), depth);
+        detail::params_of_bounce(batch, settings), detail::reads_of_bounce(s, f, none), detail::writes_of_bounce(f),
+        settings.map.photon_depth);
     return p.passes + 1;
 }
 

@@ -14,7 +14,6 @@ template <backend B>
 requires std::same_as<B, vulkan_backend> uint trace_batch(B& device, const device_scene<B>& s,
     detail::photon_frames<B>& f, const path_batch<B>& batch, const render_settings& settings)
 {
-    const auto& layout = s.layout;
     const uint paths = batch.paths;
     if (s.has_meshes()) // other passes come between bounces
         return detail::trace_batch_by_passes(device, s, f, batch, settings);
@@ -28,16 +27,9 @@ requires std::same_as<B, vulkan_backend> uint trace_batch(B& device, const devic
         const auto ended = std::bit_cast<uint>(
             kernels::event_code(kernels::NO_SURFACE, kernels::ENDED_BEFORE, kernels::NOTHING_BEFORE));
         device.fill(f.positions, std::size_t{frame} * paths, std::size_t{passes} * paths, ended);
-        const auto p
-            = device.template run_frames<kernels::bounce_photon>({paths, frame * paths, layout.features}, paths,
-                {.paths = paths,
-                    .first_path = batch.first,
-                    .last_frame = settings.map.photon_depth,
-                    .seed = settings.seed,
-                    .to_diffuse = batch.to_diffuse ? 1u : 0u},
-                reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, none.places,
-                    none.normals, none.shadings, none.colors),
-                writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions), passes);
+        const auto p = device.template run_frames<kernels::bounce_photon>({paths, frame * paths, s.layout.features},
+            paths, detail::params_of_bounce(batch, settings), detail::reads_of_bounce(s, f, none),
+            detail::writes_of_bounce(f), passes);
         frame += p.passes;
         finished = p.finished;
     }

@@ -84,12 +84,33 @@ namespace detail {
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
     }
 
+    /// The parameters and buffers of bounce_photon. `hits`: those of the paths on meshes.
+    template <backend B>
+    kernels::bounce_photon::Params params_of_bounce(const path_batch<B>& batch, const render_settings& settings)
+    {
+        return {.paths = batch.paths,
+            .first_path = batch.first,
+            .last_frame = settings.map.photon_depth,
+            .seed = settings.seed,
+            .to_diffuse = batch.to_diffuse ? 1u : 0u};
+    }
+    template <backend B>
+    auto reads_of_bounce(const device_scene<B>& s, const photon_frames<B>& f, const mesh_hits<B>& hits)
+    {
+        return reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, hits.places,
+            hits.normals, hits.shadings, hits.colors);
+    }
+    template <backend B>
+    auto writes_of_bounce(photon_frames<B>& f)
+    {
+        return writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions);
+    }
+
     /// trace_batch by a pass for each bounce.
     template <backend B>
     uint trace_batch_by_passes(B& device, const device_scene<B>& s, photon_frames<B>& f, const path_batch<B>& batch,
         const render_settings& settings)
     {
-        const auto& layout = s.layout;
         const uint paths = batch.paths;
         mesh_hits<B> hits(device, s, paths);
         mesh_rays<B> rays(device, s.has_meshes() ? paths : 0);
@@ -101,15 +122,8 @@ namespace detail {
                     reads(f.positions, f.next_origins, f.next_directions), writes(rays.origins, rays.directions));
                 rays.find(device, s, hits);
             }
-            device.template run<kernels::bounce_photon>({paths, frame * paths, layout.features},
-                {.paths = paths,
-                    .first_path = batch.first,
-                    .last_frame = settings.map.photon_depth,
-                    .seed = settings.seed,
-                    .to_diffuse = batch.to_diffuse ? 1u : 0u},
-                reads(s.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, hits.places,
-                    hits.normals, hits.shadings, hits.colors),
-                writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
+            device.template run<kernels::bounce_photon>({paths, frame * paths, s.layout.features},
+                params_of_bounce(batch, settings), reads_of_bounce(s, f, hits), writes_of_bounce(f));
             if (frame % 4 == 0
                 && checked_count<kernels::path_goes_on>(device, {paths, frame * paths}, {}, reads(f.positions)) == 0)
                 return frame + 1;
