@@ -122,7 +122,7 @@ void kernel(uint i)
             float d = dot3(vec3(polygon_edge(at, e)), f);
             nearest = d < nearest ? d : nearest;
         }
-        if (hides && nearest > 0.0f)
+        if (hides && nearest > 2.0f * error)
             continue; // the point is behind it
         if (holds_photons && sine2 <= 1e-10f && abs(above) <= error && nearest >= -2.0f * error)
             found = 1.0f;
