@@ -4,8 +4,8 @@
 #
 #   bench/figure7.sh [OPTION of "photongrid render"...]
 #
-# 256 pixels wide, in one pass with Table 1's counts and 4 eye rays each: as many eye rays as the paper's size. PHOTONGRID
-# names another program than build/photongrid.
+# 256 pixels wide, in one pass with Table 1's counts and 4 eye rays each: as many eye rays as the paper's size.
+# PHOTONGRID names another program than build/photongrid.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source bench/programs.sh

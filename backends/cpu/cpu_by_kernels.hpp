@@ -127,29 +127,25 @@ public:
         return p;
     }
 
-    /// Not a verb of the concept. For each element i of the launch: computes elements i, i + stride, i + 2 stride and
-    /// so on in turn, each from the one before, until done() or `max_passes` of them; `passes` is the most for any
-    /// element. Without `active`.
+    /// Not a verb of the concept. For each element i of the launch, computes elements i, i + stride, i + 2 stride and
+    /// so on in turn, each from the one before, until done() or `most` of them. Returns the most for any element.
     template <iterative_kernel K, class Reads, class Writes>
-    progress run_frames(
-        launch l, uint stride, const typename K::Params& args, Reads reads, Writes writes, uint max_passes)
+    uint run_frames(launch l, uint stride, const typename K::Params& args, Reads reads, Writes writes, uint most)
     {
         detail::check_call<K>("run_frames", l, reads, writes);
         const stopwatch watch;
         const K prepared = prepare<K>(l, args, reads);
         const auto out = elements_of<K>(writes);
-        std::mutex adding;
-        progress p;
-        p.finished = true;
+        std::mutex comparing;
+        uint longest = 0;
         pool_.for_blocks(l.elements, iterative_block, [&](std::size_t first, std::size_t past) {
-            const progress mine = run_in_turn(prepared, l.first + static_cast<uint>(first),
-                l.first + static_cast<uint>(past), stride, max_passes, out);
-            const std::lock_guard lock(adding);
-            p.passes = std::max(p.passes, mine.passes);
-            p.finished = p.finished && mine.finished;
+            const uint mine = run_in_turn(
+                prepared, l.first + static_cast<uint>(first), l.first + static_cast<uint>(past), stride, most, out);
+            const std::lock_guard lock(comparing);
+            longest = std::max(longest, mine);
         });
-        count_passes(kernel_name<K>(), p.passes, watch);
-        return p;
+        count_passes(kernel_name<K>(), longest, watch);
+        return longest;
     }
 
     template <predicate_kernel K, class Reads>
@@ -323,24 +319,22 @@ private:
         }
     }
     template <class K, class Elements>
-    [[gnu::noinline, gnu::flatten]] static progress run_in_turn(
-        K k, uint first, uint past, uint stride, uint max_passes, const Elements& out)
+    [[gnu::noinline, gnu::flatten]] static uint run_in_turn(
+        K k, uint first, uint past, uint stride, uint most, const Elements& out)
     {
-        progress p;
-        p.finished = true;
+        uint longest = 0;
         for (uint i = first; i != past; ++i) {
             bool done = false;
             uint q = 0;
-            for (uint at = i; q < max_passes && !done; ++q, at += stride) {
+            for (uint at = i; q < most && !done; ++q, at += stride) {
                 load(k, at, out);
                 k.kernel(at);
                 store(k, at, out);
                 done = k.done();
             }
-            p.passes = std::max(p.passes, q);
-            p.finished = p.finished && done;
+            longest = std::max(longest, q);
         }
-        return p;
+        return longest;
     }
     template <class K>
     [[gnu::noinline, gnu::flatten]] static void draw_all(

@@ -20,10 +20,10 @@ requires std::same_as<B, cpu_backend> uint trace_batch(B& device, const device_s
         return detail::trace_batch_by_passes(device, s, f, batch, settings);
     const detail::mesh_hits<B> none(device, s, 0);
     detail::emit_photons(device, s, f, batch, settings.seed);
-    const auto p = device.template run_frames<kernels::bounce_photon>({paths, paths, s.layout.features}, paths,
+    const uint longest = device.template run_frames<kernels::bounce_photon>({paths, paths, s.layout.features}, paths,
         detail::params_of_bounce(batch, settings), detail::reads_of_bounce(s, f, none), detail::writes_of_bounce(f),
         settings.map.photon_depth);
-    return p.passes + 1;
+    return longest + 1;
 }
 
 } // namespace photongrid

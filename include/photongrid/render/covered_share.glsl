@@ -72,6 +72,23 @@ float hidden_part(float height)
     return part > 0.0f ? part : 0.0f;
 }
 
+// How much of a polygon's share counts: 1 if it holds photons and lies in the surface's plane, less than 0 if it hides
+// the surface. `height`, of its plane above the surface at the point, and `rise`, of that plane over the disc, m;
+// `inverse`: of the radius.
+float counted_part(uint at, float height, float rise, float inverse)
+{
+    float error = polygon_error(at);
+    if (!is_light_surface(at)) {
+        Material material = material_of(polygon_material(at));
+        if (material.kind != MIRROR_SURFACE) {
+            precise float tolerance = error + rise;
+            return stores_photons(material) && abs(height) <= tolerance ? 1.0f : 0.0f;
+        }
+    }
+    precise float over_radius = (height + rise) * inverse;
+    return height > error ? -hidden_part(over_radius) : 0.0f;
+}
+
 void kernel(uint i)
 {
     vec4 point = points(i);
@@ -96,23 +113,10 @@ void kernel(uint i)
         vec3 turn = cross3(n, up);
         float sine2 = dot3(turn, turn);
         precise float rise = radius * sqrt(sine2); // of its plane over the disc
-        precise float tolerance = error + rise;
-        if (!(sine2 <= 0.0019f) || !(abs(above) <= tolerance + 0.25f * radius))
+        if (!(sine2 <= 0.0019f) || !(abs(above) <= error + rise + 0.25f * radius))
             continue;
-        bool hides = is_light_surface(at);
-        bool holds_photons = false;
-        if (!hides) {
-            Material material = material_of(polygon_material(at));
-            hides = material.kind == MIRROR_SURFACE;
-            holds_photons = stores_photons(material) && abs(above) <= tolerance;
-        }
-        float counted = holds_photons ? 1.0f : 0.0f; // of its share
-        if (hides) {
-            float height = dot3(n, up) > 0.0f ? -above : above;
-            precise float over_radius = (height + rise) * inverse;
-            if (height > error)
-                counted = -hidden_part(over_radius);
-        }
+        float height = dot3(n, up) > 0.0f ? -above : above;
+        float counted = counted_part(at, height, rise, inverse);
         if (counted == 0.0f)
             continue;
 
@@ -122,9 +126,9 @@ void kernel(uint i)
             float d = dot3(vec3(polygon_edge(at, e)), f);
             nearest = d < nearest ? d : nearest;
         }
-        if (hides && nearest > 2.0f * error)
+        if (counted < 0.0f && nearest > 2.0f * error)
             continue; // the point is behind it
-        if (holds_photons && sine2 <= 1e-10f && abs(above) <= error && nearest >= -2.0f * error)
+        if (counted > 0.0f && sine2 <= 1e-10f && abs(above) <= error && nearest >= -2.0f * error)
             found = 1.0f;
         if (nearest <= -radius)
             continue;
