@@ -1,14 +1,14 @@
 // How fast the error of exact pictures (as_exact) falls with passes and with time: in two scenes whose light is known,
 // or in scenes from files against the reference renderer. relMSE of the pixels in which caustics are at least a tenth
 // of the light, and of those in which they are less than a thousandth; the reference's own noise is subtracted. Prints
-// the errors after 1, 2, 4 ... passes, the mean of several seeds, and the slopes of their logarithms. One eye ray,
-// shadow ray and path per pixel and pass.
+// the errors after 1, 2, 4 ... passes, the mean of several seeds, and the slopes of their logarithms over the last
+// three decades and the last one. One eye ray, shadow ray and path per pixel and pass.
 //
 //   exact_slopes PASSES SEEDS [SIZE EYE_PATHS LIGHT_PATHS SCENE...]
 //
 //   EYE_PATHS, LIGHT_PATHS: of the reference, per pixel and in all
 //
-//   exact_slopes 2048 4
+//   exact_slopes 8192 8
 //   exact_slopes 1024 2 48x36 65536 1e9 examples/scenes/cornell_box.json
 #include <photongrid/backends/any/any.hpp>
 #include <photongrid/io/scene_file.hpp>
@@ -91,14 +91,26 @@ void measure(renderer& drawing, const scene& s, render_settings settings, const 
     for (settings.seed = 1; settings.seed <= seeds; ++settings.seed)
         add_errors(drawing, s, settings, known, bright, dark, rows, seeds);
     std::printf("%s, %zu pixels with caustics, %zu without\n\n", s.name.c_str(), bright.size(), dark.size());
+    const auto cell = [](bool has_pixels, const char* format, double value) {
+        std::printf(" ");
+        std::printf(has_pixels ? format : "-", value);
+        std::printf(" |");
+    };
+    const auto cells = [&](const char* format, double with, double without) {
+        cell(!bright.empty(), format, with);
+        cell(!dark.empty(), format, without);
+        std::printf("\n");
+    };
     std::printf("| passes | seconds | relMSE with caustics | without |\n|---|---|---|---|\n");
-    for (const auto& r : rows)
-        std::printf("| %.0f | %.2f | %.3g | %.3g |\n", r.passes, r.seconds, r.caustics, r.others);
-    for (const bool last : {false, true}) {
+    for (const auto& r : rows) {
+        std::printf("| %.0f | %.3f |", r.passes, r.seconds);
+        cells("%.3g", r.caustics, r.others);
+    }
+    for (const int decades : {3, 1}) {
         const auto slopes = [&](const char* by, double row::*x) {
-            const double from = last ? rows.back().*x / 10 : 0;
-            std::printf("| slope over %s, by %s | | %.2f | %.2f |\n", last ? "the last decade" : "all", by,
-                slope(rows, x, &row::caustics, from), slope(rows, x, &row::others, from));
+            const double from = rows.back().*x / std::pow(10, decades);
+            std::printf("| slope over the last %s, by %s | |", decades == 1 ? "decade" : "three decades", by);
+            cells("%.2f", slope(rows, x, &row::caustics, from), slope(rows, x, &row::others, from));
         };
         slopes("passes", &row::passes);
         slopes("seconds", &row::seconds);

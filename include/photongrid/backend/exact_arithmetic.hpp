@@ -121,6 +121,11 @@ namespace detail {
             }
         }
 
+        static void divide_exactly(std::string& product, const std::string& divisor)
+        {
+            product = "exact_quotient(" + product + "," + divisor + ")";
+        }
+
         /// Up to a closing bracket.
         std::string sequence(bool rewrite)
         {
@@ -145,7 +150,7 @@ namespace detail {
                         (right += text_[at_++]) += blanks();
                     right += operand(rewrite);
                     if (pending == '/' && rewrite && !constant && !(is_number(product) && is_number(right))) {
-                        product = "exact_quotient(" + product + "," + blank + right + ")";
+                        divide_exactly(product, blank + right);
                     } else if (pending != '\0') {
                         (product += pending) += blank + right;
                     } else {

@@ -22,7 +22,7 @@ inline uint block_count(uint held) { return held / kernels::BLOCK + (held % kern
 inline uint tree_levels(uint photons)
 {
     uint levels = 1;
-    for (std::uint64_t held = 16 * kernels::BLOCK; held < photons; held *= 16)
+    for (auto held = std::uint64_t{16} * kernels::BLOCK; held < photons; held *= 16)
         ++levels;
     return levels;
 }

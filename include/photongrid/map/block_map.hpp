@@ -53,6 +53,7 @@ namespace detail {
         if (sample.empty())
             return 1;
         std::vector<entry> along;
+        along.reserve(sample.size());
         for (const auto& p : sample)
             along.push_back({{}, 0, kernels::curve_coordinates(curve, glm::vec4(p, 0))});
         // All photons are denser than the sample. Along a line each further level halves their number in a cube.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -114,8 +115,7 @@ namespace detail {
     template <class T>
     bool is_unused(const T& part)
     {
-        const T unused{};
-        return std::memcmp(&part, &unused, sizeof part) == 0;
+        return std::ranges::all_of(std::as_bytes(std::span(&part, 1)), [](std::byte b) { return b == std::byte{0}; });
     }
 
     /// Whether the header is of a grid map whose grid has as many cells as the file.

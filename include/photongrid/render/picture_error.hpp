@@ -66,7 +66,7 @@ namespace detail {
             double sum = 0;
         };
         static constexpr std::uint64_t first_bin = std::bit_cast<std::uint64_t>(0x1p-40) >> 47; ///< 5 bits of mantissa
-        std::vector<bin> bins_ = std::vector<bin>(80 * 32);
+        std::vector<bin> bins_ = std::vector<bin>(std::size_t{80} * 32);
         std::uint64_t total_ = 0, negligible_ = 0;
     };
 } // namespace detail

@@ -140,7 +140,7 @@ ray_search<B>::ray_search(B& device, const device_triangles<B>& triangles, const
 template <backend B>
 progress ray_search<B>::advance(uint passes)
 {
-    const progress p = device_->template run_until_done<kernels::trace_ray>(
+    progress p = device_->template run_until_done<kernels::trace_ray>(
         {states_.size(), 0u, this->template switches<kernels::trace_ray>()},
         {.steps = settings_.steps_per_pass, .count = triangles_->instance_count()},
         reads(*origins_, *directions_, triangles_->pairs, triangles_->corners, triangles_->instances), writes(states_),
