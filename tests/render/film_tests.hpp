@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -13,6 +14,7 @@
 #include <random>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -77,30 +79,93 @@ TEST(film, any_order_of_passes_gives_the_same_bytes)
     }
 }
 
-TEST(film, is_the_mean_and_its_noise_the_spread)
+/// 50 passes are twelve groups of four and one of two.
+TEST(film, is_the_mean_and_its_noise_the_spread_of_groups)
 {
     constexpr std::size_t n = 30;
-    constexpr int passes = 50;
+    constexpr std::uint32_t passes = 50, in_group = 4, groups = 13;
     film f(n, 1, 1, true);
     std::vector<glm::dvec3> sums(n, glm::dvec3(0));
-    std::vector<double> squares(n, 0), means(n, 0);
-    for (int pass = 0; pass < passes; ++pass) {
-        const auto p = random_pass(static_cast<std::uint32_t>(pass), n, true);
+    std::vector<std::array<double, groups>> group_sums(n, std::array<double, groups>{});
+    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+        const auto p = random_pass(pass, n, true);
         for (std::size_t i = 0; i < n; ++i) {
             const auto value = glm::dvec3(p.pixels[i]);
-            const double mean = (value.x + value.y + value.z) / 3;
             sums[i] += value;
-            means[i] += mean / passes;
-            squares[i] += mean * mean;
+            group_sums[i][pass / in_group] += (value.x + value.y + value.z) / 3;
         }
-        f.add(static_cast<std::uint32_t>(pass), p);
+        f.add(pass, p);
     }
     const auto picture = f.picture().picture;
     for (std::size_t i = 0; i < n; ++i) {
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(picture.pixels[i][c], sums[i][c] / passes, 1e-6 * sums[i][c] / passes);
-        const double variance = (squares[i] - passes * means[i] * means[i]) / (passes - 1);
+        const double mean = (sums[i].x + sums[i].y + sums[i].z) / 3 / passes;
+        double variance = 0; // of a pass
+        for (std::uint32_t g = 0; g < groups; ++g) {
+            const double size = std::min(in_group, passes - g * in_group);
+            variance += std::pow(group_sums[i][g] - size * mean, 2) / size / (groups - 1);
+        }
         EXPECT_NEAR(picture.layers.noise[i], std::sqrt(variance / passes), 1e-5 * std::sqrt(variance / passes));
+    }
+}
+
+/// Of passes of one number a pixel: the root mean square of what the film tells of the noise of their mean, and of what
+/// it is.
+template <class Value>
+std::pair<double, double> told_and_true_noise(std::uint32_t passes, double mean, const Value& value)
+{
+    constexpr std::size_t n = 4000;
+    film f(n, 1, 1, true);
+    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+        pass_pixels p;
+        for (std::uint32_t i = 0; i < n; ++i)
+            p.pixels.emplace_back(glm::vec3(value(pass, i)), 0);
+        p.searches.resize(n);
+        p.errors.resize(n);
+        f.add(pass, p);
+    }
+    const auto picture = f.picture().picture;
+    double told = 0, right = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        told += std::pow(picture.layers.noise[i], 2) / n;
+        right += std::pow(static_cast<double>(picture.pixels[i].x) - mean, 2) / n;
+    }
+    return {std::sqrt(told), std::sqrt(right)};
+}
+
+/// However many groups there are, and whatever the last one has.
+TEST(film, noise_of_independent_passes_is_told_right)
+{
+    for (const std::uint32_t passes : {2u, 5u, 16u, 17u, 33u, 50u, 128u, 200u}) {
+        std::mt19937 random(passes);
+        std::uniform_real_distribution<float> light(0, 2);
+        const auto [told, right]
+            = told_and_true_noise(passes, 1, [&](std::uint32_t, std::uint32_t) { return light(random); });
+        const double known = std::sqrt(1.0 / (3 * passes));
+        EXPECT_NEAR(told, known, 0.05 * known) << passes << " passes"; // five standard errors
+        EXPECT_NEAR(right, known, 0.05 * known) << passes << " passes";
+    }
+}
+
+/// A part of each pixel is covered, and its passes share out their rays: numbers of the van der Corput sequence, turned
+/// at random, are in or out. The spread of single passes would tell several times the noise that there is.
+TEST(film, noise_of_passes_that_share_out_their_rays_is_nearly_told_right)
+{
+    const auto uncovered = [](std::uint32_t pass, std::uint32_t pixel) {
+        std::uint32_t reversed = 0;
+        for (std::uint32_t bit = 0; bit < 32; ++bit)
+            reversed |= (pass >> bit & 1u) << (31 - bit);
+        const float covered = 0.2f + static_cast<float>(pixel % 1009) * (0.6f / 1009);
+        const std::uint32_t turned = reversed + pixel * 0x9E3779B1u;
+        return (static_cast<float>(turned >> 8) * 0x1p-24f < covered ? 1.0f : 0.0f) - covered;
+    };
+    for (const std::uint32_t passes : {64u, 100u, 256u, 1000u}) {
+        const auto [told, right] = told_and_true_noise(passes, 0, uncovered);
+        const double of_single_passes = std::sqrt(0.22 / passes); // the mean of covered (1 - covered)
+        EXPECT_GT(told, right) << passes << " passes";
+        EXPECT_LT(told, 4.5 * right) << passes << " passes";
+        EXPECT_GT(of_single_passes, 6 * right) << passes << " passes";
     }
 }
 
@@ -190,7 +255,7 @@ TEST(film, layers_of_the_only_pass_are_finite)
 // Threads with a film each: whatever their shares, the films add up to the bytes of one that has all passes.
 TEST(film, films_of_threads_add_up_to_the_same_bytes)
 {
-    constexpr std::uint32_t passes = 11;
+    constexpr std::uint32_t passes = 41;
     for (const bool layers : {false, true}) {
         film all(5, 4, 0x1p-6, layers);
         for (std::uint32_t pass = 0; pass < passes; ++pass)
@@ -256,15 +321,15 @@ TEST(film, throws_for_passes_that_do_not_fit)
 
 TEST(film, goes_through_bytes)
 {
-    for (const int passes : {0, 1, 2, 9}) {
+    for (const int passes : {0, 1, 2, 9, 40}) {
         film f(4, 3, 0.5, true);
         for (int pass = 0; pass < passes; ++pass)
             f.add(static_cast<std::uint32_t>(3 * pass), random_pass(static_cast<std::uint32_t>(pass), 12, true));
         const auto bytes = f.bytes();
         auto g = film::from_bytes(bytes);
         EXPECT_EQ(g.bytes(), bytes);
-        f.add(100, random_pass(100, 12, true));
-        g.add(100, random_pass(100, 12, true));
+        f.add(200, random_pass(200, 12, true));
+        g.add(200, random_pass(200, 12, true));
         EXPECT_TRUE(same_picture(f.picture().picture, g.picture().picture));
         for (std::size_t size = 0; size < bytes.size(); ++size)
             EXPECT_THROW(film::from_bytes(std::string_view(bytes).substr(0, size)), std::invalid_argument) << size;

@@ -4,6 +4,7 @@
 
 #include <photongrid/render/exact_sum.hpp>
 #include <photongrid/render/image.hpp>
+#include <photongrid/render/pass_groups.hpp>
 #include <photongrid/render/pixel_bias.hpp>
 #include <photongrid/scene/scene.hpp>
 
@@ -69,14 +70,15 @@ public:
             || !p.biases.have(biases_ ? n : 0))
             throw std::invalid_argument("film::add: pass " + std::to_string(pass) + ": has "
                 + std::to_string(p.pixels.size()) + " pixels; the film has " + std::to_string(n));
-        if (!passes_.insert(pass).second)
+        if (holds(pass))
             throw std::invalid_argument("film::add: pass " + std::to_string(pass) + " was added before");
-        if (passes_.size() == 1) {
+        if (passes_.empty()) {
             only_ = std::move(p);
-            return;
+        } else {
+            begin_sums();
+            add_up(pass, p);
         }
-        begin_sums();
-        add_up(p);
+        passes_.insert(pass);
     }
     /// Adds the passes of another film, as if each were added here. Threads and machines can each have a film of their
     /// own: in any order, these add up to the same bytes.
@@ -98,6 +100,7 @@ public:
             begin_sums();
             for (std::size_t i = 0; i < sums_.size(); ++i)
                 sums_[i].add(other.sums_[i]);
+            groups_.add(std::move(other.groups_));
             for (std::size_t i = 0; i < layer_sums_.size(); ++i)
                 layer_sums_[i].add(other.layer_sums_[i]);
             for (std::size_t i = 0; i < bias_sums_.size(); ++i)
@@ -135,6 +138,7 @@ public:
             for (const auto* part : std::as_const(*only_).parts())
                 put(part->data(), part->size() * sizeof(glm::vec4));
         put(sums_.data(), sums_.size() * sizeof(pixel_sums));
+        groups_.append_to(out);
         put(layer_sums_.data(), layer_sums_.size() * sizeof(layer_sums));
         put(bias_sums_.data(), bias_sums_.size() * sizeof(detail::pixel_bias_sums));
         return out;
@@ -175,13 +179,16 @@ public:
             for (auto* part : f.only_->parts())
                 take(part->data(), part->size() * sizeof(glm::vec4));
         } else if (head[3] > 1) {
+            f.groups_ = detail::pass_groups(f.passes_, n);
             if (in.size()
-                != n * sizeof(pixel_sums) + layer * sizeof(layer_sums) + biases * sizeof(detail::pixel_bias_sums))
+                != n * sizeof(pixel_sums) + f.groups_.byte_count() + layer * sizeof(layer_sums)
+                    + biases * sizeof(detail::pixel_bias_sums))
                 throw std::invalid_argument("film: the data have the wrong length");
             f.sums_.resize(n);
             f.layer_sums_.resize(layer);
             f.bias_sums_.resize(biases);
             take(f.sums_.data(), n * sizeof(pixel_sums));
+            f.groups_.take_from(in);
             take(f.layer_sums_.data(), layer * sizeof(layer_sums));
             take(f.bias_sums_.data(), biases * sizeof(detail::pixel_bias_sums));
         }
@@ -211,8 +218,8 @@ public:
     }
 
     /// Calls visit(mean, standard_error) for every pixel, row by row: the mean of its channels, and the standard error
-    /// of that mean from the spread of the passes, W/(m^2 sr). The error is infinite where the spread is unknown, so in
-    /// a film of one pass.
+    /// of that mean from the spread of groups of passes (detail::pass_groups), W/(m^2 sr). The error is infinite where
+    /// the spread is unknown, so in a film of one pass.
     template <class Visit>
     void visit_spread(const Visit& visit) const
     {
@@ -220,9 +227,10 @@ public:
             for (const auto& p : only_->pixels)
                 visit(finite(p) ? static_cast<double>(p.x + p.y + p.z) / 3 : 0.0,
                     std::numeric_limits<double>::infinity());
-        for (const auto& sum : sums_) {
-            const double all = sum.rgb[0].value() + sum.rgb[1].value() + sum.rgb[2].value();
-            visit(all * unit_ / (3 * static_cast<double>(passes_.size())), standard_error_of(sum, all));
+        for (std::size_t i = 0; i < sums_.size(); ++i) {
+            const auto& rgb = sums_[i].rgb;
+            const double all = rgb[0].value() + rgb[1].value() + rgb[2].value();
+            visit(all * unit_ / (3 * static_cast<double>(passes_.size())), standard_error_of(i));
         }
     }
 
@@ -243,15 +251,13 @@ public:
 private:
     struct pixel_sums {
         exact_sum rgb[3];
-        exact_sum squares;                   ///< of r + g + b, for the spread
         std::uint32_t invalid = 0;           ///< 1: in some pass it was NaN, infinite or too bright
-        std::uint32_t spread_is_unknown = 0; ///< 1: in some pass it was too bright for the sum of squares
+        std::uint32_t spread_is_unknown = 0; ///< 1: in some pass it was too bright for the sums of groups
 
         void add(const pixel_sums& other)
         {
             for (int c = 0; c < 3; ++c)
                 rgb[c].add(other.rgb[c]);
-            squares.add(other.squares);
             invalid |= other.invalid;
             spread_is_unknown |= other.spread_is_unknown;
         }
@@ -280,11 +286,12 @@ private:
             layer_sums_.resize(size());
         if (biases_)
             bias_sums_.resize(size());
-        add_up(*std::exchange(only_, std::nullopt));
+        groups_ = detail::pass_groups({}, size());
+        add_up(*passes_.begin(), *std::exchange(only_, std::nullopt));
     }
-    void add_up(const pass_pixels& p)
+    void add_up(std::uint32_t pass, const pass_pixels& p)
     {
-        for (std::size_t i = 0; i < sums_.size(); ++i) {
+        groups_.add(pass, [&](std::size_t i) {
             auto& sum = sums_[i];
             const glm::dvec3 value = glm::dvec3(p.pixels[i]) / unit_;
             const double all = value.x + value.y + value.z;
@@ -292,15 +299,15 @@ private:
             const auto holds = [](double x) { return std::abs(x) < largest; };
             if (!holds(value.x) || !holds(value.y) || !holds(value.z) || !holds(all)) {
                 sum.invalid = 1;
-                continue;
+                return 0.0;
             }
             for (int c = 0; c < 3; ++c)
                 sum.rgb[c].add(value[c]);
-            if (std::abs(all) < largest_square)
-                sum.squares.add(all * all * square_scale);
-            else
-                sum.spread_is_unknown = 1;
-        }
+            if (std::abs(all) < detail::pass_groups::largest)
+                return all;
+            sum.spread_is_unknown = 1;
+            return 0.0;
+        });
         for (std::size_t i = 0; i < layer_sums_.size(); ++i) {
             auto& sum = layer_sums_[i];
             const glm::dvec4 tally(p.searches[i]);
@@ -344,12 +351,13 @@ private:
     {
         const double n = static_cast<double>(passes_.size());
         auto& layers = out.picture.layers;
-        for (const auto& sum : sums_) {
+        for (std::size_t i = 0; i < sums_.size(); ++i) {
+            const auto& sum = sums_[i];
             out.invalid_pixels += sum.invalid;
             const glm::dvec3 total(sum.rgb[0].value(), sum.rgb[1].value(), sum.rgb[2].value());
             out.picture.pixels.emplace_back(total * (unit_ / n));
             if (layers_)
-                layers.noise.push_back(static_cast<float>(standard_error_of(sum, total.x + total.y + total.z)));
+                layers.noise.push_back(static_cast<float>(standard_error_of(i)));
         }
         for (const auto& sum : layer_sums_) {
             const double searches = sum.searches.value(), mean = searches > 0 ? 1 / searches : 0;
@@ -359,20 +367,16 @@ private:
         }
     }
 
-    /// Of the mean of a pixel's channels; `all`: the sum of its channels over all passes, in units.
-    double standard_error_of(const pixel_sums& sum, double all) const
+    /// Of the mean of a pixel's channels.
+    double standard_error_of(std::size_t pixel) const
     {
-        if (sum.spread_is_unknown != 0)
+        if (sums_[pixel].spread_is_unknown != 0)
             return std::numeric_limits<double>::infinity();
-        const double n = static_cast<double>(passes_.size());
-        const double variance = (sum.squares.value() / square_scale - all * all / n) / (n - 1);
-        return std::sqrt(std::max(variance, 0.0) / n) / 3 * unit_;
+        return std::sqrt(groups_.variance_of_mean(pixel)) / 3 * unit_;
     }
 
     // Terms of exact_sum are below 2^46.
-    static constexpr double largest = 0x1p40;        ///< of a pixel's r + g + b, in units
-    static constexpr double largest_square = 0x1p26; ///< the same for the sum of squares
-    static constexpr double square_scale = 0x1p-6;   ///< so that squares stay below 2^46
+    static constexpr double largest = 0x1p40; ///< of a pixel's r + g + b, in units
 
     std::uint32_t width_ = 0, height_ = 0;
     double unit_ = 1;
@@ -380,6 +384,7 @@ private:
     std::set<std::uint32_t> passes_;
     std::optional<pass_pixels> only_; ///< the floats of the only pass, while there is one
     std::vector<pixel_sums> sums_;
+    detail::pass_groups groups_; ///< of r + g + b, in units
     std::vector<layer_sums> layer_sums_;
     std::vector<detail::pixel_bias_sums> bias_sums_;
 };
