@@ -1,11 +1,13 @@
-// Whether pictures that --until-error ends have the error that they claim: against the mean of many passes of another
-// seed. Prints a table: the error asked for, passes, the error claimed, the true one of the same percentile and their
-// ratio, each the mean of several seeds, and the percentile of the pixels' standard errors, which would be the plainer
-// claim.
+// Whether pictures that --until-error ends have the error that they claim: against the mean of many exact passes
+// (as_exact) of another seed, which has next to no blur. Prints a table: the error asked for, passes, the error
+// claimed, the true one of the same percentile and their ratio, each the mean of several seeds, and the percentile of
+// the pixels' standard errors, which would be the plainer claim.
 //
-//   stopped_pictures SIZE PASSES SEEDS ERROR... -- SCENE...
+//   stopped_pictures SIZE EXACT_PASSES SEEDS [--exact] ERROR... -- SCENE...
 //
-//   stopped_pictures 128 2000 5 0.05 0.02 -- examples/scenes/*.json
+//   --exact: the pictures themselves are exact, too
+//
+//   stopped_pictures 128 8000 1 0.05 0.02 -- examples/scenes/cornell_blocks.json
 #include <photongrid/backends/any/any.hpp>
 #include <photongrid/io/scene_file.hpp>
 #include <photongrid/render/picture_error.hpp>
@@ -74,14 +76,24 @@ struct converged {
     }
 };
 
+/// Exact passes that cost the least each.
+render_settings exact_of(render_settings settings)
+{
+    settings = as_exact(settings);
+    settings.view.spp = settings.view.light_samples = settings.estimate.gather_rays = 1;
+    return settings;
+}
+
 void measure(renderer& drawing, const std::string& path, std::uint32_t size, std::uint32_t passes, std::uint32_t seeds,
-    const std::vector<double>& bounds)
+    bool is_exact, const std::vector<double>& bounds)
 {
     const auto s = read_scene(path);
     auto settings = s.render;
     settings.output.width = settings.output.height = size;
     settings.output.passes = 1; // the error ends them, not the scene's number
-    auto many = settings;
+    auto many = exact_of(settings);
+    if (is_exact)
+        settings = many;
     many.seed = 1000;
     many.output.passes = passes;
     drawing.start(s, many, {.enabled = false});
@@ -122,11 +134,12 @@ void measure(renderer& drawing, const std::string& path, std::uint32_t size, std
 int main(int argc, char** argv)
 {
     std::vector<double> bounds;
-    int at = 4;
+    const bool is_exact = argc > 4 && std::strcmp(argv[4], "--exact") == 0;
+    int at = is_exact ? 5 : 4;
     for (; at < argc && std::strcmp(argv[at], "--") != 0; ++at)
         bounds.push_back(std::atof(argv[at]));
     if (bounds.empty() || at + 1 >= argc) {
-        std::fprintf(stderr, "stopped_pictures SIZE PASSES SEEDS ERROR... -- SCENE...\n");
+        std::fprintf(stderr, "stopped_pictures SIZE EXACT_PASSES SEEDS [--exact] ERROR... -- SCENE...\n");
         return 2;
     }
     std::sort(bounds.rbegin(), bounds.rend());
@@ -135,6 +148,6 @@ int main(int argc, char** argv)
     std::printf("| scene | asked for | passes | claimed | true | true / claimed | percentile of standard errors |\n");
     std::printf("|---|---|---|---|---|---|---|\n");
     for (++at; at < argc; ++at)
-        measure(*drawing, argv[at], count(1), count(2), count(3), bounds);
+        measure(*drawing, argv[at], count(1), count(2), count(3), is_exact, bounds);
     return 0;
 }
