@@ -10,6 +10,8 @@
 //
 //   exact_slopes 8192 8
 //   exact_slopes 1024 2 48x36 65536 1e9 examples/scenes/cornell_box.json
+#include "known_light.hpp"
+
 #include <photongrid/backends/any/any.hpp>
 #include <photongrid/io/scene_file.hpp>
 #include <photongrid/reference/reference.hpp>
@@ -17,7 +19,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <numbers>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -126,80 +127,16 @@ std::vector<std::size_t> all_pixels(const image& im)
     return all;
 }
 
-/// A picture of known light over a plane y = 0, seen straight from above: means over pixels by quadrature.
-template <class Radiance>
-reference_picture known_from_above(const scene& s, const Radiance& radiance)
+void measure_known(renderer& drawing, known_scene k, std::uint32_t passes, std::uint32_t seeds)
 {
-    const auto& o = s.render.output;
+    k.s.render.output.passes = passes;
     reference_picture known;
-    known.mean = {o.width, o.height, std::vector<glm::vec3>(std::size_t{o.width} * o.height)};
-    known.standard_error = known.mean;
-    const double pixel = 2 * s.camera.position.y * std::tan(s.camera.vertical_fov * std::numbers::pi / 360) / o.height;
-    const dvec3 right = glm::normalize(glm::cross(s.camera.look_at - s.camera.position, s.camera.up));
-    constexpr int steps = 8;
-    for (std::uint32_t y = 0; y < o.height; ++y)
-        for (std::uint32_t x = 0; x < o.width; ++x) {
-            double sum = 0;
-            for (int i = 0; i < steps * steps; ++i) {
-                const double across = x + (i % steps + 0.5) / steps - 0.5 * o.width,
-                             down = y + std::floor(i / steps) / steps + 0.5 / steps - 0.5 * o.height;
-                sum += radiance(s.camera.look_at + pixel * (across * right - down * s.camera.up));
-            }
-            known.mean.pixels[std::size_t{y} * o.width + x] = glm::vec3(static_cast<float>(sum / (steps * steps)));
-        }
-    return known;
-}
-
-/// A floor seen straight from above, before a wall in the plane x = 1.
-scene floor_before_a_wall(const char* name)
-{
-    scene s;
-    s.name = name;
-    s.materials = {{"white", material_kind::lambertian, dvec3(0.5)}, {"wall", material_kind::mirror, dvec3(1)}};
-    s.polygons
-        = {{{{-3, 0, -3}, {-3, 0, 3}, {1, 0, 3}, {1, 0, -3}}, 0}, {{{1, 0, -3}, {1, 0, 3}, {1, 3, 3}, {1, 3, -3}}, 1}};
-    s.camera = {{0.3, 2, 0}, {0.3, 0, 0}, {0, 0, 1}, 30};
-    s.render = {.map = {.photons = 1000, .builder = map_builder::automatic, .grid = glm::uvec3(0)},
-        .estimate = {.k = 20, .max_radius = 2, .gather_rays = 1},
-        .view = {.spp = 1, .light_samples = 1},
-        .output = {.width = 16, .height = 16}};
-    return s;
-}
-
-/// A mirror shows the floor a second bulb, behind it: its light is a caustic.
-void measure_second_bulb(renderer& drawing, std::uint32_t passes, std::uint32_t seeds)
-{
-    auto s = floor_before_a_wall("a second bulb in a mirror");
-    s.point_lights = {{"bulb", {0.4, 0.5, 0}, dvec3(4 * std::numbers::pi)}};
-    s.render = as_exact(s.render);
-    s.render.output.only = light_part::caustic;
-    s.render.output.passes = passes;
-    const auto known = known_from_above(s, [](const dvec3& p) {
-        const dvec3 to = dvec3(1.6, 0.5, 0) - p;
-        return 0.5 / std::numbers::pi * to.y / std::pow(glm::length(to), 3);
-    });
-    measure(drawing, s, s.render, known, all_pixels(known.mean), {}, seeds);
-}
-
-/// A dark floor before a diffuse wall that the sun lights.
-void measure_sunlit_wall(renderer& drawing, std::uint32_t passes, std::uint32_t seeds)
-{
-    auto s = floor_before_a_wall("a floor before a sunlit wall");
-    s.materials[0].reflectance = dvec3(1e-4); // else the wall would have light from the floor
-    s.materials[1] = {"wall", material_kind::lambertian, dvec3(0.8)};
-    s.directional_lights = {{"sun", {1, 0, 0}, dvec3(3e5)}};
-    s.render = as_exact(s.render);
-    s.render.output.only = light_part::indirect;
-    s.render.output.passes = passes;
-    // The form factor of a rectangle that stands on the floor's plane, for a point of the floor (Lambert's formula).
-    const auto known = known_from_above(s, [](const dvec3& p) {
-        const double x = 1 - p.x, top = std::hypot(x, 3.0), a = 3 - p.z, b = 3 + p.z;
-        const double factor
-            = (std::atan(a / x) + std::atan(b / x) - x / top * (std::atan(a / top) + std::atan(b / top)))
-            / (2 * std::numbers::pi);
-        return 1e-4 / std::numbers::pi * factor * 0.8 * 3e5;
-    });
-    measure(drawing, s, s.render, known, {}, all_pixels(known.mean), seeds);
+    known.mean = k.light;
+    known.standard_error = {k.light.width, k.light.height, std::vector<glm::vec3>(k.light.pixels.size())};
+    const auto all = all_pixels(k.light);
+    const bool is_caustic = k.s.render.output.only == light_part::caustic;
+    measure(drawing, k.s, k.s.render, known, is_caustic ? all : std::vector<std::size_t>{},
+        is_caustic ? std::vector<std::size_t>{} : all, seeds);
 }
 
 void measure_file(renderer& drawing, const std::string& path, char** arguments)
@@ -242,8 +179,8 @@ int main(int argc, char** argv)
     const auto drawing = make_renderer(chosen({.backend = "cpu"}));
     const auto count = [&](int i) { return static_cast<std::uint32_t>(std::atoi(argv[i])); };
     if (argc == 3) {
-        measure_second_bulb(*drawing, count(1), count(2));
-        measure_sunlit_wall(*drawing, count(1), count(2));
+        measure_known(*drawing, second_bulb_in_a_mirror(), count(1), count(2));
+        measure_known(*drawing, floor_before_a_sunlit_wall(), count(1), count(2));
     }
     for (int i = 6; i < argc; ++i)
         measure_file(*drawing, argv[i], argv + 1);

@@ -6,8 +6,12 @@
 //   stopped_pictures SIZE EXACT_PASSES SEEDS [--exact] ERROR... -- SCENE...
 //
 //   --exact: the pictures themselves are exact, too
+//   SCENE:   a file, or `second_bulb` or `sunlit_wall`: exact pictures of 16 x 16 pixels whose light is known
 //
 //   stopped_pictures 128 8000 1 0.05 0.02 -- examples/scenes/cornell_blocks.json
+//   stopped_pictures 16 1 4 0.02 0.01 -- second_bulb sunlit_wall
+#include "known_light.hpp"
+
 #include <photongrid/backends/any/any.hpp>
 #include <photongrid/io/scene_file.hpp>
 #include <photongrid/render/picture_error.hpp>
@@ -52,11 +56,22 @@ struct converged {
     explicit converged(const film& f) : pixels(pixels_of(f))
     {
         for (std::size_t i = 0; i < pixels.size(); ++i)
-            if (detail::is_noisy(pixels[i].mean, pixels[i].standard_error)) {
+            if (detail::is_noisy(pixels[i].mean, pixels[i].standard_error))
                 noisy.push_back(i);
-                dark += pixels[i].mean;
-            }
-        dark *= detail::dark_share / static_cast<double>(noisy.size());
+        find_dark();
+    }
+    explicit converged(const image& light)
+    {
+        for (const auto& p : light.pixels) {
+            noisy.push_back(pixels.size());
+            pixels.push_back({static_cast<double>(p.x + p.y + p.z) / 3, 0});
+        }
+        find_dark();
+    }
+    void find_dark()
+    {
+        for (const auto i : noisy)
+            dark += pixels[i].mean * detail::dark_share / static_cast<double>(noisy.size());
     }
     double error_of(const film& f, double share) const
     {
@@ -84,22 +99,9 @@ render_settings exact_of(render_settings settings)
     return settings;
 }
 
-void measure(renderer& drawing, const std::string& path, std::uint32_t size, std::uint32_t passes, std::uint32_t seeds,
-    bool is_exact, const std::vector<double>& bounds)
+void measure(renderer& drawing, const scene& s, const std::string& name, const converged& truth,
+    render_settings settings, std::uint32_t seeds, const std::vector<double>& bounds)
 {
-    const auto s = read_scene(path);
-    auto settings = s.render;
-    settings.output.width = settings.output.height = size;
-    settings.output.passes = 1; // the error ends them, not the scene's number
-    auto many = exact_of(settings);
-    if (is_exact)
-        settings = many;
-    many.seed = 1000;
-    many.output.passes = passes;
-    drawing.start(s, many, {.enabled = false});
-    drawing.step();
-    const converged truth(drawing.state().film);
-
     struct row {
         double passes = 0, claimed = 0, actual = 0, plain = 0;
     };
@@ -123,10 +125,28 @@ void measure(renderer& drawing, const std::string& path, std::uint32_t size, std
     }
     for (std::size_t b = 0; b < bounds.size(); ++b) {
         const auto& r = rows[b];
-        std::printf("| %s | %g | %.0f | %.4f | %.4f | %.2f | %.4f |\n", std::filesystem::path(path).stem().c_str(),
-            bounds[b], r.passes, r.claimed, r.actual, r.actual / r.claimed, r.plain);
+        std::printf("| %s | %g | %.0f | %.4f | %.4f | %.2f | %.4f |\n", name.c_str(), bounds[b], r.passes, r.claimed,
+            r.actual, r.actual / r.claimed, r.plain);
     }
     std::fflush(stdout);
+}
+
+void measure_file(renderer& drawing, const std::string& path, std::uint32_t size, std::uint32_t passes,
+    std::uint32_t seeds, bool is_exact, const std::vector<double>& bounds)
+{
+    const auto s = read_scene(path);
+    auto settings = s.render;
+    settings.output.width = settings.output.height = size;
+    settings.output.passes = 1; // the error ends them, not the scene's number
+    auto many = exact_of(settings);
+    if (is_exact)
+        settings = many;
+    many.seed = 1000;
+    many.output.passes = passes;
+    drawing.start(s, many, {.enabled = false});
+    drawing.step();
+    const converged truth(drawing.state().film);
+    measure(drawing, s, std::filesystem::path(path).stem().string(), truth, settings, seeds, bounds);
 }
 
 } // namespace
@@ -147,7 +167,14 @@ int main(int argc, char** argv)
     const auto drawing = make_renderer(chosen({.backend = "cpu"}));
     std::printf("| scene | asked for | passes | claimed | true | true / claimed | percentile of standard errors |\n");
     std::printf("|---|---|---|---|---|---|---|\n");
-    for (++at; at < argc; ++at)
-        measure(*drawing, argv[at], count(1), count(2), count(3), is_exact, bounds);
+    for (++at; at < argc; ++at) {
+        const std::string name = argv[at];
+        if (name == "second_bulb" || name == "sunlit_wall") {
+            const auto k = name == "second_bulb" ? second_bulb_in_a_mirror() : floor_before_a_sunlit_wall();
+            measure(*drawing, k.s, name, converged(k.light), k.s.render, count(3), bounds);
+        } else {
+            measure_file(*drawing, name, count(1), count(2), count(3), is_exact, bounds);
+        }
+    }
     return 0;
 }

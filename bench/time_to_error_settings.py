@@ -189,7 +189,8 @@ class Tungsten(Peer):
         run = os.path.join(folder, f"run-{self.kind}.json")
         with open(run, "w") as f:
             json.dump(scene, f)
-        return [self.binary, "-t", "2", run], None
+        # Its photon mapper crashes (signal 11) now and then, most often at addresses that the system draws at random.
+        return ["setarch", "-R", self.binary, "-t", "2", run], None
 
 
 class Pbrt(Peer):
