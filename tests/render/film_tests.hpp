@@ -349,6 +349,12 @@ TEST(film, refuses_a_header_that_no_film_has)
     for (const auto& bytes : {with(0, 16385u), with(4, ~0u), with(8, 4u), with(12, 65537u), with(16, 0.0),
              with(16, std::nan("")), with(16, std::numeric_limits<double>::infinity())})
         EXPECT_THROW(film::from_bytes(bytes), std::invalid_argument);
+    // Found to be too short before there is memory for its pixels.
+    for (std::uint32_t pass = 0; pass < 40; ++pass)
+        f.add(pass, random_pass(pass, 12, false));
+    auto bytes = with(0, 16384u);
+    std::memcpy(bytes.data() + 4, bytes.data(), sizeof(std::uint32_t));
+    EXPECT_THROW(film::from_bytes(bytes), std::invalid_argument);
 }
 
 } // namespace

@@ -179,12 +179,13 @@ public:
             for (auto* part : f.only_->parts())
                 take(part->data(), part->size() * sizeof(glm::vec4));
         } else if (head[3] > 1) {
-            f.groups_ = detail::pass_groups(f.passes_, n);
+            const auto groups = detail::pass_groups(f.passes_, 0).bytes_per_pixel();
             if (in.size()
-                != n * sizeof(pixel_sums) + f.groups_.byte_count() + layer * sizeof(layer_sums)
+                != n * sizeof(pixel_sums) + n * groups + layer * sizeof(layer_sums)
                     + biases * sizeof(detail::pixel_bias_sums))
                 throw std::invalid_argument("film: the data have the wrong length");
             f.sums_.resize(n);
+            f.groups_ = detail::pass_groups(f.passes_, n);
             f.layer_sums_.resize(layer);
             f.bias_sums_.resize(biases);
             take(f.sums_.data(), n * sizeof(pixel_sums));

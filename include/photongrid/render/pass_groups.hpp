@@ -77,8 +77,9 @@ public:
         for (const auto& [key, g] : groups_)
             out.append(reinterpret_cast<const char*>(g.sums.data()), g.sums.size() * sizeof(std::int64_t));
     }
-    std::size_t byte_count() const { return groups_.size() * pixels_ * sizeof(std::int64_t); }
-    /// Takes the sums from the front of `in`, which has byte_count() bytes or more.
+    /// The number of those bytes for a pixel.
+    std::size_t bytes_per_pixel() const { return groups_.size() * sizeof(std::int64_t); }
+    /// Takes the sums from the front of `in`, which has bytes_per_pixel() for each pixel, or more.
     void take_from(std::string_view& in)
     {
         for (auto& [key, g] : groups_)
