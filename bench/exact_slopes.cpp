@@ -146,12 +146,11 @@ void measure_file(renderer& drawing, const std::string& path, char** arguments)
     if (std::sscanf(arguments[2], "%ux%u", &width, &height) != 2)
         throw std::invalid_argument("SIZE: must be WIDTHxHEIGHT");
     const auto count = [&](int i) { return static_cast<std::uint32_t>(std::atof(arguments[i])); };
-    auto settings = as_exact(s.render);
+    auto settings = cheap_exact(s.render);
     settings.output.width = width;
     settings.output.height = height;
     settings.output.passes = count(0);
     settings.output.until_error = settings.output.seconds = 0;
-    settings.view.spp = settings.view.light_samples = settings.estimate.gather_rays = 1;
 
     auto fine = reference_settings_for(settings);
     fine.spp = count(3);

@@ -1,4 +1,4 @@
-// Scenes whose light is known, drawn exactly (as_exact): one eye ray, shadow ray and path per pixel and pass.
+// Exact passes (as_exact) of one eye ray, shadow ray and path per pixel, and scenes drawn by them whose light is known.
 #pragma once
 
 #include <photongrid/render/image.hpp>
@@ -11,6 +11,14 @@
 #include <vector>
 
 namespace photongrid {
+
+/// Exact passes that cost the least each.
+inline render_settings cheap_exact(render_settings s)
+{
+    s = as_exact(s);
+    s.view.spp = s.view.light_samples = s.estimate.gather_rays = 1;
+    return s;
+}
 
 struct known_scene {
     scene s;
@@ -49,8 +57,7 @@ inline scene floor_before_a_wall(const char* name)
         = {{{{-3, 0, -3}, {-3, 0, 3}, {1, 0, 3}, {1, 0, -3}}, 0}, {{{1, 0, -3}, {1, 0, 3}, {1, 3, 3}, {1, 3, -3}}, 1}};
     s.camera = {{0.3, 2, 0}, {0.3, 0, 0}, {0, 0, 1}, 30};
     s.render = {.map = {.photons = 1000, .builder = map_builder::automatic, .grid = glm::uvec3(0)},
-        .estimate = {.k = 20, .max_radius = 2, .gather_rays = 1},
-        .view = {.spp = 1, .light_samples = 1},
+        .estimate = {.k = 20, .max_radius = 2},
         .output = {.width = 16, .height = 16}};
     return s;
 }
@@ -60,7 +67,7 @@ inline known_scene second_bulb_in_a_mirror()
 {
     auto s = floor_before_a_wall("a second bulb in a mirror");
     s.point_lights = {{"bulb", {0.4, 0.5, 0}, dvec3(4 * std::numbers::pi)}};
-    s.render = as_exact(s.render);
+    s.render = cheap_exact(s.render);
     s.render.output.only = light_part::caustic;
     return {s, light_from_above(s, [](const dvec3& p) {
                 const dvec3 to = dvec3(1.6, 0.5, 0) - p;
@@ -75,7 +82,7 @@ inline known_scene floor_before_a_sunlit_wall()
     s.materials[0].reflectance = dvec3(1e-4); // else the wall would have light from the floor
     s.materials[1] = {"wall", material_kind::lambertian, dvec3(0.8)};
     s.directional_lights = {{"sun", {1, 0, 0}, dvec3(3e5)}};
-    s.render = as_exact(s.render);
+    s.render = cheap_exact(s.render);
     s.render.output.only = light_part::indirect;
     // The form factor of a rectangle that stands on the floor's plane, for a point of the floor (Lambert's formula).
     return {s, light_from_above(s, [](const dvec3& p) {

@@ -91,14 +91,6 @@ struct converged {
     }
 };
 
-/// Exact passes that cost the least each.
-render_settings exact_of(render_settings settings)
-{
-    settings = as_exact(settings);
-    settings.view.spp = settings.view.light_samples = settings.estimate.gather_rays = 1;
-    return settings;
-}
-
 void measure(renderer& drawing, const scene& s, const std::string& name, const converged& truth,
     render_settings settings, std::uint32_t seeds, const std::vector<double>& bounds)
 {
@@ -138,7 +130,7 @@ void measure_file(renderer& drawing, const std::string& path, std::uint32_t size
     auto settings = s.render;
     settings.output.width = settings.output.height = size;
     settings.output.passes = 1; // the error ends them, not the scene's number
-    auto many = exact_of(settings);
+    auto many = cheap_exact(settings);
     if (is_exact)
         settings = many;
     many.seed = 1000;

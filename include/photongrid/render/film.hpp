@@ -290,25 +290,28 @@ private:
         groups_ = detail::pass_groups({}, size());
         add_up(*passes_.begin(), *std::exchange(only_, std::nullopt));
     }
+    /// Adds a pixel of a pass. Returns what it adds to the sums of groups: r + g + b, in units, or 0 if it is too
+    /// bright.
+    double add_up(const glm::vec4& pixel, pixel_sums& sum) const
+    {
+        const glm::dvec3 value = glm::dvec3(pixel) / unit_;
+        const double all = value.x + value.y + value.z;
+        // Each term, too: terms of either sign may cancel. False for NaN.
+        const auto holds = [](double x) { return std::abs(x) < largest; };
+        if (!holds(value.x) || !holds(value.y) || !holds(value.z) || !holds(all)) {
+            sum.invalid = 1;
+            return 0;
+        }
+        for (int c = 0; c < 3; ++c)
+            sum.rgb[c].add(value[c]);
+        if (std::abs(all) < detail::pass_groups::largest)
+            return all;
+        sum.spread_is_unknown = 1;
+        return 0;
+    }
     void add_up(std::uint32_t pass, const pass_pixels& p)
     {
-        groups_.add(pass, [&](std::size_t i) {
-            auto& sum = sums_[i];
-            const glm::dvec3 value = glm::dvec3(p.pixels[i]) / unit_;
-            const double all = value.x + value.y + value.z;
-            // Each term, too: terms of either sign may cancel. False for NaN.
-            const auto holds = [](double x) { return std::abs(x) < largest; };
-            if (!holds(value.x) || !holds(value.y) || !holds(value.z) || !holds(all)) {
-                sum.invalid = 1;
-                return 0.0;
-            }
-            for (int c = 0; c < 3; ++c)
-                sum.rgb[c].add(value[c]);
-            if (std::abs(all) < detail::pass_groups::largest)
-                return all;
-            sum.spread_is_unknown = 1;
-            return 0.0;
-        });
+        groups_.add(pass, [&](std::size_t i) { return add_up(p.pixels[i], sums_[i]); });
         for (std::size_t i = 0; i < layer_sums_.size(); ++i) {
             auto& sum = layer_sums_[i];
             const glm::dvec4 tally(p.searches[i]);
