@@ -144,6 +144,59 @@ TEST(picture_error, covers_the_share_of_pixels_that_it_names)
         }
 }
 
+/// A picture with noise and a bias of its own in each pixel.
+struct biased_picture {
+    static constexpr std::size_t n = 4000;
+    std::vector<double> bias, sigma; ///< parts of the light, which is 1
+    film sum{static_cast<std::uint32_t>(n), 1, 0.25, false, true};
+
+    /// `of_bias`: the bias in each pixel is at most this part of the light.
+    biased_picture(unsigned seed, double of_bias, std::uint32_t passes)
+    {
+        std::mt19937_64 random(seed);
+        std::uniform_real_distribution<double> part(0, 1);
+        std::normal_distribution<double> normal;
+        for (std::size_t i = 0; i < n; ++i) {
+            bias.push_back(of_bias * (2 * part(random) - 1));
+            sigma.push_back(0.02 + 0.4 * part(random));
+        }
+        for (std::uint32_t pass = 0; pass < passes; ++pass) {
+            pass_pixels p;
+            for (std::size_t i = 0; i < n; ++i) {
+                p.pixels.emplace_back(glm::vec3(static_cast<float>(1 + bias[i] + sigma[i] * normal(random))), 0.0f);
+                p.biases.bias.emplace_back(glm::vec3(static_cast<float>(bias[i])), 0.0f);
+            }
+            p.biases.tilt = p.biases.jump = std::vector<glm::vec4>(n, glm::vec4(0));
+            sum.add(pass, p);
+        }
+    }
+};
+
+/// Where bias decides, it is the error, and no normal number of its size, which would be beyond it in one pixel of
+/// three. Where it is as large as the noise, both count.
+TEST(picture_error, has_the_bias_that_all_passes_share)
+{
+    constexpr std::uint32_t passes = 64;
+    for (const double of_bias : {0.0, 0.05, 0.3}) {
+        const biased_picture p(4, of_bias, passes);
+        std::vector<double> means;
+        p.sum.visit_spread([&](double m, double) { means.push_back(m); });
+        for (const double share : {0.5, 0.95}) {
+            const double error = picture_error(p.sum, share);
+            double beyond = 0, within = 0;
+            for (std::size_t i = 0; i < p.n; ++i) {
+                const double deviation = p.sigma[i] / std::sqrt(double{passes}), bias = std::abs(p.bias[i]),
+                             bound = error * (1 + p.bias[i] + 0.01); // a part of the light with its bias
+                const auto below = [&](double x) { return 0.5 * std::erfc(-x / deviation / std::sqrt(2.0)); };
+                beyond += (1 - below(bound - bias) + below(-bound - bias)) / double{p.n};
+                within += std::abs(means[i] - 1) <= bound ? 1.0 / double{p.n} : 0;
+            }
+            EXPECT_NEAR(beyond, 1 - share, 0.03 * std::min(share, 1 - share) + 0.003) << of_bias;
+            EXPECT_NEAR(within, share, 4 * std::sqrt(share * (1 - share) / double{p.n}) + 0.005) << of_bias;
+        }
+    }
+}
+
 /// A lamp and a black background say nothing of the noise beside them, and black pixels with a trace of light little.
 TEST(picture_error, counts_pixels_with_noise)
 {
@@ -303,6 +356,30 @@ TEST(picture_judge, foresees_the_end)
     EXPECT_EQ(reached.result().by, ended_by::error);
     EXPECT_EQ(reached.forecast(0.5, 2, 16).seconds_left, 0);
     EXPECT_EQ(reached.forecast(0.5, 2, 16).fraction, 1);
+}
+
+/// Half the error takes eight times the passes where it falls with the cube root of them, as blur does.
+TEST(picture_judge, foresees_the_end_by_the_rate_at_which_the_error_falls)
+{
+    output_settings o;
+    o.until_error = 0.01;
+    picture_judge judge(o);
+    film sum(200, 1, 0.25, false, true);
+    std::mt19937_64 random(1);
+    std::normal_distribution<double> normal;
+    for (std::uint32_t pass = 0; pass < 64; ++pass) {
+        const auto bias
+            = static_cast<float>(0.1 * (std::cbrt((pass + 1.0) * (pass + 1.0)) - std::cbrt(1.0 * pass * pass)));
+        pass_pixels p;
+        for (std::size_t i = 0; i < sum.size(); ++i)
+            p.pixels.emplace_back(glm::vec3(1 + bias + static_cast<float>(0.001 * normal(random))), 0.0f);
+        p.biases.bias = std::vector<glm::vec4>(sum.size(), glm::vec4(bias));
+        p.biases.tilt = p.biases.jump = std::vector<glm::vec4>(sum.size(), glm::vec4(0));
+        sum.add(pass, p);
+        judge.after_pass(sum, pass + 1, {});
+    }
+    const double error = judge.result().error, needed = 64 * std::pow(error / o.until_error, 3);
+    EXPECT_NEAR(judge.forecast(0, 1, 64).seconds_left, needed - 64, 0.2 * needed) << error;
 }
 
 } // namespace

@@ -25,48 +25,57 @@ namespace detail {
     /// Whether a pixel of a mean of passes has noise, and so counts.
     inline bool is_noisy(double mean, double standard_error) { return standard_error > least_spread * std::abs(mean); }
 
-    /// The error of a pixel: its root mean square difference from the converged pixel, as a part of its radiance plus
-    /// `dark`.
-    inline double error_of_pixel(double mean, double standard_error, double bias, double dark)
+    /// How far a pixel is expected to be from the converged one: a normal number with this mean and deviation, as parts
+    /// of the pixel's radiance.
+    struct pixel_error_claim {
+        double bias = 0, noise = 0; ///< both at least 0
+    };
+
+    /// The probability that a pixel differs by more than `bound`.
+    inline double probability_beyond(const pixel_error_claim& p, double bound)
     {
-        return std::hypot(standard_error, bias) / (std::abs(mean) + dark);
+        if (!(p.noise > 0))
+            return p.bias > bound ? 1 : 0;
+        const double unit = std::sqrt(0.5) / p.noise;
+        return 0.5 * (std::erfc((bound - p.bias) * unit) + std::erfc((bound + p.bias) * unit));
     }
 
-    /// Numbers by their size, 32 bins to a factor of two: the errors of the pixels of a picture.
+    /// The claims of the pixels of a picture, in bins: 32 by size to a factor of two, 16 by the part that is bias.
     class error_histogram {
     public:
-        void add(double error)
+        void add(const pixel_error_claim& p)
         {
             ++total_;
-            if (error < 0x1p-40)
+            const double size = p.bias + p.noise;
+            if (size < 0x1p-40)
                 ++negligible_;
-            else if (error < 0x1p40) {
-                auto& b = bins_[(std::bit_cast<std::uint64_t>(error) >> 47) - first_bin];
+            else if (size < 0x1p40) {
+                const auto by_size = (std::bit_cast<std::uint64_t>(size) >> 47) - first_bin; // 5 bits of mantissa
+                const auto by_bias = std::min(static_cast<std::size_t>(p.bias / size * parts), parts - 1);
+                auto& b = bins_[by_size * parts + by_bias];
                 ++b.count;
-                b.sum += error;
+                b.bias += p.bias;
+                b.noise += p.noise;
             } // else it is beyond every bound
         }
         std::uint64_t total() const { return total_; }
-        /// The number of pixels that are expected to differ by more than `bound`, if each differs by a normal number of
-        /// its size.
+        /// The number of pixels that are expected to differ by more than `bound`.
         double expected_beyond(double bound) const
         {
             double beyond = static_cast<double>(total_ - negligible_);
             for (const auto& b : bins_)
-                if (b.count > 0) {
-                    const double count = static_cast<double>(b.count);
-                    beyond -= count * std::erf(bound * count / b.sum * std::sqrt(0.5));
-                }
+                if (b.count > 0)
+                    beyond -= b.count * (1 - probability_beyond({b.bias / b.count, b.noise / b.count}, bound));
             return beyond;
         }
 
     private:
         struct bin {
-            std::uint64_t count = 0;
-            double sum = 0;
+            double count = 0, bias = 0, noise = 0; ///< sums
         };
-        static constexpr std::uint64_t first_bin = std::bit_cast<std::uint64_t>(0x1p-40) >> 47; ///< 5 bits of mantissa
-        std::vector<bin> bins_ = std::vector<bin>(std::size_t{80} * 32);
+        static constexpr std::size_t parts = 16;
+        static constexpr std::uint64_t first_bin = std::bit_cast<std::uint64_t>(0x1p-40) >> 47;
+        std::vector<bin> bins_ = std::vector<bin>(80 * 32 * parts);
         std::uint64_t total_ = 0, negligible_ = 0;
     };
 } // namespace detail
@@ -75,8 +84,8 @@ namespace detail {
 /// picture that more passes converge to, as a part of their radiance (mean of the channels) plus 1 % of the picture's.
 /// Pixels in which all passes agree do not count. Of a percentile of 1, as of any that asks for more than half a pixel
 /// less than all, the largest difference is as likely above as below. Infinite for fewer than two passes, 0 if all
-/// passes agree. The bias that all passes share is in it if the film tells biases; a pixel then is expected to differ
-/// by a normal number with the root of the sum of both squares as its size.
+/// passes agree. A pixel is expected to differ by a normal number: its deviation is the pixel's standard error, its
+/// mean the bias that all passes share, 0 if the film does not tell biases.
 inline double picture_error(const film& sum, double percentile)
 {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -96,8 +105,9 @@ inline double picture_error(const film& sum, double percentile)
     std::size_t next = 0;
     sum.visit_spread([&](double mean, double standard_error) {
         const auto i = next++;
+        const double radiance_of_pixel = std::abs(mean) + dark;
         if (detail::is_noisy(mean, standard_error))
-            errors.add(detail::error_of_pixel(mean, standard_error, sum.bias_of(i), dark));
+            errors.add({std::abs(sum.bias_of(i)) / radiance_of_pixel, standard_error / radiance_of_pixel});
     });
     const double allowed = std::max((1 - percentile) * noisy, 0.5);
     double low = -44, high = 44; // powers of 2
