@@ -49,6 +49,8 @@
     EXTERN template class photon_tracing<B>;                                                                           \
     EXTERN template buffer_of<B, glm::vec4> covered_shares(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&, \
         const buffer_of<B, glm::vec4>&, const buffer_of<B, glm::vec4>&, filter_kind, float);                           \
+    EXTERN template disc_moments<B> covered_moments(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&,        \
+        const buffer_of<B, glm::vec4>&, const buffer_of<B, glm::vec4>&, filter_kind, float);                           \
     EXTERN template void correct_edges(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&,                     \
         const buffer_of<B, glm::vec4>&, knn_estimates<B>&, filter_kind, float);                                        \
     EXTERN template class gather_map_building<B>;                                                                      \

@@ -25,16 +25,14 @@ namespace {
         return v;
     }
 
-    /// What each kernel, over pi times its mean, adds up to over the part of the unit disc where |y| is fixed and x
-    /// from a to b: Gauss' five points on 16 pieces either side of x = 0.
-    glm::dvec4 weight_of_line(double y, double a, double b)
+    /// Adds what lies where |y| is fixed and x from a to b: Gauss' five points on 16 pieces either side of x = 0.
+    void add_line(disc_part& sum, double thickness, double y, double a, double b)
     {
         constexpr double nodes[5]
             = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
         constexpr double weights[5]
             = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
         const double half = std::sqrt(std::max(0.0, 1 - y * y));
-        glm::dvec4 sum(0);
         for (const auto& [from, to] :
             {std::pair{std::max(a, -half), std::min(b, 0.0)}, std::pair{std::max(a, 0.0), std::min(b, half)}}) {
             const double step = (to - from) / 16;
@@ -43,11 +41,14 @@ namespace {
             for (int piece = 0; piece < 16; ++piece)
                 for (int g = 0; g < 5; ++g) {
                     const double x = from + (piece + 0.5 + 0.5 * nodes[g]) * step, t = x * x + y * y;
-                    sum += 0.5 * step * weights[g]
+                    const auto by_filter = thickness * 0.5 * step * weights[g]
                         * glm::dvec4(1, 3 * (1 - std::sqrt(t)), 2 * (1 - t), 3 * (1 - t) * (1 - t)) / M_PI;
+                    sum.share += by_filter;
+                    sum.first_x += x * by_filter;
+                    sum.first_y += y * by_filter;
+                    sum.second += by_filter[0] * glm::dvec3(x * x, x * y, y * y);
                 }
         }
-        return sum;
     }
 
 } // namespace
@@ -232,7 +233,7 @@ std::vector<std::optional<float>> kth_by_flann(
     return kth;
 }
 
-glm::dvec4 share_by_lines(const std::vector<glm::dvec2>& corners, glm::dvec2 center, double radius)
+disc_part part_by_lines(const std::vector<glm::dvec2>& corners, glm::dvec2 center, double radius)
 {
     std::vector<glm::dvec2> c;
     std::vector<double> heights{-1, 1};
@@ -241,7 +242,7 @@ glm::dvec4 share_by_lines(const std::vector<glm::dvec2>& corners, glm::dvec2 cen
         heights.push_back(std::clamp(c.back().y, -1.0, 1.0));
     }
     std::sort(heights.begin(), heights.end());
-    glm::dvec4 sum(0);
+    disc_part sum;
     constexpr int lines = 1200;
     for (std::size_t h = 0; h + 1 < heights.size(); ++h) {
         const double low = std::asin(heights[h]), step = (std::asin(heights[h + 1]) - low) / lines;
@@ -256,7 +257,7 @@ glm::dvec4 share_by_lines(const std::vector<glm::dvec2>& corners, glm::dvec2 cen
                 from = std::min(from, x);
                 to = std::max(to, x);
             }
-            sum += step * std::cos(angle) * weight_of_line(y, from, to);
+            add_line(sum, step * std::cos(angle), y, from, to);
         }
     }
     return sum;

@@ -61,8 +61,15 @@ float grown_by_force(const std::vector<glm::vec4>& positions, const grid& g,
 std::vector<std::optional<float>> kth_by_flann(
     const std::vector<glm::vec4>& positions, const std::vector<glm::vec4>& points, uint k);
 
-/// The share of a disc on a convex polygon of the same plane, by kernel: lines across the disc, each cut by all edges.
-/// Lines are laid between the heights of the polygon's corners, evenly in the arc sine of their height.
-glm::dvec4 share_by_lines(const std::vector<glm::dvec2>& corners, glm::dvec2 center, double radius);
+/// Integrals over the part of a disc that lies on a convex polygon of the same plane, over those of the whole disc.
+/// Four components: by each filter, in their order. Lengths are divided by the radius.
+struct disc_part {
+    glm::dvec4 share{0}, first_x{0}, first_y{0}; ///< share, and first moments
+    glm::dvec3 second{0};                        ///< xx, xy, yy, by the constant filter
+};
+
+/// By lines across the disc, each cut by all edges. Lines are laid between the heights of the polygon's corners, evenly
+/// in the arc sine of their height.
+disc_part part_by_lines(const std::vector<glm::dvec2>& corners, glm::dvec2 center, double radius);
 
 } // namespace photongrid::testing

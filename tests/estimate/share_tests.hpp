@@ -86,33 +86,49 @@ inline scene surface_beside_others(
     return s;
 }
 
+/// Places on a surface, and radii of discs about them: corners' and edges' neighbours more often than others.
+inline std::vector<std::pair<glm::dvec2, double>> places_on(
+    const std::vector<std::vector<glm::dvec2>>& parts, random_source& u)
+{
+    const auto number = [&] { return static_cast<double>(u()); };
+    std::vector<std::pair<glm::dvec2, double>> places;
+    while (places.size() < 20) {
+        const auto& part = parts[u.below(static_cast<std::uint32_t>(parts.size()))];
+        const auto c = u.below(static_cast<std::uint32_t>(part.size()));
+        glm::dvec2 middle(0),
+            on_edge = glm::mix(part[c], part[(c + 1) % part.size()], places.size() % 4 == 0 ? 0.0 : number());
+        for (const auto& p : part)
+            middle += p / static_cast<double>(part.size());
+        const auto p = glm::mix(on_edge, middle, places.size() % 3 == 0 ? 0.0 : number() * number());
+        places.emplace_back(p, 0.1 + 0.7 * number() * number());
+    }
+    return places;
+}
+
+inline discs discs_at(
+    const std::vector<std::pair<glm::dvec2, double>>& places, const drawing_board& board, random_source& u)
+{
+    discs d;
+    for (const auto& [at, radius] : places)
+        d.add(board.at(at), u() < 0.5f ? board.normal() : -board.normal(), radius);
+    return d;
+}
+
 TYPED_TEST_P(edges, shares_equal_integration_over_lines)
 {
     random_source u(2);
-    const auto number = [&] { return static_cast<double>(u()); };
     double largest = 0;
     for (int round = 0; round < 24; ++round) {
         const auto parts = convex_parts(round, u);
         const auto board = random_board(u);
         const auto s = surface_beside_others(parts, board, u);
 
-        discs d;
-        std::vector<std::pair<glm::dvec2, double>> places;
-        while (places.size() < 20) { // corners' and edges' neighbours more often than others
-            const auto& part = parts[u.below(static_cast<std::uint32_t>(parts.size()))];
-            const auto c = u.below(static_cast<std::uint32_t>(part.size()));
-            glm::dvec2 middle(0),
-                on_edge = glm::mix(part[c], part[(c + 1) % part.size()], places.size() % 4 == 0 ? 0.0 : number());
-            for (const auto& p : part)
-                middle += p / static_cast<double>(part.size());
-            const auto p = glm::mix(on_edge, middle, places.size() % 3 == 0 ? 0.0 : number() * number());
-            places.emplace_back(p, 0.1 + 0.7 * number() * number());
-            d.add(board.at(p), u() < 0.5f ? board.normal() : -board.normal(), places.back().second);
-        }
+        const auto places = places_on(parts, u);
+        const auto d = discs_at(places, board, u);
         std::vector<glm::dvec4> expected(places.size(), glm::dvec4(0));
         for (std::size_t i = 0; i < places.size(); ++i)
             for (const auto& p : parts)
-                expected[i] += share_by_lines(p, places[i].first, places[i].second);
+                expected[i] += part_by_lines(p, places[i].first, places[i].second).share;
         for (const auto& f : filters) {
             const auto cover = this->cover(s, d, f.kind);
             for (std::size_t i = 0; i < places.size(); ++i) {
@@ -231,7 +247,7 @@ TYPED_TEST_P(edges, lamps_and_mirrors_hide_what_lies_behind_them)
             for (const auto& f : filters) {
                 const auto cover = this->cover(s, d, f.kind);
                 for (std::size_t i = 0; i < places.size(); ++i) {
-                    const double behind = share_by_lines(plate, places[i], radius)[static_cast<int>(f.kind)];
+                    const double behind = part_by_lines(plate, places[i], radius).share[static_cast<int>(f.kind)];
                     // The fourth point is behind the plate.
                     EXPECT_NEAR(cover[i].x, i == 3 ? 1 : 1 - hidden * behind, 2e-4)
                         << "filter " << f.name << ", height " << height << ", point " << i;
@@ -312,7 +328,7 @@ TYPED_TEST_P(edges, shares_are_bounded_before_they_divide)
     correct_edges(b, scene, p, n, e, filter_kind::silverman, 1e-3f);
     const auto irradiance = b.download(e.irradiance), error = b.download(e.standard_error);
     const double corner
-        = share_by_lines({{-1, 0}, {0, 0}, {0, std::tan(glm::radians(0.5))}}, {-0.0005, 0.0005}, 1e-3)[3];
+        = part_by_lines({{-1, 0}, {0, 0}, {0, std::tan(glm::radians(0.5))}}, {-0.0005, 0.0005}, 1e-3).share[3];
     ASSERT_NEAR(corner, 0.8, 0.1);
     const double factors[] = {1, 1, 256, 1, 1 / corner}, tolerances[] = {0, 1e-5, 0, 0, 2e-3};
     for (std::size_t i = 0; i < d.points.size(); ++i) {

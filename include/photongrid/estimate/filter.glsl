@@ -50,3 +50,36 @@ float filter_edge_integral(float e, float s)
     }
     return value;
 }
+
+// For the first moment of a disc's part that lies on a surface (covered_moments.glsl): 2 pi times the indefinite
+// integral, along an edge at distance e from the disc's centre, of the integral of the weight times radius from there
+// to the rim. The weight is normalised to 1 over the whole disc.
+float filter_edge_moment(float e, float s)
+{
+    precise float e2 = e * e;
+    precise float s2 = s * s;
+    precise float h2 = 1.0f - e2;
+    precise float value = s * (h2 - 0.333333333f * s2);
+    if (CONE) {
+        precise float rho = sqrt(e2 + s2);
+        float logarithm = 0.0f; // its term vanishes with e
+        if (e2 > 1e-8f) {
+            precise float ratio = (abs(s) + rho) / abs(e);
+            logarithm = natural_log(ratio);
+        }
+        logarithm = s < 0.0f ? -logarithm : logarithm;
+        precise float with_cone = s * (1.0f - 3.0f * e2 - s2 + 0.5f * rho * (e2 + s2) + 0.75f * e2 * rho)
+            + 0.75f * e2 * e2 * logarithm;
+        value = with_cone;
+    }
+    if (EPANECHNIKOV) {
+        precise float with_epanechnikov = s * (h2 * h2 - 0.666666667f * h2 * s2 + 0.2f * s2 * s2);
+        value = with_epanechnikov;
+    }
+    if (SILVERMAN) {
+        precise float with_silverman
+            = s * (h2 * h2 * h2 - h2 * h2 * s2 + 0.6f * h2 * s2 * s2 - 0.142857143f * s2 * s2 * s2);
+        value = with_silverman;
+    }
+    return value;
+}

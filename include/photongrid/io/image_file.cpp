@@ -3,6 +3,7 @@
 #include <photongrid/io/tone_map.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <span>
 #include <string_view>
@@ -152,7 +153,7 @@ glm::vec3 linear_pixel(const picture_channels& picture, std::size_t pixel)
     const glm::vec3 p(picture.pixels[pixel]);
     if (!picture.is_srgb)
         return p;
-    const auto decoded = [](float v) { return linear_value(static_cast<unsigned char>(v * 255.0f + 0.5f)); };
+    const auto decoded = [](float v) { return linear_value(static_cast<unsigned char>(std::lround(v * 255.0f))); };
     return {decoded(p.x), decoded(p.y), decoded(p.z)};
 }
 

@@ -60,7 +60,8 @@ namespace {
         double median_about(const std::vector<double>& all, std::uint32_t x, std::uint32_t y) const
         {
             constexpr std::uint32_t reach = 2;
-            std::array<double, (2 * reach + 1) * (2 * reach + 1)> near;
+            constexpr std::size_t side = 2 * reach + 1;
+            std::array<double, side * side> near;
             auto next = near.begin();
             for (std::uint32_t row = 0; row <= 2 * reach; ++row)
                 for (std::uint32_t column = 0; column <= 2 * reach; ++column) {

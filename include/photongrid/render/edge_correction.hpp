@@ -6,6 +6,7 @@
 #include <photongrid/backend/zero_vectors.kernel.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/render/correct_bias.kernel.hpp>
+#include <photongrid/render/covered_moments.kernel.hpp>
 #include <photongrid/render/covered_share.kernel.hpp>
 #include <photongrid/render/divide_by_share.kernel.hpp>
 #include <photongrid/trace/device_scene.hpp>
@@ -74,6 +75,35 @@ buffer_of<B, glm::vec4> covered_shares(B& device, const device_scene<B>& s, cons
     return cover;
 }
 
+/// Moments of the part of each estimate's disc that lies on polygons of the scene, over that of the whole disc. Axes:
+/// basis_about(normal); lengths are divided by the radius.
+template <backend B>
+struct disc_moments {
+    buffer_of<B, glm::vec4>
+        shares; ///< x: by the constant filter; y: Epanechnikov's; zw: first, by the estimate's filter
+    buffer_of<B, glm::vec4> firsts;  ///< xy: by the constant filter; zw: by Epanechnikov's
+    buffer_of<B, glm::vec4> seconds; ///< xyz: uu, uv, vv, by the constant filter
+};
+
+/// Arguments, errors and what counts are those of covered_shares.
+template <backend B>
+disc_moments<B> covered_moments(B& device, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
+    const buffer_of<B, glm::vec4>& normals, const buffer_of<B, glm::vec4>& irradiances, filter_kind filter,
+    float min_radius = 0)
+{
+    const auto n = points.size();
+    disc_moments<B> m;
+    for (auto* buffer : {&m.shares, &m.firsts, &m.seconds}) {
+        *buffer = device.template make<glm::vec4>(n);
+        device.template run<kernels::zero_vectors>(n, {}, reads(), writes(*buffer));
+    }
+    for (const auto& range : detail::ranges_of_polygons(s.layout))
+        device.template run<kernels::covered_moments>({n, 0u, detail::filter_switch(filter)},
+            {.min_radius2 = detail::min_radius2(min_radius), .first = range.first, .polygons = range.polygons},
+            reads(s.records, points, normals, irradiances), writes(m.shares, m.firsts, m.seconds));
+    return m;
+}
+
 /// Corrects estimates, and their standard errors and biases if there are any, at points on polygons. Shares below 2^-8
 /// (a corner of 1.4 degrees) count as 2^-8. The search must reject photons of adjoining surfaces
 /// (leak_policy::min_cosine), so that all photons lie on the corrected surface. Radius and counts do not change.
@@ -92,12 +122,9 @@ void correct_edges(B& device, const device_scene<B>& s, const buffer_of<B, glm::
     auto& b = estimates.biases;
     if (b.bias.size() == 0)
         return;
-    const auto shares = [&](filter_kind f) {
-        return covered_shares(device, s, points, normals, estimates.irradiance, f, min_radius);
-    };
+    const auto m = covered_moments(device, s, points, normals, estimates.irradiance, filter, min_radius);
     device.template run<kernels::correct_bias>(b.bias.size(), {.factor = detail::bias_factor(filter), .least = least},
-        reads(shares(filter_kind::constant), shares(filter_kind::epanechnikov), b.constant),
-        writes(b.bias, b.tilt, b.jump));
+        reads(cover, m.shares, m.firsts, m.seconds, b.constant, normals), writes(b.bias, b.tilt, b.jump));
 }
 
 } // namespace photongrid

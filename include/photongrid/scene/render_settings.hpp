@@ -132,8 +132,8 @@ struct output_settings {
     /// EV for tone-mapped output: pixel values times 2^exposure; none: fitted to the picture.
     std::optional<double> exposure{};
     bool aov = false; ///< radius, count and relative standard error of the estimate per pixel
-    /// Pixels per band of whole rows; bounds device memory. Changes results only by rounding, on cpu. Not stored in
-    /// scene files.
+    /// Pixels per band of whole rows, of which a band has at least 8; bounds device memory. Changes results only by
+    /// rounding, on cpu. Not stored in scene files.
     std::uint32_t band = 1u << 20;
 
     /// The most passes that a picture may have.

@@ -34,7 +34,7 @@ namespace {
 
     std::uint16_t linear_texel(unsigned char code)
     {
-        return static_cast<std::uint16_t>(0.5f + linear_value(code) * 65535.0f); // as scene_files reads it
+        return static_cast<std::uint16_t>(std::lround(linear_value(code) * 65535.0f)); // as scene_files reads it
     }
 } // namespace
 

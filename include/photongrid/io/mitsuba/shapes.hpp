@@ -47,6 +47,7 @@ private:
         std::string name;
         int index;
         bool is_flat, is_reversed, reverse_v, colors, make_coordinates;
+        // NOLINTNEXTLINE(modernize-use-nullptr): there is no pointer
         auto operator<=>(const file_key&) const = default;
     };
 

@@ -61,9 +61,10 @@ namespace {
                       "a translation");
         const int n = numbers.size() == 16 ? 4 : 3;
         glm::dmat4 m(1);
+        auto number = numbers.begin();
         for (int row = 0; row < n; ++row)
             for (int column = 0; column < n; ++column)
-                m[column][row] = numbers[static_cast<std::size_t>(row * n + column)];
+                m[column][row] = *number++;
         return m;
     }
 } // namespace

@@ -218,7 +218,7 @@ varying value_reader::texture(const source_place& place, const std::string& name
             "there is no texture " + shown_word(name) + " of " + (is_float ? "float" : "spectrum") + " in the file");
     if (within_.size() > 100 || !within_.insert(key).second)
         fail_at(place, "the texture " + shown_word(name) + " is made of itself, or of more than 100 within each other");
-    const auto made = made_texture(found->second, is_float);
+    auto made = made_texture(found->second, is_float);
     found->second.parameters.note_unused(builder_.log(), "texture " + shown_word(name));
     within_.erase(key);
     textures_.emplace(key, made);
