@@ -79,10 +79,9 @@ buffer_of<B, glm::vec4> covered_shares(B& device, const device_scene<B>& s, cons
 /// basis_about(normal); lengths are divided by the radius.
 template <backend B>
 struct disc_moments {
-    buffer_of<B, glm::vec4>
-        shares; ///< x: by the constant filter; y: Epanechnikov's; zw: first, by the estimate's filter
-    buffer_of<B, glm::vec4> firsts;  ///< xy: by the constant filter; zw: by Epanechnikov's
-    buffer_of<B, glm::vec4> seconds; ///< xyz: uu, uv, vv, by the constant filter
+    buffer_of<B, glm::vec4> shares;  ///< x: by the constant filter; y: Epanechnikov's; zw: first moment, the estimate's
+    buffer_of<B, glm::vec4> firsts;  ///< xy: first moment by the constant filter; zw: Epanechnikov's
+    buffer_of<B, glm::vec4> seconds; ///< xyz: second moments uu, uv, vv by the constant filter
 };
 
 /// Arguments, errors and what counts are those of covered_shares.
