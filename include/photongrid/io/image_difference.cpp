@@ -19,7 +19,8 @@ image averaged(const image& picture, std::uint32_t n)
             glm::dvec3 sum(0);
             for (std::uint32_t row = 0; row < n; ++row)
                 for (std::uint32_t column = 0; column < n; ++column)
-                    sum += glm::dvec3(picture.pixels[(std::size_t{y} * n + row) * picture.width + std::size_t{x} * n + column]);
+                    sum += glm::dvec3(
+                        picture.pixels[(std::size_t{y} * n + row) * picture.width + std::size_t{x} * n + column]);
             made.pixels.emplace_back(sum / (static_cast<double>(n) * n));
         }
     return made;
