@@ -150,7 +150,7 @@ faults=(
   "bias: a slope at an edge is not told|include/photongrid/render/correct_bias.glsl|float of_slope = (slope.x|float of_slope = 0.0f * (slope.x"
   "bias: the slope counts in the difference, too|include/photongrid/render/correct_bias.glsl|(of_slope - args.factor * in_difference)|(of_slope - 0.0f * in_difference)"
   "moments: the edge's offset is forgotten|include/photongrid/render/covered_moments.glsl|(way.x * along - d * inward.x * even)|(way.x * along)"
-  "moments: of the cone without its logarithm|include/photongrid/estimate/filter.glsl|+ 0.75f * e2 * e2 * logarithm|+ 0.0f * logarithm"
+  "moments: of the cone without its logarithm|include/photongrid/estimate/filter.glsl|+ 0.75f * e2 * e2 * logarithm|+ 0.0f * logarithm|on_serial_pictures"
   "passes have the same photons|include/photongrid/render/passes.hpp|if (pass > 0) {|if (pass > 65535) {"
   "a pass is forgotten|include/photongrid/render/film.hpp|add_up(*passes_.begin(), *std::exchange(only_, std::nullopt));|only_.reset();"
   "passes are rounded in turn|include/photongrid/render/exact_sum.hpp|high_ += high + (low_ < low ? 1u : 0u);|high_ += high;"
@@ -451,7 +451,7 @@ tests_of() {
     backends/vulkan/*) echo on_vulkan ;;
     */film.hpp | */exact_sum.hpp) echo passes ;;
     */scene/scene.hpp | */render/*.hpp | */eye_ray*| */trace_photons.hpp) echo on_serial_pictures ;;
-    */bounce_photon.glsl | */covered_share.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */mesh_surface.glsl | */shading_normals.glsl | */shadow_ray.glsl | */any_light.glsl | */mesh_light.glsl | */eye_bounce.glsl | */add_unblocked.glsl | */spot_light.glsl | */distant_light.glsl | */environment*.glsl | */mesh_color.glsl | */chosen_light.glsl | */emit_photon.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
+    */bounce_photon.glsl | */covered_share.glsl | */covered_moments.glsl | */surface_cover.glsl | */correct_bias.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */mesh_surface.glsl | */shading_normals.glsl | */shadow_ray.glsl | */any_light.glsl | */mesh_light.glsl | */eye_bounce.glsl | */add_unblocked.glsl | */spot_light.glsl | */distant_light.glsl | */environment*.glsl | */mesh_color.glsl | */chosen_light.glsl | */emit_photon.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
     *) echo on_serial_algorithms ;;
   esac
 }
