@@ -147,6 +147,7 @@ faults=(
   "lamps hide what is before them|include/photongrid/render/surface_cover.glsl|return height > error ?|return height != 0.0f ?"
   "lamps hide from any height|include/photongrid/render/surface_cover.glsl|16.0f * (height * height)|0.0f * (height * height)"
   "share of the outer edges added|include/photongrid/render/surface_cover.glsl|d < 0.0f ? -rim : rim|rim"
+  "caustics are routed|include/photongrid/render/scene_map.hpp|builder == map_builder::route ? map_builder::sort : builder|builder|on_serial_pictures"
   "bias: a slope at an edge is not told|include/photongrid/render/correct_bias.glsl|float of_slope = (slope.x|float of_slope = 0.0f * (slope.x"
   "bias: the slope counts in the difference, too|include/photongrid/render/correct_bias.glsl|(of_slope - args.factor * in_difference)|(of_slope - 0.0f * in_difference)"
   "moments: the edge's offset is forgotten|include/photongrid/render/covered_moments.glsl|(way.x * along - d * inward.x * even)|(way.x * along)"

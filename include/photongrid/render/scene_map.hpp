@@ -224,10 +224,12 @@ private:
         else if (gathers(settings_))
             gather_.emplace(device_, built_.scene, detail::copy(device_, p), settings_);
         const uint parts = built_.has_caustics_apart ? every_part : parts_at_ends(settings_);
-        built_.map = map_of(std::move(p), parts, settings_.estimate.k);
+        const auto builder = settings_.map.builder;
+        built_.map = map_of(std::move(p), parts, settings_.estimate.k, builder);
+        // Caustics crowd in few cells, where a photon that has a slot would stand for more than an estimate seeks.
         if (built_.caustics)
-            built_.caustics->map
-                = map_of(std::move(built_.caustics->trace.photons), every_part, settings_.estimate.caustic_k);
+            built_.caustics->map = map_of(std::move(built_.caustics->trace.photons), every_part,
+                settings_.estimate.caustic_k, builder == map_builder::route ? map_builder::sort : builder);
         auto& made = built_.stats.map;
         made.builder = settings_.map.builder;
         if (made.builder == map_builder::automatic)
@@ -244,10 +246,10 @@ private:
         const auto make = [&] { return device_.template make<glm::vec4>(0); };
         return {make(), make(), make(), make()};
     }
-    map_buffers<B> map_of(photons<B> p, uint parts, uint k)
+    map_buffers<B> map_of(photons<B> p, uint parts, uint k, map_builder builder)
     {
         const auto& m = settings_.map;
-        switch (m.builder) {
+        switch (builder) {
         case map_builder::blocks: return block_map(device_, std::move(p), parts);
         case map_builder::automatic: return fitted_map(device_, std::move(p), k, parts);
         case map_builder::sort:
@@ -256,7 +258,7 @@ private:
         const auto& layout = built_.scene.layout;
         const grid g = m.has_given_grid() ? make_grid(layout.low, layout.high, m.grid)
                                           : fitting_grid(device_, p, k, device_.caps().cells_per_radius);
-        return m.builder == map_builder::sort
+        return builder == map_builder::sort
             ? sorted_map(device_, std::move(p), g, parts)
             : routed_map(device_, std::move(p), g, m.slots, settings_.seed, parts, m.surplus);
     }
