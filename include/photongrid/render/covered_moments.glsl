@@ -66,26 +66,24 @@ void kernel(uint i)
                 float d = edge.d;
                 float s = edge.from;
                 float t = edge.to;
-                precise float d2 = d * d;
-                precise float h2 = 1.0f - d2;
+                // Along the edge: integrals of Psi by each filter, and of Psi times the offset along the edge.
+                precise float even = constant_edge_moment(d, t) - constant_edge_moment(d, s);
+                precise float inner = epanechnikov_edge_moment(d, t) - epanechnikov_edge_moment(d, s);
+                precise float filtered = filter_edge_moment(d, t) - filter_edge_moment(d, s);
                 precise float s2 = s * s;
                 precise float t2 = t * t;
-                // Along the edge: integrals of Psi by each filter, and of Psi times the offset along the edge.
-                precise float even = h2 * (t - s) - 0.333333333f * (t2 * t - s2 * s);
-                precise float inner = h2 * h2 * (t - s) - 0.666666667f * h2 * (t2 * t - s2 * s)
-                    + 0.2f * (t2 * t2 * t - s2 * s2 * s);
-                precise float filtered = filter_edge_moment(d, t) - filter_edge_moment(d, s);
-                precise float along = 0.5f * h2 * (t2 - s2) - 0.25f * (t2 * t2 - s2 * s2);
+                precise float along = 0.5f * (1.0f - d * d) * (t2 - s2) - 0.25f * (t2 * t2 - s2 * s2);
                 precise float constant_within = d * (t - s);
                 precise float inner_within
-                    = d * (t * (2.0f - d2 - 0.333333333f * t2) - s * (2.0f - d2 - 0.333333333f * s2));
+                    = d * (epanechnikov_edge_integral(d, t) - epanechnikov_edge_integral(d, s));
                 precise vec4 more_share = its_share
                     + vec4(constant_within + edge.rim, inner_within + edge.rim, inward.x * filtered,
                         inward.y * filtered);
                 precise vec4 more_first = its_first
                     + vec4(inward.x * even, inward.y * even, inward.x * inner, inward.y * inner);
                 precise float uu = inward.x * (way.x * along - d * inward.x * even);
-                precise float uv = 0.5f * (inward.x * way.y + inward.y * way.x) * along - d * inward.x * inward.y * even;
+                precise float uv
+                    = 0.5f * (inward.x * way.y + inward.y * way.x) * along - d * inward.x * inward.y * even;
                 precise float vv = inward.y * (way.y * along - d * inward.y * even);
                 precise vec4 more_second = its_second + vec4(uu, uv, vv, 0.0f);
                 its_share = more_share;
