@@ -25,23 +25,28 @@ namespace {
         return v;
     }
 
-    /// Adds what lies where |y| is fixed and x from a to b: Gauss' five points on 16 pieces either side of x = 0.
+    constexpr int pieces = 16;
+    struct gauss_point {
+        double at, weight; ///< in a piece of length 1 about 0
+    };
+    /// Gauss' five points.
+    constexpr gauss_point gauss[5] = {{-0.4530899229693320, 0.1184634425280945},
+        {-0.2692346550528416, 0.2393143352496833}, {0, 0.2844444444444444}, {0.2692346550528416, 0.2393143352496833},
+        {0.4530899229693320, 0.1184634425280945}};
+
+    /// Adds what lies where |y| is fixed and x from a to b, in pieces either side of x = 0.
     void add_line(disc_part& sum, double thickness, double y, double a, double b)
     {
-        constexpr double nodes[5]
-            = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
-        constexpr double weights[5]
-            = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
         const double half = std::sqrt(std::max(0.0, 1 - y * y));
         for (const auto& [from, to] :
             {std::pair{std::max(a, -half), std::min(b, 0.0)}, std::pair{std::max(a, 0.0), std::min(b, half)}}) {
-            const double step = (to - from) / 16;
+            const double step = (to - from) / pieces;
             if (!(step > 0))
                 continue;
-            for (int piece = 0; piece < 16; ++piece)
-                for (int g = 0; g < 5; ++g) {
-                    const double x = from + (piece + 0.5 + 0.5 * nodes[g]) * step, t = x * x + y * y;
-                    const auto by_filter = thickness * 0.5 * step * weights[g]
+            for (int piece = 0; piece < pieces; ++piece)
+                for (const auto& g : gauss) {
+                    const double x = from + (piece + 0.5 + g.at) * step, t = x * x + y * y;
+                    const auto by_filter = thickness * step * g.weight
                         * glm::dvec4(1, 3 * (1 - std::sqrt(t)), 2 * (1 - t), 3 * (1 - t) * (1 - t)) / M_PI;
                     sum.share += by_filter;
                     sum.first_x += x * by_filter;
@@ -49,6 +54,16 @@ namespace {
                     sum.second += by_filter[0] * glm::dvec3(x * x, x * y, y * y);
                 }
         }
+    }
+
+    /// Adds the heights where the line from p to q meets the unit circle.
+    void add_crossings(std::vector<double>& heights, glm::dvec2 p, glm::dvec2 q)
+    {
+        const auto d = q - p;
+        const double a = glm::dot(d, d), b = glm::dot(p, d), discriminant = b * b - a * (glm::dot(p, p) - 1);
+        if (discriminant > 0)
+            for (const double sign : {-1.0, 1.0})
+                heights.push_back(std::clamp(p.y + d.y * (sign * std::sqrt(discriminant) - b) / a, -1.0, 1.0));
     }
 
 } // namespace
@@ -236,29 +251,33 @@ std::vector<std::optional<float>> kth_by_flann(
 disc_part part_by_lines(const std::vector<glm::dvec2>& corners, glm::dvec2 center, double radius)
 {
     std::vector<glm::dvec2> c;
-    std::vector<double> heights{-1, 1};
-    for (const auto& p : corners) {
+    for (const auto& p : corners)
         c.push_back((p - center) / radius);
-        heights.push_back(std::clamp(c.back().y, -1.0, 1.0));
+    std::vector<double> heights{-1, 0, 1};
+    for (std::size_t e = 0; e < c.size(); ++e) {
+        heights.push_back(std::clamp(c[e].y, -1.0, 1.0));
+        add_crossings(heights, c[e], c[(e + 1) % c.size()]);
     }
     std::sort(heights.begin(), heights.end());
     disc_part sum;
-    constexpr int lines = 1200;
     for (std::size_t h = 0; h + 1 < heights.size(); ++h) {
-        const double low = std::asin(heights[h]), step = (std::asin(heights[h + 1]) - low) / lines;
-        for (int line = 0; line < lines && step > 0; ++line) {
-            const double angle = low + (line + 0.5) * step, y = std::sin(angle);
-            double from = 2, to = -2;
-            for (std::size_t e = 0; e < c.size(); ++e) {
-                const auto &p = c[e], &q = c[(e + 1) % c.size()];
-                if ((p.y <= y) == (q.y <= y))
-                    continue;
-                const double x = p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y);
-                from = std::min(from, x);
-                to = std::max(to, x);
+        const double low = std::asin(heights[h]), step = (std::asin(heights[h + 1]) - low) / pieces;
+        if (!(step > 0))
+            continue;
+        for (int piece = 0; piece < pieces; ++piece)
+            for (const auto& g : gauss) {
+                const double angle = low + (piece + 0.5 + g.at) * step, y = std::sin(angle);
+                double from = 2, to = -2;
+                for (std::size_t e = 0; e < c.size(); ++e) {
+                    const auto &p = c[e], &q = c[(e + 1) % c.size()];
+                    if ((p.y <= y) == (q.y <= y))
+                        continue;
+                    const double x = p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y);
+                    from = std::min(from, x);
+                    to = std::max(to, x);
+                }
+                add_line(sum, step * g.weight * std::cos(angle), y, from, to);
             }
-            add_line(sum, step * std::cos(angle), y, from, to);
-        }
     }
     return sum;
 }

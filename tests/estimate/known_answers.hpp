@@ -68,8 +68,8 @@ struct disc_part {
     glm::dvec3 second{0};                        ///< xx, xy, yy, by the constant filter
 };
 
-/// By lines across the disc, each cut by all edges. Lines are laid between the heights of the polygon's corners, evenly
-/// in the arc sine of their height.
+/// By lines across the disc, each cut by all edges: Gauss' points in the arc sine of the lines' height, between the
+/// heights of the polygon's corners, of the disc's center, and of where the polygon's edges meet the disc's rim.
 disc_part part_by_lines(const std::vector<glm::dvec2>& corners, glm::dvec2 center, double radius);
 
 } // namespace photongrid::testing
