@@ -52,7 +52,7 @@ row() {
   samples=$(paper_count "$scene" light_samples)
   shift 7
   # shellcheck disable=SC2086
-  "$program" render "examples/scenes/$scene.json" --backend "$backend" --size $size --map "$map" --search "$search" --filter "$filter" --k "$k" --photons "$photons" --caustic-photons 0 --grid auto --spp 1 --passes 1 ${samples:+--light-samples $samples} $plain_estimate --stats "$work/stats.json" -o "$work/picture.exr" --quiet "$@" >/dev/null
+  "$program" render "examples/scenes/$scene.json" --backend "$backend" --size $size --map "$map" --search "$search" --filter "$filter" --k "$k" --photons "$photons" --grid auto --spp 1 $one_map ${samples:+--light-samples $samples} $plain_estimate --stats "$work/stats.json" -o "$work/picture.exr" --quiet "$@" >/dev/null
   local seconds relmse
   seconds=$(awk '$1 == "\"ms\":" && inside { gsub(",", "", $2); sum += $2 } $1 == "\"stages\":" { inside = 1 } $1 == "\"estimate\":" { inside = 0 } END { printf "%.5f", sum / 1000 }' "$work/stats.json")
   relmse=$("$program" compare "$work/picture.exr" "$out/$scene-reference.exr" | awk '$1 == "relMSE" { print $2 }')

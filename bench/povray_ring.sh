@@ -15,7 +15,8 @@ for photons in on off; do
   "$build/bench/povray_ring" export "$scene" "$([[ $photons == on ]] && echo 2000000 || echo 0)" >"$work/$photons.pov"
   povray "+I$work/$photons.pov" "+O$work/$photons.exr" +FE +W512 +H384 -D +A0.1 -GA >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }
 done
-"$build/photongrid" render "$scene" --backend serial --photons 500000 --caustic-photons 0 --k 100 --spp 4 --passes 1 --quiet -o "$work/ours.exr" >/dev/null
+# shellcheck disable=SC2086
+"$build/photongrid" render "$scene" --backend serial $one_map --photons 500000 --k 100 --spp 4 --quiet -o "$work/ours.exr" >/dev/null
 if [[ -n ${KEEP:-} ]]; then
   cp "$work"/*.exr "$work"/*.pov "$KEEP"
 fi

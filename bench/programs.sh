@@ -14,12 +14,14 @@ need() {
 }
 # paper_count SCENE KEY: the number at KEY in the scene's "as_paper", Table 1
 paper_count() { sed -n "s/^ *\"as_paper\":.*\"$2\": *\([0-9]*\).*/\1/p" "examples/scenes/$1.json"; }
+# one_map: options for one pass with all photons in one map, where a scene has more
+one_map="--passes 1 --caustic-photons 0"
 # paper_counts SCENE: options for one pass with Table 1's photons, all in one map, k and shadow rays; the scene's own
 # differ (bench/defaults.sh compares them)
 paper_counts() {
   local photons k samples
   photons=$(paper_count "$1" photons) k=$(paper_count "$1" k) samples=$(paper_count "$1" light_samples)
-  echo "--passes 1 --photons $photons --caustic-photons 0 --k $k${samples:+ --light-samples $samples}"
+  echo "$one_map --photons $photons --k $k${samples:+ --light-samples $samples}"
 }
 # plain_estimate: options for the library's default estimate, where a scene has another
 plain_estimate="--leaks side --edge-correction none"
