@@ -8,7 +8,7 @@ import subprocess
 import sys
 import time
 
-FLOOR = 0.01  # what relMSE adds to the radiance that it divides by (include/photongrid/io/image_difference.hpp)
+FLOOR = 0.01  # what relMSE adds to the radiance that it divides by (examples/photongrid/compare/image_difference.hpp)
 
 
 class Crashed(RuntimeError):

@@ -25,13 +25,13 @@
 #include <random>
 #include <set>
 
-#include <photongrid/backend/begin.hpp>
+#include <photongrid/core/begin.hpp>
 namespace photongrid::kernels {
 struct bitonic_step_float {
 #include "kernels/bitonic_step_float.glsl"
 };
 } // namespace photongrid::kernels
-#include <photongrid/backend/end.hpp>
+#include <photongrid/core/end.hpp>
 
 namespace {
 

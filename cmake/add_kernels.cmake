@@ -58,11 +58,11 @@ function(photongrid_add_kernels target)
 #pragma once
 
 #include <${arg_NAMESPACE}_kernel_text.hpp>
-${headers}#include <photongrid/backend/kernel.hpp>
+${headers}#include <photongrid/core/kernel.hpp>
 
 #include <span>
 
-#include <photongrid/backend/begin.hpp>
+#include <photongrid/core/begin.hpp>
 
 namespace ${arg_NAMESPACE} {
 
@@ -72,7 +72,7 @@ ${includes}
 ${structs}
 } // namespace ${arg_NAMESPACE}
 
-#include <photongrid/backend/end.hpp>
+#include <photongrid/core/end.hpp>
 ")
   get_target_property(type ${target} TYPE)
   set(scope PRIVATE)

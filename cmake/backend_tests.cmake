@@ -1,6 +1,6 @@
 # photongrid::backend_tests: what every backend promises, as tests for a backend of your own (docs/reference/backend.md). Read where
 # GoogleTest, rapidcheck and FLANN were found, by tests/CMakeLists.txt.
-file(GLOB verb_kernels CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/backend/verbs/*.glsl)
+file(GLOB verb_kernels CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/core/verbs/*.glsl)
 set(verb_kernel_text ${CMAKE_CURRENT_BINARY_DIR}/generated/photongrid/backend_tests/verb_kernel_text.hpp)
 photongrid_embed(OUTPUT ${verb_kernel_text} TABLE verb_kernel_texts BASE ${PROJECT_SOURCE_DIR} FILES ${verb_kernels})
 
@@ -14,8 +14,8 @@ add_library(photongrid_backend_tests INTERFACE)
 add_library(photongrid::backend_tests ALIAS photongrid_backend_tests)
 set_target_properties(photongrid_backend_tests PROPERTIES EXPORT_NAME backend_tests)
 set(headers
-  backend/count_and_route_tests backend/number_tests backend/run_tests backend/under_test backend/verb_buffer_tests
-  backend/verb_kernels backend/verb_tests backend/verbs backends/serial_algorithms
+  core/count_and_route_tests core/number_tests core/run_tests core/under_test core/verb_buffer_tests
+  core/verb_kernels core/verb_tests core/verbs backends/serial_algorithms
   estimate/estimator_tests estimate/estimators estimate/exact_search_tests estimate/known_answers
   estimate/neighbour_tests estimate/policy_tests
   map/algorithm_tests map/algorithms map/block_map_tests map/buffer_tests map/hashed_route_tests map/map_file_tests

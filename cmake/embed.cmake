@@ -16,7 +16,7 @@ function(photongrid_embed)
   list(LENGTH arg_FILES count)
   photongrid_write_if_changed("${arg_OUTPUT}" "// Made by CMake (cmake/embed.cmake); do not edit.
 #pragma once
-#include <photongrid/backend/text_file.hpp>
+#include <photongrid/core/text_file.hpp>
 namespace ${arg_NAMESPACE} {
 inline constexpr photongrid::text_file ${arg_TABLE}[${count}] = {
 ${entries}};

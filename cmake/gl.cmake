@@ -10,7 +10,7 @@ if(NOT TARGET OpenGL::EGL OR NOT PHOTONGRID_GLCOREARB_DIR)
 endif()
 
 file(GLOB gl_texts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/backends/gl/*.glsl ${PROJECT_SOURCE_DIR}/backends/gl/overrides/*.glsl)
-list(APPEND gl_texts ${PROJECT_SOURCE_DIR}/include/photongrid/backend/exact_arithmetic.glsl)
+list(APPEND gl_texts ${PROJECT_SOURCE_DIR}/include/photongrid/core/exact_arithmetic.glsl)
 photongrid_backend(gl TEXTS ${gl_texts})
 target_include_directories(photongrid_gl INTERFACE $<BUILD_INTERFACE:${PHOTONGRID_GLCOREARB_DIR}>)
 target_link_libraries(photongrid_gl INTERFACE OpenGL::EGL)

@@ -11,19 +11,23 @@ if(NOT TARGET nlohmann_json::nlohmann_json OR NOT TARGET OpenEXR::OpenEXR OR NOT
   message(STATUS "photongrid: no scene files or pictures, and no program (Debian packages nlohmann-json3-dev, libopenexr-dev, libpng-dev, libpugixml-dev, libstb-dev, zlib1g-dev)")
   return()
 endif()
-file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/photongrid/io/*.cpp
-  ${PROJECT_SOURCE_DIR}/include/photongrid/io/*/*.cpp)
+# Headers of examples/photongrid are <photongrid/io/...> and <photongrid/compare/...>, here as where they are installed.
+set(photongrid_io_root ${PROJECT_BINARY_DIR}/examples_include)
+file(MAKE_DIRECTORY ${photongrid_io_root}/photongrid)
+foreach(folder IN ITEMS io compare)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/examples/photongrid/${folder} ${photongrid_io_root}/photongrid/${folder} SYMBOLIC)
+endforeach()
+set(folder ${photongrid_io_root}/photongrid/io)
+file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/photongrid/io/*.cpp
+  ${PROJECT_SOURCE_DIR}/examples/photongrid/io/*/*.cpp)
 add_library(photongrid_io STATIC ${sources})
 add_library(photongrid::io ALIAS photongrid_io)
 set_target_properties(photongrid_io PROPERTIES EXPORT_NAME io POSITION_INDEPENDENT_CODE ON)
-set(folder ${PROJECT_SOURCE_DIR}/include/photongrid/io)
-target_sources(photongrid_io PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include
-  FILES ${folder}/error_map.hpp ${folder}/error_sheet.hpp ${folder}/exported_scene.hpp ${folder}/false_colors.hpp
-  ${folder}/files.hpp ${folder}/flip.hpp ${folder}/gltf_file.hpp ${folder}/gltf_writer.hpp
-  ${folder}/image_difference.hpp ${folder}/image_file.hpp ${folder}/imported_scene.hpp ${folder}/mitsuba_file.hpp
-  ${folder}/obj_scene.hpp ${folder}/pbrt_file.hpp ${folder}/pbrt_writer.hpp ${folder}/picture_noise.hpp
-  ${folder}/picture_regions.hpp ${folder}/scene_edit.hpp ${folder}/scene_error.hpp ${folder}/scene_export.hpp ${folder}/scene_file.hpp
-  ${folder}/scene_import.hpp ${folder}/scene_writer.hpp ${folder}/structural_similarity.hpp ${folder}/tone_map.hpp)
+# What a host needs; the other headers are the library's own.
+target_sources(photongrid_io PUBLIC FILE_SET HEADERS BASE_DIRS ${photongrid_io_root}
+  FILES ${folder}/exported_scene.hpp ${folder}/files.hpp ${folder}/image_file.hpp ${folder}/imported_scene.hpp
+  ${folder}/scene_edit.hpp ${folder}/scene_error.hpp ${folder}/scene_export.hpp ${folder}/scene_file.hpp
+  ${folder}/scene_import.hpp ${folder}/scene_writer.hpp ${folder}/tone_map.hpp)
 target_link_libraries(photongrid_io PUBLIC photongrid PRIVATE $<BUILD_INTERFACE:photongrid_warnings>
   $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> OpenEXR::OpenEXR PNG::PNG ZLIB::ZLIB pugixml::pugixml)
 target_include_directories(photongrid_io SYSTEM PRIVATE $<BUILD_INTERFACE:${PHOTONGRID_STB_INCLUDE_DIR}>)
@@ -40,3 +44,9 @@ endif()
 if(NOT PROJECT_IS_TOP_LEVEL)
   set_target_properties(photongrid_io PROPERTIES EXCLUDE_FROM_ALL TRUE)
 endif()
+
+# Errors of pictures: for the program, its window and the tests; not installed.
+file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/photongrid/compare/*.cpp)
+add_library(photongrid_compare STATIC EXCLUDE_FROM_ALL ${sources})
+set_target_properties(photongrid_compare PROPERTIES POSITION_INDEPENDENT_CODE ON)
+target_link_libraries(photongrid_compare PUBLIC photongrid_io PRIVATE photongrid_warnings)

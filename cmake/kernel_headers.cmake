@@ -27,7 +27,7 @@ function(photongrid_kernel_headers)
       string(APPEND includes "#include <${header}>\n")
       string(APPEND texts ", ${other_name}")
     endforeach()
-    set(content "// Made by CMake (cmake/kernel_headers.cmake) of ${path}; do not edit.\n#pragma once\n\n${includes}#include <photongrid/backend/text_file.hpp>\n")
+    set(content "// Made by CMake (cmake/kernel_headers.cmake) of ${path}; do not edit.\n#pragma once\n\n${includes}#include <photongrid/core/text_file.hpp>\n")
     if(text MATCHES "\n(void kernel|bool holds)\\(")
       if(name IN_LIST arg_ALWAYS_WHOLE)
         string(APPEND content "\n#if 1")
@@ -35,7 +35,7 @@ function(photongrid_kernel_headers)
         string(APPEND content "\nnamespace photongrid::kernels {\nstruct ${name};\n} // namespace photongrid::kernels\n
 #if !defined(PHOTONGRID_KERNELS_ARE_COMPILED)")
       endif()
-      string(APPEND content "\n#include <photongrid/backend/begin.hpp>\n
+      string(APPEND content "\n#include <photongrid/core/begin.hpp>\n
 namespace photongrid::kernel_texts {
 inline constexpr text_file ${name} = ${entry};
 inline constexpr text_file ${name}_and_included[] = {${texts}};
@@ -48,7 +48,7 @@ struct ${name} {
 };
 } // namespace photongrid::kernels
 
-#include <photongrid/backend/end.hpp>
+#include <photongrid/core/end.hpp>
 #endif
 ")
     else()
@@ -61,9 +61,9 @@ inline constexpr text_file ${name} = ${entry};
         string(APPEND content "
 #include <glm/glm.hpp>
 #include <glm/integer.hpp>
-#include <photongrid/backend/kernel.hpp>
+#include <photongrid/core/kernel.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 #pragma push_macro(\"precise\")
 #undef precise
@@ -75,7 +75,7 @@ using namespace glm; // kernels are GLSL: its names are GLM's
 #undef precise
 #pragma pop_macro(\"precise\")
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>
 ")
       endif()
     endif()

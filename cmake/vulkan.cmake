@@ -28,7 +28,7 @@ if(missing)
   set(PHOTONGRID_VULKAN OFF)
 else()
   file(GLOB vulkan_shaders CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/backends/vulkan/*.glsl ${PROJECT_SOURCE_DIR}/backends/vulkan/overrides/*.glsl)
-list(APPEND vulkan_shaders ${PROJECT_SOURCE_DIR}/include/photongrid/backend/exact_arithmetic.glsl)
+list(APPEND vulkan_shaders ${PROJECT_SOURCE_DIR}/include/photongrid/core/exact_arithmetic.glsl)
   photongrid_backend(vulkan TEXTS ${vulkan_shaders})
   set(spirv_tools $<IF:$<TARGET_EXISTS:SPIRV-Tools-static>,SPIRV-Tools-static,SPIRV-Tools>)
   # Static archives, named in the order in which they need each other.

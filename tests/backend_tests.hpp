@@ -6,8 +6,8 @@
 // docs/reference/backend.md says what they ask.
 #pragma once
 
-#include <photongrid/backend_tests/backend/number_tests.hpp>
-#include <photongrid/backend_tests/backend/verb_tests.hpp>
+#include <photongrid/backend_tests/core/number_tests.hpp>
+#include <photongrid/backend_tests/core/verb_tests.hpp>
 #include <photongrid/backend_tests/estimate/estimator_tests.hpp>
 #include <photongrid/backend_tests/estimate/neighbour_tests.hpp>
 #include <photongrid/backend_tests/map/algorithm_tests.hpp>

@@ -16,7 +16,7 @@ for words in paraboloid 'scene/box|<box>|const box&|(hit|closest)_box' 'scene/di
   epanechnikov material_kind::glass glass_surface metal; do
   most=5
   files=$(grep -rliE "$words" --include='*.hpp' --include='*.cpp' --include='*.glsl' --include='*.json' --include='*.cmake' \
-    --include='*.sh' --include='CMakeLists.txt' include backends bench cmake examples CMakeLists.txt | grep -vE '^examples/scenes/.*\.json$|^bench/.*\.sh$|^include/photongrid/(io/(pbrt|mitsuba|gltf|obj|export)/|estimate/bias_|render/correct_bias)' | sort)
+    --include='*.sh' --include='CMakeLists.txt' include backends bench cmake examples CMakeLists.txt | grep -vE '^examples/scenes/.*\.json$|^bench/.*\.sh$|^examples/photongrid/io/(pbrt|mitsuba|gltf|obj|export)/|^include/photongrid/(estimate/bias_|render/correct_bias)' | sort)
   count=$(grep -c . <<<"$files" || true)
   echo "$words: $count files"
   if ((count == 0 || count > most)); then

@@ -39,7 +39,7 @@ find "$root"/include "$root"/backends \( -name '*.hpp' -o -name '*.glsl' \) -pri
       failed = 1
     }
   }
-  END { exit failed }' "$root"/include/photongrid/backend/begin.hpp || status=1
+  END { exit failed }' "$root"/include/photongrid/core/begin.hpp || status=1
 is_core() { [[ $1 != */backends/* && $1 != */backend_texts/* ]]; }
 include() { printf '#include "%s"\n' "$@"; }
 files=()

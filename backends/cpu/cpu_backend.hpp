@@ -8,7 +8,7 @@
 #include <photongrid/map/map_builders.hpp>
 #include <photongrid/trace/ray_search.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -144,4 +144,4 @@ progress ray_search<cpu_backend>::advance(uint passes);
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

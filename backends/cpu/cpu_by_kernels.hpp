@@ -3,16 +3,16 @@
 // The file is long because it is one class.
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
 #include <photongrid/backends/cpu/buffer.hpp>
 #include <photongrid/backends/cpu/pool.hpp>
+#include <photongrid/core/backend.hpp>
 
 #include <atomic>
 #include <bit>
 #include <chrono>
 #include <mutex>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -371,4 +371,4 @@ static_assert(backend<cpu_by_kernels>);
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -3,7 +3,7 @@
 // pixels or buffers is counted (`functions::readbacks`).
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 
 #include <GL/glcorearb.h>
 

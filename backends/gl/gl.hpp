@@ -3,13 +3,13 @@
 // file is long because it is one class with its manual; what its members do is in the headers that it includes.
 #pragma once
 
-#include <photongrid/backend/self_test.hpp>
 #include <photongrid/backends/gl/hand_over.hpp>
 #include <photongrid/backends/gl/make_context.hpp>
 #include <photongrid/backends/gl/passes.hpp>
 #include <photongrid/backends/gl/routing.hpp>
 #include <photongrid/backends/gl/texture.hpp>
 #include <photongrid/backends/gl/tiles.hpp>
+#include <photongrid/core/self_test.hpp>
 
 namespace photongrid {
 

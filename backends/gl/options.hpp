@@ -1,8 +1,8 @@
 // Options of the OpenGL backend.
 #pragma once
 
-#include <photongrid/backend/exact_arithmetic.hpp>
 #include <photongrid/backends/gl/functions.hpp>
+#include <photongrid/core/exact_arithmetic.hpp>
 
 namespace photongrid {
 

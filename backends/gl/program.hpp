@@ -1,9 +1,9 @@
 // Kernels as OpenGL programs. Each is compiled once per verb and set of switches.
 #pragma once
 
-#include <photongrid/backend/kernel_source.hpp>
 #include <photongrid/backend_texts/gl.hpp>
 #include <photongrid/backends/gl/device.hpp>
+#include <photongrid/core/kernel_source.hpp>
 
 #include <chrono>
 

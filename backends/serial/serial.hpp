@@ -2,12 +2,12 @@
 // builds its accessors check every index of a kernel.
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 
 #include <algorithm>
 #include <memory>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -238,4 +238,4 @@ static_assert(backend<serial_backend>);
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

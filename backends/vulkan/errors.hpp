@@ -1,7 +1,7 @@
 // Vulkan's result codes as backend_error.
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 
 #include <cstdlib>
 #include <string>

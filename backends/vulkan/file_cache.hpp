@@ -1,8 +1,8 @@
 // A folder that caches data between runs of a program: compiled kernels.
 #pragma once
 
-#include <photongrid/backend/file_target.hpp>
-#include <photongrid/backend/fnv1a.hpp>
+#include <photongrid/core/file_target.hpp>
+#include <photongrid/core/fnv1a.hpp>
 
 #include <algorithm>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Options of the Vulkan backend, and the devices that it may use: the caller's handles, and the list of all.
 #pragma once
 
-#include <photongrid/backend/exact_arithmetic.hpp>
+#include <photongrid/core/exact_arithmetic.hpp>
 
 #include <cstdint>
 #include <string>

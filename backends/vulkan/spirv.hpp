@@ -1,8 +1,8 @@
 // Compiles GLSL to SPIR-V by glslang and the SPIRV-Tools optimizer, with NoContraction on all float arithmetic.
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
-#include <photongrid/backend/kernel_source.hpp>
+#include <photongrid/core/backend.hpp>
+#include <photongrid/core/kernel_source.hpp>
 
 #include <cstdint>
 #include <glslang/Include/glslang_c_interface.h>

@@ -2,9 +2,9 @@
 // The file is long because it is one class with its manual; what its members do is in the headers that it includes.
 #pragma once
 
-#include <photongrid/backend/self_test.hpp>
 #include <photongrid/backends/vulkan/frames.hpp>
 #include <photongrid/backends/vulkan/routing.hpp>
+#include <photongrid/core/self_test.hpp>
 
 #include <bit>
 #include <cassert>

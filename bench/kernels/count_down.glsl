@@ -1,5 +1,5 @@
 // Counts a state down to 0: for as many passes as that takes, all other elements wait.
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/none.glsl>
 
 struct Params {
     uint unused;

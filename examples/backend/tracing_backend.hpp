@@ -1,7 +1,7 @@
 // A complete small backend: it wraps any other, forwards every verb to it, and records each call.
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 
 #include <chrono>
 #include <iomanip>

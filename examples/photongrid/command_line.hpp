@@ -3,7 +3,7 @@
 
 #include "picture_series.hpp"
 
-#include <photongrid/io/flip.hpp>
+#include <photongrid/compare/flip.hpp>
 #include <photongrid/io/imported_scene.hpp>
 #include <photongrid/reference/settings.hpp>
 #include <photongrid/scene/scene.hpp>

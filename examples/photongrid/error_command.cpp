@@ -1,9 +1,9 @@
 #include "error_command.hpp"
 
-#include <photongrid/io/error_sheet.hpp>
-#include <photongrid/io/image_difference.hpp>
+#include <photongrid/compare/error_sheet.hpp>
+#include <photongrid/compare/image_difference.hpp>
+#include <photongrid/compare/picture_regions.hpp>
 #include <photongrid/io/image_file.hpp>
-#include <photongrid/io/picture_regions.hpp>
 #include <photongrid/io/tone_map.hpp>
 
 #include <nlohmann/json.hpp>

@@ -8,10 +8,10 @@
 #include "scene_notes.hpp"
 #include "viewer/view_command.hpp"
 #include <photongrid/backends/any/any.hpp>
-#include <photongrid/io/image_difference.hpp>
+#include <photongrid/compare/image_difference.hpp>
+#include <photongrid/compare/picture_noise.hpp>
+#include <photongrid/compare/structural_similarity.hpp>
 #include <photongrid/io/image_file.hpp>
-#include <photongrid/io/picture_noise.hpp>
-#include <photongrid/io/structural_similarity.hpp>
 #include <photongrid/io/tone_map.hpp>
 
 #include <cerrno>

@@ -1,7 +1,7 @@
 #include "picture_series.hpp"
 
-#include <photongrid/io/image_difference.hpp>
-#include <photongrid/io/structural_similarity.hpp>
+#include <photongrid/compare/image_difference.hpp>
+#include <photongrid/compare/structural_similarity.hpp>
 #include <photongrid/io/tone_map.hpp>
 
 #include <algorithm>

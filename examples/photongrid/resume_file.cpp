@@ -1,6 +1,6 @@
 #include "resume_file.hpp"
 
-#include <photongrid/backend/fnv1a.hpp>
+#include <photongrid/core/fnv1a.hpp>
 #include <photongrid/io/scene_writer.hpp>
 
 #include <nlohmann/json.hpp>

@@ -3,7 +3,7 @@
 
 #include <photongrid/io/image_file.hpp>
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 #include <photongrid/render/render_state.hpp>
 
 #include <optional>

@@ -12,7 +12,7 @@
 #include <photongrid/map/map_builders.hpp>
 #include <photongrid/map/vector_view.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -141,4 +141,4 @@ private:
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -1,6 +1,6 @@
 // Tests that need the library's kernels whole: that devices compile each of them, and one that runs a kernel itself.
 // They are apart from the suites of each backend, which an edit of a kernel then does not make stale.
-#include "../backend/under_test.hpp"
+#include "../core/under_test.hpp"
 #include "on_cpu.hpp"
 #include "on_gl.hpp"
 #include "on_serial.hpp"

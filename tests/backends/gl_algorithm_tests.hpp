@@ -1,7 +1,7 @@
 // Routes, maps and searches of the OpenGL backend.
 #pragma once
 
-#include "../backend/same_light.hpp"
+#include "../core/same_light.hpp"
 #include "gl_contexts.hpp"
 #include "gl_test_kernels.hpp"
 

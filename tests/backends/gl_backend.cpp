@@ -1,5 +1,5 @@
 // The OpenGL backend against the serial one, bit for bit, on every kind of context that this machine has.
-#include "../backend/wanted_device_tests.hpp"
+#include "../core/wanted_device_tests.hpp"
 #include "gl_algorithm_tests.hpp"
 #include "gl_buffer_tests.hpp"
 #include "gl_context_tests.hpp"

@@ -2,7 +2,7 @@
 // own for OpenGL.
 #pragma once
 
-#include <photongrid/backend/kernel.hpp>
+#include <photongrid/core/kernel.hpp>
 #include <photongrid/map/grid.kernel.hpp>
 
 #include <cassert>
@@ -14,7 +14,7 @@ namespace {
 
     namespace test_kernels {
         using namespace glm;
-#include <photongrid/backend/begin.hpp>
+#include <photongrid/core/begin.hpp>
 #define TEST_KERNEL(FILE)                                                                                              \
     Params args{};                                                                                                     \
     static constexpr std::string_view path = FILE;
@@ -42,7 +42,7 @@ namespace {
             void kernel(uint i) { value = i; }
         };
 #undef TEST_KERNEL
-#include <photongrid/backend/end.hpp>
+#include <photongrid/core/end.hpp>
     } // namespace test_kernels
 
     constexpr text_file test_texts[] = {

@@ -1,8 +1,8 @@
 // All backend tests on the cpu backend with its overrides, which are photongrid::cpu_compiled's, and those of its own.
 #include "on_cpu.hpp"
 
-#include "../backend/number_tests.hpp"
-#include "../backend/verb_tests.hpp"
+#include "../core/number_tests.hpp"
+#include "../core/verb_tests.hpp"
 #include "../estimate/edge_tests.hpp"
 #include "../estimate/estimator_tests.hpp"
 #include "../estimate/neighbour_tests.hpp"

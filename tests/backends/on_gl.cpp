@@ -1,8 +1,8 @@
 // All backend tests on OpenGL with its overrides, in an EGL or in an OSMesa context, with the driver's debug output on.
 #include "on_gl.hpp"
 
-#include "../backend/number_tests.hpp"
-#include "../backend/verb_tests.hpp"
+#include "../core/number_tests.hpp"
+#include "../core/verb_tests.hpp"
 #include "../estimate/edge_tests.hpp"
 #include "../estimate/estimator_tests.hpp"
 #include "../estimate/neighbour_tests.hpp"

@@ -1,7 +1,7 @@
 // The OpenGL backend under test, in an EGL or in an OSMesa context, with the driver's debug output on.
 #pragma once
 
-#include "../backend/under_test.hpp"
+#include "../core/under_test.hpp"
 #include "gl_algorithms.hpp"
 
 #include <string_view>

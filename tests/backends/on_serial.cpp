@@ -1,8 +1,8 @@
 // All backend tests on the serial backend; those of rays and pictures in on_serial_pictures.cpp, so that two cores
 // compile them.
 #include "on_serial.hpp"
-#include "../backend/number_tests.hpp"
-#include "../backend/verb_tests.hpp"
+#include "../core/number_tests.hpp"
+#include "../core/verb_tests.hpp"
 #include "../estimate/estimator_tests.hpp"
 #include "../estimate/neighbour_tests.hpp"
 #include "../map/algorithm_tests.hpp"

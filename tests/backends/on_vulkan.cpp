@@ -1,8 +1,8 @@
 // All backend tests on Vulkan with its overrides, with the validation layer watching.
 #include "on_vulkan.hpp"
 
-#include "../backend/number_tests.hpp"
-#include "../backend/verb_tests.hpp"
+#include "../core/number_tests.hpp"
+#include "../core/verb_tests.hpp"
 #include "../estimate/edge_tests.hpp"
 #include "../estimate/estimator_tests.hpp"
 #include "../estimate/neighbour_tests.hpp"

@@ -1,7 +1,7 @@
 // The Vulkan backend under test, with the validation layer watching.
 #pragma once
 
-#include "../backend/under_test.hpp"
+#include "../core/under_test.hpp"
 #include "vulkan_algorithms.hpp"
 
 namespace photongrid::testing {

@@ -1,7 +1,7 @@
 // Algorithms on the Vulkan backend equal the serial ones.
 #pragma once
 
-#include "../backend/same_light.hpp"
+#include "../core/same_light.hpp"
 #include "vulkan_under_test.hpp"
 
 namespace photongrid::testing {

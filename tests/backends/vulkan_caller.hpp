@@ -1,7 +1,7 @@
 // A caller with a Vulkan device of its own.
 #pragma once
 
-#include "../backend/under_test.hpp"
+#include "../core/under_test.hpp"
 #include "../map/photon_sets.hpp"
 #include "on_serial.hpp"
 #include "vulkan_algorithms.hpp"

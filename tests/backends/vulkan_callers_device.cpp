@@ -1,6 +1,6 @@
 // A program that has a Vulkan device already: photongrid works on it, takes over its buffers and hands over its own,
 // and the validation layer, synchronization included, has nothing to say.
-#include "../backend/wanted_device_tests.hpp"
+#include "../core/wanted_device_tests.hpp"
 #include "vulkan_barrier_tests.hpp"
 #include "vulkan_caller_tests.hpp"
 

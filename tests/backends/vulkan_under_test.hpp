@@ -1,7 +1,7 @@
 // The Vulkan backend under test, and kernels of its tests.
 #pragma once
 
-#include "../backend/under_test.hpp"
+#include "../core/under_test.hpp"
 #include "../map/photon_sets.hpp"
 #include "serial_algorithms.hpp"
 #include "vulkan_algorithms.hpp"
@@ -18,7 +18,7 @@
 #include <random>
 
 // Kernels of this test: one text, read as C++ here and kept for glslang.
-#include <photongrid/backend/begin.hpp>
+#include <photongrid/core/begin.hpp>
 #undef PARAMS
 #define PARAMS(P) P args{};
 #define TEST_KERNEL(NAME, ...)                                                                                         \
@@ -135,7 +135,7 @@ void kernel(uint i) {
 inline constexpr text_file texts[] = {next_frame_text, countdown_text, group_probe_text, switched_text, contracts_text,
     sends_text, eight_states_text, broken_text};
 } // namespace photongrid::test_kernels
-#include <photongrid/backend/end.hpp>
+#include <photongrid/core/end.hpp>
 
 namespace photongrid::testing {
 

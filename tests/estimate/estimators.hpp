@@ -1,8 +1,8 @@
 // The fixture of tests of estimates on any backend: brute force in double, all that can be chosen.
 #pragma once
 
-#include "../backend/under_test.hpp"
 #include "../backends/serial_algorithms.hpp"
+#include "../core/under_test.hpp"
 #include "../map/photon_sets.hpp"
 #include "known_answers.hpp"
 

@@ -2,7 +2,7 @@
 // Included by each on_<backend>.cpp.
 #pragma once
 
-#include "../backend/under_test.hpp"
+#include "../core/under_test.hpp"
 #include "../map/photon_generator.hpp"
 #include "../map/photon_sets.hpp"
 #include "known_answers.hpp"

@@ -3,9 +3,9 @@
 
 #include "pictures_with_errors.hpp"
 
-#include <photongrid/io/error_map.hpp>
-#include <photongrid/io/image_difference.hpp>
-#include <photongrid/io/picture_regions.hpp>
+#include <photongrid/compare/error_map.hpp>
+#include <photongrid/compare/image_difference.hpp>
+#include <photongrid/compare/picture_regions.hpp>
 
 #include <gtest/gtest.h>
 

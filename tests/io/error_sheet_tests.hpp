@@ -3,8 +3,8 @@
 
 #include "pictures_with_errors.hpp"
 
-#include <photongrid/io/error_sheet.hpp>
-#include <photongrid/io/false_colors.hpp>
+#include <photongrid/compare/error_sheet.hpp>
+#include <photongrid/compare/false_colors.hpp>
 #include <photongrid/io/tone_map.hpp>
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include "pictures_with_errors.hpp"
 
-#include <photongrid/io/flip.hpp>
+#include <photongrid/compare/flip.hpp>
 #include <photongrid/io/tone_map.hpp>
 
 #include <glm/glm.hpp>

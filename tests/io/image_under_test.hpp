@@ -1,9 +1,9 @@
 // A folder for pictures of a test.
 #pragma once
 
-#include <photongrid/io/image_difference.hpp>
+#include <photongrid/compare/image_difference.hpp>
+#include <photongrid/compare/picture_noise.hpp>
 #include <photongrid/io/image_file.hpp>
-#include <photongrid/io/picture_noise.hpp>
 #include <photongrid/io/tone_map.hpp>
 
 #include <ImfChannelList.h>

@@ -3,7 +3,7 @@
 
 #include "image_under_test.hpp"
 
-#include <photongrid/io/structural_similarity.hpp>
+#include <photongrid/compare/structural_similarity.hpp>
 #include <photongrid/io/tone_map.hpp>
 
 #include <gtest/gtest.h>

@@ -1,13 +1,13 @@
 // The fixture of tests of maps and searches on any backend.
 #pragma once
 
-#include "../backend/under_test.hpp"
 #include "../backends/serial_algorithms.hpp"
+#include "../core/under_test.hpp"
 #include "../estimate/known_answers.hpp"
 #include "photon_generator.hpp"
 
-#include <photongrid/backend/random.kernel.hpp>
-#include <photongrid/backend/self_test.hpp>
+#include <photongrid/core/random.kernel.hpp>
+#include <photongrid/core/self_test.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/map/fitting_grid.hpp>
 #include <photongrid/map/map_builders.hpp>

@@ -2,8 +2,8 @@
 // on_<backend>.cpp.
 #pragma once
 
-#include "../backend/under_test.hpp"
 #include "../backends/serial_algorithms.hpp"
+#include "../core/under_test.hpp"
 #include "photon_sets.hpp"
 
 #include <photongrid/map/map_file.hpp>

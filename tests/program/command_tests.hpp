@@ -1,7 +1,7 @@
 // The program's commands: results and errors. The file is long because commands are many, and each case is short.
 #pragma once
 
-#include "../backend/under_test.hpp"
+#include "../core/under_test.hpp"
 #include "program_under_test.hpp"
 
 namespace photongrid {

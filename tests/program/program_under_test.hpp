@@ -1,7 +1,7 @@
 // The program under test.
 #pragma once
 
-#include <photongrid/io/image_difference.hpp>
+#include <photongrid/compare/image_difference.hpp>
 #include <photongrid/io/image_file.hpp>
 #include <photongrid/io/tone_map.hpp>
 

@@ -2,8 +2,8 @@
 // on_<backend>.cpp.
 #pragma once
 
-#include "../backend/under_test.hpp"
 #include "../backends/serial_pictures.hpp"
+#include "../core/under_test.hpp"
 #include "../scene/test_scenes.hpp"
 
 #include <algorithm>

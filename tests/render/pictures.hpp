@@ -1,8 +1,8 @@
 // The fixture of tests of the renderer, and what they compare pictures and photons with.
 #pragma once
 
-#include "../backend/under_test.hpp"
 #include "../backends/serial_pictures.hpp"
+#include "../core/under_test.hpp"
 #include "../map/photon_sets.hpp"
 #include "../scene/test_scenes.hpp"
 #include "ball_over_floor.hpp"

@@ -22,8 +22,8 @@ using photongrid::uint;
 inline uint floatBitsToUint(double x) { return glm::floatBitsToUint(static_cast<float>(x)); }
 inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintBitsToFloat(bits)); }
 
-#include <photongrid/backend/begin.hpp>
-#include <photongrid/backend/natural_log.kernel.hpp>
+#include <photongrid/core/begin.hpp>
+#include <photongrid/core/natural_log.kernel.hpp>
 #include <photongrid/map/grid.kernel.hpp>
 #include <photongrid/trace/emission_guide.kernel.hpp>
 #include <photongrid/trace/photon_event.kernel.hpp>
@@ -34,9 +34,9 @@ inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintB
 
 // What kernels share, too.
 #undef PHOTONGRID_INSIDE_KERNEL_STRUCT
-#include <photongrid/backend/natural_log.glsl>
-#include <photongrid/backend/random.glsl>
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/natural_log.glsl>
+#include <photongrid/core/random.glsl>
+#include <photongrid/core/vector.glsl>
 #include <photongrid/estimate/gather_tally.glsl>
 #include <photongrid/estimate/row_cursor.glsl>
 #include <photongrid/estimate/search_radius.glsl>
@@ -73,7 +73,7 @@ struct irradiance_estimate {
 };
 
 #undef float
-#include <photongrid/backend/end.hpp>
+#include <photongrid/core/end.hpp>
 
 } // namespace photongrid::double_kernels
 

@@ -2,7 +2,7 @@
 // of double precision. Included by each on_<backend>.cpp.
 #pragma once
 
-#include "../backend/under_test.hpp"
+#include "../core/under_test.hpp"
 #include "mesh_sets.hpp"
 
 #include <photongrid/trace/ray_search.hpp>

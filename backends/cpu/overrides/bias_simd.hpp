@@ -3,7 +3,7 @@
 #include <photongrid/backends/cpu/overrides/gather_simd.hpp>
 #include <photongrid/estimate/bias_estimate.kernel.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
@@ -90,4 +90,4 @@ HWY_NOINLINE inline void tell_bias(const search_job& j, uint point, chosen_radiu
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -5,7 +5,7 @@
 #include <photongrid/backends/cpu/overrides/radix_sort.hpp>
 #include <photongrid/map/bitonic_sort.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -36,4 +36,4 @@ inline
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

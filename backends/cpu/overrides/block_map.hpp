@@ -6,7 +6,7 @@
 #include <photongrid/backends/cpu/overrides/sorted_map.hpp>
 #include <photongrid/map/block_map.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -77,4 +77,4 @@ inline
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

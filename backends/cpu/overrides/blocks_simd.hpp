@@ -5,7 +5,7 @@
 
 #include <bit>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
@@ -121,4 +121,4 @@ inline void find_blocks(const search_job& j, const glm::vec3& at, float radius2,
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

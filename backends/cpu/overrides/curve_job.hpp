@@ -4,7 +4,7 @@
 #include <photongrid/backends/cpu/buffer.hpp>
 #include <photongrid/map/map_buffers.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::cpu {
 
@@ -36,4 +36,4 @@ struct curve_summary {
 
 } // namespace photongrid::cpu
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -1,11 +1,11 @@
 // A digit of a pair's key or value, for radix_sort.hpp.
 #pragma once
 
-#include <photongrid/backend/kernel.hpp>
+#include <photongrid/core/kernel.hpp>
 
 #include <algorithm>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::cpu {
 
@@ -23,4 +23,4 @@ inline constexpr std::size_t pairs_per_line = 8; ///< pairs of 8 bytes per cache
 
 } // namespace photongrid::cpu
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

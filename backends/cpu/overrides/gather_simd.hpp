@@ -8,7 +8,7 @@
 #include <photongrid/estimate/search_tally.kernel.hpp>
 #include <photongrid/map/grid.kernel.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
@@ -276,4 +276,4 @@ inline void finish(const search_job& j, uint point, chosen_radius r, const gathe
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

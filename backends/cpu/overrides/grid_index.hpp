@@ -4,7 +4,7 @@
 #include <photongrid/backends/cpu/cpu_backend.hpp>
 #include <photongrid/map/grid_index.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -45,4 +45,4 @@ inline
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

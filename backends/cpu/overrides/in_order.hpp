@@ -1,12 +1,12 @@
 // Searches that complete their elements in order, so many a pass.
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 
 #include <algorithm>
 #include <cstddef>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::cpu {
 
@@ -32,4 +32,4 @@ inline next_part next_passes(std::size_t n, std::size_t begin, std::size_t per_p
 
 } // namespace photongrid::cpu
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -5,7 +5,7 @@
 #include <photongrid/backends/cpu/overrides/search.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -96,4 +96,4 @@ inline
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -4,7 +4,7 @@
 #include <photongrid/backends/cpu/overrides/search.hpp>
 #include <photongrid/estimate/knn_neighbours.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -49,4 +49,4 @@ inline
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -5,7 +5,7 @@
 #include <photongrid/backends/cpu/buffer.hpp>
 #include <photongrid/backends/cpu/overrides/compress_table.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
@@ -49,4 +49,4 @@ HWY_INLINE uint bits_of(D d, hn::Mask<D> mask)
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

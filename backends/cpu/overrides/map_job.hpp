@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::cpu {
 
@@ -51,4 +51,4 @@ struct bucket_scratch {
 
 } // namespace photongrid::cpu
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

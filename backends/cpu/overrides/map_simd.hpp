@@ -9,7 +9,7 @@
 
 #include <photongrid/backends/cpu/overrides/map_job.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
@@ -177,4 +177,4 @@ inline void order_bucket(map_job j, uint bucket, std::size_t begin, std::size_t 
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

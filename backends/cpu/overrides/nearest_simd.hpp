@@ -7,7 +7,7 @@
 // that are within its own distance.
 #include <photongrid/backends/cpu/overrides/group_simd.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
@@ -148,4 +148,4 @@ HWY_NOINLINE void find_nearest(const search_job& j, std::size_t begin, std::size
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

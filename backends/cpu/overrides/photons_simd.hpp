@@ -7,7 +7,7 @@
 #include <photongrid/map/grid.kernel.hpp>
 #include <photongrid/map/map_buffers.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
@@ -42,4 +42,4 @@ HWY_INLINE photon_register load_photons(const glm::vec4* positions, const glm::v
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -4,7 +4,7 @@
 
 #include <photongrid/backends/cpu/cpu_backend.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::cpu {
 
@@ -23,4 +23,4 @@ struct ray_job {
 
 } // namespace photongrid::cpu
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

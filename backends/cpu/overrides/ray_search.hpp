@@ -6,7 +6,7 @@
 #include <photongrid/backends/cpu/overrides/simd.hpp>
 #include <photongrid/backends/cpu/overrides/wide_tree.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -117,4 +117,4 @@ inline
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -5,9 +5,9 @@
 // so, and sometimes if not, and the lanes only choose the triangles that hit_triangle() is then asked about.
 #include <hwy/cache_control.h>
 
-#include <photongrid/backend/vector.kernel.hpp>
 #include <photongrid/backends/cpu/overrides/ray_job.hpp>
 #include <photongrid/backends/cpu/overrides/wide_tree.hpp>
+#include <photongrid/core/vector.kernel.hpp>
 #include <photongrid/trace/instance.kernel.hpp>
 #include <photongrid/trace/ray_state.kernel.hpp>
 #include <photongrid/trace/ray_tests.kernel.hpp>
@@ -15,7 +15,7 @@
 #include <bit>
 #include <optional>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
@@ -292,4 +292,4 @@ inline HWY_ATTR void trace_block(const ray_job& j, std::size_t begin, std::size_
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

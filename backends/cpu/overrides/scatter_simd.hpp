@@ -5,7 +5,7 @@
 
 #include <photongrid/backends/cpu/overrides/digit.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
@@ -60,4 +60,4 @@ inline void scatter_pairs(const digit& by, const glm::uvec2* from, std::size_t f
 } // namespace photongrid::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -7,7 +7,7 @@
 #include <photongrid/backends/cpu/overrides/simd.hpp>
 #include <photongrid/estimate/knn_settings.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::cpu {
 
@@ -102,4 +102,4 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
 
 } // namespace photongrid::cpu
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

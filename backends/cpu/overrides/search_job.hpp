@@ -7,7 +7,7 @@
 
 #include <span>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::cpu {
 
@@ -55,4 +55,4 @@ struct search_job {
 
 } // namespace photongrid::cpu
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

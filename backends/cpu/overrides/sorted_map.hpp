@@ -7,7 +7,7 @@
 #include <photongrid/backends/cpu/overrides/simd.hpp>
 #include <photongrid/map/map_builders.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -124,4 +124,4 @@ inline
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -6,7 +6,7 @@
 #include <photongrid/trace/bounce_photon.kernel.hpp>
 #include <photongrid/trace/photon_frames.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -28,4 +28,4 @@ requires std::same_as<B, cpu_backend> uint trace_batch(B& device, const device_s
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -4,7 +4,7 @@
 #include <photongrid/backends/gl/gl.hpp>
 #include <photongrid/map/bitonic_sort.hpp>
 
-#include <photongrid/backend/begin.hpp>
+#include <photongrid/core/begin.hpp>
 namespace photongrid::gl::kernels {
 
 using namespace glm; // GLSL's types and functions
@@ -22,7 +22,7 @@ struct unpack_pairs {
 };
 
 } // namespace photongrid::gl::kernels
-#include <photongrid/backend/end.hpp>
+#include <photongrid/core/end.hpp>
 
 namespace photongrid {
 

@@ -1,6 +1,6 @@
 #include "display.hpp"
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>

@@ -1,7 +1,7 @@
 #include "newest_picture.hpp"
 
 #include "display.hpp"
-#include <photongrid/io/image_difference.hpp>
+#include <photongrid/compare/image_difference.hpp>
 #include <photongrid/io/tone_map.hpp>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Replaces the window where CMake found no GLFW or no Dear ImGui.
 #include "view_command.hpp"
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 
 namespace photongrid {
 

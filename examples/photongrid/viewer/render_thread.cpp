@@ -1,6 +1,6 @@
 #include "render_thread.hpp"
 
-#include <photongrid/io/image_difference.hpp>
+#include <photongrid/compare/image_difference.hpp>
 #include <photongrid/io/image_file.hpp>
 
 #include <nlohmann/json.hpp>

@@ -4,7 +4,7 @@
 //     bias_start -> gather_bias -> bias_estimate
 #pragma once
 
-#include <photongrid/backend/zero_vectors.kernel.hpp>
+#include <photongrid/core/zero_vectors.kernel.hpp>
 #include <photongrid/estimate/bias_estimate.kernel.hpp>
 #include <photongrid/estimate/bias_start.kernel.hpp>
 #include <photongrid/estimate/gather_bias.kernel.hpp>
@@ -12,7 +12,7 @@
 
 #include <array>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -110,4 +110,4 @@ namespace detail {
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -1,5 +1,5 @@
 // The tally of gather_bias.glsl: x: 1: done.
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 inline uvec4 bias_tally(bool is_done)
 {

@@ -1,5 +1,5 @@
 // Maps squared distances to integers that have the same order. 0 is below all of them. Denormals count as distance 0.
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 inline uint key_of(float d2)
 {

@@ -2,12 +2,12 @@
 // filter.glsl, and its weight in vectors in the cpu backend's gather_simd.hpp.
 #pragma once
 
-#include <photongrid/backend/kernel.hpp>
+#include <photongrid/core/kernel.hpp>
 
 #include <array>
 #include <cstdint>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -64,4 +64,4 @@ namespace detail {
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -1,5 +1,5 @@
 // The inputs of gather_photons.glsl for a given radius. kth_result.glsl writes the same outputs after a search.
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/none.glsl>
 #include <photongrid/estimate/search_radius.glsl>
 
 struct Params {

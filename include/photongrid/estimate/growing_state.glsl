@@ -1,6 +1,6 @@
 // The states of the search for at least k photons. knn_start.glsl initialises them, knn_visit.glsl advances them;
 // knn_result.glsl and grown_radius.glsl read the result.
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 // `gathered`: rgb: power of the photons found, W; w: squared distance of the farthest of the first k, m^2.
 inline float grown_radius2(vec4 gathered)

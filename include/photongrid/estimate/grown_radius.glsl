@@ -1,6 +1,6 @@
 // The inputs of gather_photons.glsl after the at-least-k search (knn_visit.glsl). kth_result.glsl writes the same
 // outputs.
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/none.glsl>
 #include <photongrid/estimate/growing_state.glsl>
 #include <photongrid/estimate/search_radius.glsl>
 #include <photongrid/estimate/search_tally.glsl>

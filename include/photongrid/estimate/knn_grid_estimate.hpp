@@ -11,7 +11,7 @@
 // Their biases, if they are asked for, come last (bias_sums.hpp).
 #pragma once
 
-#include <photongrid/backend/zero_vectors.kernel.hpp>
+#include <photongrid/core/zero_vectors.kernel.hpp>
 #include <photongrid/estimate/bias_sums.hpp>
 #include <photongrid/estimate/gather_photons.kernel.hpp>
 #include <photongrid/estimate/gather_start.kernel.hpp>
@@ -25,7 +25,7 @@
 
 #include <optional>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -322,4 +322,4 @@ knn_estimates<B> knn_grid_estimate(B& device, const map_buffers<B>& map, const b
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

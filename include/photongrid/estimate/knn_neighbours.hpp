@@ -13,7 +13,7 @@
 
 #include <bit>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -135,4 +135,4 @@ neighbour_lists<B> knn_neighbours(B& device, const map_buffers<B>& map, const bu
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -14,7 +14,7 @@
 #include <photongrid/estimate/kth_result.kernel.hpp>
 #include <photongrid/estimate/kth_tie.kernel.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -165,4 +165,4 @@ progress knn_radius<B>::run_stage(uint passes)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -1,6 +1,6 @@
 // Initialises a kNN-grid search (2.3): no photons found, and ring 0, the query point's own cell, is next. Points with
 // w <= 0 and points that are not finite are done at once.
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/none.glsl>
 #include <photongrid/estimate/growing_state.glsl>
 #include <photongrid/map/grid.glsl>
 

@@ -9,7 +9,7 @@
 // result so far, which can be displayed at any time (3.4).
 //
 // The kernel is one function, because it is one state machine over local copies of the states.
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/none.glsl>
 #include <photongrid/estimate/growing_state.glsl>
 #include <photongrid/estimate/search_tally.glsl>
 #include <photongrid/map/grid.glsl>

@@ -8,7 +8,7 @@
 // The result is the squared distance of a photon, independent of the pivots and therefore the same on every device.
 //
 // The kernel is one function, because it is one state machine over local copies of the states.
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/none.glsl>
 #include <photongrid/map/block_tree.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/estimate/distance_key.glsl>

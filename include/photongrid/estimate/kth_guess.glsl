@@ -1,7 +1,7 @@
 // A first guess at the squared distance of the k-th nearest photon. In a grid map it follows from the cells' counts
 // alone: boxes of cells around the query point, each about twice as wide as the one before, until one holds k photons.
 // In a block map it follows from the tree's boxes (guess_by_boxes.glsl). A wrong guess costs time only.
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/none.glsl>
 #include <photongrid/map/block_tree.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/estimate/kth_state.glsl>
@@ -29,7 +29,7 @@ OUTPUT(3, uvec4, bracket)
 OUTPUT(4, uvec4, cursor)
 OUTPUT(5, uvec4, tally)
 
-#include <photongrid/backend/group_middle.glsl>
+#include <photongrid/core/group_middle.glsl>
 #include <photongrid/estimate/search_blocks.glsl>
 #include <photongrid/estimate/guess_by_boxes.glsl>
 

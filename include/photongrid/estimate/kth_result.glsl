@@ -1,5 +1,5 @@
 // The result of the search for the k-th nearest photon, for kth_tie.glsl and gather_photons.glsl.
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/none.glsl>
 #include <photongrid/estimate/distance_key.glsl>
 #include <photongrid/estimate/kth_state.glsl>
 #include <photongrid/estimate/row_cursor.glsl>

@@ -1,6 +1,6 @@
 // The states of the search for the k-th nearest photon. kth_guess.glsl initialises them, kth_distance.glsl advances
 // them, and kth_result.glsl reads the result.
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 // Phases
 const uint COUNTING = 0u;   // scans count photons within eight pivots

@@ -3,7 +3,7 @@
 // smallest and the largest id at the radius, which are the same if one photon is repeated. Further scans count the ids
 // below each of four pivots between them, as kth_distance.glsl counts distances. The kernel is one function, because it
 // is one state machine over local copies of the states.
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/none.glsl>
 #include <photongrid/map/block_tree.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/estimate/row_cursor.glsl>

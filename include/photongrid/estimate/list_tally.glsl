@@ -2,7 +2,7 @@
 // neighbour_pair.glsl reads it.
 //     x: photons in this part of the list; y: 1: there are no more photons; z: the last id that counts at the radius;
 //     w: how often it still counts. z, w: as in `chosen` (search_radius.glsl reads both)
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 inline uvec4 list_tally(uint in_part, bool is_complete, uint last_id, uint last_left)
 {

@@ -1,6 +1,6 @@
 // A neighbour as a sortable pair: the bits of its squared distance, which have the order of the distances, and its id.
 // Entry e of the list of point p is pair e * points + p, so that consecutive elements read consecutive pairs.
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/none.glsl>
 #include <photongrid/estimate/list_tally.glsl>
 
 struct Params {

@@ -1,8 +1,8 @@
-// Visits the photons near the query points of a subgroup (IN_GROUPS, backend/begin.hpp), or near a single point, in map
+// Visits the photons near the query points of a subgroup (IN_GROUPS, core/begin.hpp), or near a single point, in map
 // order. At each step every lane looks up one row of cells, or tests one box of a block map; then, chunk by chunk,
 // every lane loads one photon of these rows or blocks and broadcasts it to the others. Included by kernels after
 // search_rows.glsl, search_blocks.glsl and photon_distance.glsl, and after row_cursor.glsl.
-#include <photongrid/backend/group_middle.glsl>
+#include <photongrid/core/group_middle.glsl>
 
 // The union of the points' search balls is inside this ball: its centre, the centre's cell, and the squared radius.
 vec4 walk_center;

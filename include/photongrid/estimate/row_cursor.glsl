@@ -1,7 +1,7 @@
 // Where a scan of a map goes on in its next pass, or a walk (photon_walk.glsl):
 //     x, y: grid map: y and z of the next row; block map: the next node and its level (block_tree.glsl)
 //     z: the first photon not yet visited; w: the walk's phase, else 0
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 inline uvec4 row_cursor(uint y, uint z, uint photon)
 {

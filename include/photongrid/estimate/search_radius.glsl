@@ -1,6 +1,6 @@
 // The result of the search for a radius, which gather_photons.glsl and list_neighbours.glsl use. kth_result.glsl,
 // grown_radius.glsl and given_radius.glsl write it; kth_tie.glsl finds the last id.
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 // `search_radius`: x: squared radius, m^2; y: 1 if a photon set it, 0 if it was given.
 inline vec4 search_radius_of(float radius2, bool is_by_photon)

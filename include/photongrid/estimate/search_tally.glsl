@@ -1,6 +1,6 @@
 // The tally of a search. Each stage packs its own, but the first two lanes of all are the same:
 //     x: photons found within the radius so far; y: photons visited
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 inline uvec4 search_tally(uint found, uint visited)
 {

@@ -1,6 +1,6 @@
 // The states of the search for the last id at a radius. kth_result.glsl initialises them, and kth_tie.glsl advances
 // them.
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 // Phases
 const uint FIRST_AND_LAST = 0u; // finding the smallest and the largest id

@@ -2,13 +2,13 @@
 // depend on the data, so every step is one gather pass.
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 #include <photongrid/map/bitonic_step.kernel.hpp>
 #include <photongrid/map/pad_pairs.kernel.hpp>
 
 #include <bit>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -54,4 +54,4 @@ sort_report bitonic_sort(B& device, buffer_of<B, glm::uvec2>& pairs)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

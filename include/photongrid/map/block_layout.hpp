@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::detail {
 
@@ -51,4 +51,4 @@ inline kernels::Curve curve_through(const glm::vec4& low, const glm::vec4& high)
 
 } // namespace photongrid::detail
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

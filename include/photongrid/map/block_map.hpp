@@ -16,7 +16,7 @@
 
 #include <array>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -147,4 +147,4 @@ map_buffers<B> block_map(B& device, photons<B> p, uint parts = every_part)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

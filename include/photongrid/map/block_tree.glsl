@@ -3,7 +3,7 @@
 // Level 0 is the highest. The children of node v are 16 consecutive nodes, and nodes are numbered so that their places
 // need no table:
 //     level 0: nodes 0 to 15; level 1: 16 to 271; level 2: 272 to 4,367; ...
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 const uint BLOCK = 16u; // photons in a block, and children of a node
 

@@ -1,7 +1,7 @@
 // The pair of a photon for sorting by one word of its virtual cell's number: (word, place in the order so far), as
 // curve_key.glsl does for the curve. The low word comes first, in the order of ids, then the high word. Photons that no
 // map holds get the largest high word, which no cell has.
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/none.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/map/virtual_cell.glsl>
 

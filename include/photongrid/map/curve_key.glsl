@@ -1,7 +1,7 @@
 // The pair of a photon for sorting by one word of the Hilbert curve: (word, place in the order so far). Sorting by the
 // last word first, and so on to the first one, sorts by all words, since places keep the order of equal ones. Photons
 // that are in no block get the largest key.
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/none.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/map/hilbert.glsl>
 

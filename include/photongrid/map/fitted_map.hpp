@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -56,4 +56,4 @@ map_buffers<B> fitted_map(B& device, photons<B> p, uint k, uint parts = every_pa
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

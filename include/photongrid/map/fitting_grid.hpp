@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -100,4 +100,4 @@ grid fitting_grid(B& device, const photons<B>& p, uint k, float cells_per_radius
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

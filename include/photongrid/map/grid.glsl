@@ -1,5 +1,5 @@
 // The uniform grid (2.2). Building and searching find a point's cell by the same functions, so they agree bit for bit.
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 struct Grid {
     vec4 origin;       // lowest corner, m

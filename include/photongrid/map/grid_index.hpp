@@ -2,10 +2,10 @@
 // pass.
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 #include <photongrid/map/first_in_cell.kernel.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -25,4 +25,4 @@ buffer_of<B, glm::uvec2> grid_index(B& device, const buffer_of<B, glm::uvec2>& p
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -19,7 +19,7 @@
 
 #include <bit>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -122,4 +122,4 @@ map_buffers<B> routed_map(B& device, photons<B> p, const grid& g, uint m, uint s
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

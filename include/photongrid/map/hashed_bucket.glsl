@@ -1,6 +1,6 @@
 // The bucket of photon i: a hash of its virtual cell (section 4.4). Cells may share a bucket.
-#include <photongrid/backend/none.glsl>
-#include <photongrid/backend/random.glsl>
+#include <photongrid/core/none.glsl>
+#include <photongrid/core/random.glsl>
 #include <photongrid/map/grid.glsl>
 
 struct Params {

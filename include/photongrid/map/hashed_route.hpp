@@ -32,7 +32,7 @@
 #include <utility>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -250,4 +250,4 @@ double redistributed_power(B& device, const routed_survivors<B>& survivors)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

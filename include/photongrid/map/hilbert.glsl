@@ -4,7 +4,7 @@
 //
 // A position's digits along the curve have no last level: they come in words of 10 levels, 30 bits, of which a map
 // takes as many as its densest clusters need.
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 // The space that a curve fills. Coordinates are taken relative to the point of the photons' box that is nearest to 0,
 // because floats are finest there.

@@ -7,7 +7,7 @@
 // A block map has photons along a curve, 16 to a block, and boxes around the blocks (block_map.hpp).
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 #include <photongrid/map/grid.kernel.hpp>
 #include <photongrid/map/hilbert.kernel.hpp>
 
@@ -15,7 +15,7 @@
 #include <cmath>
 #include <string>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -138,4 +138,4 @@ double redistributed_power(B& device, const map_buffers<B>& map)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

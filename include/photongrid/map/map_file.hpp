@@ -6,7 +6,7 @@
 // memory, if the system supports that, and uploads from there.
 #pragma once
 
-#include <photongrid/backend/file_target.hpp>
+#include <photongrid/core/file_target.hpp>
 #include <photongrid/map/file_bytes.hpp>
 
 #include <array>
@@ -15,7 +15,7 @@
 #include <filesystem>
 #include <limits>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -141,4 +141,4 @@ map_buffers<B> load_map(B& device, const std::filesystem::path& file, std::strin
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -1,7 +1,7 @@
 // The format of map files (map_file.hpp): the header, and the checks of a file that is to be read.
 #pragma once
 
-#include <photongrid/backend/fnv1a.hpp>
+#include <photongrid/core/fnv1a.hpp>
 #include <photongrid/map/block_layout.hpp>
 #include <photongrid/map/map_buffers.hpp>
 
@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -219,4 +219,4 @@ namespace detail {
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

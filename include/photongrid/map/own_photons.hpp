@@ -26,7 +26,7 @@
 #include <type_traits>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -274,4 +274,4 @@ requires std::ranges::sized_range<Range> && detail::vector_like<std::ranges::ran
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

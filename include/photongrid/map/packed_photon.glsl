@@ -1,6 +1,6 @@
 // Entry i of a routed list without gaps: a binary search in the prefix sums finds the cell, and thereby the slot. A
 // cell that has more entries than photons kept repeats them in turn, as often as its number of entries asks for.
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/none.glsl>
 
 struct Params {
     uint cells;

@@ -1,12 +1,12 @@
 // Prefix sums (Hillis and Steele 1986, with four terms per step instead of two) by gather passes.
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 #include <photongrid/map/prefix_sum_step.kernel.hpp>
 
 #include <utility>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -31,4 +31,4 @@ buffer_of<B, uint> prefix_sums(B& device, const buffer_of<B, uint>& terms)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -1,6 +1,6 @@
 // The bucket of photon i: the rank of its virtual cell among the occupied ones, by binary search in the cells of the
 // sorted photons, as first_in_cell.glsl does for stored cells (2.2.1).
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/none.glsl>
 #include <photongrid/map/grid.glsl>
 #include <photongrid/map/virtual_cell.glsl>
 

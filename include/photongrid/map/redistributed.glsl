@@ -1,5 +1,5 @@
 // The power of a photon that was kept, with its share of the power of those without a slot (2.2.2).
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 inline vec4 redistributed(vec4 arrived, vec4 scale, vec4 surplus)
 {

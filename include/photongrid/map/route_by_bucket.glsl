@@ -1,6 +1,6 @@
 // The destination of draw i where each photon's bucket is known (hashed_route.hpp). A bucket keeps the photons that
 // arrive first. The draws are as random as their hash, so that these are a uniform sample of all that arrive.
-#include <photongrid/backend/random.glsl>
+#include <photongrid/core/random.glsl>
 
 struct Params {
     uint photons;

@@ -1,8 +1,8 @@
 // The destination of draw i in stencil routing (2.2.2, figure 5). Photons are drawn in a seeded random order: a cell
 // keeps those that arrive first, so the order of ids would discard later lights and bounces.
 #include <photongrid/map/grid.glsl>
-#include <photongrid/backend/none.glsl>
-#include <photongrid/backend/random.glsl>
+#include <photongrid/core/none.glsl>
+#include <photongrid/core/random.glsl>
 
 struct Params {
     Grid grid;

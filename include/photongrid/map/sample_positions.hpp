@@ -1,7 +1,7 @@
 // A sample of the photons' positions on the host, from which maps are fitted to all of them.
 #pragma once
 
-#include <photongrid/backend/random.kernel.hpp>
+#include <photongrid/core/random.kernel.hpp>
 #include <photongrid/map/gather_vector.kernel.hpp>
 #include <photongrid/map/map_buffers.hpp>
 
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::detail {
 
@@ -36,4 +36,4 @@ std::vector<glm::vec3> sample_positions(B& device, const photons<B>& p, uint mos
 
 } // namespace photongrid::detail
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

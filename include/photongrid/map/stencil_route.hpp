@@ -8,7 +8,7 @@
 #include <photongrid/map/route_photon.kernel.hpp>
 #include <photongrid/map/routed_cell.kernel.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -115,4 +115,4 @@ routed_cells<B> stencil_route(
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -60,4 +60,4 @@ inline std::uint64_t cell_number(const virtual_grid& g, glm::vec3 position)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -6,7 +6,7 @@
 #include <photongrid/reference/intersect.hpp>
 #include <photongrid/reference/random_stream.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::reference {
 
@@ -176,4 +176,4 @@ inline specular_bounce specular_of_light(const material& m, const hit& h, const 
 
 } // namespace photongrid::reference
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::reference {
 
@@ -29,4 +29,4 @@ inline dvec3 uniform_direction(double u, double v) { return around({0, 0, 1}, 1 
 
 } // namespace photongrid::reference
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

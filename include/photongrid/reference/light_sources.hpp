@@ -7,7 +7,7 @@
 
 #include <optional>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::reference {
 
@@ -167,4 +167,4 @@ private:
 
 } // namespace photongrid::reference
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -1,10 +1,10 @@
 // Random numbers of the reference renderer: one stream per pixel and per group of light paths, so that results do not
-// depend on threads. It shares nothing with backend/random.glsl.
+// depend on threads. It shares nothing with core/random.glsl.
 #pragma once
 
 #include <cstdint>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::reference {
 
@@ -47,4 +47,4 @@ private:
 
 } // namespace photongrid::reference
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

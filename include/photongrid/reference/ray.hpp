@@ -9,7 +9,7 @@
 #include <array>
 #include <limits>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 /// The reference renderer (docs/reference/reference_renderer.md): double precision, m, W.
 namespace photongrid::reference {
@@ -61,4 +61,4 @@ inline std::array<double, 2> real_roots(double a, double b, double c, bool start
 
 } // namespace photongrid::reference
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

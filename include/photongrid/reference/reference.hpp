@@ -6,7 +6,7 @@
 
 #include <photongrid/reference/path_tracer.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -100,4 +100,4 @@ inline reference_picture render_reference(
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

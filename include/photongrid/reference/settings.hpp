@@ -4,7 +4,7 @@
 #include <photongrid/render/image.hpp>
 #include <photongrid/scene/scene.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -82,4 +82,4 @@ struct reference_picture {
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <variant>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::reference {
 
@@ -294,4 +294,4 @@ inline double surface_area(const polygon& p) { return glm::length(area_vector(p)
 
 } // namespace photongrid::reference
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

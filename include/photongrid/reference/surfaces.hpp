@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <optional>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::reference {
 
@@ -105,4 +105,4 @@ private:
 
 } // namespace photongrid::reference
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::reference {
 
@@ -45,4 +45,4 @@ inline double number_at(const texture_use& t, const glm::dvec2& coordinates)
 
 } // namespace photongrid::reference
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

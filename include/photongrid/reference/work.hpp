@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::reference {
 
@@ -117,4 +117,4 @@ void share_out(std::uint32_t n, std::uint32_t threads, std::string_view stage, d
 
 } // namespace photongrid::reference
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

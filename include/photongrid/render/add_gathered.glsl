@@ -4,8 +4,8 @@
 //
 // A ray that ends closer to its start than that radius, as in a corner, sees the estimate's blur. Such near ends are
 // left for a gather of their own, as points with w > 0.
-#include <photongrid/backend/vector.glsl>
-#include <photongrid/backend/none.glsl>
+#include <photongrid/core/vector.glsl>
+#include <photongrid/core/none.glsl>
 
 struct Params {
     float share;       // 1 / rays per point

@@ -6,7 +6,7 @@
 //
 // So the bias is that of the slope, plus that of curvature, told by the difference of two estimates less what the
 // slope adds to it. The moments of the light over a part of a disc tell nothing of steps, so they become 0.
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 
 struct Params {
     float factor; // of the filter: bias_factor (estimate/filter.hpp)

@@ -7,7 +7,7 @@
 // polygon and disc is a sum over the polygon's edges: inward normal times the integral of Psi along the edge. Psi
 // vanishes on the rim and outside. In the same way the second moments are those of Psi u, plus the integral of Psi, a
 // quarter of Epanechnikov's share.
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 #include <photongrid/estimate/search_radius.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 

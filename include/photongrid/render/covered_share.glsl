@@ -6,7 +6,7 @@
 // where F is the integral of weight times radius up to rho, the distance of the edge or of the disc's rim, whichever is
 // smaller. On the part of the edge inside the disc, dphi is d ds / rho^2 and the integral is a polynomial in s (with a
 // logarithm for the cone); on the rim it is an angle.
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 #include <photongrid/estimate/search_radius.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 

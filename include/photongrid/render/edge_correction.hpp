@@ -3,7 +3,7 @@
 // straight edge is half of the irradiance, in a right corner a quarter.
 #pragma once
 
-#include <photongrid/backend/zero_vectors.kernel.hpp>
+#include <photongrid/core/zero_vectors.kernel.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/render/correct_bias.kernel.hpp>
 #include <photongrid/render/covered_moments.kernel.hpp>
@@ -11,7 +11,7 @@
 #include <photongrid/render/divide_by_share.kernel.hpp>
 #include <photongrid/trace/device_scene.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -128,4 +128,4 @@ void correct_edges(B& device, const device_scene<B>& s, const buffer_of<B, glm::
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -8,8 +8,8 @@
 //                        ^---------- direct light, caustics <-- near ends <------|
 #pragma once
 
-#include <photongrid/backend/copy_vectors.kernel.hpp>
-#include <photongrid/backend/zero_vectors.kernel.hpp>
+#include <photongrid/core/copy_vectors.kernel.hpp>
+#include <photongrid/core/zero_vectors.kernel.hpp>
 #include <photongrid/estimate/knn_neighbours.hpp>
 #include <photongrid/map/fitted_map.hpp>
 #include <photongrid/render/add_gathered.kernel.hpp>
@@ -25,7 +25,7 @@
 
 #include <optional>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -249,4 +249,4 @@ void add_gather_rays(B& device, const device_scene<B>& s, const gather_map<B>& m
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

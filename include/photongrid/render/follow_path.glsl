@@ -1,8 +1,8 @@
 // Follows paths of a final gather (gathered_paths.hpp) past the diffuse surfaces where their rays ended. Where paths
 // may end, one that a surface leaves the share p of its light ends with the probability 1 - p, and those that go on
 // stand for it (Russian roulette: Arvo and Kirk, Particle Transport and Image Synthesis, 1990).
-#include <photongrid/backend/vector.glsl>
-#include <photongrid/backend/random.glsl>
+#include <photongrid/core/vector.glsl>
+#include <photongrid/core/random.glsl>
 
 struct Params {
     uint may_end;     // 1: paths may end

@@ -12,7 +12,7 @@
 
 #include <optional>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -54,4 +54,4 @@ void add_path(B& device, const device_scene<B>& s, const map_buffers<B>& caustic
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -21,7 +21,7 @@
 #include <photongrid/render/take_estimate.kernel.hpp>
 #include <photongrid/render/take_vector.kernel.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -184,4 +184,4 @@ void interpolated_estimates<B>::end_round()
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

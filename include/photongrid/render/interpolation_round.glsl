@@ -1,7 +1,7 @@
 // Decides what a round of interpolated_estimates.hpp does for each pixel: interpolate its estimate among the corners of
 // its tile if all are near, on the same surface, and have estimates; search the photon map if the pixel is a corner of
 // the round's own tiles; or leave it to the next round.
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 #include <photongrid/render/pixel_tile.glsl>
 
 struct Params {

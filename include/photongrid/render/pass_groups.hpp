@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::detail {
 
@@ -137,4 +137,4 @@ private:
 
 } // namespace photongrid::detail
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -9,7 +9,7 @@
 
 #include <bit>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -180,4 +180,4 @@ void run(step_list steps, const render_observer& observer, const Ran& ran)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

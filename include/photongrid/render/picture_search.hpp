@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::detail {
 
@@ -56,4 +56,4 @@ inline knn_settings search_for_preview(knn_settings k, const preview& p)
 
 } // namespace photongrid::detail
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

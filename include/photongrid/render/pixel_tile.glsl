@@ -1,5 +1,5 @@
 // Tiles of pixels, among whose corners estimates are interpolated (interpolated_estimates.hpp).
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 // What a round does for a pixel's estimate.
 const uint NO_ESTIMATE = 0u; // nothing: the pixel has none, or gets it in a later round

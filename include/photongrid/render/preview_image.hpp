@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::detail {
 
@@ -85,4 +85,4 @@ inline image to_image(const std::vector<glm::vec4>& pixels, const raster& r, con
 
 } // namespace photongrid::detail
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -86,4 +86,4 @@ inline std::vector<preview> preview_schedule(const render_settings& s, std::uint
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -18,7 +18,7 @@
 #include <optional>
 #include <utility>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -450,4 +450,4 @@ progressive_render<B>::progressive_render(B& device)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

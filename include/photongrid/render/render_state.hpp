@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -94,4 +94,4 @@ inline void check(const render_state& s, const render_settings& settings)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -3,7 +3,7 @@
 // (backends/any/any.hpp) creates one on a backend chosen at run time.
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 #include <photongrid/render/previews.hpp>
 #include <photongrid/render/render_state.hpp>
 #include <photongrid/render/render_stats.hpp>
@@ -14,7 +14,7 @@
 #include <map>
 #include <string>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -107,4 +107,4 @@ protected:
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

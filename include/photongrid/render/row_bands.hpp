@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -34,4 +34,4 @@ inline std::vector<row_band> bands_of(const output_settings& o)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

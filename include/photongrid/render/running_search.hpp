@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -116,4 +116,4 @@ bool running_search<B>::advance()
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

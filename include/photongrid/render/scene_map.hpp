@@ -12,7 +12,7 @@
 #include <map>
 #include <optional>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -290,4 +290,4 @@ pass_radii<B> radii_of_pass(const built_map<B>& first, const render_settings& se
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

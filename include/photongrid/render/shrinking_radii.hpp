@@ -9,7 +9,7 @@
 #include <photongrid/render/shrunk_radius.kernel.hpp>
 #include <photongrid/scene/render_settings.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -64,4 +64,4 @@ namespace detail {
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -1,13 +1,13 @@
 // Measures the stages of the paper's Table 1 on the device.
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 #include <photongrid/render/render_stats.hpp>
 
 #include <algorithm>
 #include <chrono>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::detail {
 
@@ -53,4 +53,4 @@ void time_stage(B& device, stage_stats& out, const Work& work)
 
 } // namespace photongrid::detail
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

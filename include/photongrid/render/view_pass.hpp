@@ -2,8 +2,8 @@
 // runs them in order. The file is long because it is one class: the stages share its buffers.
 #pragma once
 
-#include <photongrid/backend/copy_vectors.kernel.hpp>
-#include <photongrid/backend/zero_vectors.kernel.hpp>
+#include <photongrid/core/copy_vectors.kernel.hpp>
+#include <photongrid/core/zero_vectors.kernel.hpp>
 #include <photongrid/render/add_error.kernel.hpp>
 #include <photongrid/render/add_estimate.kernel.hpp>
 #include <photongrid/render/canvas.hpp>
@@ -21,7 +21,7 @@
 
 #include <optional>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -414,4 +414,4 @@ buffer_of<B, glm::vec4> view_pass<B>::copy(const buffer_of<B, glm::vec4>& origin
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -3,7 +3,7 @@
 
 #include <photongrid/scene/check.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -47,4 +47,4 @@ inline void check(const camera& c)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

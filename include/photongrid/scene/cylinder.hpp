@@ -3,7 +3,7 @@
 
 #include <photongrid/scene/quadric.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -53,4 +53,4 @@ struct shape_kind<cylinder> {
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -5,7 +5,7 @@
 #include <photongrid/scene/fields.hpp>
 #include <photongrid/scene/record_writer.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -54,4 +54,4 @@ struct shape_kind<disk> {
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <memory>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -176,4 +176,4 @@ struct light_kind<environment_light> {
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

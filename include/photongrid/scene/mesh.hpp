@@ -1,7 +1,7 @@
 // Indexed triangles.
 #pragma once
 
-#include <photongrid/backend/kernel.hpp>
+#include <photongrid/core/kernel.hpp>
 
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -76,4 +76,4 @@ inline void check(const mesh& m)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -9,7 +9,7 @@
 #include <span>
 #include <stdexcept>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -81,4 +81,4 @@ inline void check_parts(std::span<const material> materials, const material& m)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

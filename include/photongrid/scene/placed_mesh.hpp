@@ -10,7 +10,7 @@
 #include <glm/matrix.hpp>
 #include <memory>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -112,4 +112,4 @@ struct shape_kind<placed_mesh> {
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

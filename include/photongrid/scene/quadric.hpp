@@ -5,7 +5,7 @@
 #include <photongrid/scene/fields.hpp>
 #include <photongrid/scene/record_writer.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::detail {
 
@@ -36,4 +36,4 @@ inline double quadric_size(const dvec3& axis, double radius) { return 2 * (glm::
 
 } // namespace photongrid::detail
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -10,7 +10,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -246,4 +246,4 @@ inline render_settings as_exact(render_settings s)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

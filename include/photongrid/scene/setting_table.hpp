@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -291,4 +291,4 @@ inline void check(const render_settings& s)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

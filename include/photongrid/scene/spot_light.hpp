@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -78,4 +78,4 @@ struct light_kind<spot_light> {
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

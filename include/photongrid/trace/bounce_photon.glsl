@@ -3,8 +3,8 @@
 // only.
 //
 // The kernel is one function, because it completes its outputs step by step and may end after most of the steps.
-#include <photongrid/backend/vector.glsl>
-#include <photongrid/backend/random.glsl>
+#include <photongrid/core/vector.glsl>
+#include <photongrid/core/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 #include <photongrid/trace/photon_event.glsl>
 

@@ -1,6 +1,6 @@
 // The colour of the surface that a photon left, in one number: what the next frame of bounce_photon.glsl needs of it
 // and a frame has room for. It says which channel is largest, and has the others divided by it, in 11 bits each.
-// Included by kernels after backend/vector.glsl.
+// Included by kernels after core/vector.glsl.
 
 float color_code(vec3 color)
 {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -125,4 +125,4 @@ device_scene<B> upload_scene(B& device, const scene& s)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -1,7 +1,7 @@
 // Direct light at the ends of eye rays (2.4): shadow rays to every light, with stratified samples of area lights. The
 // number of samples per pass is bounded. Irradiance, W/m^2. Scenes with meshes: shadow_ray.glsl.
-#include <photongrid/backend/vector.glsl>
-#include <photongrid/backend/random.glsl>
+#include <photongrid/core/vector.glsl>
+#include <photongrid/core/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {

@@ -16,7 +16,7 @@
 #include <span>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -213,4 +213,4 @@ inline emission_guide guide_by(std::span<const pilot_path> paths) { return detai
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -1,6 +1,6 @@
 // Frame 0 of the photon texture (2.1): photons on the lights, with random initial directions.
-#include <photongrid/backend/vector.glsl>
-#include <photongrid/backend/random.glsl>
+#include <photongrid/core/vector.glsl>
+#include <photongrid/core/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 #include <photongrid/trace/emission_guide.glsl>
 

@@ -4,8 +4,8 @@
 // there, for samples of lights, and one that goes on; at a mixture into its parts; and where a surface is clear in part
 // into one that meets it and one that passes. The bits of `branch` select the one that this pass follows at
 // each. Later a random number selects it, stratified over the eye rays of a pixel.
-#include <photongrid/backend/vector.glsl>
-#include <photongrid/backend/random.glsl>
+#include <photongrid/core/vector.glsl>
+#include <photongrid/core/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {

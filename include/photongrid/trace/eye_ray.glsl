@@ -2,8 +2,8 @@
 // random point of the ray's own stratum of the pixel or of the filter's area. Of the n eye rays of a pass no two are in
 // the same n-th of its width, nor of its height, so edges along rows and columns are smooth (Chiu, Shirley and Wang,
 // Multi-Jittered Sampling, 1994). From pass to pass the points of a stratum follow a (0,2)-sequence.
-#include <photongrid/backend/vector.glsl>
-#include <photongrid/backend/random.glsl>
+#include <photongrid/core/vector.glsl>
+#include <photongrid/core/random.glsl>
 
 struct Params {
     vec4 position;  // of the camera, m

@@ -1,7 +1,7 @@
 // The stochastic ray tracer (section 2.4): eye rays through mirrors and glass, and direct light where they end.
 #pragma once
 
-#include <photongrid/backend/zero_vectors.kernel.hpp>
+#include <photongrid/core/zero_vectors.kernel.hpp>
 #include <photongrid/trace/add_unblocked.kernel.hpp>
 #include <photongrid/trace/device_scene.hpp>
 #include <photongrid/trace/direct_light.kernel.hpp>
@@ -17,7 +17,7 @@
 #include <bit>
 #include <optional>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::detail {
 
@@ -342,4 +342,4 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
 
 } // namespace photongrid::detail
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

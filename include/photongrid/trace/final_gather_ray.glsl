@@ -1,8 +1,8 @@
 // Starts rays of a final gather (Reichert 1992; Jensen 1996): from the points on diffuse surfaces where eye rays ended,
 // in directions distributed as the cosine with the normal, so that pi times the mean of their radiance is the
 // irradiance. They go on as eye rays do (eye_bounce.glsl).
-#include <photongrid/backend/vector.glsl>
-#include <photongrid/backend/random.glsl>
+#include <photongrid/core/vector.glsl>
+#include <photongrid/core/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {

@@ -7,7 +7,7 @@
 //     the lowest corner of its box in the scene, m;                   w: its first face (trace/mesh_surface.glsl)
 //     the highest one;                                                w: what stands in w of its faces
 //     three rows of the matrix from the surface to the scene;         w of the first: IN_PLACE, MIRRORED, or 0
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 const uint INSTANCE_RECORDS = 9u;
 const uint ID_OF_INSTANCE = 0u; // records of numbers by which instances are found

@@ -11,7 +11,7 @@
 #include <glm/matrix.hpp>
 #include <span>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -235,4 +235,4 @@ inline triangle_tree build_instance_tree(std::span<const mesh> surfaces, std::sp
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

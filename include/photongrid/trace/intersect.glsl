@@ -5,7 +5,7 @@
 // hit_x returns the distance along the ray, or `far` if shape x is not hit before that. closest_x tests all shapes x,
 // x_surface computes the hit point's position, normal and material, and x_block says whether any shape x occludes a
 // ray.
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 #include <photongrid/trace/ray_tests.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 

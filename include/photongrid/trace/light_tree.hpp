@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -114,4 +114,4 @@ inline std::vector<light_node> build_light_tree(std::span<const light_ball> ligh
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

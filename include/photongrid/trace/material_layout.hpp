@@ -10,7 +10,7 @@
 #include <map>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::detail {
 
@@ -54,4 +54,4 @@ inline void put_textures(
 
 } // namespace photongrid::detail
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -3,7 +3,7 @@
 //
 // Records of TEXTURE_TABLE: first texel in two parts (high and low 16 bits), width, height; scale and offset of
 // coordinates; x: 1: the texture repeats; y: of a number, its channel.
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 #include <photongrid/trace/instance.glsl>
 #include <photongrid/trace/ray_state.glsl>
 #include <photongrid/trace/scene_layout.glsl>

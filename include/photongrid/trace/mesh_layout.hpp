@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -165,4 +165,4 @@ namespace detail {
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

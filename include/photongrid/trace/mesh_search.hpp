@@ -8,7 +8,7 @@
 #include <photongrid/trace/mesh_surface.kernel.hpp>
 #include <photongrid/trace/ray_search.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::detail {
 
@@ -72,4 +72,4 @@ struct mesh_rays {
 
 } // namespace photongrid::detail
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -1,5 +1,5 @@
 // The surface at a ray's hit on a triangle, for kernels that follow paths (mesh_hit.glsl).
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 #include <photongrid/trace/instance.glsl>
 #include <photongrid/trace/ray_state.glsl>
 #include <photongrid/trace/scene_layout.glsl>

@@ -1,4 +1,4 @@
-// Reflection and refraction. Included by kernels after backend/vector.glsl.
+// Reflection and refraction. Included by kernels after core/vector.glsl.
 struct Fresnel {
     float reflected;      // reflectance; 1 for total internal reflection
     vec3 refracted;       // direction of the refracted light

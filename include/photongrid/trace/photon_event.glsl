@@ -1,6 +1,6 @@
 // A path's event at one surface, stored in the w of its position in a frame: kind of surface + 4 * end + 32 * power
 // that leaves + 2^22 * surfaces before.
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 // Kinds of surface
 const uint NO_SURFACE = 0u;

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -62,4 +62,4 @@ inline photon_request caustic_request_of(const render_settings& s, const scene_l
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -2,13 +2,13 @@
 // would store a photon is read back.
 #pragma once
 
-#include <photongrid/backend/random.kernel.hpp>
+#include <photongrid/core/random.kernel.hpp>
 #include <photongrid/trace/emission_guide.hpp>
 #include <photongrid/trace/photon_frames.hpp>
 #include <photongrid/trace/photon_request.hpp>
 #include <photongrid/trace/tally_path.kernel.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -129,4 +129,4 @@ emission_guide pilot_tracing<B>::guide() const
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

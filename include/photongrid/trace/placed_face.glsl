@@ -1,4 +1,4 @@
-// The triangle that a ray hit, where it is in the scene. Included by kernels after backend/vector.glsl, their INPUTs
+// The triangle that a ray hit, where it is in the scene. Included by kernels after core/vector.glsl, their INPUTs
 // faces (trace/mesh_surface.glsl), vertices and instances (trace/instance.glsl); args: count, of instances.
 #include <photongrid/trace/find_instance.glsl>
 SWITCH(20, INSTANCES)

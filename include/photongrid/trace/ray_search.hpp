@@ -3,7 +3,7 @@
 //     build_triangle_tree -> upload;  ray_start -> trace_ray
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 #include <photongrid/trace/instance_tree.hpp>
 #include <photongrid/trace/ray_start.kernel.hpp>
 #include <photongrid/trace/ray_state.kernel.hpp>
@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -173,4 +173,4 @@ std::vector<ray_hit> trace_rays(B& device, const device_triangles<B>& triangles,
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -1,5 +1,5 @@
 // The state in which a ray's search begins (ray_state.glsl).
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 #include <photongrid/trace/ray_state.glsl>
 #include <photongrid/trace/tree_node.glsl>
 

@@ -1,7 +1,7 @@
 // How far a ray's search has come: 16 bytes, from which it goes on. The path down the tree needs no stack: bit n of the
 // trail says whether, n pairs up, the other child is still to be visited, and pairs know those above them. After
 // Barringer and Akenine-Moller, Dynamic Stackless Binary Tree Traversal, JCGT 2(2), 2013.
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 const uint NO_TRIANGLE = 0xFFFFFFFFu;
 

@@ -1,5 +1,5 @@
 // The tests of a ray against a box and against a triangle.
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 struct Ray {
     vec3 origin;

@@ -1,5 +1,5 @@
 // The ends of eye rays on rough surfaces as points that light falls on from one side, for shadow_ray.glsl.
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {

@@ -1,7 +1,7 @@
 // What rough surfaces send to the eye of the light of a sample (shadow_ray.glsl): radiance, times throughput. Rays
 // that leave the surface may hit the light too, so that samples of lights with a size have the weights of the balance
 // heuristic (Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997, section 9.2).
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {

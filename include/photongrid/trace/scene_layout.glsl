@@ -1,6 +1,6 @@
 // The layout of the scene buffer, which trace/scene_records.hpp writes. It begins with SCENE_TABLES records. Each kind
 // of shape has a number below that: its SWITCH in kernels, the record of its table, and Closest::kind.
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 const uint SCENE_TABLES = 16u;
 const uint MATERIAL_TABLE = 4u; // no kind of shape has the numbers 4 to 7 or 12 to 15, the SWITCHes of materials and

@@ -2,7 +2,7 @@
 // origin. trace/scene_layout.glsl describes its layout.
 #pragma once
 
-#include <photongrid/backend/backend.hpp>
+#include <photongrid/core/backend.hpp>
 #include <photongrid/scene/scene.hpp>
 #include <photongrid/trace/coat_layout.hpp>
 #include <photongrid/trace/environment_layout.hpp>
@@ -16,7 +16,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -380,4 +380,4 @@ inline scene_layout lay_out(const scene& original)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -1,7 +1,7 @@
 // The shadow rays of one sample of a light, at the ends of eye rays, for a search among meshes: rays that no shape
 // blocks. It knows all kinds of lights; direct_light.glsl, which is like it otherwise, knows points and rectangles.
-#include <photongrid/backend/vector.glsl>
-#include <photongrid/backend/random.glsl>
+#include <photongrid/core/vector.glsl>
+#include <photongrid/core/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {

@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -146,4 +146,4 @@ inline std::vector<shape_node> build_shape_tree(std::span<const boxed_shape> sha
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

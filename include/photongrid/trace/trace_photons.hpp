@@ -2,7 +2,7 @@
 // progress from two counts per batch, by occlusion query. Of pilot paths, if there are any, it reads which are useful.
 #pragma once
 
-#include <photongrid/backend/copy_vectors.kernel.hpp>
+#include <photongrid/core/copy_vectors.kernel.hpp>
 #include <photongrid/map/map_buffers.hpp>
 #include <photongrid/map/prefix_sums.hpp>
 #include <photongrid/trace/divide_power.kernel.hpp>
@@ -18,7 +18,7 @@
 #include <bit>
 #include <optional>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -256,4 +256,4 @@ photon_stats count_photons(B& device, const traced_photons<B>& t)
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -4,7 +4,7 @@
 // With INSTANCES the tree has two levels: leaves of the upper one are instances of surfaces, each with a tree of its
 // own. Below such a leaf the ray is in the space of the surface, where distances along it are the same. A hit counts if
 // the ray is then inside the instance's box, so that hits do not depend on the upper tree.
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 #include <photongrid/trace/instance.glsl>
 #include <photongrid/trace/ray_state.glsl>
 #include <photongrid/trace/ray_tests.glsl>

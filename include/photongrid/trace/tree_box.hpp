@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid::detail {
 
@@ -54,4 +54,4 @@ struct least_box {
 
 } // namespace photongrid::detail
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

@@ -5,7 +5,7 @@
 //     xyz: lowest corner of the second child's box;                   w: the pair and child that this pair is below
 //     xyz: highest corner
 // A child is a pair or a leaf: up to eight consecutive triangles, each three elements of another buffer, its corners.
-#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // backend/begin.hpp
+#ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 const uint PAIR_RECORDS = 4u;
 const uint TRIANGLE_RECORDS = 3u; // xyz: corner, as bits of floats; w of the first: the triangle's index in its mesh

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include <photongrid/backend/exact_begin.hpp>
+#include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
@@ -262,4 +262,4 @@ inline triangle_tree build_triangle_tree(const mesh& m) { return detail::build_t
 
 } // namespace photongrid
 
-#include <photongrid/backend/exact_end.hpp>
+#include <photongrid/core/exact_end.hpp>

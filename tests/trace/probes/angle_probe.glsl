@@ -1,6 +1,6 @@
 // The angle between two lengths, and a logarithm, for tests.
-#include <photongrid/backend/vector.glsl>
-#include <photongrid/backend/natural_log.glsl>
+#include <photongrid/core/vector.glsl>
+#include <photongrid/core/natural_log.glsl>
 
 struct Params {
     uint unused;

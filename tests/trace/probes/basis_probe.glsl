@@ -1,5 +1,5 @@
 // The orthonormal basis about a normal, and directions sampled with it, for tests.
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 
 struct Params {
     uint unused;

@@ -1,5 +1,5 @@
 // Light meets a surface of glass, for tests.
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 
 struct Params {
     uint unused;

@@ -1,5 +1,5 @@
 // The hash and the numbers made of it, for tests.
-#include <photongrid/backend/random.glsl>
+#include <photongrid/core/random.glsl>
 
 struct Params {
     uint unused;

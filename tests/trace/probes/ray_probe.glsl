@@ -1,5 +1,5 @@
 // One ray against the scene, for tests: where it hits, the normal there, and where a ray that leaves would start.
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {

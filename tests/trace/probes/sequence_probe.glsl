@@ -1,5 +1,5 @@
 // Points of sequences, for tests.
-#include <photongrid/backend/random.glsl>
+#include <photongrid/core/random.glsl>
 
 struct Params {
     uint unused;

@@ -1,5 +1,5 @@
 // A ray from a point to a point of a parallelogram, for tests: is it occluded by shapes in the shaft, and by any shape?
-#include <photongrid/backend/vector.glsl>
+#include <photongrid/core/vector.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
