@@ -393,7 +393,7 @@ faults=(
   "placed meshes turn inside out|include/photongrid/scene/placed_mesh.hpp|return glm::determinant(m.linear) < 0|return false && glm::determinant(m.linear) < 0|scene_file"
   "big-endian files are read as little-endian|examples/photongrid/io/ply_file.cpp|format_ == format::big_endian)|false)|scene_file"
   "faces' indices are not looked at|examples/photongrid/io/ply_file.cpp|>= made_.positions.size())|> made_.positions.size())|scene_file"
-  "meshes lie outside the scene's folder|examples/photongrid/io/surface_reader.hpp|std::find(path.begin(), path.end(), \"..\") == path.end()|true|scene_file"
+  "meshes lie outside the scene's folder|examples/photongrid/io/surface_reader.hpp|!files_.lies_inside(v.text)|false|scene_file"
   "the reference hits the triangle that it leaves|include/photongrid/reference/triangles.hpp|if (order_[i] != from)|if (order_[i] + 1 != 0 && from + 1 >= 0)|reference"
   "loop steps wrap|include/photongrid/trace/device_scene.hpp|return layout.steps_per_ray * lights|return static_cast<uint>(layout.steps_per_ray) * static_cast<uint>(lights)|bad_scenes"
   "shadow rays of the paper wrap|include/photongrid/scene/render_settings.hpp|std::uint64_t{s.view.light_samples} * std::max|s.view.light_samples * std::max|bad_scenes"

@@ -163,7 +163,7 @@ namespace {
                 {R"("type": "directional", "direction": [0, 1, 0], "irradiance": [1, -1, 0])", "0 to 1e15"},
                 {R"("type": "environment", "radiance": 0)", "radiance"},
                 {R"("type": "environment", "file": "none.exr")", "none.exr"},
-                {R"("type": "environment", "file": "../sky.exr")", "without \"..\""},
+                {R"("type": "environment", "file": "../sky.exr")", "in the scene's folder"},
                 {R"("type": "environment", "file": "dark.exr")", "black"},
                 {R"("type": "environment", "file": "minus.pfm")", "not negative"},
                 {R"("type": "environment", "file": "cut.hdr")", "cannot be read"},

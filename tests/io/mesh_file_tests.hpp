@@ -205,6 +205,38 @@ namespace {
         EXPECT_EQ(again.meshes.at(0), m);
     }
 
+    /// By "..", an absolute path or a link, with slashes or with backslashes, which become slashes where no file has
+    /// the name with backslashes. Each would be read if it were not refused.
+    TEST(mesh_in_a_scene, names_no_file_outside_of_its_folder)
+    {
+        const auto outside = mesh_folder(), folder = outside / "scene";
+        std::filesystem::create_directories(folder / "a");
+        std::ofstream(outside / "secret.ply") << ascii_square;
+        std::ofstream(folder / "inside.ply") << ascii_square;
+        std::filesystem::remove(folder / "link.ply");
+        std::filesystem::create_symlink(outside / "secret.ply", folder / "link.ply");
+        std::filesystem::remove(folder / "within.ply");
+        std::filesystem::create_symlink("inside.ply", folder / "within.ply");
+        const auto said = [&](std::string name) {
+            for (std::size_t at = 0; (at = name.find('\\', at)) != name.npos; at += 2)
+                name.insert(at, 1, '\\');
+            try {
+                parse_scene((folder / "s.json").string(), text_with(R"("file": ")" + name + '"'));
+                return std::string();
+            } catch (const scene_error& e) {
+                return std::string(e.what());
+            }
+        };
+        auto absolute = (outside / "secret.ply").string(), turned = absolute;
+        std::replace(turned.begin(), turned.end(), '/', '\\');
+        for (const auto& name : {std::string("../secret.ply"), std::string(R"(..\secret.ply)"),
+                 std::string(R"(a\..\..\secret.ply)"), std::string("a/../../secret.ply"),
+                 std::string(R"(a/..\../secret.ply)"), std::string("link.ply"), absolute, turned})
+            EXPECT_NE(said(name).find("in the scene's folder"), std::string::npos) << name << ": " << said(name);
+        for (const auto* name : {"inside.ply", R"(a\..\inside.ply)", "within.ply"})
+            EXPECT_EQ(said(name), "") << name;
+    }
+
     TEST(mesh_in_a_scene, is_refused_with_its_place)
     {
         const auto file = (mesh_folder() / "s.json").string();
@@ -223,8 +255,8 @@ namespace {
         for (const auto& b : {bad{R"("scale": 2)", "either a \"file\" or"},
                  {R"("file": "below/square.ply", "positions": [])", "either a \"file\" or"},
                  {R"("positions": [[0, 0, 0]])", "either a \"file\" or"}, {R"("file": "none.ply")", "cannot be read"},
-                 {R"("file": "../s.ply")", "without \"..\""}, {R"("file": "/etc/passwd")", "relative"},
-                 {R"("file": "cut.ply")", "the file ends"},
+                 {R"("file": "../s.ply")", "in the scene's folder"},
+                 {R"("file": "/etc/passwd")", "in the scene's folder"}, {R"("file": "cut.ply")", "the file ends"},
                  {R"("positions": [[0, 0, 0]], "triangles": [[0, 0, 1]])", "from 0 to 0"},
                  {R"("positions": [], "triangles": [])", "at least one position"},
                  {R"("positions": [[0, 0, 0]], "triangles": [])", "at least one triangle"},

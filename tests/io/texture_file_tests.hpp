@@ -65,7 +65,7 @@ namespace {
         for (const auto& b : {bad{R"("texture": "none.png")", with_coordinates, "none.png", 6},
                  {R"("texture": "no.png")", with_coordinates, "cannot be read", 6},
                  {R"("texture": "nan.pfm")", with_coordinates, "not a number", 6},
-                 {R"("texture": "../wood.png")", with_coordinates, "without \"..\"", 6},
+                 {R"("texture": "../wood.png")", with_coordinates, "in the scene's folder", 6},
                  {R"("texture": 3)", with_coordinates, "a file's name", 6},
                  {R"("texture": {"wrap": "clamp"})", with_coordinates, "\"file\"", 6},
                  {R"("texture": {"file": "wood.png", "wrap": "mirror"})", with_coordinates, "\"clamp\"", 6},

@@ -14,13 +14,6 @@
 
 namespace photongrid {
 
-/// Whether `path` leads to a file in the scene's folder or below it.
-inline bool stays_inside(const std::filesystem::path& path)
-{
-    return !path.empty() && path.is_relative() && !path.has_root_path()
-        && std::find(path.begin(), path.end(), "..") == path.end();
-}
-
 /// A scene file's values, and those that make a mesh. Files of meshes are sought in the scene file's folder.
 class surface_reader : public scene_values {
 public:
@@ -61,11 +54,11 @@ public:
     }
 
 protected:
-    /// The name of a file beside the scene's.
+    /// The name of a file in the scene's folder or below it.
     std::string file_name(const json_value& v) const
     {
-        if (v.kind != json_kind::string || !is_name(v.text) || !stays_inside(v.text))
-            wrong(v, "a file's name, relative to the scene's folder and without \"..\", of 1 to 100 bytes");
+        if (v.kind != json_kind::string || !is_name(v.text) || !files_.lies_inside(v.text))
+            wrong(v, "the name of a file in the scene's folder or below it, of 1 to 100 bytes");
         return v.text;
     }
 

@@ -21,10 +21,11 @@ namespace {
         return stem.empty() ? "picture" : stem;
     }
 
-    /// Whether each format can name the file as it is.
-    bool is_plain_name(const std::string& file)
+    /// Whether each format can name the file as it is, beside the scene.
+    bool is_plain_name(const std::string& file, const scene_files& beside)
     {
-        return scene_values::is_name(file) && stays_inside(file) && file.find_first_of("\\\"") == std::string::npos;
+        return scene_values::is_name(file) && beside.lies_inside(file)
+            && file.find_first_of("\\\"") == std::string::npos;
     }
 
     bool is_opaque(const texture& map)
@@ -60,7 +61,7 @@ std::string picture_files::existing(const std::string& file, const IsSame& is_sa
 {
     if (file.empty())
         return "";
-    if (is_plain_name(file) && holds(beside_, file, is_same))
+    if (is_plain_name(file, beside_) && holds(beside_, file, is_same))
         return file;
     return holds(source_, file, is_same) ? to_.add(plain_stem(file), ending_of(file), source_.bytes_of(file)) : "";
 }

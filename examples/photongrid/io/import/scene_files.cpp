@@ -101,16 +101,24 @@ std::string ending_of(const std::string& name)
     return e;
 }
 
-std::string scene_files::path_of(const std::string& name) const
+fs::path scene_files::found_path(const std::string& name) const
 {
-    if (name.empty() || name.size() > 1000 || has_control_characters(name))
-        fail_file(shown_word(name), "is no file's name; expected 1 to 1,000 bytes without control characters");
     auto path = folder_ / name; // name alone if it is absolute
     if (std::error_code none; name.find('\\') != std::string::npos && !fs::exists(path, none)) {
         auto slashed = name;
         std::replace(slashed.begin(), slashed.end(), '\\', '/');
         path = folder_ / slashed;
     }
+    return path;
+}
+
+bool scene_files::lies_inside(const std::string& name) const { return lies_in(found_path(name), folder_); }
+
+std::string scene_files::path_of(const std::string& name) const
+{
+    if (name.empty() || name.size() > 1000 || has_control_characters(name))
+        fail_file(shown_word(name), "is no file's name; expected 1 to 1,000 bytes without control characters");
+    const auto path = found_path(name);
     if (!allow_outside_ && !lies_in(path, folder_))
         fail_file(path.string(), "lies outside of the scene's folder; --allow-outside lets scenes name such files");
     return path.string();

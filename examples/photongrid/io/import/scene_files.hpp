@@ -33,6 +33,10 @@ public:
     {
     }
 
+    /// Whether a file lies in the folder or below it, with symbolic links followed and backslashes taken as path_of()
+    /// takes them.
+    bool lies_inside(const std::string& name) const;
+
     /// The path of a file. Where there is no such file, a name with backslashes is taken with slashes.
     /// \throws file_error for a file that lies outside of the folder and must not.
     std::string path_of(const std::string& name) const;
@@ -59,6 +63,7 @@ public:
     std::shared_ptr<const environment_map> environment(const std::string& name);
 
 private:
+    std::filesystem::path found_path(const std::string& name) const;
     std::string path_of_regular(const std::string& name) const;
 
     std::filesystem::path folder_;
