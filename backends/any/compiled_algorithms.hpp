@@ -39,7 +39,7 @@
 #define PHOTONGRID_PICTURES(EXTERN, B)                                                                                 \
     EXTERN template device_scene<B> upload_scene(B&, const scene&);                                                    \
     EXTERN template traced_photons<B> trace_photons(                                                                   \
-        B&, const scene&, const device_scene<B>&, const render_settings&, const render_observer&);                     \
+        B&, const device_scene<B>&, const render_settings&, const render_observer&);                                   \
     EXTERN template uint trace_batch(                                                                                  \
         B&, const device_scene<B>&, detail::photon_frames<B>&, const path_batch<B>&, const render_settings&);          \
     EXTERN template void detail::trace_eye_rays(B&, const device_scene<B>&, const camera&, const render_settings&,     \
@@ -58,8 +58,7 @@
         const detail::eye_hits<B>&, const render_settings&, uint, uint, launch, buffer_of<B, glm::vec4>&);             \
     EXTERN template void add_path(B&, const device_scene<B>&, const map_buffers<B>&, const pass_radii<B>&,             \
         const detail::eye_hits<B>&, const render_settings&, uint, uint, launch, buffer_of<B, glm::vec4>&);             \
-    EXTERN template built_map<B> build_map(                                                                            \
-        B&, const scene&, const render_settings&, const render_observer&, if_none_stored);                             \
+    EXTERN template built_map<B> build_map(B&, const scene&, const render_settings&, const render_observer&);          \
     EXTERN template rendered draw(                                                                                     \
         B&, const built_map<B>&, const camera&, const render_settings&, const render_observer&);                       \
     EXTERN template class running_search<B>;                                                                           \

@@ -339,8 +339,7 @@ static_assert(
     !std::is_constructible_v<vector_view, vec3_list> && !std::is_constructible_v<vector_view, const vec3_list>);
 static_assert(std::is_convertible_v<vec3_list, vector_argument>); // a parameter need not keep
 template <class Scene>
-constexpr bool traces
-    = std::is_constructible_v<photon_tracing<device>, device&, const scene&, Scene, const render_settings&>;
+constexpr bool traces = std::is_constructible_v<photon_tracing<device>, device&, Scene, const render_settings&>;
 static_assert(traces<device_scene<device>&> && traces<const device_scene<device>&>);
 static_assert(!traces<device_scene<device>> && !traces<const device_scene<device>>);
 template <class Map>

@@ -61,7 +61,7 @@ namespace {
         s.render.seed = seed;
         serial_backend b;
         const auto device = upload_scene(b, s);
-        auto t = trace_photons(b, s, device, s.render);
+        auto t = trace_photons(b, device, s.render);
         const auto map
             = sorted_map(b, std::move(t.photons), make_grid(device.layout.low, device.layout.high, s.render.map.grid));
         const auto where = recentred(points, device.layout.center);

@@ -141,7 +141,7 @@ namespace {
         const auto device = upload_scene(b, s);
         auto settings = s.render;
         settings.map.emission = photon_emission::power; // photons of equal power, whose noise is known
-        auto t = trace_photons(b, s, device, settings);
+        auto t = trace_photons(b, device, settings);
         const auto map
             = sorted_map(b, std::move(t.photons), make_grid(device.layout.low, device.layout.high, s.render.map.grid));
         std::vector<dvec3> points;

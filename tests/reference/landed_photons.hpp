@@ -37,7 +37,7 @@ namespace {
         auto settings = s.render;
         settings.map.emission = photon_emission::power;
         settings.map.caustic_photons = 0;
-        const auto t = trace_photons(b, s, device, settings);
+        const auto t = trace_photons(b, device, settings);
         const auto positions = b.download(t.photons.positions), directions = b.download(t.photons.directions);
         std::vector<landed_photon> out;
         for (std::size_t i = 0; i < positions.size(); ++i)

@@ -176,7 +176,7 @@ TYPED_TEST_P(pictures, photons_have_the_power_that_their_surfaces_left_them)
     s.render.map.photons = 5000;
     auto& b = this->b();
     const auto device = upload_scene(b, s);
-    const auto t = trace_photons(b, s, device, s.render);
+    const auto t = trace_photons(b, device, s.render);
     const auto powers = b.download(t.photons.powers);
     const auto emitted = static_cast<double>(t.emitted);
     double hits = 0;

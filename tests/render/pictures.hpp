@@ -71,7 +71,7 @@ protected:
     {
         auto& b = this->b();
         const auto device = upload_scene(b, s);
-        expect_focus(trace_photons(b, s, device, s.render).photons, device.layout.center, ball);
+        expect_focus(trace_photons(b, device, s.render).photons, device.layout.center, ball);
     }
     void expect_focus(const photons<B>& found, const dvec3& center, const ball_over_floor& ball)
     {
@@ -116,7 +116,7 @@ protected:
         serial_backend serial;
         const auto photons_of = [&](auto& b) {
             const auto device = upload_scene(b, s);
-            const auto t = trace_photons(b, s, device, settings);
+            const auto t = trace_photons(b, device, settings);
             return std::tuple{b.download(t.photons.positions), b.download(t.photons.powers),
                 b.download(t.photons.directions), t.emitted};
         };

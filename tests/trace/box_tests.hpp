@@ -200,7 +200,7 @@ TYPED_TEST_P(boxes, a_closed_room_keeps_its_energy)
     const auto s = room_of_boxes();
     auto& b = this->b();
     const auto device = upload_scene(b, s);
-    const auto t = trace_photons(b, s, device, s.render);
+    const auto t = trace_photons(b, device, s.render);
     const auto stats = count_photons(b, t);
     EXPECT_EQ(stats.escaped, 0u);
     EXPECT_EQ(stats.invalid, 0u);

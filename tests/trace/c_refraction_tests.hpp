@@ -177,7 +177,7 @@ TYPED_TEST_P(hard_cases, c4_endless_total_reflection_is_cut_off_and_counted)
     auto s = cube_of_glass();
     auto& b = this->b();
     const auto device = upload_scene(b, s);
-    const auto t = trace_photons(b, s, device, s.render);
+    const auto t = trace_photons(b, device, s.render);
     const auto stats = count_photons(b, t);
     expect_an_exact_account(stats, s.render.map.photons);
     EXPECT_EQ(stats.escaped, 0u);

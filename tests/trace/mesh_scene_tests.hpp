@@ -15,7 +15,7 @@ protected:
     {
         auto& b = this->b();
         const auto device = upload_scene(b, s);
-        const auto t = trace_photons(b, s, device, s.render);
+        const auto t = trace_photons(b, device, s.render);
         return count_photons(b, t);
     }
 

@@ -204,7 +204,7 @@ namespace {
         s.point_lights[0].position = {0.3, 0.1, -0.2};
         serial_backend b;
         const auto device = upload_scene(b, s);
-        const auto t = trace_photons(b, s, device, s.render);
+        const auto t = trace_photons(b, device, s.render);
         ASSERT_GT(t.emitted, 4u * 32768u) << "several batches";
         auto photons = b.download(t.photons.positions);
         std::sort(photons.begin(), photons.end(), before);

@@ -72,6 +72,7 @@ inline film film_for(const scene& s, const scene_layout& layout, const render_se
 namespace detail {
     inline void add(photon_stats& sum, const photon_stats& p)
     {
+        sum.asked += p.asked;
         sum.emitted += p.emitted;
         sum.absorbed += p.absorbed;
         sum.escaped += p.escaped;

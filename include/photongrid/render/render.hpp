@@ -84,16 +84,14 @@ inline step_list band_steps(const output_settings& output, std::uint32_t rows_do
     return steps;
 }
 
-/// Traces photons and builds the map for a pass. A scene without indirect light has an empty map, unless that is an
-/// error for the caller.
+/// Traces photons and builds the map for a pass. A scene without indirect light has an empty map.
 /// `guides`: emission guides of earlier passes, to which those that are missing are added.
-/// \throws std::invalid_argument for a scene or settings that check() rejects, std::runtime_error if too few
-///         photons are stored, backend_error, render_cancelled.
+/// \throws std::invalid_argument for a scene or settings that check() rejects, backend_error, render_cancelled.
 template <backend B>
 built_map<B> build_map(B& device, const scene& s, const render_settings& settings, guide_keeper& guides,
-    const render_observer& observer = {}, if_none_stored none = if_none_stored::trace_none)
+    const render_observer& observer = {})
 {
-    map_building<B> map(device, s, settings, guides, none);
+    map_building<B> map(device, s, settings, guides);
     run(map_steps(map), observer, [&](std::string_view stage) {
         if (observer.progress)
             observer.progress(stage, map.fraction());
@@ -103,11 +101,10 @@ built_map<B> build_map(B& device, const scene& s, const render_settings& setting
 /// The same with guides of its own.
 /// \snippet snippets.cpp build_map
 template <backend B>
-built_map<B> build_map(B& device, const scene& s, const render_settings& settings, const render_observer& observer = {},
-    if_none_stored none = if_none_stored::trace_none)
+built_map<B> build_map(B& device, const scene& s, const render_settings& settings, const render_observer& observer = {})
 {
     guide_keeper guides;
-    return build_map(device, s, settings, guides, observer, none);
+    return build_map(device, s, settings, guides, observer);
 }
 
 /// The pixels of one pass over a view. Times and counts are added to `stats`.

@@ -46,7 +46,7 @@ public:
 
     /// Works for about `budget`: at least one step, until the time is up, the picture is finished, or another thread
     /// cancels. Returns whether the picture is finished.
-    /// \throws std::logic_error before start(), std::runtime_error if the lights store too few photons, backend_error.
+    /// \throws std::logic_error before start(), backend_error.
     ///         After an exception the next step starts the picture again.
     virtual bool step(milliseconds budget = no_limit) = 0;
     /// Makes a step that runs in another thread return after the current device pass. The next step continues; start()

@@ -107,12 +107,11 @@ private:
 template <backend B>
 class map_building {
 public:
-    /// Uploads the scene. It traces nothing yet. In a scene that has no indirect light the map has no photons, unless
-    /// that is an error for the caller. `guides`: those of earlier passes; it must outlive this object.
+    /// Uploads the scene. It traces nothing yet. In a scene that has no indirect light the map has no photons.
+    /// `guides`: those of earlier passes; it must outlive this object.
     /// \throws std::invalid_argument for a scene or settings that check() rejects, backend_error.
-    map_building(B& device, const scene& s, const render_settings& settings, guide_keeper& guides,
-        if_none_stored none = if_none_stored::trace_none)
-        : device_(device), source_(s), settings_(settings), guides_(guides), none_(none)
+    map_building(B& device, const scene& s, const render_settings& settings, guide_keeper& guides)
+        : device_(device), source_(s), settings_(settings), guides_(guides)
     {
         check(settings);
         built_.scene = upload_scene(device, s);
@@ -124,7 +123,7 @@ public:
     map_building& operator=(const map_building&) = delete;
 
     /// Traces one more batch of photon paths; returns whether all photons are stored (2.1).
-    /// \throws std::runtime_error if the lights store too few photons, backend_error.
+    /// \throws backend_error.
     bool trace_photons()
     {
         detail::time_stage(device_, built_.stats.trace_photons, [&] {
@@ -190,13 +189,12 @@ private:
             pilot_.emplace(device_, built_.scene, settings_, request_);
             return;
         }
-        if (guide != nullptr && guide->has_none_useful && request_.most_paths > 0)
+        if (guide != nullptr && guide->has_none_useful)
             request_.most_paths = request_.photons; // what there is may be rare, but is dim
         auto with = settings_;
         if (is_of_caustics_)
             with.seed ^= 0xB5297A4Du; // else they would be on the paths of the other photons
-        tracing_.emplace(
-            device_, source_, built_.scene, with, request_, guide != nullptr ? *guide : emission_guide{}, none_);
+        tracing_.emplace(device_, built_.scene, with, request_, guide != nullptr ? *guide : emission_guide{});
     }
     /// Ends tracing for a request, and begins with the caustic photons if they come next.
     void end_tracing()
@@ -267,7 +265,6 @@ private:
     scene source_;
     render_settings settings_;
     guide_keeper& guides_;
-    if_none_stored none_;
     photon_request request_;      // that is traced
     bool is_of_caustics_ = false; // it is that of the caustic photons
     bool is_built_ = false;

@@ -4,6 +4,7 @@
 #include <photongrid/trace/photon_event.kernel.hpp>
 #include <photongrid/trace/scene_records.hpp>
 
+#include <algorithm>
 #include <cstdint>
 
 #include <photongrid/core/exact_begin.hpp>
@@ -15,7 +16,8 @@ struct photon_request {
     uint photons = 0; ///< to store
     /// Sum of kernels::FIRST_HITS, CAUSTICS and OTHER_PHOTONS.
     uint kinds = kernels::CAUSTICS | kernels::OTHER_PHOTONS;
-    /// After so many paths tracing ends, with fewer photons if they did not store as many; 0: no limit.
+    /// After so many paths tracing ends, with fewer photons if they did not store as many. Powers are divided by the
+    /// paths, so that what was stored counts: light that so few paths find is noisy, and dim.
     std::uint64_t most_paths = 0;
 
     /// Whether paths can end at the first diffuse surface.
@@ -29,19 +31,22 @@ inline bool may_have_caustics(const scene_layout& layout)
     return (layout.features & (has_mirrors | has_glass | has_rough | has_coats)) != 0;
 }
 
+/// The most paths for each photon of a request; of light other than caustics, if these have a map of their own, fewer,
+/// else that light would take long where there is little of it.
+constexpr uint most_paths_per_photon = 64, most_paths_per_other_photon = 8;
+
 /// A request for caustic photons alone.
 inline photon_request request_of_caustics(uint photons)
 {
-    constexpr uint paths_per_photon = 64; // at most
-    return {photons, kernels::CAUSTICS, std::uint64_t{photons} * paths_per_photon};
+    return {photons, kernels::CAUSTICS, std::uint64_t{photons} * most_paths_per_photon};
 }
 /// The photons of a picture with settings `s`, without those of a map of caustic photons.
 inline photon_request request_of(const render_settings& s, const scene_layout& layout)
 {
-    constexpr uint paths_per_photon = 8; // at most, else other light would take long where there is little of it
     const bool are_caustics_apart = s.map.caustic_photons > 0;
     photon_request r;
     r.photons = s.map.photons;
+    r.most_paths = std::clamp<std::uint64_t>(std::uint64_t{r.photons} * most_paths_per_photon, 1u << 16, 0xFFFF0000u);
     if (s.output.only == light_part::direct || (are_caustics_apart && s.output.only == light_part::caustic)) {
         r.photons = 0;
     } else if (gathers(s)) {
@@ -50,7 +55,7 @@ inline photon_request request_of(const render_settings& s, const scene_layout& l
         r = request_of_caustics(are_caustics_apart || !may_have_caustics(layout) ? 0 : r.photons);
     } else if (are_caustics_apart) {
         r.kinds = kernels::OTHER_PHOTONS;
-        r.most_paths = std::uint64_t{r.photons} * paths_per_photon;
+        r.most_paths = std::uint64_t{r.photons} * most_paths_per_other_photon;
     }
     return r;
 }

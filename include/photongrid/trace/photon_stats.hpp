@@ -10,6 +10,7 @@ namespace photongrid {
 /// Counts of photon paths and hits: absorbed + escaped + cut_off + invalid = emitted; stored + direct +
 /// left_to_caustics + dropped = diffuse hits.
 struct photon_stats {
+    std::uint64_t asked = 0;   ///< photons that tracing was asked for; it stores fewer where few paths store any
     std::uint64_t emitted = 0; ///< paths, from the lights
     /// Paths ended by Russian roulette, on a light's own surface, or, for caustic photons, at the first diffuse one.
     std::uint64_t absorbed = 0;

@@ -26,52 +26,49 @@ namespace photongrid {
 template <backend B>
 struct traced_photons {
     photongrid::photons<B> photons;     ///< in the order of (path, bounce)
+    std::uint64_t asked = 0;            ///< photons of the request
     std::uint64_t emitted = 0;          ///< paths, from the lights
     std::uint64_t stored = 0;           ///< photons
     std::uint64_t dropped = 0;          ///< diffuse hits of the last path beyond the requested number of photons
     std::vector<path_tally<B>> tallies; ///< one per batch of paths
 };
 
-/// What photon tracing does in a scene where no path stores a photon, as under a bulb over a bare floor.
-enum class if_none_stored { fail, trace_none };
-
 /// Photon tracing in batches, which can be interrupted between batches. It emits paths in id order until the requested
-/// photons are stored, in the order of (path, bounce). The powers are divided by the number of emitted paths. Positions
+/// photons are stored, in the order of (path, bounce), or the most paths are emitted that the request allows: under a
+/// bulb over a bare floor nothing is stored. The powers are divided by the number of emitted paths. Positions
 /// have w = 1 for caustic photons (light_part). Normals are stored only for a final gather or for a leak policy that
 /// needs them.
 template <backend B>
 class photon_tracing {
 public:
     /// It traces nothing yet. `device` and `uploaded` must outlive it.
-    photon_tracing(B& device, const scene& s, const device_scene<B>& uploaded, const render_settings& settings,
-        const photon_request& request, const emission_guide& guide, if_none_stored none)
-        : device_(device), scene_(uploaded), settings_(settings), request_(request),
-          lights_(detail::names_of_lights(s)), none_(none), wanted_(request.photons),
+    photon_tracing(B& device, const device_scene<B>& uploaded, const render_settings& settings,
+        const photon_request& request, const emission_guide& guide)
+        : device_(device), scene_(uploaded), settings_(settings), request_(request), wanted_(request.photons),
           most_paths_(detail::most_paths(device.caps(), settings.map.photon_depth)),
           guide_(detail::upload_some(device, guide.records()))
     {
+        t_.asked = wanted_;
         make_photons();
         make_frames(wanted_ / 2 + 1);
     }
     /// With the request of the settings, by even emission whatever they say.
-    photon_tracing(B& device, const scene& s, const device_scene<B>& uploaded, const render_settings& settings)
-        : photon_tracing(device, s, uploaded, settings, request_of(settings, uploaded.layout), {}, if_none_stored::fail)
+    photon_tracing(B& device, const device_scene<B>& uploaded, const render_settings& settings)
+        : photon_tracing(device, uploaded, settings, request_of(settings, uploaded.layout), {})
     {
     }
 
-    photon_tracing(B&, const scene&, const device_scene<B>&&, const render_settings&) = delete; // it keeps a reference
-    photon_tracing(B&, const scene&, const device_scene<B>&&, const render_settings&, const photon_request&,
-        const emission_guide&, if_none_stored)
+    photon_tracing(B&, const device_scene<B>&&, const render_settings&) = delete; // it keeps a reference
+    photon_tracing(B&, const device_scene<B>&&, const render_settings&, const photon_request&, const emission_guide&)
         = delete;
 
-    /// Whether all photons are stored.
+    /// Whether all photons are stored, or the most paths emitted.
     bool finished() const { return stored_ == wanted_; }
     /// The fraction of the requested photons that are stored.
     double fraction() const { return wanted_ == 0 ? 1.0 : static_cast<double>(stored_) / wanted_; }
 
     /// Traces one more batch of paths.
-    /// \throws std::runtime_error, with the names of the lights, if paths store so few photons that tracing would not
-    ///         end.
+    /// \throws backend_error.
     void advance();
 
     /// The photons, after tracing has finished.
@@ -97,32 +94,11 @@ private:
     }
     /// Ends tracing with the photons that are stored.
     void end_early();
-    /// Ends tracing if so many paths have stored no photon that none will.
-    void stop_if_none_are_stored()
-    {
-        if (request_.most_paths > 0)
-            return;
-        const std::uint64_t most_paths
-            = std::min<std::uint64_t>(std::uint64_t{wanted_} * 4096 + (1u << 20), 0xFFFF0000u);
-        const bool none = stored_ == 0 && t_.emitted >= (1u << 22);
-        if (none && none_ == if_none_stored::trace_none) {
-            wanted_ = 0;
-            make_photons();
-        } else if (none || t_.emitted >= most_paths) {
-            throw std::runtime_error("trace_photons: " + std::to_string(t_.emitted) + " paths from " + lights_
-                + " stored " + std::to_string(stored_) + " of the " + std::to_string(wanted_) + " photons requested. "
-                + (gathers(settings_) ? "Check that the lights reach a diffuse surface"
-                                      : "Only indirect light is stored: check that the lights reach a mirror, glass, "
-                                        "or a second diffuse surface"));
-        }
-    }
 
     B& device_;
     const device_scene<B>& scene_;
     render_settings settings_;
     photon_request request_;
-    std::string lights_;
-    if_none_stored none_;
     uint wanted_; // photons
     uint most_paths_;
     uint paths_ = 0; // per batch
@@ -138,16 +114,12 @@ private:
 template <backend B>
 void photon_tracing<B>::advance()
 {
-    if (!finished())
-        stop_if_none_are_stored();
     if (finished())
         return;
     const uint missing = wanted_ - stored_;
     if (t_.emitted > 0) // where few paths store a photon, a batch needs more of them
         make_frames(std::uint64_t{missing} * t_.emitted / std::max(stored_, 1u) * 33 / 32);
-    const uint paths = request_.most_paths == 0
-        ? paths_
-        : static_cast<uint>(std::min<std::uint64_t>(paths_, request_.most_paths - t_.emitted));
+    const auto paths = static_cast<uint>(std::min<std::uint64_t>(paths_, request_.most_paths - t_.emitted));
     const uint frames = trace_batch(device_, scene_, *frames_,
         path_batch<B>{paths, static_cast<uint>(t_.emitted), request_.to_diffuse(), &guide_}, settings_);
 
@@ -180,7 +152,7 @@ void photon_tracing<B>::advance()
     t_.emitted += emitted;
     stored_ += taken;
     t_.stored = stored_;
-    if (request_.most_paths > 0 && t_.emitted >= request_.most_paths)
+    if (t_.emitted >= request_.most_paths)
         end_early();
     if (finished())
         device_.template run<kernels::divide_power>(
@@ -204,10 +176,10 @@ void photon_tracing<B>::end_early()
 }
 
 /// Traces all photons that the settings ask for but those of a map of caustic photons (photon_tracing).
-/// \throws std::runtime_error as photon_tracing::advance does, render_cancelled.
+/// \throws backend_error, render_cancelled.
 template <backend B>
-traced_photons<B> trace_photons(B& device, const scene& s, const device_scene<B>& uploaded,
-    const render_settings& settings, const render_observer& observer = {})
+traced_photons<B> trace_photons(
+    B& device, const device_scene<B>& uploaded, const render_settings& settings, const render_observer& observer = {})
 {
     const auto stop_if_cancelled = [&] {
         if (observer.cancelled && observer.cancelled())
@@ -222,7 +194,7 @@ traced_photons<B> trace_photons(B& device, const scene& s, const device_scene<B>
         while (!pilot.advance());
         guide = pilot.guide();
     }
-    photon_tracing<B> tracing(device, s, uploaded, settings, request, guide, if_none_stored::fail);
+    photon_tracing<B> tracing(device, uploaded, settings, request, guide);
     while (!tracing.finished()) {
         stop_if_cancelled();
         tracing.advance();
@@ -248,6 +220,7 @@ photon_stats count_photons(B& device, const traced_photons<B>& t)
         p.direct += hits.y;
         p.left_to_caustics += hits.z;
     }
+    p.asked = t.asked;
     p.emitted = t.emitted;
     p.stored = t.stored;
     p.dropped = t.dropped;
