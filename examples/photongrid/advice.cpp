@@ -54,6 +54,35 @@ namespace {
                 count(without_normal, "normal") + " of meshes of length 0; the other corners' normals decide");
     }
 
+    /// The largest mean of a count that is at most `n` once in twenty times (Wilson and Hilferty 1931).
+    double most_expected(std::uint64_t n)
+    {
+        const double d = 9.0 * static_cast<double>(n + 1);
+        return d / 9 * std::pow(1 - 1 / d + 1.645 / std::sqrt(d), 3);
+    }
+
+    /// What to say of tracing that ended with few of the photons asked for; "" for others.
+    std::string few_photons(const scene& s, const photon_stats& p)
+    {
+        if (p.emitted == 0 || 10 * p.stored > p.asked)
+            return "";
+        const auto share = text("at most ", 100 * most_expected(p.stored) / static_cast<double>(p.emitted), " %");
+        const auto paths = text(p.emitted, " photon paths from ", detail::names_of_lights(s));
+        const char* where = " hit a mirror, glass or a second diffuse surface; ";
+        return p.stored == 0
+            ? text("none of ", paths, where, "the picture has direct light alone; other light is ", share, " of it")
+            : text("few of ", paths, where, "light other than direct, ", share, " of it, is from ", p.stored, " of ",
+                p.asked, " photons asked for, and noisy");
+    }
+
+    /// Whether edge correction is asked for where nothing has edges that it corrects.
+    bool corrects_nothing(const scene& s, const render_settings& settings)
+    {
+        return settings.estimate.edges != edge_correction::none
+            && std::none_of(s.polygons.begin(), s.polygons.end(),
+                [&](const polygon& p) { return is_diffuse(s.materials, s.materials[p.material]); });
+    }
+
     std::string size_of(const bounds& b)
     {
         const dvec3 size = b.high - b.low;
@@ -102,9 +131,11 @@ std::vector<std::string> warnings(
     std::vector<std::string> all;
     if (stats.invalid_pixels > 0)
         all.push_back(text(stats.invalid_pixels, " pixels were NaN or infinite and are black"));
-    if (stats.photons.emitted > 0 && stats.photons.stored == 0)
-        all.push_back(text("none of ", stats.photons.emitted, " photon paths from ", detail::names_of_lights(s),
-            " hit a mirror, glass or a second diffuse surface; the picture has direct light alone"));
+    if (const auto few = few_photons(s, stats.photons); !few.empty())
+        all.push_back(few);
+    if (corrects_nothing(s, settings))
+        all.push_back("--edge-correction polygons changes nothing here: no polygon of the scene stores photons, and "
+                      "meshes and other shapes are not corrected");
     const auto fitting = fitting_exposure(picture);
     const auto b = bounds_of(s);
     if (!fitting && settings.output.only == light_part::all)

@@ -172,6 +172,40 @@ namespace {
         expect(run({"check", "s.json"}).out, {"looks away from the whole scene"});
     }
 
+    /// A floor under a sun, the first scene that people try.
+    TEST_F(program_on_odd_scenes, draws_a_lone_mesh_and_says_how_much_indirect_light_there_is_at_most)
+    {
+        const auto floor = nlohmann::json::parse(R"({"photongrid": 1, "units": {"length": "m", "power": "W"},
+            "camera": {"position": [0, 2, 0], "look_at": [0, 0, 0], "up": [0, 0, -1], "vertical_fov": 39.6},
+            "materials": {"white": {"type": "lambertian", "reflectance": 0.5}},
+            "shapes": [{"type": "mesh", "positions": [[-2, 0, -2], [2, 0, -2], [2, 0.5, 2], [-2, 0.5, 2]],
+                "triangles": [[0, 2, 1], [0, 3, 2]], "material": "white"}],
+            "lights": [{"name": "sun", "type": "directional", "direction": [0, -1, 0], "irradiance": 3}],
+            "render": {}})");
+        for (const auto* emission : {"power", "guided"}) {
+            const auto said = draw(floor, {"--emission", emission, "--exposure", "0", "-o", "floor.exr"});
+            expect(said, {" photon paths from 'sun'", "direct", " is at most ", " %"});
+            // Reflectance over pi times the irradiance of a plane that leans by atan(0.5 / 4).
+            const auto picture = read_image((folder / "floor.exr").string());
+            EXPECT_NEAR(picture.pixels[12 * 32 + 16].x, 0.5 / M_PI * 3 * std::cos(std::atan(0.125)), 0.01);
+        }
+    }
+
+    TEST_F(program_on_odd_scenes, says_where_edge_correction_changes_nothing)
+    {
+        const std::vector<std::string> corrected{"--edge-correction", "polygons", "--leaks", "side,min_cosine=0.5"};
+        EXPECT_EQ(draw(whole, corrected), ""); // its table is a polygon
+        auto shapes = whole;
+        for (auto& shape : shapes["shapes"])
+            if (shape["type"] == "polygon") {
+                const auto material = shape["material"];
+                shape = {{"type", "mesh"}, {"positions", shape["vertices"]}, {"triangles", {{0, 1, 2}, {0, 2, 3}}},
+                    {"material", material}};
+            }
+        expect(draw(shapes, corrected), {"--edge-correction polygons changes nothing here"});
+        EXPECT_EQ(draw(shapes), "");
+    }
+
     TEST_F(program_on_odd_scenes, names_materials_that_no_shape_has)
     {
         auto unused = whole;
