@@ -1,4 +1,4 @@
-// The bias of estimates, told from their own photons (docs/design/decisions.md, "The bias, told"). A search for a
+// The bias of estimates, from their own photons (docs/design/decisions.md, "The bias is estimated"). A search for a
 // radius and an estimate come first; this is one more walk over the photons of each disc.
 //
 //     bias_start -> gather_bias -> bias_estimate

@@ -1,4 +1,4 @@
-// The bias of a pixel over the passes of a picture (docs/design/decisions.md, "The bias, told").
+// The bias of a pixel over the passes of a picture (docs/design/decisions.md, "The bias is estimated").
 #pragma once
 
 #include <photongrid/render/exact_sum.hpp>
