@@ -328,7 +328,10 @@ def to_pbrt(scene):
 
 
 def to_smallvcm(scene):
-    """What bench/smallvcm_scene.hpp reads: a line for each material, triangle, ball and light."""
+    """A line for the camera, and for each material, triangle, ball and light. SmallVCM's scenes are built in: the
+    executable smallvcm is one that reads this file, which $PHOTONGRID_SCENE names, and its size, depth, radius and
+    alpha from $PHOTONGRID_SIZE, $PHOTONGRID_DEPTH, $PHOTONGRID_RADIUS and $PHOTONGRID_ALPHA. Its matte triangles must
+    have two sides, as photongrid's have."""
     lines = [f"camera {numbers(scene.position, sub(scene.look_at, scene.position), scene.up, scene.fov)}"]
     names = list(scene.materials)
     for name in names:

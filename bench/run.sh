@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
 # Speed and error, measured. Prints Markdown; fails where a row misses what it must reach.
 #
-#   bench/run.sh [--algorithms] [--peers] [--paper] [--interactive] [--estimates] [--error] [--convergence] [--inclusion] [--files] [--write] [--no-install]     some of it, or all
-#   bench/run.sh --gpu [--no-install]               each part that a device runs, on the hardware devices of vulkan and gl; refuses software
+#   bench/run.sh [--algorithms] [--peers] [--paper] [--interactive] [--estimates] [--error] [--convergence]
+#                [--inclusion] [--files] [--write] [--no-install]     some of it, or all
+#   bench/run.sh --gpu [--write] [--no-install]     each part that a device runs, on the hardware devices of vulkan and
+#                                                   gl; refuses software
 #   bench/run.sh --smoke [--no-install]             all of it on little data, to see that it runs
 #
 #   --algorithms  each algorithm on each backend by number of photons and entropy of keys: JSON and plots in out/algorithms/
@@ -12,11 +14,12 @@
 #   --interactive how soon a change is seen, and when a picture looks converged
 #   --estimates   error and cost of searches, filters, leak policies and edge correction, on whole pictures
 #   --error       time against relMSE of every kind of estimate: CSV and plots in out/error/
-#   --convergence time to error against other programs, which bench/peers.sh builds in $PHOTONGRID_PEERS: CSV and plots in
+#   --convergence time to error against other programs, those that the folder $PHOTONGRID_PEERS has: CSV and plots in
 #                 out/time_to_error/
 #   --inclusion   what including the headers costs a user's compiler, and the size of the smallest programs
 #   --files       how fast scene files are read, and with how much memory
-#   --write       puts what is printed, and the Cornell box's plot, into docs/ too (bench/write_measures.sh)
+#   --write       puts what is printed into bench/results/ and docs/reference/measures.md too (bench/results.py), and the
+#                 Cornell box's plot into docs/
 #
 # Whether another commit drew the same pictures as this tree, and as fast: bench/against.sh.
 set -euo pipefail
@@ -24,7 +27,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
 
 usage() {
-  sed -n '2,22s/^# \{0,1\}//p' bench/run.sh >&2
+  sed -n '2,25s/^# \{0,1\}//p' bench/run.sh >&2
   exit 2
 }
 build=build-bench
@@ -60,20 +63,23 @@ version() { dpkg-query --show --showformat '${Package} ${Version}, ' "$@" 2>/dev
 machine() {
   echo "Machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores; $(date +%F); $(g++ --version | head -n 1); $(version libcgal-dev libflann-dev libnanoflann-dev libhwy-dev libtbb-dev mesa-vulkan-drivers povray)photongrid $(git rev-parse --short HEAD 2>/dev/null || echo "of no repository")"
 }
-title() { printf '\n### %s\n\n' "$1"; }
+# title TITLE COMMAND: a section begins, which COMMAND prints
+title() { printf '\n### %s\n\nCommand: %s\n\n' "$1$([[ $gpu == no ]] || echo ', hardware GPU')" "$2"; }
 if [[ $write == yes ]]; then
-  if [[ $smoke == yes || $gpu == yes ]]; then
-    usage
-  fi
+  [[ $smoke == no ]] || usage
+  command -v python3 >/dev/null || { echo "bench/run.sh --write: no python3; apt-get install python3" >&2; exit 2; }
+  git rev-parse HEAD >/dev/null 2>&1 || { echo "bench/run.sh --write: not a repository; measures name their commit" >&2; exit 2; }
+  again=("${parts[@]/#/--}")
+  [[ $gpu == no ]] || again=(--gpu)
   mkdir -p out
   status=0
-  bench/run.sh --no-install "${parts[@]/#/--}" | tee out/measured.md || status=$?
+  bench/run.sh --no-install "${again[@]}" | tee out/measured.md || status=$?
   if ((status > 1)); then
     exit $status # something is broken: what was printed is not whole
   fi
-  bench/write_measures.sh out/measured.md
-  [[ ! -e .git ]] || bench/write_measures.sh --mark
-  if asked error; then
+  bench/results.py take out/measured.md || status=$?
+  bench/results.py page
+  if [[ $gpu == no ]] && asked error; then
     cp out/error/cornell_box.svg docs/error_cornell_box.svg
   fi
   exit $status
@@ -87,6 +93,11 @@ must() {
     status=0 # times do not count
   fi
   failed=$((failed > status ? failed : status))
+}
+# measure TITLE COMMAND...: a section of a command that must hold
+measure() {
+  title "$1" "${*:2}"
+  must "${@:2}"
 }
 # loses_a_quarter_at_most NATIVE PLAIN: what knn_peers and knn_peers_portable printed, set by set
 loses_a_quarter_at_most() {
@@ -117,42 +128,41 @@ if [[ $gpu == yes ]]; then
   echo
   $build/photongrid devices
   for backend in "${backends[@]}"; do
-    title "Algorithms on $backend"
-    must bench/algorithms.sh "--benchmark_filter=/$backend/" --benchmark_min_time=0.1
-    title "Nearest neighbours on $backend"
-    must $build/bench/knn_peers --backend "$backend"
-    title "Exact k against at least k on $backend"
-    must $build/bench/search_times 3 "$backend"
-    title "Waiting on $backend (3.4)"
-    must $build/bench/interactive examples/scenes/cornell_box.json 9 "$backend"
+    measure "Algorithms on $backend" bench/algorithms.sh "--benchmark_filter=/$backend/" --benchmark_min_time=0.1
+    measure "Nearest neighbours on $backend" $build/bench/knn_peers --backend "$backend"
+    measure "Exact k against at least k on $backend" $build/bench/search_times 3 "$backend"
+    measure "Waiting on $backend (3.4)" $build/bench/interactive examples/scenes/cornell_box.json 9 "$backend"
   done
   if ((${#backends[@]} == 2)); then # these measure both
-    title "Sorting passes on vulkan and gl"
-    must $build/bench/sort_passes
-    title "Finished elements (3.3, 4.3)"
-    must $build/bench/unfinished
+    measure "Sorting passes on vulkan and gl" $build/bench/sort_passes
+    measure "Finished elements (3.3, 4.3)" $build/bench/unfinished
   fi
   if [[ " ${backends[*]} " == *" vulkan "* ]]; then
-    title "Table 2"
-    must $build/bench/kernel_costs
+    measure "Table 2" $build/bench/kernel_costs
   fi
-  title "Table 1"
-  must bench/table1.sh "${backends[@]}"
-  title "Whole pictures, by stage, as the device's clock has them"
+  measure "Table 1" bench/table1.sh "${backends[@]}"
+  title "Whole pictures, by stage, as the device's clock has them" "bench/run.sh --gpu"
+  echo "ms"
+  echo
+  echo "| scene | backend | run | trace photons | build map | trace rays | radiance estimate |"
+  echo "|---|---|---|---|---|---|---|"
   for backend in "${backends[@]}"; do
     for scene in cornell_box ring glass_ball terrace; do
       for run in first second third; do
         $build/photongrid render "examples/scenes/$scene.json" --backend "$backend" --passes 1 --time-passes --stats $build/stats.json -o $build/picture.pfm --quiet >/dev/null
-        echo "$scene, $backend, $run run: $(awk '/"(trace_photons|build_map|trace_rays|radiance_estimate)":/ { name = $1 } $1 == "\"ms\":" && name != "" { gsub(",", "", $2); printf "%s %.2f ms; ", name, $2; name = "" }' $build/stats.json)"
+        awk -v row="| $scene | $backend | $run |" '
+          /"(trace_photons|build_map|trace_rays|radiance_estimate)":/ { name = $1; gsub(/[":]/, "", name) }
+          $1 == "\"ms\":" && name != "" { ms[name] = $2 + 0; name = "" }
+          END {
+            printf "%s %.2f | %.2f | %.2f | %.2f |\n", row,
+              ms["trace_photons"], ms["build_map"], ms["trace_rays"], ms["radiance_estimate"]
+          }' $build/stats.json
       done
     done
   done
-  title "Time to visual convergence (3.1)"
-  must bench/convergence.sh "${backends[@]}"
-  title "The window (3.4)"
-  must bench/window.sh "${backends[@]}"
-  title "Time against error"
-  must bench/error.sh "${backends[@]}"
+  measure "Time to visual convergence (3.1)" bench/convergence.sh "${backends[@]}"
+  measure "The window (3.4)" bench/window.sh "${backends[@]}"
+  measure "Time against error" bench/error.sh "${backends[@]}"
   exit $failed
 fi
 if [[ $smoke == yes ]]; then
@@ -185,87 +195,62 @@ if [[ $smoke == yes ]]; then
   exit $failed
 fi
 if asked inclusion; then
-  title "What including it costs"
-  must bench/inclusion.sh
+  measure "What including it costs" bench/inclusion.sh
 fi
 if asked files; then
-  title "Reading scene files"
-  must $build/bench/scene_files
+  measure "Reading scene files" $build/bench/scene_files
 fi
 if asked algorithms; then
-  title "Algorithms"
-  must bench/algorithms.sh --benchmark_min_time=0.1
+  measure "Algorithms" bench/algorithms.sh --benchmark_min_time=0.1
 fi
 if asked peers; then
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
-  title "Nearest neighbours, one thread"
+  title "Nearest neighbours, one thread" $build/bench/knn_peers
   must $build/bench/knn_peers >"$work/native"
   cat "$work/native"
-  title "Nearest neighbours, two threads"
-  must $build/bench/knn_peers --threads 2
-  title "Nearest neighbours, points in random order, half of each ratio wanted"
-  must $build/bench/knn_peers --shuffle
-  title "Nearest neighbours, a plain build (-O2, no -march): both sides, run-time dispatch on ours"
+  measure "Nearest neighbours, two threads" $build/bench/knn_peers --threads 2
+  measure "Nearest neighbours, points in random order, half of each ratio wanted" $build/bench/knn_peers --shuffle
+  title "Nearest neighbours, a plain build (-O2, no -march): both sides, run-time dispatch on ours" $build/bench/knn_peers_portable
   must $build/bench/knn_peers_portable >"$work/plain"
   cat "$work/plain"
-  title "A plain build against a native one"
+  title "A plain build against a native one" "bench/run.sh --peers"
   must loses_a_quarter_at_most "$work/native" "$work/plain"
-  title "Nearest neighbours, the same build without AVX-512, half of each ratio wanted"
-  must $build/bench/knn_peers_portable --avx2
-  title "Nearest neighbours on vulkan and gl, S3, two threads"
+  measure "Nearest neighbours, the same build without AVX-512, half of each ratio wanted" $build/bench/knn_peers_portable --avx2
+  title "Nearest neighbours on vulkan and gl, S3, two threads" "$build/bench/knn_peers --backend vulkan --threads 2 --sets 3"
   must $build/bench/knn_peers --backend vulkan --threads 2 --sets 3
   echo
   must $build/bench/knn_peers --backend gl --threads 2 --sets 3
-  title "Nearest neighbours among photons in clusters, one thread"
-  must bench/clustered_peers.sh
-  title "Grids and blocks for photons in clusters"
-  must $build/bench/clustered_maps
-  title "Exact k against at least k, by grid"
-  must $build/bench/search_times
-  title "Sorting pairs, one thread"
-  must $build/bench/sort_peers 1
-  title "Sorting passes on vulkan and gl"
-  must $build/bench/sort_passes
-  title "Whole pictures"
-  must bench/pictures.sh
-  title "The ring's caustic against POV-Ray"
-  must bench/povray_ring.sh
+  measure "Nearest neighbours among photons in clusters, one thread" bench/clustered_peers.sh
+  measure "Grids and blocks for photons in clusters" $build/bench/clustered_maps
+  measure "Exact k against at least k, by grid" $build/bench/search_times
+  measure "Sorting pairs, one thread" $build/bench/sort_peers 1
+  measure "Sorting passes on vulkan and gl" $build/bench/sort_passes
+  measure "Whole pictures" bench/pictures.sh
+  measure "The ring's caustic against POV-Ray" bench/povray_ring.sh
 fi
 if asked paper; then
-  title "Table 1"
-  must bench/table1.sh cpu serial vulkan gl
-  title "Table 2"
-  must $build/bench/kernel_costs
-  title "Finished elements (3.3, 4.3)"
-  must $build/bench/unfinished
-  title "Defaults beside the paper's method"
-  must bench/defaults.sh
+  measure "Table 1" bench/table1.sh cpu serial vulkan gl
+  measure "Table 2" $build/bench/kernel_costs
+  measure "Finished elements (3.3, 4.3)" $build/bench/unfinished
+  measure "Defaults beside the paper's method" bench/defaults.sh
 fi
 if asked interactive; then
-  title "Time to visual convergence (3.1)"
-  must bench/convergence.sh
-  title "Waiting (3.4)"
-  must $build/bench/interactive examples/scenes/cornell_box.json 9 cpu vulkan
-  title "The window (3.4)"
-  must bench/window.sh
+  measure "Time to visual convergence (3.1)" bench/convergence.sh
+  measure "Waiting (3.4)" $build/bench/interactive examples/scenes/cornell_box.json 9 cpu vulkan
+  measure "The window (3.4)" bench/window.sh
 fi
 if asked estimates; then
-  title "Error and cost of each kind of estimate"
-  must bench/estimator_errors.sh
-  title "Edge correction"
-  must bench/edge_correction.sh
-  title "One lamp and a hundred"
-  must bench/lamps.sh
-  title "Indirect light and caustics: one map, a final gather, shrinking radii"
-  must bench/final_gather.sh
+  measure "Error and cost of each kind of estimate" bench/estimator_errors.sh
+  measure "Edge correction" bench/edge_correction.sh
+  measure "One lamp and a hundred" bench/lamps.sh
+  measure "Indirect light and caustics: one map, a final gather, shrinking radii" bench/final_gather.sh
 fi
 if asked error; then
-  title "Time against error"
-  must bench/error.sh
+  measure "Time against error" bench/error.sh
 fi
 if asked convergence; then
-  title "Time to error against other programs"
+  title "Time to error against other programs" "python3 bench/time_to_error.py"
   must time_to_error
 fi
 exit $failed

@@ -12,8 +12,10 @@
 #   --draft     references with a sixteenth of the paths
 #   --ways      photongrid's best settings of bench/time_to_error_settings.py alone (default), or all of them
 #
-# The other programs are in the folder PHOTONGRID_PEERS (bench/peers.sh builds them there), and what is measured once
-# is kept there, too: references/ and curves/. PHOTONGRID_SCENES has scenes of others (water-caustic).
+# The other programs are executables in the folder that PHOTONGRID_PEERS names: tungsten, pbrt (pbrt-v3) and smallvcm, a
+# SmallVCM that takes its scene from a file (to_smallvcm in bench/peer_scenes.py). One that is missing is skipped, which
+# is said. What is measured once is kept in that folder, too, in kept/. PHOTONGRID_SCENES has scenes of others
+# (water-caustic).
 #
 # A program's seconds are those of a whole run, less those of a run of 8 x 8 pixels with the least work, which reads the
 # same scene, builds what finds ray hits, and compiles kernels. Each point of a curve is a run of its own: a
@@ -23,7 +25,7 @@ import os
 import sys
 
 from error_curves import Reference, Runner, curve_of, seconds_to, write_curves
-from time_to_error_settings import Photongrid, SCENES, peers_of, photongrid_ways
+from time_to_error_settings import PROGRAMS, Photongrid, SCENES, is_program, peers_of, photongrid_ways
 
 parser = argparse.ArgumentParser()
 parser.add_argument("scenes", nargs="*")
@@ -42,9 +44,13 @@ names = options.scenes or (["cornell_blocks"] if options.quick else list(SCENES)
 out = "out/time_to_error"
 peers_folder = os.environ.get("PHOTONGRID_PEERS", "")
 if options.peers != "none" and not os.path.isdir(peers_folder):
-    print("time_to_error.py: SKIPPED other programs: PHOTONGRID_PEERS names no folder; bench/peers.sh fills one",
-          file=sys.stderr)
+    print("time_to_error.py: SKIPPED other programs: PHOTONGRID_PEERS names no folder that has them: "
+          + ", ".join(PROGRAMS), file=sys.stderr)
     options.peers = "none"
+elif options.peers != "none":
+    for missing in (name for name in PROGRAMS if not is_program(peers_folder, name)):
+        print(f"time_to_error.py: SKIPPED {PROGRAMS[missing]}: there is no program {missing} in {peers_folder}",
+              file=sys.stderr)
 cache = os.path.join(peers_folder, "kept") if options.peers != "none" else out
 program = os.environ.get("PHOTONGRID", "build/photongrid")
 if not os.access(program, os.X_OK):

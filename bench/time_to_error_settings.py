@@ -134,19 +134,27 @@ class Photongrid:
                  "--passes", str(passes), *words, "-o", picture], {"NODEVICE_SELECT": "1"})
 
 
+# The executables of other programs, in the folder that the caller names.
+PROGRAMS = {"tungsten": "Tungsten", "pbrt": "pbrt-v3", "smallvcm": "SmallVCM"}
+
+
+def is_program(folder, name):
+    path = os.path.join(folder, name)
+    return os.path.isfile(path) and os.access(path, os.X_OK)
+
+
 class Peer:
     """Another program with settings for a scene. `missing` says why it does not draw it, if it does not."""
+    executable = ""
     first, ending = 1, ".pfm"
 
-    def __init__(self, name, binary, exporter, scene, path, cache, settings):
-        self.name, self.binary, self.scene, self.path = name, binary, scene, path
-        self.exporter, self.settings, self.missing = exporter, " ".join(f"{k}={v}" for k, v in settings.items()), ""
+    def __init__(self, kind, folder, scene, path, cache, settings):
+        self.kind, self.binary = kind, os.path.join(folder, self.executable)
+        self.name, self.scene, self.path = f"{PROGRAMS[self.executable]} {kind.upper()}", scene, path
+        self.settings, self.missing = " ".join(f"{k}={v}" for k, v in settings.items()), ""
         self.values = settings
-        self.folder = os.path.join(cache, "scenes", f"{exporter}-{scene.name}")
+        self.folder = os.path.join(cache, "scenes", f"{self.executable}-{scene.name}")
         self.exported = set()
-        if not os.path.exists(binary):
-            self.missing = f"no {binary}"
-            return
         try:
             self.depth = ExportedScene(path).photon_depth
             self.export(8)
@@ -159,16 +167,13 @@ class Peer:
     def export(self, size):
         folder = f"{self.folder}-{size}"
         if size not in self.exported:
-            export(self.exporter, self.path, folder, size)
+            export(self.executable, self.path, folder, size)
             self.exported.add(size)
         return folder
 
 
 class Tungsten(Peer):
-    def __init__(self, kind, folder, scene, path, cache, settings):
-        super().__init__(f"Tungsten {kind.upper()}", os.path.join(folder, "tungsten-program"), "tungsten", scene, path,
-                         cache, settings)
-        self.kind = kind
+    executable = "tungsten"
 
     def command(self, cost, size, picture):
         folder = self.export(size)
@@ -194,9 +199,7 @@ class Tungsten(Peer):
 
 
 class Pbrt(Peer):
-    def __init__(self, kind, folder, scene, path, cache, settings):
-        super().__init__(f"pbrt-v3 {kind.upper()}", os.path.join(folder, "pbrt"), "pbrt", scene, path, cache, settings)
-        self.kind = kind
+    executable = "pbrt"
 
     def command(self, cost, size, picture):
         folder, v = self.export(size), self.values
@@ -217,12 +220,8 @@ class Pbrt(Peer):
 
 
 class SmallVcm(Peer):
+    executable = "smallvcm"
     first, ending = 2, ".hdr"  # each thread makes passes of its own
-
-    def __init__(self, kind, folder, scene, path, cache, settings):
-        super().__init__(f"SmallVCM {kind.upper()}", os.path.join(folder, "smallvcm"), "smallvcm", scene, path, cache,
-                         settings)
-        self.kind = kind
 
     def command(self, cost, size, picture):
         v = self.values
@@ -258,4 +257,6 @@ for _scene in PEERS:
 
 
 def peers_of(folder, scene, path, size, cache):
-    return [kind(which, folder, scene, path, cache, settings) for kind, which, settings in PEERS[scene.name]]
+    """The programs that the folder has, with their settings for a scene."""
+    return [program(kind, folder, scene, path, cache, settings) for program, kind, settings in PEERS[scene.name]
+            if is_program(folder, program.executable)]

@@ -4,9 +4,9 @@
 #
 #   tests/doc_names.sh
 #
-# A name is an identifier or an option in a tracked source (comments do not count), a tracked path or the end of one, or
-# a word of tests/doc_words.txt. In paths <...>, * and words in capitals stand for anything. Single letters, numbers and
-# what build folders hold are not looked up. Prints what is missing as PAGE:LINE and exits 1.
+# A name is an identifier or an option in a tracked source (comments and measures do not count), a tracked path or the
+# end of one, or a word of tests/doc_words.txt. In paths <...>, * and words in capitals stand for anything. Single
+# letters, numbers and what build folders hold are not looked up. Prints what is missing as PAGE:LINE and exits 1.
 # shellcheck disable=SC2016 # awk's variables
 set -euo pipefail
 export LC_ALL=C
@@ -19,10 +19,10 @@ if git rev-parse --git-dir >/dev/null 2>&1; then
 else # a copy without its history
   find . -type d \( -name 'build*' -o -name out \) -prune -o -type f -print | sed 's|^\./||' >"$work/paths"
 fi
-sources() { grep -E "$1" "$work/paths" | grep -vxE 'tests/doc_words\.txt|tests/doc_names\.sh|tests/io/scene_corpus/.*/.*' | tr '\n' '\0' | xargs -0 cat; }
+sources() { grep -E "$1" "$work/paths" | grep -vxE 'tests/doc_words\.txt|tests/doc_names\.sh|tests/io/scene_corpus/.*/.*|bench/results/.*' | tr '\n' '\0' | xargs -0 cat; }
 {
   sources '\.(hpp|cpp|glsl)$' | sed -E 's|(^\|[^:])//.*|\1|'
-  sources '(\.(cmake|sh|in|supp)|CMakeLists\.txt|Doxyfile|\.ci/run)$' | sed -E 's/(^|[[:space:]])#.*//'
+  sources '(\.(cmake|sh|py|in|supp)|CMakeLists\.txt|Doxyfile|\.ci/run)$' | sed -E 's/(^|[[:space:]])#.*//'
   sources '\.(json|dict)$'
   cat .clang-format 2>/dev/null || true
 } >"$work/text"

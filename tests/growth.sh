@@ -2,8 +2,9 @@
 # Is the library still cheap to add to? A shape, a filter or a kind of material that is named in many files is one whose
 # neighbour must be written into as many (docs/guide/add_a_shape.md, CONTRIBUTING.md). Counts the files that name one,
 # but for tests, docs, scenes (their schema is documentation, for editors), scripts of bench/, which choose what to
-# measure, the readers of other programs' scenes, whose own kinds have such names, and the writers of these, which say of
-# each kind what it becomes there; and the kernels that tell biases, which use one filter whatever that of the estimate.
+# measure, and what they measured, the readers of other programs' scenes, whose own kinds have such names, and the
+# writers of these, which say of each kind what it becomes there; and the kernels that tell biases, which use one filter
+# whatever that of the estimate.
 #
 #   tests/growth.sh
 set -euo pipefail
@@ -16,7 +17,7 @@ for words in paraboloid 'scene/box|<box>|const box&|(hit|closest)_box' 'scene/di
   epanechnikov material_kind::glass glass_surface metal; do
   most=5
   files=$(grep -rliE "$words" --include='*.hpp' --include='*.cpp' --include='*.glsl' --include='*.json' --include='*.cmake' \
-    --include='*.sh' --include='CMakeLists.txt' include backends bench cmake examples CMakeLists.txt | grep -vE '^examples/scenes/.*\.json$|^bench/.*\.sh$|^examples/photongrid/io/(pbrt|mitsuba|gltf|obj|export)/|^include/photongrid/(estimate/bias_|render/correct_bias)' | sort)
+    --include='*.sh' --include='CMakeLists.txt' include backends bench cmake examples CMakeLists.txt | grep -vE '^examples/scenes/.*\.json$|^bench/(.*\.sh$|results/)|^examples/photongrid/io/(pbrt|mitsuba|gltf|obj|export)/|^include/photongrid/(estimate/bias_|render/correct_bias)' | sort)
   count=$(grep -c . <<<"$files" || true)
   echo "$words: $count files"
   if ((count == 0 || count > most)); then
