@@ -38,6 +38,7 @@
 
 #define PHOTONGRID_PICTURES(EXTERN, B)                                                                                 \
     EXTERN template device_scene<B> upload_scene(B&, const scene&);                                                    \
+    EXTERN template std::shared_ptr<world<B>> prepare(B&, const scene&, const render_observer&);                       \
     EXTERN template traced_photons<B> trace_photons(                                                                   \
         B&, const device_scene<B>&, const render_settings&, const render_observer&);                                   \
     EXTERN template uint trace_batch(                                                                                  \

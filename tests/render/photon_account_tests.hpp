@@ -168,12 +168,12 @@ TYPED_TEST_P(pictures, a_lone_object_under_any_light_is_drawn)
     for (auto s : {bulb_over_a_floor(), mesh_under(bulb_over_a_floor()), under_a_sun, mesh_under(under_a_sun),
              under_a_sky, mesh_under(under_a_sky), ball})
         for (const auto emission : {photon_emission::power, photon_emission::guided}) {
-            s.render.map.photons = 1000;
+            s.render.map.photons = 256;
             s.render.map.emission = emission;
             render_stats stats;
             const auto drawn = this->picture(s, s.render, &stats);
             EXPECT_LE(stats.photons.stored, 5u);
-            EXPECT_EQ(stats.photons.asked, 1000u);
+            EXPECT_EQ(stats.photons.asked, 256u);
             EXPECT_LE(stats.photons.emitted, 1u << 16);
             EXPECT_EQ(stats.photons.emitted,
                 stats.photons.absorbed + stats.photons.escaped + stats.photons.cut_off + stats.photons.invalid);
@@ -271,8 +271,8 @@ TYPED_TEST_P(pictures, direct_light_alone_traces_no_photon)
     EXPECT_EQ(stats.photons.emitted, 0u);
     auto all = s.render;
     all.output.only = light_part::all;
-    EXPECT_FALSE(same_map(s, s.render, s, all)) << "a map without photons";
-    EXPECT_TRUE(same_map(s, all, s, s.render));
+    EXPECT_FALSE(same_map(s.render, all)) << "a map without photons";
+    EXPECT_TRUE(same_map(all, s.render));
 }
 
 } // namespace photongrid::testing

@@ -176,7 +176,7 @@ namespace {
                 .seed = 1,
                 .first_pixel = 0,
                 .first = 0},
-            reads(device.records, none.places, none.normals, none.shadings, device.environment, none.colors),
+            reads(device.records, none.places, none.normals, none.shadings, device.environment->texels, none.colors),
             writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
         return hits;
     }

@@ -1,33 +1,35 @@
-// Keeps the photon map in use and builds the next one. A map is rebuilt only if geometry, materials, lights or a
-// setting that same_map() compares changes (figure 1).
+// Keeps the photon map in use and builds the next one. A map is rebuilt only for another world, or if a setting that
+// same_map() compares changes (figure 1).
 #pragma once
 
 #include <photongrid/render/render.hpp>
 
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
-/// The inputs of a photon map.
-struct map_source {
-    photongrid::scene scene;
+/// What a photon map depends on.
+struct map_key {
+    std::uint64_t world = 0;  ///< number of the world
     render_settings settings; ///< those of its pass; with fewer photons for a preview
     uint pass = 0;
 
     /// Whether a map of `other` would be the same.
-    bool same(const map_source& other) const { return same_map(scene, settings, other.scene, other.settings); }
+    bool same(const map_key& other) const { return world == other.world && same_map(settings, other.settings); }
     /// Whether a map of `whole` differs only in having more photons.
-    bool is_preview_of(const map_source& whole) const
+    bool is_preview_of(const map_key& whole) const
     {
         auto with = settings;
         with.map.photons = whole.settings.map.photons;
         with.map.caustic_photons = whole.settings.map.caustic_photons;
         with.estimate.k = whole.settings.estimate.k;
         with.estimate.caustic_k = whole.settings.estimate.caustic_k;
-        return settings.map.photons < whole.settings.map.photons && same_map(scene, with, whole.scene, whole.settings);
+        return world == whole.world && settings.map.photons < whole.settings.map.photons
+            && same_map(with, whole.settings);
     }
 };
 
@@ -38,22 +40,19 @@ public:
     /// The steps to a map.
     using way = step_list (*)(map_building<B>&);
 
-    /// `device` and `guides` must outlive it.
-    explicit map_keeper(B& device, guide_keeper& guides, way steps = map_steps<B>)
-        : device_(device), guides_(guides), way_(steps)
-    {
-    }
+    /// `device` must outlive it.
+    explicit map_keeper(B& device, way steps = map_steps<B>) : device_(device), way_(steps) {}
 
     /// The map in use; there must be one.
     const built_map<B>& map() const { return *built_; }
     /// The inputs of the map in use.
-    const map_source& of() const { return of_; }
+    const map_key& of() const { return of_; }
     /// Whether the map in use is that of `source`.
-    bool serves(const map_source& source) const { return built_ && of_.same(source); }
+    bool serves(const map_key& source) const { return built_ && of_.same(source); }
     /// Whether the map in use is that of `source` with fewer photons.
-    bool serves_preview_of(const map_source& source) const { return built_ && of_.is_preview_of(source); }
+    bool serves_preview_of(const map_key& source) const { return built_ && of_.is_preview_of(source); }
     /// Whether the map of `source` is being built.
-    bool is_making(const map_source& source) const { return making_ && making_of_.same(source); }
+    bool is_making(const map_key& source) const { return making_ && making_of_.same(source); }
     /// The number of photons of the map being built, if one is.
     std::optional<uint> making_photons() const
     {
@@ -64,9 +63,9 @@ public:
     /// How many maps were started.
     std::uint64_t begun() const { return begun_; }
 
-    /// The steps to the map of `source`: none if it is in use, the remaining ones if it is being built. `use` is called
-    /// just before the new map replaces the one in use.
-    step_list steps_to(const map_source& source, std::function<void()> use)
+    /// The steps to the map of `source` in its world, `of`: none if it is in use, the remaining ones if it is being
+    /// built. `use` is called just before the new map replaces the one in use.
+    step_list steps_to(const map_key& source, std::shared_ptr<world<B>> of, std::function<void()> use)
     {
         if (serves(source))
             return {};
@@ -77,7 +76,7 @@ public:
                 built_.reset();
             }
             making_of_ = source;
-            making_.emplace(device_, making_of_.scene, making_of_.settings, guides_);
+            making_.emplace(device_, std::move(of), making_of_.settings);
             ++begun_;
         }
         auto steps = way_(*making_);
@@ -99,12 +98,11 @@ public:
 
 private:
     B& device_;
-    guide_keeper& guides_;
     way way_;
     std::optional<built_map<B>> built_;
-    map_source of_; ///< inputs of built_
+    map_key of_; ///< inputs of built_
     std::optional<map_building<B>> making_;
-    map_source making_of_;
+    map_key making_of_;
     std::uint64_t begun_ = 0;
 };
 

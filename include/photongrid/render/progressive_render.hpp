@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -34,6 +35,10 @@ public:
         check(s);
         check(settings);
         stop_asked_ = false;
+        if (!started_ || !same_light_paths(scene_, s)) {
+            making_world_.reset(); // it has a reference to scene_
+            ++world_wanted_;
+        }
         scene_ = s;
         settings_ = settings;
         settings_.output.passes = settings.output.passes_at_most();
@@ -93,6 +98,8 @@ public:
             view_.reset();
             maps_.clear();
             radius_maps_.clear();
+            making_world_.reset();
+            world_.reset();
             begin_picture();
             throw;
         }
@@ -140,6 +147,9 @@ private:
         const std::uint64_t pixels = std::uint64_t{settings_.output.width} * settings_.output.height;
         if (finished())
             return {"finished", 1, 0, 1, settings_.map.photons, film_.passes()};
+        if (!has_world())
+            return {"prepare_scene", making_world_ ? making_world_->fraction() : 0.0, pixels, 1, settings_.map.photons,
+                film_.passes()};
         if (const auto photons = maps_.making_photons(); photons || (!view_ && rows_done() == 0))
             return {maps_.fraction() < 1 ? "trace_photons" : "build_map", maps_.fraction(), pixels, 1,
                 photons.value_or(settings_.map.photons), film_.passes()};
@@ -178,6 +188,7 @@ private:
         drawing_since_ = 0;
         if (!maps_.serves(pass(next_pass())))
             stats_ = {};
+        stats_.prepare_scene = has_world() ? world_->prepared : stage_stats{};
         stats_.trace_rays = stats_.radiance_estimate = {};
         stats_.estimate = {};
         stats_.photons = {};
@@ -196,10 +207,12 @@ private:
             && detail::sums_while_growing(detail::search_for(settings_));
     }
 
-    /// A preview with few photons, the map, previews with all photons, then the passes.
+    /// The scene, a preview with few photons, the map, previews with all photons, then the passes.
     step_list picture_steps()
     {
         step_list steps;
+        if (!has_world())
+            steps.add("prepare_scene", [this] { return prepare_world(); });
         steps.expand([this] { return early_preview_steps(); });
         steps.expand([this] { return steps_to_map(pass(first_pass())); });
         steps.expand([this] { return preview_steps(); });
@@ -294,23 +307,39 @@ private:
         return has_previews() && unfinished_.empty() && has_map_of_unfinished_pass() ? maps_.of().pass : next_pass();
     }
     /// The inputs of the map for pass `number`.
-    map_source pass(uint number) const { return {scene_, settings_of_pass(settings_, number), number}; }
+    map_key pass(uint number) const { return {world_wanted_, settings_of_pass(settings_, number), number}; }
 
-    step_list steps_to_map(const map_source& source)
+    /// Whether scene_ is on the device.
+    bool has_world() const { return world_ && world_is_ == world_wanted_; }
+    /// Takes a step to that; returns whether it was the last.
+    bool prepare_world()
+    {
+        if (!making_world_)
+            making_world_.emplace(device_, scene_, world_);
+        if (!making_world_->advance())
+            return false;
+        world_ = making_world_->take();
+        making_world_.reset();
+        world_is_ = world_wanted_;
+        stats_.prepare_scene = world_->prepared;
+        return true;
+    }
+
+    step_list steps_to_map(const map_key& source)
     {
         if (maps_.serves(source))
             return {};
-        auto steps = maps_.steps_to(source, [this] { view_.reset(); });
+        auto steps = maps_.steps_to(source, world_, [this] { view_.reset(); });
         steps.expand([this] { return use_map(); });
         return steps;
     }
     /// The map that gives the first radii of all passes.
     step_list steps_to_radii()
     {
-        const map_source source{scene_, settings_of_radius_map(settings_, device_.caps()), radius_pass};
+        const map_key source{world_wanted_, settings_of_radius_map(settings_, device_.caps()), radius_pass};
         if (!has_shrinking_radii(settings_) || radius_maps_.serves(source))
             return {};
-        auto steps = radius_maps_.steps_to(source, [this] { view_.reset(); });
+        auto steps = radius_maps_.steps_to(source, world_, [this] { view_.reset(); });
         steps.expand([this] {
             const auto& made = radius_maps_.map().stats;
             detail::add(stats_.trace_photons, made.trace_photons);
@@ -385,7 +414,7 @@ private:
     {
         finish_pass(device_, maps_.map(), stats_);
         if (film_.size() == 0)
-            film_ = film_for(scene_, maps_.map().scene.layout, settings_);
+            film_ = film_for(scene_, world_->scene.layout, settings_);
         film_.add(number, std::exchange(light_, {}));
         judge_.after_pass(film_, clock_.seconds(), stats_);
         unfinished_ = {};
@@ -423,7 +452,9 @@ private:
     work_clock clock_;         ///< of the picture
     double drawing_since_ = 0; ///< when the light of a pass began to be drawn, s
 
-    guide_keeper guides_;
+    std::shared_ptr<world<B>> world_; ///< of scene_, or of the one before until that of scene_ is ready
+    std::optional<world_building<B>> making_world_;
+    std::uint64_t world_is_ = 0, world_wanted_ = 0; ///< numbers of world_, and of the world of scene_
     map_keeper<B> maps_;
     map_keeper<B> radius_maps_; ///< shrinking_radii.hpp
 
@@ -444,7 +475,7 @@ private:
 
 template <backend B>
 progressive_render<B>::progressive_render(B& device)
-    : device_(device), maps_(device, guides_), radius_maps_(device, guides_, radius_map_steps<B>)
+    : device_(device), maps_(device), radius_maps_(device, radius_map_steps<B>)
 {
 }
 

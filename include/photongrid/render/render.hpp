@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -85,26 +86,28 @@ inline step_list band_steps(const output_settings& output, std::uint32_t rows_do
 }
 
 /// Traces photons and builds the map for a pass. A scene without indirect light has an empty map.
-/// `guides`: emission guides of earlier passes, to which those that are missing are added.
-/// \throws std::invalid_argument for a scene or settings that check() rejects, backend_error, render_cancelled.
+/// \throws std::invalid_argument for settings that check() rejects, backend_error, render_cancelled.
 template <backend B>
-built_map<B> build_map(B& device, const scene& s, const render_settings& settings, guide_keeper& guides,
-    const render_observer& observer = {})
+built_map<B> build_map(
+    B& device, std::shared_ptr<world<B>> of, const render_settings& settings, const render_observer& observer = {})
 {
-    map_building<B> map(device, s, settings, guides);
+    map_building<B> map(device, std::move(of), settings);
     run(map_steps(map), observer, [&](std::string_view stage) {
         if (observer.progress)
             observer.progress(stage, map.fraction());
     });
     return map.take();
 }
-/// The same with guides of its own.
+/// The same in a world of its own.
+/// \throws what prepare() throws.
 /// \snippet snippets.cpp build_map
 template <backend B>
 built_map<B> build_map(B& device, const scene& s, const render_settings& settings, const render_observer& observer = {})
 {
-    guide_keeper guides;
-    return build_map(device, s, settings, guides, observer);
+    auto of = prepare(device, s, observer);
+    auto built = build_map(device, std::move(of), settings, observer);
+    built.stats.prepare_scene = built.world->prepared;
+    return built;
 }
 
 /// The pixels of one pass over a view. Times and counts are added to `stats`.
@@ -163,10 +166,10 @@ pass_pixels draw_pass(B& device, const built_map<B>& built, const camera& view, 
 /// Builds the map that gives the first radii of all passes.
 /// \throws what build_map throws.
 template <backend B>
-built_map<B> build_radius_map(B& device, const scene& s, const render_settings& settings, guide_keeper& guides,
+built_map<B> build_radius_map(B& device, std::shared_ptr<world<B>> of, const render_settings& settings,
     const render_observer& observer, render_stats& stats)
 {
-    map_building<B> building(device, s, settings_of_radius_map(settings, device.caps()), guides);
+    map_building<B> building(device, std::move(of), settings_of_radius_map(settings, device.caps()));
     run(radius_map_steps(building), observer, [](std::string_view) {});
     auto built = building.take();
     detail::add_map(stats, built.stats);
@@ -204,16 +207,16 @@ template <backend B>
     clock.go_on();
     auto every = settings;
     every.output.passes = settings.output.passes_at_most();
-    guide_keeper guides;
+    const auto shared = prepare(device, s, observer);
+    out.stats.prepare_scene = shared->prepared;
+    sum = film_for(s, shared->scene.layout, settings);
     std::optional<built_map<B>> radii;
     if (has_shrinking_radii(every))
-        radii = build_radius_map(device, s, every, guides, observer, out.stats);
+        radii = build_radius_map(device, shared, every, observer, out.stats);
     for (uint pass = 0; !judge.ended(); ++pass) {
         const auto own = settings_of_pass(every, pass);
-        const auto map = build_map(device, s, own, guides, observer);
+        const auto map = build_map(device, shared, own, observer);
         detail::add_map(out.stats, map.stats);
-        if (pass == 0)
-            sum = film_for(s, map.scene.layout, settings);
         const auto of_pass
             = radii ? radii_of_pass(*radii, settings_of_radius_map(every, device.caps()), pass) : pass_radii<B>{};
         sum.add(pass, draw_pass(device, map, s.camera, own, observer, out.stats, of_pass));

@@ -24,7 +24,7 @@ struct map_stats {
     std::uint64_t left_out = 0;              ///< photons stored that belong to another part of the light (light_part)
 };
 
-/// One of the four stages of the paper's Table 1.
+/// A stage: the scene's preparation, or one of the four of the paper's Table 1.
 struct stage_stats {
     double ms = 0;                  ///< without the compilation of kernels
     double compile_ms = 0;          ///< compilation of kernels that the stage used first
@@ -55,6 +55,7 @@ struct end_stats {
 struct render_stats {
     photon_stats photons;                ///< of the map, independent of the view
     map_stats map;                       ///< the map
+    stage_stats prepare_scene;           ///< layout, trees and upload, once for all passes
     stage_stats trace_photons;           ///< 2.1
     stage_stats build_map;               ///< 2.2
     stage_stats trace_rays;              ///< eye rays and direct light (2.4)

@@ -1,15 +1,16 @@
-// Builds a scene's photon map (figure 1, left): traces photons and puts them into a map. It runs again only if
-// geometry, materials, lights or a setting that same_map() compares changes.
+// Builds a photon map of a world (figure 1, left): traces photons and puts them into a map. It runs again only for
+// another world, another pass, or if a setting that same_map() compares changes.
 #pragma once
 
 #include <photongrid/map/map_builders.hpp>
 #include <photongrid/render/final_gather.hpp>
 #include <photongrid/render/shrinking_radii.hpp>
 #include <photongrid/render/stage_clock.hpp>
+#include <photongrid/render/world.hpp>
 #include <photongrid/trace/pilot_tracing.hpp>
 #include <photongrid/trace/trace_photons.hpp>
 
-#include <map>
+#include <memory>
 #include <optional>
 
 #include <photongrid/core/exact_begin.hpp>
@@ -23,12 +24,12 @@ struct caustic_map {
     traced_photons<B> trace; ///< without the photons, which are in `map`
 };
 
-/// The result of build_map and the input of draw: the scene on the device and its photon map.
+/// The result of build_map and the input of draw: a photon map of a world.
 template <backend B>
 struct built_map {
-    device_scene<B> scene; ///< recentred
-    /// In the coordinates of `scene`: all photons; without caustic ones if there is `caustics`; only those if rays of a
-    /// final gather start where eye rays end; none with both.
+    std::shared_ptr<photongrid::world<B>> world;
+    /// In the coordinates of the world's scene: all photons; without caustic ones if there is `caustics`; only those if
+    /// rays of a final gather start where eye rays end; none with both.
     map_buffers<B> map;
     traced_photons<B> trace;                ///< without the photons, which are in the maps
     render_stats stats;                     ///< trace_photons, build_map and map
@@ -36,6 +37,7 @@ struct built_map {
     std::optional<caustic_map<B>> caustics; ///< if the settings ask for it and the scene has mirrors or glass
     bool has_caustics_apart = false;        ///< `map` has no caustic photons; they are in `caustics`, if there are any
 
+    const device_scene<B>& scene() const { return world->scene; }
     /// The map with the caustic photons.
     const map_buffers<B>& map_of_caustics() const { return caustics ? caustics->map : map; }
 };
@@ -59,12 +61,12 @@ inline bool same_irradiance(estimate_settings a, const estimate_settings& b)
     return a == b;
 }
 
-/// Whether the photon map of scene `a` with settings `as` can be used for scene `b` with `bs`: same shapes, materials
-/// and lights, and the same photons in the same map. Cameras, names and the settings of other stages do not matter.
-inline bool same_map(const scene& a, const render_settings& as, const scene& b, const render_settings& bs)
+/// Whether the photon map of a world with settings `as` is that with `bs`: the same photons in the same map. The
+/// settings of other stages do not matter.
+inline bool same_map(const render_settings& as, const render_settings& bs)
 {
     const bool fitted = !as.map.has_given_grid() && as.map.builder != map_builder::blocks;
-    return same_light_paths(a, b) && as.seed == bs.seed && as.map.in_use() == bs.map.in_use()
+    return as.seed == bs.seed && as.map.in_use() == bs.map.in_use()
         && (!fitted || as.estimate.k == bs.estimate.k) // a fitted map depends on k
         && (!fitted || as.map.caustic_photons == 0 || as.estimate.caustic_k == bs.estimate.caustic_k)
         && (as.estimate.leaks.needs_photon_normals() || !bs.estimate.leaks.needs_photon_normals())
@@ -73,50 +75,20 @@ inline bool same_map(const scene& a, const render_settings& as, const scene& b, 
         && (as.output.only != light_part::direct || bs.output.only == light_part::direct); // it has no photons
 }
 
-/// Keeps the emission guides of a scene for the passes of its pictures.
-class guide_keeper {
-public:
-    /// The guide of paths for `request`, if it was added for this scene and as many photons; else null.
-    const emission_guide* find(const scene& s, const render_settings& with, const photon_request& request) const
-    {
-        const auto at = guides_.find(key_of(request));
-        return at != guides_.end() && depth_ == with.map.photon_depth && same_light_paths(scene_, s) ? &at->second
-                                                                                                     : nullptr;
-    }
-    void add(const scene& s, const render_settings& with, const photon_request& request, emission_guide guide)
-    {
-        if (depth_ != with.map.photon_depth || !same_light_paths(scene_, s))
-            guides_.clear();
-        scene_ = s;
-        depth_ = with.map.photon_depth;
-        guides_[key_of(request)] = std::move(guide);
-    }
-
-private:
-    /// For more photons there are more pilot paths: with the guide for others, a picture would depend on which map was
-    /// made first, that of a preview or of the first radii, or that of a pass.
-    using key = std::pair<uint, uint>; // kinds, number of photons
-    static key key_of(const photon_request& r) { return {r.kinds, r.photons}; }
-
-    scene scene_;
-    uint depth_ = 0;
-    std::map<key, emission_guide> guides_;
-};
-
 /// Builds a photon map batch by batch, so that it can be interrupted.
 template <backend B>
 class map_building {
 public:
-    /// Uploads the scene. It traces nothing yet. In a scene that has no indirect light the map has no photons.
-    /// `guides`: those of earlier passes; it must outlive this object.
-    /// \throws std::invalid_argument for a scene or settings that check() rejects, backend_error.
-    map_building(B& device, const scene& s, const render_settings& settings, guide_keeper& guides)
-        : device_(device), source_(s), settings_(settings), guides_(guides)
+    /// It traces nothing yet. In a scene that has no indirect light the map has no photons. It adds emission guides to
+    /// the world.
+    /// \throws std::invalid_argument for settings that check() rejects, backend_error.
+    map_building(B& device, std::shared_ptr<world<B>> of, const render_settings& settings)
+        : device_(device), settings_(settings)
     {
         check(settings);
-        built_.scene = upload_scene(device, s);
+        built_.world = std::move(of);
         built_.has_caustics_apart = settings_.map.caustic_photons > 0;
-        request_ = request_of(settings_, built_.scene.layout);
+        request_ = request_of(settings_, layout());
         detail::time_stage(device, built_.stats.trace_photons, [&] { begin_tracing(); });
     }
     map_building(const map_building&) = delete;
@@ -130,7 +102,7 @@ public:
             if (tracing_) {
                 tracing_->advance();
             } else if (pilot_ && pilot_->advance()) {
-                guides_.add(source_, settings_, request_, pilot_->guide());
+                built_.world->add_guide(settings_, request_, pilot_->guide());
                 pilot_.reset();
                 begin_tracing();
             }
@@ -170,8 +142,8 @@ public:
     {
         if (!pilot_ && !tracing_)
             return 1.0;
-        const double caustics = caustic_request_of(settings_, built_.scene.layout).photons;
-        const double all = request_of(settings_, built_.scene.layout).photons + caustics, now = request_.photons;
+        const double caustics = caustic_request_of(settings_, layout()).photons;
+        const double all = request_of(settings_, layout()).photons + caustics, now = request_.photons;
         const double before = is_of_caustics_ ? all - caustics : 0;
         return all > 0 ? (before + (tracing_ ? tracing_->fraction() : 0.0) * now) / all : 0.0;
     }
@@ -180,13 +152,14 @@ public:
     built_map<B> take() { return std::move(built_); }
 
 private:
+    const scene_layout& layout() const { return built_.scene().layout; }
     /// Begins to trace the photons of request_, or pilot paths if a guide is wanted that there is not yet.
     void begin_tracing()
     {
         const bool guided = is_guided(settings_, request_);
-        const auto* guide = guided ? guides_.find(source_, settings_, request_) : nullptr;
+        const auto* guide = guided ? built_.world->guide(settings_, request_) : nullptr;
         if (guided && guide == nullptr) {
-            pilot_.emplace(device_, built_.scene, settings_, request_);
+            pilot_.emplace(device_, built_.scene(), settings_, request_);
             return;
         }
         if (guide != nullptr && guide->has_none_useful)
@@ -194,7 +167,7 @@ private:
         auto with = settings_;
         if (is_of_caustics_)
             with.seed ^= 0xB5297A4Du; // else they would be on the paths of the other photons
-        tracing_.emplace(device_, built_.scene, with, request_, guide != nullptr ? *guide : emission_guide{});
+        tracing_.emplace(device_, built_.scene(), with, request_, guide != nullptr ? *guide : emission_guide{});
     }
     /// Ends tracing for a request, and begins with the caustic photons if they come next.
     void end_tracing()
@@ -206,7 +179,7 @@ private:
             return;
         }
         built_.trace = std::move(traced);
-        const auto caustics = caustic_request_of(settings_, built_.scene.layout);
+        const auto caustics = caustic_request_of(settings_, layout());
         if (caustics.photons == 0)
             return;
         built_.caustics.emplace();
@@ -218,9 +191,9 @@ private:
     {
         photons<B> p = std::move(built_.trace.photons);
         if (gathers(settings_) && built_.has_caustics_apart) // all photons are the gather's alone
-            gather_.emplace(device_, built_.scene, std::exchange(p, no_photons()), settings_);
+            gather_.emplace(device_, built_.scene(), std::exchange(p, no_photons()), settings_);
         else if (gathers(settings_))
-            gather_.emplace(device_, built_.scene, detail::copy(device_, p), settings_);
+            gather_.emplace(device_, built_.scene(), detail::copy(device_, p), settings_);
         const uint parts = built_.has_caustics_apart ? every_part : parts_at_ends(settings_);
         const auto builder = settings_.map.builder;
         built_.map = map_of(std::move(p), parts, settings_.estimate.k, builder);
@@ -253,8 +226,7 @@ private:
         case map_builder::sort:
         case map_builder::route: break;
         }
-        const auto& layout = built_.scene.layout;
-        const grid g = m.has_given_grid() ? make_grid(layout.low, layout.high, m.grid)
+        const grid g = m.has_given_grid() ? make_grid(layout().low, layout().high, m.grid)
                                           : fitting_grid(device_, p, k, device_.caps().cells_per_radius);
         return builder == map_builder::sort
             ? sorted_map(device_, std::move(p), g, parts)
@@ -262,16 +234,14 @@ private:
     }
 
     B& device_;
-    scene source_;
     render_settings settings_;
-    guide_keeper& guides_;
     photon_request request_;      // that is traced
     bool is_of_caustics_ = false; // it is that of the caustic photons
     bool is_built_ = false;
     built_map<B> built_;
-    std::optional<pilot_tracing<B>> pilot_;        // of built_.scene
-    std::optional<photon_tracing<B>> tracing_;     // of built_.scene
-    std::optional<gather_map_building<B>> gather_; // of built_.scene
+    std::optional<pilot_tracing<B>> pilot_;        // of built_.scene()
+    std::optional<photon_tracing<B>> tracing_;     // of built_.scene()
+    std::optional<gather_map_building<B>> gather_; // of built_.scene()
 };
 
 /// The radii of pass number `pass`, with `first` the map built by `settings` of pass number radius_pass, which must

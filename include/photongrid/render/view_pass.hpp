@@ -46,7 +46,7 @@ public:
     view_pass(B& device, const built_map<B>& built, const camera& view, const render_settings& settings,
         const view_pass_settings& how, kept_samples<B>& kept, render_stats& stats)
         : device_(device), built_(built), view_(view), settings_(settings), how_(how), kept_(kept), stats_(stats),
-          branches_(1u << detail::splits_of(built.scene.layout))
+          branches_(1u << detail::splits_of(built.scene().layout))
     {
         check(settings);
         check(view);
@@ -210,7 +210,7 @@ private:
     {
         const bool caustic = is_of_caustics();
         const auto k = caustic ? detail::search_for_caustics(settings_) : detail::search_for(settings_);
-        return {.scene = &built_.scene,
+        return {.scene = &built_.scene(),
             .map = caustic ? &built_.caustics->map : &built_.map,
             .radii = caustic ? radii_.first_of_caustics : radii_.first,
             .share2 = radii_.share2,
@@ -295,7 +295,7 @@ bool view_pass<B>::trace_eye(uint ray)
     }
     const auto trace = [&](uint r, launch pixels) {
         detail::trace_eye_rays(
-            device_, built_.scene, view_, settings_, canvas_.raster, r, pixels, samples_->hits, own_branches_);
+            device_, built_.scene(), view_, settings_, canvas_.raster, r, pixels, samples_->hits, own_branches_);
     };
     if (own_branches_.size() == 0) {
         own_branches_ = device_.template make<uint>(canvas_.raster.size());
@@ -316,7 +316,7 @@ bool view_pass<B>::direct_light(uint ray)
     return over_pixels(stats_.trace_rays, [&](launch pixels) {
         if (drawn) {
             detail::direct_light(
-                device_, built_.scene, samples_->hits, light_settings(), ray, pixels, samples_->direct);
+                device_, built_.scene(), samples_->hits, light_settings(), ray, pixels, samples_->direct);
         } else {
             device_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->direct));
             device_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->hits.emissions));
@@ -331,11 +331,11 @@ bool view_pass<B>::gather(uint ray)
         return true;
     const bool all_pixels = over_pixels(stats_.trace_rays, [&](launch pixels) {
         if (follows_paths(settings_))
-            add_path(device_, built_.scene, built_.map_of_caustics(), radii_, samples_->hits, settings_, ray, gathered_,
-                pixels, samples_->direct);
+            add_path(device_, built_.scene(), built_.map_of_caustics(), radii_, samples_->hits, settings_, ray,
+                gathered_, pixels, samples_->direct);
         else
-            add_gather_rays(device_, built_.scene, *built_.gather, built_.map_of_caustics(), samples_->hits, settings_,
-                ray, gathered_, pixels, samples_->direct);
+            add_gather_rays(device_, built_.scene(), *built_.gather, built_.map_of_caustics(), samples_->hits,
+                settings_, ray, gathered_, pixels, samples_->direct);
     });
     if (all_pixels)
         ++gathered_;

@@ -202,8 +202,8 @@ void add_light_samples(B& device, const device_scene<B>& s, const render_setting
                 .choice = how.choice,
                 .choices = how.choices,
                 .whole = lit.whole},
-            reads(s.records, lit.points, lit.surfaces, s.faces, s.planes, s.vertices, s.shares, s.environment,
-                s.environment_shares),
+            reads(s.records, lit.points, lit.surfaces, s.meshes->faces, s.meshes->planes, s.meshes->vertices,
+                s.meshes->shares, s.environment->texels, s.environment->shares),
             writes(rays.origins, rays.directions, arriving));
         change(rays.directions, arriving);
         if (through)
@@ -272,7 +272,7 @@ void trace_to_ends(B& device, const device_scene<B>& s, launch pixels, const pat
                           .seed = how.seed,
                           .first_pixel = hits.first_pixel,
                           .first = pixels.first},
-                      reads(s.records, on_meshes.places, on_meshes.normals, on_meshes.shadings, s.environment,
+                      reads(s.records, on_meshes.places, on_meshes.normals, on_meshes.shadings, s.environment->texels,
                           on_meshes.colors),
                       writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches),
                       s.has_meshes() ? 1u : all_passes)

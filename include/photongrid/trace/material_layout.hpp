@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <glm/vec2.hpp>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include <photongrid/core/exact_begin.hpp>
@@ -34,22 +35,37 @@ inline std::vector<const texture_use*> put_materials(record_writer& w, const std
     return textures;
 }
 
-/// Appends the records of textures, and their texels to those of all. Textures may share the texels of a map.
+/// Appends the records of textures. Textures may share the texels of a map. Returns the maps in the order of their
+/// texels.
 /// \throws std::invalid_argument for more texels than max_texels.
-inline void put_textures(
-    record_writer& w, const std::vector<const texture_use*>& textures, std::vector<glm::uvec2>& texels)
+inline std::vector<std::shared_ptr<const texture>> put_textures(
+    record_writer& w, const std::vector<const texture_use*>& textures)
 {
+    std::vector<std::shared_ptr<const texture>> maps;
     std::map<const texture*, std::size_t> firsts;
+    std::size_t texels = 0;
     for (const auto* use : textures) {
-        const auto [found, is_new] = firsts.emplace(use->map.get(), texels.size());
-        if (is_new)
-            for (const auto& t : use->map->texels)
-                texels.emplace_back(uint{t.x} | uint{t.y} << 16, uint{t.z} | uint{t.w} << 16);
-        require(texels.size() <= max_texels, "materials: their textures have more than 2^28 texels together");
+        const auto [found, is_new] = firsts.emplace(use->map.get(), texels);
+        if (is_new) {
+            maps.push_back(use->map);
+            texels += use->map->texels.size();
+        }
+        require(texels <= max_texels, "materials: their textures have more than 2^28 texels together");
         w.put(dvec3(halves_of(found->second), use->map->width), use->map->height);
         w.put(dvec3(use->scale, use->offset.x), use->offset.y);
         w.put(dvec3(use->wrap == texture_wrap::repeat ? 1 : 0, static_cast<double>(use->channel), 0), 0);
     }
+    return maps;
+}
+
+/// The texels of maps, one map after the other.
+inline std::vector<glm::uvec2> texels_of(const std::vector<std::shared_ptr<const texture>>& maps)
+{
+    std::vector<glm::uvec2> texels;
+    for (const auto& map : maps)
+        for (const auto& t : map->texels)
+            texels.emplace_back(uint{t.x} | uint{t.y} << 16, uint{t.z} | uint{t.w} << 16);
+    return texels;
 }
 
 } // namespace photongrid::detail

@@ -48,7 +48,7 @@ struct mesh_rays {
     /// The hits of all rays for kernels, as trace/ray_state.glsl describes them.
     buffer_of<B, glm::uvec4> search(B& device, const device_scene<B>& s, hit_kind kind) const
     {
-        ray_search<B> search(device, s.triangles, origins, directions, {.kind = kind});
+        ray_search<B> search(device, s.meshes->triangles, origins, directions, {.kind = kind});
         search.advance();
         return search.take_states();
     }
@@ -56,16 +56,17 @@ struct mesh_rays {
     void find(B& device, const device_scene<B>& s, mesh_hits<B>& hits) const
     {
         const auto found = search(device, s, hit_kind::closest);
-        const uint instances = s.triangles.instance_count();
+        const auto& m = *s.meshes;
+        const uint instances = m.triangles.instance_count();
         device.template run<kernels::mesh_surface>({origins.size(), 0u, s.layout.features}, {.count = instances},
             reads(
-                s.records, origins, directions, found, s.faces, s.planes, s.vertices, s.normals, s.triangles.instances),
+                s.records, origins, directions, found, m.faces, m.planes, m.vertices, m.normals, m.triangles.instances),
             writes(hits.places, hits.normals, hits.shadings));
         if (s.has_textures())
             device.template run<kernels::mesh_color>({colors_per_hit(s.layout) * origins.size(), 0u, s.layout.features},
                 {.count = instances},
-                reads(s.records, found, hits.places, hits.normals, s.faces, s.vertices, s.attributes, s.texels,
-                    s.triangles.instances),
+                reads(s.records, found, hits.places, hits.normals, m.faces, m.vertices, m.attributes, *s.texels,
+                    m.triangles.instances),
                 writes(hits.colors));
     }
 };

@@ -31,14 +31,14 @@ inline bool may_have_caustics(const scene_layout& layout)
     return (layout.features & (has_mirrors | has_glass | has_rough | has_coats)) != 0;
 }
 
-/// The most paths for each photon of a request; of light other than caustics, if these have a map of their own, fewer,
-/// else that light would take long where there is little of it.
-constexpr uint most_paths_per_photon = 64, most_paths_per_other_photon = 8;
+/// The most paths for each photon of a request: for photons of all light, for caustic photons alone, and for the other
+/// photons where caustic ones have a map of their own, since each pass then pays for both.
+constexpr uint most_paths_per_photon = 256, most_paths_per_caustic_photon = 64, most_paths_per_other_photon = 8;
 
 /// A request for caustic photons alone.
 inline photon_request request_of_caustics(uint photons)
 {
-    return {photons, kernels::CAUSTICS, std::uint64_t{photons} * most_paths_per_photon};
+    return {photons, kernels::CAUSTICS, std::uint64_t{photons} * most_paths_per_caustic_photon};
 }
 /// The photons of a picture with settings `s`, without those of a map of caustic photons.
 inline photon_request request_of(const render_settings& s, const scene_layout& layout)

@@ -59,6 +59,23 @@ static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SU
     && static_cast<uint>(surface_kind::mixed) == kernels::MIXED_SURFACE
     && detail::entry_of(material_kind::plastic).switches == (has_coats | has_mirrors)); // coats reflect, too
 
+/// What the large parts of a layout are made from. A scene that was edited often has the same.
+struct layout_sources {
+    /// Meshes, relative to the scene's anchor, and what their layout takes from the rest of the scene.
+    struct of_meshes {
+        std::vector<placed_mesh> meshes;
+        std::vector<mesh_light> lights;
+        dvec3 center{0};
+        uint features = 0;
+        uint first_light = 0;
+
+        bool operator==(const of_meshes&) const = default;
+    };
+    of_meshes meshes;
+    std::vector<std::shared_ptr<const texture>> textures; ///< in the order of their texels
+    std::vector<environment_light> environments;
+};
+
 /// The records of a scene, and their layout.
 struct scene_layout {
     std::vector<glm::vec4> records;  ///< as trace/scene_layout.glsl describes them; positions are recentred
@@ -69,6 +86,11 @@ struct scene_layout {
     glm::vec3 high{0};               ///< m; its other corner
     mesh_layout meshes;
     environment_layout environment;
+    layout_sources sources;
+    /// \name Parts that an earlier layout has, and this one lacks
+    /// @{
+    bool shares_meshes = false, shares_texels = false, shares_environment = false;
+    /// @}
 
     /// The records of a table's items; `number` is a shape_kind::number, kernels::MATERIAL_TABLE or
     /// kernels::LIGHT_TABLE.
@@ -114,8 +136,8 @@ namespace detail {
     /// Lays a scene out. Each member function writes one part.
     class layout_writer {
     public:
-        /// `s` must be relative to its anchor.
-        explicit layout_writer(const scene& s) : s_(s), shared_(s) {}
+        /// `s` must be relative to its anchor. `before`: sources of parts that need not be written; may be null.
+        layout_writer(const scene& s, const layout_sources* before) : s_(s), before_(before), shared_(s) {}
 
         scene_layout write()
         {
@@ -284,10 +306,16 @@ namespace detail {
         /// Appends the triangles of mesh lights and of all meshes.
         void write_meshes()
         {
+            const std::size_t light = s_.rectangle_lights.size() + s_.point_lights.size() + s_.sphere_lights.size();
+            auto& from = out_.sources.meshes;
+            from = {s_.meshes, s_.mesh_lights, out_.center, out_.features & (has_smooth_meshes | has_textures),
+                static_cast<uint>(light)};
+            out_.shares_meshes = before_ != nullptr && before_->meshes == from;
+            if (out_.shares_meshes)
+                return;
             mesh_writer w(out_.meshes, out_.center, (out_.features & has_smooth_meshes) != 0,
                 (out_.features & has_textures) != 0);
-            const std::size_t light = s_.rectangle_lights.size() + s_.point_lights.size() + s_.sphere_lights.size();
-            w.write_all(s_, shared_, static_cast<uint>(light));
+            w.write_all(s_, shared_, from.first_light);
         }
 
         void write_materials(record_writer& w)
@@ -295,7 +323,10 @@ namespace detail {
             enter(kernels::MATERIAL_TABLE, w.next(), s_.materials.size(), kernels::MATERIAL_RECORDS);
             const auto textures = put_materials(w, s_.materials);
             enter(kernels::TEXTURE_TABLE, w.next(), textures.size(), kernels::TEXTURE_RECORDS);
-            put_textures(w, textures, out_.meshes.texels);
+            out_.sources.textures = put_textures(w, textures);
+            out_.shares_texels = before_ != nullptr && before_->textures == out_.sources.textures;
+            if (!out_.shares_texels)
+                out_.meshes.texels = texels_of(out_.sources.textures);
             write_coats(w, out_.records, s_.materials);
         }
 
@@ -331,8 +362,11 @@ namespace detail {
                     }
                 }
             });
+            out_.sources.environments = s_.environment_lights;
+            out_.shares_environment = before_ != nullptr && before_->environments == s_.environment_lights;
             for (const auto& l : s_.environment_lights)
-                out_.environment = lay_out(l);
+                if (!out_.shares_environment)
+                    out_.environment = lay_out(l);
             write_light_tree(w);
         }
 
@@ -355,6 +389,7 @@ namespace detail {
         }
 
         const scene& s_;
+        const layout_sources* before_;
         shared_surfaces shared_;
         scene_layout out_;
         std::vector<boxed_shape> shapes_;
@@ -363,17 +398,18 @@ namespace detail {
     };
 } // namespace detail
 
-/// Lays a scene out for kernels.
+/// Lays a scene out for kernels. `before`: the sources of another scene's layout, whose parts this one shares where
+/// their sources are the same; null: none.
 /// \throws std::invalid_argument as check(scene) does, if no surface is Lambertian, or if a size or a power does not
 ///         fit single precision.
-inline scene_layout lay_out(const scene& original)
+inline scene_layout lay_out(const scene& original, const layout_sources* before = nullptr)
 {
     check(original);
     // All coordinates are relative to a point of the scene, so that a scene that is moved by an exactly representable
     // vector has the same records, bit for bit.
     const dvec3 anchor = detail::anchor(original);
     const scene s = detail::moved_back(original, anchor);
-    auto layout = detail::layout_writer(s).write();
+    auto layout = detail::layout_writer(s, before).write();
     layout.center += anchor;
     return layout;
 }
