@@ -12,7 +12,7 @@
 #include <photongrid/estimate/knn_neighbours.hpp>
 #include <photongrid/map/hashed_route.hpp>
 #include <photongrid/map/map_builders.hpp>
-#include <photongrid/render/progressive_render.hpp>
+#include <photongrid/render/render.hpp>
 #include <photongrid/trace/ray_search.hpp>
 
 // Types and `extern` cannot stand in parentheses.

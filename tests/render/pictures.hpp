@@ -7,7 +7,7 @@
 #include "../scene/test_scenes.hpp"
 #include "ball_over_floor.hpp"
 
-#include <photongrid/render/progressive_render.hpp>
+#include <photongrid/render/render.hpp>
 
 #include <cstring>
 

@@ -3,7 +3,7 @@
 
 #include "pictures.hpp"
 
-#include <photongrid/render/progressive_render.hpp>
+#include <photongrid/render/render.hpp>
 
 namespace photongrid::testing {
 

@@ -4,7 +4,7 @@
 
 #include "final_gather_tests.hpp"
 
-#include <photongrid/render/progressive_render.hpp>
+#include <photongrid/render/render.hpp>
 
 namespace photongrid::testing {
 

@@ -2,7 +2,7 @@
 // same_map() compares changes (figure 1).
 #pragma once
 
-#include <photongrid/render/render.hpp>
+#include <photongrid/render/stages.hpp>
 
 #include <functional>
 #include <memory>

@@ -157,14 +157,6 @@ void finish_pass(B& device, const built_map<B>& built, render_stats& stats)
     stats.peak_device_bytes = device.peak_bytes();
 }
 
-/// Moves the picture of a film, and its number of invalid pixels, to `out`.
-inline void finish_picture(const film& sum, rendered& out)
-{
-    auto developed = sum.picture();
-    out.picture = std::move(developed.picture);
-    out.stats.invalid_pixels = developed.invalid_pixels;
-}
-
 /// Runs all steps, and calls `ran` with the stage's name after each.
 /// \throws render_cancelled.
 template <class Ran>

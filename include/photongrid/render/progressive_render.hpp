@@ -1,16 +1,15 @@
 // The interactive loop (section 3.4): a picture is started, advanced in steps, displayed at any time, changed and
-// cancelled. It runs the stages of render.hpp; the photon map is rebuilt only if geometry, materials or lights change
-// (figure 1).
+// cancelled. It has the only loop over passes; stages.hpp has those of a pass. The photon map is rebuilt only if
+// geometry, materials or lights change (figure 1).
 //
 //     progressive_render<B> drawing(device);
 //     for (drawing.start(scene, settings); !drawing.finished(); show(drawing.picture()))
 //         drawing.step(16ms);
-//
-// The file is long because it is one class: every step reads and changes the state of the picture that is being drawn.
 #pragma once
 
 #include <photongrid/render/map_keeper.hpp>
-#include <photongrid/render/render.hpp>
+#include <photongrid/render/passes.hpp>
+#include <photongrid/render/picture_end.hpp>
 #include <photongrid/render/renderer.hpp>
 
 #include <algorithm>

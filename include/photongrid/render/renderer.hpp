@@ -85,20 +85,25 @@ protected:
     std::atomic<bool> stop_asked_ = false;
 };
 
-/// Renders a whole picture. It does not call the observer's `intermediate`.
+/// Renders a whole picture. The observer's `intermediate`, if there is one, is called with previews, then with each
+/// better picture before the last.
 /// \throws what start() and step() throw, render_cancelled.
 [[nodiscard]] inline rendered render(
     renderer& device, const scene& s, const render_settings& settings, const render_observer& observer = {})
 {
-    const bool watched = observer.progress || observer.cancelled;
-    device.start(s, settings, {.enabled = false});
-    while (!device.step(watched ? renderer::milliseconds(0) : renderer::no_limit)) {
+    const bool shows = static_cast<bool>(observer.intermediate);
+    const bool watched = observer.progress || observer.cancelled || shows;
+    device.start(s, settings, {.enabled = shows});
+    for (std::uint64_t shown = 0; !device.step(watched ? renderer::milliseconds(0) : renderer::no_limit);) {
         if (observer.cancelled && observer.cancelled())
             throw render_cancelled();
         if (observer.progress) {
             const auto now = device.progress();
             observer.progress(now.stage, now.fraction);
         }
+        if (shows && device.pictures() > shown)
+            observer.intermediate(device.picture());
+        shown = device.pictures();
     }
     return {device.picture(), device.stats()};
 }
