@@ -75,14 +75,14 @@ task task_of(const std::string& scene, bool paper, uint visits, uint divisor)
     settings.output.height /= divisor;
     cpu_backend b;
     const auto built = build_map(b, s, settings);
-    const auto& p = built.map.photons;
+    const auto& p = built.map().photons;
     const auto known = [&](const auto& buffer) { return buffer.size() > 0 ? b.download(buffer) : std::vector<vec4>(); };
     task t{.name = scene,
         .positions = b.download(p.positions),
         .powers = b.download(p.powers),
         .directions = known(p.directions),
         .photon_normals = known(p.normals),
-        .cells = built.map.cells_of};
+        .cells = built.map().cells_of};
     const auto raster = detail::raster_of(settings, 1);
     detail::eye_hits<cpu_backend> hits(b, raster.size());
     auto branches = b.make<uint>(raster.size());

@@ -365,7 +365,7 @@ void pictures(device_type& device)
     //! [build_map]
     const auto built = photongrid::build_map(device, room, settings); // again only when the scene changes
     //! [build_map]
-    expect(built.stats.map.cells > 0 && built.map.photons.size() == 1000, "build_map");
+    expect(built.stats.map.cells > 0 && built.map().photons.size() == 1000, "build_map");
 
     //! [draw]
     const photongrid::camera from_above{.position = {0, 2, 0.5}, .look_at = {0, 0, 0}};

@@ -25,10 +25,10 @@ TYPED_TEST_P(hard_cases_of_pictures, h4_pixels_that_are_not_finite_are_counted_a
     const auto [clean, clean_stats] = draw(b, built, s.camera, s.render);
     EXPECT_EQ(clean_stats.invalid_pixels, 0u);
     // Two photons go bad after they were checked, as a faulty device may have it.
-    auto powers = b.download(built.map.photons.powers);
+    auto powers = b.download(built.map().photons.powers);
     powers[powers.size() / 3].y = std::numeric_limits<float>::quiet_NaN();
     powers[powers.size() / 2].x = std::numeric_limits<float>::infinity();
-    built.map.photons.powers = b.upload(std::span<const glm::vec4>(powers));
+    built.lights.front().map.photons.powers = b.upload(std::span<const glm::vec4>(powers));
     const auto [bad, stats] = draw(b, built, s.camera, s.render);
     std::size_t black = 0, changed = 0;
     for (std::size_t i = 0; i < bad.pixels.size(); ++i)

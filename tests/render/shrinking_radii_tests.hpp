@@ -65,8 +65,8 @@ TYPED_TEST_P(pictures, a_map_of_fewer_photons_gives_radii_as_large)
     settings.estimate.max_radius = 10;
     const auto first = build_map(b, s, settings_of_radius_map(settings, b.caps()));
     EXPECT_EQ(first.map.photons.size(), 2000u);
-    ASSERT_TRUE(first.caustics);
-    EXPECT_EQ(first.caustics->map.photons.size(), 1000u);
+    ASSERT_EQ(first.lights.size(), 2u);
+    EXPECT_EQ(first.caustics().photons.size(), 1000u);
     const auto map = build_map(b, s, settings_of_pass(settings, 0));
     for (const auto part : {light_part::indirect, light_part::caustic}) {
         auto of_part = settings;

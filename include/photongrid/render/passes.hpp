@@ -148,12 +148,11 @@ void finish_band(B& device, const view_pass<B>& view, pass_pixels& light, render
 template <backend B>
 void finish_pass(B& device, const built_map<B>& built, render_stats& stats)
 {
-    detail::add(stats.photons, count_photons(device, built.trace));
-    if (built.caustics)
-        detail::add(stats.photons, count_photons(device, built.caustics->trace));
+    for (const auto& light : built.lights)
+        detail::add(stats.photons, count_photons(device, light.trace));
     stats.map = built.stats.map;
     if (built.stats.map.builder == map_builder::route)
-        stats.map.redistributed_power = redistributed_power(device, built.map);
+        stats.map.redistributed_power = redistributed_power(device, built.map());
     stats.peak_device_bytes = device.peak_bytes();
 }
 

@@ -33,7 +33,7 @@ inline knn_settings search_for(const render_settings& s)
     k.biases = tells_bias(s);
     return k;
 }
-/// The search for caustic photons, in the map of their own if there is one.
+/// The search for caustic photons, whichever map they are in.
 inline knn_settings search_for_caustics(const render_settings& s)
 {
     knn_settings k = search_for(s.estimate);

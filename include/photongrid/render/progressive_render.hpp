@@ -353,7 +353,7 @@ private:
         if (film_.passes() == 0)
             stats_.trace_photons = stats_.build_map = {};
         detail::add_map(stats_, made);
-        if (const auto photons = maps_.map().map.photons.size(); photons > 0)
+        if (const auto photons = maps_.map().map().photons.size(); photons > 0)
             costs_.ms_per_photon = (made.trace_photons.ms + made.build_map.ms) / photons;
         return {};
     }

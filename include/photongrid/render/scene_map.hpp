@@ -12,34 +12,36 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
 
-/// A map of caustic photons alone.
+/// A part of the light in a photon map of its own.
 template <backend B>
-struct caustic_map {
-    map_buffers<B> map;
+struct light_map {
+    photon_request request;
+    map_buffers<B> map;      ///< in the coordinates of the world's scene
     traced_photons<B> trace; ///< without the photons, which are in `map`
 };
 
-/// The result of build_map and the input of draw: a photon map of a world.
+/// The result of build_map and the input of draw: the light of a world as photons.
 template <backend B>
 struct built_map {
     std::shared_ptr<photongrid::world<B>> world;
-    /// In the coordinates of the world's scene: all photons; without caustic ones if there is `caustics`; only those if
-    /// rays of a final gather start where eye rays end; none with both.
-    map_buffers<B> map;
-    traced_photons<B> trace;                ///< without the photons, which are in the maps
-    render_stats stats;                     ///< trace_photons, build_map and map
-    std::optional<gather_map<B>> gather;    ///< of all photons, for a final gather
-    std::optional<caustic_map<B>> caustics; ///< if the settings ask for it and the scene has mirrors or glass
-    bool has_caustics_apart = false;        ///< `map` has no caustic photons; they are in `caustics`, if there are any
+    /// What is searched where rays end, as requests_of() lists it. The first has all photons, or those that the others
+    /// leave to it; only caustic ones if rays of a final gather start there, none with both.
+    std::vector<light_map<B>> lights;
+    render_stats stats;                  ///< trace_photons, build_map and map
+    std::optional<gather_map<B>> gather; ///< of all photons, for a final gather
+    bool splits_caustics = false;        ///< the first map has no caustic photons
 
     const device_scene<B>& scene() const { return world->scene; }
+    const map_buffers<B>& map() const { return lights.front().map; }
     /// The map with the caustic photons.
-    const map_buffers<B>& map_of_caustics() const { return caustics ? caustics->map : map; }
+    const map_buffers<B>& caustics() const { return lights.back().map; }
 };
 
 /// The parts of the light (map_buffers.hpp) that a picture of `only` needs in its map.
@@ -87,8 +89,9 @@ public:
     {
         check(settings);
         built_.world = std::move(of);
-        built_.has_caustics_apart = settings_.map.caustic_photons > 0;
-        request_ = request_of(settings_, layout());
+        built_.splits_caustics = settings_.map.caustic_photons > 0;
+        for (const auto& request : requests_of(settings_, layout()))
+            built_.lights.push_back({request, {}, {}});
         detail::time_stage(device, built_.stats.trace_photons, [&] { begin_tracing(); });
     }
     map_building(const map_building&) = delete;
@@ -102,7 +105,7 @@ public:
             if (tracing_) {
                 tracing_->advance();
             } else if (pilot_ && pilot_->advance()) {
-                built_.world->add_guide(settings_, request_, pilot_->guide());
+                built_.world->add_guide(settings_, traced().request, pilot_->guide());
                 pilot_.reset();
                 begin_tracing();
             }
@@ -142,10 +145,13 @@ public:
     {
         if (!pilot_ && !tracing_)
             return 1.0;
-        const double caustics = caustic_request_of(settings_, layout()).photons;
-        const double all = request_of(settings_, layout()).photons + caustics, now = request_.photons;
-        const double before = is_of_caustics_ ? all - caustics : 0;
-        return all > 0 ? (before + (tracing_ ? tracing_->fraction() : 0.0) * now) / all : 0.0;
+        double done = 0, all = 0;
+        for (std::size_t i = 0; i < built_.lights.size(); ++i) {
+            const double photons = built_.lights[i].request.photons;
+            done += photons * (i < at_ ? 1.0 : i == at_ && tracing_ ? tracing_->fraction() : 0.0);
+            all += photons;
+        }
+        return all > 0 ? done / all : 0.0;
     }
 
     /// The finished map.
@@ -153,63 +159,60 @@ public:
 
 private:
     const scene_layout& layout() const { return built_.scene().layout; }
-    /// Begins to trace the photons of request_, or pilot paths if a guide is wanted that there is not yet.
+    /// The light map whose photons are traced.
+    light_map<B>& traced() { return built_.lights[at_]; }
+    /// Begins to trace its photons, or pilot paths if a guide is wanted that there is not yet.
     void begin_tracing()
     {
-        const bool guided = is_guided(settings_, request_);
-        const auto* guide = guided ? built_.world->guide(settings_, request_) : nullptr;
+        auto& request = traced().request;
+        const bool guided = is_guided(settings_, request);
+        const auto* guide = guided ? built_.world->guide(settings_, request) : nullptr;
         if (guided && guide == nullptr) {
-            pilot_.emplace(device_, built_.scene(), settings_, request_);
+            pilot_.emplace(device_, built_.scene(), settings_, request);
             return;
         }
         if (guide != nullptr && guide->has_none_useful)
-            request_.most_paths = request_.photons; // what there is may be rare, but is dim
+            request.most_paths = request.photons; // what there is may be rare, but is dim
         auto with = settings_;
-        if (is_of_caustics_)
+        if (request.are_caustics_of_others)
             with.seed ^= 0xB5297A4Du; // else they would be on the paths of the other photons
-        tracing_.emplace(device_, built_.scene(), with, request_, guide != nullptr ? *guide : emission_guide{});
+        tracing_.emplace(device_, built_.scene(), with, request, guide != nullptr ? *guide : emission_guide{});
     }
-    /// Ends tracing for a request, and begins with the caustic photons if they come next.
+    /// Ends tracing for a light map, and begins with the next.
     void end_tracing()
     {
-        auto traced = tracing_->take();
+        traced().trace = tracing_->take();
         tracing_.reset();
-        if (is_of_caustics_) {
-            built_.caustics->trace = std::move(traced);
-            return;
-        }
-        built_.trace = std::move(traced);
-        const auto caustics = caustic_request_of(settings_, layout());
-        if (caustics.photons == 0)
-            return;
-        built_.caustics.emplace();
-        request_ = caustics;
-        is_of_caustics_ = true;
-        begin_tracing();
+        if (++at_ < built_.lights.size())
+            begin_tracing();
     }
     void build()
     {
-        photons<B> p = std::move(built_.trace.photons);
-        if (gathers(settings_) && built_.has_caustics_apart) // all photons are the gather's alone
-            gather_.emplace(device_, built_.scene(), std::exchange(p, no_photons()), settings_);
+        auto& first = built_.lights.front().trace.photons;
+        if (gathers(settings_) && built_.splits_caustics) // all photons are the gather's alone
+            gather_.emplace(device_, built_.scene(), std::exchange(first, no_photons()), settings_);
         else if (gathers(settings_))
-            gather_.emplace(device_, built_.scene(), detail::copy(device_, p), settings_);
-        const uint parts = built_.has_caustics_apart ? every_part : parts_at_ends(settings_);
+            gather_.emplace(device_, built_.scene(), detail::copy(device_, first), settings_);
+        const uint parts = built_.splits_caustics ? every_part : parts_at_ends(settings_);
         const auto builder = settings_.map.builder;
-        built_.map = map_of(std::move(p), parts, settings_.estimate.k, builder);
-        // Caustics crowd in few cells, where a photon that has a slot would stand for more than an estimate seeks.
-        if (built_.caustics)
-            built_.caustics->map = map_of(std::move(built_.caustics->trace.photons), every_part,
-                settings_.estimate.caustic_k, builder == map_builder::route ? map_builder::sort : builder);
+        for (auto& light : built_.lights) {
+            auto p = std::move(light.trace.photons);
+            // Caustics crowd in few cells, where a photon that has a slot would stand for more than an estimate seeks.
+            light.map = light.request.are_caustics_of_others
+                ? map_of(std::move(p), every_part, settings_.estimate.caustic_k,
+                    builder == map_builder::route ? map_builder::sort : builder)
+                : map_of(std::move(p), parts, settings_.estimate.k, builder);
+        }
+        const auto& map = built_.map();
         auto& made = built_.stats.map;
         made.builder = settings_.map.builder;
         if (made.builder == map_builder::automatic)
-            made.builder = built_.map.has_blocks() ? map_builder::blocks : map_builder::sort;
-        made.blocks = detail::block_count(built_.map.in_blocks);
-        made.cells = cell_count(built_.map.cells_of);
-        made.resolution = glm::uvec3(built_.map.cells_of.resolution);
-        made.overflowing_cells = built_.map.overflowing_cells;
-        made.left_out = built_.map.left_out;
+            made.builder = map.has_blocks() ? map_builder::blocks : map_builder::sort;
+        made.blocks = detail::block_count(map.in_blocks);
+        made.cells = cell_count(map.cells_of);
+        made.resolution = glm::uvec3(map.cells_of.resolution);
+        made.overflowing_cells = map.overflowing_cells;
+        made.left_out = map.left_out;
     }
 
     photons<B> no_photons()
@@ -235,8 +238,7 @@ private:
 
     B& device_;
     render_settings settings_;
-    photon_request request_;      // that is traced
-    bool is_of_caustics_ = false; // it is that of the caustic photons
+    std::size_t at_ = 0; // number of the light map whose photons are traced
     bool is_built_ = false;
     built_map<B> built_;
     std::optional<pilot_tracing<B>> pilot_;        // of built_.scene()
@@ -249,9 +251,10 @@ private:
 template <backend B>
 pass_radii<B> radii_of_pass(const built_map<B>& first, const render_settings& settings, uint pass)
 {
-    pass_radii<B> radii{.first = {&first.map, settings.estimate.k}, .share2 = shrunk_share2(pass)};
-    if (first.caustics)
-        radii.first_of_caustics = {&first.caustics->map, settings.estimate.caustic_k};
+    pass_radii<B> radii{.share2 = shrunk_share2(pass)};
+    for (const auto& light : first.lights)
+        radii.firsts.push_back(
+            {&light.map, light.request.are_caustics_of_others ? settings.estimate.caustic_k : settings.estimate.k});
     return radii;
 }
 

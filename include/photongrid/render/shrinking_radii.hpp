@@ -9,6 +9,8 @@
 #include <photongrid/render/shrunk_radius.kernel.hpp>
 #include <photongrid/scene/render_settings.hpp>
 
+#include <vector>
+
 #include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
@@ -41,12 +43,13 @@ struct first_radii {
 /// The radii of a pass.
 template <backend B>
 struct pass_radii {
-    first_radii<B> first{};
-    first_radii<B> first_of_caustics{}; ///< the same in the map of caustic photons, if there is one
-    double share2 = 1;                  ///< shrunk_share2 of the pass
+    std::vector<first_radii<B>> firsts{}; ///< of each light map of the pass; empty: it finds its own
+    double share2 = 1;                    ///< shrunk_share2 of the pass
 
+    /// Those of the light map with this number.
+    first_radii<B> first(std::size_t number) const { return firsts.empty() ? first_radii<B>{} : firsts.at(number); }
     /// Those of caustic photons, whichever map they are in.
-    const first_radii<B>& of_caustics() const { return first_of_caustics.map != nullptr ? first_of_caustics : first; }
+    first_radii<B> of_caustics() const { return firsts.empty() ? first_radii<B>{} : firsts.back(); }
 };
 
 namespace detail {

@@ -1,5 +1,5 @@
-// The stages of a pass over the pixels of a view, from a photon map (sections 2.4 and 2.3; figure 1, right). render.hpp
-// runs them in order. The file is long because it is one class: the stages share its buffers.
+// The stages of a pass over the pixels of a view, from a photon map (sections 2.4 and 2.3; figure 1, right). stages.hpp
+// runs them in order.
 #pragma once
 
 #include <photongrid/core/copy_vectors.kernel.hpp>
@@ -56,10 +56,9 @@ public:
             throw std::invalid_argument(std::string("view_pass: the map was built ")
                 + (built.gather ? "with" : "without") + " a final gather, which the settings "
                 + (built.gather ? "do not ask for" : "ask for") + "; build it with the settings of the picture");
-        if (settings.output.only != light_part::direct
-            && (settings.map.caustic_photons > 0) != built.has_caustics_apart)
+        if (settings.output.only != light_part::direct && (settings.map.caustic_photons > 0) != built.splits_caustics)
             throw std::invalid_argument(std::string("view_pass: the map was built ")
-                + (built.has_caustics_apart ? "with caustic photons in a map of their own" : "of all photons together")
+                + (built.splits_caustics ? "with caustic photons in a map of their own" : "of all photons together")
                 + ", unlike what the settings ask for (caustic_photons " + std::to_string(settings.map.caustic_photons)
                 + "); build it with the settings of the picture");
         auto r = detail::raster_of(settings_, divisor());
@@ -92,7 +91,7 @@ public:
     uint rays() const { return (is_preview() ? 1u : settings_.view.spp) * branches_; }
 
     /// The most searches per pixel: one in each map where rays end.
-    uint searches() const { return rays() * (built_.caustics ? 2u : 1u); }
+    uint searches() const { return rays() * static_cast<uint>(built_.lights.size()); }
 
     /// Traces eye rays through mirrors and glass to their ends (2.4).
     bool trace_eye(uint ray);
@@ -109,14 +108,15 @@ public:
         bool finished = false;
         detail::time_stage(device_, stats_.radiance_estimate, [&] {
             if (!search_)
-                search_.emplace(device_, sources(), pixels_of(ray), samples_->hits.points, samples_->hits.surfaces,
-                    is_of_caustics() ? running_estimate_kind::none : shown_while_running(), how_.size);
+                search_.emplace(device_, sources(next_light()), pixels_of(ray), samples_->hits.points,
+                    samples_->hits.surfaces, next_light() > 0 ? running_estimate_kind::none : shown_while_running(),
+                    how_.size);
             // Previews have the light of all branches; running estimates among them must, too.
             if (search_->is_shown() && (how_.may_search_twice || canvas_.rays + 1 == branches_))
                 ++running_pictures_;
             finished = search_->advance();
-            if (finished && is_of_caustics()) { // the search in the other map comes next
-                caustics_ = search_->take();
+            if (finished && next_light() > 0) {
+                found_.push_back(search_->take());
                 search_.reset();
                 finished = false;
             }
@@ -198,21 +198,24 @@ private:
     running_estimate_kind shown_while_running() const
     {
         return running_estimate_of<B>(
-            sources().search_in_map(), how_.wants_running_estimates && !is_preview(), how_.may_search_twice);
+            sources(0).search_in_map(), how_.wants_running_estimates && !is_preview(), how_.may_search_twice);
     }
-    /// Whether the next search is that in the map of caustic photons, which is the first.
-    bool is_of_caustics() const
+    /// The number of the light map that is searched next. The first comes last: its estimates may be shown while they
+    /// grow.
+    std::size_t next_light() const
     {
-        return built_.caustics && !caustics_ && settings_.output.only != light_part::indirect;
+        const bool are_all = settings_.output.only != light_part::indirect; // caustics are none
+        return (are_all ? built_.lights.size() : 1) - 1 - found_.size();
     }
-    /// What the next estimates come from.
-    estimate_sources<B> sources() const
+    /// What estimates in the light map with this number come from.
+    estimate_sources<B> sources(std::size_t number) const
     {
-        const bool caustic = is_of_caustics();
-        const auto k = caustic ? detail::search_for_caustics(settings_) : detail::search_for(settings_);
+        const auto& light = built_.lights[number];
+        const auto k = light.request.are_caustics_of_others ? detail::search_for_caustics(settings_)
+                                                            : detail::search_for(settings_);
         return {.scene = &built_.scene(),
-            .map = caustic ? &built_.caustics->map : &built_.map,
-            .radii = caustic ? radii_.first_of_caustics : radii_.first,
+            .map = &light.map,
+            .radii = radii_.first(number),
             .share2 = radii_.share2,
             .search = how_.preview ? detail::search_for_preview(k, *how_.preview) : k,
             .edges = settings_.estimate.edges};
@@ -271,7 +274,7 @@ private:
     std::size_t done_ = 0;            ///< pixels that the stage has finished
     pass_radii<B> radii_;
     std::optional<interpolated_estimates<B>> search_; ///< of the eye ray that is drawn
-    std::optional<knn_estimates<B>> caustics_;        ///< its light from the map of caustic photons
+    std::vector<knn_estimates<B>> found_;             ///< its light from the light maps before
     uint running_pictures_ = 0;
     canvas<B> canvas_;
 };
@@ -331,11 +334,11 @@ bool view_pass<B>::gather(uint ray)
         return true;
     const bool all_pixels = over_pixels(stats_.trace_rays, [&](launch pixels) {
         if (follows_paths(settings_))
-            add_path(device_, built_.scene(), built_.map_of_caustics(), radii_, samples_->hits, settings_, ray,
-                gathered_, pixels, samples_->direct);
+            add_path(device_, built_.scene(), built_.caustics(), radii_, samples_->hits, settings_, ray, gathered_,
+                pixels, samples_->direct);
         else
-            add_gather_rays(device_, built_.scene(), *built_.gather, built_.map_of_caustics(), samples_->hits,
-                settings_, ray, gathered_, pixels, samples_->direct);
+            add_gather_rays(device_, built_.scene(), *built_.gather, built_.caustics(), samples_->hits, settings_, ray,
+                gathered_, pixels, samples_->direct);
     });
     if (all_pixels)
         ++gathered_;
@@ -352,11 +355,11 @@ bool view_pass<B>::shade(uint ray)
             device_.template run<kernels::tally_error>(canvas_.errors.size(), {},
                 reads(samples_->hits.points, found.irradiance, found.standard_error), writes(canvas_.errors));
         shade_bias(found.biases, share);
-        if (caustics_)
-            shade_bias(caustics_->biases, share);
+        for (const auto& before : found_)
+            shade_bias(before.biases, share);
     });
     search_.reset();
-    caustics_.reset();
+    found_.clear();
     gathered_ = 0;
     if (is_preview() && !follows_paths(settings_)) { // its paths saw caustics with radii of their own
         kept_[ray] = std::move(samples_);            // the next pass may have the same pixels
@@ -371,14 +374,14 @@ knn_estimates<B> view_pass<B>::shade(
     knn_estimates<B> found, float share, buffer_of<B, glm::vec4>& pixels, buffer_of<B, glm::vec4>& searches)
 {
     const auto& hits = samples_->hits;
-    if (caustics_) {
+    for (const auto& before : found_) {
         device_.template run<kernels::add_estimate>(
-            pixels.size(), {}, reads(caustics_->irradiance), writes(found.irradiance));
+            pixels.size(), {}, reads(before.irradiance), writes(found.irradiance));
         device_.template run<kernels::tally_search>(
-            pixels.size(), {}, reads(hits.points, caustics_->irradiance, caustics_->used), writes(searches));
+            pixels.size(), {}, reads(hits.points, before.irradiance, before.used), writes(searches));
         if (found.standard_error.size() > 0)
             device_.template run<kernels::add_error>(
-                pixels.size(), {}, reads(caustics_->standard_error), writes(found.standard_error));
+                pixels.size(), {}, reads(before.standard_error), writes(found.standard_error));
     }
     device_.template run<kernels::shade>(pixels.size(), {.share = share},
         reads(hits.points, hits.throughputs, hits.emissions, samples_->direct, found.irradiance, found.used),

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <vector>
 
 #include <photongrid/core/exact_begin.hpp>
 
@@ -19,6 +20,7 @@ struct photon_request {
     /// After so many paths tracing ends, with fewer photons if they did not store as many. Powers are divided by the
     /// paths, so that what was stored counts: light that so few paths find is noisy, and dim.
     std::uint64_t most_paths = 0;
+    bool are_caustics_of_others = false; ///< caustic photons of a picture whose other photons are in another map
 
     /// Whether paths can end at the first diffuse surface.
     bool to_diffuse() const { return (kinds & kernels::OTHER_PHOTONS) == 0; }
@@ -59,10 +61,16 @@ inline photon_request request_of(const render_settings& s, const scene_layout& l
     }
     return r;
 }
-/// Those of a map of caustic photons; none if the picture has no such map, or the scene no caustics.
-inline photon_request caustic_request_of(const render_settings& s, const scene_layout& layout)
+/// The photons of each map of a picture: the first, and a map of caustic photons, if the settings ask for it and the
+/// scene has caustics.
+inline std::vector<photon_request> requests_of(const render_settings& s, const scene_layout& layout)
 {
-    return request_of_caustics(has_caustic_map(s) && may_have_caustics(layout) ? s.map.caustic_photons : 0);
+    std::vector<photon_request> all{request_of(s, layout)};
+    if (has_caustic_map(s) && may_have_caustics(layout)) {
+        all.push_back(request_of_caustics(s.map.caustic_photons));
+        all.back().are_caustics_of_others = true;
+    }
+    return all;
 }
 
 } // namespace photongrid
