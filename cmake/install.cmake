@@ -113,6 +113,8 @@ if(TARGET photongrid_io)
     LIBS "-L\${pcfiledir}/${to_library} -lphotongrid_io" OF photongrid_io)
 endif()
 
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/photongrid-compiled-dev RENAME copyright COMPONENT compiled)
+
 # --- program ----------------------------------------------------------------------------------------------------------
 if(TARGET photongrid_program)
   install(TARGETS photongrid_program RUNTIME COMPONENT program OPTIONAL)
