@@ -12,14 +12,17 @@ target_link_libraries(photongrid_cpu INTERFACE TBB::tbb hwy::hwy)
 
 # photongrid::cpu_compiled: the same backend and the same headers, with all that takes the compiler long in a library. Its
 # users read nothing of oneTBB's or Highway's vector code that they need not, and may have vector code of their own.
-# Machines with SSSE3 and no SSE4 (2006) run its baseline: one instruction set less to compile.
-add_library(photongrid_cpu_compiled STATIC ${PROJECT_SOURCE_DIR}/backends/cpu/compiled.cpp)
+# <photongrid/backends/cpu/compiled.hpp> is the shortest way to it.
+add_library(photongrid_cpu_compiled STATIC ${PROJECT_SOURCE_DIR}/backends/cpu/compiled.cpp
+  ${PROJECT_SOURCE_DIR}/backends/cpu/compiled_maps.cpp)
 add_library(photongrid::cpu_compiled ALIAS photongrid_cpu_compiled)
-set_target_properties(photongrid_cpu_compiled PROPERTIES EXPORT_NAME cpu_compiled OUTPUT_NAME photongrid_cpu POSITION_INDEPENDENT_CODE ON)
+set_target_properties(photongrid_cpu_compiled PROPERTIES EXPORT_NAME cpu_compiled OUTPUT_NAME photongrid_cpu POSITION_INDEPENDENT_CODE ON
+  UNITY_BUILD OFF) # for two cores
 if(NOT PROJECT_IS_TOP_LEVEL)
   set_target_properties(photongrid_cpu_compiled PROPERTIES EXCLUDE_FROM_ALL TRUE)
 endif()
 target_link_libraries(photongrid_cpu_compiled PUBLIC photongrid_cpu)
 target_compile_definitions(photongrid_cpu_compiled PUBLIC PHOTONGRID_CPU_COMPILED
-  PRIVATE HWY_DISABLED_TARGETS=HWY_SSSE3 PHOTONGRID_CONTRACTION_IS_OFF)
-target_compile_options(photongrid_cpu_compiled PRIVATE -ffp-contract=off) # exact_begin.hpp
+  PRIVATE PHOTONGRID_CONTRACTION_IS_OFF)
+target_compile_options(photongrid_cpu_compiled PRIVATE -ffp-contract=off # exact_begin.hpp
+  ${photongrid_vectorized})

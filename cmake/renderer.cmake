@@ -1,5 +1,5 @@
 # photongrid::renderer: the renderer, compiled once for each backend that is built, which is chosen at run time. The
-# program has the same, with backends in modules, which need not be there and whose libraries may be broken.
+# program has the same, with all backends but one in modules, which need not be there and whose libraries may be broken.
 
 # photongrid_built_backends(FILE [LINKED name...] [MODULES name...]): the source file that lists these backends to
 # backends/any.
@@ -70,32 +70,46 @@ if(NOT PROJECT_IS_TOP_LEVEL)
 endif()
 
 # photongrid_module(NAME SOURCE...): the target photongrid_module_NAME, which the program loads as NAME.so from its
-# folder of modules (backends/any/module.hpp).
+# folder of modules (backends/any/module.hpp). The program is built without it, so that the first picture need not wait
+# for what it does not use.
+add_custom_target(photongrid_modules)
+set(photongrid_modules_folder ${PROJECT_BINARY_DIR}/photongrid-modules)
+file(MAKE_DIRECTORY ${photongrid_modules_folder}) # by which a program knows that it lies where it was built
 function(photongrid_module name)
   add_library(photongrid_module_${name} MODULE ${ARGN})
   set_target_properties(photongrid_module_${name} PROPERTIES OUTPUT_NAME ${name} PREFIX ""
-    LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/photongrid-modules)
+    LIBRARY_OUTPUT_DIRECTORY ${photongrid_modules_folder})
   target_link_libraries(photongrid_module_${name} PRIVATE photongrid_any)
   set_property(GLOBAL APPEND PROPERTY photongrid_modules photongrid_module_${name})
+  add_dependencies(photongrid_modules photongrid_module_${name})
 endfunction()
 
-# photongrid_program_renderer(): the target of that name, with serial and cpu linked and the other backends in modules.
+# photongrid_program_renderer(): the target of that name, with one backend linked, cpu if it is built, and the others in
+# modules. The program lists those too whose libraries CMake did not find, so that it is the same program when they come.
 # PHOTONGRID_MODULES: the folder of installed modules, relative to the program's.
 function(photongrid_program_renderer)
   set(root ${photongrid_any_root})
   set(any ${root}/photongrid/backends/any)
-  set(linked ${photongrid_renderer_backends})
-  list(FILTER linked INCLUDE REGEX "^(serial|cpu)$")
+  set(linked serial)
+  if("cpu" IN_LIST photongrid_renderer_backends)
+    set(linked cpu)
+  endif()
   set(modules ${photongrid_renderer_backends})
-  list(FILTER modules EXCLUDE REGEX "^(serial|cpu)$")
-  photongrid_built_backends(${root}/program_backends.cpp LINKED ${linked} MODULES ${modules})
+  list(REMOVE_ITEM modules ${linked})
+  set(listed ${modules})
+  foreach(name IN ITEMS gl vulkan)
+    string(TOUPPER ${name} option)
+    if($CACHE{PHOTONGRID_${option}})
+      list(APPEND listed ${name})
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES listed)
+  photongrid_built_backends(${root}/program_backends.cpp LINKED ${linked} MODULES ${listed})
   add_library(photongrid_program_renderer STATIC ${any}/any.cpp ${any}/limits.cpp ${any}/module.cpp ${root}/program_backends.cpp)
   target_include_directories(photongrid_program_renderer PUBLIC ${root})
   target_compile_definitions(photongrid_program_renderer PRIVATE PHOTONGRID_MODULES="${PHOTONGRID_MODULES}")
-  target_link_libraries(photongrid_program_renderer PUBLIC photongrid PRIVATE photongrid_any ${CMAKE_DL_LIBS})
-  foreach(name IN LISTS linked)
-    target_link_libraries(photongrid_program_renderer PRIVATE photongrid_renderer_on_${name})
-  endforeach()
+  target_link_libraries(photongrid_program_renderer PUBLIC photongrid
+    PRIVATE photongrid_any ${CMAKE_DL_LIBS} photongrid_renderer_on_${linked})
   foreach(name IN LISTS modules)
     file(CONFIGURE OUTPUT ${root}/module_${name}.cpp CONTENT [[
 // The module of a backend: cmake/renderer.cmake.
@@ -111,6 +125,5 @@ extern "C" const photongrid::any::backend_entry* photongrid_backend_entry()
 ]] @ONLY)
     photongrid_module(${name} ${root}/module_${name}.cpp ${any}/limits.cpp)
     target_link_libraries(photongrid_module_${name} PRIVATE photongrid_renderer_on_${name})
-    add_dependencies(photongrid_program_renderer photongrid_module_${name})
   endforeach()
 endfunction()

@@ -1,22 +1,25 @@
 # Sourced by examples/run.sh and tests/run.sh: the Debian packages that photongrid needs, and how they get there.
 
-# What builds and runs the program, every backend included.
-# shellcheck disable=SC2034 # used by the scripts that source this one
-program_packages=(
-  g++ cmake ninja-build pkg-config
+# What builds and runs the program with the backends cpu and serial; then what each module needs besides: the window, and
+# the backends gl and vulkan with drivers that need no GPU.
+base_packages=(
+  g++ cmake ninja-build
   libtbb-dev libhwy-dev
   libglm-dev libcli11-dev nlohmann-json3-dev libopenexr-dev libpng-dev libstb-dev
   libpugixml-dev zlib1g-dev
-  libgl-dev libopengl-dev libegl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
-  libvulkan-dev mesa-vulkan-drivers glslang-dev glslang-tools spirv-tools
-  libglfw3-dev libimgui-dev
 )
+window_packages=(pkg-config libgl-dev libopengl-dev libglfw3-dev libimgui-dev)
+gl_packages=(pkg-config libgl-dev libopengl-dev libegl-dev libegl1 libegl-mesa0 libgl1-mesa-dri)
+vulkan_packages=(libvulkan-dev mesa-vulkan-drivers glslang-dev glslang-tools spirv-tools)
+# The program with all modules.
+# shellcheck disable=SC2034 # used by the scripts that source this one
+program_packages=("${base_packages[@]}" "${window_packages[@]}" "${gl_packages[@]}" "${vulkan_packages[@]}")
 # What the benches need besides: those that tests/run.sh runs, and the others. POV-Ray only where pictures are compared with its.
 # shellcheck disable=SC2034
 smoke_packages=(libbenchmark-dev gnuplot-nox jq python3)
 # shellcheck disable=SC2034
 bench_packages=(libcgal-dev libflann-dev libnanoflann-dev xvfb xdotool)
-# Packages that later Debians no longer have; CMake does without.
+# Packages of gl that later Debians no longer have; CMake does without.
 optional_packages=(libosmesa6-dev)
 
 # missing_of PACKAGE...: those that are not installed.

@@ -287,7 +287,7 @@ faults=(
   "the journal forgets how long a change waited|examples/photongrid/viewer/render_thread.cpp|waited_ms|wait_ms|viewer"
   "a file that is being written is read|examples/photongrid/viewer/file_watch.cpp|seen_ != read_ && seen_ == before|seen_ != read_|viewer"
   "a turned camera goes back when the scene changes|examples/photongrid/viewer/document.cpp|made.scene.camera = now.scene.camera;|(void)now;|viewer"
-  "files are looked at after they are read|examples/photongrid/viewer/scene_thread.cpp|made.files = files;|for (auto\& f : files) f.second = stamp_of(f.first); made.files = files;|viewer"
+  "files are looked at after they are read|examples/photongrid/viewer/scene_opening.cpp|made.files = files;|for (auto\& f : files) f.second = stamp_of(f.first); made.files = files;|viewer"
   "a view without pixels is drawn|include/photongrid/render/render.hpp|    check(settings);|    (void)settings;"
   "a band is left out|include/photongrid/render/render.hpp|b.first >= rows_done|b.first > rows_done"
   "the paper's estimate is not shown|include/photongrid/render/running_search.hpp|return running_estimate_kind::own;|return running_estimate_kind::none;"

@@ -11,18 +11,45 @@ namespace {
     /// Debian's packages with the libraries of a module.
     const char* packages_of(const std::string& module)
     {
-        return module == "gl" ? "libegl1 libosmesa6" : module == "vulkan" ? "libvulkan1" : "libglfw3 libopengl0";
+        return module == "gl"    ? "libegl1 libosmesa6"
+            : module == "vulkan" ? "libvulkan1"
+            : module == "window" ? "libglfw3 libopengl0"
+                                 : "libc6 libstdc++6";
     }
+
+    /// Where a module is, or would be.
+    struct places {
+        std::filesystem::path built, installed;
+
+        explicit places(const std::string& name)
+        {
+            const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+            built = program / "photongrid-modules" / (name + ".so");
+            installed = program / PHOTONGRID_MODULES / (name + ".so");
+        }
+        /// Empty: nowhere.
+        std::filesystem::path found() const { return exists(built) ? built : exists(installed) ? installed : ""; }
+        std::string why_not(const std::string& name) const
+        {
+            if (!exists(built.parent_path()))
+                return "there is neither " + built.string() + " nor " + installed.lexically_normal().string()
+                    + "; keep the program with its modules, or install them (with photongrid's Debian packages: "
+                      "photongrid"
+                    + (name == "serial" ? "" : "-" + name) + ")";
+            // CMake makes the folder, and the modules in it are built when they are asked for.
+            return "its module has not been built; in the folder of the sources, `examples/run.sh "
+                + (name == "window" ? "--view" : "--backend " + name)
+                + "` installs what it needs, builds it and uses it (with everything installed: `cmake --build "
+                + built.parent_path().parent_path().string() + " --target photongrid_module_" + name + "`)";
+        }
+    };
 
     void* load(const std::string& name)
     {
-        const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-        const auto built = program / "photongrid-modules" / (name + ".so"),
-                   installed = program / PHOTONGRID_MODULES / (name + ".so");
-        const auto& path = std::filesystem::exists(built) ? built : installed;
-        if (!std::filesystem::exists(path))
-            throw backend_error(name + ": there is neither " + built.string() + " nor "
-                + installed.lexically_normal().string() + "; keep the program with its modules, or install it again");
+        const places where(name);
+        const auto path = where.found();
+        if (path.empty())
+            throw backend_error(name + ": " + where.why_not(name));
         // Never unloaded: drivers leave threads and handlers behind.
         if (void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL))
             return module;
@@ -31,6 +58,8 @@ namespace {
             + "; install its libraries (Debian: apt install " + packages_of(name) + ")");
     }
 } // namespace
+
+bool has_module(const std::string& name) { return !places(name).found().empty(); }
 
 void* function_of_module(const std::string& name, const std::string& function)
 {

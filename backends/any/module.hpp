@@ -13,6 +13,9 @@
 
 namespace photongrid::any {
 
+/// Whether the module NAME.so is there; it may still fail to load.
+bool has_module(const std::string& name);
+
 /// The address of a function in the module NAME.so. It lies in the folder `photongrid-modules` beside the program where
 /// that was built, in PHOTONGRID_MODULES relative to the program where it is installed.
 /// \throws backend_error if the module is not there, is another version's, or cannot be loaded; the message names the

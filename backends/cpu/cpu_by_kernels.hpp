@@ -46,16 +46,12 @@ public:
     template <element T>
     buffer<T> make(std::size_t n)
     {
-        const auto refuse = [&](const std::string& why) {
-            throw backend_error("cpu: a buffer of " + std::to_string(n) + " elements was asked for; " + why);
-        };
         if (n > caps_.max_elements)
-            refuse("the limit is " + std::to_string(caps_.max_elements));
+            refuse(n, "the limit is " + std::to_string(caps_.max_elements));
         try {
             return buffer<T>(account_, n);
         } catch (const std::bad_alloc&) {
-            refuse("there is no memory for it");
-            throw;
+            refuse(n, "there is no memory for it");
         }
     }
     template <element T, std::size_t E>
@@ -255,7 +251,7 @@ public:
         std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     };
     /// Adds passes and their time to costs(), under a kernel's name or an override's own.
-    void count_passes(std::string_view name, uint passes, const stopwatch& watch)
+    [[gnu::noinline]] void count_passes(std::string_view name, uint passes, const stopwatch& watch)
     {
         auto& cost = costs_[std::string(name)];
         cost.passes += passes;
@@ -263,6 +259,11 @@ public:
     }
 
 private:
+    [[noreturn, gnu::cold, gnu::noinline]] static void refuse(std::size_t n, const std::string& why)
+    {
+        throw backend_error("cpu: a buffer of " + std::to_string(n) + " elements was asked for; " + why);
+    }
+
     /// One draw of a routing kernel.
     struct draw {
         uint destination, payload;

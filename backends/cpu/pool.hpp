@@ -42,8 +42,18 @@ public:
     template <class F>
     void for_blocks(std::size_t n, std::size_t block, const F& f)
     {
+        run_blocks(n, block, &f, [](const void* called, std::size_t first, std::size_t past) {
+            (*static_cast<const F*>(called))(first, past);
+        });
+    }
+
+private:
+    /// No template, and not inlined, so that the compiler makes oneTBB's code once and not for each kernel.
+    [[gnu::noinline]] void run_blocks(
+        std::size_t n, std::size_t block, const void* called, void (*call)(const void*, std::size_t, std::size_t))
+    {
         const std::size_t blocks = n / block + (n % block != 0 ? 1 : 0);
-        const auto one = [&](std::size_t i) { f(i * block, std::min(n, (i + 1) * block)); };
+        const auto one = [&](std::size_t i) { call(called, i * block, std::min(n, (i + 1) * block)); };
         if (!arena_ || blocks < 2) {
             for (std::size_t i = 0; i < blocks; ++i)
                 one(i);
@@ -60,7 +70,6 @@ public:
         });
     }
 
-private:
     unsigned threads_;
     std::optional<tbb::global_control> more_;
     std::optional<tbb::task_arena> arena_;

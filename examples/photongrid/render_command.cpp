@@ -6,6 +6,7 @@
 #include "resume_file.hpp"
 #include "scene_notes.hpp"
 #include "stats_file.hpp"
+#include <photongrid/backends/any/module.hpp>
 #include <photongrid/io/tone_map.hpp>
 
 #include <algorithm>
@@ -112,9 +113,10 @@ renderer_options renderer_asked(const render_options& o)
         .time_passes = o.time_passes});
     if (o.backend == "auto" && !o.quiet)
         std::cerr << "photongrid: --backend auto: " << r.backend
-                  << (r.backend == "vulkan"       ? ", device " + r.device
-                             : r.backend == "cpu" ? " (no hardware Vulkan device)"
-                                                  : " (no hardware Vulkan device, built without cpu)")
+                  << (r.backend == "vulkan" ? ", device " + r.device
+                                            : std::string(any::has_module("vulkan") ? " (no hardware Vulkan device"
+                                                                                    : " (vulkan is not built")
+                                 + (r.backend == "cpu" ? ")" : ", built without cpu)"))
                   << '\n';
     return r;
 }

@@ -46,12 +46,7 @@ public:
     {
     }
     /// The same for photons with attributes in separate arrays: {.positions = p, .powers = w}.
-    photon_map(B& device, const photon_attributes& photons, const knn_settings& search = {})
-        : host_queries(detail::origin_of(checked(photons, search).positions)), device_(&device),
-          map_(fitted_map(device, uploaded(device, photons, origin_), std::max(search.k, 1u)))
-    {
-        host_ = host_search(device, map_, search, true);
-    }
+    photon_map(B& device, const photon_attributes& photons, const knn_settings& search = {});
 
     /// The number of photons.
     uint size() const { return map_.photons.size(); }
@@ -86,67 +81,11 @@ public:
     }
 
 private:
-    static const photon_attributes& checked(const photon_attributes& a, const knn_settings& search)
-    {
-        const auto check = [&](const char* name, std::size_t n, bool may_lack) {
-            if (n != a.positions.size() && !(may_lack && n == 0))
-                throw std::invalid_argument(std::string("photon_map: ") + name + ": " + std::to_string(n)
-                    + " elements for " + std::to_string(a.positions.size()) + " photons; each needs one");
-        };
-        check("powers", a.powers.size(), false);
-        check("directions", a.directions.size(), true);
-        check("normals", a.normals.size(), true);
-        detail::check_map_size("photon_map: photons", a.positions.size());
-        if (search.errors)
-            throw std::invalid_argument(
-                "photon_map: search.errors: ask for standard errors by irradiance_options::standard_error instead");
-        return a;
-    }
-
-    static photons<B> uploaded(B& device, const photon_attributes& a, const glm::dvec3& origin)
-    {
-        const glm::dvec3 zero(0);
-        return {detail::upload_view(device, a.positions, origin, 0.0f),
-            detail::upload_view(device, a.powers, zero, 0.0f), detail::upload_view(device, a.directions, zero, 0.0f),
-            detail::upload_view(device, a.normals, zero, 0.0f)};
-    }
-
-    void require_a_disc() const
-    {
-        const auto& s = search();
-        if (s.k > size() && size() > 0 && detail::is_unbounded(s))
-            throw std::invalid_argument("photon_map::irradiance: k: " + std::to_string(s.k)
-                + " photons are sought, and the map has " + std::to_string(size())
-                + "; use a smaller k, or set max_radius");
-    }
-
+    static const photon_attributes& checked(const photon_attributes& a, const knn_settings& search);
+    static photons<B> uploaded(B& device, const photon_attributes& a, const glm::dvec3& origin);
+    void require_a_disc() const;
     std::vector<irradiance_at_point> searched(
-        const vector_view& points, const vector_view* normals, const irradiance_options& options) const
-    {
-        require_a_disc();
-        B& device = *device_;
-        auto s = search();
-        s.errors = options.standard_error;
-        const auto device_points = detail::upload_view(device, points, origin_, 1.0f);
-        const auto estimates = [&] {
-            if (normals == nullptr)
-                return knn_grid_estimate(device, map_, device_points, s);
-            const auto surface_normals = detail::upload_view(device, *normals, glm::dvec3(0), 0.0f);
-            return knn_grid_estimate(device, map_, device_points, surface_normals, s);
-        }();
-        const auto values = device.download(estimates.irradiance), errors = device.download(estimates.standard_error);
-        const auto used = device.download(estimates.used);
-        std::vector<irradiance_at_point> all(values.size());
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            irradiance_at_point e{.value = glm::vec3(values[i]), .radius = std::sqrt(values[i].w), .count = used[i].x};
-            if (options.standard_error) {
-                e.error = glm::vec3(errors[i]);
-                e.error_of_sum = errors[i].w;
-            }
-            all[i] = detail::estimate_or_none(e, s, local(points[i]));
-        }
-        return all;
-    }
+        const vector_view& points, const vector_view* normals, const irradiance_options& options) const;
 
     B* device_;
     map_buffers<B> map_;
@@ -160,6 +99,82 @@ template <backend B>
 photon_map(B&, const photon_attributes&, const knn_settings&) -> photon_map<B>;
 template <backend B>
 photon_map(B&, const photon_attributes&) -> photon_map<B>;
+
+// Defined outside of the class, and not inline, so that a library can hold them for a backend and files that link it do
+// not compile them again (`extern template`; backends/cpu/compiled.hpp).
+
+template <backend B>
+photon_map<B>::photon_map(B& device, const photon_attributes& photons, const knn_settings& search)
+    : host_queries(detail::origin_of(checked(photons, search).positions)), device_(&device),
+      map_(fitted_map(device, uploaded(device, photons, origin_), std::max(search.k, 1u)))
+{
+    host_ = host_search(device, map_, search, true);
+}
+
+template <backend B>
+const photon_attributes& photon_map<B>::checked(const photon_attributes& a, const knn_settings& search)
+{
+    const auto check = [&](const char* name, std::size_t n, bool may_lack) {
+        if (n != a.positions.size() && !(may_lack && n == 0))
+            throw std::invalid_argument(std::string("photon_map: ") + name + ": " + std::to_string(n) + " elements for "
+                + std::to_string(a.positions.size()) + " photons; each needs one");
+    };
+    check("powers", a.powers.size(), false);
+    check("directions", a.directions.size(), true);
+    check("normals", a.normals.size(), true);
+    detail::check_map_size("photon_map: photons", a.positions.size());
+    if (search.errors)
+        throw std::invalid_argument(
+            "photon_map: search.errors: ask for standard errors by irradiance_options::standard_error instead");
+    return a;
+}
+
+template <backend B>
+photons<B> photon_map<B>::uploaded(B& device, const photon_attributes& a, const glm::dvec3& origin)
+{
+    const glm::dvec3 zero(0);
+    return {detail::upload_view(device, a.positions, origin, 0.0f), detail::upload_view(device, a.powers, zero, 0.0f),
+        detail::upload_view(device, a.directions, zero, 0.0f), detail::upload_view(device, a.normals, zero, 0.0f)};
+}
+
+template <backend B>
+void photon_map<B>::require_a_disc() const
+{
+    const auto& s = search();
+    if (s.k > size() && size() > 0 && detail::is_unbounded(s))
+        throw std::invalid_argument("photon_map::irradiance: k: " + std::to_string(s.k)
+            + " photons are sought, and the map has " + std::to_string(size())
+            + "; use a smaller k, or set max_radius");
+}
+
+template <backend B>
+std::vector<irradiance_at_point> photon_map<B>::searched(
+    const vector_view& points, const vector_view* normals, const irradiance_options& options) const
+{
+    require_a_disc();
+    B& device = *device_;
+    auto s = search();
+    s.errors = options.standard_error;
+    const auto device_points = detail::upload_view(device, points, origin_, 1.0f);
+    const auto estimates = [&] {
+        if (normals == nullptr)
+            return knn_grid_estimate(device, map_, device_points, s);
+        const auto surface_normals = detail::upload_view(device, *normals, glm::dvec3(0), 0.0f);
+        return knn_grid_estimate(device, map_, device_points, surface_normals, s);
+    }();
+    const auto values = device.download(estimates.irradiance), errors = device.download(estimates.standard_error);
+    const auto used = device.download(estimates.used);
+    std::vector<irradiance_at_point> all(values.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        irradiance_at_point e{.value = glm::vec3(values[i]), .radius = std::sqrt(values[i].w), .count = used[i].x};
+        if (options.standard_error) {
+            e.error = glm::vec3(errors[i]);
+            e.error_of_sum = errors[i].w;
+        }
+        all[i] = detail::estimate_or_none(e, s, local(points[i]));
+    }
+    return all;
+}
 
 } // namespace photongrid
 

@@ -77,12 +77,39 @@ namespace {
         const auto command = alone.string() + " devices >" + (folder / "devices").string();
         ASSERT_EQ(std::system(command.c_str()), 0);
         const auto said = contents(folder / "devices");
-        EXPECT_NE(said.find("serial  this CPU"), std::string::npos) << said;
+        EXPECT_NE(said.find("  this CPU"), std::string::npos) << said; // cpu, or serial in a build without
         for (const auto& p : parts)
             if (is_built(p) && p.name != std::string("window")) {
                 EXPECT_NE(said.find(std::string(p.name) + "  not available"), std::string::npos) << said;
                 EXPECT_NE(said.find("keep the program with its modules"), std::string::npos) << said;
             }
+    }
+
+    // A build has its modules only when they were asked for: examples/run.sh.
+    TEST_F(program, says_how_its_modules_are_built)
+    {
+        const auto alone = folder / "alone";
+        fs::copy_file(PHOTONGRID_PROGRAM, alone);
+        fs::create_directory(folder / "photongrid-modules");
+        const auto asked = [&](const std::string& arguments, int code) {
+            const auto command = "cd " + folder.string() + " && ./alone " + arguments + " >said 2>&1";
+            EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), code) << command;
+            return contents(folder / "said");
+        };
+        for (const auto& p : parts)
+            if (is_built(p)) {
+                const bool is_window = p.name == std::string("window");
+                const auto said
+                    = asked((is_window ? "view " : std::string("render --backend ") + p.name + " ") + ring, 4);
+                EXPECT_NE(said.find(is_window ? "`examples/run.sh --view`"
+                                              : std::string("`examples/run.sh --backend ") + p.name),
+                    std::string::npos)
+                    << said;
+            }
+        const auto devices = asked("devices", 0);
+        EXPECT_NE(devices.find("  this CPU"), std::string::npos) << devices;
+        const auto chosen = asked("render --backend auto --size 8x6 --photons 100 -o auto.png " + ring, 0);
+        EXPECT_NE(chosen.find("(vulkan is not built"), std::string::npos) << chosen;
     }
 
 } // namespace

@@ -4,15 +4,6 @@
 
 namespace photongrid::viewer {
 
-opened_scene open_noting_files(const scene_opener& open, const std::string& path, file_stamps& files)
-{
-    const auto note = [&](const std::string& file) { files.try_emplace(file, stamp_of(file)); };
-    note(path);
-    auto made = open(path, note);
-    made.files = files;
-    return made;
-}
-
 scene_thread::scene_thread(
     scene_opener open, std::function<void()> wake, bool reloads, std::chrono::milliseconds period)
     : open_(std::move(open)), wake_(std::move(wake)), reloads_(reloads), period_(period), thread_([this] { work(); })

@@ -104,11 +104,25 @@ namespace detail {
     /// For backends that accept any buffer: no check of ownership.
     inline constexpr auto any_owner = [](const auto&) { return true; };
 
-    inline void check_owner(bool owned, const char* verb, std::string_view kernel, std::string_view name)
+    // These two are not inlined: each verb of each kernel would give the compiler their words again.
+    [[noreturn, gnu::cold, gnu::noinline]] inline void refuse_owner(
+        const char* verb, std::string_view kernel, std::string_view buffer)
+    {
+        throw std::invalid_argument(std::string(verb) + "<" + std::string(kernel) + ">: buffer '" + std::string(buffer)
+            + "' belongs to another backend; download it there and upload it here");
+    }
+    [[noreturn, gnu::cold, gnu::noinline]] inline void refuse_size(
+        const char* verb, std::string_view kernel, std::string_view buffer, std::size_t size, const launch& l)
+    {
+        throw std::invalid_argument(std::string(verb) + "<" + std::string(kernel) + ">: buffer '" + std::string(buffer)
+            + "' holds " + std::to_string(size) + " elements; the pass writes elements " + std::to_string(l.first)
+            + " to " + std::to_string(std::uint64_t{l.first} + l.elements) + " (exclusive)");
+    }
+
+    inline void check_owner(bool owned, const char* verb, std::string_view kernel, std::string_view buffer)
     {
         if (!owned)
-            throw std::invalid_argument(std::string(verb) + "<" + std::string(kernel) + ">: buffer '"
-                + std::string(name) + "' belongs to another backend; download it there and upload it here");
+            refuse_owner(verb, kernel, buffer);
     }
 
     /// Checks a call's inputs against kernel K: types at compile time, ownership at run time by `owns`.
@@ -135,12 +149,6 @@ namespace detail {
         check_reads<K>(verb, reads, owns);
         static_assert(
             std::tuple_size_v<Writes> == output_count<K>, "writes(...) must name one buffer per OUTPUT and STATE");
-        [[maybe_unused]] const auto fail = [&](std::string_view name, std::size_t size) {
-            throw std::invalid_argument(std::string(verb) + "<" + std::string(kernel_name<K>()) + ">: buffer '"
-                + std::string(name) + "' holds " + std::to_string(size) + " elements; the pass writes elements "
-                + std::to_string(l.first) + " to " + std::to_string(std::uint64_t{l.first} + l.elements)
-                + " (exclusive)");
-        };
         if constexpr (output_count<K> != 0)
             for_each_slot<output_count<K>>([&](auto s) {
                 using buffer = std::remove_cvref_t<std::tuple_element_t<s.index, Writes>>;
@@ -148,7 +156,7 @@ namespace detail {
                     "a buffer's element type differs from the kernel's OUTPUT or STATE");
                 if (const std::size_t size = std::get<s.index>(writes).size();
                     size < std::uint64_t{l.first} + l.elements)
-                    fail(K::output_name(s), size);
+                    refuse_size(verb, kernel_name<K>(), K::output_name(s), size, l);
                 check_owner(owns(std::get<s.index>(writes)), verb, kernel_name<K>(), K::output_name(s));
             });
     }

@@ -1,0 +1,62 @@
+# What examples/run.sh leaves, installed: only the program is built in WORK, with few backends and without its modules.
+# Nothing fails, what is not built is left out by name, and find_package says so.
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE error)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "failed (${status}): ${ARGN}\n${output}${error}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+function(expect text pattern)
+  if(NOT text MATCHES "${pattern}")
+    message(FATAL_ERROR "expected ${pattern} in:\n${text}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+set(build ${WORK}/build)
+set(prefix ${WORK}/prefix)
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${build} -DPHOTONGRID_TESTS=OFF -DPHOTONGRID_GL=OFF -DPHOTONGRID_VULKAN=OFF
+  -DPHOTONGRID_VIEW=OFF -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=40 -DCMAKE_CXX_FLAGS_RELEASE=-O0 ${OPTIONS})
+run(${CMAKE_COMMAND} --build ${build} --target photongrid_program)
+execute_process(COMMAND ${build}/photongrid render ${SOURCE}/examples/scenes/ring.json --backend serial
+  RESULT_VARIABLE status ERROR_VARIABLE error OUTPUT_QUIET)
+expect("${status}" "^4$")
+expect("${error}" "`examples/run.sh --backend serial` .*--target photongrid_module_serial")
+
+run(${CMAKE_COMMAND} --install ${build} --prefix ${prefix})
+expect("${output}" "Left out: libphotongrid_renderer.a, .*--target photongrid_installed")
+expect("${output}" "Left out: serial.so")
+foreach(file IN ITEMS bin/photongrid share/photongrid/scenes/ring.json include/photongrid/version.hpp
+    share/pkgconfig/photongrid-cpu_compiled.pc share/pkgconfig/photongrid-io.pc)
+  if(NOT EXISTS ${prefix}/${file})
+    message(FATAL_ERROR "${file} is not installed")
+  endif()
+endforeach()
+if(EXISTS ${prefix}/share/pkgconfig/photongrid-renderer.pc)
+  message(FATAL_ERROR "photongrid-renderer.pc tells of a library that is not there")
+endif()
+run(${prefix}/bin/photongrid render ${prefix}/share/photongrid/scenes/ring.json --size 16x12 --photons 300
+  -o ${WORK}/ring.png)
+if(NOT EXISTS ${WORK}/ring.png)
+  message(FATAL_ERROR "the installed program drew nothing")
+endif()
+
+# Whoever asks for all that is there, gets it; whoever asks for the renderer hears why it is not.
+foreach(asked IN ITEMS "" "COMPONENTS renderer")
+  string(REGEX REPLACE " .*" "" name "user${asked}")
+  file(WRITE ${WORK}/${name}/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)
+project(user LANGUAGES C CXX)
+find_package(photongrid 0.1 CONFIG REQUIRED ${asked})
+if(TARGET photongrid::renderer OR NOT TARGET photongrid::io OR NOT TARGET photongrid::cpu_compiled)
+  message(FATAL_ERROR \"other targets than were built\")
+endif()
+")
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${WORK}/${name} -B ${WORK}/${name}/build -DCMAKE_PREFIX_PATH=${prefix}
+    RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE error)
+  if(asked)
+    expect("${error}" "component renderer: this photongrid.+was.+installed.+without.+build it")
+  elseif(NOT status EQUAL 0)
+    message(FATAL_ERROR "find_package failed: ${output}${error}")
+  endif()
+endforeach()
