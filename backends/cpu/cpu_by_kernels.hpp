@@ -1,6 +1,5 @@
 // The cpu backend (cpu.hpp) without its overrides: it runs every kernel, on any number of threads. The results are the
 // same; it is several times slower and compiles in a third of the time. Tests compare the two.
-// The file is long because it is one class.
 #pragma once
 
 #include <photongrid/backends/cpu/buffer.hpp>

@@ -1,6 +1,5 @@
 // The OpenGL backend: kernels as fragment programs and buffers as textures, as in the paper, on OpenGL 4.5 core. It
-// uses no compute shaders and no storage buffers, and reads nothing back between passes except occlusion queries. The
-// file is long because it is one class with its manual; what its members do is in the headers that it includes.
+// uses no compute shaders and no storage buffers, and reads nothing back between passes except occlusion queries.
 #pragma once
 
 #include <photongrid/backends/gl/hand_over.hpp>

@@ -8,8 +8,6 @@
 // one more, the workgroups that have finished its list. The last workgroup to finish writes the workgroups of the next
 // pass.
 // launch_.z: this pass; launch_.w: offset of its elements from those of the list.
-//
-// main() is one function, because its steps, from barrier to barrier, share what is known of the invocation's element.
 layout(std430, binding = FIRST_OWN) readonly buffer listed_block_ { uint listed_[]; };
 layout(std430, binding = FIRST_OWN + 1) buffer next_block_ { uint next_[]; };
 layout(std430, binding = FIRST_OWN + 2) buffer control_block_ { uint control_[]; };

@@ -1,5 +1,4 @@
 // The Vulkan backend: compute shaders on storage buffers, with many passes per submission (docs/design/design.md).
-// The file is long because it is one class with its manual; what its members do is in the headers that it includes.
 #pragma once
 
 #include <photongrid/backends/vulkan/frames.hpp>

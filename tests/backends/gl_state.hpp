@@ -1,6 +1,5 @@
 // All state of an OpenGL 4.5 core context, a piece at a time: how to set it to something else than OpenGL starts with,
-// and how to read it. For tests that a library leaves it alone. The file is long because it is one list, in which a
-// reader looks for what is missing.
+// and how to read it. For tests that a library leaves it alone.
 #pragma once
 
 #define GL_GLEXT_PROTOTYPES // types of functions; none is linked

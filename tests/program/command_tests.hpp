@@ -1,4 +1,4 @@
-// The program's commands: results and errors. The file is long because commands are many, and each case is short.
+// The program's commands: results and errors.
 #pragma once
 
 #include "../core/under_test.hpp"

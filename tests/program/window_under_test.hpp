@@ -1,5 +1,4 @@
-// The program's window under test: its process, mouse, keys and pixels. The file is long because all
-// tests of the window need all of them.
+// The program's window under test: its process, mouse, keys and pixels.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Every number of a scene, made bad one at a time: the scene is refused, and the message names the part. Every check of
-// the headers is provoked. And every setting just outside of its range. The file is long because it lists all of them.
+// the headers is provoked. And every setting just outside of its range.
 #include "limit_tests.hpp"
 #include "test_scenes.hpp"
 

@@ -135,8 +135,7 @@ struct ring_of_cells {
 
 /// Visits a ring, row by row: the whole row on a face of the box, else its two end cells, either of which may lie
 /// outside the grid. A register's width of rows is tested at once, with the limit before the first of them. The limit
-/// only shrinks, so rows that fail stay out; the others are tested again. It is one function, because its steps share a
-/// dozen registers, which would all have to be passed.
+/// only shrinks, so rows that fail stay out; the others are tested again.
 template <class Growth>
 HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& found)
 {

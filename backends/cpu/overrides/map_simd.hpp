@@ -102,8 +102,7 @@ inline void scatter_photons(map_job j, std::size_t first, std::size_t past, uint
     hwy::FlushStream();
 }
 
-/// Orders the bucket at begin to end - 1 by cell. It is one function, because its loops go over the same bucket while
-/// it is in the cache.
+/// Orders the bucket at begin to end - 1 by cell.
 inline void order_bucket(map_job j, uint bucket, std::size_t begin, std::size_t end, bucket_scratch& s)
 {
     const uint first_cell = bucket << j.shift, bins = std::min(1u << j.shift, j.cells + 1 - first_cell);

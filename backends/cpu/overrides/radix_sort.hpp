@@ -143,7 +143,7 @@ inline digit first_digit(const bit_range& r)
 }
 
 /// Sorts n pairs by (x, y). Both ranges have room for n pairs and begin on cache lines. The report says which one has
-/// the result. It is one function, because every step works on the same two ranges and counters.
+/// the result.
 inline radix_report radix_sort(pool& threads, glm::uvec2* pairs, glm::uvec2* scratch, std::size_t n)
 {
     radix_report report;

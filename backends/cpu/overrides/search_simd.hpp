@@ -9,8 +9,7 @@
 // If a query point moves by s, the distance to its k-th nearest photon changes by at most s. So that distance lies in a
 // narrow band around the distance of the query before: photons nearer than the band are counted, those in the band are
 // kept, and the k-th is selected among these few. The counts show whether the k-th is in the band. If not, the scan is
-// repeated without the band; if the packet's radius is too small, a new packet is made. The file is long because the
-// steps of this search are of use to no other.
+// repeated without the band; if the packet's radius is too small, a new packet is made.
 //
 // In block maps, points are searched alone (tree_simd.hpp) where a packet would hold few points, or photons much denser
 // than expected.
@@ -79,8 +78,7 @@ inline float given_radius2(const search_job& j, uint point)
     return j.radii_at_points ? std::min(j.points[point].w, j.max_radius2) : j.max_radius2;
 }
 
-/// Searches for the points order[begin] to order[end - 1]. It is one function, because most of its variables pass from
-/// point to point and from packet to packet.
+/// Searches for the points order[begin] to order[end - 1].
 template <int POLICIES>
 HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::size_t end)
 {

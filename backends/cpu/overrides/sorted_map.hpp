@@ -37,8 +37,7 @@ namespace cpu {
 } // namespace cpu
 
 /// The same map as the generic sorted_map, which it uses for 2^27 cells and more. It needs 44 bytes per photon while it
-/// runs. It is one function, because its steps share the job, and the buffers of the first ones are released before the
-/// last.
+/// runs.
 #if !defined(PHOTONGRID_CPU_COMPILED)
 inline
 #endif

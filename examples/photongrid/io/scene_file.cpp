@@ -1,5 +1,4 @@
-// The reader of scene files. The file is long because each part of a scene has a function here, and they share the
-// readers of values and their messages.
+// The reader of scene files.
 #include <photongrid/io/picture_reader.hpp>
 #include <photongrid/io/scene_file.hpp>
 

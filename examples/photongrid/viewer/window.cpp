@@ -1,5 +1,4 @@
-// The window: its loop, its panel and what keys do. The file is long because it is one class, of small functions that
-// pass on what the user does.
+// The window: its loop, its panel and what keys do.
 #include "window.hpp"
 
 #include "display.hpp"

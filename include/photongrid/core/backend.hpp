@@ -1,5 +1,4 @@
-// The interface of a backend: buffers and a few verbs. docs/design/design.md says where the paper has each verb. The
-// file is long because the verbs of all backends are described here, once.
+// The interface of a backend: buffers and a few verbs. docs/design/design.md says where the paper has each verb.
 #pragma once
 
 #include <photongrid/core/kernel.hpp>

@@ -8,8 +8,6 @@
 //
 // Where the map holds a photon s times, each entry has 1 / s of its power. The photon appears as s fully correlated
 // entries, so its variance is s times the sum of their squares.
-//
-// The kernel is one function, because its innermost loop changes nearly all of its variables.
 #include <photongrid/estimate/gather_tally.glsl>
 #include <photongrid/estimate/row_cursor.glsl>
 #include <photongrid/estimate/search_radius.glsl>

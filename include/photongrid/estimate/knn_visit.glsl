@@ -7,8 +7,6 @@
 //
 // Work per pass is bounded, because drivers end long loops silently (docs/design/decisions.md). The states hold the
 // result so far, which can be displayed at any time (3.4).
-//
-// The kernel is one function, because it is one state machine over local copies of the states.
 #include <photongrid/core/none.glsl>
 #include <photongrid/estimate/growing_state.glsl>
 #include <photongrid/estimate/search_tally.glsl>

@@ -6,8 +6,6 @@
 // scans suffice.
 //
 // The result is the squared distance of a photon, independent of the pivots and therefore the same on every device.
-//
-// The kernel is one function, because it is one state machine over local copies of the states.
 #include <photongrid/core/none.glsl>
 #include <photongrid/map/block_tree.glsl>
 #include <photongrid/map/grid.glsl>

@@ -1,8 +1,7 @@
 // If several photons have the k-th distance, those with the smallest ids belong to the k nearest. This kernel finds the
 // last such id, and how often it counts, since a routed map may hold a photon several times. The first scan finds the
 // smallest and the largest id at the radius, which are the same if one photon is repeated. Further scans count the ids
-// below each of four pivots between them, as kth_distance.glsl counts distances. The kernel is one function, because it
-// is one state machine over local copies of the states.
+// below each of four pivots between them, as kth_distance.glsl counts distances.
 #include <photongrid/core/none.glsl>
 #include <photongrid/map/block_tree.glsl>
 #include <photongrid/map/grid.glsl>

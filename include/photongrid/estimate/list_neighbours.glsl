@@ -1,8 +1,6 @@
 // Lists the indices of the photons within a point's radius, in map order, sixteen at a time: kernels have no arrays and
 // write only their own element. The next part of the list continues where this one ended, so that all parts together
 // scan the photons once.
-//
-// The kernel is one function, because its loop changes nearly all of the local copies of the states.
 #include <photongrid/estimate/list_tally.glsl>
 #include <photongrid/estimate/row_cursor.glsl>
 #include <photongrid/estimate/search_radius.glsl>

@@ -22,7 +22,7 @@ namespace reference {
 
 /// Renders a view without a photon map. The same scene and settings give the same bytes with any number of threads. The
 /// result is unbiased except for the bins, which blur caustics over their size (stats.bin_size), and for the depth
-/// limits. It is one function, because each step needs most of what the steps before it have computed.
+/// limits.
 /// \throws std::invalid_argument for a scene, camera or settings that check() rejects, render_cancelled.
 /// \snippet snippets.cpp render_reference
 inline reference_picture render_reference(

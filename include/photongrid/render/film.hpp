@@ -1,5 +1,4 @@
-// The picture as a sum of passes. Passes are added in any order; the spread between them measures the noise. The file
-// is long because it is one class: what adds, develops and stores the sums must know their form.
+// The picture as a sum of passes. Passes are added in any order; the spread between them measures the noise.
 #pragma once
 
 #include <photongrid/render/exact_sum.hpp>

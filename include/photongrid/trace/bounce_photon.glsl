@@ -1,8 +1,6 @@
 // One bounce of all photons (2.1): computes frame f of the photon texture from frame f - 1. It records the photon that
 // hits a surface. Russian roulette by reflectance decides whether the path continues, so that photons change in colour
 // only.
-//
-// The kernel is one function, because it completes its outputs step by step and may end after most of the steps.
 #include <photongrid/core/vector.glsl>
 #include <photongrid/core/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
