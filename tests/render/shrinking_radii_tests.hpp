@@ -39,7 +39,7 @@ TYPED_TEST_P(pictures, passes_have_the_radii_of_the_first_map_made_smaller)
     using radii = pass_radii<typename TestFixture::B>;
     const auto whole = layers(first, radii{});
     for (const auto* of : {&first, &map}) {
-        const auto half = layers(*of, radii{.first = {&first.map, settings.estimate.k}, .share2 = 0.25});
+        const auto half = layers(*of, radii{.firsts = {{&first.map(), settings.estimate.k}}, .share2 = 0.25});
         double photons = 0, of_whole = 0;
         for (std::size_t i = 0; i < whole.radius.size(); ++i) {
             ASSERT_NEAR(half.radius[i], 0.5f * whole.radius[i], 1e-5f * whole.radius[i]) << i;
@@ -64,7 +64,7 @@ TYPED_TEST_P(pictures, a_map_of_fewer_photons_gives_radii_as_large)
     settings.estimate.k = settings.estimate.caustic_k = 100;
     settings.estimate.max_radius = 10;
     const auto first = build_map(b, s, settings_of_radius_map(settings, b.caps()));
-    EXPECT_EQ(first.map.photons.size(), 2000u);
+    EXPECT_EQ(first.map().photons.size(), 2000u);
     ASSERT_EQ(first.lights.size(), 2u);
     EXPECT_EQ(first.caustics().photons.size(), 1000u);
     const auto map = build_map(b, s, settings_of_pass(settings, 0));

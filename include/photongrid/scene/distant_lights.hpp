@@ -117,6 +117,7 @@ struct light_kind<directional_light> {
     static constexpr std::tuple fields{field{"direction", &directional_light::direction, quantity::direction},
         field{"irradiance", &directional_light::irradiance, quantity::emission}}; ///< all fields but the name
     static constexpr std::uint32_t form = 5;                                      ///< DIRECTIONAL_LIGHT in kernels
+    static constexpr std::uint32_t switches = 1u << 14;                           ///< of kernels
 
     /// \name See light_kind
     /// @{
@@ -126,14 +127,13 @@ struct light_kind<directional_light> {
         return l.irradiance * projected_area(box, glm::normalize(l.direction));
     }
     /// See trace/distant_light.glsl.
-    static void write_record(record_writer& w, const directional_light& l, const bounds& box, const dvec3& power)
+    static void write_record(record_writer& w, const directional_light& l, const light_context& in)
     {
         const dvec3 d = glm::normalize(l.direction);
-        w.put(d, 1 / projected_area(box, d));
-        w.put_position(box.low, 0);
-        w.put_position(box.high, 0);
+        w.put(d, 1 / projected_area(in.box, d));
+        w.put_position(in.box.low, 0);
+        w.put_position(in.box.high, 0);
         w.put(dvec3(0), 0);
-        w.put(power, 0);
     }
     /// @}
 };
@@ -146,6 +146,7 @@ struct light_kind<environment_light> {
     static constexpr std::tuple fields{
         field{"radiance", &environment_light::radiance, quantity::emission}}; ///< but for the map and its rotation
     static constexpr std::uint32_t form = 6;                                  ///< ENVIRONMENT_LIGHT in kernels
+    static constexpr std::uint32_t switches = 1u << 15;                       ///< of kernels
 
     /// \name See light_kind
     /// @{
@@ -161,15 +162,14 @@ struct light_kind<environment_light> {
         return power;
     }
     /// See trace/environment.glsl.
-    static void write_record(record_writer& w, const environment_light& l, const bounds& box, const dvec3& power)
+    static void write_record(record_writer& w, const environment_light& l, const light_context& in)
     {
         const environment_texels texels(l);
         const double half = glm::radians(l.degrees) / 2;
         w.put(dvec3(texels.width(), texels.height(), 0), 0);
-        w.put_position(box.low, 0);
-        w.put_position(box.high, 0);
+        w.put_position(in.box.low, 0);
+        w.put_position(in.box.high, 0);
         w.put(std::sin(half) * glm::normalize(l.axis), std::cos(half));
-        w.put(power, 0);
     }
     /// @}
 };

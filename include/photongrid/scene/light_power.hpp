@@ -3,6 +3,7 @@
 
 #include <photongrid/scene/bounds.hpp>
 
+#include <cstddef>
 #include <string>
 
 #include <photongrid/core/exact_begin.hpp>
@@ -17,6 +18,12 @@ inline void check_emission(const std::string& name, const dvec3& emission)
         name + ": each channel must be finite and not negative");
     detail::require(emission.x + emission.y + emission.z > 0, name + ": is 0; a light needs a channel above 0");
 }
+
+/// What the record of a light takes from the scene.
+struct light_context {
+    bounds box;                     ///< through whose faces light from outside enters
+    std::size_t first_triangle = 0; ///< number of a mesh light's first one, among all of the scene
+};
 
 namespace detail {
     /// The power of a light, W, rgb. Of a light outside of the scene, which has none of its own: what enters `box`.

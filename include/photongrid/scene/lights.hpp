@@ -89,17 +89,17 @@ struct light_kind<point_light> {
     static constexpr std::tuple fields{field{"position", &point_light::position, quantity::point},
         field{"power", &point_light::power, quantity::power}}; ///< all fields but the name
     static constexpr std::uint32_t form = 0;                   ///< POINT_LIGHT in kernels
+    static constexpr std::uint32_t switches = 1u << 6;         ///< of kernels
 
     /// \name See light_kind
     /// @{
     static void add_bounds(bounds& b, const point_light& l) { b.add(l.position); }
-    static void write_record(record_writer& w, const point_light& l)
+    static void write_record(record_writer& w, const point_light& l, const light_context&)
     {
         w.put_position(l.position, 0);
         w.put(dvec3(0), 0);
         w.put(dvec3(0), 0);
         w.put(dvec3(0), 0);
-        w.put(l.power, 0);
     }
     /// @}
 };
@@ -114,6 +114,7 @@ struct light_kind<rectangle_light> {
         field{"edge_v", &rectangle_light::edge_v, quantity::edge},
         field{"power", &rectangle_light::power, quantity::power}}; ///< all fields but the name
     static constexpr std::uint32_t form = 1;                       ///< RECTANGLE_LIGHT in kernels
+    static constexpr std::uint32_t switches = 1u << 7 | 1u << shape_kind<polygon>::number; ///< of kernels
 
     /// \name See light_kind
     /// @{
@@ -124,14 +125,13 @@ struct light_kind<rectangle_light> {
     }
     static double size(const rectangle_light& l) { return std::min(glm::length(l.edge_u), glm::length(l.edge_v)); }
     static double extent(const rectangle_light& l) { return size(l); }
-    static void write_record(record_writer& w, const rectangle_light& l)
+    static void write_record(record_writer& w, const rectangle_light& l, const light_context&)
     {
         const dvec3 normal = glm::cross(l.edge_u, l.edge_v);
         w.put_position(l.corner, 1 / (std::numbers::pi * glm::length(normal)));
         w.put(l.edge_u, 0);
         w.put(l.edge_v, 0);
         w.put(glm::normalize(normal), glm::length(normal));
-        w.put(l.power, 0);
     }
     /// @}
 };
@@ -143,22 +143,21 @@ struct light_kind<mesh_light> {
     static constexpr const char* list = "mesh_lights";                                       ///< member of scene
     static constexpr std::tuple fields{field{"power", &mesh_light::power, quantity::power}}; ///< but for the surface
     static constexpr std::uint32_t form = 2;                                                 ///< MESH_LIGHT in kernels
+    static constexpr std::uint32_t switches = 1u << 11 | 1u << 9; ///< of kernels: its own, and those of meshes
 
     /// \name See light_kind
     /// @{
     static void add_bounds(bounds& b, const mesh_light& l) { shape_kind<placed_mesh>::add_bounds(b, l.surface); }
     static double size(const mesh_light& l) { return shape_kind<placed_mesh>::size(l.surface); }
-    /// `first`: the number of its first triangle, among all of the scene.
-    static void write_record(record_writer& w, const mesh_light& l, std::size_t first)
+    static void write_record(record_writer& w, const mesh_light& l, const light_context& in)
     {
         const std::size_t count = l.surface.surface->triangles.size();
         bounds box;
         add_bounds(box, l);
         w.put_position(0.5 * (box.low + box.high), 1 / (std::numbers::pi * area_of(l.surface)));
-        w.put(dvec3(halves_of(first), 0), 0);
+        w.put(dvec3(halves_of(in.first_triangle), 0), 0);
         w.put(dvec3(halves_of(count), 0), 0);
         w.put(dvec3(0.5 * glm::length(box.high - box.low), 0, 0), 0); // of a ball that holds it
-        w.put(l.power, 0);
     }
     /// @}
 };

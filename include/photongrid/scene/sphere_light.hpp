@@ -38,22 +38,22 @@ struct light_kind<sphere_light> {
     static constexpr const char* list = "sphere_lights"; ///< member of scene
     static constexpr std::tuple fields{field{"center", &sphere_light::center, quantity::point},
         field{"radius", &sphere_light::radius, quantity::length},
-        field{"power", &sphere_light::power, quantity::power}}; ///< all fields but the name
-    static constexpr std::uint32_t form = 3;                    ///< SPHERE_LIGHT in kernels
+        field{"power", &sphere_light::power, quantity::power}};                            ///< all fields but the name
+    static constexpr std::uint32_t form = 3;                                               ///< SPHERE_LIGHT in kernels
+    static constexpr std::uint32_t switches = 1u << 12 | 1u << shape_kind<sphere>::number; ///< of kernels
 
     /// \name See light_kind
     /// @{
     static void add_bounds(bounds& b, const sphere_light& l) { shape_kind<sphere>::add_bounds(b, surface_of(l)); }
     static double size(const sphere_light& l) { return l.radius; }
     /// See trace/sphere_light.glsl.
-    static void write_record(record_writer& w, const sphere_light& l)
+    static void write_record(record_writer& w, const sphere_light& l, const light_context&)
     {
         const double pi = std::numbers::pi;
         w.put_position(l.center, 1 / (4 * pi * pi * l.radius * l.radius));
         w.put(dvec3(l.radius, 0, 0), 0);
         w.put(dvec3(0), 0);
         w.put(dvec3(0), 0);
-        w.put(l.power, 0);
     }
     /// @}
 };

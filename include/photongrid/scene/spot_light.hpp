@@ -57,12 +57,13 @@ struct light_kind<spot_light> {
         field{"outer_angle", &spot_light::outer_angle, quantity::angle},
         field{"power", &spot_light::power, quantity::power}}; ///< all fields but the name
     static constexpr std::uint32_t form = 4;                  ///< SPOT_LIGHT in kernels
+    static constexpr std::uint32_t switches = 1u << 13;       ///< of kernels
 
     /// \name See light_kind
     /// @{
     static void add_bounds(bounds& b, const spot_light& l) { b.add(l.position); }
     /// See trace/spot_light.glsl.
-    static void write_record(record_writer& w, const spot_light& l)
+    static void write_record(record_writer& w, const spot_light& l, const light_context&)
     {
         // Solid angles divided by 2 pi. The mean of 3 t^2 - 2 t^3 is 1/2.
         const double even = detail::one_minus_cosine(l.inner_angle),
@@ -71,7 +72,6 @@ struct light_kind<spot_light> {
         w.put(glm::normalize(l.direction), 1 / (2 * std::numbers::pi * lit));
         w.put(dvec3(even, fading, even / lit), 0);
         w.put(dvec3(0), 0);
-        w.put(l.power, 0);
     }
     /// @}
 };

@@ -28,15 +28,15 @@ enum scene_feature : uint {
     has_polygons = 1u << shape_kind<polygon>::number,
     has_mirrors = detail::entry_of(material_kind::mirror).switches,
     has_glass = detail::entry_of(material_kind::glass).switches,
-    has_point_lights = 1u << 6,
+    has_point_lights = light_kind<point_light>::switches,
     has_area_lights = 1u << 7,
     has_meshes = 1u << 9,         ///< number 8 is that of boxes
     has_smooth_meshes = 1u << 10, ///< meshes with normals
     has_mesh_lights = 1u << 11,
     has_sphere_lights = 1u << 12,
-    has_spot_lights = 1u << 13,
-    has_directional_lights = 1u << 14,
-    has_environment = 1u << 15,
+    has_spot_lights = light_kind<spot_light>::switches,
+    has_directional_lights = light_kind<directional_light>::switches,
+    has_environment = light_kind<environment_light>::switches,
     has_textures = 1u << 16,   ///< or colours of vertices
     has_rough = 1u << 17,      ///< a rough surface
     has_shape_tree = 1u << 18, ///< of many shapes
@@ -52,6 +52,9 @@ static_assert(light_kind<point_light>::form == kernels::POINT_LIGHT
     && light_kind<spot_light>::form == kernels::SPOT_LIGHT
     && light_kind<directional_light>::form == kernels::DIRECTIONAL_LIGHT
     && light_kind<environment_light>::form == kernels::ENVIRONMENT_LIGHT);
+static_assert(light_kind<rectangle_light>::switches == (has_area_lights | has_polygons)
+    && light_kind<mesh_light>::switches == (has_mesh_lights | has_meshes)
+    && light_kind<sphere_light>::switches == (has_sphere_lights | has_spheres));
 static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SURFACE
     && static_cast<uint>(surface_kind::reflecting) == kernels::MIRROR_SURFACE
     && static_cast<uint>(surface_kind::refracting) == kernels::GLASS_SURFACE
@@ -199,10 +202,7 @@ namespace detail {
             for_each_light(s_, [&](const auto& list, auto kind) {
                 for (const auto& l : list)
                     kind.add_bounds(all, l);
-                constexpr uint features[]
-                    = {has_point_lights, has_area_lights | has_polygons, has_mesh_lights | has_meshes,
-                        has_sphere_lights | has_spheres, has_spot_lights, has_directional_lights, has_environment};
-                out_.features |= list.empty() ? 0u : features[kind.form];
+                out_.features |= list.empty() ? 0u : kind.switches;
             });
             for (const auto& l : s_.rectangle_lights) // their surfaces are polygons
                 out_.steps_per_ray += steps_of(shape_kind<polygon>{}, surface_of(l));
@@ -343,7 +343,7 @@ namespace detail {
                 }
             });
             double below = 0;
-            std::size_t triangles = 0; // of mesh lights so far
+            light_context in{box};
             auto next = powers.begin();
             enter(kernels::LIGHT_TABLE, w.next(), powers.size(), 6);
             for_each_light(s_, [&](const auto& list, auto kind) {
@@ -352,14 +352,10 @@ namespace detail {
                     const double weight = power.x + power.y + power.z;
                     below += weight;
                     w.put(dvec3(kind.form, weight / total, below / total), 0);
-                    if constexpr (requires { l.surface; }) {
-                        kind.write_record(w, l, triangles);
-                        triangles += l.surface.surface->triangles.size();
-                    } else if constexpr (requires { kind.write_record(w, l, box, power); }) {
-                        kind.write_record(w, l, box, power);
-                    } else {
-                        kind.write_record(w, l);
-                    }
+                    kind.write_record(w, l, in);
+                    w.put(power, 0);
+                    if constexpr (requires { l.surface; })
+                        in.first_triangle += l.surface.surface->triangles.size();
                 }
             });
             out_.sources.environments = s_.environment_lights;
