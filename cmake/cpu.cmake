@@ -25,4 +25,4 @@ target_link_libraries(photongrid_cpu_compiled PUBLIC photongrid_cpu)
 target_compile_definitions(photongrid_cpu_compiled PUBLIC PHOTONGRID_CPU_COMPILED
   PRIVATE PHOTONGRID_CONTRACTION_IS_OFF)
 target_compile_options(photongrid_cpu_compiled PRIVATE -ffp-contract=off # exact_begin.hpp
-  ${photongrid_vectorized})
+  ${photongrid_warm})
