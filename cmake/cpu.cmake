@@ -16,8 +16,8 @@ target_link_libraries(photongrid_cpu INTERFACE TBB::tbb hwy::hwy)
 add_library(photongrid_cpu_compiled STATIC ${PROJECT_SOURCE_DIR}/backends/cpu/compiled.cpp
   ${PROJECT_SOURCE_DIR}/backends/cpu/compiled_maps.cpp)
 add_library(photongrid::cpu_compiled ALIAS photongrid_cpu_compiled)
-set_target_properties(photongrid_cpu_compiled PROPERTIES EXPORT_NAME cpu_compiled OUTPUT_NAME photongrid_cpu POSITION_INDEPENDENT_CODE ON
-  UNITY_BUILD OFF) # for two cores
+set_target_properties(photongrid_cpu_compiled PROPERTIES EXPORT_NAME cpu_compiled OUTPUT_NAME photongrid_cpu
+  POSITION_INDEPENDENT_CODE ON UNITY_BUILD OFF) # for two cores
 if(NOT PROJECT_IS_TOP_LEVEL)
   set_target_properties(photongrid_cpu_compiled PROPERTIES EXCLUDE_FROM_ALL TRUE)
 endif()
@@ -25,4 +25,4 @@ target_link_libraries(photongrid_cpu_compiled PUBLIC photongrid_cpu)
 target_compile_definitions(photongrid_cpu_compiled PUBLIC PHOTONGRID_CPU_COMPILED
   PRIVATE PHOTONGRID_CONTRACTION_IS_OFF)
 target_compile_options(photongrid_cpu_compiled PRIVATE -ffp-contract=off # exact_begin.hpp
-  ${photongrid_vectorized})
+  ${photongrid_warm})

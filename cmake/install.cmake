@@ -1,24 +1,27 @@
 # What is installed, in components: `dev`, the headers with CMake's and pkg-config's files, none of which depends on the
-# processor; `compiled`, the libraries that spare their users compiling them; `program`; and one for each of its modules that
-# needs libraries of its own: `gl`, `vulkan`, `window`. CPack makes a Debian package of each: cpack -G DEB.
+# processor; `compiled`, the libraries that spare their users compiling them; `program`; and one for each of its modules
+# that needs libraries of its own: `gl`, `vulkan`, `window`. CPack makes a Debian package of each: cpack -G DEB.
 #
-# examples/run.sh builds a part of this. What is not built is not installed, with a line that says so; cpack builds it first.
+# examples/run.sh builds a part of this. What is not built is not installed, with a line that says so; cpack builds it
+# first.
 include(CMakePackageConfigHelpers)
 add_custom_target(photongrid_installed) # all that can be installed
 
-# photongrid_install_if_built(TARGET COMPONENT name [FILES file... DESTINATION folder]): says at installation that TARGET
-# is left out where it is not built, and installs FILES, which tell of it, where it is.
+# photongrid_install_if_built(TARGET COMPONENT name [FILES file... DESTINATION folder]): says at installation that
+# TARGET is left out where it is not built, and installs FILES, which tell of it, where it is.
 function(photongrid_install_if_built target)
   cmake_parse_arguments(arg "" "COMPONENT;DESTINATION" "FILES" ${ARGN})
   add_dependencies(photongrid_installed ${target})
   set(then "")
+  set(how "cmake --build ${PROJECT_BINARY_DIR} --target photongrid_installed builds all")
   if(arg_FILES)
-    set(then "file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${arg_DESTINATION}\" TYPE FILE FILES \"${arg_FILES}\")")
+    set(then
+      "file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${arg_DESTINATION}\" TYPE FILE FILES \"${arg_FILES}\")")
   endif()
   install(CODE "if(EXISTS \"$<TARGET_FILE:${target}>\")
     ${then}
   else()
-    message(STATUS \"Left out: $<TARGET_FILE_NAME:${target}>, which is not built; cmake --build ${PROJECT_BINARY_DIR} --target photongrid_installed builds all\")
+    message(STATUS \"Left out: $<TARGET_FILE_NAME:${target}>, which is not built; ${how}\")
   endif()" COMPONENT ${arg_COMPONENT})
 endfunction()
 
@@ -70,7 +73,8 @@ function(photongrid_pkg_config name description)
   cmake_parse_arguments(arg "" "REQUIRES;CFLAGS;LIBS;OF" "" ${ARGN})
   configure_file(cmake/photongrid.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
   if(arg_OF)
-    photongrid_install_if_built(${arg_OF} COMPONENT compiled FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${pkg_config_dir})
+    photongrid_install_if_built(${arg_OF} COMPONENT compiled FILES ${PROJECT_BINARY_DIR}/${name}.pc
+      DESTINATION ${pkg_config_dir})
   else()
     install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${pkg_config_dir} COMPONENT dev)
   endif()

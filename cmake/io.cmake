@@ -30,7 +30,7 @@ target_sources(photongrid_io PUBLIC FILE_SET HEADERS BASE_DIRS ${photongrid_io_r
   ${folder}/scene_import.hpp ${folder}/scene_writer.hpp ${folder}/tone_map.hpp)
 target_link_libraries(photongrid_io PUBLIC photongrid PRIVATE $<BUILD_INTERFACE:photongrid_warnings>
   $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> OpenEXR::OpenEXR PNG::PNG ZLIB::ZLIB pugixml::pugixml)
-target_compile_options(photongrid_io PRIVATE ${photongrid_cold})
+target_compile_options(photongrid_io PRIVATE ${photongrid_warm})
 target_include_directories(photongrid_io SYSTEM PRIVATE $<BUILD_INTERFACE:${PHOTONGRID_STB_INCLUDE_DIR}>)
 if(PHOTONGRID_SANITIZE)
   set(together 0) # all

@@ -46,7 +46,7 @@ run_part() {
   local targets=("${programs[@]}")
   ((${#suites[@]} == 0)) || targets+=(on_serial)
   if [[ $name == consumers ]]; then
-    targets+=(photongrid_program host_renderer)
+    targets+=(photongrid_installed host_renderer)
   fi
   configure tests -DPHOTONGRID_FULL_TESTS=OFF
   cmake --build build-tests --target "${targets[@]}"
