@@ -52,14 +52,6 @@ inline uint parts_at_ends(const render_settings& s)
 {
     return has_gather_rays(s) ? caustic_part : parts_of(s.output.only);
 }
-/// Whether the irradiance at photons is the same with settings `a` and `b` of the estimate, for a final gather.
-inline bool same_irradiance(estimate_settings a, const estimate_settings& b)
-{
-    a.gather_rays = b.gather_rays;
-    a.caustic_k = b.caustic_k;
-    a.radii = b.radii;
-    return a == b;
-}
 
 /// Whether the photon map of a world with settings `as` is that with `bs`: the same photons in the same map. The
 /// settings of other stages do not matter.
@@ -68,7 +60,7 @@ inline bool same_map(const render_settings& as, const render_settings& bs)
     const bool fitted = !as.map.has_given_grid() && as.map.builder != map_builder::blocks;
     return as.seed == bs.seed && as.map.in_use() == bs.map.in_use()
         && (!fitted || as.estimate.k == bs.estimate.k) // a fitted map depends on k
-        && (!fitted || as.map.caustic_photons == 0 || as.estimate.caustic_k == bs.estimate.caustic_k)
+        && (!fitted || as.map.caustic_photons == 0 || as.estimate.sought(true) == bs.estimate.sought(true))
         && (as.estimate.leaks.needs_photon_normals() || !bs.estimate.leaks.needs_photon_normals())
         && parts_of(as.output.only) == parts_of(bs.output.only) && parts_at_ends(as) == parts_at_ends(bs)
         && gathers(as) == gathers(bs) && (!gathers(as) || same_irradiance(as.estimate, bs.estimate))
@@ -200,7 +192,7 @@ private:
         // Caustics crowd in few cells, where a photon that has a slot would stand for more than an estimate seeks.
         if (built_.caustics)
             built_.caustics->map = map_of(std::move(built_.caustics->trace.photons), every_part,
-                settings_.estimate.caustic_k, builder == map_builder::route ? map_builder::sort : builder);
+                settings_.estimate.sought(true), builder == map_builder::route ? map_builder::sort : builder);
         auto& made = built_.stats.map;
         made.builder = settings_.map.builder;
         if (made.builder == map_builder::automatic)
@@ -251,7 +243,7 @@ pass_radii<B> radii_of_pass(const built_map<B>& first, const render_settings& se
 {
     pass_radii<B> radii{.first = {&first.map, settings.estimate.k}, .share2 = shrunk_share2(pass)};
     if (first.caustics)
-        radii.first_of_caustics = {&first.caustics->map, settings.estimate.caustic_k};
+        radii.first_of_caustics = {&first.caustics->map, settings.estimate.sought(true)};
     return radii;
 }
 
