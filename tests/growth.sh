@@ -6,6 +6,9 @@
 # writers of these, which say of each kind what it becomes there; and the kernels that tell biases, which use one filter
 # whatever that of the estimate.
 #
+# A setting is named where it is declared, in the table of settings, in the schema and on the page that are made from
+# the table, and where it is used. Scenes of examples/ may set it.
+#
 #   tests/growth.sh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -26,4 +29,21 @@ for words in paraboloid 'scene/box|<box>|const box&|(hit|closest)_box' 'scene/di
     status=1
   fi
 done
+
+# WORDS AT-MOST: the setting's files among the sources and pages.
+expect_setting() {
+  local files count
+  files=$(grep -rlE "$1" include backends examples/photongrid examples/scenes/photongrid-scene.schema.json docs | sort)
+  count=$(grep -c . <<<"$files" || true)
+  echo "$1: $count files"
+  if ((count < 4 || count > $2)); then
+    sed 's/^/  /' <<<"$files"
+    echo "growth: expected 4 to $2 files that name it: have its words made from setting_table.hpp, and its rule in one place"
+    status=1
+  fi
+}
+expect_setting '\bgather_rays\b' 5
+expect_setting '\bcaustic_k\b' 5
+# As a word of statistics and of a message, too; others use it of numbers in general.
+expect_setting 'double percentile =|[.:"`]percentile\b' 8
 exit $status

@@ -73,7 +73,7 @@ faults=(
   "a map of caustics: paths go on past the first diffuse surface|include/photongrid/trace/bounce_photon.glsl|bool is_end = args.to_diffuse != 0u|bool is_end = args.to_diffuse > 1u"
   "a map of caustics: it is not seen|include/photongrid/render/add_estimate.glsl|irradiance.x + m.x|irradiance.x"
   "a map of caustics: errors are those of the other photons|include/photongrid/render/add_error.glsl|standard_error * standard_error + m * m|standard_error * standard_error|on_serial_pictures"
-  "a map of caustics: the others' k|include/photongrid/render/picture_search.hpp|k.k = s.estimate.caustic_k;|k.k = s.estimate.k + 0 * s.estimate.caustic_k;"
+  "a map of caustics: the others' k|include/photongrid/render/picture_search.hpp|s.estimate.sought(has_caustic_map(s))|s.estimate.sought(false)"
   "a map of caustics: caustics in both maps|include/photongrid/trace/photon_request.hpp|r.kinds = kernels::OTHER_PHOTONS;|r.kinds = kernels::OTHER_PHOTONS \| kernels::CAUSTICS;"
   "a map of caustics: tracing takes long|include/photongrid/trace/photon_request.hpp|most_paths_per_other_photon = 8;|most_paths_per_other_photon = 32;"
   "bias: of another filter|include/photongrid/estimate/filter.hpp|filter_kind::silverman, 3, 1 / 4.0f|filter_kind::silverman, 3, 1 / 3.0f"

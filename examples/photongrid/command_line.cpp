@@ -7,14 +7,18 @@
 #include "scene_options.hpp"
 
 #include <photongrid/io/image_file.hpp>
+#include <photongrid/io/setting_texts.hpp>
 #include <photongrid/scene/setting_table.hpp>
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
+#include <sstream>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 namespace photongrid {
 
@@ -71,27 +75,34 @@ namespace {
             "photongrid", "\"" + std::string(first) + "\" is not a command; expected " + expected);
     }
 
-    std::string option_name(const char* setting)
-    {
-        std::string name = std::string("--") + setting;
-        std::replace(name.begin(), name.end(), '_', '-');
-        return name;
-    }
-
     bool is_stop_rule(const char* setting)
     {
         return setting == std::string_view(setting_table::until_error.name)
             || setting == std::string_view(setting_table::seconds.name);
     }
 
-    // The default that --help shows for a setting.
-    const char* without(in_scenes use) { return use == in_scenes::never ? "" : "; default: the scene's"; }
+    /// Wraps descriptions, so that they stay beside the options.
+    class wrapped_help : public CLI::Formatter {
+    public:
+        std::string make_option_desc(const CLI::Option* option) const override
+        {
+            constexpr std::size_t most = 88;
+            std::istringstream words(CLI::Formatter::make_option_desc(option));
+            std::string all, line;
+            for (std::string word; words >> word; line += (line.empty() ? "" : " ") + word)
+                if (!line.empty() && line.size() + 1 + word.size() > most)
+                    all += std::exchange(line, "") + "\n";
+            return all + line;
+        }
+    };
+
+    void add_to_group(CLI::App& to, const std::string& group) { to.option_defaults()->group(group); }
 
     /// An option for a row of the table of settings.
     template <class Row>
     void add_setting(CLI::App& to, const Row& row, render_options& o)
     {
-        const auto option = option_name(row.name);
+        const auto option = option_of_setting(row.name);
         to.add_option_function<std::string>(
               option,
               [option, row, &o](const std::string& text) {
@@ -110,14 +121,33 @@ namespace {
                       if (value > 0 && is_stop_rule(row.name))
                           o.settings.insert(o.settings.begin(), [](render_settings& s) { s.output.passes = 1; });
               },
-              std::string(row.description) + without(row.use))
+              help_of_setting(row.words) + syntax_of(row.values)
+                  + (row.use == in_scenes::never ? " (not in scenes)" : ""))
             ->type_name(type_of(row.values));
+    }
+
+    void add_settings(CLI::App& to, setting_group group, render_options& o)
+    {
+        add_to_group(to, setting_groups[static_cast<std::size_t>(group)] + std::string(" (default: the scene's)"));
+        for_each_setting([&](const auto& row) {
+            if (row.words.group == group)
+                add_setting(to, row, o);
+        });
     }
 
     /// Options for scene, backend and settings, common to `render` and `view`.
     void add_picture(CLI::App& to, render_options& o)
     {
+        to.formatter(std::make_shared<wrapped_help>());
+        add_to_group(to, "Scene");
         add_scene(to, o.scene_path, o.how);
+        add_settings(to, setting_group::picture, o);
+        to.add_flag("--exact", o.exact,
+            "a picture whose error goes to 0 as passes are added: --radii shrinking --indirect paths, --k at most 50, "
+            "no routed map, and passes without end unless --passes, --until-error or --seconds ends it");
+        for (const auto group : {setting_group::light, setting_group::photons, setting_group::estimate})
+            add_settings(to, group, o);
+        add_to_group(to, "Backend");
         to.add_option("--backend", o.backend,
               "backend; auto: a hardware Vulkan device, else cpu, or serial in a build without cpu")
             ->check(CLI::IsMember({"auto", "serial", "cpu", "gl", "gl-osmesa", "vulkan"}).description(""))
@@ -125,25 +155,26 @@ namespace {
         add_whole(to, "--threads", o.threads, "threads of the cpu backend; default: all; does not affect the picture");
         to.add_option("--device", o.device, "Vulkan device (with --backend vulkan); see `photongrid devices`")
             ->type_name("NAME|INDEX");
-        for_each_setting([&](const auto& row) { add_setting(to, row, o); });
-        to.add_flag("--as-paper", o.as_paper,
-            "the paper's method: --search at_least_k --filter constant --bias paper --leaks none --edge-correction "
-            "none --interpolation 0 --surplus power --passes 1 --until-error 0 --spp 1 with the shadow rays of all eye "
-            "rays, and what the scene has under \"as_paper\"; any option that is given as well takes precedence");
-        to.add_flag("--exact", o.exact,
-              "a picture whose error goes to 0 as passes are added: --radii shrinking --indirect paths, --k at most "
-              "50, no routed map, and passes without end unless --passes, --until-error or --seconds ends it")
-            ->excludes("--as-paper");
         to.add_option("--shader-cache", o.shader_cache,
               "folder in which compiled Vulkan kernels are kept for later runs; default: photongrid in "
               "$XDG_CACHE_HOME or ~/.cache")
             ->type_name("DIR|none");
-        to.add_flag("--quiet", o.quiet, "print neither progress nor notes");
+    }
+    /// Those that most pictures do without come last.
+    void add_expert(CLI::App& to, render_options& o)
+    {
+        add_settings(to, setting_group::expert, o);
+        to.add_flag("--as-paper", o.as_paper,
+              "the paper's method: --search at_least_k --filter constant --bias paper --leaks none --edge-correction "
+              "none --interpolation 0 --surplus power --passes 1 --until-error 0 --spp 1 with the shadow rays of all "
+              "eye rays, and what the scene has under \"as_paper\"; any option that is given as well takes precedence")
+            ->excludes("--exact");
     }
 
     void add_render(CLI::App& to, render_options& o)
     {
         add_picture(to, o);
+        add_to_group(to, "Output");
         to.add_option("-o,--output", o.outputs, "picture; may be given several times; default: the scene's name, .png")
             ->allow_extra_args(false)
             ->type_name("OUT.png|.exr|.pfm");
@@ -153,6 +184,13 @@ namespace {
         to.add_option("--stats", o.stats, "statistics, as JSON")->type_name("OUT.json");
         to.add_flag("--time-passes", o.time_passes,
             "measure each pass with the device's clock, for --stats; needs --backend vulkan, gl or gl-osmesa");
+        to.add_option("--resume", o.resume,
+              "file for the unfinished picture if the render is interrupted; if it exists, the render continues from "
+              "it, and the result has the same bytes as without the interruption; removed when the picture is done, "
+              "unless --until-error or --seconds ended it: a smaller error or a longer time then goes on from it")
+            ->type_name("FILE");
+        to.add_flag("--quiet", o.quiet, "print neither progress nor notes");
+        add_to_group(to, "Pictures of the running estimate");
         to.add_option("--progressive", o.progressive,
               "folder for numbered pictures of the running estimate, and a table with the time of each, its relMSE to "
               "the last one and its structural similarity (SSIM) to it")
@@ -177,16 +215,13 @@ namespace {
               "picture against which the table of --progressive also gives the error, such as one made by `photongrid "
               "reference`")
             ->type_name("REF.exr|.pfm");
-        to.add_option("--resume", o.resume,
-              "file for the unfinished picture if the render is interrupted; if it exists, the render continues from "
-              "it, and the result has the same bytes as without the interruption; removed when the picture is done, "
-              "unless --until-error or --seconds ended it: a smaller error or a longer time then goes on from it")
-            ->type_name("FILE");
+        add_expert(to, o);
     }
 
     void add_view(CLI::App& to, view_options& o)
     {
         add_picture(to, o.picture);
+        add_to_group(to, "Window");
         to.add_option("--reference", o.picture.reference,
               "picture to measure the error against, such as one made by `photongrid reference`")
             ->type_name("REF.exr|.pfm");
@@ -194,6 +229,8 @@ namespace {
         to.add_option("--journal", o.journal,
               "log of what happens in the window: one line of JSON per request, picture and error")
             ->type_name("FILE");
+        to.add_flag("--quiet", o.picture.quiet, "print neither progress nor notes");
+        add_expert(to, o.picture);
     }
 
     void add_reference(CLI::App& to, reference_options& o)

@@ -88,6 +88,17 @@ std::string type_of(const setting_table::one_of<Value, N>& words)
     return all;
 }
 
+/// What --help adds about how a value is written.
+template <class Values>
+std::string syntax_of(const Values&)
+{
+    return "";
+}
+inline std::string syntax_of(const setting_table::policies&)
+{
+    return "; none, or comma-separated: side, min_cosine=C (without C 0.5), flattening=F (without F 4)";
+}
+
 /// --exposure of commands that take no other settings.
 template <class Exposure>
 void add_exposure(CLI::App& to, Exposure& target, const std::string& description)

@@ -77,9 +77,7 @@ std::string picture_identity(const scene& s, const render_settings& settings, co
     // What ends a picture does not change its passes. Whether it may have several does: of one, an eye ray may go
     // through the pixel's middle.
     auto of_passes = settings;
-    of_passes.output.passes = settings.output.passes_at_most();
-    of_passes.output.until_error = of_passes.output.seconds = 0;
-    of_passes.output.percentile = output_settings{}.percentile;
+    of_passes.output = settings.output.without_stop_rule();
     of_passes.output.tell_bias = output_settings{}.tell_bias; // what follows from it is compared below
     const json all = {{"version", PHOTONGRID_VERSION}, {"backend", caps.backend}, {"device", caps.device},
         {"scene", json::parse(scene_text(s, {}))}, {"set of settings", json::parse(settings_text(of_passes))},

@@ -3,6 +3,8 @@
 
 #include "scene_texts.hpp"
 
+#include <photongrid/io/setting_texts.hpp>
+
 namespace photongrid {
 namespace {
 
@@ -115,24 +117,61 @@ namespace {
         EXPECT_EQ(kinds, names);
     }
 
-    // A setting that is one of several words has the same words in the schema.
-    TEST(scene_file, the_schema_has_the_choices)
+    // The words and values of settings in the schema and on the page are those of the table.
+    TEST(setting_table, schema_and_page_are_made_from_it)
     {
-        const auto schema = nlohmann::json::parse(std::ifstream(scenes + "/photongrid-scene.schema.json"));
-        const auto& settings = schema["$defs"]["render"]["properties"];
-        int choices = 0;
+        const auto text_of = [](const std::string& path) {
+            std::ifstream in(path, std::ios::binary);
+            return std::string(std::istreambuf_iterator<char>(in), {});
+        };
+        const auto expect_made = [&](const std::string& path, std::string (*make)(const std::string&)) {
+            const auto text = text_of(path);
+            EXPECT_TRUE(make(text) == text) << path << " differs from setting_table.hpp: run photongrid_setting_texts";
+        };
+        expect_made(scenes + "/photongrid-scene.schema.json", schema_with_settings);
+        expect_made(PHOTONGRID_SETTINGS_PAGE, page_with_settings);
+        EXPECT_THROW(page_with_settings("no marks"), std::runtime_error);
+    }
+
+    // Each name in backticks is a setting's, each value between asterisks one of its own or another's, and a section of
+    // the page is there.
+    TEST(setting_table, words_name_what_there_is)
+    {
+        std::set<std::string> names, values{"side", "min_cosine", "flattening"}, anchors{""};
         for_each_setting([&](const auto& row) {
+            names.insert(row.name);
             if constexpr (requires { row.values.find(""); })
-                if (row.use != in_scenes::never) {
-                    SCOPED_TRACE(row.name);
-                    std::vector<std::string> words;
-                    for (const auto& n : row.values.values)
-                        words.push_back(n.name);
-                    EXPECT_EQ(settings.at(row.name).at("enum").template get<std::vector<std::string>>(), words);
-                    ++choices;
-                }
+                for (const auto& n : row.values.values)
+                    values.insert(n.name);
         });
-        EXPECT_GE(choices, 5);
+        std::ifstream page(PHOTONGRID_SETTINGS_PAGE);
+        for (std::string line; std::getline(page, line);)
+            if (line.starts_with("## ")) {
+                auto anchor = line.substr(3);
+                for (auto& c : anchor)
+                    c = c == ' ' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+                anchors.insert(anchor);
+            }
+        for_each_setting([&](const auto& row) {
+            SCOPED_TRACE(row.name);
+            const auto words = std::string(row.words.what) + " " + row.words.more;
+            for (const auto& [mark, known] : {std::pair('`', &names), std::pair('*', &values)}) {
+                std::size_t at = 0;
+                for (auto open = words.find(mark); open != std::string::npos; open = words.find(mark, at)) {
+                    const auto close = words.find(mark, open + 1);
+                    ASSERT_NE(close, std::string::npos);
+                    EXPECT_EQ(known->count(words.substr(open + 1, close - open - 1)), 1u) << words.substr(open);
+                    at = close + 1;
+                }
+            }
+            EXPECT_EQ(anchors.count(row.words.section), 1u) << row.words.section;
+            EXPECT_EQ(help_of_setting(row.words).find_first_of("`*"), std::string::npos);
+            EXPECT_EQ(tooltip_of_setting(row.words).back(), '.');
+        });
+        EXPECT_EQ(
+            help_of_setting(setting_table::max_radius.words), "largest search radius; with fixed_radius, the radius");
+        EXPECT_EQ(help_of_setting(setting_table::caustic_photons.words),
+            "caustic photons stored in a map of their own; 0: they are among --photons");
     }
 
     // A row that for_each_setting leaves out would be no key, no option and no check.

@@ -22,6 +22,10 @@ namespace {
                 "--aov", "--as-paper", "--exact", "--stats", "--shader-cache", "--time-passes", "--progressive",
                 "--every", "--strip", "--crop", "--reference", "--resume", "--quiet"})
             EXPECT_NE(render.out.find(option), std::string::npos) << option;
+        for (const auto* group : {"Scene:", "Picture (default: the scene's):", "Light (", "Photons (", "Estimate (",
+                 "Backend:", "Output:", "The paper's method and fine tuning ("})
+            EXPECT_NE(render.out.find("\n" + std::string(group)), std::string::npos) << group;
+        EXPECT_EQ(render.out.find("; default: the scene's\n"), std::string::npos) << "the groups say it";
         EXPECT_EQ(render.out.find("photongrid check my_scene.json"), std::string::npos) << "another command's example";
         EXPECT_NE(run({"check", "--help"}).out.find("photongrid check my_scene.json"), std::string::npos);
         for (const auto* command : {"render", "view", "reference"}) {

@@ -21,7 +21,7 @@ TEST_F(window, controls_change_the_setting_they_name)
     ASSERT_NO_FATAL_FAILURE(open_window({"--size", "64x48", "--photons", "500"}));
     // Label, where to click (a part of the slider), the setting in files.
     const std::tuple<const char*, double, const char*> sliders[] = {{"photons", 0.3, "photons"}, {"k", 0.3, "k"},
-        {"radius, m", 0.6, "max_radius"}, {"grid", 0.1, "grid"}, {"eye rays", 0.3, "spp"}, {"passes", 0.2, "passes"},
+        {"max radius", 0.6, "max_radius"}, {"grid", 0.1, "grid"}, {"spp", 0.3, "spp"}, {"passes", 0.2, "passes"},
         {"light samples", 0.5, "light_samples"}, {"side", 0.05, "leaks"}};
     for (const auto& [label, part, setting] : sliders) {
         const auto before = requests();
@@ -29,7 +29,7 @@ TEST_F(window, controls_change_the_setting_they_name)
         EXPECT_TRUE(is_drawn(before)) << label;
     }
     const std::pair<const char*, const char*> words[] = {{"search", "fixed_radius"}, {"filter", "cone"},
-        {"bias", "paper"}, {"map", "route"}, {"light", "indirect"}, {"backend", "cpu"}};
+        {"bias", "paper"}, {"map", "route"}, {"only", "indirect"}, {"backend", "cpu"}};
     for (const auto& [label, word] : words) {
         const auto before = requests();
         choose(label, word);
@@ -43,7 +43,7 @@ TEST_F(window, controls_change_the_setting_they_name)
     choose("surplus", "power");
     EXPECT_TRUE(is_drawn(before));
     before = requests();
-    use("exposure, EV", 0.6);
+    use("exposure", 0.6);
     EXPECT_EQ(requests(), before) << "the exposure changes the screen alone";
     use("save scene");
     const auto changed = saved_scene(folder)["render"], original = json::parse(scene)["render"];

@@ -2,12 +2,22 @@
 
 #include "display.hpp"
 
-#include <photongrid/scene/setting_table.hpp>
+#include <photongrid/io/setting_texts.hpp>
 
 #include <algorithm>
 #include <iterator>
+#include <string_view>
+#include <utility>
 
 namespace photongrid::viewer {
+
+namespace {
+    /// What key() does, for tooltips.
+    constexpr std::pair<std::string_view, const char*> keys_of_settings[] = {{setting_table::k.name, "K, k"},
+        {setting_table::photons.name, "N, n"}, {setting_table::max_radius.name, "R, r"},
+        {setting_table::exposure.name, "E, e"}, {setting_table::map.name, "m"}, {setting_table::search.name, "s"},
+        {setting_table::filter.name, "w"}, {setting_table::grid.name, "g"}};
+} // namespace
 
 void settings_panel::begin_anew()
 {
@@ -29,46 +39,125 @@ bool settings_panel::begun(const char* name)
     return true;
 }
 
-// A control for a row of the table of settings. Its label may be more than the setting's name.
+// A control for a row of the table of settings, by the kind of its values.
 
 /// A word for each value.
-template <class Row>
-void settings_panel::choice(const Row& row, const char* label, const char* help)
+template <class Row, class Value, std::size_t N>
+void settings_panel::control(const Row& row, const setting_table::one_of<Value, N>& choice, const char* label)
 {
     const auto value = row.of(document_.now().settings);
-    if (ImGui::BeginCombo(label, row.values.word_for(value))) {
-        for (const auto& n : row.values.values) {
+    if (ImGui::BeginCombo(label, choice.word_for(value))) {
+        for (const auto& n : choice.values) {
             if (ImGui::Selectable(n.name, n.value == value))
                 change(label, [&](render_settings& s) { row.of(s) = n.value; });
             placed(std::string(label) + ": " + n.name);
         }
         ImGui::EndCombo();
     }
-    tip(label, help);
+    explain(row, label);
 }
 
-/// A whole number, by a slider whose steps are even in its logarithm.
+/// By a slider whose steps are even in the number's logarithm.
 template <class Row>
-void settings_panel::number(const Row& row, const char* label, int low, int high, const char* help)
+void settings_panel::control(const Row& row, const setting_table::whole_range&, const char* label)
 {
+    const auto& slider = row.words.slider;
+    if (slider.high == 0)
+        return;
     int value = static_cast<int>(row.of(document_.now().settings));
-    const bool edited
-        = ImGui::SliderInt(label, &value, low, high, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    const bool edited = ImGui::SliderInt(label, &value, static_cast<int>(slider.low), static_cast<int>(slider.high),
+        "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     if (begun(label) && edited)
         row.of(document_.edit().settings) = static_cast<std::uint32_t>(value);
-    tip(label, help);
+    explain(row, label);
 }
 
 template <class Row>
-void settings_panel::measure(
-    const Row& row, const char* label, float low, float high, const char* format, bool logarithmic, const char* help)
+void settings_panel::control(const Row& row, const real_range&, const char* label)
 {
+    slide(row, label, 0);
+}
+
+template <class Row>
+void settings_panel::control(const Row& row, const setting_table::any_length&, const char* label)
+{
+    slide(row, label, ImGuiSliderFlags_Logarithmic);
+}
+
+template <class Row>
+void settings_panel::slide(const Row& row, const char* label, int flags)
+{
+    const auto& slider = row.words.slider;
     float value = static_cast<float>(row.of(document_.now().settings));
-    const bool edited = ImGui::SliderFloat(label, &value, low, high, format,
-        (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp);
+    const bool edited = ImGui::SliderFloat(label, &value, static_cast<float>(slider.low),
+        static_cast<float>(slider.high), slider.format, flags | ImGuiSliderFlags_AlwaysClamp);
     if (begun(label) && edited)
         row.of(document_.edit().settings) = static_cast<double>(value);
-    tip(label, help);
+    explain(row, label);
+}
+
+/// The exposure, which the picture fits if it is not given.
+template <class Row>
+void settings_panel::control(const Row& row, const setting_table::real_or_auto&, const char* label)
+{
+    const auto fitted_label = std::string("fitted ") + label;
+    bool fitted = !row.of(document_.now().settings);
+    if (ImGui::Checkbox(fitted_label.c_str(), &fitted))
+        change(label, [&](render_settings& s) { row.of(s) = fitted ? std::nullopt : std::optional(shown_exposure_); });
+    explain(row, fitted_label.c_str());
+    const auto& slider = row.words.slider;
+    auto value = static_cast<float>(shown_exposure_);
+    const bool edited = ImGui::SliderFloat(label, &value, static_cast<float>(slider.low),
+        static_cast<float>(slider.high), slider.format, ImGuiSliderFlags_AlwaysClamp);
+    if (begun(label) && edited)
+        row.of(document_.edit().settings) = static_cast<double>(value);
+    explain(row, label);
+}
+
+template <class Row>
+void settings_panel::control(const Row& row, const setting_table::cells&, const char* label)
+{
+    const auto fitted_label = std::string("fitted ") + label;
+    auto cells = glm::ivec3(row.of(document_.now().settings));
+    bool fitted = cells == glm::ivec3(0);
+    if (ImGui::Checkbox(fitted_label.c_str(), &fitted))
+        change(label, [&](render_settings& s) { s.map.use_grid(fitted ? glm::uvec3(0) : grid_); });
+    explain(row, fitted_label.c_str());
+    if (fitted)
+        return;
+    const auto& slider = row.words.slider;
+    const bool edited = ImGui::SliderInt3(label, &cells.x, static_cast<int>(slider.low), static_cast<int>(slider.high),
+        "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    if (begun(label) && edited)
+        row.of(document_.edit().settings) = glm::uvec3(cells);
+    explain(row, label);
+}
+
+/// The policy without a number.
+template <class Row>
+void settings_panel::control(const Row& row, const setting_table::policies&, const char*)
+{
+    bool side = row.of(document_.now().settings).side;
+    if (ImGui::Checkbox("side", &side))
+        change("side", [&](render_settings& s) { row.of(s).side = side; });
+    explain(row, "side");
+}
+
+/// The window has its own size.
+template <class Row>
+void settings_panel::control(const Row&, const setting_table::pixels&, const char*)
+{
+}
+
+/// The row's words, and the keys that change it, where the mouse rests on its control.
+template <class Row>
+void settings_panel::explain(const Row& row, const char* label)
+{
+    auto words = tooltip_of_setting(row.words);
+    for (const auto& [setting, keys] : keys_of_settings)
+        if (setting == row.name)
+            words += std::string(" Keys: ") + keys + ".";
+    tip(label, words.c_str());
 }
 
 template <class Change>
@@ -80,91 +169,16 @@ void settings_panel::change(const std::string& name, Change apply)
 
 void settings_panel::draw(double shown_exposure)
 {
+    shown_exposure_ = shown_exposure;
     draw_backend();
-    const auto& s = document_.now().settings;
-    number(setting_table::photons, "photons", 256, 4000000,
-        "Photons stored (N, n). Speed: tracing and sorting take time in proportion. Error: noise falls with the square "
-        "root of their number.");
-    number(setting_table::k, "k", 1, 4000,
-        "Photons per estimate (K, k). Speed: more take longer. Error: with more, estimates are smoother, but shadows "
-        "and caustics are more blurred.");
-    number(setting_table::caustic_photons, "caustic photons", 0, 1 << 20,
-        "Caustic photons stored in a map of their own; 0: they are among the photons. Error: sharper caustics.");
-    if (s.map.caustic_photons > 0)
-        number(setting_table::caustic_k, "caustic k", 1, 2000,
-            "Photons per estimate in that map. Error: with more photons caustics are smoother and more blurred.");
-    choice(setting_table::emission, "emission",
-        "Photons leave the lights in proportion to power alone, or more often where pilot paths stored photons. Speed: "
-        "guided paths are fewer where most would be in vain.");
-    measure(setting_table::max_radius, "radius, m", 1e-3f, 10.0f, "%.4f", true,
-        "Largest search radius (R, r). Speed: searches in dark regions go this far. Error: where fewer than k photons "
-        "lie within it, estimates are noisier instead of more blurred.");
-    choice(setting_table::search, "search",
-        "Which photons count (s): the k nearest; at least k, as in the paper, which uses more photons and is a "
-        "little too bright; or all within the radius.");
-    choice(setting_table::filter, "filter",
-        "Weight of a photon by its distance (w). Speed: the same. Error: constant is the least noisy, but shows discs; "
-        "silverman is the smoothest.");
-    choice(setting_table::bias, "bias",
-        "The photon that sets the radius: paper counts it, and is too bright by k / (k - 1); unbiased leaves it out.");
-    draw_grid();
-    choice(setting_table::map, "map",
-        "How the photon map is built (m). sort and blocks are exact; blocks are fast where photons lie in clusters; "
-        "auto takes the one that suits the photons; route takes fewer passes, but is approximate where cells "
-        "overflow.");
-    if (s.map.builder == map_builder::route) {
-        number(setting_table::slots, "slots", 1, 16,
-            "Cells hold at most slots x slots photons. With more, fewer photons are lost and more memory is used.");
-        choice(setting_table::surplus, "surplus",
-            "Photons for which a cell has no slot: those that it keeps stand for them (photons), or only take their "
-            "power (the paper), which blurs caustics.");
+    for (std::size_t group = 0; group < std::size(setting_groups); ++group) {
+        if (setting_group(group) == setting_group::expert)
+            ImGui::Separator();
+        for_each_setting([&](const auto& row) {
+            if (row.words.group == setting_group(group) && row.words.matters(document_.now().settings))
+                control(row, row.values, label_of_setting(row.name).c_str());
+        });
     }
-    ImGui::Separator();
-    number(setting_table::spp, "eye rays", 1, 64,
-        "Eye rays per pixel. Speed: time in proportion. Error: smoother edges, less noise from glass and lamps.");
-    choice(setting_table::pixel_filter, "pixel filter",
-        "Weight of an eye ray by its place: even over its pixel, or a tent of two pixels. Speed: the same. Error: a "
-        "tent "
-        "is smoother at edges, and a little blurred.");
-    number(setting_table::passes, "passes", 1, 1024,
-        "The picture is the mean of this many passes, each with its own photons and rays. Speed: time in proportion. "
-        "Error: noise and blotches fade with every pass.");
-    measure(setting_table::until_error, "until error", 0.0f, 0.2f, "%.3f", false,
-        "Passes are added until the noise of most pixels is at most this part of their light; 0: off. passes is then "
-        "the "
-        "limit, and 1 is none.");
-    measure(setting_table::seconds, "seconds", 0.0f, 600.0f, "%.0f", false,
-        "Passes are added for this time; 0: off. passes is then the limit, and 1 is none.");
-    choice(setting_table::radii, "radii",
-        "From pass to pass: each pass finds its own (per_pass), or they shrink (shrinking). Speed: shrinking radii "
-        "take "
-        "a search more. Error: blur fades with every pass, too.");
-    measure(setting_table::interpolation, "interpolation", 0.0f, 0.5f, "%.2f", false,
-        "Estimates are interpolated between those that are at most so many of their radii away; 0: none are. Speed: "
-        "fewer searches. Error: a little more blur.");
-    choice(setting_table::tell_bias, "tell bias",
-        "Whether until error counts the blur of each pixel, and not its noise alone; auto: if radii shrink. Speed: "
-        "searches "
-        "take a little longer. Error: none.");
-    number(setting_table::light_samples, "light samples", 1, 256,
-        "Shadow rays per lamp and eye ray. Speed: time in proportion, for direct light. Error: smoother penumbras.");
-    choice(setting_table::indirect, "indirect light",
-        "From the photons where eye rays end (map), or by a final gather of the light of all other surfaces, whose "
-        "rays "
-        "look at photons (gather) or go on as paths (paths). Speed: a gather takes longer, paths longer still. Error: "
-        "noise instead of blotches; of paths the mean is exact.");
-    if (s.estimate.indirect != indirect_kind::map)
-        number(setting_table::gather_rays, "gather rays", 1, 1024,
-            "Rays of the final gather per eye ray. Speed: time in proportion. Error: less noise.");
-    choice(setting_table::only, "light",
-        "Which part of the light is shown. Caustics or indirect light alone need a map of their own.");
-    bool side = s.estimate.leaks.side;
-    if (ImGui::Checkbox("side", &side))
-        change("side", [&](render_settings& r) { r.estimate.leaks.side = side; });
-    tip("side",
-        "Rejects photons that arrive from behind a surface. Speed: almost the same. Error: no light leaks through "
-        "walls.");
-    draw_exposure(shown_exposure);
 }
 
 void settings_panel::draw_backend()
@@ -183,39 +197,6 @@ void settings_panel::draw_backend()
     tip("backend",
         "What draws the picture (b). The same photons give the same picture on each; speed differs. cpu is the fastest "
         "without a GPU.");
-}
-
-void settings_panel::draw_exposure(double shown)
-{
-    bool fitted = !document_.now().settings.output.exposure;
-    if (ImGui::Checkbox("fitted exposure", &fitted))
-        change(
-            "exposure", [&](render_settings& r) { r.output.exposure = fitted ? std::nullopt : std::optional(shown); });
-    tip("fitted exposure",
-        "Fits the exposure to the picture: the geometric mean of the luminance becomes middle grey.");
-    auto value = static_cast<float>(shown);
-    const bool edited = ImGui::SliderFloat("exposure, EV", &value, -10, 10, "%+.1f", ImGuiSliderFlags_AlwaysClamp);
-    if (begun("exposure, EV") && edited)
-        document_.edit().settings.output.exposure = static_cast<double>(value);
-    tip("exposure, EV", "Brightness of the screen and of saved PNGs (E, e). Nothing is drawn again.");
-}
-
-void settings_panel::draw_grid()
-{
-    auto cells = glm::ivec3(document_.now().settings.map.grid);
-    bool fitted = cells == glm::ivec3(0);
-    if (ImGui::Checkbox("fitted grid", &fitted))
-        change("grid", [&](render_settings& r) { r.map.use_grid(fitted ? glm::uvec3(0) : grid_); });
-    tip("fitted grid",
-        "Fits the cells of the photon map to the photons and k (g). Speed: searches take longer in a grid that is too "
-        "coarse or too fine. Error: none for the k nearest; at_least_k depends on the cells.");
-    if (!fitted) {
-        const bool edited = ImGui::SliderInt3(
-            "grid", &cells.x, 1, 256, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-        if (begun("grid") && edited)
-            document_.edit().settings.map.grid = glm::uvec3(cells);
-        tip("grid", "Cells along x, y and z.");
-    }
 }
 
 void settings_panel::key(const key_press& p, double shown_exposure)

@@ -4,6 +4,8 @@
 #include "document.hpp"
 #include "window_input.hpp"
 
+#include <photongrid/scene/setting_table.hpp>
+
 #include <optional>
 
 namespace photongrid::viewer {
@@ -22,21 +24,33 @@ public:
     void key(const key_press& p, double shown_exposure);
 
 private:
+    template <class Row, class Value, std::size_t N>
+    void control(const Row& row, const setting_table::one_of<Value, N>& choice, const char* label);
     template <class Row>
-    void choice(const Row& row, const char* label, const char* help);
+    void control(const Row& row, const setting_table::whole_range&, const char* label);
     template <class Row>
-    void number(const Row& row, const char* label, int low, int high, const char* help);
+    void control(const Row& row, const real_range&, const char* label);
     template <class Row>
-    void measure(const Row& row, const char* label, float low, float high, const char* format, bool logarithmic,
-        const char* help);
+    void control(const Row& row, const setting_table::any_length&, const char* label);
+    template <class Row>
+    void control(const Row& row, const setting_table::real_or_auto&, const char* label);
+    template <class Row>
+    void control(const Row& row, const setting_table::cells&, const char* label);
+    template <class Row>
+    void control(const Row& row, const setting_table::policies&, const char* label);
+    template <class Row>
+    void control(const Row& row, const setting_table::pixels&, const char* label);
+    template <class Row>
+    void slide(const Row& row, const char* label, int flags);
+    template <class Row>
+    void explain(const Row& row, const char* label);
     template <class Change>
     void change(const std::string& name, Change apply);
     bool begun(const char* name);
     void draw_backend();
-    void draw_grid();
-    void draw_exposure(double shown);
 
     document& document_;
+    double shown_exposure_ = 0;   ///< EV
     glm::uvec3 grid_{32};         ///< that is not fitted
     std::optional<version> held_; ///< before the item that is held was edited
 };

@@ -16,7 +16,7 @@
 
 namespace photongrid {
 
-/// Adds the irradiance that path number `number` of settings.estimate.gather_rays brings to the points where eye rays
+/// Adds the irradiance that path number `number` of rays_of_gather(settings) brings to the points where eye rays
 /// ended, for the pixels of `pixels`, to `light`. `eye_ray`: number of the eye ray; `caustics`: map of caustic photons,
 /// whose estimates have the radii of `radii`.
 ///

@@ -26,8 +26,8 @@ struct map_key {
         auto with = settings;
         with.map.photons = whole.settings.map.photons;
         with.map.caustic_photons = whole.settings.map.caustic_photons;
-        with.estimate.k = whole.settings.estimate.k;
-        with.estimate.caustic_k = whole.settings.estimate.caustic_k;
+        for (const bool of_caustics : {false, true})
+            with.estimate.sought(of_caustics) = whole.settings.estimate.sought(of_caustics);
         return world == whole.world && settings.map.photons < whole.settings.map.photons
             && same_map(with, whole.settings);
     }

@@ -45,7 +45,7 @@ inline render_settings settings_of_radius_map(const render_settings& s, const ca
         k = sought;
     };
     make_fewer(with.map.photons, with.estimate.k);
-    make_fewer(with.map.caustic_photons, with.estimate.caustic_k);
+    make_fewer(with.map.caustic_photons, with.estimate.sought(true));
     if (device.prefers_blocks && s.estimate.search == search_kind::exact_k && s.map.builder != map_builder::route)
         with.map.builder = map_builder::blocks;
     if (gathers(s) && s.map.caustic_photons > 0)

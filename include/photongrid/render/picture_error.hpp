@@ -80,13 +80,13 @@ namespace detail {
     };
 } // namespace detail
 
-/// The error of the picture of `sum`: the share `percentile` of its pixels is expected to differ by no more from the
+/// The error of the picture of `sum`: `share` of its pixels is expected to differ by no more from the
 /// picture that more passes converge to, as a part of their radiance (mean of the channels) plus 1 % of the picture's.
-/// Pixels in which all passes agree do not count. Of a percentile of 1, as of any that asks for more than half a pixel
+/// Pixels in which all passes agree do not count. Of a share of 1, as of any that asks for more than half a pixel
 /// less than all, the largest difference is as likely above as below. Infinite for fewer than two passes, 0 if all
 /// passes agree. A pixel is expected to differ by a normal number: its deviation is the pixel's standard error, its
 /// mean the bias that all passes share, 0 if the film does not tell biases.
-inline double picture_error(const film& sum, double percentile)
+inline double picture_error(const film& sum, double share)
 {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     if (sum.passes() < 2)
@@ -109,7 +109,7 @@ inline double picture_error(const film& sum, double percentile)
         if (detail::is_noisy(mean, standard_error))
             errors.add({std::abs(sum.bias_of(i)) / radiance_of_pixel, standard_error / radiance_of_pixel});
     });
-    const double allowed = std::max((1 - percentile) * noisy, 0.5);
+    const double allowed = std::max((1 - share) * noisy, 0.5);
     double low = -44, high = 44; // powers of 2
     if (errors.expected_beyond(std::exp2(high)) > allowed)
         return infinity;

@@ -37,8 +37,7 @@ inline knn_settings search_for(const render_settings& s)
 inline knn_settings search_for_caustics(const render_settings& s)
 {
     knn_settings k = search_for(s.estimate);
-    if (has_caustic_map(s))
-        k.k = s.estimate.caustic_k;
+    k.k = s.estimate.sought(has_caustic_map(s));
     k.errors = s.output.aov;
     k.biases = tells_bias(s);
     return k;

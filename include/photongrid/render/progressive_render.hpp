@@ -273,8 +273,8 @@ private:
     /// For a map with so many times fewer photons.
     static void divide_k(estimate_settings& e, uint divisor)
     {
-        e.k = std::max(1u, e.k / divisor);
-        e.caustic_k = std::max(1u, e.caustic_k / divisor);
+        for (const bool of_caustics : {false, true})
+            e.sought(of_caustics) = std::max(1u, e.sought(of_caustics) / divisor);
     }
     std::size_t picture_size() const { return std::size_t{settings_.output.width} * settings_.output.height; }
     bool has_bands() const { return bands_of(settings_.output).size() > 1; }

@@ -46,7 +46,7 @@ enum class ended_by { nothing, passes, error, seconds };
 /// The end of a picture of passes.
 struct end_stats {
     std::uint32_t passes = 0; ///< in the picture
-    /// Of the picture, by picture_error() at output_settings::percentile; infinity: not known, as of a single pass.
+    /// Of the picture, by picture_error(); infinity: not known, as of a single pass.
     double error = std::numeric_limits<double>::infinity();
     ended_by by = ended_by::nothing;
 };

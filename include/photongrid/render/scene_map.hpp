@@ -54,14 +54,6 @@ inline uint parts_at_ends(const render_settings& s)
 {
     return has_gather_rays(s) ? caustic_part : parts_of(s.output.only);
 }
-/// Whether the irradiance at photons is the same with settings `a` and `b` of the estimate, for a final gather.
-inline bool same_irradiance(estimate_settings a, const estimate_settings& b)
-{
-    a.gather_rays = b.gather_rays;
-    a.caustic_k = b.caustic_k;
-    a.radii = b.radii;
-    return a == b;
-}
 
 /// Whether the photon map of a world with settings `as` is that with `bs`: the same photons in the same map. The
 /// settings of other stages do not matter.
@@ -70,7 +62,7 @@ inline bool same_map(const render_settings& as, const render_settings& bs)
     const bool fitted = !as.map.has_given_grid() && as.map.builder != map_builder::blocks;
     return as.seed == bs.seed && as.map.in_use() == bs.map.in_use()
         && (!fitted || as.estimate.k == bs.estimate.k) // a fitted map depends on k
-        && (!fitted || as.map.caustic_photons == 0 || as.estimate.caustic_k == bs.estimate.caustic_k)
+        && (!fitted || as.map.caustic_photons == 0 || as.estimate.sought(true) == bs.estimate.sought(true))
         && (as.estimate.leaks.needs_photon_normals() || !bs.estimate.leaks.needs_photon_normals())
         && parts_of(as.output.only) == parts_of(bs.output.only) && parts_at_ends(as) == parts_at_ends(bs)
         && gathers(as) == gathers(bs) && (!gathers(as) || same_irradiance(as.estimate, bs.estimate))
@@ -196,12 +188,10 @@ private:
         const uint parts = built_.splits_caustics ? every_part : parts_at_ends(settings_);
         const auto builder = settings_.map.builder;
         for (auto& light : built_.lights) {
-            auto p = std::move(light.trace.photons);
+            const bool own = light.request.are_caustics_of_others;
             // Caustics crowd in few cells, where a photon that has a slot would stand for more than an estimate seeks.
-            light.map = light.request.are_caustics_of_others
-                ? map_of(std::move(p), every_part, settings_.estimate.caustic_k,
-                    builder == map_builder::route ? map_builder::sort : builder)
-                : map_of(std::move(p), parts, settings_.estimate.k, builder);
+            light.map = map_of(std::move(light.trace.photons), own ? every_part : parts, settings_.estimate.sought(own),
+                own && builder == map_builder::route ? map_builder::sort : builder);
         }
         const auto& map = built_.map();
         auto& made = built_.stats.map;
@@ -253,8 +243,7 @@ pass_radii<B> radii_of_pass(const built_map<B>& first, const render_settings& se
 {
     pass_radii<B> radii{.share2 = shrunk_share2(pass)};
     for (const auto& light : first.lights)
-        radii.firsts.push_back(
-            {&light.map, light.request.are_caustics_of_others ? settings.estimate.caustic_k : settings.estimate.k});
+        radii.firsts.push_back({&light.map, settings.estimate.sought(light.request.are_caustics_of_others)});
     return radii;
 }
 

@@ -137,10 +137,10 @@ public:
     {
         const double pixels = static_cast<double>(canvas_.raster.size());
         // As if each ray of a final gather and the search at the end of the eye ray took the same time.
-        const double gather_rays = has_gather_rays(settings_) ? settings_.estimate.gather_rays : 0;
+        const double to_gather = rays_of_gather(settings_);
         const double finished
-            = search_ ? gather_rays + 1.0 - static_cast<double>(unfinished()) / pixels : static_cast<double>(gathered_);
-        return (canvas_.rays + finished / (gather_rays + 1)) / rays();
+            = search_ ? to_gather + 1.0 - static_cast<double>(unfinished()) / pixels : static_cast<double>(gathered_);
+        return (canvas_.rays + finished / (to_gather + 1)) / rays();
     }
     /// The number of pixels whose estimates for the current eye ray are not finished.
     std::uint64_t unfinished() const { return search_ ? search_->unfinished() : 0; }
@@ -342,7 +342,7 @@ bool view_pass<B>::gather(uint ray)
     });
     if (all_pixels)
         ++gathered_;
-    return gathered_ == settings_.estimate.gather_rays;
+    return gathered_ == rays_of_gather(settings_);
 }
 
 template <backend B>

@@ -95,6 +95,9 @@ struct estimate_settings {
     /// interpolated_estimates.hpp), at most 0.5; 0: none are.
     double interpolation = 0.5;
 
+    /// The photons sought in the map of caustic photons, or in the other.
+    std::uint32_t sought(bool of_caustics) const { return of_caustics ? caustic_k : k; }
+    std::uint32_t& sought(bool of_caustics) { return of_caustics ? caustic_k : k; }
     bool operator==(const estimate_settings&) const = default;
 };
 
@@ -142,6 +145,15 @@ struct output_settings {
     bool has_stop_rule() const { return until_error > 0 || seconds > 0; }
     /// The number of passes after which the picture ends at the latest.
     std::uint32_t passes_at_most() const { return has_stop_rule() && passes == 1 ? most_passes : passes; }
+    /// The same settings, with no rule that ends the picture before its passes.
+    output_settings without_stop_rule() const
+    {
+        output_settings s = *this;
+        s.passes = passes_at_most();
+        s.until_error = s.seconds = 0;
+        s.percentile = output_settings{}.percentile;
+        return s;
+    }
     bool operator==(const output_settings&) const = default;
 };
 
@@ -180,6 +192,19 @@ inline bool follows_paths(const render_settings& s)
 }
 /// Whether rays start where eye rays end, for indirect light.
 inline bool has_gather_rays(const render_settings& s) { return gathers(s) || follows_paths(s); }
+/// The rays that start at the end of each eye ray, for indirect light.
+inline std::uint32_t rays_of_gather(const render_settings& s)
+{
+    return has_gather_rays(s) ? s.estimate.gather_rays : 0;
+}
+/// Whether the irradiance at photons is the same with settings `a` and `b` of the estimate, for a final gather.
+inline bool same_irradiance(estimate_settings a, const estimate_settings& b)
+{
+    a.gather_rays = b.gather_rays;
+    a.caustic_k = b.caustic_k;
+    a.radii = b.radii;
+    return a == b;
+}
 /// Whether it needs a map of caustic photons beside that of other photons.
 inline bool has_caustic_map(const render_settings& s)
 {

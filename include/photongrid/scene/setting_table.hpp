@@ -1,5 +1,5 @@
-// The table of settings: name, member of render_settings, range and description of each. Scene files, statistics, the
-// command line and the window read, write and check settings by this table. A new setting is a member of a stage's
+// The table of settings: name, member of render_settings, range and words of each. Scene files, statistics, the command
+// line and the window read, write, check and explain settings by this table. A new setting is a member of a stage's
 // struct and a row here.
 #pragma once
 
@@ -117,6 +117,30 @@ namespace setting_table {
 /// Whether scene files contain a setting.
 enum class in_scenes { required, optional, never };
 
+/// What settings are about, in the order of `--help` and docs/reference/settings.md.
+enum class setting_group { picture, light, photons, estimate, expert };
+inline constexpr const char* setting_groups[]
+    = {"Picture", "Light", "Photons", "Estimate", "The paper's method and fine tuning"};
+
+/// The ends of the window's slider, within the setting's range, and the format of its number if that is no whole one.
+struct slider_range {
+    double low = 0, high = 0;
+    const char* format = "%.3f";
+};
+
+/// The words of a setting, which are written nowhere else: `--help`, the window's tooltips, the schema of scene files
+/// and the rows of docs/reference/settings.md have them from here (examples/photongrid/io/setting_texts.hpp). A setting
+/// is named in backticks, which `--help` makes an option, and a value between asterisks.
+struct setting_words {
+    setting_group group;
+    const char* what;         ///< in one line, for all four
+    const char* more = "";    ///< sentences, for tooltips and the page: details, speed and error
+    const char* section = ""; ///< of the page, that explains it: its anchor
+    slider_range slider = {};
+    /// Whether it matters beside the others, as the window asks.
+    bool (*matters)(const render_settings&) = [](const render_settings&) { return true; };
+};
+
 /// A row of the table. `of(s)` is the member of the render_settings `s`.
 template <class Member, class Values>
 struct setting {
@@ -124,10 +148,10 @@ struct setting {
     Member of;
     Values values;
     in_scenes use;
-    const char* description; ///< for --help
+    setting_words words;
 };
 template <class Member, class Values>
-setting(const char*, Member, Values, in_scenes, const char*) -> setting<Member, Values>;
+setting(const char*, Member, Values, in_scenes, setting_words) -> setting<Member, Values>;
 
 /// The rows.
 namespace setting_table {
@@ -163,109 +187,227 @@ namespace setting_table {
         return [=](auto& s) -> auto& { return s.*value; };
     }
 
-    inline constexpr setting size{"size", of(&render_settings::output), pixels{16384}, in_scenes::required, "pixels"};
-    inline constexpr setting photons{
-        "photons", of(&map_settings::photons), whole_range{1, 1u << 27}, in_scenes::required, "photons stored"};
+    inline constexpr setting size{"size", of(&render_settings::output), pixels{16384}, in_scenes::required,
+        {.group = setting_group::picture, .what = "width and height, pixels"}};
+    inline constexpr setting photons{"photons", of(&map_settings::photons), whole_range{1, 1u << 27},
+        in_scenes::required,
+        {.group = setting_group::photons,
+            .what = "photons stored",
+            .more = "Noise falls with the square root of their number. Tracing and sorting take time in proportion.",
+            .slider = {256, 4e6}}};
     inline constexpr setting caustic_photons{"caustic_photons", of(&map_settings::caustic_photons),
         whole_range{0, 1u << 27}, in_scenes::optional,
-        "caustic photons stored in a map of their own; 0: they are among --photons"};
+        {.group = setting_group::photons,
+            .what = "caustic photons stored in a map of their own; 0: they are among `photons`",
+            .more = "With a map of their own caustics are sharper.",
+            .section = "caustic-photons",
+            .slider = {0, 1 << 20}}};
     inline constexpr setting caustic_k{"caustic_k", of(&estimate_settings::caustic_k), whole_range{1, 1u << 24},
-        in_scenes::optional, "photons sought per estimate in the map of --caustic-photons"};
+        in_scenes::optional,
+        {.group = setting_group::estimate,
+            .what = "photons sought per estimate in the map of `caustic_photons`",
+            .more = "With more, caustics are smoother and more blurred.",
+            .section = "caustic-photons",
+            .slider = {1, 2000},
+            .matters = [](const render_settings& s) { return s.map.caustic_photons > 0; }}};
     inline constexpr setting k{"k", of(&estimate_settings::k), whole_range{1, 1u << 24}, in_scenes::required,
-        "photons sought per estimate; not used by fixed_radius"};
+        {.group = setting_group::estimate,
+            .what = "photons sought per estimate; not used by *fixed_radius*",
+            .more
+            = "With more, estimates are smoother, but shadows and caustics more blurred, and searches take longer.",
+            .slider = {1, 4000}}};
     inline constexpr setting grid{"grid", of(&map_settings::grid), cells{1u << 20, 0x1p31}, in_scenes::optional,
-        "cells of a sorted or routed photon map over the scene, or auto: fitted to the photons and k; cells make an "
-        "automatic map a sorted one"};
+        {.group = setting_group::expert,
+            .what = "cells along x, y and z of a sorted or routed photon map, at most 2^31 in all; *auto*: fitted to "
+                    "the photons and `k`",
+            .more = "They fill the scene's bounding box. Searches take longer in a grid that is too coarse or too "
+                    "fine; *at_least_k* finds other photons in it. Cells given in place of *auto* make an automatic "
+                    "`map` a sorted one.",
+            .slider = {1, 256}}};
     inline constexpr setting max_radius{"max_radius", of(&estimate_settings::max_radius), any_length{},
-        in_scenes::required, "largest search radius; of fixed_radius, the radius"};
+        in_scenes::required,
+        {.group = setting_group::estimate,
+            .what = "largest search radius; with *fixed_radius*, the radius",
+            .more = "Where fewer than `k` photons lie within it, estimates are noisier instead of more blurred. "
+                    "Searches in dark regions go this far.",
+            .slider = {1e-3, 10, "%.4f m"}}};
     inline constexpr setting light_samples{"light_samples", of(&view_settings::light_samples), whole_range{1, 65536},
-        in_scenes::optional, "shadow rays per area light and eye ray"};
-    inline constexpr setting spp{
-        "spp", of(&view_settings::spp), whole_range{1, 65536}, in_scenes::optional, "eye rays per pixel and pass"};
+        in_scenes::optional,
+        {.group = setting_group::light,
+            .what = "shadow rays per eye ray and light that has an area or is an environment; other lights take one",
+            .more = "Of more than 16 lights each ray goes to one, chosen by estimates of their light. More rays make "
+                    "smoother penumbras and take time in proportion.",
+            .slider = {1, 256}}};
+    inline constexpr setting spp{"spp", of(&view_settings::spp), whole_range{1, 65536}, in_scenes::optional,
+        {.group = setting_group::picture,
+            .what = "eye rays per pixel and pass",
+            .more = "More make smoother edges and less noise from glass and lamps, and take time in proportion.",
+            .slider = {1, 64}}};
     inline constexpr setting pixel_filter{"pixel_filter", of(&view_settings::filter),
         one_of{{named{"box", photongrid::pixel_filter::box}, {"tent", photongrid::pixel_filter::tent}}},
-        in_scenes::optional, "weight of an eye ray by its place: even over its pixel (box), or a tent of two pixels"};
+        in_scenes::optional,
+        {.group = setting_group::picture,
+            .what = "weight of an eye ray by its place: *box*, even over its pixel; *tent*, falling linearly to the "
+                    "middles of the neighbouring pixels",
+            .more = "A tent is smoother at edges, and a little blurred. A single eye ray per pixel has no filter."}};
     inline constexpr setting passes{"passes", of(&output_settings::passes),
         whole_range{1, output_settings::most_passes}, in_scenes::optional,
-        "the picture is the mean of so many passes, each with its own photons, eye rays and shadow rays; with "
-        "--until-error or --seconds, of at most so many (1: no limit)"};
+        {.group = setting_group::picture,
+            .what = "number of passes averaged, each with its own photons, eye rays and shadow rays; with "
+                    "`until_error` or `seconds`, the most (1: no limit)",
+            .more = "Noise and blotches fade with every pass. Time is in proportion.",
+            .slider = {1, 1024}}};
     inline constexpr setting until_error{"until_error", of(&output_settings::until_error), real_range{0, 1, ""},
         in_scenes::optional,
-        "add passes until the noise of --percentile of the pixels is at most this part of their light, as 0.02; 0: "
-        "off"};
+        {.group = setting_group::picture,
+            .what = "add passes until the error of most pixels (`percentile`) is at most this part of their light, "
+                    "e.g. 0.02; 0: off",
+            .section = "stop-rules",
+            .slider = {0, 0.2}}};
     inline constexpr setting percentile{"percentile", of(&output_settings::percentile), real_range{0, 1, ""},
-        in_scenes::optional, "part of the pixels that --until-error asks for"};
+        in_scenes::optional,
+        {.group = setting_group::picture,
+            .what = "part of the pixels whose error `until_error` limits",
+            .section = "stop-rules",
+            .slider = {0, 1},
+            .matters = [](const render_settings& s) { return s.output.until_error > 0; }}};
     inline constexpr setting seconds{"seconds", of(&output_settings::seconds), real_range{0, 1e8, " s"},
-        in_scenes::never, "add passes as long as they end within this time of drawing; 0: off"};
+        in_scenes::never,
+        {.group = setting_group::picture,
+            .what = "add passes as long as they end within this time of drawing; 0: off",
+            .section = "stop-rules",
+            .slider = {0, 600, "%.0f s"}}};
     inline constexpr setting depth{"depth", of(&view_settings::depth), whole_range{0, 64}, in_scenes::optional,
-        "most reflections and refractions of an eye ray"};
+        {.group = setting_group::light,
+            .what = "most reflections, refractions and clear surfaces that an eye ray follows"}};
     inline constexpr setting photon_depth{"photon_depth", of(&map_settings::photon_depth), whole_range{1, 64},
-        in_scenes::optional, "most surfaces that a photon path hits"};
+        in_scenes::optional, {.group = setting_group::photons, .what = "most surfaces that a photon path hits"}};
     inline constexpr setting emission{"emission", of(&map_settings::emission),
         one_of{{named{"power", photon_emission::power}, {"guided", photon_emission::guided}}}, in_scenes::optional,
-        "photons leave the lights in proportion to power alone, or more often where pilot paths stored photons "
-        "(guided)"};
+        {.group = setting_group::photons,
+            .what = "how photons leave the lights: *power*, in proportion to power alone; *guided*, more often where "
+                    "pilot paths stored photons",
+            .more = "Guided paths are fewer where most would be in vain.",
+            .section = "guided-emission"}};
     inline constexpr setting seed{"seed", of(&render_settings::seed), whole_range{0, 0xFFFFFFFFu}, in_scenes::optional,
-        "same seed, same picture"};
+        {.group = setting_group::picture, .what = "same seed, same picture"}};
     inline constexpr setting map{"map", of(&map_settings::builder),
         one_of{{named{"sort", map_builder::sort}, {"route", map_builder::route}, {"blocks", map_builder::blocks},
             {"auto", map_builder::automatic}}},
         in_scenes::optional,
-        "build the photon map by bitonic sort or stencil routing, both in a grid, or of blocks along a curve; or auto: "
-        "a fitted grid or blocks, as suits the photons"};
-    inline constexpr setting slots{
-        "slots", of(&map_settings::slots), whole_range{1, 16}, in_scenes::optional, "routed cells have N x N slots"};
+        {.group = setting_group::photons,
+            .what = "how the photon map is built: *sort* (bitonic sort) or *route* (stencil routing), in the `grid`; "
+                    "*blocks*, along a curve; *auto*, in a fitted grid or blocks, as suits the photons; a scene with a "
+                    "`grid` has *sort* by default",
+            .more = "*sort* and *blocks* are exact; *blocks* are fast where photons lie in clusters; *route* takes "
+                    "fewer passes, but is approximate where cells overflow."}};
+    inline constexpr setting slots{"slots", of(&map_settings::slots), whole_range{1, 16}, in_scenes::optional,
+        {.group = setting_group::expert,
+            .what = "a routed cell has so many times so many slots for photons",
+            .more = "The photons that have one stand for the others of their cell. Where one stands for more than `k`, "
+                    "estimates are too dark. More slots lose fewer photons and take more memory.",
+            .slider = {1, 16},
+            .matters = [](const render_settings& s) { return s.map.builder == map_builder::route; }}};
     inline constexpr setting surplus{"surplus", of(&map_settings::surplus),
         one_of{{named{"photons", surplus_kind::photons}, {"power", surplus_kind::power}}}, in_scenes::optional,
-        "photons for which a routed cell has no slot: those kept stand for them (photons), or only take their power, "
-        "as in the paper"};
+        {.group = setting_group::expert,
+            .what = "photons for which a routed cell has no slot: *photons*, those kept stand for them; *power*, those "
+                    "kept only take their power, as in the paper",
+            .more = "With *photons*, those kept are stored once per photon that they stand for. With *power*, searches "
+                    "reach too far and blur caustics.",
+            .matters = [](const render_settings& s) { return s.map.builder == map_builder::route; }}};
     inline constexpr setting exposure{"exposure", of(&output_settings::exposure), real_or_auto{{-64, 64, " EV"}},
         in_scenes::optional,
-        "PNG: pixel values times 2^EV, or auto: so that the geometric mean of the luminance is middle grey"};
+        {.group = setting_group::picture,
+            .what = "PNG: pixel values times 2^EV; *auto*: the geometric mean of the luminance of lit pixels becomes "
+                    "middle grey",
+            .more = "Nothing is drawn again.",
+            .slider = {-10, 10, "%+.1f EV"}}};
     inline constexpr setting search{"search", of(&estimate_settings::search),
         one_of{{named{"at_least_k", search_kind::at_least_k}, {"exact_k", search_kind::exact_k},
             {"fixed_radius", search_kind::fixed_radius}}},
-        in_scenes::optional, "photons used: at least k, as in the paper; the k nearest; all within --max-radius"};
+        in_scenes::optional,
+        {.group = setting_group::estimate,
+            .what = "photons used: *at_least_k*, `k` or more, as in the paper; *exact_k*, the `k` nearest; "
+                    "*fixed_radius*, all within `max_radius`",
+            .more = "How many *at_least_k* uses depends on the grid (section 2.3), and it is a little too bright."}};
     inline constexpr setting filter{"filter", of(&estimate_settings::filter), names_of_filters(), in_scenes::optional,
-        "weight of a photon by its distance"};
+        {.group = setting_group::estimate,
+            .what = "weight of a photon by its distance",
+            .more = "*constant* is the least noisy, but shows discs; *silverman* is the smoothest.",
+            .section = "filters"}};
     inline constexpr setting bias{"bias", of(&estimate_settings::bias),
         one_of{{named{"paper", bias_kind::paper}, {"unbiased", bias_kind::unbiased}}}, in_scenes::optional,
-        "the photon that sets the radius counts (paper) or is left out of the sum (unbiased)"};
+        {.group = setting_group::expert,
+            .what = "the photon that sets the radius: *paper*, it counts; *unbiased*, it is left out of the sum",
+            .more = "Where it counts, estimates are too bright by k / (k - 1)."}};
     inline constexpr setting leaks{"leaks", of(&estimate_settings::leaks), policies{{-1, 1, ""}, {1, 1e6, ""}},
         in_scenes::optional,
-        "photons rejected: none, or a list with commas of side (photons from behind the surface), min_cosine=COS "
-        "(photons on surfaces whose normal has a smaller cosine; default 0.5), flattening=F (distances along the "
-        "normal count F times; default 4)"};
+        {.group = setting_group::estimate,
+            .what
+            = "photons rejected: *side*, those from behind the surface; *min_cosine*, those on surfaces whose normal "
+              "has a smaller cosine with the point's; *flattening*, distances along the normal count so many times",
+            .more = "Against light from behind walls and around corners. It takes hardly any time.",
+            .section = "leaks"}};
     inline constexpr setting edge_correction{"edge_correction", of(&estimate_settings::edges),
         one_of{{named{"none", photongrid::edge_correction::none}, {"polygons", photongrid::edge_correction::polygons}}},
         in_scenes::optional,
-        "polygons: divide estimates by the share of their disc that lies on the surface, so that polygons are not "
-        "darker near their edges; needs min_cosine in --leaks"};
+        {.group = setting_group::expert,
+            .what = "*polygons*: divide estimates by the share of their disc that lies on the surface; needs "
+                    "*min_cosine* in `leaks`",
+            .more = "With *none* an estimate at a straight edge is half of the irradiance, in a right-angled corner a "
+                    "quarter.",
+            .section = "edge-correction",
+            .matters = [](const render_settings& s) { return s.estimate.leaks.min_cosine > 0; }}};
     inline constexpr setting indirect{"indirect", of(&estimate_settings::indirect),
         one_of{{named{"map", indirect_kind::map}, {"gather", indirect_kind::gather},
             named{"paths", indirect_kind::paths}}},
         in_scenes::optional,
-        "indirect light that is no caustic: from the photons where eye rays end (map), or by a final gather of the "
-        "light of all other surfaces (gather), whose rays may go on as paths in place of looking at photons (paths)"};
+        {.group = setting_group::light,
+            .what = "indirect light that is no caustic: *map*, from the photons where eye rays end; *gather*, by rays "
+                    "from there to photons elsewhere (a final gather); *paths*, by rays that go on and look at no "
+                    "photons but caustic ones",
+            .more = "A gather takes longer, paths longer still. Both have noise instead of blotches; the mean of "
+                    "*paths* is exact.",
+            .section = "final-gather"}};
     inline constexpr setting gather_rays{"gather_rays", of(&estimate_settings::gather_rays), whole_range{1, 65536},
-        in_scenes::optional, "rays or paths of a final gather per eye ray"};
+        in_scenes::optional,
+        {.group = setting_group::light,
+            .what = "rays or paths of a final gather per eye ray",
+            .more = "More make less noise and take time in proportion.",
+            .section = "final-gather",
+            .slider = {1, 1024},
+            .matters = [](const render_settings& s) { return s.estimate.indirect != indirect_kind::map; }}};
     inline constexpr setting radii{"radii", of(&estimate_settings::radii),
         one_of{{named{"per_pass", radius_kind::per_pass}, {"shrinking", radius_kind::shrinking}}}, in_scenes::optional,
-        "radii of estimates: found by each pass (per_pass), or shrinking from pass to pass, if there are several, so "
-        "that the picture converges"};
+        {.group = setting_group::estimate,
+            .what = "radii of estimates: *per_pass*, found by each pass; *shrinking*, from pass to pass, if there are "
+                    "several, so that the picture converges",
+            .more = "Where they shrink, blur fades with every pass, too; it takes a search more.",
+            .section = "shrinking-radii"}};
     inline constexpr setting interpolation{"interpolation", of(&estimate_settings::interpolation),
         real_range{0, 0.5, ""}, in_scenes::optional,
-        "estimates are interpolated between those that are at most so many of their radii away; 0: none are"};
+        {.group = setting_group::estimate,
+            .what = "estimates are interpolated between those of the same surface that are at most so many of their "
+                    "radii away; 0: none are",
+            .more = "Fewer searches, a little more blur.",
+            .section = "interpolation",
+            .slider = {0, 0.5, "%.2f"}}};
     inline constexpr setting tell_bias{"tell_bias", of(&output_settings::tell_bias),
         one_of{{named{"auto", bias_telling::automatic}, {"no", bias_telling::no}, {"yes", bias_telling::yes}}},
         in_scenes::optional,
-        "find the blur's part in each pixel, as a layer of EXRs, and count it in --until-error; auto: with "
-        "--until-error "
-        "if --radii are shrinking"};
+        {.group = setting_group::picture,
+            .what = "find the blur's part of each pixel, as a layer of EXRs, and count it in `until_error`; *auto*: "
+                    "with `until_error` if `radii` are *shrinking*",
+            .more = "Searches take a little longer; the light is the same.",
+            .section = "bias"}};
     inline constexpr setting only{"only", of(&output_settings::only),
         one_of{{named{"all", light_part::all}, {"direct", light_part::direct}, {"caustic", light_part::caustic},
             {"indirect", light_part::indirect}}},
-        in_scenes::never, "draw this part of the light alone"};
+        in_scenes::never,
+        {.group = setting_group::light,
+            .what = "draw this part of the light alone",
+            .more = "*direct* traces no photons; *caustic* and *indirect* have photon maps of their own."}};
 } // namespace setting_table
 
 /// Calls visit(row) for every row, in the order of scene files.
