@@ -279,7 +279,7 @@ namespace {
         EXPECT_EQ(run({"check", ring, "--unit", "2"}).code, 3); // it has its own
 
         const auto drawn = run({"render", "s.pbrt", "--backend", "serial", "--size", "16x12", "--photons", "50",
-            "--spp", "1", "-o", "s.pfm", "--stats", "stats.json"});
+            "--passes", "1", "-o", "s.pfm", "--stats", "stats.json"});
         ASSERT_EQ(drawn.code, 0) << drawn.err;
         EXPECT_NE(drawn.err.find(note), std::string::npos) << drawn.err;
         const auto notes = nlohmann::json::parse(contents(folder / "stats.json")).at("notes");
