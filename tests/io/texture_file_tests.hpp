@@ -66,7 +66,7 @@ namespace {
                  {R"("texture": "no.png")", with_coordinates, "cannot be read", 6},
                  {R"("texture": "nan.pfm")", with_coordinates, "not a number", 6},
                  {R"("texture": "../wood.png")", with_coordinates, "in the scene's folder", 6},
-                 {R"("texture": 3)", with_coordinates, "a file's name", 6},
+                 {R"("texture": 3)", with_coordinates, "the name of a file", 6},
                  {R"("texture": {"wrap": "clamp"})", with_coordinates, "\"file\"", 6},
                  {R"("texture": {"file": "wood.png", "wrap": "mirror"})", with_coordinates, "\"clamp\"", 6},
                  {R"("texture": {"file": "wood.png", "scale": 2})", with_coordinates, "[u, v]", 6},

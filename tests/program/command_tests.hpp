@@ -185,7 +185,7 @@ namespace {
             "shapes": [{"type": "mesh", "positions": [[-2, 0, -2], [2, 0, -2], [2, 0.5, 2], [-2, 0.5, 2]],
                 "triangles": [[0, 2, 1], [0, 3, 2]], "material": "white"}],
             "lights": [{"name": "sun", "type": "directional", "direction": [0, -1, 0], "irradiance": 3}],
-            "render": {}})");
+            "render": {"size": [32, 24], "photons": 300, "k": 16, "max_radius": 0.3}})");
         for (const auto* emission : {"power", "guided"}) {
             const auto said = draw(floor, {"--emission", emission, "--exposure", "0", "-o", "floor.exr"});
             expect(said, {" photon paths from 'sun'", "direct", " is at most ", " %"});
