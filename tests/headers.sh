@@ -29,7 +29,7 @@ status=0
 # Those of kernels are saved by begin.hpp and taken back by end.hpp; any other file saves its own.
 root=$(dirname "${BASH_SOURCE[0]}")/..
 find "$root"/include "$root"/backends \( -name '*.hpp' -o -name '*.glsl' \) -print0 | xargs -0 awk '
-  FNR == 1 { delete saved; ++files; reads_begin = FILENAME ~ /\.glsl$|\/backend\/end\.hpp$/ }
+  FNR == 1 { delete saved; ++files; reads_begin = FILENAME ~ /\.glsl$|\/core\/end\.hpp$/ }
   /^#pragma push_macro/ { split($0, part, "\""); saved[part[2]]; if (files == 1) in_begin[part[2]] }
   match($0, /^ *# *undef +/) {
     name = substr($0, RLENGTH + 1)

@@ -113,7 +113,8 @@ namespace {
                           s.output.height = value.y;
                       });
                   else if constexpr (std::is_same_v<std::decay_t<decltype(row.values)>, setting_table::cells>)
-                      o.settings.push_back([value](render_settings& s) { s.map.use_grid(value); });
+                      // First, whatever the order of options: a map that is named as well stays.
+                      o.settings.insert(o.settings.begin(), [value](render_settings& s) { s.map.use_grid(value); });
                   else
                       o.settings.push_back([row, value](render_settings& s) { row.of(s) = value; });
                   // A stop rule that is asked for here lifts the scene's limit, but not one that is given as well.
