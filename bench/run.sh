@@ -172,7 +172,6 @@ if [[ $smoke == yes ]]; then
   must $build/bench/kernel_costs
   must $build/bench/unfinished --quick
   must $build/bench/scene_files 1 1 1
-  must $build/bench/hashed_routing --quick
   must bench/convergence.sh --quick cpu
   must bench/defaults.sh --quick
   must bench/lamps.sh --quick
