@@ -33,16 +33,6 @@ seconds_of() {
     /^  "compile_ms":/ { compile = $2 + 0 }
     END { printf "%.4f\n", (total - compile) / 1000 }' "$1"
 }
-# judge NAME RELMSE OURS THEIRS: whether a picture's relMSE is at most twice the noise of both pictures
-judge() {
-  awk -v name="$1" -v error="$2" -v ours="$3" -v theirs="$4" 'BEGIN {
-    most = 2 * (ours + theirs)
-    printf "%s: relMSE %.2g; noise of ours %.2g, of the other %.2g; ", name, error, ours, theirs
-    printf "wanted at most %.2g: ", most
-    print (error <= most ? "PASS" : "FAIL")
-    exit error > most
-  }'
-}
 # need_povray: the same for POV-Ray
 need_povray() {
   command -v povray >/dev/null || { echo "$0: no povray; apt-get install povray" >&2; exit 2; }
