@@ -13,7 +13,7 @@ program_packages=(
 )
 # What the benches need besides: those that tests/run.sh runs, and the others. POV-Ray only where pictures are compared with its.
 # shellcheck disable=SC2034
-smoke_packages=(libbenchmark-dev gnuplot-nox jq python3)
+smoke_packages=(libbenchmark-dev gnuplot-nox python3)
 # shellcheck disable=SC2034
 bench_packages=(libcgal-dev libflann-dev libnanoflann-dev xvfb xdotool)
 # Packages that later Debians no longer have; CMake does without.
