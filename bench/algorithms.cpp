@@ -5,10 +5,9 @@
 // Photons lie in a unit cube of 32 x 32 x 32 cells. Each of the 15 bits of a photon's cell is the AND of A + 1 random
 // bits (Thearling and Smith 1992), which leaves 15, 12.2 and 5.1 bits of entropy a key for A = 0, 1 and 3; `all_ands`
 // stands for all photons in one cell, 0 bits. Inside a cell they lie evenly.
-#include <photongrid/backends/cpu/cpu.hpp>
-#include <photongrid/backends/gl/gl.hpp>
-#include <photongrid/backends/serial/serial.hpp>
-#include <photongrid/backends/vulkan/vulkan.hpp>
+#include "backends.hpp"
+#include "verbs.hpp"
+
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/map/fitting_grid.hpp>
 #include <photongrid/map/map_builders.hpp>
@@ -18,7 +17,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <random>
 
 namespace {
@@ -214,28 +212,35 @@ void add(B& b)
         [](auto& state, auto& backend_, uint n, uint ands) { search(state, backend_, n, ands, search_kind::exact_k); });
 }
 
+int run_algorithms(std::vector<std::string> words)
+{
+    words.insert(words.begin(), "algorithms");
+    std::vector<char*> arguments;
+    for (auto& word : words)
+        arguments.push_back(word.data());
+    auto count = static_cast<int>(arguments.size());
+    benchmark::Initialize(&count, arguments.data());
+    if (benchmark::ReportUnrecognizedArguments(count, arguments.data()))
+        return 2;
+    serial_backend serial;
+    cpu_backend cpu;
+    vulkan_backend vulkan;
+    gl_backend gl;
+    for (const auto& c : {serial.caps(), cpu.caps(), vulkan.caps(), gl.caps()})
+        benchmark::AddCustomContext(c.backend, c.device);
+    add(serial);
+    add(cpu);
+    add(vulkan);
+    add(gl);
+    benchmark::RunSpecifiedBenchmarks();
+    benchmark::Shutdown();
+    return 0;
+}
+
 } // namespace
 
-int main(int argc, char** argv)
+photongrid::bench::verb_run photongrid::bench::add_algorithms(CLI::App& verb)
 {
-    benchmark::Initialize(&argc, argv);
-    if (benchmark::ReportUnrecognizedArguments(argc, argv))
-        return 2;
-    try {
-        serial_backend serial;
-        cpu_backend cpu;
-        vulkan_backend vulkan;
-        gl_backend gl;
-        for (const auto& c : {serial.caps(), cpu.caps(), vulkan.caps(), gl.caps()})
-            benchmark::AddCustomContext(c.backend, c.device);
-        add(serial);
-        add(cpu);
-        add(vulkan);
-        add(gl);
-        benchmark::RunSpecifiedBenchmarks();
-        benchmark::Shutdown();
-    } catch (const backend_error& e) {
-        std::fprintf(stderr, "algorithms: %s\n", e.what());
-        return 2;
-    }
+    verb.prefix_command();
+    return [&verb] { return run_algorithms(verb.remaining()); };
 }

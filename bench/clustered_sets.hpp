@@ -1,18 +1,17 @@
 // Photons that lie many times as densely in some places as in others, and other sets that are hard for a uniform grid,
-// for clustered_peers. Lengths in metres. Every run makes the same sets.
+// for the verbs `clusters` and `maps`. Lengths in metres. Every run makes the same sets.
 #pragma once
 
 #include "data_sets.hpp"
+#include "verbs.hpp"
 
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <set>
 #include <span>
-#include <sstream>
 #include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace photongrid::bench {
 
@@ -295,18 +294,25 @@ inline void search_at_photons(data_set& s)
 /// Whether a set is among `names`, or, without names, among those that need none.
 inline bool is_asked_for(const std::vector<std::string>& names, const clustered_set& which)
 {
-    return names.empty() ? std::strcmp(which.name, only_by_name) != 0
-                         : std::find(names.begin(), names.end(), which.name) != names.end();
+    const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+    return names.empty() ? std::strcmp(which.name, only_by_name) != 0 : has("all") || has(which.name);
 }
 
-/// The names in a list with commas.
-inline std::vector<std::string> names_in(const char* list)
+/// The options of a verb that measures these sets.
+inline void add_set_options(CLI::App& verb, std::vector<std::string>& sets, std::vector<uint>& k, uint& photons,
+    double& seconds, bool& few_points)
 {
-    std::vector<std::string> names;
-    std::istringstream in(list);
-    for (std::string name; std::getline(in, name, ',');)
-        names.push_back(name);
-    return names;
+    std::set<std::string> names{"all"};
+    for (const auto& which : clustered_sets())
+        names.insert(which.name);
+    verb.add_option("--sets", sets, "with commas; all: uniform10m too, which needs 4 GB")
+        ->delimiter(',')
+        ->check(CLI::IsMember(names));
+    verb.add_option("--k", k, "with commas")->delimiter(',')->check(CLI::Range(1, 999));
+    verb.add_option("--photons", photons, "of each set")->check(CLI::Range(1000, 10000000));
+    verb.add_option("--seconds", seconds, "that a search takes, about")->check(CLI::PositiveNumber);
+    verb.add_flag(
+        "--few-points", few_points, "searches at 65,536 points, half of them photons; without: at each photon");
 }
 
 /// Searches are made at 65,536 points: by turns at any photon and anywhere in the photons' box.

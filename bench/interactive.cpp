@@ -1,34 +1,20 @@
 // How soon a change is seen (section 3.4): the Cornell box with the paper's settings, camera and lamp moved again and
 // again, in the loop that the window and the program use. Exit status 1 when a row misses its target:
 // docs/reference/measures.md.
-//
-//   interactive SCENE.json [REPETITIONS [BACKEND...]]      BACKEND: cpu (default), serial, vulkan or gl
-#include "median.hpp"
+#include "backends.hpp"
+#include "stopwatch.hpp"
+#include "verbs.hpp"
+
 #include <photongrid/io/scene_file.hpp>
-
-#include <photongrid/backends/cpu/cpu.hpp>
-
-#include <photongrid/backends/gl/gl.hpp>
-#include <photongrid/backends/serial/serial.hpp>
-#include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/render/progressive_render.hpp>
 
-#include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <functional>
-#include <string>
 
 namespace {
 
 using namespace photongrid;
-
-double ms_of(const std::function<void()>& work)
-{
-    const auto begin = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-}
+using bench::median;
+using bench::ms_of;
 
 /// What a user waits for, ms.
 struct waits {
@@ -91,13 +77,12 @@ waits measure(B& b, const scene& s, const render_settings& settings, uint repeti
             finish(drawing);
         }));
     }
-    using bench::median;
     return {median(first), median(camera), median(camera_end), median(light), median(light_end)};
 }
 
 /// Prints rows for a backend. Returns whether all are as fast as they should be.
 template <backend B>
-bool report(B&& b, const scene& s, uint repetitions, bool wanted)
+bool report(B& b, const scene& s, uint repetitions, bool wanted)
 {
     bool all = true;
     for (const uint size : {160u, 512u})
@@ -121,41 +106,31 @@ bool report(B&& b, const scene& s, uint repetitions, bool wanted)
     return all;
 }
 
+struct arguments {
+    std::string scene;
+    uint repetitions = 9;
+    std::vector<std::string> backends{"cpu"};
+};
+
+int run_interactive(const arguments& a)
+{
+    const auto s = read_scene(a.scene);
+    std::printf("| backend | pixels | estimate | first picture, ms | updates per second, camera moving | camera "
+                "rests, whole, ms | lamp moved, first picture, ms | lamp moved, whole, ms | wanted "
+                "|\n|---|---|---|---|---|---|---|---|---|\n");
+    bool fast = true;
+    for (const auto& name : a.backends)
+        fast = bench::on_backend(name, [&](auto&& b) { return report(b, s, a.repetitions, name == "cpu"); }) && fast;
+    return fast ? 0 : 1;
+}
+
 } // namespace
 
-int main(int argc, char** argv)
+photongrid::bench::verb_run photongrid::bench::add_interactive(CLI::App& verb)
 {
-    try {
-        if (argc < 2) {
-            std::fprintf(stderr, "interactive: expected SCENE.json [REPETITIONS [BACKEND...]]\n");
-            return 2;
-        }
-        const auto s = read_scene(argv[1]);
-        const uint repetitions = argc > 2 ? static_cast<uint>(std::strtoul(argv[2], nullptr, 10)) : 9;
-        std::vector<std::string> backends(argv + std::min(argc, 3), argv + argc);
-        if (backends.empty())
-            backends = {"cpu"};
-        std::printf("| backend | pixels | estimate | first picture, ms | updates per second, camera moving | camera "
-                    "rests, whole, ms | lamp moved, first picture, ms | lamp moved, whole, ms | wanted "
-                    "|\n|---|---|---|---|---|---|---|---|---|\n");
-        bool fast = true;
-        for (const auto& name : backends) {
-            if (name == "cpu")
-                fast = report(cpu_backend(), s, repetitions, true) && fast;
-            else if (name == "serial")
-                report(serial_backend(), s, repetitions, false);
-            else if (name == "gl")
-                report(gl_backend(gl_options{}), s, repetitions, false);
-            else if (name == "vulkan")
-                report(vulkan_backend(vulkan_options{}), s, repetitions, false);
-            else {
-                std::fprintf(stderr, "interactive: \"%s\" given; expected cpu, serial, vulkan or gl\n", name.c_str());
-                return 2;
-            }
-        }
-        return fast ? 0 : 1;
-    } catch (const std::exception& e) {
-        std::fprintf(stderr, "interactive: %s\n", e.what());
-        return 2;
-    }
+    const auto a = std::make_shared<arguments>();
+    verb.add_option("scene", a->scene)->required();
+    verb.add_option("backends", a->backends)->check(CLI::IsMember(backend_names));
+    verb.add_option("--repetitions", a->repetitions)->check(CLI::PositiveNumber);
+    return [a] { return run_interactive(*a); };
 }

@@ -9,7 +9,7 @@
 #
 #   --algorithms  each algorithm on each backend by number of photons and entropy of keys: JSON and plots in out/algorithms/
 #   --peers       neighbour searches and sorts against CGAL, FLANN, nanoflann, std::sort, Highway's vqsort, TBB; sorting passes
-#                 on vulkan and gl against plain ones; whole pictures, the ring and the ball against POV-Ray; plots in out/clustered_peers/
+#                 on vulkan and gl against plain ones; whole pictures, the ring and the ball against POV-Ray; plots in out/clusters/
 #   --paper       the paper's Tables 1 and 2, what leaving out finished elements gains, our defaults beside the paper's method
 #   --interactive how soon a change is seen, and when a picture looks converged
 #   --estimates   error and cost of searches, filters, leak policies and edge correction, on whole pictures
@@ -21,7 +21,7 @@
 #   --write       puts what is printed into bench/results/ and docs/reference/measures.md too (bench/results.py), and the
 #                 Cornell box's plot into docs/
 #
-# Whether another commit drew the same pictures as this tree, and as fast: bench/against.sh.
+# Whether another commit drew the same pictures as this tree, and as fast: bench/against.py.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source examples/setup.sh
@@ -30,7 +30,7 @@ usage() {
   sed -n '2,25s/^# \{0,1\}//p' bench/run.sh >&2
   exit 2
 }
-build=build-bench
+build="build-bench"
 install=yes gpu=no smoke=no write=no parts=()
 for argument in "$@"; do
   case $argument in
@@ -99,7 +99,8 @@ measure() {
   title "$1" "${*:2}"
   must "${@:2}"
 }
-# loses_a_quarter_at_most NATIVE PLAIN: what knn_peers and knn_peers_portable printed, set by set
+# loses_a_quarter_at_most NATIVE PLAIN: what `search` of both programs printed, set by set
+# shellcheck disable=SC2317 # `must` calls it
 loses_a_quarter_at_most() {
   awk -F ' *[|] *' '
     FNR == 1 { ++file }
@@ -109,13 +110,8 @@ loses_a_quarter_at_most() {
     { share = $6 / native[$2]; printf "| %s | %s | %s | %.2f | 0.75 | %s |\n", $2, native[$2], $6, share, (share >= 0.75 ? "PASS" : "FAIL"); slow += (share < 0.75) }
     END { exit (slow > 0) }' "$1" "$2"
 }
-
-# time_to_error OPTION...: against the other programs that there are
-# shellcheck disable=SC2317 # `must` calls it
-time_to_error() {
-  command -v python3 >/dev/null || { echo "bench/run.sh: SKIPPED time to error against other programs: no python3" >&2; return; }
-  python3 bench/time_to_error.py "$@"
-}
+bench=$build/bench/photongrid_bench native=$build/bench/photongrid_bench_native sections=bench/sections.py
+box=examples/scenes/cornell_box.json
 
 machine
 if [[ $gpu == yes ]]; then
@@ -128,129 +124,99 @@ if [[ $gpu == yes ]]; then
   echo
   $build/photongrid devices
   for backend in "${backends[@]}"; do
-    measure "Algorithms on $backend" bench/algorithms.sh "--benchmark_filter=/$backend/" --benchmark_min_time=0.1
-    measure "Nearest neighbours on $backend" $build/bench/knn_peers --backend "$backend"
-    measure "Exact k against at least k on $backend" $build/bench/search_times 3 "$backend"
-    measure "Waiting on $backend (3.4)" $build/bench/interactive examples/scenes/cornell_box.json 9 "$backend"
+    measure "Algorithms on $backend" $sections algorithms "--benchmark_filter=/$backend/" --benchmark_min_time=0.1
+    measure "Nearest neighbours on $backend" $native search --backend "$backend"
+    measure "Exact k against at least k on $backend" $bench grids --backends "$backend"
+    measure "Waiting on $backend (3.4)" $bench interactive $box "$backend"
   done
   if ((${#backends[@]} == 2)); then # these measure both
-    measure "Sorting passes on vulkan and gl" $build/bench/sort_passes
-    measure "Finished elements (3.3, 4.3)" $build/bench/unfinished
+    measure "Sorting passes on vulkan and gl" $bench passes
+    measure "Finished elements (3.3, 4.3)" $bench unfinished
   fi
   if [[ " ${backends[*]} " == *" vulkan "* ]]; then
-    measure "Table 2" $build/bench/kernel_costs
+    measure "Table 2" $bench kernels
   fi
-  measure "Table 1" bench/table1.sh "${backends[@]}"
-  title "Whole pictures, by stage, as the device's clock has them" "bench/run.sh --gpu"
-  echo "ms"
-  echo
-  echo "| scene | backend | run | trace photons | build map | trace rays | radiance estimate |"
-  echo "|---|---|---|---|---|---|---|"
-  for backend in "${backends[@]}"; do
-    for scene in cornell_box ring glass_ball terrace; do
-      for run in first second third; do
-        $build/photongrid render "examples/scenes/$scene.json" --backend "$backend" --passes 1 --time-passes --stats $build/stats.json -o $build/picture.pfm --quiet >/dev/null
-        awk -v row="| $scene | $backend | $run |" '
-          /"(trace_photons|build_map|trace_rays|radiance_estimate)":/ { name = $1; gsub(/[":]/, "", name) }
-          $1 == "\"ms\":" && name != "" { ms[name] = $2 + 0; name = "" }
-          END {
-            printf "%s %.2f | %.2f | %.2f | %.2f |\n", row,
-              ms["trace_photons"], ms["build_map"], ms["trace_rays"], ms["radiance_estimate"]
-          }' $build/stats.json
-      done
-    done
-  done
-  measure "Time to visual convergence (3.1)" bench/convergence.sh "${backends[@]}"
-  measure "The window (3.4)" bench/window.sh "${backends[@]}"
-  measure "Time against error" bench/error.sh "${backends[@]}"
+  measure "Table 1" $sections table1 "${backends[@]}"
+  measure "Whole pictures, by stage, as the device's clock has them" $sections stages "${backends[@]}"
+  measure "Time to visual convergence (3.1)" $sections convergence "${backends[@]}"
+  measure "The window (3.4)" $sections window "${backends[@]}"
+  measure "Time against error" $sections error "${backends[@]}"
   exit $failed
 fi
 if [[ $smoke == yes ]]; then
-  must bench/algorithms.sh '--benchmark_filter=photons:4096/ands:0/' --benchmark_min_time=0.001
-  must $build/bench/sort_passes 4096
-  must bench/pictures.sh --quick
-  must $build/bench/kernel_costs
-  must $build/bench/unfinished --quick
-  must $build/bench/scene_files 1 1 1
-  must $build/bench/hashed_routing --quick
-  must bench/convergence.sh --quick cpu
-  must bench/defaults.sh --quick
-  must bench/lamps.sh --quick
-  must bench/final_gather.sh --quick
-  must bench/inclusion.sh --smoke
-  must $build/bench/interactive examples/scenes/cornell_box.json 1 cpu
-  must bench/window.sh cpu
-  must $build/bench/search_times 1 vulkan 1000
-  must $build/bench/mesh_pictures --triangles 1000
-  must $build/bench/mesh_pictures --triangles 1100 --places 4
-  must $build/bench/knn_peers --sets 1 --seconds 0.05
-  must $build/bench/knn_peers_portable --sets 1 --seconds 0.05
-  must bench/clustered_peers.sh --photons 2000 --k 10 --seconds 0.01
-  must $build/bench/clustered_maps --photons 2000 --k 10 --seconds 0.005 --sets sphere,nested
-  must $build/bench/sort_peers 1 65536
-  must bench/estimator_errors.sh --quick
-  must bench/edge_correction.sh --quick
-  must bench/error.sh --quick
-  must time_to_error --quick
+  for section in algorithms clusters defaults edges error estimates gather inclusion lamps pictures window; do
+    must $sections $section --quick
+  done
+  must $sections convergence --quick cpu
+  must $sections table1 --quick serial
+  must $bench files --ply 1 --obj 1 --glb 1
+  must $bench grids --repetitions 1 --backends vulkan --points 1000
+  must $bench interactive $box cpu --repetitions 1
+  must $bench kernels
+  must $bench maps --photons 2000 --k 10 --seconds 0.005 --sets sphere,nested
+  must $bench passes --pairs 4096
+  must $bench pictures --triangles 1000
+  must $bench pictures --triangles 1100 --places 4
+  must $bench unfinished --quick
+  must $bench search --sets 1 --seconds 0.05
+  must $native search --sets 1 --seconds 0.05
+  must $native sort --most 65536
+  must python3 bench/time_to_error.py --quick
   exit $failed
 fi
 if asked inclusion; then
-  measure "What including it costs" bench/inclusion.sh
+  measure "What including it costs" $sections inclusion
 fi
 if asked files; then
-  measure "Reading scene files" $build/bench/scene_files
+  measure "Reading scene files" $bench files
 fi
 if asked algorithms; then
-  measure "Algorithms" bench/algorithms.sh --benchmark_min_time=0.1
+  measure "Algorithms" $sections algorithms --benchmark_min_time=0.1
 fi
 if asked peers; then
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
-  title "Nearest neighbours, one thread" $build/bench/knn_peers
-  must $build/bench/knn_peers >"$work/native"
+  measure "Nearest neighbours, one thread" $native search >"$work/native"
   cat "$work/native"
-  measure "Nearest neighbours, two threads" $build/bench/knn_peers --threads 2
-  measure "Nearest neighbours, points in random order, half of each ratio wanted" $build/bench/knn_peers --shuffle
-  title "Nearest neighbours, a plain build (-O2, no -march): both sides, run-time dispatch on ours" $build/bench/knn_peers_portable
-  must $build/bench/knn_peers_portable >"$work/plain"
+  measure "Nearest neighbours, two threads" $native search --threads 2
+  measure "Nearest neighbours, points in random order, half of each ratio wanted" $native search --shuffle
+  measure "Nearest neighbours, a plain build (no -march): both sides, run-time dispatch on ours" $bench search >"$work/plain"
   cat "$work/plain"
   title "A plain build against a native one" "bench/run.sh --peers"
   must loses_a_quarter_at_most "$work/native" "$work/plain"
-  measure "Nearest neighbours, the same build without AVX-512, half of each ratio wanted" $build/bench/knn_peers_portable --avx2
-  title "Nearest neighbours on vulkan and gl, S3, two threads" "$build/bench/knn_peers --backend vulkan --threads 2 --sets 3"
-  must $build/bench/knn_peers --backend vulkan --threads 2 --sets 3
+  measure "Nearest neighbours, the same build without AVX-512, half of each ratio wanted" $bench search --avx2
+  measure "Nearest neighbours on vulkan and gl, S3, two threads" $native search --backend vulkan --threads 2 --sets 3
   echo
-  must $build/bench/knn_peers --backend gl --threads 2 --sets 3
-  measure "Nearest neighbours among photons in clusters, one thread" bench/clustered_peers.sh
-  measure "Grids and blocks for photons in clusters" $build/bench/clustered_maps
-  measure "Exact k against at least k, by grid" $build/bench/search_times
-  measure "Sorting pairs, one thread" $build/bench/sort_peers 1
-  measure "Sorting passes on vulkan and gl" $build/bench/sort_passes
-  measure "Whole pictures" bench/pictures.sh
-  measure "The ring's caustic against POV-Ray" bench/povray_ring.sh
+  must $native search --backend gl --threads 2 --sets 3
+  measure "Nearest neighbours among photons in clusters, one thread" $sections clusters
+  measure "Grids and blocks for photons in clusters" $bench maps
+  measure "Exact k against at least k, by grid" $bench grids
+  measure "Sorting pairs, one thread" $native sort
+  measure "Sorting passes on vulkan and gl" $bench passes
+  measure "Whole pictures" $sections pictures
+  measure "The ring's caustic against POV-Ray" $sections ring
 fi
 if asked paper; then
-  measure "Table 1" bench/table1.sh cpu serial vulkan gl
-  measure "Table 2" $build/bench/kernel_costs
-  measure "Finished elements (3.3, 4.3)" $build/bench/unfinished
-  measure "Defaults beside the paper's method" bench/defaults.sh
+  measure "Table 1" $sections table1 cpu serial vulkan gl
+  measure "Table 2" $bench kernels
+  measure "Finished elements (3.3, 4.3)" $bench unfinished
+  measure "Defaults beside the paper's method" $sections defaults
 fi
 if asked interactive; then
-  measure "Time to visual convergence (3.1)" bench/convergence.sh
-  measure "Waiting (3.4)" $build/bench/interactive examples/scenes/cornell_box.json 9 cpu vulkan
-  measure "The window (3.4)" bench/window.sh
+  measure "Time to visual convergence (3.1)" $sections convergence
+  measure "Waiting (3.4)" $bench interactive $box cpu vulkan
+  measure "The window (3.4)" $sections window
 fi
 if asked estimates; then
-  measure "Error and cost of each kind of estimate" bench/estimator_errors.sh
-  measure "Edge correction" bench/edge_correction.sh
-  measure "One lamp and a hundred" bench/lamps.sh
-  measure "Indirect light and caustics: one map, a final gather, shrinking radii" bench/final_gather.sh
+  measure "Error and cost of each kind of estimate" $sections estimates
+  measure "Edge correction" $sections edges
+  measure "One lamp and a hundred" $sections lamps
+  measure "Indirect light and caustics: one map, a final gather, shrinking radii" $sections gather
 fi
 if asked error; then
-  measure "Time against error" bench/error.sh
+  measure "Time against error" $sections error
 fi
 if asked convergence; then
-  title "Time to error against other programs" "python3 bench/time_to_error.py"
-  must time_to_error
+  measure "Time to error against other programs" python3 bench/time_to_error.py
 fi
 exit $failed

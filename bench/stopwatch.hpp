@@ -16,6 +16,8 @@ inline double seconds_of(const std::function<void()>& work)
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+inline double ms_of(const std::function<void()>& work) { return 1000 * seconds_of(work); }
+
 /// Median of three.
 inline double median_seconds_of(const std::function<void()>& work)
 {

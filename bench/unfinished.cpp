@@ -6,29 +6,23 @@
 // A mask that the device tests before it runs a fragment, by stencil or depth, saves what a finished fragment costs
 // now: reading its state and discarding it. The last column is the most that this could gain: the share of the time
 // that fragments of finished elements take, which a kernel measures whose elements are all done but one.
-//
-//   unfinished [--quick | REPETITIONS]      default: 3; --quick: small pictures, once, to see that it runs
-#include "median.hpp"
+#include "backends.hpp"
+#include "stopwatch.hpp"
 #include "unfinished_kernels.hpp"
+#include "verbs.hpp"
 
-#include <photongrid/backends/cpu/cpu.hpp>
-#include <photongrid/backends/gl/gl.hpp>
-#include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/io/scene_file.hpp>
 #include <photongrid/render/picture_search.hpp>
 #include <photongrid/render/render.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <functional>
 
 namespace {
 
 using namespace photongrid;
 using bench::median;
+using bench::ms_of;
 using glm::vec4;
 
 /// Backend B, but every pass of run_until_done is over all elements; it asks after each eight of them whether all are
@@ -49,13 +43,6 @@ public:
         return p;
     }
 };
-
-double ms_of(const std::function<void()>& work)
-{
-    const auto begin = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-}
 
 /// The photons of a scene, and the points where its picture needs irradiance.
 struct task {
@@ -183,42 +170,41 @@ bool measure(const char* backend, const task& t, const char* work, std::vector<v
     return same;
 }
 
+int run_unfinished(bool quick)
+{
+    const int repetitions = quick ? 1 : 3;
+    bool same = true;
+    gl_backend tiles, small_tiles({.tile = 16}), mask({.tile = 2048});
+    every_element<gl_backend> plain_gl;
+    vulkan_backend lists;
+    every_element<vulkan_backend> plain_vulkan;
+    const double finished = ms_of_a_finished_element(mask, 1 << 18);
+    std::printf("gl: %s; vulkan: %s. A finished element that gl masks costs %.1f ns in a pass.\n\n| scene | backend "
+                "| search | finished elements | passes | ms | gain over none | in finished elements | "
+                "|\n|---|---|---|---|---|---|---|---|---|\n",
+        tiles.caps().device.c_str(), lists.caps().device.c_str(), 1e6 * finished);
+    for (const std::string scene : {"glass_ball", "ring", "cornell_box"})
+        for (const auto& [paper, visits, work] : {std::tuple(true, 32u, "the paper's, 32 photons a pass"),
+                 {true, 0u, "the paper's, 3072 a pass"}, {false, 0u, "photongrid's"}}) {
+            const auto t = task_of(scene, paper, visits, quick ? 16 : 2);
+            same = measure("gl", t, work,
+                       {with("computed all the same", plain_gl, t), with("masked one by one", mask, t, finished),
+                           with("left out in tiles of 64 x 64", tiles, t),
+                           with("left out in tiles of 16 x 16", small_tiles, t)},
+                       repetitions)
+                && same;
+            same = measure("vulkan", t, work,
+                       {with("computed all the same", plain_vulkan, t), with("not in the list", lists, t)}, repetitions)
+                && same;
+        }
+    return same ? 0 : 3;
+}
+
 } // namespace
 
-int main(int argc, char** argv)
+photongrid::bench::verb_run photongrid::bench::add_unfinished(CLI::App& verb)
 {
-    const bool quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
-    const int repetitions = quick ? 1 : argc > 1 ? std::max(1, std::atoi(argv[1])) : 3;
-    bool same = true;
-    try {
-        gl_backend tiles, small_tiles({.tile = 16}), mask({.tile = 2048});
-        every_element<gl_backend> plain_gl;
-        vulkan_backend lists;
-        every_element<vulkan_backend> plain_vulkan;
-        const double finished = ms_of_a_finished_element(mask, 1 << 18);
-        std::printf(
-            "gl: %s; vulkan: %s. A finished element that gl masks costs %.1f ns in a pass.\n\n| scene | backend "
-            "| search | finished elements | passes | ms | gain over none | in finished elements | "
-            "|\n|---|---|---|---|---|---|---|---|---|\n",
-            tiles.caps().device.c_str(), lists.caps().device.c_str(), 1e6 * finished);
-        for (const std::string scene : {"glass_ball", "ring", "cornell_box"})
-            for (const auto& [paper, visits, work] : {std::tuple(true, 32u, "the paper's, 32 photons a pass"),
-                     {true, 0u, "the paper's, 3072 a pass"}, {false, 0u, "photongrid's"}}) {
-                const auto t = task_of(scene, paper, visits, quick ? 16 : 2);
-                same = measure("gl", t, work,
-                           {with("computed all the same", plain_gl, t), with("masked one by one", mask, t, finished),
-                               with("left out in tiles of 64 x 64", tiles, t),
-                               with("left out in tiles of 16 x 16", small_tiles, t)},
-                           repetitions)
-                    && same;
-                same = measure("vulkan", t, work,
-                           {with("computed all the same", plain_vulkan, t), with("not in the list", lists, t)},
-                           repetitions)
-                    && same;
-            }
-    } catch (const std::exception& e) {
-        std::fprintf(stderr, "unfinished: %s\n", e.what());
-        return 2;
-    }
-    return same ? 0 : 3;
+    const auto quick = std::make_shared<bool>(false);
+    verb.add_flag("--quick", *quick, "small pictures, once, to see that it runs");
+    return [quick] { return run_unfinished(*quick); };
 }

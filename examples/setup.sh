@@ -16,7 +16,7 @@ vulkan_packages=(libvulkan-dev mesa-vulkan-drivers glslang-dev glslang-tools spi
 program_packages=("${base_packages[@]}" "${window_packages[@]}" "${gl_packages[@]}" "${vulkan_packages[@]}")
 # What the benches need besides: those that tests/run.sh runs, and the others. POV-Ray only where pictures are compared with its.
 # shellcheck disable=SC2034
-smoke_packages=(libbenchmark-dev gnuplot-nox jq python3)
+smoke_packages=(libbenchmark-dev gnuplot-nox python3)
 # shellcheck disable=SC2034
 bench_packages=(libcgal-dev libflann-dev libnanoflann-dev xvfb xdotool)
 # Packages of gl that later Debians no longer have; CMake does without.

@@ -66,6 +66,7 @@ check_program() { # of a build folder
         [[ $word != --[a-z]* ]] || has "$program_options" "$word" || wrong "photongrid has no option $word"
       done
       ;;
+    */bench/photongrid_bench*) grep -qF "add(\"${1:-}\"" bench/main.cpp || wrong "bench/main.cpp has no verb ${1:-}" ;;
     */tests/* | */bench/*) has "$cmake_names" "$name" || wrong "no CMakeLists.txt names $name" ;;
   esac
 }

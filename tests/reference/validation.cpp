@@ -3,6 +3,7 @@
 #include "convergence_tests.hpp"
 #include "form_factor_tests.hpp"
 #include "glass_ball_tests.hpp"
+#include "known_error_tests.hpp"
 #include "mirror_tests.hpp"
 #include "mixed_light_tests.hpp"
 #include "nearest_tests.hpp"

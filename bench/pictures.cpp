@@ -1,30 +1,19 @@
 // A room with a mesh, drawn at 512 x 512: docs/reference/measures.md.
 //
-//   mesh_pictures [--triangles N] [--places M] [--stored once|apart] [--backend serial|cpu|gl|vulkan]
-//
-// The mesh is a closed ball with bumps and normals (tests/trace/mesh_sets.hpp) of about N triangles, 1,000,000 unless
-// given; it stands in M places, 1 unless given, and its surface is stored once, or for each place; on cpu unless a
-// backend is given. Medians of three: the time until the first preview is there and until the
-// picture is, the tree and everything else included; what each stage takes; and the bytes of the mesh on the device.
-#include "median.hpp"
+// The mesh is a closed ball with bumps and normals (tests/trace/mesh_sets.hpp). Medians of three: the time until the
+// first preview is there and until the picture is, the tree and everything else included; what each stage takes; and
+// the bytes of the mesh on the device.
+#include "backends.hpp"
 #include "stopwatch.hpp"
+#include "verbs.hpp"
 
 #include "../tests/trace/mesh_sets.hpp"
 
-#include <photongrid/backends/cpu/cpu.hpp>
-#include <photongrid/backends/gl/gl.hpp>
-#include <photongrid/backends/serial/serial.hpp>
-#include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/render/render.hpp>
 
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <functional>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include <sys/resource.h>
 
@@ -33,9 +22,15 @@ namespace {
 using namespace photongrid;
 using namespace photongrid::bench;
 
-scene room_with_balls(uint triangles, uint places, bool apart)
+struct arguments {
+    uint triangles = 1'000'000, places = 1;
+    bool apart = false;
+    std::string backend = "cpu";
+};
+
+scene room_with_balls(const arguments& a)
 {
-    auto ball = testing::bumpy_ball(testing::rings_of(triangles), 0.7f, 0.2f);
+    auto ball = testing::bumpy_ball(testing::rings_of(a.triangles), 0.7f, 0.2f);
     ball.normals = ball.positions; // not quite those of the bumps; the time is the same
     scene s;
     s.name = "room_with_ball";
@@ -45,14 +40,14 @@ scene room_with_balls(uint triangles, uint places, bool apart)
         {{{-2, 0, 2}, {-2, 3, 2}, {2, 3, 2}, {2, 0, 2}}, 0}, {{{-2, 0, -2}, {-2, 3, -2}, {-2, 3, 2}, {-2, 0, 2}}, 0}};
     auto surface = std::make_shared<const mesh>(std::move(ball));
     s.meshes = {{"", surface, glm::dmat3(1), {0, 0.85, 0}, 1}};
-    if (places > 1) {
+    if (a.places > 1) {
         // Turned balls in rows on the floor.
-        const auto rows = static_cast<uint>(std::ceil(std::sqrt(places)));
+        const auto rows = static_cast<uint>(std::ceil(std::sqrt(a.places)));
         const double apart_by = 3.6 / rows, size = 0.6 * apart_by;
         s.meshes.clear();
-        for (uint i = 0; i < places; ++i) {
+        for (uint i = 0; i < a.places; ++i) {
             const double turn = 0.7 * i, c = size * std::cos(turn), d = size * std::sin(turn);
-            if (apart)
+            if (a.apart)
                 surface = std::make_shared<const mesh>(*surface);
             s.meshes.push_back({"", surface, glm::dmat3(c, 0, -d, 0, size, 0, d, 0, c),
                 {-1.8 + apart_by * (i % rows + 0.5), 0.85 * size, -1.8 + apart_by * (i / rows + 0.5)}, 1});
@@ -109,36 +104,16 @@ void measure(B& device, const scene& s)
 
 } // namespace
 
-int main(int argc, char** argv)
+photongrid::bench::verb_run photongrid::bench::add_pictures(CLI::App& verb)
 {
-    uint triangles = 1'000'000, places = 1;
-    bool apart = false;
-    std::string backend = "cpu";
-    for (int i = 1; i < argc; ++i) {
-        const std::string name = argv[i], value = i + 1 < argc ? argv[i + 1] : "";
-        if (name == "--triangles" && std::atoi(value.c_str()) > 0) {
-            triangles = static_cast<uint>(std::atoi(value.c_str()));
-        } else if (name == "--places" && std::atoi(value.c_str()) > 0) {
-            places = static_cast<uint>(std::atoi(value.c_str()));
-        } else if (name == "--stored" && (value == "once" || value == "apart")) {
-            apart = value == "apart";
-        } else if (name == "--backend" && (value == "serial" || value == "cpu" || value == "gl" || value == "vulkan")) {
-            backend = value;
-        } else {
-            std::fprintf(stderr, "mesh_pictures: \"%s %s\" is no argument of it; the source's first lines list them\n",
-                name.c_str(), value.c_str());
-            return 2;
-        }
-        ++i;
-    }
-    const auto s = room_with_balls(triangles, places, apart);
-    const auto on = [&](auto&& device) { measure(device, s); };
-    if (backend == "serial")
-        on(serial_backend());
-    else if (backend == "cpu")
-        on(cpu_backend());
-    else if (backend == "gl")
-        on(gl_backend());
-    else
-        on(vulkan_backend());
+    const auto a = std::make_shared<arguments>();
+    verb.add_option("--triangles", a->triangles, "of the mesh, about")->check(CLI::PositiveNumber);
+    verb.add_option("--places", a->places, "in which it stands")->check(CLI::PositiveNumber);
+    verb.add_flag("--apart", a->apart, "its surface is stored for each place");
+    verb.add_option("--backend", a->backend)->check(CLI::IsMember(backend_names));
+    return [a] {
+        const auto s = room_with_balls(*a);
+        on_backend(a->backend, [&](auto&& device) { measure(device, s); });
+        return 0;
+    };
 }

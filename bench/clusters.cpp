@@ -1,14 +1,6 @@
 // The k nearest photons against CGAL, FLANN and nanoflann where photons lie in clusters (clustered_sets.hpp), on the
-// cpu backend: docs/reference/measures.md. As in knn_peers, all are exact, at the same number of threads, and k-th
+// cpu backend: docs/reference/measures.md. As in search.cpp, all are exact, at the same number of threads, and k-th
 // squared distances are compared. Exits 1 where a map is slower than wanted, 3 where distances differ.
-//
-//   clustered_peers [--sets NAME,NAME|all] [--k K,K] [--maps NAME,NAME] [--points photons|few] [--shuffle]
-//                   [--threads N] [--seconds S] [--photons N] [--data FILE]
-//
-// --sets     all: uniform10m too, which needs 4 GB.
-// --points   photons: a search at each photon; few: at 65,536 points, half of them photons.
-// --photons  of each set, 1,000,000 unless given; at least 1,000.
-// --data     writes a row for each set, k and map to FILE, for bench/clustered_peers.sh.
 //
 // A peer takes every n-th run of 64 points so that it ends within S seconds. photongrid takes all points if it ends
 // within 10 S seconds, otherwise runs for S seconds. Distances are compared wherever both have searched.
@@ -16,14 +8,13 @@
 #include "map_search.hpp"
 #include "median.hpp"
 #include "peers.hpp"
+#include "verbs.hpp"
 
 #include <photongrid/backends/cpu/cpu.hpp>
 #include <photongrid/map/map_builders.hpp>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
-#include <string>
 
 namespace {
 
@@ -75,11 +66,6 @@ struct arguments {
 bool has(const std::vector<std::string>& names, const char* name)
 {
     return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-bool is_asked_for(const arguments& a, const clustered_set& which)
-{
-    return has(a.sets, "all") || bench::is_asked_for(a.sets, which);
 }
 
 /// A map in one row of the table, or a peer.
@@ -208,71 +194,18 @@ int measure(cpu_backend& b, const clustered_set& which, const data_set& s, uint 
     return worst;
 }
 
-/// The command line; nothing where it is wrong.
-std::optional<arguments> read_arguments(int argc, char** argv)
-{
-    arguments a;
-    bool good = true;
-    for (int i = 1; i < argc && good; ++i) {
-        const auto is = [&](const char* name) { return std::strcmp(argv[i], name) == 0 && i + 1 < argc; };
-        if (is("--sets"))
-            a.sets = names_in(argv[++i]);
-        else if (is("--maps"))
-            a.maps = names_in(argv[++i]);
-        else if (is("--k")) {
-            a.k.clear();
-            for (const auto& name : names_in(argv[++i]))
-                a.k.push_back(static_cast<uint>(std::clamp(std::atoi(name.c_str()), 1, 999)));
-        } else if (is("--points")) {
-            a.few_points = std::strcmp(argv[++i], "few") == 0;
-            good = a.few_points || std::strcmp(argv[i], "photons") == 0;
-        } else if (is("--threads"))
-            a.threads = static_cast<unsigned>(std::max(1, std::atoi(argv[++i])));
-        else if (is("--seconds"))
-            a.seconds = std::max(0.01, std::atof(argv[++i]));
-        else if (is("--photons"))
-            a.photons = static_cast<uint>(std::clamp(std::atoi(argv[++i]), 1000, 10000000));
-        else if (is("--data"))
-            a.data = argv[++i];
-        else if (std::strcmp(argv[i], "--shuffle") == 0)
-            a.shuffle = true;
-        else
-            good = false;
-    }
-    const auto known_set = [](const std::string& name) {
-        const auto all = clustered_sets();
-        return name == "all" || std::any_of(all.begin(), all.end(), [&](const auto& s) { return s.name == name; });
-    };
-    const auto known_map = [](const std::string& name) {
-        return std::any_of(std::begin(map_kinds), std::end(map_kinds), [&](const auto& m) { return m.name == name; });
-    };
-    if (good && std::all_of(a.sets.begin(), a.sets.end(), known_set)
-        && std::all_of(a.maps.begin(), a.maps.end(), known_map))
-        return a;
-    std::fprintf(stderr,
-        "clustered_peers [--sets NAME,NAME|all] [--k K,K] [--maps NAME,NAME] [--points photons|few] [--shuffle] "
-        "[--threads N] [--seconds S] [--photons N] [--data FILE]\nsets:");
-    for (const auto& s : clustered_sets())
-        std::fprintf(stderr, " %s", s.name);
-    std::fprintf(stderr, "\nmaps:");
-    for (const auto& m : map_kinds)
-        std::fprintf(stderr, " %s", m.name);
-    std::fprintf(stderr, "\n");
-    return std::nullopt;
-}
-
 void print_head(const arguments& a)
 {
     std::printf("cpu, %u thread%s, %u photons, a search at %s%s\n\n", a.threads, a.threads == 1 ? "" : "s", a.photons,
         a.few_points ? "65536 points, half of them photons" : "each photon",
         a.shuffle ? ", points in random order" : "");
     for (const auto& which : clustered_sets())
-        if (is_asked_for(a, which))
+        if (is_asked_for(a.sets, which))
             std::printf("- %s: %s\n", which.name, which.what);
     std::printf("\n");
 }
 
-int measure_all(const arguments& a)
+int run_clusters(const arguments& a)
 {
     cpu_backend b(a.threads);
     print_head(a);
@@ -280,7 +213,7 @@ int measure_all(const arguments& a)
     int worst = 0;
     std::string left_out;
     for (const auto& which : clustered_sets()) {
-        if (!is_asked_for(a, which))
+        if (!is_asked_for(a.sets, which))
             continue;
         auto s = make_clustered_set(which, a.photons);
         if (a.few_points)
@@ -304,15 +237,16 @@ int measure_all(const arguments& a)
 
 } // namespace
 
-int main(int argc, char** argv)
+photongrid::bench::verb_run photongrid::bench::add_clusters(CLI::App& verb)
 {
-    const auto a = read_arguments(argc, argv);
-    if (!a)
-        return 2;
-    try {
-        return measure_all(*a);
-    } catch (const std::exception& e) {
-        std::fprintf(stderr, "clustered_peers: %s\n", e.what());
-        return 2;
-    }
+    const auto a = std::make_shared<arguments>();
+    add_set_options(verb, a->sets, a->k, a->photons, a->seconds, a->few_points);
+    std::set<std::string> maps;
+    for (const auto& kind : map_kinds)
+        maps.insert(kind.name);
+    verb.add_option("--maps", a->maps, "with commas; all unless given")->delimiter(',')->check(CLI::IsMember(maps));
+    verb.add_option("--threads", a->threads)->check(CLI::PositiveNumber);
+    verb.add_flag("--shuffle", a->shuffle, "points in random order");
+    verb.add_option("--data", a->data, "a file that gets a row for each set, k and map");
+    return [a] { return run_clusters(*a); };
 }

@@ -1,15 +1,12 @@
 // Rays against triangles, beside Embree: docs/reference/measures.md.
 //
-//   ray_peers [--triangles N] [--rays N] [--repeats N] [--threads N]
-//
-// The mesh is a closed ball with bumps (tests/trace/mesh_sets.hpp) of about N triangles, 100,000 unless given. Half of
+// The mesh is a closed ball with bumps (tests/trace/mesh_sets.hpp). Half of
 // the rays begin at random places inside of it, the others on a sphere around it, in random directions. Each searcher
 // finds the closest hits of all, then whether anything is hit; medians of the repeats, which take turns, as the builds
 // of the trees do. The stream is Embree's call for many rays at once. Exits 3 where more than one hit in 10,000 is
 // another triangle than Embree's.
-// --threads  that build the trees, 1 unless given; rays are searched for by one
-#include "median.hpp"
 #include "stopwatch.hpp"
+#include "verbs.hpp"
 
 #include "../tests/trace/mesh_sets.hpp"
 
@@ -20,12 +17,8 @@
 #include <embree3/rtcore.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <functional>
 #include <limits>
-#include <string>
-#include <vector>
 
 namespace {
 
@@ -155,27 +148,8 @@ struct ours {
     }
 };
 
-} // namespace
-
-int main(int count, char** values)
+int run_rays(const arguments& a)
 {
-    arguments a;
-    for (int i = 1; i + 1 < count; i += 2) {
-        const std::string name = values[i];
-        const auto number = std::strtoul(values[i + 1], nullptr, 10);
-        if (name == "--triangles")
-            a.triangles = static_cast<uint>(number);
-        else if (name == "--rays")
-            a.rays = number;
-        else if (name == "--repeats")
-            a.repeats = static_cast<int>(number);
-        else if (name == "--threads")
-            a.threads = static_cast<uint>(number);
-        else {
-            std::fprintf(stderr, "ray_peers: unknown argument \"%s\"\n", name.c_str());
-            return 2;
-        }
-    }
     constexpr size_t all_searchers = 5; // the last one only of closest hits
     const mesh m = testing::bumpy_ball(testing::rings_of(a.triangles), 1, 0.2f);
     const auto rays = random_rays(a.rays);
@@ -241,4 +215,16 @@ int main(int count, char** values)
         }
     }
     return status;
+}
+
+} // namespace
+
+photongrid::bench::verb_run photongrid::bench::add_rays(CLI::App& verb)
+{
+    const auto a = std::make_shared<arguments>();
+    verb.add_option("--triangles", a->triangles, "about")->check(CLI::PositiveNumber);
+    verb.add_option("--rays", a->rays)->check(CLI::PositiveNumber);
+    verb.add_option("--repeats", a->repeats)->check(CLI::PositiveNumber);
+    verb.add_option("--threads", a->threads, "that build the trees; one searches")->check(CLI::PositiveNumber);
+    return [a] { return run_rays(*a); };
 }

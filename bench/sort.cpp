@@ -1,9 +1,8 @@
 // Sorting pairs of a 32-bit key and a 32-bit value against std::sort, Highway's vqsort and TBB's parallel_sort, all on
 // the same pairs, compared whole: docs/reference/measures.md. Prints PASS or FAIL per row; exits 1 where one is too
 // slow, 3 where the order differs.
-//
-//   sort_peers [THREADS [LARGEST NUMBER OF PAIRS]]
-#include "median.hpp"
+#include "stopwatch.hpp"
+#include "verbs.hpp"
 
 #include <photongrid/backends/cpu/overrides/bitonic_sort.hpp>
 
@@ -12,16 +11,14 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <functional>
 #include <random>
 
 namespace {
 
 using namespace photongrid;
 using bench::median;
+using bench::ms_of;
 using pair_bits = std::uint64_t; ///< the key above the value, so that comparing numbers compares pairs
 
 std::vector<pair_bits> make_pairs(std::size_t n, std::uint32_t keys)
@@ -36,22 +33,11 @@ std::vector<pair_bits> make_pairs(std::size_t n, std::uint32_t keys)
     return pairs;
 }
 
-double ms_of(const std::function<void()>& work)
+int run_sort(unsigned threads, std::size_t most)
 {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-} // namespace
-
-int main(int argc, char** argv)
-{
-    const auto threads = static_cast<unsigned>(argc > 1 ? std::max(1, std::atoi(argv[1])) : 1);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     cpu_backend b(threads);
     hwy::Sorter vqsort;
-    const auto most = static_cast<std::size_t>(argc > 2 ? std::max(1, std::atoi(argv[2])) : 1 << 24);
     int worst = 0;
     std::printf("%u thread%s; ms, medians of seven\n\n| pairs | keys | photongrid | std::sort | vqsort, 1 thread | TBB "
                 "parallel_sort | over std::sort | wanted | |\n|---|---|---|---|---|---|---|---|---|\n",
@@ -96,4 +82,15 @@ int main(int argc, char** argv)
             std::fflush(stdout);
         }
     return worst;
+}
+
+} // namespace
+
+photongrid::bench::verb_run photongrid::bench::add_sort(CLI::App& verb)
+{
+    const auto threads = std::make_shared<unsigned>(1);
+    const auto most = std::make_shared<std::size_t>(1 << 24);
+    verb.add_option("--threads", *threads)->check(CLI::PositiveNumber);
+    verb.add_option("--most", *most, "sorts no more pairs than that");
+    return [=] { return run_sort(*threads, *most); };
 }

@@ -1,23 +1,18 @@
 // How long the searches take on S3, the faces of a room with two boxes, k = 500, by grid: docs/reference/measures.md.
 // Every backend in one run, searches alternating; the estimates are compared with brute force (float distances, sums in
 // double).
-//
-//   search_times [REPETITIONS [BACKEND [POINTS]]]
-//
 // Exits with 1 where a ratio is less than wanted.
+#include "backends.hpp"
 #include "data_sets.hpp"
+#include "stopwatch.hpp"
+#include "verbs.hpp"
 
-#include <photongrid/backends/cpu/cpu.hpp>
-#include <photongrid/backends/gl/gl.hpp>
-#include <photongrid/backends/serial/serial.hpp>
-#include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/map/map_builders.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <cstring>
+#include <optional>
 
 namespace {
 
@@ -92,7 +87,7 @@ struct verdicts {
 };
 
 template <backend B>
-verdicts measure(B&& b, const data_set& s, uint repetitions)
+verdicts measure(B& b, const data_set& s, uint repetitions)
 {
     verdicts all;
     for (const auto resolution : {glm::uvec3(25, 25, 50), glm::uvec3(16, 16, 16), glm::uvec3(25, 25, 25),
@@ -108,24 +103,23 @@ verdicts measure(B&& b, const data_set& s, uint repetitions)
         for (uint i = 0; i <= repetitions; ++i)
             for (int which = 0; which < 2; ++which) {
                 b.finish();
-                const auto start = std::chrono::steady_clock::now();
-                const auto e = knn_grid_estimate(b, map, points, which == 0 ? paper : exact);
-                b.finish();
+                std::optional<knn_estimates<B>> e;
+                const double seconds = bench::seconds_of([&] {
+                    e = knn_grid_estimate(b, map, points, which == 0 ? paper : exact);
+                    b.finish();
+                });
                 if (i > 0) // kernels compile the first time
-                    times[which].push_back(
-                        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+                    times[which].push_back(seconds);
                 if (i == repetitions) {
-                    for (const auto& u : b.download(e.used)) {
+                    for (const auto& u : b.download(e->used)) {
                         used[which] += u.x;
                         visited[which] += u.y;
                     }
-                    relmse[which] = error(s, b.download(e.irradiance));
+                    relmse[which] = error(s, b.download(e->irradiance));
                 }
             }
         const auto n = static_cast<double>(s.points.size());
-        for (auto& t : times)
-            std::sort(t.begin(), t.end());
-        const double paper_rate = n / times[0][repetitions / 2], exact_rate = n / times[1][repetitions / 2];
+        const double paper_rate = n / bench::median(times[0]), exact_rate = n / bench::median(times[1]);
         std::printf("| %s | %u x %u x %u | %.1f | %.1f | %.2f | %.0f | %.0f | %.0f | %.0f | %.1e | %.1e |\n",
             b.caps().backend.c_str(), resolution.x, resolution.y, resolution.z, paper_rate / 1000, exact_rate / 1000,
             exact_rate / paper_rate, used[0] / n, visited[0] / n, used[1] / n, visited[1] / n, relmse[0], relmse[1]);
@@ -135,33 +129,39 @@ verdicts measure(B&& b, const data_set& s, uint repetitions)
     return all;
 }
 
-} // namespace
+struct arguments {
+    uint repetitions = 3;
+    std::vector<std::string> backends{"serial", "cpu", "vulkan", "gl"};
+    std::size_t points = 1 << 30;
+};
 
-int main(int argc, char** argv)
+int run_grids(const arguments& a)
 {
-    const uint repetitions = argc > 1 ? static_cast<uint>(std::max(1, std::atoi(argv[1]))) : 3;
     auto s = bench::make_data_set(3);
     for (std::size_t i = 0; 6 * i < s.points.size(); ++i) // serial takes its time
         s.points[i] = s.points[6 * i];
-    s.points.resize(std::min(
-        (s.points.size() + 5) / 6, static_cast<std::size_t>(argc > 3 ? std::max(200, std::atoi(argv[3])) : 1 << 30)));
+    s.points.resize(std::min((s.points.size() + 5) / 6, a.points));
     std::printf("S3: %zu photons, %zu points, k = %u, maximum radius %.2f m\n", s.positions.size(), s.points.size(), k,
         static_cast<double>(max_radius));
     std::printf("| backend | grid | at_least_k, 1000/s | exact_k, 1000/s | ratio | used | visited | used | visited | "
                 "relMSE | relMSE |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
-    const auto wanted = [&](const char* name) { return argc < 3 || std::strcmp(argv[2], name) == 0; };
     std::vector<std::pair<std::string, verdicts>> all;
-    const auto measured = [&](const char* name, auto make) {
-        if (wanted(name))
-            all.emplace_back(name, measure(make(), s, repetitions));
-    };
-    measured("serial", [] { return serial_backend(); });
-    measured("cpu", [] { return cpu_backend(); });
-    measured("vulkan", [] { return vulkan_backend(); });
-    measured("gl", [] { return gl_backend(); });
+    for (const auto& name : a.backends)
+        all.emplace_back(name, bench::on_backend(name, [&](auto&& b) { return measure(b, s, a.repetitions); }));
     std::printf("\n");
     bool all_as_wanted = true;
     for (const auto& [name, v] : all)
         all_as_wanted = v.print(name) && all_as_wanted;
     return all_as_wanted ? 0 : 1;
+}
+
+} // namespace
+
+photongrid::bench::verb_run photongrid::bench::add_grids(CLI::App& verb)
+{
+    const auto a = std::make_shared<arguments>();
+    verb.add_option("--repetitions", a->repetitions)->check(CLI::PositiveNumber);
+    verb.add_option("--backends", a->backends, "with commas")->delimiter(',')->check(CLI::IsMember(backend_names));
+    verb.add_option("--points", a->points, "at most")->check(CLI::Range(200, 1 << 30));
+    return [a] { return run_grids(*a); };
 }

@@ -3,19 +3,13 @@
 // per data set; exits 1 where one is too slow or takes too much memory, 3 where distances differ. On one thread of the
 // cpu backend it also builds maps against trees, and searches on two threads.
 //
-//   knn_peers [--backend cpu|vulkan|gl] [--threads N] [--sets 12345] [--seconds S] [--shuffle] [--avx2]
-//
-// A vulkan or gl device takes the threads that it takes: two of llvmpipe and lavapipe on a machine of two cores.
-// --threads are the peers' then.
-//
-// --avx2: no AVX-512 on our side, and half of each ratio wanted, whatever the machine has.
-//
 // photongrid makes whole estimates (it adds up the photons' power as well); peers only find. A peer takes every n-th
 // run of 64 points so that it ends within S seconds; photongrid takes all.
 #include "data_sets.hpp"
 #include "device_searches.hpp"
 #include "median.hpp"
 #include "peers.hpp"
+#include "verbs.hpp"
 
 #include <photongrid/backends/cpu/cpu.hpp>
 #include <photongrid/backends/gl/gl.hpp>
@@ -26,10 +20,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <optional>
 #include <random>
-#include <string>
 #include <thread>
 
 namespace {
@@ -172,48 +164,6 @@ int measure(B& b, int number, const arguments& a)
     return report(s, g, m, number, a);
 }
 
-/// The command line; nothing where it is wrong, which has been said then.
-std::optional<arguments> read_arguments(int argc, char** argv)
-{
-    arguments a;
-    for (int i = 1; i < argc; ++i) {
-        const auto is = [&](const char* name) { return std::strcmp(argv[i], name) == 0 && i + 1 < argc; };
-        if (is("--backend"))
-            a.backend = argv[++i];
-        else if (is("--threads"))
-            a.threads = static_cast<unsigned>(std::max(1, std::atoi(argv[++i])));
-        else if (is("--sets"))
-            a.sets = argv[++i];
-        else if (is("--seconds"))
-            a.seconds = std::max(0.01, std::atof(argv[++i]));
-        else if (std::strcmp(argv[i], "--shuffle") == 0)
-            a.shuffle = true;
-        else if (std::strcmp(argv[i], "--avx2") == 0)
-            a.avx2 = true;
-        else {
-            std::fprintf(stderr,
-                "knn_peers [--backend cpu|vulkan|gl] [--threads N] [--sets 12345] [--seconds S] [--shuffle] "
-                "[--avx2]\n");
-            return std::nullopt;
-        }
-    }
-    if (a.backend != "cpu" && a.backend != "vulkan" && a.backend != "gl") {
-        std::fprintf(stderr, "knn_peers: --backend: '%s'; cpu, vulkan or gl\n", a.backend.c_str());
-        return std::nullopt;
-    }
-    if (a.avx2) {
-        hwy::DisableTargets(HWY_AVX3 | HWY_AVX3_DL);
-        const auto left = hwy::SupportedAndGeneratedTargets();
-        if (std::find(left.begin(), left.end(), HWY_AVX2) == left.end()) {
-            std::fprintf(stderr,
-                "knn_peers: --avx2: this machine has none, or the program is compiled for a better one alone; "
-                "knn_peers_portable is not\n");
-            return std::nullopt;
-        }
-    }
-    return a;
-}
-
 void print_head(const arguments& a)
 {
     std::printf("%s, %u thread%s%s%s\n\n", a.backend.c_str(), a.threads, a.threads == 1 ? "" : "s",
@@ -228,14 +178,15 @@ void print_head(const arguments& a)
         is_alone(a) ? " two threads over one |" : "", is_alone(a) ? "---|" : "");
 }
 
-} // namespace
-
-int main(int argc, char** argv)
+int run_search(const arguments& a)
 {
-    const auto given = read_arguments(argc, argv);
-    if (!given)
-        return 2;
-    const arguments& a = *given;
+    if (a.avx2) {
+        hwy::DisableTargets(HWY_AVX3 | HWY_AVX3_DL);
+        const auto left = hwy::SupportedAndGeneratedTargets();
+        if (std::find(left.begin(), left.end(), HWY_AVX2) == left.end())
+            throw std::runtime_error(
+                "--avx2: this machine has none, or the program is compiled for a better one alone");
+    }
     print_head(a);
     const auto all = [&](auto&& b) {
         int worst = 0;
@@ -244,12 +195,22 @@ int main(int argc, char** argv)
                 worst = std::max(worst, measure(b, number, a));
         return worst;
     };
-    try {
-        return a.backend == "cpu"   ? all(cpu_backend(a.threads))
-            : a.backend == "vulkan" ? all(vulkan_backend())
-                                    : all(gl_backend());
-    } catch (const backend_error& e) {
-        std::fprintf(stderr, "knn_peers: %s\n", e.what());
-        return 2;
-    }
+    return a.backend == "cpu"   ? all(cpu_backend(a.threads))
+        : a.backend == "vulkan" ? all(vulkan_backend())
+                                : all(gl_backend());
+}
+
+} // namespace
+
+photongrid::bench::verb_run photongrid::bench::add_search(CLI::App& verb)
+{
+    const auto a = std::make_shared<arguments>();
+    verb.add_option("--backend", a->backend)->check(CLI::IsMember({"cpu", "vulkan", "gl"}));
+    verb.add_option("--threads", a->threads, "of cpu and the peers; other devices take what they take")
+        ->check(CLI::PositiveNumber);
+    verb.add_option("--sets", a->sets, "their numbers");
+    verb.add_option("--seconds", a->seconds, "that a peer takes for a set, about")->check(CLI::PositiveNumber);
+    verb.add_flag("--shuffle", a->shuffle, "points in random order; half of each ratio wanted");
+    verb.add_flag("--avx2", a->avx2, "no AVX-512 on our side; half of each ratio wanted");
+    return [a] { return run_search(*a); };
 }

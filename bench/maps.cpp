@@ -1,30 +1,18 @@
 // Which map suits photons in clusters (clustered_sets.hpp) on each backend: searches for the k nearest in a grid map
 // whose grid fits the photons, in a block map, and in the one that fitted_map chooses. docs/reference/measures.md.
 //
-//   clustered_maps [--sets NAME,NAME] [--k K,K] [--backends NAME,NAME] [--photons N] [--points photons|few]
-//                  [--seconds S]
-//
-// --photons  of each set, 65,536 unless given; at least 1,000.
-// --points   photons: a search at each photon; few: at 65,536 points, half of them photons.
-//
 // A map takes every n-th run of 64 points so that it ends within S seconds, or all if it ends within 4 S seconds. The
 // maps of a row are searched in turn, three times each, and medians are compared. Exits 1 where the chosen map is more
 // than 1.2 times as slow as the better one.
+#include "backends.hpp"
 #include "clustered_sets.hpp"
 #include "device_searches.hpp"
-#include "median.hpp"
 #include "point_runs.hpp"
 
-#include <photongrid/backends/cpu/cpu.hpp>
-#include <photongrid/backends/gl/gl.hpp>
-#include <photongrid/backends/serial/serial.hpp>
-#include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/map/map_builders.hpp>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <string>
 
 namespace {
 
@@ -86,7 +74,7 @@ private:
 
 /// Prints a backend's rows. Returns whether every choice was good.
 template <backend B>
-bool measure(B&& b, const arguments& a)
+bool measure(B& b, const arguments& a)
 {
     bool all_good = true;
     for (const auto& which : clustered_sets()) {
@@ -122,47 +110,8 @@ bool measure(B&& b, const arguments& a)
     return all_good;
 }
 
-[[noreturn]] void usage_error(const std::string& what)
+int run_maps(const arguments& a)
 {
-    std::fprintf(stderr, "clustered_maps: %s; see the first lines of bench/clustered_maps.cpp\n", what.c_str());
-    std::exit(2);
-}
-
-arguments parsed(int argc, char** argv)
-{
-    arguments a;
-    for (int i = 1; i < argc; ++i) {
-        const std::string option = argv[i];
-        if (i + 1 == argc)
-            usage_error(option + ": expected a value after it");
-        const std::string value = argv[++i];
-        const auto words = names_in(value.c_str());
-        if (option == "--sets") {
-            a.sets = words;
-        } else if (option == "--backends") {
-            a.backends = words;
-        } else if (option == "--k") {
-            a.k.clear();
-            for (const auto& word : words)
-                a.k.push_back(static_cast<uint>(std::max(1, std::atoi(word.c_str()))));
-        } else if (option == "--photons") {
-            a.photons = static_cast<uint>(std::max(1000, std::atoi(value.c_str())));
-        } else if (option == "--seconds") {
-            a.seconds = std::max(1e-3, std::atof(value.c_str()));
-        } else if (option == "--points" && (value == "photons" || value == "few")) {
-            a.few_points = value == "few";
-        } else {
-            usage_error(option + " " + value + ": no such option or value");
-        }
-    }
-    return a;
-}
-
-} // namespace
-
-int main(int argc, char** argv)
-{
-    const auto a = parsed(argc, argv);
     std::printf("%u photons in each set, searches at %s\n\n", a.photons,
         a.few_points ? "65,536 points, half of them photons" : "each photon, or every n-th run of 64");
     std::printf(
@@ -170,17 +119,17 @@ int main(int argc, char** argv)
         "time of the chosen kind over the better's | at most %.1f |\n|---|---|---|---|---|---|---|---|---|---|\n",
         slowest_choice);
     bool all_good = true;
-    for (const auto& name : a.backends) {
-        if (name == "serial")
-            all_good = measure(serial_backend(), a) && all_good;
-        else if (name == "cpu")
-            all_good = measure(cpu_backend(), a) && all_good;
-        else if (name == "gl")
-            all_good = measure(gl_backend(), a) && all_good;
-        else if (name == "vulkan")
-            all_good = measure(vulkan_backend(), a) && all_good;
-        else
-            usage_error("--backends " + name + ": expected serial, cpu, gl or vulkan");
-    }
+    for (const auto& name : a.backends)
+        all_good = on_backend(name, [&](auto&& b) { return measure(b, a); }) && all_good;
     return all_good ? 0 : 1;
+}
+
+} // namespace
+
+photongrid::bench::verb_run photongrid::bench::add_maps(CLI::App& verb)
+{
+    const auto a = std::make_shared<arguments>();
+    add_set_options(verb, a->sets, a->k, a->photons, a->seconds, a->few_points);
+    verb.add_option("--backends", a->backends, "with commas")->delimiter(',')->check(CLI::IsMember(backend_names));
+    return [a] { return run_maps(*a); };
 }

@@ -1,8 +1,7 @@
 // The ring and the glass ball in POV-Ray's language, and how far POV-Ray's caustic in the ring lies over ours. Run by
-// bench/povray_ring.sh and bench/pictures.sh.
-//
-//   povray_ring export SCENE.json PHOTONS        prints a .pov file with so many photons, 0 for none
-//   povray_ring compare SCENE.json OURS.exr POV.exr POV_WITHOUT.exr
+// bench/sections.py.
+#include "verbs.hpp"
+
 #include <photongrid/reference/reference.hpp>
 
 #include <photongrid/io/image_file.hpp>
@@ -30,7 +29,7 @@ std::string vec(const dvec3& v)
 void print_pov(const scene& s, long photons)
 {
     if (count_shapes(s) != s.spheres.size() + s.polygons.size() + s.cylinders.size())
-        throw std::invalid_argument("povray_ring: only polygons, cylinders and spheres are exported");
+        throw std::invalid_argument("povray: only polygons, cylinders and spheres are exported");
     const auto surface = [&](std::uint32_t id) {
         const auto& m = s.materials[id];
         if (m.kind == material_kind::glass)
@@ -103,11 +102,11 @@ double overlap(
     return static_cast<double>(both) / static_cast<double>(std::max<std::size_t>(any, 1));
 }
 
-void compare(const scene& s, const image& ours, const image& pov, const image& without)
+int compare(const scene& s, const image& ours, const image& pov, const image& without)
 {
     if (ours.width != pov.width || ours.height != pov.height || pov.width != without.width
         || pov.height != without.height)
-        throw std::invalid_argument("povray_ring: the pictures differ in size");
+        throw std::invalid_argument("povray: the pictures differ in size");
     const reference::geometry shapes(s);
     const auto& c = s.camera;
     const dvec3 forward = glm::normalize(c.look_at - c.position), right = glm::normalize(glm::cross(forward, c.up)),
@@ -153,26 +152,27 @@ void compare(const scene& s, const image& ours, const image& pov, const image& w
         std::printf("| %.0f %% | %.3f | %.3f |\n", 100 * share, overlap(p, q, floor, 0), overlap(p, q, floor, 8));
     }
     const auto p = brightest(mine, floor, 0.1), q = brightest(theirs, floor, 0.1);
-    if (overlap(p, q, floor, 0) < 0.7)
-        throw std::runtime_error("the caustics overlap by less than 0.7 at the brightest tenth");
+    return overlap(p, q, floor, 0) < 0.7 ? 1 : 0; // of the brightest tenth
 }
 
 } // namespace
 
-int main(int argc, char** argv)
+photongrid::bench::verb_run photongrid::bench::add_povray(CLI::App& verb)
 {
-    try {
-        const std::vector<std::string> words(argv + 1, argv + argc);
-        if (words.size() == 3 && words[0] == "export")
-            print_pov(read_scene(words[1]), std::stol(words[2]));
-        else if (words.size() == 5 && words[0] == "compare")
-            compare(read_scene(words[1]), read_image(words[2]), read_image(words[3]), read_image(words[4]));
-        else
-            throw std::invalid_argument("povray_ring: expected export SCENE.json PHOTONS, or compare SCENE.json "
-                                        "OURS.exr POV.exr POV_WITHOUT.exr");
-    } catch (const std::exception& e) {
-        std::cerr << "povray_ring: " << e.what() << "\n";
-        return 1;
-    }
-    return 0;
+    struct arguments {
+        std::string scene;
+        long photons = 0;
+        std::vector<std::string> pictures;
+    };
+    const auto a = std::make_shared<arguments>();
+    verb.add_option("scene", a->scene)->required();
+    verb.add_option("--photons", a->photons, "prints a .pov file with so many; 0: none")->check(CLI::NonNegativeNumber);
+    verb.add_option("--compare", a->pictures, "photongrid's, POV-Ray's with photons, and without")->expected(3);
+    return [a] {
+        const auto s = read_scene(a->scene);
+        if (!a->pictures.empty())
+            return compare(s, read_image(a->pictures[0]), read_image(a->pictures[1]), read_image(a->pictures[2]));
+        print_pov(s, a->photons);
+        return 0;
+    };
 }

@@ -1,28 +1,63 @@
 #!/usr/bin/env bash
-# Draws the scenes of other programs' authors, and compares pictures with those that their renderer made.
+# Compares pictures with those of other programs. The exit status is 1 if one misses a relMSE of at most twice the noise of
+# both pictures, of means over 4 x 4 pixels.
 #
-#   bench/scenes_of_others.sh FOLDER [PHOTONGRID]
+#   tests/pictures_of_others.sh cycles [SAMPLES] [PHOTONGRID]
+#   tests/pictures_of_others.sh tungsten FOLDER [PHOTONGRID]      PHOTONGRID: build/photongrid unless given
 #
-# FOLDER has cornell-box, water-caustic and veach-ajar, each with pbrt/scene-v4.pbrt and pbrt/TungstenRender.exr
-# (Benedikt Bitterli's rendering resources). Pictures of 1024 x 1024 pixels (Veach Ajar: 1280 x 720) are left in
-# out/scenes_of_others. They have the filter of that renderer, a tent, and errors are those of means over 4 x 4 pixels.
-# The depths are those of the scenes' integrators.
+# cycles: converts scenes to glTF, draws them with Blender's path tracer, Cycles, and compares the pictures with those of
+# `photongrid reference`: another program's light, by way of our own files. Needs the Debian packages blender and
+# python3-numpy. Pictures of 256 x 256 pixels are left in out/cycles. 256 samples unless given.
 #
-# Wanted of the Cornell box's paths and of Water Caustic is a relMSE of at most twice the noise of both pictures. That
-# of a photon map's is told from two seeds (`compare --again`), that of a picture of paths from itself (`compare
-# --noise`). The exit status is 1 if one misses it. The Cornell box's map has bias besides, and Veach Ajar's pbrt file
-# is another scene than its picture.
+# tungsten: scenes of others and the pictures that their renderer made. FOLDER has cornell-box, water-caustic and veach-ajar,
+# each with pbrt/scene-v4.pbrt and pbrt/TungstenRender.exr (Benedikt Bitterli's rendering resources). Pictures of
+# 1024 x 1024 pixels (Veach Ajar: 1280 x 720) are left in out/scenes_of_others, with the filter of that renderer, a tent,
+# and the depths of the scenes' integrators. The noise of a photon map's picture is told from two seeds (`compare
+# --again`), that of a picture of paths from itself (`compare --noise`). No relMSE is wanted of the Cornell box's map, which
+# has bias besides, and of Veach Ajar, whose pbrt file is another scene than its picture.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-source bench/programs.sh
-folder=${1:-} program=${2:-build/photongrid}
+what=${1:-} given=${2:-} program=${3:-build/photongrid} missed=0
+
+# judge NAME RELMSE OURS THEIRS: whether a picture's relMSE is at most twice the noise of both pictures
+judge() {
+  awk -v name="$1" -v error="$2" -v ours="$3" -v theirs="$4" 'BEGIN {
+    most = 2 * (ours + theirs)
+    printf "%s: relMSE %.2g; noise of ours %.2g, of the other %.2g; ", name, error, ours, theirs
+    printf "wanted at most %.2g: ", most
+    print (error <= most ? "PASS" : "FAIL")
+    exit error > most
+  }'
+}
+
+if [[ $what == cycles ]]; then
+  samples=${given:-256}
+  if ! command -v blender >/dev/null; then
+    echo "pictures_of_others.sh: SKIPPED: no blender (Debian packages blender, python3-numpy)" >&2
+    exit 0
+  fi
+  out=$PWD/out/cycles
+  mkdir -p "$out"
+  for name in cornell_blocks cornell_box; do
+    scene=examples/scenes/$name.json
+    "$program" convert "$scene" "$out/$name.gltf" >/dev/null
+    blender -b --factory-startup -P tests/cycles.py -- "$out/$name.gltf" "$out/$name-cycles.exr" 256 256 "$samples" \
+      >"$out/$name.log" 2>&1 || { cat "$out/$name.log" >&2; exit 2; }
+    "$program" reference "$scene" --size 256x256 --spp "$samples" --quiet -o "$out/$name.exr" >/dev/null
+    read -r error theirs ours < <("$program" compare "$out/$name-cycles.exr" "$out/$name.exr" --average 4 --noise |
+      awk '/^relMSE/ { error = $2 } /^noise/ { print error, $2, $4 }')
+    judge "$name" "$error" "$ours" "$theirs" || missed=1
+  done
+  exit $missed
+fi
+[[ $what == tungsten ]] || { sed -n '2,6s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+folder=$given
 if [[ ! -d $folder ]]; then
-  echo "scenes_of_others.sh: SKIPPED: \"$folder\" is no folder of scenes" >&2
+  echo "pictures_of_others.sh: SKIPPED: \"$folder\" is no folder of scenes" >&2
   exit 0
 fi
 out=out/scenes_of_others
 mkdir -p "$out"
-missed=0
 relmse() { "$program" compare "$1" "$2" --average 4 | tee /dev/stderr | sed -n 's/^relMSE *//p'; } # shows all of it
 seeds() { "$program" compare "$1" "$3" --average 4 --again "$2" | sed -n 's/^seeds *\([^ ]*\) of.*/\1/p'; }
 noise() { "$program" compare "$1" "$1" --average 4 --noise | sed -n 's/^noise *\([^ ]*\) and.*/\1/p'; }
@@ -36,7 +71,7 @@ draw() {
 # is_there NAME: whether the folder has that scene
 is_there() {
   echo "--- $1"
-  [[ -e $folder/$1/pbrt/scene-v4.pbrt ]] || { echo "scenes_of_others.sh: SKIPPED: there is no $1" >&2; return 1; }
+  [[ -e $folder/$1/pbrt/scene-v4.pbrt ]] || { echo "pictures_of_others.sh: SKIPPED: there is no $1" >&2; return 1; }
 }
 # draw_map NAME OPTIONS...: by a photon map, with two seeds
 draw_map() {

@@ -1,4 +1,4 @@
-# Draws a glTF file with Blender's path tracer, Cycles; cycles.sh runs it inside Blender:
+# Draws a glTF file with Blender's path tracer, Cycles; pictures_of_others.sh runs it inside Blender:
 #   blender -b --factory-startup -P cycles.py -- SCENE.gltf PICTURE.exr WIDTH HEIGHT SAMPLES
 # What Blender's reader (3.4) makes of a file is made what the file says:
 # - Its Principled BSDF has Burley's diffuse reflection, which glTF does not have, and a gloss where

@@ -1,20 +1,15 @@
 // How wrong density estimates are and how long they take, on fields of light with a known answer: every search, filter,
-// k and number of photons, on every backend. Prints CSV; bench/error.sh draws it.
-//
-//   field_errors [--quick] [BACKEND...]      BACKEND: serial, gl, vulkan, beside cpu; default: all three
-#include <photongrid/backends/cpu/cpu.hpp>
-#include <photongrid/backends/gl/gl.hpp>
-#include <photongrid/backends/serial/serial.hpp>
-#include <photongrid/backends/vulkan/vulkan.hpp>
+// k and number of photons, on every backend. Prints CSV; bench/sections.py error draws it.
+#include "backends.hpp"
+#include "stopwatch.hpp"
+#include "verbs.hpp"
+
 #include <photongrid/estimate/knn_grid_estimate.hpp>
 #include <photongrid/map/fitting_grid.hpp>
 #include <photongrid/map/map_builders.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <cstring>
-#include <functional>
 #include <optional>
 #include <random>
 
@@ -88,16 +83,10 @@ void measure(B& b, const std::string& name, const field& f, const sample& s, con
 {
     const auto n = static_cast<uint>(s.positions.size());
     const auto seconds = [&](const auto& work) {
-        std::vector<double> t;
-        for (int i = 0; i < 3; ++i) {
-            b.finish();
-            const auto start = std::chrono::steady_clock::now();
+        return bench::median_seconds_of([&] {
             work();
             b.finish();
-            t.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-        }
-        std::sort(t.begin(), t.end());
-        return t[1];
+        });
     };
     const auto upload = [&] {
         return photons<B>{
@@ -131,42 +120,47 @@ void measure(B& b, const std::string& name, const field& f, const sample& s, con
     std::fflush(stdout);
 }
 
-} // namespace
-
-int main(int argc, char** argv)
+int run_fields(const std::vector<std::string>& backends, bool quick)
 {
-    const bool quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
-    const std::vector<std::string> asked(argv + std::min(argc, quick ? 2 : 1), argv + argc);
     const auto wanted
-        = [&](const char* name) { return asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end(); };
+        = [&](const char* name) { return std::find(backends.begin(), backends.end(), name) != backends.end(); };
     const std::vector<uint> numbers = quick ? std::vector<uint>{4096} : std::vector<uint>{4096, 16384, 65536, 262144};
     const std::vector<uint> ks = quick ? std::vector<uint>{16} : std::vector<uint>{16, 64, 256};
     std::printf("field,backend,map,search,filter,k,photons,build_seconds,seconds,relmse\n");
-    try {
-        cpu_backend cpu;
-        std::optional<serial_backend> serial;
-        std::optional<gl_backend> gl;
-        std::optional<vulkan_backend> vulkan;
-        if (wanted("serial"))
-            serial.emplace();
-        if (wanted("gl"))
-            gl.emplace();
-        if (wanted("vulkan"))
-            vulkan.emplace();
-        for (const auto& f : fields())
-            for (const uint n : numbers) {
-                const auto s = sampled(f, n);
-                measure(cpu, "cpu", f, s, ks);
-                if (serial)
-                    measure(*serial, "serial", f, s, ks);
-                if (gl && (n <= 65536 || !gl->caps().software))
-                    measure(*gl, "gl", f, s, ks);
-                if (vulkan && (n <= 65536 || !vulkan->caps().software))
-                    measure(*vulkan, "vulkan", f, s, ks);
-            }
-    } catch (const backend_error& e) {
-        std::fprintf(stderr, "field_errors: %s\n", e.what());
-        return 2;
-    }
+    cpu_backend cpu;
+    std::optional<serial_backend> serial;
+    std::optional<gl_backend> gl;
+    std::optional<vulkan_backend> vulkan;
+    if (wanted("serial"))
+        serial.emplace();
+    if (wanted("gl"))
+        gl.emplace();
+    if (wanted("vulkan"))
+        vulkan.emplace();
+    for (const auto& f : fields())
+        for (const uint n : numbers) {
+            const auto s = sampled(f, n);
+            measure(cpu, "cpu", f, s, ks);
+            if (serial)
+                measure(*serial, "serial", f, s, ks);
+            if (gl && (n <= 65536 || !gl->caps().software))
+                measure(*gl, "gl", f, s, ks);
+            if (vulkan && (n <= 65536 || !vulkan->caps().software))
+                measure(*vulkan, "vulkan", f, s, ks);
+        }
     return 0;
+}
+
+} // namespace
+
+photongrid::bench::verb_run photongrid::bench::add_fields(CLI::App& verb)
+{
+    struct arguments {
+        std::vector<std::string> backends{"serial", "gl", "vulkan"};
+        bool quick = false;
+    };
+    const auto a = std::make_shared<arguments>();
+    verb.add_option("backends", a->backends, "beside cpu")->check(CLI::IsMember(backend_names));
+    verb.add_flag("--quick", a->quick, "few rows, to see that it runs");
+    return [a] { return run_fields(a->backends, a->quick); };
 }

@@ -1,7 +1,8 @@
 // The paper's Table 2 for our kernels: what a pass of each has to do, counted in optimized SPIR-V, beside the figures
 // of 2003; and what integer addresses save (section 4.1): a step of the bitonic sort with float addresses, counted and
 // timed. Prints Markdown.
-#include "median.hpp"
+#include "stopwatch.hpp"
+#include "verbs.hpp"
 
 #include <photongrid/backends/vulkan/vulkan.hpp>
 #include <photongrid/estimate/gather_photons.kernel.hpp>
@@ -17,8 +18,6 @@
 #include <photongrid/trace/emit_photon.kernel.hpp>
 #include <photongrid/trace/eye_bounce.kernel.hpp>
 
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -37,6 +36,7 @@ namespace {
 
 using namespace photongrid;
 using bench::median;
+using bench::ms_of;
 
 /// Instructions in a module's functions, by what they are for.
 struct tally {
@@ -105,11 +105,11 @@ bool compare_steps(vulkan_backend& b)
     auto by_integers = b.make<glm::uvec2>(n), by_floats = b.make<glm::uvec2>(n);
     const auto ms = [&](const auto& pass) {
         b.finish();
-        const auto start = std::chrono::steady_clock::now();
-        for (int i = 0; i < 10; ++i)
-            pass();
-        b.finish();
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / 10;
+        return ms_of([&] {
+            for (int i = 0; i < 10; ++i)
+                pass();
+            b.finish();
+        }) / 10;
     };
     std::vector<double> integers, floats;
     for (int i = 0; i < 6; ++i) {
@@ -133,20 +133,17 @@ bool compare_steps(vulkan_backend& b)
     return same;
 }
 
+int run_kernels()
+{
+    vulkan_backend b;
+    std::ifstream file(PHOTONGRID_BENCH_KERNELS "/bitonic_step_float.glsl");
+    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    const text_file texts[] = {{"bench/kernels/bitonic_step_float.glsl", text}};
+    b.add_texts(texts);
+    print_table(b);
+    return compare_steps(b) ? 0 : 3;
+}
+
 } // namespace
 
-int main()
-{
-    try {
-        vulkan_backend b;
-        std::ifstream file(PHOTONGRID_BENCH_KERNELS "/bitonic_step_float.glsl");
-        const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-        const text_file texts[] = {{"bench/kernels/bitonic_step_float.glsl", text}};
-        b.add_texts(texts);
-        print_table(b);
-        return compare_steps(b) ? 0 : 3;
-    } catch (const backend_error& e) {
-        std::fprintf(stderr, "kernel_costs: %s\n", e.what());
-        return 2;
-    }
-}
+photongrid::bench::verb_run photongrid::bench::add_kernels(CLI::App&) { return run_kernels; }

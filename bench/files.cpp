@@ -1,22 +1,15 @@
 // How fast scene files are read, and with how much memory: a height field as binary PLY, OBJ and glTF. Each file is
 // read in a process of its own. Prints a Markdown table: seconds, the median of three, MB/s, and the largest memory of
 // the process over the size of the file. Exits 1 where a limit is not kept.
-//
-//   scene_files [PLY_MEGABYTES OBJ_MEGABYTES GLB_MEGABYTES]      default: 300 100 18, a million triangles
-#include "median.hpp"
 #include "stopwatch.hpp"
+#include "verbs.hpp"
 
 #include <photongrid/io/scene_import.hpp>
 
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
-#include <functional>
-#include <string>
-#include <vector>
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -191,23 +184,32 @@ namespace {
         return is_good && is_kept;
     }
 
+    int run_files(double ply, double obj, double glb)
+    {
+        // A process has some 10 MB of its own, which counts where files are small.
+        const auto memory = [](double megabytes) { return 3 + 20 / megabytes; };
+        const format formats[] = {{"PLY, binary", ".ply", write_ply, ply, 5 * std::max(1.0, ply / 300), memory(ply)},
+            {"OBJ", ".obj", write_obj, obj, 5 * std::max(1.0, obj / 100), memory(obj)},
+            {"glTF, binary", ".glb", write_glb, glb, 2 * std::max(1.0, glb / 18), 2 + memory(glb)}};
+        std::puts("| format | MB | million triangles | s | MB/s | memory over size |");
+        std::puts("|---|---|---|---|---|---|");
+        bool is_good = true;
+        for (const auto& f : formats)
+            is_good = measure(f) && is_good;
+        return is_good ? 0 : 1;
+    }
+
 } // namespace
 } // namespace photongrid
 
-int main(int argc, char** argv)
+photongrid::bench::verb_run photongrid::bench::add_files(CLI::App& verb)
 {
-    using namespace photongrid;
-    const double ply = argc > 1 ? std::atof(argv[1]) : 300, obj = argc > 2 ? std::atof(argv[2]) : 100,
-                 glb = argc > 3 ? std::atof(argv[3]) : 18;
-    // A process has some 10 MB of its own, which counts where files are small.
-    const auto memory = [](double megabytes) { return 3 + 20 / megabytes; };
-    const format formats[] = {{"PLY, binary", ".ply", write_ply, ply, 5 * std::max(1.0, ply / 300), memory(ply)},
-        {"OBJ", ".obj", write_obj, obj, 5 * std::max(1.0, obj / 100), memory(obj)},
-        {"glTF, binary", ".glb", write_glb, glb, 2 * std::max(1.0, glb / 18), 2 + memory(glb)}};
-    std::puts("| format | MB | million triangles | s | MB/s | memory over size |");
-    std::puts("|---|---|---|---|---|---|");
-    bool is_good = true;
-    for (const auto& f : formats)
-        is_good = measure(f) && is_good;
-    return is_good ? 0 : 1;
+    struct megabytes {
+        double ply = 300, obj = 100, glb = 18; // a million triangles
+    };
+    const auto m = std::make_shared<megabytes>();
+    verb.add_option("--ply", m->ply, "MB")->check(CLI::PositiveNumber);
+    verb.add_option("--obj", m->obj, "MB")->check(CLI::PositiveNumber);
+    verb.add_option("--glb", m->glb, "MB")->check(CLI::PositiveNumber);
+    return [m] { return run_files(m->ply, m->obj, m->glb); };
 }

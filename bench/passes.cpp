@@ -1,24 +1,21 @@
 // How much the sorting network gains on GPUs' APIs by more steps in a pass, in place, and by two pairs to a texel,
 // against the plain one, a step a pass: docs/reference/measures.md. Prints PASS or FAIL per row; exits 1 where one is
 // too slow, 3 where the order differs.
-//
-//   sort_passes [NUMBER OF PAIRS]
-#include "median.hpp"
+#include "stopwatch.hpp"
+#include "verbs.hpp"
 
 #include <photongrid/backends/gl/overrides/bitonic_sort.hpp>
 #include <photongrid/backends/vulkan/overrides/bitonic_sort.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <functional>
 #include <random>
 
 namespace {
 
 using namespace photongrid;
 using bench::median;
+using bench::seconds_of;
 using pairs_type = std::vector<glm::uvec2>;
 
 template <backend B>
@@ -40,11 +37,10 @@ int measure(B& b, const pairs_type& pairs, const pairs_type& expected, std::vect
         for (auto& v : versions) {
             auto buffer = b.upload(std::span<const glm::uvec2>(pairs));
             b.finish();
-            const auto start = std::chrono::steady_clock::now();
-            v.passes = v.sort(b, buffer).passes;
-            b.finish();
-            const double ms
-                = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+            const double ms = 1000 * seconds_of([&] {
+                v.passes = v.sort(b, buffer).passes;
+                b.finish();
+            });
             if (i > 0)
                 v.ms.push_back(ms);
             else
@@ -67,11 +63,8 @@ int measure(B& b, const pairs_type& pairs, const pairs_type& expected, std::vect
     return worst;
 }
 
-} // namespace
-
-int main(int argc, char** argv)
+int run_passes(std::size_t n)
 {
-    const auto n = static_cast<std::size_t>(argc > 1 ? std::max(2, std::atoi(argv[1])) : 1 << 20);
     std::mt19937 engine(1);
     pairs_type pairs;
     for (std::size_t i = 0; i < n; ++i)
@@ -79,26 +72,28 @@ int main(int argc, char** argv)
     auto expected = pairs;
     std::sort(expected.begin(), expected.end(),
         [](glm::uvec2 a, glm::uvec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
-    try {
-        vulkan_backend vulkan;
-        gl_backend gl;
-        std::printf("%zu pairs; medians of five; %s; %s\n\n| backend | version | passes | ms | times the plain one's "
-                    "speed | wanted | |\n|---|---|---|---|---|---|---|\n",
-            n, vulkan.caps().device.c_str(), gl.caps().device.c_str());
-        std::vector<version<vulkan_backend>> on_vulkan{{"plain: one step per pass, from one buffer to another",
-            [](auto& b, auto& p) { return bitonic_sort<vulkan_backend>(b, p); }}};
-        for (const uint steps : {1u, 2u, 3u, 4u})
-            on_vulkan.push_back(
-                {"in place, up to " + std::to_string(steps) + (steps == 1 ? " step" : " steps") + " a pass",
-                    [steps](auto& b, auto& p) { return bitonic_sort(b, p, steps); }, steps == 4 ? 4.0 : 0.0,
-                    steps == 4 ? 2.5 : 0.0});
-        const std::vector<version<gl_backend>> on_gl{
-            {"plain: one step per pass", [](auto& b, auto& p) { return bitonic_sort<gl_backend>(b, p); }},
-            {"two pairs per texel, up to three steps per pass", [](auto& b, auto& p) { return bitonic_sort(b, p); },
-                1.6}};
-        return std::max(measure(vulkan, pairs, expected, on_vulkan), measure(gl, pairs, expected, on_gl));
-    } catch (const backend_error& e) {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 2;
-    }
+    vulkan_backend vulkan;
+    gl_backend gl;
+    std::printf("%zu pairs; medians of five; %s; %s\n\n| backend | version | passes | ms | times the plain one's "
+                "speed | wanted | |\n|---|---|---|---|---|---|---|\n",
+        n, vulkan.caps().device.c_str(), gl.caps().device.c_str());
+    std::vector<version<vulkan_backend>> on_vulkan{{"plain: one step per pass, from one buffer to another",
+        [](auto& b, auto& p) { return bitonic_sort<vulkan_backend>(b, p); }}};
+    for (const uint steps : {1u, 2u, 3u, 4u})
+        on_vulkan.push_back({"in place, up to " + std::to_string(steps) + (steps == 1 ? " step" : " steps") + " a pass",
+            [steps](auto& b, auto& p) { return bitonic_sort(b, p, steps); }, steps == 4 ? 4.0 : 0.0,
+            steps == 4 ? 2.5 : 0.0});
+    const std::vector<version<gl_backend>> on_gl{
+        {"plain: one step per pass", [](auto& b, auto& p) { return bitonic_sort<gl_backend>(b, p); }},
+        {"two pairs per texel, up to three steps per pass", [](auto& b, auto& p) { return bitonic_sort(b, p); }, 1.6}};
+    return std::max(measure(vulkan, pairs, expected, on_vulkan), measure(gl, pairs, expected, on_gl));
+}
+
+} // namespace
+
+photongrid::bench::verb_run photongrid::bench::add_passes(CLI::App& verb)
+{
+    const auto pairs = std::make_shared<std::size_t>(1 << 20);
+    verb.add_option("--pairs", *pairs)->check(CLI::Range(2, 1 << 28));
+    return [pairs] { return run_passes(*pairs); };
 }
