@@ -23,6 +23,7 @@ if(NOT PROJECT_IS_TOP_LEVEL)
 endif()
 target_link_libraries(photongrid_cpu_compiled PUBLIC photongrid_cpu)
 target_compile_definitions(photongrid_cpu_compiled PUBLIC PHOTONGRID_CPU_COMPILED
-  PRIVATE PHOTONGRID_CONTRACTION_IS_OFF)
+  # Machines with SSSE3 and no SSE4 (2006) run the baseline: one instruction set less to compile.
+  PRIVATE PHOTONGRID_CONTRACTION_IS_OFF HWY_DISABLED_TARGETS=HWY_SSSE3)
 target_compile_options(photongrid_cpu_compiled PRIVATE -ffp-contract=off # exact_begin.hpp
   ${photongrid_warm})

@@ -16,10 +16,6 @@
 #pragma push_macro("HWY_TARGET_INCLUDE")
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "photongrid/backends/cpu/overrides/for_each_target.hpp"
-// Machines with SSSE3 and no SSE4 (2006) run the baseline: one instruction set less to compile.
-#if !defined(HWY_DISABLED_TARGETS)
-#define HWY_DISABLED_TARGETS HWY_SSSE3
-#endif
 #include <hwy/foreach_target.h>
 // Restores the macros of the user's own SIMD code.
 #undef HWY_TARGET_INCLUDE
