@@ -76,7 +76,7 @@ namespace {
             mean.values.push_back(routed.mean / sorted.mean);
             papers_peak.values.push_back(light(papers_routing).peak / light(paper).peak);
             const auto slots = static_cast<double>(route_capacity(settings.map.slots));
-            for (const auto& c : b.download(build_map(b, s, routing).map.cells))
+            for (const auto& c : b.download(build_map(b, s, routing).map().cells))
                 stands_for = std::max(stands_for, c.y / slots);
         }
         const double bias = stands_for / settings.estimate.k;
