@@ -61,12 +61,12 @@ namespace detail {
     template <backend B>
     triangle_tree build_tree(B& device, mesh_layout& m)
     {
-        const auto triangles = std::exchange(m.triangles, {});
+        auto triangles = std::exchange(m.triangles, {});
         if (m.placements.empty())
             return build_triangle_tree(device, triangles);
         auto surfaces = std::exchange(m.surfaces, {});
         if (m.placements.front().is_in_place)
-            surfaces.insert(surfaces.begin(), triangles);
+            surfaces.insert(surfaces.begin(), std::move(triangles));
         else
             for (auto& p : m.placements) // there are no others
                 --p.surface;
