@@ -6,3 +6,4 @@
 #include "scattering_tests.hpp"
 #include "shape_tree_tests.hpp"
 #include "surface_tests.hpp"
+#include "verb_tests.hpp"

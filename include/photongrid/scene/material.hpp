@@ -1,6 +1,6 @@
 // Materials, and the table of their kinds. Scene files, checks, the device's records and the reference renderer take
 // names, keys, ranges and surfaces from the table. To add a kind: its enumerator and row here, and what a new kind of
-// surface does: trace/bounce_photon.glsl, trace/eye_bounce.glsl and reference/bsdf.hpp.
+// surface does: trace/scatter.glsl and reference/bsdf.hpp (docs/guide/add_a_material.md).
 #pragma once
 
 #include <photongrid/scene/check.hpp>

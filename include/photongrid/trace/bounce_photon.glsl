@@ -40,42 +40,128 @@ OUTPUT(4, vec4, next_direction)
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/mixture.glsl>
 #include <photongrid/trace/optics.glsl>
-#include <photongrid/trace/shading_normals.glsl>
-#include <photongrid/trace/rough_leaving.glsl>
-#include <photongrid/trace/coat.glsl>
+#include <photongrid/trace/scatter.glsl>
 #include <photongrid/trace/color_code.glsl>
 #include <photongrid/trace/met_surface.glsl>
 
-// The share of a photon that a coat reflects by the facet that it meets.
-float coat_reflects(FacingNormals sides, Material coat, vec3 d, float u, float v)
+// A photon on its way.
+struct Path {
+    uint id;
+    uint frame;
+    uint before; // what it hit before: see photon_event.glsl
+    uint end;    // how it goes on if it leaves a surface
+};
+
+// What a path has hit, with the surface of its last event.
+uint hit_before(vec4 last)
 {
-    if (!ROUGH || !(coat.alpha > 0.0f))
-        return fresnel(d, sides.shading, coat.index_of_refraction).reflected;
-    vec3 facet = facet_met(sides, coat.alpha, d, u, v);
-    precise float share = fresnel(d, facet, coat.index_of_refraction).reflected
-        * leave_rough(sides, facet, coat.alpha, total_reflection(d), true, d).share;
-    return share;
+    uint kind = event_kind(last);
+    if (kind == DIFFUSE_SURFACE)
+        return DIFFUSE_BEFORE;
+    uint before = event_before(last);
+    bool specular = kind == SPECULAR_SURFACE || (MIXTURES && kind == BOTH_SURFACES);
+    return specular && before == NOTHING_BEFORE ? SPECULAR_BEFORE : before;
 }
 
-// Where a photon leaves that was scattered below a coat: cosine-distributed directions are drawn until one passes. At
-// the largest index of refraction 0.36 of them do, so that 64 are enough but for fewer than 1 in 10^12 photons.
-vec3 direction_out_of_coat(Coat c, vec3 normal, uint id, uint frame)
+// The photon that left the last surface: its power there times the colour of the material. Roulette accounts for the
+// absorbed part.
+vec4 arriving_power(uint before, vec4 last)
 {
-    vec3 next = normal;
-    bool inside = true;
-    for (uint turn = 1u; inside && turn <= 64u; ++turn) {
-        vec4 r = random4(uvec4(id, frame, turn, args.seed));
-        next = cosine_direction(normal, r.x, r.y);
-        inside = !(r.z < passes_coat(c, dot3(next, normal)));
+    vec3 colour;
+    if (TEXTURES || COATS || MIXTURES || CLEAR)
+        colour = color_of_code(directions(before).w);
+    else
+        colour = material_of(uint(directions(before).w)).reflectance;
+    float survival = largest3(colour);
+    vec4 arrived = powers(before);
+    precise vec4 tinted = vec4(arrived.x * (colour.x / survival), arrived.y * (colour.y / survival),
+        arrived.z * (colour.z / survival), 0.0f);
+    arrived = tinted;
+    if (MIXTURES && event_kind(last) == BOTH_SURFACES) {
+        precise vec4 left = arrived * event_leaving(last);
+        arrived = left;
     }
-    return next;
+    return arrived;
+}
+
+// The kind of surface that a photon meets. `other`: the part of a mixture that it does not leave as from, which may
+// store it; `r`: its random numbers.
+uint surface_for(Surface s, uint other, vec4 r)
+{
+    if (s.way == BY_BASE)
+        return DIFFUSE_SURFACE;
+    if (!MIXTURES || other == NO_MATERIAL || stores_photons(s.material))
+        return SPECULAR_SURFACE;
+    s.material = material_of(other);
+    s.number = other;
+    bool is_stored = stores_photons(s.material) && !(r.w < reflected_share(s, facet_met(s, r.y, r.z)));
+    return is_stored ? BOTH_SURFACES : SPECULAR_SURFACE;
+}
+
+void scale_power(float factor)
+{
+    precise vec3 scaled = vec3(power) * factor;
+    power = vec4(scaled.x, scaled.y, scaled.z, power.w);
+}
+
+void leave(Hit hit, vec3 d)
+{
+    vec3 start = ray_start(hit.position, hit.normal, d);
+    next_origin = vec4(start.x, start.y, start.z, next_origin.w);
+    next_direction = vec4(d.x, d.y, d.z, next_direction.w);
+}
+
+// The photon passes a surface that is clear in part.
+void pass_clear(Hit hit, vec3 d, Path path)
+{
+    direction.w = color_code(vec3(1.0f, 1.0f, 1.0f));
+    leave(hit, d);
+    position.w = event_code(NO_SURFACE, path.end, path.before);
+}
+
+// The photon meets a surface, which may store it, and leaves it or is absorbed. `other`: see surface_for(); `round_by`:
+// a random number.
+void scatter(Hit hit, Surface s, uint other, Path path, float round_by)
+{
+    vec4 r = random4(uvec4(path.id, path.frame, 0u, args.seed));
+    Facet facet = facet_met(s, r.y, r.z);
+    s = leaving_by(s, way_of(s, r.w < reflected_share(s, facet)));
+    float survival = largest3(s.material.reflectance);
+    direction.w = float(s.number);
+    if (TEXTURES || COATS || MIXTURES || CLEAR)
+        direction.w = survival > 0.0f ? color_code(s.material.reflectance) : 0.0f;
+    uint surface = surface_for(s, other, r);
+    float received = surface == SPECULAR_SURFACE ? 1.0f : received_by_base(s);
+    scale_power(received); // the base sends it out about its geometric normal
+    power.w = s.shading.x;
+    next_origin.w = s.shading.y;
+    next_direction.w = s.shading.z;
+    position.w = event_code(surface, ABSORBED, path.before);
+    if ((args.to_diffuse != 0u && surface == DIFFUSE_SURFACE) || !(r.x < survival))
+        return;
+    Scattered l = scatter_photon(s, facet, r.y, r.z, uvec4(path.id, path.frame, 0u, args.seed));
+    // Roulette by what other facets hide, too: r.x is even below the reflectance. A coat passes it on.
+    precise float unhidden_survival = survival * (is_coated(s) ? 1.0f : l.unhidden);
+    if (!(r.x < unhidden_survival) || !(l.power_scale > 0.0f))
+        return;
+    position.w = event_code(surface, path.end, path.before);
+    if (MIXTURES && surface == BOTH_SURFACES) {
+        precise float leaving = l.power_scale / received;
+        position.w = event_of_both(path.end, path.before, leaving, round_by);
+    } else if (surface == SPECULAR_SURFACE) {
+        scale_power(l.power_scale);
+    }
+    leave(hit, l.direction);
 }
 
 void kernel(uint i)
 {
-    uint frame = i / args.paths;
+    Path path;
+    path.frame = i / args.paths;
+    uint number = i - path.frame * args.paths; // of the path in a frame, and of its hit on a mesh
     uint before = i - args.paths;
-    uint id = args.first_path + (i - frame * args.paths);
+    path.id = args.first_path + number;
+    path.end = path.frame < args.last_frame ? GOES_ON : CUT_OFF;
     position = vec4(0.0f, 0.0f, 0.0f, event_code(NO_SURFACE, ENDED_BEFORE, NOTHING_BEFORE));
     power = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     direction = power;
@@ -84,43 +170,15 @@ void kernel(uint i)
     vec4 last = positions(before);
     if (event_end(last) != GOES_ON)
         return;
-
-    uint hit_before = event_before(last);
-    bool from_both = MIXTURES && event_kind(last) == BOTH_SURFACES;
-    if ((event_kind(last) == SPECULAR_SURFACE || from_both) && hit_before == NOTHING_BEFORE)
-        hit_before = SPECULAR_BEFORE;
-    if (event_kind(last) == DIFFUSE_SURFACE)
-        hit_before = DIFFUSE_BEFORE;
-
-    // The photon that left the last surface: its power there times the colour of the material. Roulette accounts for
-    // the absorbed part.
-    vec4 arrived = powers(before);
-    if (frame > 1u) {
-        vec3 colour;
-        if (TEXTURES || COATS || MIXTURES || CLEAR)
-            colour = color_of_code(directions(before).w);
-        else
-            colour = material_of(uint(directions(before).w)).reflectance;
-        float survival = largest3(colour);
-        precise vec4 tinted = vec4(arrived.x * (colour.x / survival), arrived.y * (colour.y / survival),
-            arrived.z * (colour.z / survival), 0.0f);
-        arrived = tinted;
-        if (from_both) {
-            precise vec4 left = arrived * event_leaving(last);
-            arrived = left;
-        }
-    }
+    path.before = hit_before(last);
+    power = path.frame > 1u ? arriving_power(before, last) : powers(before);
     vec3 o = vec3(next_origins(before));
     vec3 d = vec3(next_directions(before));
     direction = vec4(d.x, d.y, d.z, 0.0f);
-    power = arrived;
-
-    if (!is_finite3(o) || !is_finite3(d) || !is_finite3(vec3(arrived))) {
-        position.w = event_code(NO_SURFACE, NOT_A_NUMBER, NOTHING_BEFORE);
+    position.w = event_code(NO_SURFACE, NOT_A_NUMBER, NOTHING_BEFORE);
+    if (!is_finite3(o) || !is_finite3(d) || !is_finite3(vec3(power)))
         return;
-    }
     Hit hit = intersect_closest(o, d);
-    uint number = i - frame * args.paths; // of the hit on a mesh
     bool on_mesh = MESHES && mesh_is_closer(hit, number);
     if (on_mesh)
         hit = mesh_hit(number);
@@ -128,117 +186,30 @@ void kernel(uint i)
         position.w = event_code(NO_SURFACE, ESCAPED, NOTHING_BEFORE);
         return;
     }
-    position = vec4(hit.position.x, hit.position.y, hit.position.z, event_code(NO_SURFACE, ABSORBED, hit_before));
-    if (!is_finite3(hit.position)) {
-        position.w = event_code(NO_SURFACE, NOT_A_NUMBER, NOTHING_BEFORE);
+    position = vec4(hit.position.x, hit.position.y, hit.position.z, position.w);
+    if (!is_finite3(hit.position))
         return;
-    }
+    position.w = event_code(NO_SURFACE, ABSORBED, path.before);
     if (hit.material == NO_MATERIAL)
         return; // the surfaces of lights are black
 
-    uint end = frame < args.last_frame ? GOES_ON : CUT_OFF;
     vec4 chance = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     if (MIXTURES || CLEAR)
-        chance = random4(uvec4(id, frame, 1000u, args.seed));
+        chance = random4(uvec4(path.id, path.frame, 1000u, args.seed));
     if (CLEAR && !(chance.x < opacity_at(hit.material, on_mesh, number))) {
-        vec3 beyond = ray_start(hit.position, hit.normal, d);
-        direction.w = color_code(vec3(1.0f, 1.0f, 1.0f));
-        next_origin = vec4(beyond.x, beyond.y, beyond.z, 0.0f);
-        next_direction = vec4(d.x, d.y, d.z, 0.0f);
-        position.w = event_code(NO_SURFACE, end, hit_before);
+        pass_clear(hit, d, path);
         return;
     }
     uint part = 0u;
-    uint other = NO_MATERIAL; // the part of a mixture that the photon does not leave as from
+    uint other = NO_MATERIAL;
     if (MIXTURES && is_mixture(hit.material)) {
         Parts parts = parts_of(hit.material);
         part = chance.y < share_at(parts, on_mesh, number) ? 1u : 0u;
         hit.material = part == 0u ? parts.first : parts.second;
         other = part == 0u ? parts.second : parts.first;
     }
-    Material material = material_at(hit.material, part, on_mesh, number);
-    direction.w = float(hit.material);
-    vec4 r = random4(uvec4(id, frame, 0u, args.seed));
-    FacingNormals sides = facing_normals(hit, d);
-    vec3 facing = sides.shading;
-    bool coated = COATS && material.kind == COATED_SURFACE;
-    bool below = false; // whether the photon passes the coat
-    if (coated) {
-        below = !(r.w < coat_reflects(sides, material, d, r.y, r.z));
-        material.reflectance = below ? under_coat(coat_of(hit.material), material.reflectance) : vec3(1.0f, 1.0f, 1.0f);
-    }
-    if (TEXTURES || COATS || MIXTURES || CLEAR)
-        direction.w = largest3(material.reflectance) > 0.0f ? color_code(material.reflectance) : 0.0f;
-    uint surface = material.kind == LAMBERTIAN_SURFACE || below ? DIFFUSE_SURFACE : SPECULAR_SURFACE;
-    if (MIXTURES && surface == SPECULAR_SURFACE && other != NO_MATERIAL) {
-        Material base = material_of(other);
-        bool is_met = stores_photons(base) && !stores_photons(material);
-        if (COATS && base.kind == COATED_SURFACE)
-            is_met = is_met && !(r.w < coat_reflects(sides, base, d, r.y, r.z));
-        if (is_met)
-            surface = BOTH_SURFACES;
-    }
-    float received = 1.0f;
-    if (SMOOTH && surface != SPECULAR_SURFACE) {
-        // What the surface receives about its shading normal; it sends that out about its geometric normal.
-        precise float share = dot3(facing, d) / dot3(sides.geometric, d);
-        received = share < 8.0f ? share : 8.0f;
-        precise vec3 scaled = vec3(power) * received;
-        power = vec4(scaled.x, scaled.y, scaled.z, 0.0f);
-    }
-    power.w = facing.x;
-    next_origin.w = facing.y;
-    next_direction.w = facing.z;
-    bool is_end = args.to_diffuse != 0u && surface == DIFFUSE_SURFACE;
-    if (is_end || !(r.x < largest3(material.reflectance))) {
-        position.w = event_code(surface, ABSORBED, hit_before);
-        return;
-    }
-    position.w = event_code(surface, end, hit_before);
-    vec3 next = facing;
-    float leaving = 1.0f; // the factor on the power of what leaves a specular surface
-    if (material.kind == LAMBERTIAN_SURFACE)
-        next = cosine_direction(sides.geometric, r.y, r.z);
-    if (below) {
-        next = direction_out_of_coat(coat_of(hit.material), sides.geometric, id, frame);
-    } else if (ROUGH && material.alpha > 0.0f) {
-        vec3 facet = facet_met(sides, material.alpha, d, r.y, r.z);
-        Fresnel f = total_reflection(d);
-        if (GLASS && material.kind == GLASS_SURFACE)
-            f = fresnel(d, outward_facet(hit, facet, d), material.index_of_refraction);
-        RoughLeaving l = leave_rough(sides, facet, material.alpha, f, r.w < f.reflected, d);
-        // Roulette by what other facets hide, too: r.x is even below the reflectance. Of a coat, that passes it.
-        precise float survival = largest3(material.reflectance) * l.share;
-        if (!coated && !(r.x < survival)) {
-            position.w = event_code(surface, ABSORBED, hit_before);
-            return;
-        }
-        next = l.direction;
-        leaving = l.adjoint;
-    } else if (material.kind != LAMBERTIAN_SURFACE && (MIRRORS || GLASS)) {
-        Fresnel f = total_reflection(d);
-        if (GLASS && material.kind == GLASS_SURFACE)
-            f = fresnel(d, outward_normal(hit, sides, d), material.index_of_refraction);
-        Leaving l = photon_leaves(hit, sides, f, r.w < f.reflected, material.index_of_refraction, d, r.y);
-        next = l.direction;
-        if (SMOOTH) {
-            if (!(l.adjoint > 0.0f)) {
-                position.w = event_code(surface, ABSORBED, hit_before);
-                return;
-            }
-            leaving = l.adjoint;
-        }
-    }
-    if (MIXTURES && surface == BOTH_SURFACES) {
-        precise float share = leaving / received;
-        position.w = event_of_both(end, hit_before, share, chance.z);
-    } else if (SMOOTH && surface == SPECULAR_SURFACE) {
-        precise vec3 scaled = vec3(power) * leaving;
-        power = vec4(scaled.x, scaled.y, scaled.z, facing.x);
-    }
-    vec3 start = ray_start(hit.position, hit.normal, next);
-    next_origin = vec4(start.x, start.y, start.z, facing.y);
-    next_direction = vec4(next.x, next.y, next.z, facing.z);
+    Surface s = surface_met(hit, d, material_at(hit.material, part, on_mesh, number));
+    scatter(hit, s, other, path, chance.z);
 }
 
 // Whether this path needs no further frames.

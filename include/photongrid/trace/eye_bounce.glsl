@@ -50,9 +50,7 @@ STATE(5, uint, branches)   // bit b: branch b must be traced for this pixel; bra
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/mixture.glsl>
 #include <photongrid/trace/optics.glsl>
-#include <photongrid/trace/shading_normals.glsl>
-#include <photongrid/trace/rough_leaving.glsl>
-#include <photongrid/trace/coat.glsl>
+#include <photongrid/trace/scatter.glsl>
 #include <photongrid/trace/met_surface.glsl>
 
 bool done()
@@ -108,16 +106,16 @@ void see_light(Hit hit, vec3 d)
         throughput.z * light.power.z * scale, 0.0f);
 }
 
-// The ray ends on a rough surface, for samples of lights (rough_points.glsl). w of direction, throughput and emitted:
-// the geometric normal.
-void end_on_rough(Hit hit, vec3 shading, float alpha, vec3 weighted, bool counted)
+// The ray sees the environment.
+void see_environment(vec3 d)
 {
-    precise float code = -2.0f - alpha;
-    point = vec4(hit.position.x, hit.position.y, hit.position.z, counted ? code : -1.0f);
-    direction.w = hit.normal.x;
-    throughput = vec4(weighted.x, weighted.y, weighted.z, hit.normal.y);
-    emitted.w = hit.normal.z;
-    surface = vec4(shading.x, shading.y, shading.z, float(hit.material));
+    EnvironmentSeen e = environment_seen(environment_light(), d);
+    vec3 seen = e.radiance;
+    if (ROUGH) {
+        precise vec3 weighted = seen * weight_of_hit(e.density);
+        seen = weighted;
+    }
+    emitted = vec4(throughput.x * seen.x, throughput.y * seen.y, throughput.z * seen.z, 0.0f);
 }
 
 // A random number that is stratified over the eye rays of a pixel.
@@ -139,19 +137,25 @@ struct Branch {
     float share;
 };
 
-// A ray that has split fewer than args.splits times is the same in several passes. Count it in one of them, the one
+// A ray that has split fewer than args.splits times is the same in several passes. It counts in one of them, the one
 // whose unused branch bits are 0.
-bool is_counted(uint splits)
+bool is_counted()
 {
-    return args.branch >> min(splits, 31u) == 0u; // a device that computes garbage may shift by anything
+    return args.branch >> min(uint(throughput.w), 31u) == 0u; // a device that computes garbage may shift by anything
+}
+
+bool may_split()
+{
+    return uint(throughput.w) < args.splits;
 }
 
 // At a split, where other passes follow the other branch: the one that this pass follows. `share`: of the first branch.
-// `counted`: is_counted() before the split.
-Branch split_branch(uint splits, float share, bool counted)
+Branch split_branch(float share)
 {
-    if (counted)
+    uint splits = uint(throughput.w);
+    if (is_counted())
         branches = branches | 1u << min(args.branch | 1u << splits, 31u);
+    throughput.w = float(splits + 1u);
     Branch b;
     b.first = ((args.branch >> splits) & 1u) != 0u;
     b.share = b.first ? share : 1.0f - share;
@@ -176,30 +180,157 @@ Branch sampled_branch(uint i, uint what, float share)
 }
 
 // The branch that this pass follows, at a split or beyond the last one.
-Branch branch_of(uint i, uint what, uint splits, float share, bool counted)
+Branch branch_of(uint i, uint what, float share)
 {
-    if (splits < args.splits)
-        return split_branch(splits, share, counted);
+    if (may_split())
+        return split_branch(share);
     return sampled_branch(i, what, share);
 }
 
+// The same where a share of 0 or 1 leaves no choice.
+Branch branch_if_any(uint i, uint what, float share)
+{
+    Branch b;
+    b.first = share > 0.0f;
+    b.share = 1.0f;
+    if (share > 0.0f && share < 1.0f)
+        b = branch_of(i, what, share);
+    return b;
+}
+
 // What random numbers are for; the number of surfaces hit is added.
-const uint FRESNEL = 2000u;
+const uint REFLECTS = 2000u;
+const uint ENDS = 2500u;
+const uint FACET = 4000u; // stratified too, and the same in all branches
 const uint PASSES = 10000u;
 const uint PART = 20000u;
 
 // The ray passes a surface that is clear in part.
-void pass_clear(Hit hit, vec3 d, float share, uint splits)
+void pass_clear(Hit hit, vec3 d, float share)
 {
+    uint hits = uint(direction.w) + 1u;
+    if (hits > args.depth) {
+        point.w = -1.0f;
+        return;
+    }
     vec3 beyond = ray_start(hit.position, hit.normal, d);
     point = vec4(beyond.x, beyond.y, beyond.z, 0.0f);
-    direction.w = direction.w + 1.0f;
+    direction.w = float(hits);
     precise vec3 passed = vec3(throughput) * share;
-    throughput = vec4(passed.x, passed.y, passed.z, float(splits));
+    throughput = vec4(passed.x, passed.y, passed.z, throughput.w);
     if (ROUGH) {
         precise float come = surface.y + hit.t;
         surface.y = come;
     }
+}
+
+// The coat of a surface reflects the ray (the first branch) or passes it to the base. The share is less that of the
+// facet by which the coat reflects.
+Branch coat_branch(uint i, uint hits, Surface s)
+{
+    Coat coat = coat_of(s.number);
+    precise float passed = passes_coat(coat, -dot3(s.shading, s.d));
+    precise float reflected = 1.0f - passed;
+    Branch b = branch_of(i, REFLECTS + hits, reflected);
+    precise float weight = b.first ? (reflected > 0.0f ? b.share / reflected : 0.0f) : b.share / coat.mean_passed;
+    b.share = weight;
+    return b;
+}
+
+// The ray ends on a matte surface, bare or below a coat.
+void end_on_base(Hit hit, Surface s, vec3 reflected)
+{
+    vec3 p = hit.position;
+    if (SMOOTH) // shadow rays start off the surface about its shading normal
+        p = ray_start(p, s.geometric, s.geometric);
+    point = vec4(p.x, p.y, p.z, is_counted() ? 1.0f : -1.0f);
+    throughput = vec4(reflected.x, reflected.y, reflected.z, throughput.w);
+    surface = vec4(s.shading.x, s.shading.y, s.shading.z, float(s.number));
+}
+
+// The ray ends on a rough surface, for samples of lights (rough_points.glsl). w of direction, throughput and emitted:
+// the geometric normal.
+void end_on_rough(Hit hit, Surface s, vec3 reflected)
+{
+    precise float code = -2.0f - s.material.alpha;
+    point = vec4(hit.position.x, hit.position.y, hit.position.z, is_counted() ? code : -1.0f);
+    direction.w = hit.normal.x;
+    throughput = vec4(reflected.x, reflected.y, reflected.z, hit.normal.y);
+    emitted.w = hit.normal.z;
+    surface = vec4(s.shading.x, s.shading.y, s.shading.z, float(s.number));
+}
+
+// Some rays end on a rough surface for samples of lights: in a pass of their own, or every other one. That one ends and
+// the other goes on is the first branch.
+Branch rough_branch(uint i, uint hits)
+{
+    Branch b;
+    b.share = 1.0f;
+    if (may_split()) {
+        b.first = split_branch(1.0f).first;
+    } else {
+        b.first = stratified_number(i, ENDS + hits) < 0.5f;
+        b.share = 2.0f;
+    }
+    return b;
+}
+
+// The ray meets a surface, and ends on it or leaves it. `met`: the factor on throughput for what it meets of the hit.
+void scatter(uint i, Hit hit, Surface s, float met)
+{
+    uint hits = uint(direction.w);
+    if (is_coated(s)) {
+        Branch b = coat_branch(i, hits, s);
+        s = leaving_by(s, way_of(s, b.first));
+        precise float both = b.share * met;
+        met = both;
+    }
+    precise vec3 reflected = vec3(throughput) * s.material.reflectance * met;
+    if (s.way == BY_BASE) {
+        end_on_base(hit, s, reflected);
+        return;
+    }
+    if (hits + 1u > args.depth) {
+        point.w = -1.0f;
+        return;
+    }
+    float share = 1.0f;
+    vec2 r = vec2(0.0f, 0.0f);
+    if (has_facets(s)) {
+        Branch b = rough_branch(i, hits);
+        share = b.share;
+        if (b.first) {
+            precise vec3 ending = reflected * share;
+            end_on_rough(hit, s, ending);
+            return;
+        }
+        r = sequence2(args.nth, uvec4(i + args.first_pixel, 0u, FACET + hits, args.seed));
+    }
+    Facet facet = facet_met(s, r.x, r.y);
+    if (is_coated(s)) {
+        precise float scaled = share * facet.f.reflected;
+        share = scaled;
+    }
+    float branch_share = 1.0f;
+    if (GLASS && s.material.kind == GLASS_SURFACE) {
+        Branch b = branch_of(i, REFLECTS + hits, facet.f.reflected);
+        s = leaving_by(s, way_of(s, b.first));
+        branch_share = b.share;
+    }
+    Scattered l = scatter_sample(s, facet, r.x, r.y, uvec4(0u, 0u, 0u, 0u));
+    precise float leaving = share * (branch_share * l.radiance_scale) * l.unhidden;
+    if (!(leaving > 0.0f)) {
+        point.w = -1.0f;
+        return;
+    }
+    if (ROUGH) {
+        surface.x = scatter_pdf(s, l.direction);
+        surface.y = 0.0f;
+    }
+    vec3 start = ray_start(hit.position, hit.normal, l.direction);
+    point = vec4(start.x, start.y, start.z, 0.0f);
+    direction = vec4(l.direction.x, l.direction.y, l.direction.z, float(hits + 1u));
+    throughput = vec4(reflected.x * leaving, reflected.y * leaving, reflected.z * leaving, throughput.w);
 }
 
 void kernel(uint i)
@@ -211,161 +342,35 @@ void kernel(uint i)
     if (on_mesh)
         hit = mesh_hit(number);
     uint hits = uint(direction.w);
-    uint splits = uint(throughput.w);
-    bool counted = is_counted(splits);
     if (hit.t < 0.0f) {
         point.w = -1.0f;
-        if (ENVIRONMENT_LIGHTS && counted) {
-            EnvironmentSeen e = environment_seen(environment_light(), d);
-            vec3 seen = e.radiance;
-            if (ROUGH) {
-                precise vec3 weighted = seen * weight_of_hit(e.density);
-                seen = weighted;
-            }
-            emitted = vec4(throughput.x * seen.x, throughput.y * seen.y, throughput.z * seen.z, 0.0f);
-        }
+        if (ENVIRONMENT_LIGHTS && is_counted())
+            see_environment(d);
         return;
     }
     if (hit.material == NO_MATERIAL) {
         point.w = -1.0f;
-        if (counted && dot3(d, hit.normal) < 0.0f) // on the front only
+        if (is_counted() && dot3(d, hit.normal) < 0.0f) // on the front only
             see_light(hit, d);
         return;
     }
-    float met = 1.0f; // the factor on throughput for what the ray has met of the surface
+    float met = 1.0f;
     if (CLEAR) {
-        float opacity = opacity_at(hit.material, on_mesh, number);
-        if (opacity < 1.0f) {
-            Branch b;
-            b.first = false;
-            b.share = 1.0f;
-            if (opacity > 0.0f) {
-                b = branch_of(i, PASSES + hits, splits, opacity, counted);
-                splits = min(splits + 1u, args.splits);
-                counted = is_counted(splits);
-            }
-            if (!b.first) {
-                if (hits + 1u > args.depth)
-                    point.w = -1.0f;
-                else
-                    pass_clear(hit, d, b.share, splits);
-                return;
-            }
-            met = b.share;
+        Branch b = branch_if_any(i, PASSES + hits, opacity_at(hit.material, on_mesh, number));
+        if (!b.first) {
+            pass_clear(hit, d, b.share);
+            return;
         }
+        met = b.share;
     }
     uint part = 0u;
     if (MIXTURES && is_mixture(hit.material)) {
         Parts parts = parts_of(hit.material);
-        float share_of_second = share_at(parts, on_mesh, number);
-        Branch b;
-        b.first = share_of_second > 0.0f;
-        b.share = 1.0f;
-        if (share_of_second > 0.0f && share_of_second < 1.0f) {
-            b = branch_of(i, PART + hits, splits, share_of_second, counted);
-            splits = min(splits + 1u, args.splits);
-            counted = is_counted(splits);
-        }
+        Branch b = branch_if_any(i, PART + hits, share_at(parts, on_mesh, number));
         part = b.first ? 1u : 0u;
         hit.material = b.first ? parts.second : parts.first;
         precise float both = met * b.share;
         met = both;
     }
-    Material material = material_at(hit.material, part, on_mesh, number);
-    FacingNormals sides = facing_normals(hit, d);
-    bool coated = COATS && material.kind == COATED_SURFACE;
-    bool below = false; // whether the ray passes the coat
-    float share = 1.0f;
-    if (coated) {
-        Coat coat = coat_of(hit.material);
-        precise float passed = passes_coat(coat, -dot3(sides.shading, d));
-        precise float reflectance = 1.0f - passed;
-        Branch b = branch_of(i, FRESNEL + hits, splits, reflectance, counted);
-        splits = min(splits + 1u, args.splits);
-        counted = is_counted(splits);
-        below = !b.first;
-        // The coat's reflectance follows, for the facet that the ray meets.
-        precise float weight = below ? b.share / coat.mean_passed : (reflectance > 0.0f ? b.share / reflectance : 0.0f);
-        share = weight;
-        material.reflectance = below ? under_coat(coat, material.reflectance) : vec3(1.0f, 1.0f, 1.0f);
-    }
-    if (MIXTURES || CLEAR) {
-        precise float of_met = share * met;
-        share = of_met;
-    }
-    precise vec3 tinted = vec3(throughput) * material.reflectance * share;
-    if (material.kind == LAMBERTIAN_SURFACE || below) {
-        vec3 p = hit.position;
-        if (SMOOTH) // shadow rays start off the surface about its shading normal
-            p = ray_start(p, sides.geometric, sides.geometric);
-        point = vec4(p.x, p.y, p.z, counted ? 1.0f : -1.0f);
-        throughput = vec4(tinted.x, tinted.y, tinted.z, throughput.w);
-        surface = vec4(sides.shading.x, sides.shading.y, sides.shading.z, float(hit.material));
-        return;
-    }
-    if (hits + 1u > args.depth) {
-        point.w = -1.0f;
-        return;
-    }
-    share = 1.0f;
-    bool rough = ROUGH && material.alpha > 0.0f;
-    if (rough) {
-        // Some rays end here for samples of lights: in a pass of their own, or every other one.
-        bool ends = false;
-        if (splits < args.splits) {
-            ends = split_branch(splits, 1.0f, counted).first;
-            ++splits;
-            counted = is_counted(splits);
-        } else {
-            ends = stratified_number(i, 2500u + hits) < 0.5f;
-            share = 2.0f;
-        }
-        if (ends) {
-            precise vec3 weighted = tinted * share;
-            end_on_rough(hit, sides.shading, material.alpha, weighted, counted);
-            return;
-        }
-    }
-    vec3 outward = coated ? sides.shading : outward_normal(hit, sides, d);
-    vec3 facet = sides.shading;
-    if (rough) {
-        vec2 r = facet_numbers(i, hits);
-        facet = facet_met(sides, material.alpha, d, r.x, r.y);
-        outward = coated ? facet : outward_facet(hit, facet, d);
-    }
-    Fresnel f = total_reflection(d);
-    bool reflected = true;
-    if (coated) {
-        precise float scaled = share * fresnel(d, outward, material.index_of_refraction).reflected;
-        share = scaled;
-    }
-    if (GLASS && material.kind == GLASS_SURFACE) {
-        f = fresnel(d, outward, material.index_of_refraction);
-        Branch b = branch_of(i, FRESNEL + hits, splits, f.reflected, counted);
-        splits = min(splits + 1u, args.splits);
-        reflected = b.first;
-        precise float scaled = share * (reflected ? b.share : b.share * f.radiance_scale);
-        share = scaled;
-    }
-    vec3 next = d;
-    if (rough) {
-        RoughLeaving l = leave_rough(sides, facet, material.alpha, f, reflected, d);
-        next = l.direction;
-        precise float unhidden_share = share * l.share;
-        share = unhidden_share;
-        surface.x = rough_scattering(sides.shading, material, !(dot3(hit.normal, d) > 0.0f), d, next).density;
-        surface.y = 0.0f;
-    } else if (MIRRORS || GLASS) {
-        if (ROUGH)
-            surface.x = 0.0f;
-        next = leave_specular(hit, sides, f, reflected, material.index_of_refraction, d).direction;
-    }
-    if (!(share > 0.0f)) {
-        point.w = -1.0f;
-        return;
-    }
-    vec3 start = ray_start(hit.position, hit.normal, next);
-    point = vec4(start.x, start.y, start.z, 0.0f);
-    direction = vec4(next.x, next.y, next.z, float(hits + 1u));
-    throughput = vec4(tinted.x * share, tinted.y * share, tinted.z * share, float(splits));
+    scatter(i, hit, surface_met(hit, d, material_at(hit.material, part, on_mesh, number)), met);
 }

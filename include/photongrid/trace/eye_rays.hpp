@@ -226,11 +226,11 @@ void light_rough_surfaces(
     auto surfaces = device.template make<glm::vec4>(pixels.elements);
     const auto ends = reads(s.records, hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions);
     for (uint behind = 0; behind < ((s.layout.features & has_glass) != 0 ? 2u : 1u); ++behind) {
-        device.template run<kernels::rough_points>(
-            pixels.elements, {.first = pixels.first, .behind = behind}, ends, writes(points, surfaces));
+        device.template run<kernels::rough_points>({pixels.elements, 0u, s.layout.features},
+            {.first = pixels.first, .behind = behind}, ends, writes(points, surfaces));
         const lit_points<B> lit{points, surfaces, 0, hits.first_pixel + pixels.first, 0};
         add_light_samples(device, s, settings, ray, pixels, lit, hits.emissions, [&](const auto& ways, auto& arriving) {
-            device.template run<kernels::scatter_rough>(pixels.elements,
+            device.template run<kernels::scatter_rough>({pixels.elements, 0u, s.layout.features},
                 {.first = pixels.first, .only_without_size = samples_choose_lights(s.layout) ? 1u : 0u},
                 reads(s.records, hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, ways),
                 writes(arriving));

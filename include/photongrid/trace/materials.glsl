@@ -1,5 +1,5 @@
-// Materials, read from the scene buffer. Included by kernels after their scene buffer. How a photon leaves a surface:
-// bounce_photon.glsl; an eye ray: eye_bounce.glsl; the formulas of both: optics.glsl.
+// Materials, read from the scene buffer. Included by kernels after their scene buffer. How light leaves surfaces:
+// trace/scatter.glsl.
 struct Material {
     vec3 reflectance;          // of glass: transmittance per crossing
     uint kind;                 // LAMBERTIAN_SURFACE, MIRROR_SURFACE, GLASS_SURFACE, COATED_SURFACE

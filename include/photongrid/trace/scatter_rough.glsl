@@ -2,6 +2,7 @@
 // that leave the surface may hit the light too, so that samples of lights with a size have the weights of the balance
 // heuristic (Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997, section 9.2).
 #include <photongrid/core/vector.glsl>
+#include <photongrid/core/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
@@ -9,6 +10,8 @@ struct Params {
     uint only_without_size; // 1: lights with a size are left to rays
 };
 PARAMS(Params)
+SWITCH(4, MIRRORS)
+SWITCH(5, GLASS)
 INPUT(0, vec4, scene)
 INPUT(1, vec4, points)
 INPUT(2, vec4, directions)
@@ -18,9 +21,10 @@ INPUT(5, vec4, emissions)
 INPUT(6, vec4, ways)       // xyz: unit vector towards the light
 STATE(0, vec4, arriving)   // rgb: in irradiance, W/m^2, out radiance, W/(m^2 sr); w: see shadow_ray.glsl
 
-#include <photongrid/trace/rough_end.glsl>
+#include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/optics.glsl>
-#include <photongrid/trace/microfacet.glsl>
+#include <photongrid/trace/scatter.glsl>
+#include <photongrid/trace/rough_end.glsl>
 
 void kernel(uint i)
 {
@@ -30,13 +34,14 @@ void kernel(uint i)
     bool has_size = light.w > 0.0f;
     if (!ended_on_rough(ray) || (has_size && args.only_without_size != 0u))
         return;
-    RoughEnd e = rough_end(ray);
+    Surface e = rough_end(ray);
     vec3 towards = vec3(ways(i));
     bool front = dot3(towards, e.shading) > 0.0f;
     bool geometric_front = dot3(towards, e.geometric) > 0.0f;
     if (front != geometric_front)
         return;
-    RoughScattering s = rough_scattering(e.shading, e.material, e.outside, e.d, towards);
+    e.way = front ? BY_REFLECTION : BY_REFRACTION;
+    Scattering s = scattering(e, towards);
     float share = s.bsdf;
     if (has_size) {
         precise float weighted = s.bsdf * (light.w / (light.w + s.density));

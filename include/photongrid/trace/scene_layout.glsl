@@ -51,6 +51,11 @@ const uint GLASS_SURFACE = 2u;
 const uint COATED_SURFACE = 3u;
 const uint MIXED_SURFACE = 4u; // of two other materials (trace/mixture.glsl)
 
+// Ways by which light leaves surfaces (trace/scatter.glsl).
+const uint BY_BASE = 0u; // scattered by a matte surface, bare or below a coat
+const uint BY_REFLECTION = 1u;
+const uint BY_REFRACTION = 2u;
+
 const uint COAT_STEPS = 64u; // of the shares that pass a rough coat (trace/coat.glsl)
 
 const uint NO_MATERIAL = 0xFFFFFFFFu; // of a light's surface
