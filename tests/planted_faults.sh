@@ -251,10 +251,10 @@ faults=(
   "gl: the caller's query buffer is lost|backends/gl/saved_state.hpp|gl.BindBuffer(GL_QUERY_BUFFER, results_);||gl_callers_context"
   "gl: the caller's blending is lost|backends/gl/saved_state.hpp|gl.BlendFuncSeparatei(0, values_[2], values_[3], values_[4], values_[5]);||gl_callers_context"
   "gl: tiles end with one element left|backends/gl/tiles.hpp|live_[t] = n != 0;|live_[t] = n > 1;"
-  "a lamp 5 % off its cosine|include/photongrid/trace/emit_photon.glsl|cosine_direction(light.normal, r.x, r.y)|cosine_direction(light.normal, 0.95f * r.x, r.y)|optics"
-  "a lamp with a dark edge|include/photongrid/trace/emit_photon.glsl|light.edge_u, r.z)|light.edge_u, 0.99f * r.z)|optics"
-  "a bulb dimmer below|include/photongrid/trace/emit_photon.glsl|d = uniform_direction(r.x, r.y)|d = uniform_direction(0.98f * r.x, r.y)|optics"
-  "a bulb 1 % too bright|include/photongrid/trace/emit_photon.glsl|light.power.x / probability|light.power.x * (light.is_area ? 1.0f : 1.01f) / probability|optics"
+  "a lamp 5 % off its cosine|include/photongrid/trace/lights/rectangle_light.glsl|cosine_direction(normal, r.x, r.y)|cosine_direction(normal, 0.95f * r.x, r.y)|optics"
+  "a lamp with a dark edge|include/photongrid/trace/lights/rectangle_light.glsl|edge_u, r.z)|edge_u, 0.99f * r.z)|optics"
+  "a bulb dimmer below|include/photongrid/trace/lights/point_light.glsl|e.direction = uniform_direction(r.x, r.y)|e.direction = uniform_direction(0.98f * r.x, r.y)|optics"
+  "a bulb 1 % too bright|include/photongrid/trace/lights/point_light.glsl|    return e;|    e.power = e.power * 1.01f; return e;|optics"
   "a lamp chosen too often|include/photongrid/trace/scene_records.hpp|weight / total, below / total|weight / total, std::min(1.0, 1.01 * below / total)|optics"
   "a batch repeats 64 paths|include/photongrid/trace/trace_photons.hpp|paths, static_cast<uint>(t_.emitted), request_|paths, static_cast<uint>(t_.emitted) - (t_.emitted > 64 ? 64u : 0u), request_|optics"
   "eye rays through the corner|include/photongrid/trace/eye_ray.glsl|float dx = 0.5f;|float dx = 0.0f;|optics"
@@ -325,8 +325,8 @@ faults=(
   "normals of a mesh are those of its first corner|include/photongrid/trace/mesh_surface.glsl|shading_normal(f, at.weights, vec3(plane))|shading_normal(f, vec3(1.0f, 0.0f, 0.0f), vec3(plane))|validation"
   "photons ignore shading normals where they land|include/photongrid/trace/scatter.glsl|share < 8.0f ? share : 8.0f|1.0f|on_serial_pictures"
   "photons have no adjoint factor|include/photongrid/trace/scatter.glsl|factor < 8.0f ? factor : 8.0f|1.0f|validation"
-  "a mesh light sends all light from its last triangle|include/photongrid/trace/mesh_light.glsl|if (shares(middle) > goal)|if (shares(middle) > 0xFFFFFFFFu - (goal - goal))"
-  "points of a mesh light crowd at a corner|include/photongrid/trace/mesh_light.glsl|precise float root = sqrt(v);|precise float root = v;"
+  "a mesh light sends all light from its last triangle|include/photongrid/trace/lights/mesh_light.glsl|if (shares(middle) > goal)|if (shares(middle) > 0xFFFFFFFFu - (goal - goal))"
+  "points of a mesh light crowd at a corner|include/photongrid/trace/lights/mesh_light.glsl|precise float root = sqrt(v);|precise float root = v;"
   "textures are upside down|include/photongrid/trace/mesh_color.glsl|size.w - (coordinates.y|(coordinates.y"
   "clamped textures repeat|include/photongrid/trace/mesh_color.glsl|repeats ? rest : at|rest"
   "textures are not interpolated along rows|include/photongrid/trace/mesh_color.glsl|precise float right_share = u - left;|precise float right_share = 0.0f;"
@@ -355,15 +355,15 @@ faults=(
   "a tent's slopes are even|include/photongrid/trace/eye_ray.glsl|precise float root = sqrt(twice > 0.0f ? twice : 0.0f);|precise float root = twice;|optics"
   "the tree of lights forgets light from outside of the scene|include/photongrid/trace/chosen_light.glsl|c.probability * (in_tree / total)|c.probability * 1.0f"
   "balls of the tree of lights are too small|include/photongrid/trace/light_tree.hpp|glm::distance(lights_[n].center, ball.center) + lights_[n].radius|glm::distance(lights_[n].center, ball.center)|light_tree"
-  "lights around the horizon are never chosen|include/photongrid/trace/chosen_light.glsl|(dot3(to, lit.normal) + least) / distance|dot3(to, lit.normal) / distance"
-  "spotlights fall off linearly|include/photongrid/trace/spot_light.glsl|axis.w * t * t * (3.0f - 2.0f * t)|axis.w * t"
-  "photons of spotlights fall off linearly|include/photongrid/trace/spot_light.glsl|max(min(three.x, three.y), min(max(three.x, three.y), three.z))|three.x"
-  "a sphere light's cone is as wide as its radius|include/photongrid/trace/any_light.glsl|sine2 / (1.0f + sqrt(1.0f - sine2))|0.5f * sine2"
-  "distant light enters by the first face alone|include/photongrid/trace/distant_light.glsl|if (goal < areas.x)|if (goal < 2.0f * areas.x)"
-  "the power of environments ignores the box|include/photongrid/trace/emit_photon.glsl|(outline_area(at, d) / probability)|(1.0f / probability)"
+  "lights around the horizon are never chosen|include/photongrid/trace/lit_point.glsl|(dot3(to, lit.normal) + least) / distance|dot3(to, lit.normal) / distance"
+  "spotlights fall off linearly|include/photongrid/trace/lights/spot_light.glsl|axis.w * t * t * (3.0f - 2.0f * t)|axis.w * t"
+  "photons of spotlights fall off linearly|include/photongrid/trace/lights/spot_light.glsl|max(min(three.x, three.y), min(max(three.x, three.y), three.z))|three.x"
+  "a sphere light's cone is as wide as its radius|include/photongrid/trace/lights/sphere_light.glsl|sine2 / (1.0f + sqrt(1.0f - sine2))|0.5f * sine2"
+  "distant light enters by the first face alone|include/photongrid/trace/lights/distant_light.glsl|if (goal < areas.x)|if (goal < 2.0f * areas.x)"
+  "the power of environments ignores the box|include/photongrid/trace/lights/environment_light.glsl|(outline_area(at, e.direction) / probability)|(1.0f / probability)"
   "an environment is seen mirrored|include/photongrid/trace/environment.glsl|m.x < 0.0f ? 6.28318531f - half_turn : half_turn|m.x < 0.0f ? half_turn : 6.28318531f - half_turn"
-  "texels of an environment are sampled without their solid angle|include/photongrid/trace/environment_sample.glsl|precise float scale = sine / texel.w;|precise float scale = 0.6f / texel.w;"
-  "samples of a mesh light leave out its parts|include/photongrid/trace/any_light.glsl|(float(args.sample_id) + r.x) * share|r.x * share"
+  "texels of an environment are sampled without their solid angle|include/photongrid/trace/lights/environment_light.glsl|precise float scale = sine / texel.w;|precise float scale = 0.6f / texel.w;"
+  "samples of a mesh light leave out its parts|include/photongrid/trace/shadow_ray.glsl|(float(args.sample_id) + n.r.x) * share|n.r.x * share"
   "rough facets are chosen as if all faced the eye|include/photongrid/trace/microfacet.glsl|vec3(view.x * alpha, view.y * alpha, view.z)|vec3(view.x, view.y, view.z)|optics"
   "facets hide no light|include/photongrid/trace/microfacet.glsl|return share < 1.0f ? share : 1.0f;|return 1.0f;|optics"
   "light in rough glass is not scaled|include/photongrid/trace/scatter.glsl|(1.0f - share) * eta * eta|(1.0f - share)|optics"
@@ -458,7 +458,7 @@ tests_of() {
     backends/vulkan/*) echo on_vulkan ;;
     */film.hpp | */exact_sum.hpp) echo passes ;;
     */scene/scene.hpp | */render/*.hpp | */eye_ray*| */trace_photons.hpp) echo on_serial_pictures ;;
-    */bounce_photon.glsl | */covered_share.glsl | */covered_moments.glsl | */surface_cover.glsl | */correct_bias.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */mesh_surface.glsl | */scatter.glsl | */shadow_ray.glsl | */any_light.glsl | */mesh_light.glsl | */eye_bounce.glsl | */add_unblocked.glsl | */spot_light.glsl | */distant_light.glsl | */environment*.glsl | */mesh_color.glsl | */chosen_light.glsl | */emit_photon.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
+    */bounce_photon.glsl | */covered_share.glsl | */covered_moments.glsl | */surface_cover.glsl | */correct_bias.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */mesh_surface.glsl | */scatter.glsl | */shadow_ray.glsl | */lights.glsl | */mesh_light.glsl | */eye_bounce.glsl | */add_unblocked.glsl | */spot_light.glsl | */distant_light.glsl | */environment*.glsl | */lights/*.glsl | */mesh_color.glsl | */chosen_light.glsl | */emit_photon.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
     *) echo on_serial_algorithms ;;
   esac
 }

@@ -116,12 +116,16 @@ std::optional<grip> pick(
         return along > 0 && glm::length(to - along * line.direction) <= 12 * pixel * along && along < hit.t;
     };
     for (std::size_t p = 0; p < parts.size(); ++p) {
-        for (const auto* light : items_of<point_light>(s, parts[p]))
-            if (is_near(light->position))
-                return grip{p, light->position};
-        for (const auto* light : items_of<spot_light>(s, parts[p]))
-            if (is_near(light->position))
-                return grip{p, light->position};
+        std::optional<grip> found;
+        for_each_light(s, [&](const auto& list, auto) {
+            using light = typename std::decay_t<decltype(list)>::value_type;
+            if constexpr (requires(const light& l) { l.position; })
+                for (const auto* l : items_of<light>(s, parts[p]))
+                    if (!found && is_near(l->position))
+                        found = grip{p, l->position};
+        });
+        if (found)
+            return found;
     }
     if (hit.shape == reference::nothing)
         return std::nullopt;

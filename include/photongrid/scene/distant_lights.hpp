@@ -116,8 +116,9 @@ struct light_kind<directional_light> {
     static constexpr const char* list = "directional_lights"; ///< member of scene
     static constexpr std::tuple fields{field{"direction", &directional_light::direction, quantity::direction},
         field{"irradiance", &directional_light::irradiance, quantity::emission}}; ///< all fields but the name
-    static constexpr std::uint32_t form = 5;                                      ///< DIRECTIONAL_LIGHT in kernels
-    static constexpr std::uint32_t switches = 1u << 14;                           ///< of kernels
+    static constexpr std::uint32_t number = 14;             ///< its SWITCH: trace/lights/directional_light.glsl
+    static constexpr std::uint32_t switches = 1u << number; ///< of kernels
+    static constexpr auto samples = light_samples::once;
 
     /// \name See light_kind
     /// @{
@@ -126,7 +127,6 @@ struct light_kind<directional_light> {
     {
         return l.irradiance * projected_area(box, glm::normalize(l.direction));
     }
-    /// See trace/distant_light.glsl.
     static void write_record(record_writer& w, const directional_light& l, const light_context& in)
     {
         const dvec3 d = glm::normalize(l.direction);
@@ -145,8 +145,9 @@ struct light_kind<environment_light> {
     static constexpr const char* list = "environment_lights"; ///< member of scene
     static constexpr std::tuple fields{
         field{"radiance", &environment_light::radiance, quantity::emission}}; ///< but for the map and its rotation
-    static constexpr std::uint32_t form = 6;                                  ///< ENVIRONMENT_LIGHT in kernels
-    static constexpr std::uint32_t switches = 1u << 15;                       ///< of kernels
+    static constexpr std::uint32_t number = 15;             ///< its SWITCH: trace/lights/environment_light.glsl
+    static constexpr std::uint32_t switches = 1u << number; ///< of kernels
+    static constexpr auto samples = light_samples::by_direction;
 
     /// \name See light_kind
     /// @{
@@ -161,7 +162,6 @@ struct light_kind<environment_light> {
                     * (texels.solid_angle(row) * projected_area(box, texels.direction(column, row)));
         return power;
     }
-    /// See trace/environment.glsl.
     static void write_record(record_writer& w, const environment_light& l, const light_context& in)
     {
         const environment_texels texels(l);

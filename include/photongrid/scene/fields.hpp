@@ -48,9 +48,10 @@ template <class Shape>
 struct shape_kind;
 
 /// The properties of a kind of light that the library needs: `name`, `list`, `fields` (all members but the light's
-/// name, the surface of a mesh, and the picture of an environment) and `add_bounds` as in shape_kind; `form`, its
-/// number in kernels; `write_record`, for trace/lights.glsl; `size` and `extent` if it has an extent; `power_into(box,
-/// light)`, W, rgb, if it is outside of the scene and has no `power`.
+/// name, the surface of a mesh, and the picture of an environment) and `add_bounds` as in shape_kind; `number`, its
+/// SWITCH in kernels, and `switches`, all those that it needs; `samples`: how they differ;
+/// `write_record`, for its kernel code (trace/lights/); `ball(record)`, which holds it, if it has an extent, and then
+/// `size` and `extent`; `power_into(box, light)`, W, rgb, if it is outside of the scene and has no `power`.
 template <class Light>
 struct light_kind;
 

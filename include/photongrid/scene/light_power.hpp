@@ -4,6 +4,7 @@
 #include <photongrid/scene/bounds.hpp>
 
 #include <cstddef>
+#include <glm/vec4.hpp>
 #include <string>
 
 #include <photongrid/core/exact_begin.hpp>
@@ -18,6 +19,16 @@ inline void check_emission(const std::string& name, const dvec3& emission)
         name + ": each channel must be finite and not negative");
     detail::require(emission.x + emission.y + emission.z > 0, name + ": is 0; a light needs a channel above 0");
 }
+
+/// How samples of a light differ, as seen from a point: see kernels::SAMPLED_ONCE and the others.
+enum class light_samples { once, by_area, by_solid_angle, by_direction };
+
+/// A ball that holds a light.
+struct light_ball {
+    dvec3 center{0};
+    double radius = 0; ///< m
+    double power = 0;  ///< W, of all channels together
+};
 
 /// What the record of a light takes from the scene.
 struct light_context {
@@ -35,6 +46,9 @@ namespace detail {
         else
             return l.power;
     }
+
+    /// The xyz of a record.
+    inline dvec3 vector_of(const glm::vec4& record) { return dvec3(glm::vec3(record)); }
 } // namespace detail
 
 } // namespace photongrid

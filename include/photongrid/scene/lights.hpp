@@ -88,8 +88,9 @@ struct light_kind<point_light> {
     static constexpr const char* list = "point_lights"; ///< member of scene
     static constexpr std::tuple fields{field{"position", &point_light::position, quantity::point},
         field{"power", &point_light::power, quantity::power}}; ///< all fields but the name
-    static constexpr std::uint32_t form = 0;                   ///< POINT_LIGHT in kernels
-    static constexpr std::uint32_t switches = 1u << 6;         ///< of kernels
+    static constexpr std::uint32_t number = 6;                 ///< its SWITCH: trace/lights/point_light.glsl
+    static constexpr std::uint32_t switches = 1u << number;    ///< of kernels
+    static constexpr auto samples = light_samples::once;
 
     /// \name See light_kind
     /// @{
@@ -113,8 +114,9 @@ struct light_kind<rectangle_light> {
         field{"edge_u", &rectangle_light::edge_u, quantity::edge},
         field{"edge_v", &rectangle_light::edge_v, quantity::edge},
         field{"power", &rectangle_light::power, quantity::power}}; ///< all fields but the name
-    static constexpr std::uint32_t form = 1;                       ///< RECTANGLE_LIGHT in kernels
-    static constexpr std::uint32_t switches = 1u << 7 | 1u << shape_kind<polygon>::number; ///< of kernels
+    static constexpr std::uint32_t number = 7;                     ///< its SWITCH: trace/lights/rectangle_light.glsl
+    static constexpr std::uint32_t switches = 1u << number | 1u << shape_kind<polygon>::number; ///< of kernels
+    static constexpr auto samples = light_samples::by_area;
 
     /// \name See light_kind
     /// @{
@@ -133,6 +135,11 @@ struct light_kind<rectangle_light> {
         w.put(l.edge_v, 0);
         w.put(glm::normalize(normal), glm::length(normal));
     }
+    static light_ball ball(const glm::vec4* record)
+    {
+        const dvec3 u = detail::vector_of(record[2]), v = detail::vector_of(record[3]);
+        return {detail::vector_of(record[1]) + 0.5 * (u + v), 0.5 * std::hypot(glm::length(u), glm::length(v))};
+    }
     /// @}
 };
 
@@ -142,8 +149,9 @@ struct light_kind<mesh_light> {
     static constexpr const char* name = "mesh_light";                                        ///< in scene files
     static constexpr const char* list = "mesh_lights";                                       ///< member of scene
     static constexpr std::tuple fields{field{"power", &mesh_light::power, quantity::power}}; ///< but for the surface
-    static constexpr std::uint32_t form = 2;                                                 ///< MESH_LIGHT in kernels
-    static constexpr std::uint32_t switches = 1u << 11 | 1u << 9; ///< of kernels: its own, and those of meshes
+    static constexpr std::uint32_t number = 11;                       ///< its SWITCH: trace/lights/mesh_light.glsl
+    static constexpr std::uint32_t switches = 1u << number | 1u << 9; ///< of kernels
+    static constexpr auto samples = light_samples::by_area;
 
     /// \name See light_kind
     /// @{
@@ -157,7 +165,11 @@ struct light_kind<mesh_light> {
         w.put_position(0.5 * (box.low + box.high), 1 / (std::numbers::pi * area_of(l.surface)));
         w.put(dvec3(halves_of(in.first_triangle), 0), 0);
         w.put(dvec3(halves_of(count), 0), 0);
-        w.put(dvec3(0.5 * glm::length(box.high - box.low), 0, 0), 0); // of a ball that holds it
+        w.put(dvec3(0.5 * glm::length(box.high - box.low), 0, 0), 0);
+    }
+    static light_ball ball(const glm::vec4* record)
+    {
+        return {detail::vector_of(record[1]), static_cast<double>(record[4].x)};
     }
     /// @}
 };

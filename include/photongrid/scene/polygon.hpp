@@ -138,7 +138,7 @@ struct shape_kind<polygon> {
         return 2 * std::uint64_t{p.vertices.size()} + 5;
     }
     static double extent(const polygon& p) { return photongrid::extent(p); }
-    static void write(record_writer& w, const polygon& p) { detail::put_polygon(w, p, 0); }
+    static void write(record_writer& w, const polygon& p, std::size_t light = 0) { detail::put_polygon(w, p, light); }
     /// @}
 };
 

@@ -109,6 +109,27 @@ void for_each_light(Scene& s, F&& f)
         [&](auto&... lists) { (f(lists, light_kind<detail::item_of<decltype(lists)>>{}), ...); }, light_lists(s));
 }
 
+namespace detail {
+    template <class... Lists>
+    constexpr std::uint32_t shape_bits(const std::tuple<Lists...>*)
+    {
+        return ((1u << shape_kind<item_of<Lists>>::number) | ...);
+    }
+    template <class... Lists>
+    constexpr std::uint32_t light_bits(const std::tuple<Lists...>*)
+    {
+        return ((1u << light_kind<item_of<Lists>>::number) | ...);
+    }
+} // namespace detail
+
+/// \name The SWITCHes of all kinds
+/// @{
+inline constexpr std::uint32_t all_shape_switches
+    = detail::shape_bits(static_cast<decltype(shape_lists(std::declval<scene&>()))*>(nullptr));
+inline constexpr std::uint32_t all_light_switches
+    = detail::light_bits(static_cast<decltype(light_lists(std::declval<scene&>()))*>(nullptr));
+/// @}
+
 /// The number of shapes of a scene; a mesh is one.
 inline std::size_t count_shapes(const scene& s)
 {

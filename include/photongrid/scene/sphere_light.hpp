@@ -38,15 +38,15 @@ struct light_kind<sphere_light> {
     static constexpr const char* list = "sphere_lights"; ///< member of scene
     static constexpr std::tuple fields{field{"center", &sphere_light::center, quantity::point},
         field{"radius", &sphere_light::radius, quantity::length},
-        field{"power", &sphere_light::power, quantity::power}};                            ///< all fields but the name
-    static constexpr std::uint32_t form = 3;                                               ///< SPHERE_LIGHT in kernels
-    static constexpr std::uint32_t switches = 1u << 12 | 1u << shape_kind<sphere>::number; ///< of kernels
+        field{"power", &sphere_light::power, quantity::power}}; ///< all fields but the name
+    static constexpr std::uint32_t number = 12;                 ///< its SWITCH: trace/lights/sphere_light.glsl
+    static constexpr std::uint32_t switches = 1u << number | 1u << shape_kind<sphere>::number; ///< of kernels
+    static constexpr auto samples = light_samples::by_solid_angle;
 
     /// \name See light_kind
     /// @{
     static void add_bounds(bounds& b, const sphere_light& l) { shape_kind<sphere>::add_bounds(b, surface_of(l)); }
     static double size(const sphere_light& l) { return l.radius; }
-    /// See trace/sphere_light.glsl.
     static void write_record(record_writer& w, const sphere_light& l, const light_context&)
     {
         const double pi = std::numbers::pi;
@@ -54,6 +54,10 @@ struct light_kind<sphere_light> {
         w.put(dvec3(l.radius, 0, 0), 0);
         w.put(dvec3(0), 0);
         w.put(dvec3(0), 0);
+    }
+    static light_ball ball(const glm::vec4* record)
+    {
+        return {detail::vector_of(record[1]), static_cast<double>(record[2].x)};
     }
     /// @}
 };

@@ -56,13 +56,13 @@ struct light_kind<spot_light> {
         field{"inner_angle", &spot_light::inner_angle, quantity::angle},
         field{"outer_angle", &spot_light::outer_angle, quantity::angle},
         field{"power", &spot_light::power, quantity::power}}; ///< all fields but the name
-    static constexpr std::uint32_t form = 4;                  ///< SPOT_LIGHT in kernels
-    static constexpr std::uint32_t switches = 1u << 13;       ///< of kernels
+    static constexpr std::uint32_t number = 13;               ///< its SWITCH: trace/lights/spot_light.glsl
+    static constexpr std::uint32_t switches = 1u << number;   ///< of kernels
+    static constexpr auto samples = light_samples::once;
 
     /// \name See light_kind
     /// @{
     static void add_bounds(bounds& b, const spot_light& l) { b.add(l.position); }
-    /// See trace/spot_light.glsl.
     static void write_record(record_writer& w, const spot_light& l, const light_context&)
     {
         // Solid angles divided by 2 pi. The mean of 3 t^2 - 2 t^3 is 1/2.

@@ -16,7 +16,6 @@ struct Params {
 PARAMS(Params)
 SWITCH(4, MIRRORS)
 SWITCH(5, GLASS)
-SWITCH(7, AREA_LIGHTS)
 INPUT(0, vec4, scene)
 INPUT(1, vec4, positions)
 INPUT(2, vec4, powers)

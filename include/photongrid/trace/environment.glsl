@@ -1,5 +1,5 @@
-// The light of the environment (scene/distant_lights.hpp). Included by kernels after trace/distant_light.glsl and the
-// INPUT environment: of each texel rgb, W/(m^2 sr), and w: the density of sampled directions times the sine of the
+// The light of the environment (scene/distant_lights.hpp). Included by kernels after the INPUT
+// environment: of each texel rgb, W/(m^2 sr), and w: the density of sampled directions times the sine of the
 // colatitude, sr^-1. Record: at + 1: columns, rows; at + 4: quaternion from the map's directions to the scene's.
 
 // v turned by a quaternion.

@@ -13,7 +13,7 @@
 
 namespace photongrid {
 
-/// As trace/environment.glsl and trace/environment_sample.glsl describe it; empty without an environment.
+/// As trace/environment.glsl and trace/lights/environment_light.glsl describe it; empty without an environment.
 struct environment_layout {
     std::vector<glm::vec4> texels;     ///< row by row
     std::vector<std::uint32_t> shares; ///< of the rows, then of each row's texels

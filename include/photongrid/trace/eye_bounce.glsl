@@ -22,7 +22,6 @@ struct Params {
 PARAMS(Params)
 SWITCH(4, MIRRORS)
 SWITCH(5, GLASS)
-SWITCH(7, AREA_LIGHTS)
 SWITCH(15, ENVIRONMENT_LIGHTS)
 INPUT(0, vec4, scene)
 INPUT(1, vec4, mesh_places) // these three: see mesh_surface.glsl
@@ -45,7 +44,7 @@ STATE(5, uint, branches)   // bit b: branch b must be traced for this pixel; bra
 
 #include <photongrid/trace/intersect.glsl>
 #include <photongrid/trace/mesh_hit.glsl>
-#include <photongrid/trace/lights.glsl>
+#include <photongrid/trace/light_record.glsl>
 #include <photongrid/trace/environment.glsl>
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/mixture.glsl>
@@ -68,9 +67,8 @@ float weight_of_hit(float density)
     return weight;
 }
 
-// The density of the samples of this light, which the ray hits on its front: see mesh_light_sample and
-// sphere_light_sample.
-float sampled_density(Light light, Hit hit, vec3 d)
+// The density of the samples of this light, which the ray hits on its front.
+float sampled_density(uint light, Hit hit, vec3 d)
 {
     vec3 from = vec3(point);
     float far = hit.t;
@@ -80,30 +78,20 @@ float sampled_density(Light light, Hit hit, vec3 d)
         precise float whole = far + surface.y;
         far = whole;
     }
-    if (SPHERE_LIGHTS && light.form == SPHERE_LIGHT) {
-        float radius = light.edge_u.x;
-        precise vec3 to_centre = light.position - from;
-        precise float sine2 = radius * radius / dot3(to_centre, to_centre);
-        if (!(sine2 < 1.0f))
-            return 0.0f;
-        precise float density = (1.0f + sqrt(1.0f - sine2)) / (6.28318531f * sine2);
-        return density;
-    }
-    precise float density = far * far * 3.14159265f * light.radiance_per_power / -dot3(d, hit.normal);
-    return density;
+    return light_density(light, from, far, d, hit.normal);
 }
 
 // The ray ends on the front of this light.
 void see_light(Hit hit, vec3 d)
 {
-    Light light = light_of(hit.light);
-    float scale = light.radiance_per_power;
+    uint light = light_at(hit.light);
+    vec3 power = light_power(light);
+    float scale = radiance_per_power(light);
     if (ROUGH) {
         precise float weighted = scale * weight_of_hit(sampled_density(light, hit, d));
         scale = weighted;
     }
-    emitted = vec4(throughput.x * light.power.x * scale, throughput.y * light.power.y * scale,
-        throughput.z * light.power.z * scale, 0.0f);
+    emitted = vec4(throughput.x * power.x * scale, throughput.y * power.y * scale, throughput.z * power.z * scale, 0.0f);
 }
 
 // The ray sees the environment.

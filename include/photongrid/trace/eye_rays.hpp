@@ -151,10 +151,8 @@ void for_each_light_sample(const scene_layout& layout, const render_settings& se
         return;
     }
     for (uint number = 0; number < lights.count; ++number) {
-        const auto form = static_cast<uint>(layout.records[lights.first + lights.stride * number].x);
-        const bool has_size = form == kernels::RECTANGLE_LIGHT || form == kernels::MESH_LIGHT
-            || form == kernels::SPHERE_LIGHT || form == kernels::ENVIRONMENT_LIGHT;
-        const uint of_this = has_size ? samples : 1u;
+        const bool differ = layout.records[lights.first + lights.stride * number].w != kernels::SAMPLED_ONCE;
+        const uint of_this = differ ? samples : 1u;
         for (uint sample = 0; sample < of_this; ++sample)
             add({.strata = strata_of(of_this), .light = number, .sample_id = sample, .seed = seed});
     }
@@ -314,7 +312,7 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
     device.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
     // What direct_light.glsl does not know.
     constexpr uint others
-        = has_meshes | has_sphere_lights | has_spot_lights | has_directional_lights | has_environment | has_coats;
+        = has_meshes | has_coats | (all_light_switches & ~(uint{has_point_lights} | uint{has_area_lights}));
     // A part of a lamp that is taken whole is seen whole or not at all: where something covers a part of it, the mean
     // of many passes is not exact.
     const bool takes_whole = settings.estimate.indirect != indirect_kind::paths;

@@ -1,10 +1,19 @@
 // A sample of a point or rectangle light as seen from a point of a surface (2.4). Included by kernels after
-// trace/lights.glsl, trace/lit_point.glsl and the SWITCHes POINT_LIGHTS and AREA_LIGHTS; args: strata, branch, nth,
-// seed, first_pixel.
+// trace/light_record.glsl, trace/lit_point.glsl, trace/lights/point_light.glsl and rectangle_light.glsl; args: strata,
+// branch, nth, seed, first_pixel.
+
+struct Lamp {
+    vec3 position; // of a rectangle one corner, m
+    vec3 edge_u;   // m
+    vec3 edge_v;   // m
+    vec3 normal;   // unit; light leaves on this side
+    vec3 power;    // W
+};
 
 // A light as seen from a point: what all samples have in common.
 struct SeenLight {
-    Light light;
+    Lamp light;
+    float radiance_per_power; // m^-2 sr^-1
     bool area;        // it is a rectangle
     vec3 edge_u;      // of a stratum
     vec3 edge_v;
@@ -17,8 +26,13 @@ struct SeenLight {
 SeenLight seen_light(uint at, LitPoint lit)
 {
     SeenLight seen;
-    seen.light = light_at(at);
-    seen.area = AREA_LIGHTS && (!POINT_LIGHTS || seen.light.is_area);
+    seen.light.position = vec3(scene(at + 1u));
+    seen.light.edge_u = vec3(scene(at + 2u));
+    seen.light.edge_v = vec3(scene(at + 3u));
+    seen.light.normal = vec3(scene(at + 4u));
+    seen.light.power = light_power(at);
+    seen.radiance_per_power = radiance_per_power(at);
+    seen.area = AREA_LIGHTS && (!POINT_LIGHTS || kind_of_light(at) == RECTANGLE_LIGHT);
     precise float share_u = 1.0f / float(args.strata.x);
     precise float share_v = 1.0f / float(args.strata.y);
     precise vec3 edge_u = seen.light.edge_u * share_u;
@@ -137,7 +151,7 @@ LightSample light_sample(SeenLight seen, uint number, uint s, uint i, LitPoint l
             precise vec3 f = stratum - lit.position;
             // The stratum's part of the irradiance.
             precise float filled = form_factor(f, seen.edge_u, seen.edge_v, lit.normal) * 3.14159265f
-                * seen.light.radiance_per_power;
+                * seen.radiance_per_power;
             diffuse = filled;
         }
         factor = diffuse;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <photongrid/scene/scene.hpp>
-#include <photongrid/trace/scene_layout.kernel.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,13 +15,6 @@
 
 namespace photongrid {
 
-/// A ball that holds a light.
-struct light_ball {
-    dvec3 center{0};
-    double radius = 0; ///< m
-    double power = 0;  ///< W, of all channels together
-};
-
 /// A ball that holds those of two children. A child is the number of a node, or -1 - the number of a ball.
 struct light_node {
     light_ball ball;
@@ -33,23 +25,16 @@ namespace detail {
     /// Of more lights than these each sample of direct light chooses one, by the tree.
     inline constexpr uint most_lights_sampled_each = 16;
 
-    /// The ball around a light, from its record, as light_importance has it (chosen_light.glsl); none for light from
-    /// outside of the scene.
-    inline std::optional<light_ball> ball_around(const glm::vec4* record)
+    /// The ball around a light, from its records (trace/light_record.glsl); none for light from outside of the scene.
+    template <class Kind, class Light>
+    std::optional<light_ball> ball_around(Kind, const Light& l, const glm::vec4* record)
     {
-        const auto vector = [&](int at) { return dvec3(record[at].x, record[at].y, record[at].z); };
-        light_ball ball{.center = vector(1), .power = glm::dot(vector(5), dvec3(1))};
-        switch (static_cast<uint>(record[0].x)) {
-        case kernels::DIRECTIONAL_LIGHT:
-        case kernels::ENVIRONMENT_LIGHT: return {};
-        case kernels::RECTANGLE_LIGHT:
-            ball.center += 0.5 * (vector(2) + vector(3));
-            ball.radius = 0.5 * std::hypot(glm::length(vector(2)), glm::length(vector(3)));
-            break;
-        case kernels::SPHERE_LIGHT: ball.radius = static_cast<double>(record[2].x); break;
-        case kernels::MESH_LIGHT: ball.radius = static_cast<double>(record[4].x); break;
-        default: break;
-        }
+        if constexpr (requires(const bounds& box) { Kind::power_into(box, l); })
+            return {};
+        light_ball ball{.center = vector_of(record[1])};
+        if constexpr (requires { Kind::ball(record); })
+            ball = Kind::ball(record);
+        ball.power = glm::dot(vector_of(record[5]), dvec3(1));
         return ball;
     }
 

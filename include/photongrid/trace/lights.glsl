@@ -1,49 +1,85 @@
-// Lights, read from the scene buffer. Included by kernels after their scene buffer.
-struct Light {
-    uint form;
-    bool is_area;             // a rectangle; other kinds have some of these members only
-    vec3 position;            // of a rectangle light: one corner, m
-    vec3 edge_u;              // m; x of a sphere: its radius
-    vec3 edge_v;              // m
-    vec3 normal;              // unit; light leaves on this side
-    vec3 power;               // W
-    float radiance_per_power; // of a rectangle, mesh or sphere: 1 / (pi area), m^-2 sr^-1
-};
+// The table of lights: what each kind emits, how points are lit by it, and how much to expect of it. Included by kernels
+// after the INPUTs of trace/lights/mesh_light.glsl, trace/environment.glsl and trace/lights/environment_light.glsl.
+#include <photongrid/trace/light_record.glsl>
+#include <photongrid/trace/lit_point.glsl>
+#include <photongrid/trace/environment.glsl>
+#include <photongrid/trace/lights/point_light.glsl>
+#include <photongrid/trace/lights/rectangle_light.glsl>
+#include <photongrid/trace/lights/sphere_light.glsl>
+#include <photongrid/trace/lights/mesh_light.glsl>
+#include <photongrid/trace/lights/spot_light.glsl>
+#include <photongrid/trace/lights/distant_light.glsl>
+#include <photongrid/trace/lights/directional_light.glsl>
+#include <photongrid/trace/lights/environment_light.glsl>
 
-Light light_at(uint at)
+// A photon of the light whose records are at `at`, for random numbers r and s but s.x. Kinds set what differs from
+// this: the light's power.
+Emitted emitted_photon(uint at, vec4 r, vec4 s)
 {
-    vec4 position_record = scene(at + 1u);
-    Light l;
-    l.form = uint(scene(at).x);
-    l.is_area = l.form == RECTANGLE_LIGHT;
-    l.position = vec3(position_record);
-    l.edge_u = vec3(scene(at + 2u));
-    l.edge_v = vec3(scene(at + 3u));
-    l.normal = vec3(scene(at + 4u));
-    l.power = vec3(scene(at + 5u));
-    l.radiance_per_power = position_record.w;
-    return l;
+    uint kind = kind_of_light(at);
+    float probability = light_probability(at);
+    vec3 power = light_power(at);
+    Emitted e;
+    e.origin = vec3(0.0f, 0.0f, 0.0f);
+    e.direction = vec3(0.0f, 0.0f, 1.0f);
+    e.power = vec3(power.x / probability, power.y / probability, power.z / probability);
+    if (POINT_LIGHTS && kind == POINT_LIGHT)
+        return point_emit(at, e, r);
+    if (AREA_LIGHTS && kind == RECTANGLE_LIGHT)
+        return rectangle_emit(at, e, r);
+    if (SPHERE_LIGHTS && kind == SPHERE_LIGHT)
+        return sphere_emit(at, e, r);
+    if (MESH_LIGHTS && kind == MESH_LIGHT)
+        return mesh_emit(at, e, r, s);
+    if (SPOT_LIGHTS && kind == SPOT_LIGHT)
+        return spot_emit(at, e, r, s);
+    if (DIRECTIONAL_LIGHTS && kind == DIRECTIONAL_LIGHT)
+        return directional_emit(at, e, r);
+    if (ENVIRONMENT_LIGHTS && kind == ENVIRONMENT_LIGHT)
+        return environment_emit(at, e, r, s, probability);
+    return e;
 }
 
-Light light_of(uint number)
+// A sample of a light, but for points and rectangles: see trace/light_sample.glsl. Kinds set what differs from this: no
+// light.
+ArrivingLight arriving_light(uint at, SampleNumbers n, LitPoint lit)
 {
-    Table table = table_of(scene(LIGHT_TABLE));
-    return light_at(table.first + table.stride * number);
+    uint kind = kind_of_light(at);
+    ArrivingLight a;
+    a.found = no_light(lit);
+    a.power = light_power(at);
+    a.radiance_per_power = 0.0f;
+    a.is_rectangle = false;
+    if (SPHERE_LIGHTS && kind == SPHERE_LIGHT)
+        return sphere_sample(at, a, n, lit);
+    if (MESH_LIGHTS && kind == MESH_LIGHT)
+        return mesh_sample(at, a, n, lit);
+    if (SPOT_LIGHTS && kind == SPOT_LIGHT)
+        return spot_sample(at, a, lit);
+    if (DIRECTIONAL_LIGHTS && kind == DIRECTIONAL_LIGHT)
+        return directional_sample(at, a, lit);
+    if (ENVIRONMENT_LIGHTS && kind == ENVIRONMENT_LIGHT)
+        return environment_arriving(at, a, n, lit);
+    return a;
 }
 
-// The scene's environment, its last light.
-uint environment_light()
+// The estimate of a light's irradiance without shadows: 0 only where it gives none.
+float light_importance(uint at, LitPoint lit)
 {
-    Table table = table_of(scene(LIGHT_TABLE));
-    return table.first + table.stride * (table.count - 1u);
-}
-
-// Probabilities, in proportion to power: that this light is chosen; that this light or one before it is.
-float light_probability(uint at)
-{
-    return scene(at).y;
-}
-float cumulative_probability(uint at)
-{
-    return scene(at).z;
+    uint kind = kind_of_light(at);
+    vec3 power = light_power(at);
+    precise float watts = power.x + power.y + power.z;
+    if (AREA_LIGHTS && kind == RECTANGLE_LIGHT)
+        return rectangle_importance(at, watts, lit);
+    if (SPHERE_LIGHTS && kind == SPHERE_LIGHT)
+        return sphere_importance(at, watts, lit);
+    if (MESH_LIGHTS && kind == MESH_LIGHT)
+        return mesh_importance(at, watts, lit);
+    if (SPOT_LIGHTS && kind == SPOT_LIGHT)
+        return spot_importance(at, watts, lit);
+    if (DIRECTIONAL_LIGHTS && kind == DIRECTIONAL_LIGHT)
+        return directional_importance(at, watts, lit);
+    if (ENVIRONMENT_LIGHTS && kind == ENVIRONMENT_LIGHT)
+        return environment_importance(at, watts);
+    return point_importance(at, watts, lit);
 }

@@ -72,3 +72,39 @@ LightSample lit_from(vec3 end, float per_power, LitPoint lit)
     found.far = far;
     return found;
 }
+
+// The random numbers of one sample of a light.
+struct SampleNumbers {
+    vec4 r;       // 0 to 1
+    vec2 place;   // of the sample's stratum of the unit square, in which it is at r.xy
+    float along;  // of the sample's part of 0 to 1, in which it is at r.x
+    float share;  // of the sample among all samples of the light
+};
+
+// A sample of a light.
+struct ArrivingLight {
+    LightSample found;
+    vec3 power;               // factor on found.per_power
+    float radiance_per_power; // m^-2 sr^-1; 0 of lights without size
+    bool is_rectangle;
+};
+
+// A photon at its start.
+struct Emitted {
+    vec3 origin;    // m
+    vec3 direction; // unit
+    vec3 power;     // W, divided by the probability of its light
+};
+
+// The estimate of the irradiance, without shadows, of lamps of this power inside a ball: 0 only where none of the ball
+// can be seen from the lit side.
+float ball_importance(vec3 middle, float radius, float watts, LitPoint lit)
+{
+    precise vec3 to = middle - lit.position;
+    precise float least = radius + lit.offset;
+    precise float distance2 = dot3(to, to) + least * least;
+    float distance = sqrt(distance2);
+    precise float cosine = (dot3(to, lit.normal) + least) / distance; // of the ball's highest point, at least
+    precise float falling = (cosine < 1.0f ? cosine : 1.0f) * watts / distance2 * 7.95774715e-2f;
+    return falling > 0.0f ? falling : 0.0f;
+}

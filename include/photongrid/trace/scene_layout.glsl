@@ -6,7 +6,7 @@ const uint SCENE_TABLES = 16u;
 const uint MATERIAL_TABLE = 4u; // no kind of shape has the numbers 4 to 7 or 12 to 15, the SWITCHes of materials and
                                 // lights, or 9 to 11, those of meshes
 const uint SCENE_SIZES = 5u;    // x: what ray_offset adds for curved shapes, m
-const uint LIGHT_TABLE = 6u;
+const uint LIGHT_TABLE = 6u;    // see trace/light_record.glsl
 const uint TEXTURE_TABLE = 7u; // of the materials that have one; see trace/mesh_color.glsl
 // Two records per node (trace/light_tree.hpp): its ball; power, left, right. w of the table's record: how many lights
 // are in the tree; they come first among all lights.
@@ -16,14 +16,12 @@ const uint LIGHT_TREE = 12u;
 // w of the table's record: the node after all that shadow rays to rectangle lights can meet. If that is not the last
 // one, the root is left out, too.
 const uint SHAPE_TREE = 13u;
-// Forms of lights.
-const uint POINT_LIGHT = 0u;
-const uint RECTANGLE_LIGHT = 1u;
-const uint MESH_LIGHT = 2u;
-const uint SPHERE_LIGHT = 3u;
-const uint SPOT_LIGHT = 4u;
-const uint DIRECTIONAL_LIGHT = 5u;
-const uint ENVIRONMENT_LIGHT = 6u; // the last light of a scene that has one
+// How samples of a light differ: not at all; by points that are even over its area; by directions that are even over the
+// solid angle of a ball (trace/light_record.glsl); else.
+const uint SAMPLED_ONCE = 0u;
+const uint SAMPLED_BY_AREA = 1u;
+const uint SAMPLED_BY_SOLID_ANGLE = 2u;
+const uint SAMPLED_BY_DIRECTION = 3u;
 const uint FIRST_MATERIAL = SCENE_TABLES; // materials come first, so that kernels need not look their table up
 const uint MATERIAL_RECORDS = 4u; // trace/material_layout.hpp
 const uint TEXTURE_RECORDS = 3u;

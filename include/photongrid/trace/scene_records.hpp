@@ -28,33 +28,21 @@ enum scene_feature : uint {
     has_polygons = 1u << shape_kind<polygon>::number,
     has_mirrors = detail::entry_of(material_kind::mirror).switches,
     has_glass = detail::entry_of(material_kind::glass).switches,
-    has_point_lights = light_kind<point_light>::switches,
-    has_area_lights = 1u << 7,
+    has_point_lights = 1u << light_kind<point_light>::number,
+    has_area_lights = 1u << light_kind<rectangle_light>::number,
     has_meshes = 1u << 9,         ///< number 8 is that of boxes
     has_smooth_meshes = 1u << 10, ///< meshes with normals
-    has_mesh_lights = 1u << 11,
-    has_sphere_lights = 1u << 12,
-    has_spot_lights = light_kind<spot_light>::switches,
-    has_directional_lights = light_kind<directional_light>::switches,
-    has_environment = light_kind<environment_light>::switches,
-    has_textures = 1u << 16,   ///< or colours of vertices
-    has_rough = 1u << 17,      ///< a rough surface
-    has_shape_tree = 1u << 18, ///< of many shapes
-    has_coats = 1u << 19,      ///< diffuse surfaces under a coat
-    has_instances = 1u << 20,  ///< surfaces of triangles that stand in several places
+    has_textures = 1u << 16,      ///< or colours of vertices
+    has_rough = 1u << 17,         ///< a rough surface
+    has_shape_tree = 1u << 18,    ///< of many shapes
+    has_coats = 1u << 19,         ///< diffuse surfaces under a coat
+    has_instances = 1u << 20,     ///< surfaces of triangles that stand in several places
     has_mixtures = detail::entry_of(material_kind::mixture).switches,
     has_clear = 1u << 22, ///< surfaces through which some light goes straight on
 };
 
-static_assert(light_kind<point_light>::form == kernels::POINT_LIGHT
-    && light_kind<rectangle_light>::form == kernels::RECTANGLE_LIGHT
-    && light_kind<mesh_light>::form == kernels::MESH_LIGHT && light_kind<sphere_light>::form == kernels::SPHERE_LIGHT
-    && light_kind<spot_light>::form == kernels::SPOT_LIGHT
-    && light_kind<directional_light>::form == kernels::DIRECTIONAL_LIGHT
-    && light_kind<environment_light>::form == kernels::ENVIRONMENT_LIGHT);
-static_assert(light_kind<rectangle_light>::switches == (has_area_lights | has_polygons)
-    && light_kind<mesh_light>::switches == (has_mesh_lights | has_meshes)
-    && light_kind<sphere_light>::switches == (has_sphere_lights | has_spheres));
+static_assert(all_light_switches == (all_light_switches & ~(all_shape_switches | has_mirrors | has_glass)),
+    "light_kind::number: is taken");
 static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SURFACE
     && static_cast<uint>(surface_kind::reflecting) == kernels::MIRROR_SURFACE
     && static_cast<uint>(surface_kind::refracting) == kernels::GLASS_SURFACE
@@ -200,16 +188,17 @@ namespace detail {
             }
             require(!diffuse.empty(), no_matte_shape);
             for_each_light(s_, [&](const auto& list, auto kind) {
-                for (const auto& l : list)
+                for (const auto& l : list) {
                     kind.add_bounds(all, l);
+                    if constexpr (requires { surface_of(l); }) {
+                        const auto surface = surface_of(l);
+                        const shape_kind<std::remove_cvref_t<decltype(surface)>> of;
+                        out_.steps_per_ray += steps_of(of, surface);
+                        round_size_ = std::max(round_size_, of.round_size(surface));
+                    }
+                }
                 out_.features |= list.empty() ? 0u : kind.switches;
             });
-            for (const auto& l : s_.rectangle_lights) // their surfaces are polygons
-                out_.steps_per_ray += steps_of(shape_kind<polygon>{}, surface_of(l));
-            for (const auto& l : s_.sphere_lights) {
-                out_.steps_per_ray += steps_of(shape_kind<sphere>{}, surface_of(l));
-                round_size_ = std::max(round_size_, shape_kind<sphere>::round_size(surface_of(l)));
-            }
             // Of loops over kinds, lights and faces, the corners of a lamp, and a last round of each loop: about 20.
             out_.steps_per_ray += 32;
             scale_ = 0.5 * glm::length(all.high - all.low);
@@ -243,20 +232,31 @@ namespace detail {
                     place(kind, x, w.next());
                     kind.write(w, x);
                 }
-                std::size_t written = list.size();
-                if constexpr (std::is_same_v<decltype(kind), shape_kind<sphere>>)
-                    written += write_spheres_of_lights(w);
+                const std::size_t written = list.size() + write_surfaces_of_lights(w, kind);
                 count += written;
+                constexpr bool lengths_differ = requires { kind.steps(list[0]); };
                 if (written > 0)
-                    enter(number, first, count, (w.next() - begin) / static_cast<uint>(written));
+                    enter(number, first, count, lengths_differ ? 0 : (w.next() - begin) / static_cast<uint>(written));
             });
-            // Polygons come last, because the surfaces of lights belong to the same table.
-            for (std::size_t i = 0; i < s_.rectangle_lights.size(); ++i) {
-                const auto surface = surface_of(s_.rectangle_lights[i]);
-                place(shape_kind<polygon>{}, surface, w.next());
-                put_polygon(w, surface, i + 1);
-            }
-            enter(number, first, s_.polygons.size() + s_.rectangle_lights.size(), 0);
+        }
+
+        /// Writes the surfaces of lights that are shapes of this kind. Returns how many there are.
+        template <class Kind>
+        std::size_t write_surfaces_of_lights(record_writer& w, Kind kind)
+        {
+            std::size_t light = 0, written = 0;
+            for_each_light(s_, [&](const auto& list, auto) {
+                for (const auto& l : list) {
+                    ++light;
+                    if constexpr (requires { kind.write(w, surface_of(l), light); }) {
+                        const auto surface = surface_of(l);
+                        place(kind, surface, w.next());
+                        kind.write(w, surface, light);
+                        ++written;
+                    }
+                }
+            });
+            return written;
         }
 
         /// Remembers a shape whose records begin at `at`, for the tree. Its box has a margin, since polygons are a
@@ -291,22 +291,15 @@ namespace detail {
             }
         }
 
-        /// Returns how many.
-        std::size_t write_spheres_of_lights(record_writer& w)
-        {
-            const std::size_t first = s_.rectangle_lights.size() + s_.point_lights.size();
-            for (std::size_t i = 0; i < s_.sphere_lights.size(); ++i) {
-                const auto surface = surface_of(s_.sphere_lights[i]);
-                place(shape_kind<sphere>{}, surface, w.next());
-                shape_kind<sphere>::write(w, surface, first + i + 1);
-            }
-            return s_.sphere_lights.size();
-        }
-
         /// Appends the triangles of mesh lights and of all meshes.
         void write_meshes()
         {
-            const std::size_t light = s_.rectangle_lights.size() + s_.point_lights.size() + s_.sphere_lights.size();
+            std::size_t light = 0; // the number of the first mesh light
+            bool before = true;
+            for_each_light(s_, [&](const auto& list, auto kind) {
+                before = before && !std::is_same_v<decltype(kind), light_kind<mesh_light>>;
+                light += before ? list.size() : 0;
+            });
             auto& from = out_.sources.meshes;
             from = {s_.meshes, s_.mesh_lights, out_.center, out_.features & (has_smooth_meshes | has_textures),
                 static_cast<uint>(light)};
@@ -351,7 +344,7 @@ namespace detail {
                     const dvec3& power = *next++;
                     const double weight = power.x + power.y + power.z;
                     below += weight;
-                    w.put(dvec3(kind.form, weight / total, below / total), 0);
+                    w.put(dvec3(kind.number, weight / total, below / total), static_cast<int>(kind.samples));
                     kind.write_record(w, l, in);
                     w.put(power, 0);
                     if constexpr (requires { l.surface; })
@@ -371,9 +364,14 @@ namespace detail {
         {
             const auto lights = out_.table(kernels::LIGHT_TABLE);
             std::vector<light_ball> balls;
-            for (uint n = 0; lights.count > most_lights_sampled_each && n < lights.count; ++n)
-                if (const auto ball = ball_around(&out_.records[lights.first + lights.stride * n]))
-                    balls.push_back(*ball);
+            const glm::vec4* record = &out_.records[lights.first];
+            for_each_light(s_, [&](const auto& list, auto kind) {
+                for (const auto& l : list) {
+                    if (const auto ball = ball_around(kind, l, record); ball && lights.count > most_lights_sampled_each)
+                        balls.push_back(*ball);
+                    record += lights.stride;
+                }
+            });
             const auto nodes = build_light_tree(balls);
             enter(kernels::LIGHT_TREE, w.next(), nodes.size(), 2);
             out_.records[kernels::LIGHT_TREE].w = static_cast<float>(balls.size());

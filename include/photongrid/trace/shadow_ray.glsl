@@ -18,20 +18,15 @@ struct Params {
     uint whole;       // 1: parts of a rectangle that are close are taken whole, by their form factor
 };
 PARAMS(Params)
-SWITCH(6, POINT_LIGHTS)
-SWITCH(7, AREA_LIGHTS)
-SWITCH(13, SPOT_LIGHTS)
-SWITCH(14, DIRECTIONAL_LIGHTS)
-SWITCH(15, ENVIRONMENT_LIGHTS)
 INPUT(0, vec4, scene)
 INPUT(1, vec4, points)     // w > 0: compute direct light
 INPUT(2, vec4, surfaces)   // xyz: normal; w: material, or -1
-INPUT(3, uvec4, faces)     // these four: see mesh_light.glsl
+INPUT(3, uvec4, faces)     // these four: see lights/mesh_light.glsl
 INPUT(4, vec4, planes)
 INPUT(5, vec4, vertices)
 INPUT(6, uint, shares)
 INPUT(7, vec4, environment)        // see environment.glsl ...
-INPUT(8, uint, environment_shares) // ... and environment_sample.glsl
+INPUT(8, uint, environment_shares) // ... and lights/environment_light.glsl
 OUTPUT(0, vec4, origin)    // xyz, m; w: length, m; 0 where nothing need be searched
 OUTPUT(1, vec4, direction) // xyz: unit vector
 // rgb: irradiance if no mesh blocks the ray, below a coat if there is one, W/m^2; w: density of the direction among all
@@ -39,11 +34,48 @@ OUTPUT(1, vec4, direction) // xyz: unit vector
 OUTPUT(2, vec4, arriving)
 
 #include <photongrid/trace/intersect.glsl>
-#include <photongrid/trace/any_light.glsl>
+#include <photongrid/trace/lights.glsl>
+#include <photongrid/trace/light_sample.glsl>
 #include <photongrid/trace/chosen_light.glsl>
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/optics.glsl>
 #include <photongrid/trace/coat.glsl>
+
+// The random numbers of this sample.
+SampleNumbers sample_numbers(uint i)
+{
+    SampleNumbers n;
+    n.r = sequence4(args.nth,
+        uvec4(i + args.first_pixel, args.branch, 3000u + args.light, args.seed ^ (args.sample_id * 0x9E3779B1u)));
+    precise float share = 1.0f / float(args.strata.x * args.strata.y);
+    n.share = share;
+    precise float along = (float(args.sample_id) + n.r.x) * share;
+    n.along = min(along, 0.99999994f);
+    uint row = args.sample_id / args.strata.x;
+    uint column = args.sample_id - row * args.strata.x;
+    precise vec2 place
+        = vec2((float(column) + n.r.x) / float(args.strata.x), (float(row) + n.r.y) / float(args.strata.y));
+    n.place = vec2(min(place.x, 0.99999994f), min(place.y, 0.99999994f));
+    return n;
+}
+
+// The sample of light `number`, for eye ray i. `whole`: see Params.
+ArrivingLight light_sampled(uint number, uint i, bool whole, LitPoint lit)
+{
+    uint at = light_at(number);
+    uint kind = kind_of_light(at);
+    ArrivingLight a;
+    if ((POINT_LIGHTS && kind == POINT_LIGHT) || (AREA_LIGHTS && kind == RECTANGLE_LIGHT)) {
+        SeenLight seen = seen_light(at, lit);
+        seen.some_close = seen.some_close && whole;
+        a.found = light_sample(seen, number, args.sample_id, i, lit);
+        a.power = seen.light.power;
+        a.radiance_per_power = seen.area ? seen.radiance_per_power : 0.0f;
+        a.is_rectangle = seen.area;
+        return a;
+    }
+    return arriving_light(at, sample_numbers(i), lit);
+}
 
 void kernel(uint i)
 {
@@ -68,7 +100,7 @@ void kernel(uint i)
         precise float weight = 1.0f / (c.probability * float(args.choices));
         scale = weight;
     }
-    ArrivingLight light = arriving_light(number, args.first + i, args.whole != 0u && !coated, lit);
+    ArrivingLight light = light_sampled(number, args.first + i, args.whole != 0u && !coated, lit);
     LightSample found = light.found;
     if (!(found.per_power > 0.0f)
         || (found.has_ray

@@ -1,6 +1,5 @@
 // Spheres. A record: center, radius; material; 1 + number of the light whose surface it is, or 0.
 SWITCH(0, SPHERES)
-SWITCH(12, SPHERE_LIGHTS)
 const uint SPHERE = 0u;
 
 // Computes from the point of closest approach, which avoids cancellation (Haines et al., Ray Tracing Gems, 2019, ch.
@@ -52,7 +51,7 @@ Hit sphere_surface(uint at, Hit hit)
     hit.normal = normalized3(hit.position - vec3(s));
     hit.position = ray_at(vec3(s), hit.normal, s.w); // onto the surface
     hit.material = uint(scene(at + 1u).x);
-    if (SPHERE_LIGHTS && scene(at + 1u).y > 0.0f) {
+    if (scene(at + 1u).y > 0.0f) {
         hit.material = NO_MATERIAL;
         hit.light = uint(scene(at + 1u).y) - 1u;
     }

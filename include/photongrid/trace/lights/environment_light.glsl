@@ -1,6 +1,8 @@
-// Directions from which the environment's light comes. Included by kernels after trace/environment.glsl and the INPUT
+// The environment as a light (scene/distant_lights.hpp). Included by kernels after trace/environment.glsl and the INPUT
 // environment_shares: of each row, then of each texel of each row, the share of the light, times 2^24, that is in it
 // and in those before it.
+SWITCH(15, ENVIRONMENT_LIGHTS)
+const uint ENVIRONMENT_LIGHT = 15u;
 
 // The first of `count` elements from `first` on whose share is above a number from 0 to 1, counted from `first`.
 uint chosen_share(uint first, uint count, float u)
@@ -47,4 +49,32 @@ EnvironmentSample environment_sample(uint at, vec2 place, vec2 inside)
     precise float density = texel.w / sine;
     s.density = density;
     return s;
+}
+
+// `probability`: of this light.
+Emitted environment_emit(uint at, Emitted e, vec4 r, vec4 s, float probability)
+{
+    EnvironmentSample from = environment_sample(at, vec2(s.y, s.z), vec2(s.w, r.x));
+    e.direction = -from.towards;
+    precise vec3 entering = from.radiance_per_density * (outline_area(at, e.direction) / probability);
+    e.power = entering;
+    e.origin = entry_point(at, e.direction, r.y, r.z, r.w);
+    return e;
+}
+
+ArrivingLight environment_arriving(uint at, ArrivingLight a, SampleNumbers n, LitPoint lit)
+{
+    EnvironmentSample e = environment_sample(at, n.place, vec2(n.r.z, n.r.w));
+    a.found = distant_sample(e.towards, n.share, lit);
+    a.power = e.radiance_per_density;
+    a.radiance_per_power = e.density;
+    return a;
+}
+
+float environment_importance(uint at, float watts)
+{
+    // A convex body's outline is a quarter of its surface, on average over all directions.
+    precise vec3 size = vec3(scene(at + 3u)) - vec3(scene(at + 2u));
+    precise float even = 2.0f * watts / (size.x * size.y + size.y * size.z + size.z * size.x);
+    return even;
 }

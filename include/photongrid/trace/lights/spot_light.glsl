@@ -1,7 +1,8 @@
-// Spotlights (scene/spot_light.hpp). Included by kernels after trace/lights.glsl and the SWITCH SPOT_LIGHTS. Records:
-// at + 1: position; at + 2: unit vector of the axis; w: greatest intensity divided by the power, sr^-1; at + 3: 1 -
+// Spotlights (scene/spot_light.hpp). Records: at + 1: position; at + 2: unit vector of the axis; w: greatest intensity divided by the power, sr^-1; at + 3: 1 -
 // cosine of the inner angle; that of the outer angle less that of the inner one; share of the power within the inner
 // angle.
+SWITCH(13, SPOT_LIGHTS)
+const uint SPOT_LIGHT = 13u;
 
 // The intensity in direction d, divided by the power, sr^-1.
 float spot_intensity(uint at, vec3 d)
@@ -36,4 +37,35 @@ vec3 spot_direction(uint at, float part, float u, float turn, vec3 three)
     precise float sine = sqrt(below * (2.0f - below));
     vec2 circle = unit_circle(turn);
     return from_basis(vec3(sine * circle.x, sine * circle.y, 1.0f - below), vec3(scene(at + 2u)));
+}
+
+Emitted spot_emit(uint at, Emitted e, vec4 r, vec4 s)
+{
+    e.origin = vec3(scene(at + 1u));
+    e.direction = spot_direction(at, s.y, r.x, r.y, vec3(r.z, r.w, s.z));
+    return e;
+}
+
+ArrivingLight spot_sample(uint at, ArrivingLight a, LitPoint lit)
+{
+    vec3 position = vec3(scene(at + 1u));
+    LightWay way = way_to(position, lit);
+    float intensity = spot_intensity(at, -way.direction);
+    if (!(way.distance2 > 0.0f) || !(way.cosine > 0.0f) || !(intensity > 0.0f))
+        return a;
+    float least2 = lit.offset * lit.offset; // as for a point light
+    precise float per_power = way.cosine * intensity / (way.distance2 > least2 ? way.distance2 : least2);
+    a.found = lit_from(position, per_power, lit);
+    precise float short_of = a.found.far * 0.9999f; // it may touch a surface
+    a.found.far = short_of;
+    return a;
+}
+
+float spot_importance(uint at, float watts, LitPoint lit)
+{
+    vec3 position = vec3(scene(at + 1u));
+    vec3 to = position - lit.position;
+    precise vec3 way = -to / sqrt(dot3(to, to));
+    precise float aimed = ball_importance(position, 0.0f, watts, lit) * spot_intensity(at, way) * 12.5663706f;
+    return aimed > 0.0f ? aimed : 0.0f;
 }

@@ -1,6 +1,5 @@
-// Light from outside of the scene (scene/distant_lights.hpp), which enters through the faces of a box. Included by
-// kernels after trace/lights.glsl. Records of both kinds: at + 2 and at + 3: corners of the box. Of directional lights,
-// at + 1: unit vector of the light's direction; w: irradiance divided by the power.
+// Light from outside of the scene, which enters through the faces of a box. Records: at + 2 and at + 3: corners of the
+// box.
 
 // The areas of the faces, as seen along d, that are perpendicular to each axis, m^2.
 vec3 seen_faces(uint at, vec3 d)
@@ -36,4 +35,19 @@ vec3 entry_point(uint at, vec3 d, float face, float u, float v)
     if (goal < past_x_and_y)
         return vec3(by_v.x, near.y, by_u.z);
     return vec3(by_u.x, by_v.y, near.z);
+}
+
+// It arrives from everywhere along `towards`.
+LightSample distant_sample(vec3 towards, float per_power, LitPoint lit)
+{
+    LightSample found = no_light(lit);
+    float cosine = dot3(towards, lit.normal);
+    if (!(cosine > 0.0f))
+        return found;
+    precise float received = per_power * cosine;
+    found.per_power = received;
+    found.has_ray = true;
+    found.direction = towards;
+    found.far = 3.0e38f;
+    return found;
 }
