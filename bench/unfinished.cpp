@@ -73,7 +73,8 @@ task task_of(const std::string& scene, bool paper, uint visits, uint divisor)
     const auto raster = detail::raster_of(settings, 1);
     detail::eye_hits<cpu_backend> hits(b, raster.size());
     auto branches = b.make<uint>(raster.size());
-    detail::trace_eye_rays(b, built.scene(), s.camera, settings, raster, 0, launch(raster.size(), 0), hits, branches);
+    detail::trace_eye_rays(
+        b, built.scene(), {s.camera, raster}, {settings, 0, launch(raster.size(), 0)}, hits, branches);
     t.points = b.download(hits.points);
     t.normals = b.download(hits.surfaces);
     t.search = detail::search_for(settings);

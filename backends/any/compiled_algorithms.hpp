@@ -22,7 +22,7 @@
     EXTERN template buffer_of<B, glm::uvec2> grid_index(B&, const buffer_of<B, glm::uvec2>&, uint);                    \
     EXTERN template map_buffers<B> sorted_map(B&, photons<B>, const grid&, uint);                                      \
     EXTERN template routed_cells<B> stencil_route(B&, const photons<B>&, const grid&, uint, uint, uint);               \
-    EXTERN template map_buffers<B> routed_map(B&, photons<B>, const grid&, uint, uint, uint, surplus_kind);            \
+    EXTERN template map_buffers<B> routed_map(B&, photons<B>, const grid&, const routing&);                            \
     EXTERN template routed_survivors<B> hashed_route(                                                                  \
         B&, photons<B>, const virtual_grid&, const hashed_route_settings&);                                            \
     EXTERN template map_buffers<B> block_map(B&, photons<B>, uint);                                                    \
@@ -43,22 +43,22 @@
         B&, const device_scene<B>&, const render_settings&, const render_observer&);                                   \
     EXTERN template uint trace_batch(                                                                                  \
         B&, const device_scene<B>&, detail::photon_frames<B>&, const path_batch<B>&, const render_settings&);          \
-    EXTERN template void detail::trace_eye_rays(B&, const device_scene<B>&, const camera&, const render_settings&,     \
-        const detail::raster&, uint, launch, detail::eye_hits<B>&, buffer_of<B, uint>&);                               \
-    EXTERN template void detail::direct_light(B&, const device_scene<B>&, const detail::eye_hits<B>&,                  \
-        const render_settings&, uint, launch, buffer_of<B, glm::vec4>&);                                               \
+    EXTERN template void detail::trace_eye_rays(B&, const device_scene<B>&, const detail::eye_view&,                   \
+        const detail::ray_of_pixels&, detail::eye_hits<B>&, buffer_of<B, uint>&);                                      \
+    EXTERN template void detail::direct_light(B&, const device_scene<B>&, const detail::ray_of_pixels&,                \
+        const detail::eye_hits<B>&, buffer_of<B, glm::vec4>&);                                                         \
     EXTERN template class photon_tracing<B>;                                                                           \
     EXTERN template buffer_of<B, glm::vec4> covered_shares(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&, \
-        const buffer_of<B, glm::vec4>&, const buffer_of<B, glm::vec4>&, filter_kind, float);                           \
+        const buffer_of<B, glm::vec4>&, const buffer_of<B, glm::vec4>&, const disc_kind&);                             \
     EXTERN template disc_moments<B> covered_moments(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&,        \
-        const buffer_of<B, glm::vec4>&, const buffer_of<B, glm::vec4>&, filter_kind, float);                           \
+        const buffer_of<B, glm::vec4>&, const buffer_of<B, glm::vec4>&, const disc_kind&);                             \
     EXTERN template void correct_edges(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&,                     \
-        const buffer_of<B, glm::vec4>&, knn_estimates<B>&, filter_kind, float);                                        \
+        const buffer_of<B, glm::vec4>&, knn_estimates<B>&, const disc_kind&);                                          \
     EXTERN template class gather_map_building<B>;                                                                      \
-    EXTERN template void add_gather_rays(B&, const device_scene<B>&, const gather_map<B>&, const map_buffers<B>&,      \
-        const detail::eye_hits<B>&, const render_settings&, uint, uint, launch, buffer_of<B, glm::vec4>&);             \
-    EXTERN template void add_path(B&, const device_scene<B>&, const map_buffers<B>&, const pass_radii<B>&,             \
-        const detail::eye_hits<B>&, const render_settings&, uint, uint, launch, buffer_of<B, glm::vec4>&);             \
+    EXTERN template void add_gather_rays(                                                                              \
+        B&, const gather_sources<B>&, const detail::eye_hits<B>&, detail::gather_ray, buffer_of<B, glm::vec4>&);       \
+    EXTERN template void add_path(B&, const device_scene<B>&, const caustic_source<B>&, const detail::eye_hits<B>&,    \
+        detail::gather_ray, buffer_of<B, glm::vec4>&);                                                                 \
     EXTERN template built_map<B> build_map(B&, const scene&, const render_settings&, const render_observer&);          \
     EXTERN template rendered draw(                                                                                     \
         B&, const built_map<B>&, const camera&, const render_settings&, const render_observer&);                       \
@@ -66,8 +66,8 @@
     EXTERN template class point_estimates<B>;                                                                          \
     EXTERN template class interpolated_estimates<B>;                                                                   \
     EXTERN template class view_pass<B>;                                                                                \
-    EXTERN template pass_pixels draw_pass(B&, const built_map<B>&, const camera&, const render_settings&,              \
-        const render_observer&, render_stats&, const pass_radii<B>&);                                                  \
+    EXTERN template pass_pixels draw_pass(                                                                             \
+        B&, const built_map<B>&, const camera&, const render_settings&, render_stats&, const pass_options<B>&);        \
     EXTERN template rendered render(B&, const scene&, const render_settings&, const render_observer&);                 \
     EXTERN template class progressive_render<B>;
 // NOLINTEND(bugprone-macro-parentheses)

@@ -163,10 +163,11 @@ public:
 
     /// Draws are computed by all threads and delivered by one, in order.
     template <route_kernel K, class Reads>
-    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots,
+    void route(launch l, const typename K::Params& args, Reads reads, const route_shape& to, buffer<uint>& slots,
         buffer<glm::vec4>& totals)
     {
-        detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
+        detail::check_route(to, caps_.max_route_slots, slots.size(), totals.size());
+        const auto [destinations, m] = to;
         const stopwatch watch;
         const K prepared = prepare<K>(l, args, reads);
         constexpr std::size_t batch = 65536; // draws in memory at a time

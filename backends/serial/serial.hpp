@@ -148,10 +148,11 @@ public:
     }
 
     template <route_kernel K, class Reads>
-    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots,
+    void route(launch l, const typename K::Params& args, Reads reads, const route_shape& to, buffer<uint>& slots,
         buffer<glm::vec4>& totals)
     {
-        detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
+        detail::check_route(to, caps_.max_route_slots, slots.size(), totals.size());
+        const auto [destinations, m] = to;
         K k = prepare<K>(l, args, reads);
         const uint capacity = route_capacity(m);
         const uint sums = route_sums(totals.size(), destinations);
@@ -159,7 +160,7 @@ public:
         std::vector<uint> arrived(destinations);
         std::fill(slots.data_.begin(), slots.data_.end(), no_id);
         std::fill(totals.data_.begin(), totals.data_.end(), glm::vec4(0));
-        route_all(std::move(k), l, arrived, capacity, slots.data_.data(), sums, block, totals.data_.data());
+        route_all(std::move(k), l, arrived, {slots.data_.data(), capacity, totals.data_.data(), sums, block});
         ++costs_[std::string(kernel_name<K>())].passes;
     }
 
@@ -198,19 +199,26 @@ private:
             store(k, i, writes);
         }
     }
+    struct deliveries {
+        uint* slots;
+        uint capacity; ///< slots per destination
+        glm::vec4* totals;
+        uint sums;  ///< per destination
+        uint block; ///< draws per sum
+    };
     /// Delivers each draw: `arrived` has an element per destination.
     template <class K>
-    [[gnu::noinline, gnu::flatten]] static void route_all(K k, const launch& l, std::vector<uint>& arrived,
-        uint capacity, uint* slots, uint sums, uint block, glm::vec4* totals)
+    [[gnu::noinline, gnu::flatten]] static void route_all(
+        K k, const launch& l, std::vector<uint>& arrived, const deliveries to)
     {
         for (uint i = l.first; i != l.first + l.elements; ++i) {
             k.kernel(i);
             const uint d = k.output(slot<0>{});
             if (d >= arrived.size())
                 continue;
-            if (arrived[d] < capacity)
-                slots[std::size_t{d} * capacity + arrived[d]++] = k.output(slot<1>{});
-            totals[std::size_t{d} * sums + (i - l.first) / block] += k.output(slot<2>{});
+            if (arrived[d] < to.capacity)
+                to.slots[std::size_t{d} * to.capacity + arrived[d]++] = k.output(slot<1>{});
+            to.totals[std::size_t{d} * to.sums + (i - l.first) / to.block] += k.output(slot<2>{});
         }
     }
     template <class K, class Writes>

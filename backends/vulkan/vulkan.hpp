@@ -225,10 +225,11 @@ public:
     /// Deterministic: it sorts draws stably by destination, so that ranks follow the draw order, and adds amounts in
     /// that order. It needs 40 bytes per draw and 8 per destination while it runs.
     template <route_kernel K, class Reads>
-    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots,
+    void route(launch l, const typename K::Params& args, Reads reads, const route_shape& to, buffer<uint>& slots,
         buffer<glm::vec4>& totals)
     {
-        detail::check_route(destinations, m, caps_.max_route_slots, slots.size(), totals.size());
+        detail::check_route(to, caps_.max_route_slots, slots.size(), totals.size());
+        const auto [destinations, m] = to;
         detail::check_reads<K>("route", reads, owns());
         check_owner("route: slots", slots);
         check_owner("route: totals", totals);

@@ -90,11 +90,11 @@ public:
         return n;
     }
     template <route_kernel K, class Reads>
-    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots,
+    void route(launch l, const typename K::Params& args, Reads reads, const route_shape& to, buffer<uint>& slots,
         buffer<glm::vec4>& totals)
     {
         const auto start = clock::now();
-        inner_.template route<K>(l, args, reads, destinations, m, slots, totals);
+        inner_.template route<K>(l, args, reads, to, slots, totals);
         note("route", kernel_name<K>(), start,
             {.elements = l.elements,
                 .passes = 1,

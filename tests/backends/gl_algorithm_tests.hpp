@@ -31,7 +31,7 @@ namespace {
                         auto slots = b.template make<uint>(destinations * route_capacity(m) + 5);
                         auto totals = b.template make<glm::vec4>(destinations + 3);
                         const launch l = n > 300 ? launch{n - 200, 100} : launch{n};
-                        b.template route<test_kernels::to_place>(l, {}, reads(p, a), destinations, m, slots, totals);
+                        b.template route<test_kernels::to_place>(l, {}, reads(p, a), {destinations, m}, slots, totals);
                         return std::pair(b.download(slots), b.download(totals));
                     };
                     const auto a = route(this->gpu());
@@ -55,7 +55,7 @@ namespace {
             auto slots = b.template make<uint>(10 * route_capacity(m));
             auto totals = b.template make<glm::vec4>(10);
             const auto before = passes();
-            b.template route<test_kernels::to_place>(launch{100}, {}, reads(p, a), 10, m, slots, totals);
+            b.template route<test_kernels::to_place>(launch{100}, {}, reads(p, a), {10, m}, slots, totals);
             EXPECT_EQ(passes() - before, bits + 3) << "m " << m;
         }
     }
@@ -90,7 +90,7 @@ namespace {
     auto map_and_search(
         B& b, const cloud& c, const grid& g, uint m, const std::vector<glm::vec4>& points, const knn_settings& s)
     {
-        const auto map = m == 0 ? sorted_map(b, upload_cloud(b, c), g) : routed_map(b, upload_cloud(b, c), g, m, 99);
+        const auto map = m == 0 ? sorted_map(b, upload_cloud(b, c), g) : routed_map(b, upload_cloud(b, c), g, {m, 99});
         const auto queries = b.upload(view(points));
         const auto e = knn_grid_estimate(b, map, queries, s);
         return std::tuple(b.download(map.list), b.download(map.cells), b.download(map.photons.powers),

@@ -90,7 +90,7 @@ namespace {
             auto totals = b.template make<glm::vec4>(destinations);
             buffer_of<gl_backend, uint> slots;
             EXPECT_THROW((b.template route<test_kernels::to_place>(
-                             1, {}, reads(pairs, amounts), destinations, 16u, slots, totals)),
+                             1, {}, reads(pairs, amounts), {destinations, 16u}, slots, totals)),
                 std::invalid_argument);
         }
         auto small = b.template make<uint>(10);

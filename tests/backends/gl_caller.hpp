@@ -108,7 +108,7 @@ namespace {
                 p = {unit(random), unit(random), unit(random), v == &points ? 1.0f : 0.0f};
         const grid g = make_grid(glm::vec3(0), glm::vec3(1), glm::uvec3(6));
         photons<B> p{b.upload(view(positions)), b.upload(view(powers)), {}};
-        const auto map = m == 0 ? sorted_map(b, std::move(p), g) : routed_map(b, std::move(p), g, m, 99);
+        const auto map = m == 0 ? sorted_map(b, std::move(p), g) : routed_map(b, std::move(p), g, {m, 99});
         const auto e = knn_grid_estimate(b, map, b.upload(view(points)), {.k = 20, .max_radius = 0.3f});
         return std::tuple(b.download(map.list), b.download(map.cells), b.download(map.photons.powers),
             b.download(e.irradiance), b.download(e.used));

@@ -55,7 +55,7 @@ TEST(passes, noise_falls_with_their_number)
             serial_backend b;
             render_stats stats;
             const auto built = build_map(b, s, settings);
-            const auto pixels = draw_pass(b, built, s.camera, settings, {}, stats);
+            const auto pixels = draw_pass(b, built, s.camera, settings, stats);
             film one(16, 16, 1, false);
             one.add(0, pixels);
             error[0] += relative_mse(one.picture().picture, exact) / 16;

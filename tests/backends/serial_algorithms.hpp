@@ -16,7 +16,7 @@ namespace photongrid {
 PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> sorted_map(
     serial_backend&, photons<serial_backend>, const grid&, uint);
 PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> routed_map(
-    serial_backend&, photons<serial_backend>, const grid&, uint, uint, uint, surplus_kind);
+    serial_backend&, photons<serial_backend>, const grid&, const routing&);
 PHOTONGRID_COMPILED_HERE template map_buffers<serial_backend> block_map(serial_backend&, photons<serial_backend>, uint);
 PHOTONGRID_COMPILED_HERE template routed_cells<serial_backend> stencil_route(
     serial_backend&, const photons<serial_backend>&, const grid&, uint, uint, uint);

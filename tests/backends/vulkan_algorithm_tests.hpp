@@ -18,7 +18,7 @@ template <backend B>
 everything map_and_estimate(
     B& b, const photon_set& s, const std::vector<vec4>& points, uint m, const knn_settings& settings)
 {
-    auto map = m == 0 ? sorted_map(b, upload_photons(b, s), s.g) : routed_map(b, upload_photons(b, s), s.g, m, 3u);
+    auto map = m == 0 ? sorted_map(b, upload_photons(b, s), s.g) : routed_map(b, upload_photons(b, s), s.g, {m, 3u});
     const auto q = up(b, points);
     auto e = knn_grid_estimate(b, map, q, settings);
     return {b.download(map.cells), b.download(map.list), b.download(map.photons.powers), b.download(e.irradiance),

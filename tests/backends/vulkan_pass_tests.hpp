@@ -144,7 +144,7 @@ TEST_F(vulkan, the_dispatches_of_a_route_are_counted)
         const auto in = up(b(), numbers(100, destinations));
         const auto before = passes();
         b().route<test_kernels::sends>(
-            launch(100), {.destinations = destinations}, reads(in), destinations, 2, slots, totals);
+            launch(100), {.destinations = destinations}, reads(in), {destinations, 2}, slots, totals);
         // The kernel; keys; counting, scanning and scattering each digit of 4 bits; ranges, slots and totals.
         EXPECT_EQ(passes() - before, 1 + 1 + 3 * digits + 3) << destinations;
     }
@@ -162,7 +162,8 @@ TEST_F(vulkan, route_equals_serial_bit_for_bit)
                     auto slots = up(backend, std::vector<uint>((destinations + 3) * route_capacity(m), 5u));
                     auto totals = up(backend, std::vector<vec4>(destinations + 3, vec4(5)));
                     backend.template route<test_kernels::sends>(launch(n),
-                        {.destinations = destinations + destinations / 10}, reads(in), destinations, m, slots, totals);
+                        {.destinations = destinations + destinations / 10}, reads(in), {destinations, m}, slots,
+                        totals);
                     return std::pair(backend.download(slots), backend.download(totals));
                 };
                 const auto [slots, totals] = run(b());

@@ -75,7 +75,7 @@ TYPED_TEST_P(verbs, a_route_keeps_the_first_draws_and_adds_up_all)
                         auto slots_ = this->up(std::vector<uint>(slots.size(), 5u));
                         auto totals_ = this->up(std::vector<glm::vec4>(totals.size(), glm::vec4(5)));
                         b.template route<verb_kernels::delivery>({draws, first}, {.first_payload = 5},
-                            reads(this->up(sent), this->up(amounts)), destinations, m, slots_, totals_);
+                            reads(this->up(sent), this->up(amounts)), {destinations, m}, slots_, totals_);
                         const auto where = ::testing::Message()
                             << draws << " draws from " << first << " to " << destinations << " destinations, m " << m
                             << ", " << parts << " parts";
@@ -109,7 +109,7 @@ TYPED_TEST_P(verbs, passes_are_counted_by_kernel)
         b.template run_until_done<verb_kernels::countdown>(n, {.step = 1}, reads(in), writes(state, out), most);
     for (int again = 0; again < 2; ++again)
         b.template count<verb_kernels::is_marked>(n, {.marks = 1}, reads(in));
-    b.template route<verb_kernels::delivery>(n, {.first_payload = 0}, reads(in, amounts), 10, 1, out, totals);
+    b.template route<verb_kernels::delivery>(n, {.first_payload = 0}, reads(in, amounts), {10, 1}, out, totals);
     b.finish();
     const std::array<std::uint64_t, 4> expected{3, 9, 2, 1};
     for (std::size_t k = 0; k < names.size(); ++k)

@@ -91,11 +91,11 @@ public:
         return due(fault::wrong_count) ? wrong_ : n;
     }
     template <route_kernel K, class Reads>
-    void route(launch l, const typename K::Params& args, Reads reads, uint destinations, uint m, buffer<uint>& slots,
+    void route(launch l, const typename K::Params& args, Reads reads, const route_shape& to, buffer<uint>& slots,
         buffer<glm::vec4>& totals)
     {
         work();
-        inner_->template route<K>(l, args, reads, destinations, m, slots, totals);
+        inner_->template route<K>(l, args, reads, to, slots, totals);
         if (due(fault::garbage))
             spoil_all(writes(slots, totals));
     }

@@ -133,7 +133,7 @@ TYPED_TEST_P(verbs, too_small_buffers_are_refused_by_name)
     const auto route = [&](uint destinations, uint m) {
         return refusal([&] {
             b.template route<verb_kernels::delivery>(
-                100, {.first_payload = 0}, reads(in, amounts), destinations, m, small, totals);
+                100, {.first_payload = 0}, reads(in, amounts), {destinations, m}, small, totals);
         });
     };
     EXPECT_NE(route(10, 1).find("slots"), std::string::npos); // 9

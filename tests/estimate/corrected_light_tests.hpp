@@ -38,7 +38,7 @@ TYPED_TEST_P(edges, uniform_squares_read_one_up_to_their_corners)
             k.errors = true;
             auto e = knn_grid_estimate(b, map, p, np, k);
             const auto plain = b.download(e.irradiance), plain_errors = b.download(e.standard_error);
-            correct_edges(b, scene, p, np, e, f.kind, k.min_radius);
+            correct_edges(b, scene, p, np, e, {f.kind, k.min_radius});
             const auto whole = b.download(e.irradiance), errors = b.download(e.standard_error);
             const char* places[] = {"middle", "edge", "corner"};
             for (int place = 0; place < 3; ++place) {

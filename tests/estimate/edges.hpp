@@ -71,7 +71,7 @@ protected:
         const auto p = b.upload(std::span<const glm::vec4>(d.points)),
                    n = b.upload(std::span<const glm::vec4>(d.normals)),
                    e = b.upload(std::span<const glm::vec4>(d.estimates));
-        return b.download(covered_shares(b, scene, p, n, e, filter, 0));
+        return b.download(covered_shares(b, scene, p, n, e, filter));
     }
     /// Positions of `d` are the scene's; they are recentred here. Serial's bits are compared.
     std::vector<glm::vec4> cover(const scene& s, discs d, filter_kind filter)

@@ -27,7 +27,7 @@ namespace {
             s.powers.emplace_back(vec4(1.0f / static_cast<float>(n)));
         }
         if (slots > 0) // routed
-            return routed_map(b, upload_photons(b, s), s.g, slots, static_cast<uint>(seed), every_part, surplus);
+            return routed_map(b, upload_photons(b, s), s.g, {slots, static_cast<uint>(seed), every_part, surplus});
         return sorted_map(b, upload_photons(b, s), s.g);
     }
 
@@ -190,7 +190,7 @@ namespace {
                 s.positions.emplace_back(0.05f * u(), 0.0f, 0.05f * u(), 0.0f);
             s.powers.assign(400, vec4(1));
             for (const auto surplus : {surplus_kind::photons, surplus_kind::power}) {
-                const auto map = routed_map(b, upload_photons(b, s), s.g, 4, m, every_part, surplus);
+                const auto map = routed_map(b, upload_photons(b, s), s.g, {4, m, every_part, surplus});
                 const auto e = knn_grid_estimate(
                     b, map, points, {.k = 176, .max_radius = static_cast<float>(largest), .errors = true});
                 const auto value = static_cast<double>(b.download(e.irradiance)[0].x) / known;

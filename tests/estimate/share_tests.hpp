@@ -325,7 +325,7 @@ TYPED_TEST_P(edges, shares_are_bounded_before_they_divide)
     const std::vector<glm::vec4> errors(d.points.size(), glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
     knn_estimates<typename TestFixture::B> e{b.upload(std::span<const glm::vec4>(d.estimates)),
         b.upload(std::span<const glm::uvec2>(used)), b.upload(std::span<const glm::vec4>(errors))};
-    correct_edges(b, scene, p, n, e, filter_kind::silverman, 1e-3f);
+    correct_edges(b, scene, p, n, e, {filter_kind::silverman, 1e-3f});
     const auto irradiance = b.download(e.irradiance), error = b.download(e.standard_error);
     const double corner
         = part_by_lines({{-1, 0}, {0, 0}, {0, std::tan(glm::radians(0.5))}}, {-0.0005, 0.0005}, 1e-3).share[3];

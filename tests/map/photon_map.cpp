@@ -344,7 +344,7 @@ static_assert(traces<device_scene<device>&> && traces<const device_scene<device>
 static_assert(!traces<device_scene<device>> && !traces<const device_scene<device>>);
 template <class Map>
 constexpr bool views = std::is_constructible_v<view_pass<device>, device&, Map, const camera&, const render_settings&,
-    const view_pass_settings&, kept_samples<device>&, render_stats&>;
+    const view_pass_settings&, render_stats&>;
 static_assert(views<built_map<device>&> && views<const built_map<device>&>);
 static_assert(!views<built_map<device>> && !views<const built_map<device>>);
 

@@ -129,7 +129,7 @@ template <backend B>
 map_buffers<B> make_map(
     B& b, map_kind kind, photons<B> p, const grid& g, uint m = 16, uint seed = 3, uint parts = every_part)
 {
-    return kind == map_kind::routed ? routed_map(b, std::move(p), g, m, seed, parts)
+    return kind == map_kind::routed ? routed_map(b, std::move(p), g, {m, seed, parts})
         : kind == map_kind::sorted  ? sorted_map(b, std::move(p), g, parts)
                                     : block_map(b, std::move(p), parts);
 }

@@ -197,7 +197,7 @@ TYPED_TEST_P(algorithms, a_map_of_one_part_of_the_light_holds_that_part)
     }
     for (const bool routed : {false, true})
         for (const uint parts : {photongrid::caustic_part, photongrid::other_part, photongrid::every_part}) {
-            const auto map = routed ? routed_map(b, upload_photons(b, set), set.g, 16, 2, parts)
+            const auto map = routed ? routed_map(b, upload_photons(b, set), set.g, {16, 2, parts})
                                     : sorted_map(b, upload_photons(b, set), set.g, parts);
             const auto list = b.download(map.list);
             std::vector<uint> held;
@@ -234,7 +234,7 @@ TYPED_TEST_P(algorithms, photons_of_a_routed_map_stand_for_those_without_a_slot)
                     if (const uint id = kernels::permuted(i, n, 7); id != n / 2)
                         destined[(cell_of(id).z * 5 + cell_of(id).y) * 6 + cell_of(id).x].push_back(id);
 
-                const auto map = routed_map(b, upload_photons(b, set), set.g, m, 7, every_part, kind);
+                const auto map = routed_map(b, upload_photons(b, set), set.g, {m, 7, every_part, kind});
                 const auto cells = b.download(map.cells);
                 const auto list = b.download(map.list);
                 const auto positions = b.download(map.photons.positions), powers = b.download(map.photons.powers);

@@ -18,7 +18,7 @@ TYPED_TEST_P(algorithms, estimate_uses_exactly_the_photons_within_its_radius)
         const bool routed = *rc::gen::arbitrary<bool>();
         const auto set = make_photons(d, numbers, resolution);
         const auto points = make_points(set, 40, numbers.empty() ? 0 : numbers.front());
-        const auto map = routed ? routed_map(b, upload_photons(b, set), set.g, 16, 3)
+        const auto map = routed ? routed_map(b, upload_photons(b, set), set.g, {16, 3})
                                 : sorted_map(b, upload_photons(b, set), set.g);
         const auto estimates = knn_grid_estimate(b, map, b.upload(std::span<const vec4>(points)),
             as_paper(knn_settings{.k = k, .max_radius = radius, .visits_per_pass = 64, .ranges_per_pass = 16}));

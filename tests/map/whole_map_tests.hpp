@@ -16,7 +16,7 @@ TYPED_TEST_P(algorithms, everything_equals_the_serial_backend_bit_for_bit)
                 const auto points = make_points(set, 700, 11);
                 const auto run = [&](auto& device) {
                     const auto map = m == 0 ? sorted_map(device, upload_photons(device, set), set.g)
-                                            : routed_map(device, upload_photons(device, set), set.g, m, 6);
+                                            : routed_map(device, upload_photons(device, set), set.g, {m, 6});
                     const auto e = knn_grid_estimate(device, map, device.upload(std::span<const vec4>(points)),
                         as_paper(knn_settings{.k = 64, .max_radius = 0.25f}));
                     return std::tuple{device.download(map.cells), device.download(map.list),

@@ -56,7 +56,7 @@ TYPED_TEST_P(pictures, direct_light_of_a_rectangle_equals_the_form_factor)
     hits.points = b.upload(std::span<const glm::vec4>(points));
     hits.surfaces = b.upload(std::span<const glm::vec4>(normals));
     auto irradiance = b.template make<glm::vec4>(points.size());
-    detail::direct_light(b, device, hits, settings, 0, points.size(), irradiance);
+    detail::direct_light(b, device, {settings, 0, launch(points.size())}, hits, irradiance);
     const auto light = b.download(irradiance);
     for (std::size_t i = 0; i < points.size(); ++i) {
         dvec3 sum(0);

@@ -33,7 +33,7 @@ TYPED_TEST_P(pictures, passes_have_the_radii_of_the_first_map_made_smaller)
     const auto layers = [&](const built_map<typename TestFixture::B>& of, const auto& radii) {
         render_stats stats;
         film sum(settings.output.width, settings.output.height, 1, true);
-        sum.add(0, draw_pass(b, of, s.camera, other, {}, stats, radii));
+        sum.add(0, draw_pass(b, of, s.camera, other, stats, {.radii = radii}));
         return sum.picture().picture.layers;
     };
     using radii = pass_radii<typename TestFixture::B>;
@@ -74,7 +74,7 @@ TYPED_TEST_P(pictures, a_map_of_fewer_photons_gives_radii_as_large)
         const auto mean_radius2 = [&](const auto& radii) {
             render_stats stats;
             film sum(settings.output.width, settings.output.height, 1, true);
-            sum.add(0, draw_pass(b, map, s.camera, of_part, {}, stats, radii));
+            sum.add(0, draw_pass(b, map, s.camera, of_part, stats, {.radii = radii}));
             double squares = 0;
             for (const float r : sum.picture().picture.layers.radius)
                 squares += static_cast<double>(r) * static_cast<double>(r);

@@ -25,7 +25,7 @@ std::vector<glm::vec4> direct_light_at(
     auto settings = s.render;
     settings.view.light_samples = samples;
     auto irradiance = b.template make<glm::vec4>(p.size());
-    detail::direct_light(b, device, hits, settings, 0, p.size(), irradiance);
+    detail::direct_light(b, device, {settings, 0, launch(p.size())}, hits, irradiance);
     return b.download(irradiance);
 }
 

@@ -300,7 +300,7 @@ namespace {
             hits.throughputs = upload_all(throughputs);
             hits.surfaces = upload_all(surfaces);
             hits.emissions = upload_all(emissions);
-            detail::light_rough_surfaces(b, device, s.render, 0, launch(n), hits);
+            detail::light_rough_surfaces(b, device, {s.render, 0, launch(n)}, hits);
             const auto seen = b.download(hits.emissions);
             // Light from there is seen against d: the way back, along which refracted radiance is scaled.
             const double scale = c.reflected ? 1 : c.whole().radiance_scale();
@@ -339,7 +339,7 @@ namespace {
         hits.throughputs = all(glm::vec4(glm::vec3(1), outward.y));
         hits.surfaces = all(glm::vec4(glm::vec3(normal), static_cast<float>(material)));
         hits.emissions = all(glm::vec4(glm::vec3(0), outward.z));
-        detail::light_rough_surfaces(b, device, s.render, 0, launch(n), hits);
+        detail::light_rough_surfaces(b, device, {s.render, 0, launch(n)}, hits);
         dvec3 sum(0);
         for (const auto& e : b.download(hits.emissions))
             sum += dvec3(glm::vec3(e)) / static_cast<double>(n);

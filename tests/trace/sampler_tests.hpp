@@ -399,7 +399,7 @@ namespace {
         hits.surfaces
             = b.upload(std::span<const glm::vec4>(std::vector<glm::vec4>(pixels, glm::vec4(0.0f, 1.0f, 0.0f, 0.0f))));
         auto light = b.make<glm::vec4>(pixels);
-        detail::direct_light(b, device, hits, settings, ray, launch(pixels), light);
+        detail::direct_light(b, device, {settings, ray, launch(pixels)}, hits, light);
         std::vector<double> out;
         for (const auto& e : b.download(light))
             out.push_back(static_cast<double>(e.x));

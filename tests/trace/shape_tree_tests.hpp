@@ -121,7 +121,7 @@ namespace {
         auto light = b.make<glm::vec4>(n);
         auto settings = s.render;
         settings.view.light_samples = 4;
-        detail::direct_light(b, device, hits, settings, 0, launch(n), light);
+        detail::direct_light(b, device, {settings, 0, launch(n)}, hits, light);
         return {b.download(hits.points), b.download(hits.directions), b.download(hits.surfaces), b.download(light)};
     }
 

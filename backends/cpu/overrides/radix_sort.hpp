@@ -58,9 +58,10 @@ using counters = std::vector<std::array<uint, digit::most>>; ///< of each range
 
 /// scatter_in_cache() for any number of pairs, in parallel: each task moves a range of `part` pairs. `next` has the
 /// counts of each digit per range, and is overwritten. Returns the index of each digit's first pair, and n.
-inline std::vector<uint> scatter_counted(pool& threads, const digit& by, const glm::uvec2* from, glm::uvec2* to,
-    std::size_t n, std::size_t part, counters& next)
+inline std::vector<uint> scatter_counted(
+    pool& threads, const digit& by, std::span<const glm::uvec2> from, glm::uvec2* to, std::size_t part, counters& next)
 {
+    const std::size_t n = from.size();
     std::vector<uint> begin(std::size_t{by.mask} + 2);
     uint sum = 0;
     for (uint value = 0; value <= by.mask; ++value) {
@@ -82,7 +83,7 @@ inline std::vector<uint> scatter_counted(pool& threads, const digit& by, const g
     auto* const lines = reinterpret_cast<glm::uvec2*>(line_memory.begin());
     threads.for_blocks(n, part, [&](std::size_t first, std::size_t past) {
         const std::size_t p = first / part;
-        scatter_pairs(by, from, first, past, next[p].data(), to, lines + p * line_pairs);
+        scatter_pairs(by, from.subspan(first, past - first), next[p].data(), to, lines + p * line_pairs);
     });
     return begin;
 }
@@ -184,7 +185,7 @@ inline radix_report radix_sort(pool& threads, glm::uvec2* pairs, glm::uvec2* scr
         for (uint d = 0; d < digits; ++d) {
             const digit by{values, r.low + d * width, (1u << width) - 1};
             count(by);
-            scatter_counted(threads, by, from, to, n, part, counts);
+            scatter_counted(threads, by, {from, n}, to, part, counts);
             std::swap(from, to);
         }
         report.passes += digits;
@@ -198,7 +199,7 @@ inline radix_report radix_sort(pool& threads, glm::uvec2* pairs, glm::uvec2* scr
         const digit by = first_digit(keys);
         if (!(by == probable) || whole.descents != 0)
             count(by);
-        const auto begin = scatter_counted(threads, by, from, to, n, part, counts);
+        const auto begin = scatter_counted(threads, by, {from, n}, to, part, counts);
         const uint rest = by.shift - keys.low, digits = digits_for(rest), width = (rest + digits - 1) / digits;
         threads.for_blocks(begin.size() - 1, 8, [&](std::size_t first, std::size_t past) {
             for (std::size_t bucket = first; bucket < past; ++bucket) {

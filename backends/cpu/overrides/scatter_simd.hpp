@@ -11,20 +11,18 @@ HWY_BEFORE_NAMESPACE();
 namespace photongrid::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Moves pairs first to past - 1 of `from` to `to`, which begins on a cache line: the next pair with digit v goes to
+/// Moves the pairs `from` to `to`, which begins on a cache line: the next pair with digit v goes to
 /// to[next[v]]. `lines` has room for pairs_per_line pairs per digit. Lines are collected there and then written past
 /// the caches (software write-combining; Satish et al., Fast Sort on CPUs and GPUs, 2010), because scattered writes
 /// would fetch each line first.
 template <bool BY_VALUE>
-HWY_INLINE void scatter(digit by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* next,
-    glm::uvec2* to, glm::uvec2* lines)
+HWY_INLINE void scatter(digit by, std::span<const glm::uvec2> from, uint* next, glm::uvec2* to, glm::uvec2* lines)
 {
     const hn::CappedTag<uint, 2 * pairs_per_line> d;
     const std::size_t width = hn::Lanes(d);
     uint begin[digit::most]; // this range's first pair per digit; its line may begin with pairs of other ranges
     std::copy(next, next + by.mask + 1, begin);
-    for (std::size_t i = first; i < past; ++i) {
-        const glm::uvec2 pair = from[i];
+    for (const glm::uvec2 pair : from) {
         const uint v = (BY_VALUE ? pair.y : pair.x) >> by.shift & by.mask;
         const uint at = next[v]++;
         glm::uvec2* const line = lines + v * pairs_per_line;
@@ -48,13 +46,13 @@ HWY_INLINE void scatter(digit by, const glm::uvec2* from, std::size_t first, std
     hwy::FlushStream();
 }
 
-inline void scatter_pairs(const digit& by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* next,
-    glm::uvec2* to, glm::uvec2* lines)
+inline void scatter_pairs(
+    const digit& by, std::span<const glm::uvec2> from, uint* next, glm::uvec2* to, glm::uvec2* lines)
 {
     if (by.of_value)
-        scatter<true>(by, from, first, past, next, to, lines);
+        scatter<true>(by, from, next, to, lines);
     else
-        scatter<false>(by, from, first, past, next, to, lines);
+        scatter<false>(by, from, next, to, lines);
 }
 
 } // namespace photongrid::cpu::HWY_NAMESPACE

@@ -68,10 +68,10 @@ inline void order_bucket(const map_job& j, uint bucket, std::size_t begin, std::
 }
 
 /// See scatter_simd.hpp.
-inline void scatter_pairs(const digit& by, const glm::uvec2* from, std::size_t first, std::size_t past, uint* next,
-    glm::uvec2* to, glm::uvec2* lines)
+inline void scatter_pairs(
+    const digit& by, std::span<const glm::uvec2> from, uint* next, glm::uvec2* to, glm::uvec2* lines)
 {
-    HWY_DYNAMIC_DISPATCH(scatter_pairs)(by, from, first, past, next, to, lines);
+    HWY_DYNAMIC_DISPATCH(scatter_pairs)(by, from, next, to, lines);
 }
 
 /// See search_simd.hpp.

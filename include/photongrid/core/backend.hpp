@@ -25,6 +25,12 @@ struct backend_error : std::runtime_error {
 };
 
 /// Which elements a pass computes: `first`, `first + 1`, … `first + elements - 1`. Bit B of `switches` is the kernel's
+/// Where route sends draws: m x m slots for each of some destinations.
+struct route_shape {
+    uint destinations = 0;
+    uint m = 1;
+};
+
 /// SWITCH B. Implicitly constructible from an element count.
 struct launch {
     uint elements = 0;   ///< how many; 0: the pass does nothing
@@ -161,8 +167,9 @@ namespace detail {
     }
 
     /// Checks the sizes of a route call; `limit` is the device's largest m.
-    inline void check_route(uint destinations, uint m, uint limit, std::size_t slots, std::size_t totals)
+    inline void check_route(const route_shape& to, uint limit, std::size_t slots, std::size_t totals)
     {
+        const auto [destinations, m] = to;
         const std::uint64_t capacity = m * m < 255u ? m * m : 255u;
         if (m < 1 || m > limit)
             throw std::invalid_argument("route: m: " + std::to_string(m) + " by " + std::to_string(m)
@@ -228,7 +235,7 @@ namespace detail {
 /// - `run_until_done<K>(launch, params, reads, writes, passes)`: passes over the elements not yet done (3.3, 4.3), at
 ///   most `passes` of them, or `all_passes`; call it again to continue. Elements that are done are not written
 /// - `count<K>(launch, params, reads(…))`: the number of elements for which `holds` is true (occlusion query)
-/// - `route<K>(launch, params, reads, destinations, m, slots, totals)`: many-to-one scatter (2.2.2). With
+/// - `route<K>(launch, params, reads, {destinations, m}, slots, totals)`: many-to-one scatter (2.2.2). With
 ///   cap = min(m*m, 255), slots[d*cap + r] is the payload of the r-th draw (in index order) with destination d, for
 ///   r < cap; other slots are `no_id`. totals[d] is the sum of all amounts with destination d, added in that order.
 ///   Draws with a destination past the last one are dropped. If `totals` has P elements per destination, there are P
@@ -254,7 +261,7 @@ concept backend = requires(B& device, const B& const_device, typename B::templat
     { device.template run_until_done<detail::concept_probe>(l, p, reads(u), writes(u), uint{}) }
         -> std::same_as<progress>;
     { device.template count<detail::concept_probe>(l, p, reads(u)) } -> std::same_as<std::uint64_t>;
-    device.template route<detail::route_probe>(l, p, reads(u), uint{}, uint{}, u, v);
+    device.template route<detail::route_probe>(l, p, reads(u), route_shape{}, u, v);
     device.finish();
     { const_device.caps() } -> std::same_as<const capabilities&>;
     { const_device.bytes() } -> std::same_as<std::uint64_t>;

@@ -43,28 +43,106 @@ float nearer(float so_far, bool exists, float u, uint c, uint cell, float size)
     return g < so_far ? g : so_far;
 }
 
+// The box of cells that rings 0 to `ring` around cell c cover.
+struct RingBox {
+    uvec4 low;
+    uvec4 high;
+};
+
+RingBox box_of_rings(uvec4 c, uint ring)
+{
+    RingBox b;
+    b.low = uvec4(c.x > ring ? c.x - ring : 0u, c.y > ring ? c.y - ring : 0u, c.z > ring ? c.z - ring : 0u, 0u);
+    b.high = uvec4(min(c.x + ring, args.grid.resolution.x - 1u), min(c.y + ring, args.grid.resolution.y - 1u),
+        min(c.z + ring, args.grid.resolution.z - 1u), 0u);
+    return b;
+}
+
+// Whether no cell beyond the box lies within the radius. `u`: the point, in cells.
+bool has_all_within(RingBox b, uvec4 c, vec3 u, float limit2)
+{
+    uint last_x = args.grid.resolution.x - 1u;
+    uint last_y = args.grid.resolution.y - 1u;
+    uint last_z = args.grid.resolution.z - 1u;
+    float unexplored = 3.4028234e38f;
+    unexplored = nearer(unexplored, b.high.x < last_x, u.x, c.x, b.high.x + 1u, args.grid.cell.x);
+    unexplored = nearer(unexplored, b.high.y < last_y, u.y, c.y, b.high.y + 1u, args.grid.cell.y);
+    unexplored = nearer(unexplored, b.high.z < last_z, u.z, c.z, b.high.z + 1u, args.grid.cell.z);
+    unexplored = nearer(unexplored, b.low.x > 0u, u.x, c.x, b.low.x - 1u, args.grid.cell.x);
+    unexplored = nearer(unexplored, b.low.y > 0u, u.y, c.y, b.low.y - 1u, args.grid.cell.y);
+    unexplored = nearer(unexplored, b.low.z > 0u, u.z, c.z, b.low.z - 1u, args.grid.cell.z);
+    bool everything = b.low.x == 0u && b.low.y == 0u && b.low.z == 0u && b.high.x == last_x
+        && b.high.y == last_y && b.high.z == last_z;
+    return everything || unexplored * unexplored > limit2;
+}
+
+// Where a search is among the cells of a ring.
+struct RingCell {
+    uint x;
+    uint y;
+    uint z;
+    uint at; // the photons of a row, from here ...
+    uint end;
+};
+
+// The next cells of a ring: the whole row (z, y) if it lies on a face of the ring's box, else its two end cells, either
+// of which may lie outside the grid.
+RingCell next_cells(RingCell s, RingBox b, uint ring, uvec4 c, vec3 u, float limit2)
+{
+    float gap_y = gap(u.y, c.y, s.y, args.grid.cell.y);
+    float gap_z = gap(u.z, c.z, s.z, args.grid.cell.z);
+    float row2 = gap_y * gap_y + gap_z * gap_z;
+    float away2 = row2;
+    bool face = s.y + ring == c.y || s.y == c.y + ring || s.z + ring == c.z || s.z == c.z + ring;
+    bool lower = s.x + ring == c.x;
+    uint begin_x = face || lower ? s.x : c.x + ring;
+    uint end_x = face ? b.high.x : begin_x;
+    s.x = !face && lower ? c.x + ring : end_x + 1u;
+    if (begin_x == end_x) {
+        float gap_x = gap(u.x, c.x, begin_x, args.grid.cell.x);
+        away2 = away2 + gap_x * gap_x;
+    }
+    if (away2 <= limit2 && begin_x <= args.grid.resolution.x - 1u) {
+        uint row = cell_number(args.grid, 0u, s.y, s.z);
+        uvec2 first = cells(row + begin_x);
+        uvec2 final = cells(row + end_x);
+        s.at = first.x;
+        s.end = final.x + final.y;
+    }
+    if (row2 > limit2)
+        s.x = b.high.x + 1u; // no cell of the row lies within the radius
+    if (gap_z * gap_z > limit2)
+        s.y = b.high.y; // nor any row of the layer
+    if (s.x > b.high.x) {
+        s.x = b.low.x;
+        ++s.y;
+    }
+    if (s.y > b.high.y) {
+        s.y = b.low.y;
+        ++s.z;
+    }
+    return s;
+}
+
 void kernel(uint i)
 {
     vec4 p = points(i);
     vec4 n = normals(i);
     uvec4 c = cell_coordinates(args.grid, p);
-    float ux = in_cells(p.x, args.grid.origin.x, args.grid.inverse_cell.x);
-    float uy = in_cells(p.y, args.grid.origin.y, args.grid.inverse_cell.y);
-    float uz = in_cells(p.z, args.grid.origin.z, args.grid.inverse_cell.z);
-    uint last_x = args.grid.resolution.x - 1u;
-    uint last_y = args.grid.resolution.y - 1u;
-    uint last_z = args.grid.resolution.z - 1u;
-
+    vec3 u = vec3(in_cells(p.x, args.grid.origin.x, args.grid.inverse_cell.x),
+        in_cells(p.y, args.grid.origin.y, args.grid.inverse_cell.y),
+        in_cells(p.z, args.grid.origin.z, args.grid.inverse_cell.z));
     vec4 sum = gathered;
     float radius2 = grown_radius2(gathered);
     uint held = photons_found(found);
-    uint at = next_in_row(found);
-    uint end = end_of_row(found);
     uint visited = photons_visited(found);
     uint ring = ring_of(cursor);
-    uint z = cell_z(cursor);
-    uint y = cell_y(cursor);
-    uint x = cell_x(cursor);
+    RingCell s;
+    s.x = cell_x(cursor);
+    s.y = cell_y(cursor);
+    s.z = cell_z(cursor);
+    s.at = next_in_row(found);
+    s.end = end_of_row(found);
 
     uint left = args.visits;
     uint steps = args.ranges;
@@ -72,96 +150,43 @@ void kernel(uint i)
     // expensive branch. This way the rows of neighbouring points stay in step, and the end of a ring is outside that
     // loop.
     while (steps > 0u && ring != NONE) {
-        // The box of cells that rings 0 to `ring` cover.
-        uint low_x = c.x > ring ? c.x - ring : 0u;
-        uint low_y = c.y > ring ? c.y - ring : 0u;
-        uint low_z = c.z > ring ? c.z - ring : 0u;
-        uint high_x = min(c.x + ring, last_x);
-        uint high_y = min(c.y + ring, last_y);
-        uint high_z = min(c.z + ring, last_z);
-
-        while (steps > 0u && (at < end || z <= high_z)) {
+        RingBox b = box_of_rings(c, ring);
+        while (steps > 0u && (s.at < s.end || s.z <= b.high.z)) {
             --steps;
             // Examine the rest of the current range, within the budget.
-            uint stop = end - at > left ? at + left : end;
-            left -= stop - at;
-            visited += stop - at;
-            for (; at < stop; ++at) {
-                float d2 = photon_distance2(at, p, n);
+            uint stop = s.end - s.at > left ? s.at + left : s.end;
+            left -= stop - s.at;
+            visited += stop - s.at;
+            for (; s.at < stop; ++s.at) {
+                float d2 = photon_distance2(s.at, p, n);
                 if (d2 <= (held < args.k ? args.max_radius2 : radius2)) {
                     if (held < args.k && d2 > radius2)
                         radius2 = d2;
                     ++held;
-                    precise vec4 more = sum + powers(at);
+                    precise vec4 more = sum + powers(s.at);
                     sum = more;
                 }
             }
-            if (at < end) {
+            if (s.at < s.end)
                 steps = 0u; // budget spent
-            } else if (z <= high_z) {
-                // The next cells of this ring: the whole row (z, y) if it lies on a face of the ring's box, else its
-                // two end cells, either of which may lie outside the grid.
-                float limit2 = held < args.k ? args.max_radius2 : radius2;
-                float gap_y = gap(uy, c.y, y, args.grid.cell.y);
-                float gap_z = gap(uz, c.z, z, args.grid.cell.z);
-                float row2 = gap_y * gap_y + gap_z * gap_z;
-                float away2 = row2;
-                bool face = y + ring == c.y || y == c.y + ring || z + ring == c.z || z == c.z + ring;
-                bool lower = x + ring == c.x;
-                uint begin_x = face || lower ? x : c.x + ring;
-                uint end_x = face ? high_x : begin_x;
-                x = !face && lower ? c.x + ring : end_x + 1u;
-                if (begin_x == end_x) {
-                    float gap_x = gap(ux, c.x, begin_x, args.grid.cell.x);
-                    away2 = away2 + gap_x * gap_x;
-                }
-                if (away2 <= limit2 && begin_x <= last_x) {
-                    uint row = cell_number(args.grid, 0u, y, z);
-                    uvec2 first = cells(row + begin_x);
-                    uvec2 final = cells(row + end_x);
-                    at = first.x;
-                    end = final.x + final.y;
-                }
-                if (row2 > limit2)
-                    x = high_x + 1u; // no cell of the row lies within the radius
-                if (gap_z * gap_z > limit2)
-                    y = high_y; // nor any row of the layer
-                if (x > high_x) {
-                    x = low_x;
-                    ++y;
-                }
-                if (y > high_y) {
-                    y = low_y;
-                    ++z;
-                }
-            }
+            else if (s.z <= b.high.z)
+                s = next_cells(s, b, ring, c, u, held < args.k ? args.max_radius2 : radius2);
         }
-
         if (steps > 0u) {
-            // The ring is explored. Does any cell beyond it lie within the radius?
             --steps;
-            float limit2 = held < args.k ? args.max_radius2 : radius2;
-            float unexplored = 3.4028234e38f;
-            unexplored = nearer(unexplored, high_x < last_x, ux, c.x, high_x + 1u, args.grid.cell.x);
-            unexplored = nearer(unexplored, high_y < last_y, uy, c.y, high_y + 1u, args.grid.cell.y);
-            unexplored = nearer(unexplored, high_z < last_z, uz, c.z, high_z + 1u, args.grid.cell.z);
-            unexplored = nearer(unexplored, low_x > 0u, ux, c.x, low_x - 1u, args.grid.cell.x);
-            unexplored = nearer(unexplored, low_y > 0u, uy, c.y, low_y - 1u, args.grid.cell.y);
-            unexplored = nearer(unexplored, low_z > 0u, uz, c.z, low_z - 1u, args.grid.cell.z);
-            bool everything = low_x == 0u && low_y == 0u && low_z == 0u && high_x == last_x && high_y == last_y
-                && high_z == last_z;
-            if (everything || unexplored * unexplored > limit2) {
+            if (has_all_within(b, c, u, held < args.k ? args.max_radius2 : radius2)) {
                 ring = NONE;
             } else {
                 ++ring;
-                z = c.z > ring ? c.z - ring : 0u;
-                y = c.y > ring ? c.y - ring : 0u;
-                x = c.x > ring ? c.x - ring : 0u;
+                RingBox next = box_of_rings(c, ring);
+                s.x = next.low.x;
+                s.y = next.low.y;
+                s.z = next.low.z;
             }
         }
     }
 
     gathered = vec4(sum.x, sum.y, sum.z, radius2);
-    found = growing_tally(held, visited, at, end);
-    cursor = ring_cursor(ring, z, y, x);
+    found = growing_tally(held, visited, s.at, s.end);
+    cursor = ring_cursor(ring, s.z, s.y, s.x);
 }

@@ -86,39 +86,146 @@ uvec4 smallest(uvec4 so_far, uint key)
         min(so_far.z, max(so_far.y, key)), min(so_far.w, max(so_far.z, key)));
 }
 
+// What a query has found: see kth_state.glsl.
+struct Kth {
+    float pivot;
+    float span;
+    uvec4 below;
+    uvec4 beyond;
+    uvec4 between;
+    uint within;
+    uint scans;
+    uint phase;
+};
+
+// After a scan that counted the photons within eight pivots: narrows the bracket.
+Kth after_counting(Kth s, vec4 near_pivots, vec4 far_pivots)
+{
+    s.between = narrowed(s.between, near_pivots.x, s.below.x);
+    s.between = narrowed(s.between, near_pivots.y, s.below.y);
+    s.between = narrowed(s.between, near_pivots.z, s.below.z);
+    s.between = narrowed(s.between, near_pivots.w, s.below.w);
+    s.between = narrowed(s.between, far_pivots.x, s.beyond.x);
+    s.between = narrowed(s.between, far_pivots.y, s.beyond.y);
+    s.between = narrowed(s.between, far_pivots.z, s.beyond.z);
+    s.between = narrowed(s.between, far_pivots.w, s.beyond.w);
+    s.phase = CLOSING_IN;
+    if (up_to_high(s.between) == NONE) {
+        // Fewer than k photons lie within the widest pivot. Scan wider, unless it already reached max_radius: then
+        // fewer than k exist.
+        s.phase = far_pivots.w < args.max_radius2 ? COUNTING : FOUND;
+        s.within = s.beyond.w;
+        s.scans = 0u;
+        precise float growth = 1.1f * (float(args.k) / float(max(s.beyond.w, 1u)));
+        s.pivot = max(far_pivots.w, 0.0f);
+        s.span = max(s.pivot * (min(growth, 16.0f) - 1.0f), 1e-30f);
+    }
+    return s;
+}
+
+// The k-th lies within the pivot, `before` places before the last photon there.
+Kth found_within(Kth s)
+{
+    uvec4 between = s.between;
+    uvec4 below = s.below;
+    uint before = s.within - args.k;
+    uint kth = component(below, min(before, 3u));
+    if (before < 4u) {
+        s.phase = FOUND;
+        s.within = args.k + (before > 0u && component(below, before - 1u) == kth ? 1u : 0u);
+        s.between = kth_bracket(low_key(between), kth, up_to_low(between), up_to_high(between));
+    } else {
+        uint farther = (below.x > kth ? 1u : 0u) + (below.y > kth ? 1u : 0u) + (below.z > kth ? 1u : 0u);
+        s.between = kth_bracket(low_key(between), kth, up_to_low(between), s.within - farther);
+    }
+    return s;
+}
+
+// The k-th lies beyond the pivot, `before` places behind the first photon there. `middle`: the pivot's key.
+Kth found_beyond(Kth s, uint middle)
+{
+    uvec4 between = s.between;
+    uvec4 beyond = s.beyond;
+    uint before = args.k - s.within - 1u;
+    uint kth = component(beyond, min(before, 3u));
+    bool one_key = beyond.x == high_key(between); // all photons beyond the pivot have it
+    if (before < 3u || one_key) {
+        s.phase = FOUND;
+        s.within
+            = one_key ? up_to_high(between) : args.k + (component(beyond, before + 1u) == kth ? 1u : 0u);
+        s.between = kth_bracket(low_key(between), kth, up_to_low(between), up_to_high(between));
+    } else {
+        // More photons than the fourth may have its key, so the bracket begins before it.
+        uint nearer = (beyond.x < kth ? 1u : 0u) + (beyond.y < kth ? 1u : 0u) + (beyond.z < kth ? 1u : 0u);
+        uint last = nearer == 0u ? middle : component(beyond, nearer - 1u);
+        s.between = kth_bracket(
+            max(low_key(between), last), high_key(between), s.within + nearer, up_to_high(between));
+    }
+    return s;
+}
+
+// Prepares the next scan: its pivot, or the end if one distance is left.
+Kth next_scan(Kth s)
+{
+    if (s.phase != CLOSING_IN) {
+        s.below = uvec4(0u, 0u, 0u, 0u);
+        s.beyond = s.below;
+        return s;
+    }
+    uint first = low_key(s.between);
+    uint end = high_key(s.between);
+    if (end <= first || end - first == 1u) {
+        // If several photons have this distance, kth_tie.glsl chooses among them by id.
+        s.phase = FOUND;
+        s.within = up_to_high(s.between);
+        return s;
+    }
+    float first2 = distance_of(first);
+    float share
+        = (float(args.k - up_to_low(s.between)) - 0.5f) / float(up_to_high(s.between) - up_to_low(s.between));
+    precise float even = first2 + (distance_of(end) - first2) * share;
+    uint next = s.scans < 6u ? key_of(even) : first + (end - first) / 2u;
+    s.pivot = distance_of(min(max(next, first), end - 1u));
+    s.within = up_to_low(s.between);
+    s.below = uvec4(0u, 0u, 0u, 0u);
+    s.beyond = uvec4(NONE, NONE, NONE, NONE);
+    return s;
+}
+
 void kernel(uint i)
 {
     vec4 p = points(i);
     vec4 n = normals(i);
     uvec4 c = cell_coordinates(args.grid, p);
-    float pivot = pivot_base(pivots);
-    float span = pivot_span(pivots);
+    Kth s;
+    s.pivot = pivot_base(pivots);
+    s.span = pivot_span(pivots);
+    s.between = bracket;
+    s.within = photons_found(tally);
+    s.scans = scans_of(tally);
+    s.phase = min(kth_phase(tally), FOUND);
     uvec4 below = inner;
     uvec4 beyond = outer;
-    uvec4 between = bracket;
     uvec4 resume_at = cursor;
-    uint within = photons_found(tally);
     uint visited = photons_visited(tally);
-    uint scans = scans_of(tally);
-    uint phase = min(kth_phase(tally), FOUND);
 
     walk_visits = args.visits;
     walk_steps = args.ranges;
-    while (walk_steps > 0u && group_any(phase != FOUND)) {
+    while (walk_steps > 0u && group_any(s.phase != FOUND)) {
         // The guess (kth_guess.glsl) is more often a little too low than too high.
-        precise vec4 near_pivots
-            = vec4(pivot + 0.6f * span, pivot + 0.8f * span, pivot + 0.92f * span, pivot + 1.04f * span);
-        precise vec4 far_pivots
-            = vec4(pivot + 1.16f * span, pivot + 1.3f * span, pivot + 1.48f * span, pivot + 1.7f * span);
+        precise vec4 near_pivots = vec4(s.pivot + 0.6f * s.span, s.pivot + 0.8f * s.span,
+            s.pivot + 0.92f * s.span, s.pivot + 1.04f * s.span);
+        precise vec4 far_pivots = vec4(s.pivot + 1.16f * s.span, s.pivot + 1.3f * s.span,
+            s.pivot + 1.48f * s.span, s.pivot + 1.7f * s.span);
         near_pivots = vec4(within_limit(near_pivots.x), within_limit(near_pivots.y),
             within_limit(near_pivots.z), within_limit(near_pivots.w));
         far_pivots = vec4(within_limit(far_pivots.x), within_limit(far_pivots.y),
             within_limit(far_pivots.z), within_limit(far_pivots.w));
-        uint middle = key_of(pivot);
-        uint low = low_key(between);
-        float high2 = distance_of(high_key(between));
-        float scan2 = phase == COUNTING ? far_pivots.w : high2;
-        bool mine = joins_walk(phase != FOUND, p, c, scan2, in_phase(resume_at, phase));
+        uint middle = key_of(s.pivot);
+        uint low = low_key(s.between);
+        float high2 = distance_of(high_key(s.between));
+        float scan2 = s.phase == COUNTING ? far_pivots.w : high2;
+        bool mine = joins_walk(s.phase != FOUND, p, c, scan2, in_phase(resume_at, s.phase));
         vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the other lanes count nothing
         while (walk_phase == COUNTING && walks_on()) {
             uint photons = next_rows();
@@ -143,7 +250,7 @@ void kernel(uint i)
         uint key = key_of(d2);                                                        \
         bool inside = d2 <= high2 && key > low;                                       \
         if (GROUP_LANES > 1u || inside) {                                             \
-            within += inside && key <= middle ? 1u : 0u;                              \
+            s.within += inside && key <= middle ? 1u : 0u;                            \
             below = largest(below, inside && key <= middle ? key : 0u);               \
             beyond = smallest(beyond, inside && key > middle ? key : NONE);           \
         }                                                                             \
@@ -156,89 +263,26 @@ void kernel(uint i)
             resume_at = walk_cursor();
 
         if (mine && has_walked()) {
-            // The scan is complete: narrow the bracket, or find the k-th.
-            ++scans;
-            if (phase == COUNTING) {
-                between = narrowed(between, near_pivots.x, below.x);
-                between = narrowed(between, near_pivots.y, below.y);
-                between = narrowed(between, near_pivots.z, below.z);
-                between = narrowed(between, near_pivots.w, below.w);
-                between = narrowed(between, far_pivots.x, beyond.x);
-                between = narrowed(between, far_pivots.y, beyond.y);
-                between = narrowed(between, far_pivots.z, beyond.z);
-                between = narrowed(between, far_pivots.w, beyond.w);
-                if (up_to_high(between) == NONE) {
-                    // Fewer than k photons lie within the widest pivot. Scan wider, unless it already reached
-                    // max_radius: then fewer than k exist.
-                    phase = far_pivots.w < args.max_radius2 ? COUNTING : FOUND;
-                    within = beyond.w;
-                    scans = 0u;
-                    precise float growth = 1.1f * (float(args.k) / float(max(beyond.w, 1u)));
-                    pivot = max(far_pivots.w, 0.0f);
-                    span = max(pivot * (min(growth, 16.0f) - 1.0f), 1e-30f);
-                } else {
-                    phase = CLOSING_IN;
-                }
-            } else if (args.k <= within) {
-                // The k-th lies within the pivot, `before` places before the last photon there.
-                uint before = within - args.k;
-                uint kth = component(below, min(before, 3u));
-                if (before < 4u) {
-                    phase = FOUND;
-                    within = args.k + (before > 0u && component(below, before - 1u) == kth ? 1u : 0u);
-                    between = kth_bracket(low_key(between), kth, up_to_low(between), up_to_high(between));
-                } else {
-                    uint farther = (below.x > kth ? 1u : 0u) + (below.y > kth ? 1u : 0u) + (below.z > kth ? 1u : 0u);
-                    between = kth_bracket(low_key(between), kth, up_to_low(between), within - farther);
-                }
-            } else {
-                // The k-th lies beyond the pivot, `before` places behind the first photon there.
-                uint before = args.k - within - 1u;
-                uint kth = component(beyond, min(before, 3u));
-                bool one_key = beyond.x == high_key(between); // all photons beyond the pivot have it
-                if (before < 3u || one_key) {
-                    phase = FOUND;
-                    within = one_key ? up_to_high(between)
-                                     : args.k + (component(beyond, before + 1u) == kth ? 1u : 0u);
-                    between = kth_bracket(low_key(between), kth, up_to_low(between), up_to_high(between));
-                } else {
-                    // More photons than the fourth may have its key, so the bracket begins before it.
-                    uint nearer = (beyond.x < kth ? 1u : 0u) + (beyond.y < kth ? 1u : 0u) + (beyond.z < kth ? 1u : 0u);
-                    uint last = nearer == 0u ? middle : component(beyond, nearer - 1u);
-                    between = kth_bracket(
-                        max(low_key(between), last), high_key(between), within + nearer, up_to_high(between));
-                }
-            }
-            if (phase == CLOSING_IN) {
-                uint first = low_key(between);
-                uint end = high_key(between);
-                if (end <= first || end - first == 1u) {
-                    // One distance is left. If several photons have it, kth_tie.glsl chooses among them by id.
-                    phase = FOUND;
-                    within = up_to_high(between);
-                } else {
-                    float first2 = distance_of(first);
-                    float share = (float(args.k - up_to_low(between)) - 0.5f)
-                        / float(up_to_high(between) - up_to_low(between));
-                    precise float even = first2 + (distance_of(end) - first2) * share;
-                    uint next = scans < 6u ? key_of(even) : first + (end - first) / 2u;
-                    pivot = distance_of(min(max(next, first), end - 1u));
-                    within = up_to_low(between);
-                    below = uvec4(0u, 0u, 0u, 0u);
-                    beyond = uvec4(NONE, NONE, NONE, NONE);
-                }
-            } else {
-                below = uvec4(0u, 0u, 0u, 0u);
-                beyond = below;
-            }
+            s.below = below;
+            s.beyond = beyond;
+            ++s.scans;
+            if (s.phase == COUNTING)
+                s = after_counting(s, near_pivots, far_pivots);
+            else if (args.k <= s.within)
+                s = found_within(s);
+            else
+                s = found_beyond(s, middle);
+            s = next_scan(s);
+            below = s.below;
+            beyond = s.beyond;
             resume_at = at_first_row();
         }
     }
 
-    pivots = pivots_of(pivot, span);
+    pivots = pivots_of(s.pivot, s.span);
     inner = below;
     outer = beyond;
-    bracket = between;
+    bracket = s.between;
     cursor = resume_at;
-    tally = kth_tally(within, visited, scans, phase);
+    tally = kth_tally(s.within, visited, s.scans, s.phase);
 }

@@ -50,10 +50,6 @@ void kernel(uint i)
         rows_y = cells_within(p.y, radius, args.grid.origin.y, args.grid.inverse_cell.y, args.grid.resolution.y);
         rows_z = cells_within(p.z, radius, args.grid.origin.z, args.grid.inverse_cell.z, args.grid.resolution.z);
     }
-    uvec4 a = first_four;
-    uvec4 b = second_four;
-    uvec4 d = third_four;
-    uvec4 e = fourth_four;
     uint y = rows_y.x + row_y(cursor);
     uint z = rows_z.x + row_z(cursor);
     uvec2 place = next_node(cursor);
@@ -87,10 +83,10 @@ void kernel(uint i)
                 last_left -= counts ? 1u : 0u;
             }
             if (counts) {
-                e = uvec4(d.w, e.x, e.y, e.z);
-                d = uvec4(b.w, d.x, d.y, d.z);
-                b = uvec4(a.w, b.x, b.y, b.z);
-                a = uvec4(at, a.x, a.y, a.z);
+                fourth_four = uvec4(third_four.w, fourth_four.x, fourth_four.y, fourth_four.z);
+                third_four = uvec4(second_four.w, third_four.x, third_four.y, third_four.z);
+                second_four = uvec4(first_four.w, second_four.x, second_four.y, second_four.z);
+                first_four = uvec4(at, first_four.x, first_four.y, first_four.z);
                 ++held;
             }
         }
@@ -113,10 +109,6 @@ void kernel(uint i)
         }
     }
 
-    first_four = a;
-    second_four = b;
-    third_four = d;
-    fourth_four = e;
     cursor = BLOCKS ? node_cursor(place, next) : row_cursor(y - rows_y.x, z - rows_z.x, next);
     tally = list_tally(held, walked, last_id, last_left);
 }

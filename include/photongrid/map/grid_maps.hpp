@@ -84,15 +84,27 @@ map_buffers<B> sorted_map(B& device, photons<B> p, const grid& g, uint parts = e
     return map;
 }
 
-/// Builds a photon map by stencil routing with m x m slots per cell (2.2.2): few passes, but approximate where cells
-/// overflow. The gaps that routing leaves between cells are removed. It consumes the photons. `seed` determines the
-/// order in which photons are drawn. `surplus` says what becomes of photons for which a cell has no slot.
+/// How a map is routed: stencil_route() with m x m slots per cell. `surplus` says what becomes of photons for which a
+/// cell has no slot.
+struct routing {
+    uint m;
+    uint seed = 0; ///< of the order in which photons are drawn
+    uint parts = every_part;
+    surplus_kind surplus = surplus_kind::photons;
+
+    routing(uint m_, uint seed_ = 0, uint parts_ = every_part, surplus_kind surplus_ = surplus_kind::photons)
+        : m(m_), seed(seed_), parts(parts_), surplus(surplus_)
+    {
+    }
+};
+
+/// Builds a photon map by stencil routing (2.2.2): few passes, but approximate where cells overflow. The gaps that
+/// routing leaves between cells are removed. It consumes the photons.
 /// \throws std::invalid_argument for m outside 1 to 16 or more than 2^27 photons; backend_error if cells x slots exceed
 ///         the device's limit.
 /// \snippet snippets.cpp routed_map
 template <backend B>
-map_buffers<B> routed_map(B& device, photons<B> p, const grid& g, uint m, uint seed = 0, uint parts = every_part,
-    surplus_kind surplus = surplus_kind::photons)
+map_buffers<B> routed_map(B& device, photons<B> p, const grid& g, const routing& by)
 {
     const uint n = p.size();
     const uint cells = cell_count(g);
@@ -101,11 +113,11 @@ map_buffers<B> routed_map(B& device, photons<B> p, const grid& g, uint m, uint s
     map.invalid = detail::checked_count<kernels::invalid_photon>(device, n, {}, reads(p.positions, p.powers));
     buffer_of<B, uint> entries; // of each entry's photon
     {
-        auto routed = stencil_route(device, p, g, m, seed, parts);
+        auto routed = stencil_route(device, p, g, by.m, by.seed, by.parts);
         map.surpluses = std::move(routed.surpluses);
         map.overflowing_cells = static_cast<uint>(routed.overflowing_cells);
         p.powers = std::move(routed.powers);
-        if (surplus == surplus_kind::power) // a cell has as many entries as photons that it keeps
+        if (by.surplus == surplus_kind::power) // a cell has as many entries as photons that it keeps
             device.template run<kernels::pair_value>(cells, {}, reads(routed.cells), writes(routed.arrived));
         const auto sums = prefix_sums(device, routed.arrived);
         map.cells = device.template make<glm::uvec2>(cells);
@@ -115,7 +127,7 @@ map_buffers<B> routed_map(B& device, photons<B> p, const grid& g, uint m, uint s
         device.template run<kernels::packed_photon>(
             n, {.cells = cells}, reads(sums, routed.cells, routed.list), writes(map.list, entries));
     }
-    detail::take_photons(device, map, std::move(p), parts);
+    detail::take_photons(device, map, std::move(p), by.parts);
     device.template run<kernels::share_power>(n, {}, reads(entries), writes(map.photons.powers));
     return map;
 }

@@ -208,7 +208,7 @@ routed_survivors<B> hashed_route(B& device, photons<B> p, const virtual_grid& g,
 
     buffer_of<B, glm::vec4> scales;
     auto routed = detail::route_draws<kernels::route_by_bucket>(
-        device, p, {.photons = n, .seed = s.seed}, reads(bucket, p.powers), buckets, s.m, sums, ranked, scales);
+        device, p, {.photons = n, .seed = s.seed}, reads(bucket, p.powers), {buckets, s.m, sums, ranked}, scales);
     r.overflowing_buckets = static_cast<uint>(routed.overflowing_cells);
     {
         auto kept = device.template make<uint>(buckets);

@@ -60,18 +60,26 @@ namespace detail {
                 + " slots; this device holds " + std::to_string(caps.max_elements) + ". " + words.advice);
     }
 
-    /// Routes the draws of kernel K, one per photon, to `cells` cells of m x m slots, with `sums` partial sums each.
-    /// The result has no powers yet: that of each kept photon is to be multiplied by its cell's `scales`, and its
-    /// cell's surplus added. `conserves`: the SWITCH of routed_cell.
+    /// Cells of m x m slots, with `sums` partial sums each. `conserves`: the SWITCH of routed_cell.
+    struct routing_cells {
+        uint cells;
+        uint m;
+        uint sums;
+        bool conserves;
+    };
+
+    /// Routes the draws of kernel K, one per photon. The result has no powers yet: that of each kept photon is to be
+    /// multiplied by its cell's `scales`, and its cell's surplus added.
     template <route_kernel K, backend B, class Reads>
     routed_cells<B> route_draws(B& device, const photons<B>& p, const typename K::Params& args, Reads inputs,
-        uint cells, uint m, uint sums, bool conserves, buffer_of<B, glm::vec4>& scales)
+        const routing_cells& to, buffer_of<B, glm::vec4>& scales)
     {
+        const auto [cells, m, sums, conserves] = to;
         const uint capacity = route_capacity(m);
         routed_cells<B> r;
         r.list = device.template make<uint>(std::size_t{cells} * capacity);
         auto partial_sums = device.template make<glm::vec4>(std::size_t{cells} * sums);
-        device.template route<K>(p.size(), args, inputs, cells, m, r.list, partial_sums);
+        device.template route<K>(p.size(), args, inputs, {cells, m}, r.list, partial_sums);
         r.cells = device.template make<glm::uvec2>(cells);
         r.surpluses = device.template make<glm::vec4>(cells);
         r.totals = device.template make<glm::vec4>(cells);
@@ -106,7 +114,7 @@ routed_cells<B> stencil_route(
     buffer_of<B, glm::vec4> scales;
     auto r
         = detail::route_draws<kernels::route_photon>(device, p, {.grid = g, .photons = n, .seed = seed, .parts = parts},
-            reads(p.positions, p.powers), cells, m, sums, true, scales);
+            reads(p.positions, p.powers), {cells, m, sums, true}, scales);
     r.powers = device.template make<glm::vec4>(n);
     device.template run<kernels::redistribute_power>(
         n, {.grid = g}, reads(p.positions, p.powers, scales, r.surpluses), writes(r.powers));

@@ -37,20 +37,27 @@ built_map<B> build_map(B& device, const scene& s, const render_settings& setting
     return built;
 }
 
+/// What a pass has besides its map, view and settings.
+template <backend B>
+struct pass_options {
+    render_observer observer{};
+    pass_radii<B> radii{}; ///< empty: those of the map
+};
+
 /// The pixels of one pass over a view. Times and counts are added to `stats`.
 /// \throws what draw throws.
 template <backend B>
 pass_pixels draw_pass(B& device, const built_map<B>& built, const camera& view, const render_settings& settings,
-    const render_observer& observer, render_stats& stats, const pass_radii<B>& radii = {})
+    render_stats& stats, const pass_options<B>& options = {})
 {
+    const auto& observer = options.observer;
     check(settings);
-    kept_samples<B> none;
     pass_pixels light;
     const double pixels = static_cast<double>(settings.output.width) * settings.output.height;
     for (const auto& rows : bands_of(settings.output)) {
         const view_pass_settings how{.size = observer.cancelled ? step_size::small : step_size::largest, .band = rows};
-        view_pass<B> band(device, built, view, settings, how, none, stats);
-        band.use_radii(radii);
+        view_pass<B> band(device, built, view, settings, how, stats);
+        band.use_radii(options.radii);
         run(view_steps(band), observer, [&](std::string_view) {
             const double of_band = band.fraction() * static_cast<double>(band.light().raster.size());
             if (observer.progress)
@@ -72,7 +79,7 @@ template <backend B>
 {
     rendered out{{}, built.stats};
     film sum(settings.output.width, settings.output.height, 1, settings.output.aov, tells_bias(settings));
-    sum.add(0, draw_pass(device, built, view, settings, observer, out.stats));
+    sum.add(0, draw_pass(device, built, view, settings, out.stats, {.observer = observer}));
     auto developed = sum.picture();
     out.picture = std::move(developed.picture);
     out.stats.invalid_pixels = developed.invalid_pixels;

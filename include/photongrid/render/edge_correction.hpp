@@ -50,6 +50,14 @@ namespace detail {
     }
 } // namespace detail
 
+/// The discs of estimates: the filter over them, and the least radius of the search's settings, m.
+struct disc_kind {
+    filter_kind filter;
+    float min_radius = 0;
+
+    disc_kind(filter_kind filter_, float min_radius_ = 0) : filter(filter_), min_radius(min_radius_) {}
+};
+
 /// x: the share, 0 to about 1, of each estimate's disc that lies on polygons of the scene, weighted by the filter. y: 1
 /// for points on a polygon, 0 for others, whose share has no meaning. Polygons in one plane are one surface, whichever
 /// way they are wound; where they overlap they count twice. Mirrors, glass and lamps hold no photons and do not count.
@@ -57,20 +65,19 @@ namespace detail {
 /// share is subtracted.
 ///
 /// `points` (recentred, m; w > 0: has an estimate), `normals` (unit) and `irradiances` (w: squared radius, m^2) are
-/// those of the estimate; `min_radius` (m) is that of its settings. The error is about 1e-6, plus 2^-22 of the scene's
+/// those of the estimate. The error is about 1e-6, plus 2^-22 of the scene's
 /// size relative to the radius.
 /// \throws std::invalid_argument for a polygon of more than 1,999 vertices.
 template <backend B>
 buffer_of<B, glm::vec4> covered_shares(B& device, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
-    const buffer_of<B, glm::vec4>& normals, const buffer_of<B, glm::vec4>& irradiances, filter_kind filter,
-    float min_radius = 0)
+    const buffer_of<B, glm::vec4>& normals, const buffer_of<B, glm::vec4>& irradiances, const disc_kind& disc)
 {
     const auto n = points.size();
     auto cover = device.template make<glm::vec4>(n);
     device.template run<kernels::zero_vectors>(n, {}, reads(), writes(cover));
     for (const auto& range : detail::ranges_of_polygons(s.layout))
-        device.template run<kernels::covered_share>({n, 0u, detail::filter_switch(filter)},
-            {.min_radius2 = detail::min_radius2(min_radius), .first = range.first, .polygons = range.polygons},
+        device.template run<kernels::covered_share>({n, 0u, detail::filter_switch(disc.filter)},
+            {.min_radius2 = detail::min_radius2(disc.min_radius), .first = range.first, .polygons = range.polygons},
             reads(s.records, points, normals, irradiances), writes(cover));
     return cover;
 }
@@ -87,8 +94,7 @@ struct disc_moments {
 /// Arguments, errors and what counts are those of covered_shares.
 template <backend B>
 disc_moments<B> covered_moments(B& device, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
-    const buffer_of<B, glm::vec4>& normals, const buffer_of<B, glm::vec4>& irradiances, filter_kind filter,
-    float min_radius = 0)
+    const buffer_of<B, glm::vec4>& normals, const buffer_of<B, glm::vec4>& irradiances, const disc_kind& disc)
 {
     const auto n = points.size();
     disc_moments<B> m;
@@ -97,8 +103,8 @@ disc_moments<B> covered_moments(B& device, const device_scene<B>& s, const buffe
         device.template run<kernels::zero_vectors>(n, {}, reads(), writes(*buffer));
     }
     for (const auto& range : detail::ranges_of_polygons(s.layout))
-        device.template run<kernels::covered_moments>({n, 0u, detail::filter_switch(filter)},
-            {.min_radius2 = detail::min_radius2(min_radius), .first = range.first, .polygons = range.polygons},
+        device.template run<kernels::covered_moments>({n, 0u, detail::filter_switch(disc.filter)},
+            {.min_radius2 = detail::min_radius2(disc.min_radius), .first = range.first, .polygons = range.polygons},
             reads(s.records, points, normals, irradiances), writes(m.shares, m.firsts, m.seconds));
     return m;
 }
@@ -110,10 +116,10 @@ disc_moments<B> covered_moments(B& device, const device_scene<B>& s, const buffe
 /// \snippet snippets.cpp correct_edges
 template <backend B>
 void correct_edges(B& device, const device_scene<B>& s, const buffer_of<B, glm::vec4>& points,
-    const buffer_of<B, glm::vec4>& normals, knn_estimates<B>& estimates, filter_kind filter, float min_radius = 0)
+    const buffer_of<B, glm::vec4>& normals, knn_estimates<B>& estimates, const disc_kind& disc)
 {
     constexpr float least = 0x1p-8f;
-    const auto cover = covered_shares(device, s, points, normals, estimates.irradiance, filter, min_radius);
+    const auto cover = covered_shares(device, s, points, normals, estimates.irradiance, disc);
     device.template run<kernels::divide_by_share>(
         estimates.irradiance.size(), {.least = least, .keeps_w = 1u}, reads(cover), writes(estimates.irradiance));
     device.template run<kernels::divide_by_share>(estimates.standard_error.size(), {.least = least, .keeps_w = 0u},
@@ -121,8 +127,9 @@ void correct_edges(B& device, const device_scene<B>& s, const buffer_of<B, glm::
     auto& b = estimates.biases;
     if (b.bias.size() == 0)
         return;
-    const auto m = covered_moments(device, s, points, normals, estimates.irradiance, filter, min_radius);
-    device.template run<kernels::correct_bias>(b.bias.size(), {.factor = detail::bias_factor(filter), .least = least},
+    const auto m = covered_moments(device, s, points, normals, estimates.irradiance, disc);
+    device.template run<kernels::correct_bias>(b.bias.size(),
+        {.factor = detail::bias_factor(disc.filter), .least = least},
         reads(cover, m.shares, m.firsts, m.seconds, b.constant, normals), writes(b.bias, b.tilt, b.jump));
 }
 

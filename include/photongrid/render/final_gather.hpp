@@ -19,6 +19,7 @@
 #include <photongrid/render/photon_point.kernel.hpp>
 #include <photongrid/render/picture_search.hpp>
 #include <photongrid/render/point_estimates.hpp>
+#include <photongrid/render/shrinking_radii.hpp>
 #include <photongrid/render/weight_one.kernel.hpp>
 #include <photongrid/trace/eye_rays.hpp>
 #include <photongrid/trace/final_gather_ray.kernel.hpp>
@@ -126,35 +127,45 @@ void gather_map_building<B>::finish(knn_estimates<B> found)
 }
 
 namespace detail {
-    /// The settings by which ray `nth` of the path that gather ray `number` begins is traced.
-    inline render_settings settings_of_gather_ray(
-        render_settings settings, const scene_layout& layout, uint eye_ray, uint number, uint nth)
+    /// A ray that begins or continues the path of a gather ray.
+    struct gather_ray {
+        ray_of_pixels from; ///< the eye ray
+        uint number;        ///< of the gather ray among those of the eye ray's end
+        uint nth = 0;       ///< of the rays of its path
+    };
+
+    /// The settings by which that ray is traced.
+    inline render_settings settings_of(const gather_ray& r, const scene_layout& layout)
     {
         // The first rays of a point are stratified together, and with those of the other passes. Later ones have random
         // numbers of their own.
-        if (nth == 0) {
+        auto settings = r.from.settings;
+        const uint eye_ray = r.from.ray;
+        if (r.nth == 0) {
             const auto place = place_of(settings, eye_ray, splits_of(layout));
             settings.seed = place.seed ^ (place.branch + 1) * 0x85EBCA6Bu;
             settings.pass.seed_change = 0;
         } else {
-            settings.seed ^= (eye_ray + 1) * 0x85EBCA6Bu ^ (nth * settings.estimate.gather_rays + number) * 0x9E3779B1u;
+            settings.seed
+                ^= (eye_ray + 1) * 0x85EBCA6Bu ^ (r.nth * settings.estimate.gather_rays + r.number) * 0x9E3779B1u;
             settings.pass = {};
         }
         return settings;
     }
 
-    /// Traces that ray from `starts`, from element `first` on, to its ends. `settings`: settings_of_gather_ray.
+    /// Traces that ray from `starts`, from element `first` on, to its ends. `settings`: settings_of(r).
     template <backend B>
     eye_hits<B> gather_hits(B& device, const device_scene<B>& s, const eye_hits<B>& starts, uint first,
-        const render_settings& settings, uint eye_ray, uint number, uint nth, launch pixels)
+        const gather_ray& r, const render_settings& settings)
     {
+        const launch pixels(r.from.pixels.elements, 0);
         const uint rays = settings.estimate.gather_rays;
-        const auto place = place_of(settings, eye_ray, splits_of(s.layout));
+        const auto place = place_of(settings, r.from.ray, splits_of(s.layout));
         eye_hits<B> hits(device, pixels.elements, starts.first_pixel + first);
         auto branches = device.template make<uint>(pixels.elements);
         device.template run<kernels::final_gather_ray>({pixels.elements, 0u, s.layout.features},
-            {.strata = nth == 0 ? strata_of(rays) : glm::uvec2(1),
-                .number = nth == 0 ? number : 0,
+            {.strata = r.nth == 0 ? strata_of(rays) : glm::uvec2(1),
+                .number = r.nth == 0 ? r.number : 0,
                 .first = first,
                 .first_pixel = starts.first_pixel,
                 .nth = place.nth,
@@ -166,21 +177,44 @@ namespace detail {
                 .splits = 0,
                 .depth = settings.view.depth,
                 .light_samples = 0.0f,
-                .nth = place.nth * rays + number,
+                .nth = place.nth * rays + r.number,
                 .seed = settings.seed},
             hits, branches);
         return hits;
     }
+} // namespace detail
 
+/// Caustic photons, and the radii of estimates among them.
+template <backend B>
+struct caustic_source {
+    const map_buffers<B>& map;
+    pass_radii<B> radii{};
+};
+
+/// What gather rays bring to the points where eye rays ended, of the pixels of one launch.
+template <backend B>
+struct gathering {
+    buffer_of<B, glm::vec4> weights;  ///< rgb: of what comes by the path
+    buffer_of<B, glm::vec4> gathered; ///< rgb: irradiance, W/m^2
+
+    gathering(B& device, std::size_t n)
+        : weights(device.template make<glm::vec4>(n)), gathered(device.template make<glm::vec4>(n))
+    {
+        device.template run<kernels::weight_one>(n, {}, reads(), writes(weights));
+        device.template run<kernels::zero_vectors>(n, {}, reads(), writes(gathered));
+    }
+};
+
+namespace detail {
     /// The irradiance of caustics at ends of gather rays.
     template <backend B>
-    knn_estimates<B> caustics_at(B& device, const device_scene<B>& s, const map_buffers<B>& caustics,
-        const pass_radii<B>& radii, const eye_hits<B>& ends, const render_settings& settings)
+    knn_estimates<B> caustics_at(B& device, const device_scene<B>& s, const caustic_source<B>& caustics,
+        const eye_hits<B>& ends, const render_settings& settings)
     {
         estimate_sources<B> from{.scene = &s,
-            .map = &caustics,
-            .radii = radii.of_caustics(),
-            .share2 = radii.share2,
+            .map = &caustics.map,
+            .radii = caustics.radii.of_caustics(),
+            .share2 = caustics.radii.share2,
             .search = search_for_caustics(settings),
             .edges = settings.estimate.edges};
         from.search.errors = from.search.biases = false;
@@ -190,61 +224,69 @@ namespace detail {
         return search.take();
     }
 
-    /// Adds direct light and caustics at the ends of gather rays that are gathered from in their turn.
+    /// Adds direct light and caustics at the ends of gather rays that are gathered from in their turn. `of`: those
+    /// rays, with settings_of them.
     template <backend B>
-    void light_gather_ends(B& device, const device_scene<B>& s, const map_buffers<B>& caustics,
-        const pass_radii<B>& radii, const eye_hits<B>& ends, const buffer_of<B, glm::vec4>& weights,
-        const render_settings& settings, uint eye_ray, uint number, buffer_of<B, glm::vec4>& gathered)
+    void light_gather_ends(B& device, const device_scene<B>& s, const caustic_source<B>& caustics,
+        const eye_hits<B>& ends, const gather_ray& of, gathering<B>& sum)
     {
         const std::size_t n = ends.points.size();
         auto direct = device.template make<glm::vec4>(n);
+        const auto& settings = of.from.settings;
         auto one_sample = settings;
         one_sample.view.light_samples = 1;
-        one_sample.seed ^= (number + 1) * 0xC2B2AE35u; // else rays of one point would see the same point of a lamp
-        direct_light(device, s, ends, one_sample, eye_ray, launch(n, 0), direct);
-        const auto found = caustics_at(device, s, caustics, radii, ends, settings);
+        one_sample.seed ^= (of.number + 1) * 0xC2B2AE35u; // else rays of one point would see the same point of a lamp
+        direct_light(device, s, {one_sample, of.from.ray, launch(n, 0)}, ends, direct);
+        const auto found = caustics_at(device, s, caustics, ends, settings);
         device.template run<kernels::add_near_light>(n,
             {.share = 1.0f / static_cast<float>(settings.estimate.gather_rays)},
-            reads(ends.points, weights, direct, found.irradiance), writes(gathered));
+            reads(ends.points, sum.weights, direct, found.irradiance), writes(sum.gathered));
     }
 } // namespace detail
 
-/// Adds the irradiance that ray number `number` of settings.estimate.gather_rays brings to the points where eye rays
-/// ended, for the pixels of `pixels`, to `light`. `eye_ray`: number of the eye ray; `caustics`: map of caustic photons.
+/// What a final gather finds light in.
+template <backend B>
+struct gather_sources {
+    const device_scene<B>& scene;
+    const gather_map<B>& map;
+    const map_buffers<B>& caustics;
+};
+
+/// Adds the irradiance that one of settings.estimate.gather_rays, `ray`, brings to the points where eye rays ended, to
+/// `light`.
 ///
 /// A ray that ends nearer than the radius of the estimates there goes on, up to three times, as a path does.
 template <backend B>
-void add_gather_rays(B& device, const device_scene<B>& s, const gather_map<B>& map, const map_buffers<B>& caustics,
-    const detail::eye_hits<B>& eye_ends, const render_settings& settings, uint eye_ray, uint number, launch pixels,
-    buffer_of<B, glm::vec4>& light)
+void add_gather_rays(B& device, const gather_sources<B>& from, const detail::eye_hits<B>& eye_ends,
+    detail::gather_ray ray, buffer_of<B, glm::vec4>& light)
 {
     constexpr uint most_rays = 4; // one after the other
+    const launch pixels = ray.from.pixels;
     const std::size_t n = pixels.elements;
-    const uint rays = settings.estimate.gather_rays;
-    const auto make = [&] { return device.template make<glm::vec4>(n); };
-    auto weights = make(), gathered = make();
-    device.template run<kernels::weight_one>(n, {}, reads(), writes(weights));
-    device.template run<kernels::zero_vectors>(n, {}, reads(), writes(gathered));
+    const float share = 1.0f / static_cast<float>(ray.from.settings.estimate.gather_rays);
+    gathering<B> sum(device, n);
     knn_settings nearest;
     nearest.k = 1;
     nearest.leaks.min_cosine = detail::same_surface_cosine;
     std::optional<detail::eye_hits<B>> ends; // of the rays before
-    for (uint nth = 0; nth < most_rays; ++nth) {
+    for (ray.nth = 0; ray.nth < most_rays; ++ray.nth) {
         const auto& starts = ends ? *ends : eye_ends;
         const uint first = ends ? 0 : pixels.first;
-        const auto of_ray = detail::settings_of_gather_ray(settings, s.layout, eye_ray, number, nth);
-        auto hits = detail::gather_hits(device, s, starts, first, of_ray, eye_ray, number, nth, launch(n, 0));
-        const auto found = knn_neighbours(device, map.nearest, hits.points, hits.surfaces, nearest);
+        const bool is_last = ray.nth + 1 == most_rays;
+        const auto settings = detail::settings_of(ray, from.scene.layout);
+        auto hits = detail::gather_hits(device, from.scene, starts, first, ray, settings);
+        const auto found = knn_neighbours(device, from.map.nearest, hits.points, hits.surfaces, nearest);
         device.template run<kernels::add_gathered>(n,
-            {.share = 1.0f / static_cast<float>(rays), .first = first, .leaves_near = nth + 1 < most_rays ? 1u : 0u},
-            reads(starts.points, hits.directions, hits.throughputs, found.ids, found.distances2, map.irradiance),
-            writes(hits.points, weights, gathered));
-        if (nth + 1 == most_rays || detail::checked_count<kernels::is_near_end>(device, n, {}, reads(hits.points)) == 0)
+            {.share = share, .first = first, .leaves_near = is_last ? 0u : 1u},
+            reads(starts.points, hits.directions, hits.throughputs, found.ids, found.distances2, from.map.irradiance),
+            writes(hits.points, sum.weights, sum.gathered));
+        if (is_last || detail::checked_count<kernels::is_near_end>(device, n, {}, reads(hits.points)) == 0)
             break;
-        detail::light_gather_ends(device, s, caustics, {}, hits, weights, of_ray, eye_ray, number, gathered);
+        detail::light_gather_ends(
+            device, from.scene, {from.caustics}, hits, {{settings, ray.from.ray, pixels}, ray.number, ray.nth}, sum);
         ends.emplace(std::move(hits));
     }
-    device.template run<kernels::add_light>(pixels, {.first = pixels.first}, reads(gathered), writes(light));
+    device.template run<kernels::add_light>(pixels, {.first = pixels.first}, reads(sum.gathered), writes(light));
 }
 
 } // namespace photongrid

@@ -8,7 +8,6 @@
 
 #include <photongrid/render/final_gather.hpp>
 #include <photongrid/render/follow_path.kernel.hpp>
-#include <photongrid/render/shrinking_radii.hpp>
 
 #include <optional>
 
@@ -16,40 +15,37 @@
 
 namespace photongrid {
 
-/// Adds the irradiance that path number `number` of rays_of_gather(settings) brings to the points where eye rays
-/// ended, for the pixels of `pixels`, to `light`. `eye_ray`: number of the eye ray; `caustics`: map of caustic photons,
-/// whose estimates have the radii of `radii`.
+/// Adds the irradiance that one of rays_of_gather(settings) paths, which begins with `ray`, brings to the points where
+/// eye rays ended, to `light`.
 ///
 /// A path meets at most as many surfaces that end its rays as a photon may hit (map_settings::photon_depth).
 template <backend B>
-void add_path(B& device, const device_scene<B>& s, const map_buffers<B>& caustics, const pass_radii<B>& radii,
-    const detail::eye_hits<B>& eye_ends, const render_settings& settings, uint eye_ray, uint number, launch pixels,
-    buffer_of<B, glm::vec4>& light)
+void add_path(B& device, const device_scene<B>& s, const caustic_source<B>& caustics,
+    const detail::eye_hits<B>& eye_ends, detail::gather_ray ray, buffer_of<B, glm::vec4>& light)
 {
     constexpr uint whole_rays = 2; // that never end by chance: they bring most of the light
+    const launch pixels = ray.from.pixels;
     const std::size_t n = pixels.elements;
-    auto weights = device.template make<glm::vec4>(n), gathered = device.template make<glm::vec4>(n);
-    device.template run<kernels::weight_one>(n, {}, reads(), writes(weights));
-    device.template run<kernels::zero_vectors>(n, {}, reads(), writes(gathered));
+    gathering<B> sum(device, n);
     const uint first_pixel = eye_ends.first_pixel + pixels.first;
     std::optional<detail::eye_hits<B>> ends; // of the rays before
-    for (uint nth = 0; nth + 2 <= settings.map.photon_depth; ++nth) {
-        const auto of_ray = detail::settings_of_gather_ray(settings, s.layout, eye_ray, number, nth);
-        auto hits = detail::gather_hits(
-            device, s, ends ? *ends : eye_ends, ends ? 0 : pixels.first, of_ray, eye_ray, number, nth, launch(n, 0));
+    for (ray.nth = 0; ray.nth + 2 <= ray.from.settings.map.photon_depth; ++ray.nth) {
+        const auto settings = detail::settings_of(ray, s.layout);
+        auto hits = detail::gather_hits(device, s, ends ? *ends : eye_ends, ends ? 0 : pixels.first, ray, settings);
         device.template run<kernels::follow_path>(n,
-            {.may_end = nth < whole_rays ? 0u : 1u,
-                .number = number,
-                .nth = nth,
+            {.may_end = ray.nth < whole_rays ? 0u : 1u,
+                .number = ray.number,
+                .nth = ray.nth,
                 .first_pixel = first_pixel,
-                .seed = of_ray.seed},
-            reads(hits.throughputs), writes(hits.points, weights));
+                .seed = settings.seed},
+            reads(hits.throughputs), writes(hits.points, sum.weights));
         if (detail::checked_count<kernels::is_near_end>(device, n, {}, reads(hits.points)) == 0)
             break;
-        detail::light_gather_ends(device, s, caustics, radii, hits, weights, of_ray, eye_ray, number, gathered);
+        detail::light_gather_ends(
+            device, s, caustics, hits, {{settings, ray.from.ray, pixels}, ray.number, ray.nth}, sum);
         ends.emplace(std::move(hits));
     }
-    device.template run<kernels::add_light>(pixels, {.first = pixels.first}, reads(gathered), writes(light));
+    device.template run<kernels::add_light>(pixels, {.first = pixels.first}, reads(sum.gathered), writes(light));
 }
 
 } // namespace photongrid

@@ -373,7 +373,8 @@ private:
         samples_shown_ = grown_shown_ = 0;
         view_.emplace(device_, maps_.map(), scene_.camera, with,
             view_pass_settings{p, step_size::small, previews_.enabled && !has_bands(), shows_running_estimates(), band},
-            kept_, stats_);
+            stats_);
+        view_->use_samples(kept_);
         if (!p && has_shrinking_radii(settings_))
             view_->use_radii(
                 radii_of_pass(radius_maps_.map(), settings_of_radius_map(settings_, device_.caps()), number));

@@ -223,7 +223,7 @@ private:
                                           : fitting_grid(device_, p, k, device_.caps().cells_per_radius);
         return builder == map_builder::sort
             ? sorted_map(device_, std::move(p), g, parts)
-            : routed_map(device_, std::move(p), g, m.slots, settings_.seed, parts, m.surplus);
+            : routed_map(device_, std::move(p), g, {m.slots, settings_.seed, parts, m.surplus});
     }
 
     B& device_;

@@ -20,6 +20,7 @@
 #include <photongrid/render/tally_search.kernel.hpp>
 
 #include <optional>
+#include <utility>
 
 #include <photongrid/core/exact_begin.hpp>
 
@@ -41,11 +42,11 @@ struct view_pass_settings {
 template <backend B>
 class view_pass {
 public:
-    /// It draws nothing yet. It adds times to `stats`. `built`, `kept` and `stats` must outlive it.
+    /// It draws nothing yet. It adds times to `stats`. `built` and `stats` must outlive it.
     /// \throws std::invalid_argument for a camera or settings that check() rejects, backend_error.
     view_pass(B& device, const built_map<B>& built, const camera& view, const render_settings& settings,
-        const view_pass_settings& how, kept_samples<B>& kept, render_stats& stats)
-        : device_(device), built_(built), view_(view), settings_(settings), how_(how), kept_(kept), stats_(stats),
+        const view_pass_settings& how, render_stats& stats)
+        : device_(device), built_(built), view_(view), settings_(settings), how_(how), stats_(stats),
           branches_(1u << detail::splits_of(built.scene().layout))
     {
         check(settings);
@@ -65,24 +66,31 @@ public:
         if (how_.band && *how_.band != row_band{0, r.height}) {
             r.first_row = how_.band->first;
             r.height = how_.band->rows;
-            kept_.clear(); // they were traced for the whole picture, not for this band
         }
         detail::time_stage(device_, stats_.trace_rays, [&] {
             const std::size_t layers = !is_preview() && settings_.output.aov ? r.size() : 0;
             const std::size_t biases = !is_preview() && tells_bias(settings_) ? r.size() : 0;
             canvas_ = {r, 0, dark(r.size()), dark(r.size()), dark(layers), {dark(biases), dark(biases), dark(biases)}};
         });
-        kept_.resize(branches_);
-        for (auto& k : kept_)
-            if (k && k->direct.size() != r.size())
-                k.reset();
+        own_samples_.resize(branches_);
     }
-    view_pass(B&, const built_map<B>&&, const camera&, const render_settings&, const view_pass_settings&,
-        kept_samples<B>&,
-        render_stats&)
+    view_pass(B&, const built_map<B>&&, const camera&, const render_settings&, const view_pass_settings&, render_stats&)
         = delete; // it keeps a reference
     view_pass(const view_pass&) = delete;
     view_pass& operator=(const view_pass&) = delete;
+
+    /// Takes the first samples from those that a preview of the same pass kept, and keeps them there if it is a
+    /// preview. `kept` must outlive it.
+    void use_samples(kept_samples<B>& kept)
+    {
+        kept_ = &kept;
+        if (how_.band && *how_.band != row_band{0, settings_.output.height})
+            kept.clear(); // they were traced for the whole picture, not for this band
+        kept.resize(branches_);
+        for (auto& k : kept)
+            if (k && k->direct.size() != canvas_.raster.size())
+                k.reset();
+    }
 
     /// Gives the estimates of a picture radii from another map, which must outlive this pass. Previews find their own.
     void use_radii(const pass_radii<B>& radii) { radii_ = is_preview() ? pass_radii<B>{} : radii; }
@@ -262,11 +270,12 @@ private:
     camera view_;
     render_settings settings_;
     view_pass_settings how_;
-    kept_samples<B>& kept_;
     render_stats& stats_;
     uint branches_; ///< combinations of Fresnel branches, a pass over the pixels each
 
     // Data passed from stage to stage.
+    kept_samples<B> own_samples_; ///< used unless others are given
+    kept_samples<B>* kept_ = &own_samples_;
     std::optional<eye_samples<B>> samples_;
     buffer_of<B, uint> own_branches_; ///< which branches of an eye ray have light of their own (eye_rays.hpp)
     bool lit_ = false;                ///< the samples already have their direct and gathered light
@@ -285,9 +294,8 @@ private:
 template <backend B>
 bool view_pass<B>::trace_eye(uint ray)
 {
-    if (ray < branches_ && kept_[ray]) {
-        samples_ = std::move(kept_[ray]);
-        kept_[ray].reset();
+    if (ray < branches_ && (*kept_)[ray]) {
+        samples_ = std::exchange((*kept_)[ray], std::nullopt);
         lit_ = true;
         return true;
     }
@@ -298,7 +306,7 @@ bool view_pass<B>::trace_eye(uint ray)
     }
     const auto trace = [&](uint r, launch pixels) {
         detail::trace_eye_rays(
-            device_, built_.scene(), view_, settings_, canvas_.raster, r, pixels, samples_->hits, own_branches_);
+            device_, built_.scene(), {view_, canvas_.raster}, {settings_, r, pixels}, samples_->hits, own_branches_);
     };
     if (own_branches_.size() == 0) {
         own_branches_ = device_.template make<uint>(canvas_.raster.size());
@@ -318,8 +326,8 @@ bool view_pass<B>::direct_light(uint ray)
     const bool drawn = settings_.output.only == light_part::all || settings_.output.only == light_part::direct;
     return over_pixels(stats_.trace_rays, [&](launch pixels) {
         if (drawn) {
-            detail::direct_light(
-                device_, built_.scene(), samples_->hits, light_settings(), ray, pixels, samples_->direct);
+            const auto with = light_settings();
+            detail::direct_light(device_, built_.scene(), {with, ray, pixels}, samples_->hits, samples_->direct);
         } else {
             device_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->direct));
             device_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->hits.emissions));
@@ -333,12 +341,12 @@ bool view_pass<B>::gather(uint ray)
     if (lit_ || !has_gather_rays(settings_))
         return true;
     const bool all_pixels = over_pixels(stats_.trace_rays, [&](launch pixels) {
+        const detail::gather_ray first{{settings_, ray, pixels}, gathered_};
         if (follows_paths(settings_))
-            add_path(device_, built_.scene(), built_.caustics(), radii_, samples_->hits, settings_, ray, gathered_,
-                pixels, samples_->direct);
+            add_path(device_, built_.scene(), {built_.caustics(), radii_}, samples_->hits, first, samples_->direct);
         else
-            add_gather_rays(device_, built_.scene(), *built_.gather, built_.caustics(), samples_->hits, settings_, ray,
-                gathered_, pixels, samples_->direct);
+            add_gather_rays(
+                device_, {built_.scene(), *built_.gather, built_.caustics()}, samples_->hits, first, samples_->direct);
     });
     if (all_pixels)
         ++gathered_;
@@ -362,7 +370,7 @@ bool view_pass<B>::shade(uint ray)
     found_.clear();
     gathered_ = 0;
     if (is_preview() && !follows_paths(settings_)) { // its paths saw caustics with radii of their own
-        kept_[ray] = std::move(samples_);            // the next pass may have the same pixels
+        (*kept_)[ray] = std::move(samples_);         // the next pass may have the same pixels
         samples_.reset();
     }
     ++canvas_.rays;

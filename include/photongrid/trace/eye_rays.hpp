@@ -83,6 +83,13 @@ inline ray_place place_of(const render_settings& s, uint ray, uint splits)
     return {ray & ((1u << splits) - 1u), s.pass.number * s.view.spp + (ray >> splits), s.seed ^ s.pass.seed_change};
 }
 
+/// The same eye ray of some pixels.
+struct ray_of_pixels {
+    const render_settings& settings;
+    uint ray; ///< sample x branches + branch
+    launch pixels;
+};
+
 /// The camera as eye_ray.glsl reads it. `ray` is sample x branches + branch.
 inline kernels::eye_ray::Params eye_params(
     const camera& c, const dvec3& center, const render_settings& s, const raster& r, uint ray, uint splits = 0)
@@ -176,9 +183,10 @@ void take_through(
 /// Samples direct light at some points. Calls change(directions of the shadow rays, what arrives if nothing blocks
 /// them) for each sample, and adds what then arrives, where no mesh blocks it, to `light`.
 template <backend B, class Change>
-void add_light_samples(B& device, const device_scene<B>& s, const render_settings& settings, uint ray, launch pixels,
-    const lit_points<B>& lit, buffer_of<B, glm::vec4>& light, Change change)
+void add_light_samples(B& device, const device_scene<B>& s, const ray_of_pixels& of, const lit_points<B>& lit,
+    buffer_of<B, glm::vec4>& light, Change change)
 {
+    const launch pixels = of.pixels;
     mesh_rays<B> rays(device, pixels.elements);
     auto arriving = device.template make<glm::vec4>(pixels.elements);
     auto found = device.template make<glm::uvec4>(1);
@@ -186,8 +194,8 @@ void add_light_samples(B& device, const device_scene<B>& s, const render_setting
     std::optional<mesh_hits<B>> met;
     if (through)
         met.emplace(device, s, pixels.elements);
-    const auto place = place_of(settings, ray, splits_of(s.layout));
-    for_each_light_sample(s.layout, settings, place.seed, [&](const light_sampling& how) {
+    const auto place = place_of(of.settings, of.ray, splits_of(s.layout));
+    for_each_light_sample(s.layout, of.settings, place.seed, [&](const light_sampling& how) {
         device.template run<kernels::shadow_ray>({pixels.elements, 0u, s.layout.features},
             {.strata = how.strata,
                 .light = how.light,
@@ -217,9 +225,9 @@ void add_light_samples(B& device, const device_scene<B>& s, const render_setting
 
 /// Adds direct light to the emissions of the eye rays that ended on rough surfaces.
 template <backend B>
-void light_rough_surfaces(
-    B& device, const device_scene<B>& s, const render_settings& settings, uint ray, launch pixels, eye_hits<B>& hits)
+void light_rough_surfaces(B& device, const device_scene<B>& s, const ray_of_pixels& of, eye_hits<B>& hits)
 {
+    const launch pixels = of.pixels;
     auto points = device.template make<glm::vec4>(pixels.elements);
     auto surfaces = device.template make<glm::vec4>(pixels.elements);
     const auto ends = reads(s.records, hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions);
@@ -227,7 +235,7 @@ void light_rough_surfaces(
         device.template run<kernels::rough_points>({pixels.elements, 0u, s.layout.features},
             {.first = pixels.first, .behind = behind}, ends, writes(points, surfaces));
         const lit_points<B> lit{points, surfaces, 0, hits.first_pixel + pixels.first, 0};
-        add_light_samples(device, s, settings, ray, pixels, lit, hits.emissions, [&](const auto& ways, auto& arriving) {
+        add_light_samples(device, s, of, lit, hits.emissions, [&](const auto& ways, auto& arriving) {
             device.template run<kernels::scatter_rough>({pixels.elements, 0u, s.layout.features},
                 {.first = pixels.first, .only_without_size = samples_choose_lights(s.layout) ? 1u : 0u},
                 reads(s.records, hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, ways),
@@ -278,18 +286,26 @@ void trace_to_ends(B& device, const device_scene<B>& s, launch pixels, const pat
     }
 }
 
-/// Traces eye rays to their ends, for the pixels of `pixels`: `ray` is sample x branches + branch. Bit b of `branches`
-/// is set for the pixels for which branch b must be traced; rays of other pixels end at once. Branch 0 sets its own
-/// bit, and a ray that splits sets that of its other branch, so the branches of a sample must be traced in order.
+/// What eye rays look through.
+struct eye_view {
+    const camera& from;
+    const raster& pixels;
+};
+
+/// Traces eye rays to their ends. Bit b of `branches` is set for the pixels for which branch b must be traced; rays of
+/// other pixels end at once. Branch 0 sets its own bit, and a ray that splits sets that of its other branch, so the
+/// branches of a sample must be traced in order.
 template <backend B>
-void trace_eye_rays(B& device, const device_scene<B>& s, const camera& view, const render_settings& settings,
-    const raster& r, uint ray, launch pixels, eye_hits<B>& hits, buffer_of<B, uint>& branches)
+void trace_eye_rays(B& device, const device_scene<B>& s, const eye_view& view, const ray_of_pixels& of,
+    eye_hits<B>& hits, buffer_of<B, uint>& branches)
 {
+    const auto& [settings, ray, pixels] = of;
     const auto& layout = s.layout;
     const uint splits = splits_of(layout);
     const auto place = place_of(settings, ray, splits);
     const uint sampled_at_rough = samples_choose_lights(layout) ? 0 : settings.view.light_samples;
-    device.template run<kernels::eye_ray>(pixels, eye_params(view, layout.center, settings, r, ray, splits), reads(),
+    device.template run<kernels::eye_ray>(pixels,
+        eye_params(view.from, layout.center, settings, view.pixels, ray, splits), reads(),
         writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
     trace_to_ends(device, s, pixels,
         {.branch = place.branch,
@@ -300,15 +316,16 @@ void trace_eye_rays(B& device, const device_scene<B>& s, const camera& view, con
             .seed = place.seed},
         hits, branches);
     if ((layout.features & has_rough) != 0)
-        light_rough_surfaces(device, s, settings, ray, pixels, hits);
+        light_rough_surfaces(device, s, of, hits);
 }
 
-/// Computes the irradiance of direct light at the hits of `pixels` into `light`, with a bounded number of shadow rays
+/// Computes the irradiance of direct light at the hits of eye rays into `light`, with a bounded number of shadow rays
 /// per pass.
 template <backend B>
-void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, const render_settings& settings,
-    uint ray, launch pixels, buffer_of<B, glm::vec4>& light)
+void direct_light(B& device, const device_scene<B>& s, const ray_of_pixels& of, const eye_hits<B>& hits,
+    buffer_of<B, glm::vec4>& light)
 {
+    const auto& [settings, ray, pixels] = of;
     device.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
     // What direct_light.glsl does not know.
     constexpr uint others
@@ -318,7 +335,7 @@ void direct_light(B& device, const device_scene<B>& s, const eye_hits<B>& hits, 
     const bool takes_whole = settings.estimate.indirect != indirect_kind::paths;
     if ((s.layout.features & others) != 0 || samples_choose_lights(s.layout) || !takes_whole) {
         const lit_points<B> lit{hits.points, hits.surfaces, pixels.first, hits.first_pixel, takes_whole ? 1u : 0u};
-        add_light_samples(device, s, settings, ray, pixels, lit, light, [](const auto&, auto&) {});
+        add_light_samples(device, s, of, lit, light, [](const auto&, auto&) {});
         return;
     }
     const uint samples = (s.layout.features & has_area_lights) != 0 ? settings.view.light_samples : 1u;

@@ -64,6 +64,69 @@ uint pairs_before(uint instance)
     return instances(at + PAIR_OF_INSTANCE).w - instances(at + 2u).w;
 }
 
+// The closest hit so far.
+struct TriangleHit {
+    float t; // lengths of the ray's direction
+    uint triangle;
+};
+
+// The triangles of a leaf. In a surface that an instance stands for: `inside`, where the ray is in the instance's box;
+// `first_id`, the number of its first triangle.
+TriangleHit closest_of_leaf(TriangleHit so_far, uint leaf, Ray r, vec2 inside, uint first_id)
+{
+    for (uint n = first_of_leaf(leaf); n < past_leaf(leaf); ++n) {
+        uvec4 a = corners(TRIANGLE_RECORDS * n);
+        float t = hit_triangle(corner_of(a), corner_of(corners(TRIANGLE_RECORDS * n + 1u)),
+            corner_of(corners(TRIANGLE_RECORDS * n + 2u)), r);
+        uint id = first_id + a.w;
+        bool counts = !INSTANCES || (t >= inside.x && t <= inside.y);
+        if (counts && t >= 1.17549435e-38f && (t < so_far.t || (t == so_far.t && id < so_far.triangle))) {
+            so_far.t = t;
+            so_far.triangle = id;
+        }
+    }
+    return so_far;
+}
+
+// What a ray finds at a pair.
+struct Visit {
+    TriangleHit found;
+    uint next;  // the nearer child to go down to, or NO_PAIR
+    bool both;  // the other one is to be visited, too
+    uint taken; // steps
+};
+
+// `above_instances`: leaves are instances, not triangles.
+Visit visit_pair(TriangleHit so_far, uint pair, Ray r, bool above_instances, vec2 inside, uint first_id)
+{
+    Visit v;
+    v.found = so_far;
+    v.next = NO_PAIR;
+    v.both = false;
+    v.taken = 1u;
+    uvec4 low_0 = pairs(PAIR_RECORDS * pair);
+    uvec4 high_0 = pairs(PAIR_RECORDS * pair + 1u);
+    uvec4 low_1 = pairs(PAIR_RECORDS * pair + 2u);
+    uvec4 high_1 = pairs(PAIR_RECORDS * pair + 3u);
+    vec2 first = inside_box(corner_of(low_0), corner_of(high_0), r);
+    vec2 second = inside_box(corner_of(low_1), corner_of(high_1), r);
+    uint nearer = second.x < first.x ? 1u : 0u;
+    for (uint nth = 0u; nth < 2u; ++nth) {
+        uint side = nth == 0u ? nearer : 1u - nearer;
+        uint child = side == 0u ? low_0.w : high_0.w;
+        bool meets = meets_box(side == 0u ? first : second, v.found.t);
+        if (meets && (!is_leaf(child) || above_instances)) {
+            v.both = v.next != NO_PAIR;
+            v.next = v.both ? v.next : child;
+        }
+        if (meets && is_leaf(child) && !above_instances) {
+            v.found = closest_of_leaf(v.found, child, r, inside, first_id);
+            v.taken += past_leaf(child) - first_of_leaf(child);
+        }
+    }
+    return v;
+}
+
 void kernel(uint i)
 {
     vec4 o = origins(i);
@@ -71,8 +134,9 @@ void kernel(uint i)
     Ray r = ray_of(vec3(o), d);
     uint pair = pair_of(state);
     uint trail = trail_of(state);
-    float closest = distance_of_hit(state);
-    uint triangle = triangle_of(state);
+    TriangleHit found;
+    found.t = distance_of_hit(state);
+    found.triangle = triangle_of(state);
     uint instance = NO_INSTANCE; // in whose surface the walk is
     vec2 inside = vec2(0.0f, 0.0f);
     uint first_id = 0u;
@@ -94,40 +158,11 @@ void kernel(uint i)
             below = instances(INSTANCE_RECORDS * instance + 3u).w;
         }
         bool above_instances = INSTANCES && instance == NO_INSTANCE;
-        uint taken = 1u;
-        uvec4 low_0 = pairs(PAIR_RECORDS * pair);
-        uvec4 high_0 = pairs(PAIR_RECORDS * pair + 1u);
-        uvec4 low_1 = pairs(PAIR_RECORDS * pair + 2u);
-        uvec4 high_1 = pairs(PAIR_RECORDS * pair + 3u);
-        vec2 first = inside_box(corner_of(low_0), corner_of(high_0), r);
-        vec2 second = inside_box(corner_of(low_1), corner_of(high_1), r);
-        uint nearer = second.x < first.x ? 1u : 0u;
-        uint next = NO_PAIR;
-        bool both = false;
-        for (uint nth = 0u; nth < 2u; ++nth) {
-            uint side = nth == 0u ? nearer : 1u - nearer;
-            uint child = side == 0u ? low_0.w : high_0.w;
-            bool meets = meets_box(side == 0u ? first : second, closest);
-            if (meets && (!is_leaf(child) || above_instances)) {
-                both = next != NO_PAIR;
-                next = both ? next : child;
-            }
-            if (meets && is_leaf(child) && !above_instances) {
-                for (uint n = first_of_leaf(child); n < past_leaf(child); ++n) {
-                    uvec4 a = corners(TRIANGLE_RECORDS * n);
-                    float t = hit_triangle(corner_of(a), corner_of(corners(TRIANGLE_RECORDS * n + 1u)),
-                        corner_of(corners(TRIANGLE_RECORDS * n + 2u)), r);
-                    uint id = first_id + a.w;
-                    bool counts = !INSTANCES || (t >= inside.x && t <= inside.y);
-                    if (counts && t >= 1.17549435e-38f && (t < closest || (t == closest && id < triangle))) {
-                        closest = t;
-                        triangle = id;
-                    }
-                    ++taken;
-                }
-            }
-        }
-        trail = trail << 1u | (both ? 1u : 0u);
+        Visit v = visit_pair(found, pair, r, above_instances, inside, first_id);
+        found = v.found;
+        uint taken = v.taken;
+        uint next = v.next;
+        trail = trail << 1u | (v.both ? 1u : 0u);
         bool climbs = next == NO_PAIR;
         while (climbs) {
             // Up to the closest pair whose other child is still to be visited and near enough.
@@ -143,12 +178,12 @@ void kernel(uint i)
             if (pair != NO_PAIR && (trail & 1u) != 0u) {
                 trail = trail - 1u;
                 uint other = 1u - child_above(link);
-                next = meets_box(inside_child(pair, other, r), closest) ? child_of(pair, other) : NO_PAIR;
+                next = meets_box(inside_child(pair, other, r), found.t) ? child_of(pair, other) : NO_PAIR;
             }
             climbs = pair != NO_PAIR && next == NO_PAIR;
         }
         pair = next;
-        if (ANY_HIT && triangle != NO_TRIANGLE)
+        if (ANY_HIT && found.triangle != NO_TRIANGLE)
             pair = NO_PAIR;
         if (INSTANCES && instance == NO_INSTANCE && pair != NO_PAIR && is_leaf(pair)) {
             enters = first_of_leaf(pair);
@@ -161,5 +196,5 @@ void kernel(uint i)
             instance = enters;
         pair = instance == NO_INSTANCE ? pair : pair + pairs_before(instance);
     }
-    state = ray_state(pair, trail, closest, triangle);
+    state = ray_state(pair, trail, found.t, found.triangle);
 }

@@ -14,13 +14,20 @@
 
 namespace photongrid::gltf_export {
 
+/// Where the bytes of pictures go. `embedded`: into the buffer, not into files.
+struct picture_bytes {
+    side_files& files;
+    picture_files& pictures;
+    buffer_writer& buffer;
+    bool embedded;
+};
+
 /// Collects the materials, textures and images of a file.
 class material_writer {
 public:
-    /// `embedded`: pictures go into the buffer, not into files.
-    material_writer(const scene& s, side_files& files, picture_files& pictures, buffer_writer& buffer, import_log& log,
-        const source_place& place, bool embedded)
-        : scene_(s), files_(files), pictures_(pictures), buffer_(buffer), log_(log), place_(place), embedded_(embedded)
+    material_writer(const scene& s, const picture_bytes& to, import_log& log, const source_place& place)
+        : scene_(s), files_(to.files), pictures_(to.pictures), buffer_(to.buffer), log_(log), place_(place),
+          embedded_(to.embedded)
     {
     }
 

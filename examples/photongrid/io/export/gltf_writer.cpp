@@ -92,7 +92,7 @@ namespace gltf_export {
             scene_writer(const std::string& path, const scene& s, const export_settings& settings)
                 : scene_(s), place_(path), log_(settings.strict), files_(path), pictures_(files_, settings.source),
                   is_binary_(ending_of(path) == ".glb"),
-                  materials_(s, files_, pictures_, buffer_, log_, place_, is_binary_)
+                  materials_(s, {files_, pictures_, buffer_, is_binary_}, log_, place_)
             {
             }
 
