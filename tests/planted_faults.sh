@@ -40,7 +40,7 @@ faults=(
   "a photon stands for one too few|include/photongrid/map/packed_photon.glsl|(slot < all % kept ? 1u : 0u)|0u"
   "photons that stand for others keep all power|include/photongrid/map/share_power.glsl|1.0f / number|1.0f"
   "routed maps count only what they keep|include/photongrid/map/grid_maps.hpp|if (by.surplus == surplus_kind::power)|if (map.cells_of.resolution.w > 0)"
-  "entries of one photon are independent|include/photongrid/estimate/gather_photons.glsl|weighted2 = weighted2 * added.w;|weighted2 = weighted2 * 1.0f;"
+  "entries of one photon are independent|include/photongrid/estimate/gather_photons.glsl|weighted2 = weighted2 * stands_for;|weighted2 = weighted2 * 1.0f;"
   "the paper's routing counts surplus photons|include/photongrid/scene/render_settings.hpp|s.map.surplus = surplus_kind::power;|s.map.surplus = surplus_kind::photons;"
   "hashed: survivors do not stand for the others|include/photongrid/map/routed_cell.glsl|float(destined) / float(kept)|1.0f"
   "hashed: redistribution is omitted|include/photongrid/map/survivor_power.glsl|scales(bucket), surpluses|vec4(1.0f, 1.0f, 1.0f, 1.0f), surpluses"

@@ -58,6 +58,23 @@ void gather_powers(uint nth, uint all)
     set_lane(chunk_power, powers(chunk_index));
 }
 
+// The filter's weight at a squared share of the radius.
+float weight_at(float t)
+{
+    return filter_weight(t < 1.0f ? t : 1.0f);
+}
+
+// What a weighted photon adds to `squares`. `stands_for`: how many photons it is.
+vec4 squares_of(vec4 weighted, float stands_for)
+{
+    float all = weighted.x + weighted.y + weighted.z;
+    vec4 weighted2
+        = vec4(weighted.x * weighted.x, weighted.y * weighted.y, weighted.z * weighted.z, all * all);
+    if (REPEATS)
+        weighted2 = weighted2 * stands_for;
+    return weighted2;
+}
+
 bool done()
 {
     return is_gathered(tally);
@@ -76,8 +93,6 @@ void kernel(uint i)
     uint last_left = last_id_count(chosen);
     vec4 total = sum;
     vec4 correction = compensation;
-    vec4 square = squares;
-    uvec4 resume_at = cursor;
     uint held = photons_found(tally);
     uint visited = photons_visited(tally);
     uint past_excluded = past_excluded_of(tally);
@@ -92,7 +107,7 @@ void kernel(uint i)
     walk_visits = args.visits;
     walk_steps = args.ranges;
     while (walk_steps > 0u && group_any(!finished)) {
-        bool mine = joins_walk(!finished, p, c, radius2, resume_at);
+        bool mine = joins_walk(!finished, p, c, radius2, cursor);
         vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the other lanes find nothing
         while (walks_on()) {
             uint photons = next_rows();
@@ -120,22 +135,14 @@ void kernel(uint i)
             past_excluded = swaps ? at + 1u : past_excluded;                               \
             excluded_id = swaps ? id : excluded_id;                                        \
             excluded_power = swaps ? power : excluded_power;                               \
-            float t = d2 * inverse_disc2;                                                  \
-            t = t < 1.0f ? t : 1.0f;                                                       \
-            precise vec4 weighted = added * filter_weight(t);                              \
+            precise vec4 weighted = added * weight_at(d2 * inverse_disc2);                 \
             precise vec4 term = weighted - correction;                                     \
             precise vec4 more = total + term;                                              \
             precise vec4 error = (more - total) - term;                                    \
             total = counts ? more : total;                                                 \
             correction = counts ? error : correction;                                      \
-            if (ERRORS) {                                                                  \
-                float all = weighted.x + weighted.y + weighted.z;                          \
-                vec4 weighted2 = vec4(weighted.x * weighted.x, weighted.y * weighted.y,    \
-                    weighted.z * weighted.z, all * all);                                   \
-                if (REPEATS)                                                               \
-                    weighted2 = weighted2 * added.w;                                       \
-                square = counts ? square + weighted2 : square;                             \
-            }                                                                              \
+            if (ERRORS)                                                                    \
+                squares = counts ? squares + squares_of(weighted, added.w) : squares;      \
         }                                                                                  \
     }
             if (photons > 0u)
@@ -143,7 +150,7 @@ void kernel(uint i)
 #undef VISIT
         }
         if (mine) {
-            resume_at = walk_cursor();
+            cursor = walk_cursor();
             finished = has_walked();
         }
     }
@@ -151,7 +158,5 @@ void kernel(uint i)
     chosen = chosen_of(photons_found(chosen), photons_visited(chosen), last_id, last_left);
     sum = total;
     compensation = correction;
-    squares = square;
-    cursor = resume_at;
     tally = gather_tally(held, visited, past_excluded, finished);
 }

@@ -192,11 +192,16 @@ Kth next_scan(Kth s)
     return s;
 }
 
-void kernel(uint i)
+// The guess (kth_guess.glsl) is more often a little too low than too high.
+vec4 pivots_at(Kth s, vec4 spans)
 {
-    vec4 p = points(i);
-    vec4 n = normals(i);
-    uvec4 c = cell_coordinates(args.grid, p);
+    precise vec4 at = vec4(s.pivot + spans.x * s.span, s.pivot + spans.y * s.span, s.pivot + spans.z * s.span,
+        s.pivot + spans.w * s.span);
+    return vec4(within_limit(at.x), within_limit(at.y), within_limit(at.z), within_limit(at.w));
+}
+
+Kth found_so_far()
+{
     Kth s;
     s.pivot = pivot_base(pivots);
     s.span = pivot_span(pivots);
@@ -204,28 +209,31 @@ void kernel(uint i)
     s.within = photons_found(tally);
     s.scans = scans_of(tally);
     s.phase = min(kth_phase(tally), FOUND);
-    uvec4 below = inner;
-    uvec4 beyond = outer;
-    uvec4 resume_at = cursor;
+    s.below = inner;
+    s.beyond = outer;
+    return s;
+}
+
+void kernel(uint i)
+{
+    vec4 p = points(i);
+    vec4 n = normals(i);
+    uvec4 c = cell_coordinates(args.grid, p);
+    Kth s = found_so_far();
+    uvec4 below = s.below;
+    uvec4 beyond = s.beyond;
     uint visited = photons_visited(tally);
 
     walk_visits = args.visits;
     walk_steps = args.ranges;
     while (walk_steps > 0u && group_any(s.phase != FOUND)) {
-        // The guess (kth_guess.glsl) is more often a little too low than too high.
-        precise vec4 near_pivots = vec4(s.pivot + 0.6f * s.span, s.pivot + 0.8f * s.span,
-            s.pivot + 0.92f * s.span, s.pivot + 1.04f * s.span);
-        precise vec4 far_pivots = vec4(s.pivot + 1.16f * s.span, s.pivot + 1.3f * s.span,
-            s.pivot + 1.48f * s.span, s.pivot + 1.7f * s.span);
-        near_pivots = vec4(within_limit(near_pivots.x), within_limit(near_pivots.y),
-            within_limit(near_pivots.z), within_limit(near_pivots.w));
-        far_pivots = vec4(within_limit(far_pivots.x), within_limit(far_pivots.y),
-            within_limit(far_pivots.z), within_limit(far_pivots.w));
+        vec4 near_pivots = pivots_at(s, vec4(0.6f, 0.8f, 0.92f, 1.04f));
+        vec4 far_pivots = pivots_at(s, vec4(1.16f, 1.3f, 1.48f, 1.7f));
         uint middle = key_of(s.pivot);
         uint low = low_key(s.between);
         float high2 = distance_of(high_key(s.between));
         float scan2 = s.phase == COUNTING ? far_pivots.w : high2;
-        bool mine = joins_walk(s.phase != FOUND, p, c, scan2, in_phase(resume_at, s.phase));
+        bool mine = joins_walk(s.phase != FOUND, p, c, scan2, in_phase(cursor, s.phase));
         vec4 from = vec4(mine ? p.x : -3.0e38f, p.y, p.z, 0.0f); // the other lanes count nothing
         while (walk_phase == COUNTING && walks_on()) {
             uint photons = next_rows();
@@ -260,7 +268,7 @@ void kernel(uint i)
 #undef VISIT
         }
         if (mine)
-            resume_at = walk_cursor();
+            cursor = walk_cursor();
 
         if (mine && has_walked()) {
             s.below = below;
@@ -275,7 +283,7 @@ void kernel(uint i)
             s = next_scan(s);
             below = s.below;
             beyond = s.beyond;
-            resume_at = at_first_row();
+            cursor = at_first_row();
         }
     }
 
@@ -283,6 +291,5 @@ void kernel(uint i)
     inner = below;
     outer = beyond;
     bracket = s.between;
-    cursor = resume_at;
     tally = kth_tally(s.within, visited, s.scans, s.phase);
 }

@@ -43,8 +43,8 @@ OUTPUT(4, vec4, next_direction)
 #include <photongrid/trace/color_code.glsl>
 #include <photongrid/trace/met_surface.glsl>
 
-// A photon on its way.
-struct Path {
+// A photon on its photon.
+struct Photon {
     uint id;
     uint frame;
     uint before; // what it hit before: see photon_event.glsl
@@ -111,18 +111,18 @@ void leave(Hit hit, vec3 d)
 }
 
 // The photon passes a surface that is clear in part.
-void pass_clear(Hit hit, vec3 d, Path path)
+void pass_clear(Hit hit, vec3 d, Photon photon)
 {
     direction.w = color_code(vec3(1.0f, 1.0f, 1.0f));
     leave(hit, d);
-    position.w = event_code(NO_SURFACE, path.end, path.before);
+    position.w = event_code(NO_SURFACE, photon.end, photon.before);
 }
 
 // The photon meets a surface, which may store it, and leaves it or is absorbed. `other`: see surface_for(); `round_by`:
 // a random number.
-void scatter(Hit hit, Surface s, uint other, Path path, float round_by)
+void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by)
 {
-    vec4 r = random4(uvec4(path.id, path.frame, 0u, args.seed));
+    vec4 r = random4(uvec4(photon.id, photon.frame, 0u, args.seed));
     Facet facet = facet_met(s, r.y, r.z);
     s = leaving_by(s, way_of(s, r.w < reflected_share(s, facet)));
     float survival = largest3(s.material.reflectance);
@@ -135,18 +135,18 @@ void scatter(Hit hit, Surface s, uint other, Path path, float round_by)
     power.w = s.shading.x;
     next_origin.w = s.shading.y;
     next_direction.w = s.shading.z;
-    position.w = event_code(surface, ABSORBED, path.before);
+    position.w = event_code(surface, ABSORBED, photon.before);
     if ((args.to_diffuse != 0u && surface == DIFFUSE_SURFACE) || !(r.x < survival))
         return;
-    Scattered l = scatter_photon(s, facet, r.y, r.z, uvec4(path.id, path.frame, 0u, args.seed));
+    Scattered l = scatter_photon(s, facet, r.y, r.z, uvec4(photon.id, photon.frame, 0u, args.seed));
     // Roulette by what other facets hide, too: r.x is even below the reflectance. A coat passes it on.
     precise float unhidden_survival = survival * (is_coated(s) ? 1.0f : l.unhidden);
     if (!(r.x < unhidden_survival) || !(l.power_scale > 0.0f))
         return;
-    position.w = event_code(surface, path.end, path.before);
+    position.w = event_code(surface, photon.end, photon.before);
     if (MIXTURES && surface == BOTH_SURFACES) {
         precise float leaving = l.power_scale / received;
-        position.w = event_of_both(path.end, path.before, leaving, round_by);
+        position.w = event_of_both(photon.end, photon.before, leaving, round_by);
     } else if (surface == SPECULAR_SURFACE) {
         scale_power(l.power_scale);
     }
@@ -155,12 +155,12 @@ void scatter(Hit hit, Surface s, uint other, Path path, float round_by)
 
 void kernel(uint i)
 {
-    Path path;
-    path.frame = i / args.paths;
-    uint number = i - path.frame * args.paths; // of the path in a frame, and of its hit on a mesh
+    Photon photon;
+    photon.frame = i / args.paths;
+    uint number = i - photon.frame * args.paths; // of the path in a frame, and of its hit on a mesh
     uint before = i - args.paths;
-    path.id = args.first_path + number;
-    path.end = path.frame < args.last_frame ? GOES_ON : CUT_OFF;
+    photon.id = args.first_path + number;
+    photon.end = photon.frame < args.last_frame ? GOES_ON : CUT_OFF;
     position = vec4(0.0f, 0.0f, 0.0f, event_code(NO_SURFACE, ENDED_BEFORE, NOTHING_BEFORE));
     power = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     direction = power;
@@ -169,8 +169,8 @@ void kernel(uint i)
     vec4 last = positions(before);
     if (event_end(last) != GOES_ON)
         return;
-    path.before = hit_before(last);
-    power = path.frame > 1u ? arriving_power(before, last) : powers(before);
+    photon.before = hit_before(last);
+    power = photon.frame > 1u ? arriving_power(before, last) : powers(before);
     vec3 o = vec3(next_origins(before));
     vec3 d = vec3(next_directions(before));
     direction = vec4(d.x, d.y, d.z, 0.0f);
@@ -188,15 +188,15 @@ void kernel(uint i)
     position = vec4(hit.position.x, hit.position.y, hit.position.z, position.w);
     if (!is_finite3(hit.position))
         return;
-    position.w = event_code(NO_SURFACE, ABSORBED, path.before);
+    position.w = event_code(NO_SURFACE, ABSORBED, photon.before);
     if (hit.material == NO_MATERIAL)
         return; // the surfaces of lights are black
 
     vec4 chance = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     if (MIXTURES || CLEAR)
-        chance = random4(uvec4(path.id, path.frame, 1000u, args.seed));
+        chance = random4(uvec4(photon.id, photon.frame, 1000u, args.seed));
     if (CLEAR && !(chance.x < opacity_at(hit.material, on_mesh, number))) {
-        pass_clear(hit, d, path);
+        pass_clear(hit, d, photon);
         return;
     }
     uint part = 0u;
@@ -208,7 +208,7 @@ void kernel(uint i)
         other = part == 0u ? parts.second : parts.first;
     }
     Surface s = surface_met(hit, d, material_at(hit.material, part, on_mesh, number));
-    scatter(hit, s, other, path, chance.z);
+    scatter(hit, s, other, photon, chance.z);
 }
 
 // Whether this path needs no further frames.
