@@ -43,7 +43,7 @@ OUTPUT(4, vec4, next_direction)
 #include <photongrid/trace/color_code.glsl>
 #include <photongrid/trace/met_surface.glsl>
 
-// A photon on its photon.
+// A photon on its way.
 struct Photon {
     uint id;
     uint frame;

@@ -18,11 +18,11 @@ Emitted emitted_photon(uint at, vec4 r, vec4 s)
 {
     uint kind = kind_of_light(at);
     float probability = light_probability(at);
-    vec3 power = light_power(at);
+    vec3 whole = light_power(at);
     Emitted e;
     e.origin = vec3(0.0f, 0.0f, 0.0f);
     e.direction = vec3(0.0f, 0.0f, 1.0f);
-    e.power = vec3(power.x / probability, power.y / probability, power.z / probability);
+    e.power = vec3(whole.x / probability, whole.y / probability, whole.z / probability);
     if (POINT_LIGHTS && kind == POINT_LIGHT)
         return point_emit(at, e, r);
     if (AREA_LIGHTS && kind == RECTANGLE_LIGHT)
@@ -67,8 +67,8 @@ ArrivingLight arriving_light(uint at, SampleNumbers n, LitPoint lit)
 float light_importance(uint at, LitPoint lit)
 {
     uint kind = kind_of_light(at);
-    vec3 power = light_power(at);
-    precise float watts = power.x + power.y + power.z;
+    vec3 whole = light_power(at);
+    precise float watts = whole.x + whole.y + whole.z;
     if (AREA_LIGHTS && kind == RECTANGLE_LIGHT)
         return rectangle_importance(at, watts, lit);
     if (SPHERE_LIGHTS && kind == SPHERE_LIGHT)

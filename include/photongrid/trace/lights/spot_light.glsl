@@ -48,14 +48,14 @@ Emitted spot_emit(uint at, Emitted e, vec4 r, vec4 s)
 
 ArrivingLight spot_sample(uint at, ArrivingLight a, LitPoint lit)
 {
-    vec3 position = vec3(scene(at + 1u));
-    LightWay way = way_to(position, lit);
+    vec3 from = vec3(scene(at + 1u));
+    LightWay way = way_to(from, lit);
     float intensity = spot_intensity(at, -way.direction);
     if (!(way.distance2 > 0.0f) || !(way.cosine > 0.0f) || !(intensity > 0.0f))
         return a;
     float least2 = lit.offset * lit.offset; // as for a point light
     precise float per_power = way.cosine * intensity / (way.distance2 > least2 ? way.distance2 : least2);
-    a.found = lit_from(position, per_power, lit);
+    a.found = lit_from(from, per_power, lit);
     precise float short_of = a.found.far * 0.9999f; // it may touch a surface
     a.found.far = short_of;
     return a;
@@ -63,9 +63,9 @@ ArrivingLight spot_sample(uint at, ArrivingLight a, LitPoint lit)
 
 float spot_importance(uint at, float watts, LitPoint lit)
 {
-    vec3 position = vec3(scene(at + 1u));
-    vec3 to = position - lit.position;
+    vec3 from = vec3(scene(at + 1u));
+    vec3 to = from - lit.from;
     precise vec3 way = -to / sqrt(dot3(to, to));
-    precise float aimed = ball_importance(position, 0.0f, watts, lit) * spot_intensity(at, way) * 12.5663706f;
+    precise float aimed = ball_importance(from, 0.0f, watts, lit) * spot_intensity(at, way) * 12.5663706f;
     return aimed > 0.0f ? aimed : 0.0f;
 }
