@@ -64,7 +64,7 @@ ArrivingLight spot_sample(uint at, ArrivingLight a, LitPoint lit)
 float spot_importance(uint at, float watts, LitPoint lit)
 {
     vec3 from = vec3(scene(at + 1u));
-    vec3 to = from - lit.from;
+    vec3 to = from - lit.position;
     precise vec3 way = -to / sqrt(dot3(to, to));
     precise float aimed = ball_importance(from, 0.0f, watts, lit) * spot_intensity(at, way) * 12.5663706f;
     return aimed > 0.0f ? aimed : 0.0f;
