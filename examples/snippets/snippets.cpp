@@ -380,6 +380,16 @@ void pictures(device_type& device)
     expect(picture.pixels == photongrid::draw(device, built, room.camera, settings).picture.pixels, "render");
     progressive_pictures(device, room, settings);
 
+    //! [prepare]
+    const auto world = photongrid::prepare(device, room); // laid out and uploaded once, for any number of passes
+    //! [prepare]
+    //! [draw_pass]
+    auto sum = photongrid::film_for(room, world->scene.layout, settings);
+    sum.add(0, photongrid::draw_pass(device, world, room.camera, settings, 0)); // and so on, in any order
+    const photongrid::image mean = sum.picture().picture;
+    //! [draw_pass]
+    expect(mean.pixels == picture.pixels, "draw_pass");
+
     //! [render_reference]
     const auto drawn = photongrid::render_reference(room, room.camera, {.width = 16, .height = 12, .spp = 64});
     const glm::vec3 value = drawn.mean.pixels[7 * 16 + 8],

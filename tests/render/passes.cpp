@@ -1,4 +1,4 @@
-// Sums of passes, lists of steps and schedules of previews: the parts of a picture, without a device.
+// Sums of passes and schedules of previews: the parts of a picture, without a device.
 #include "exact_sum_tests.hpp"
 #include "film_tests.hpp"
 #include "picture_error_tests.hpp"
@@ -7,7 +7,6 @@
 #include <photongrid/render/previews.hpp>
 #include <photongrid/render/render_state.hpp>
 #include <photongrid/render/shrinking_radii.hpp>
-#include <photongrid/render/step_list.hpp>
 
 namespace {
 
@@ -20,45 +19,6 @@ TEST(shrinking_radii, follow_their_sequence)
         EXPECT_NEAR(shrunk_share2(n), std::exp(std::lgamma(n + 2.0 / 3) - std::lgamma(2.0 / 3) - std::lgamma(n + 1.0)),
             1e-9 * shrunk_share2(n))
             << n;
-}
-
-TEST(step_list, runs_steps_in_order_until_each_is_done)
-{
-    std::string log;
-    int left = 0;
-    step_list steps;
-    steps.add("a", [&] {
-        log += 'a';
-        return true;
-    });
-    steps.expand([] { return step_list(); });
-    steps.repeat(1, 3, [&](std::uint32_t i) {
-        left = 2; // made when it is reached, so that this is not overwritten
-        step_list inner;
-        inner.add("b", [&, i] {
-            log += static_cast<char>('0' + i);
-            return --left == 0;
-        });
-        inner.add("c", [&] {
-            log += 'c';
-            return true;
-        });
-        return inner;
-    });
-    steps.expand([] { return step_list(); });
-    EXPECT_FALSE(steps.finished());
-    EXPECT_EQ(steps.stage(), "a");
-    std::string stages;
-    for (int i = 0; !steps.finished(); ++i) {
-        ASSERT_LT(i, 100);
-        stages += steps.stage();
-        steps.advance();
-    }
-    EXPECT_EQ(log, "a11c22c");
-    EXPECT_EQ(stages, "abbcbbc");
-    steps.advance();
-    EXPECT_EQ(log.size(), 7u);
-    EXPECT_TRUE(step_list().finished());
 }
 
 TEST(previews, go_from_coarse_to_fine)

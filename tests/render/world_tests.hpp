@@ -127,6 +127,22 @@ TYPED_TEST_P(progressive, all_passes_share_one_world)
 }
 
 /// A scene that is given up while it is prepared, for another or for another camera.
+TYPED_TEST_P(progressive, a_pass_is_a_function_of_its_number)
+{
+    auto& b = this->b();
+    auto s = textured_mesh_under_a_sky();
+    s.render.output.passes = 3;
+    for (const auto radii : {radius_kind::per_pass, radius_kind::shrinking}) {
+        s.render.estimate.radii = radii;
+        const auto whole = render(b, s);
+        const auto world = prepare(b, s);
+        auto sum = film_for(s, world->scene.layout, s.render);
+        for (const uint number : {2u, 0u, 1u})
+            sum.add(number, draw_pass(b, world, s.camera, s.render, number));
+        EXPECT_EQ(sum.picture().picture.pixels, whole.picture.pixels);
+    }
+}
+
 TYPED_TEST_P(progressive, a_preparation_can_be_interrupted)
 {
     auto s = textured_mesh_under_a_sky(), other = s;

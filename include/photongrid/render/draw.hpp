@@ -2,10 +2,10 @@
 #pragma once
 
 #include <photongrid/render/film.hpp>
-#include <photongrid/render/passes.hpp>
-#include <photongrid/render/stages.hpp>
+#include <photongrid/render/pass_drawing.hpp>
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <photongrid/core/exact_begin.hpp>
@@ -19,10 +19,13 @@ built_map<B> build_map(
     B& device, std::shared_ptr<world<B>> of, const render_settings& settings, const render_observer& observer = {})
 {
     map_building<B> map(device, std::move(of), settings);
-    run(map_steps(map), observer, [&](std::string_view stage) {
+    while (!map.finished()) {
+        const auto stage = map.stage();
+        detail::stop_if_cancelled(observer);
+        map.advance();
         if (observer.progress)
             observer.progress(stage, map.fraction());
-    });
+    }
     return map.take();
 }
 /// The same in a world of its own.
@@ -51,22 +54,39 @@ pass_pixels draw_pass(B& device, const built_map<B>& built, const camera& view, 
     render_stats& stats, const pass_options<B>& options = {})
 {
     const auto& observer = options.observer;
-    check(settings);
-    pass_pixels light;
-    const double pixels = static_cast<double>(settings.output.width) * settings.output.height;
-    for (const auto& rows : bands_of(settings.output)) {
-        const view_pass_settings how{.size = observer.cancelled ? step_size::small : step_size::largest, .band = rows};
-        view_pass<B> band(device, built, view, settings, how, stats);
-        band.use_radii(options.radii);
-        run(view_steps(band), observer, [&](std::string_view) {
-            const double of_band = band.fraction() * static_cast<double>(band.light().raster.size());
-            if (observer.progress)
-                observer.progress("radiance_estimate", (static_cast<double>(light.pixels.size()) + of_band) / pixels);
-        });
-        finish_band(device, band, light, stats);
+    const auto size = observer.cancelled ? step_size::small : step_size::largest;
+    pass_drawing<B> pass(device, built, view, settings, {.size = size}, stats);
+    pass.use_radii(options.radii);
+    do {
+        detail::stop_if_cancelled(observer);
+        pass.advance();
+        if (observer.progress)
+            observer.progress("radiance_estimate", pass.fraction());
+    } while (!pass.finished());
+    return pass.take();
+}
+
+/// The light of pass `number` of a picture, with a map of its own: a function of these arguments alone. A film of all
+/// passes is the picture, whoever draws them, in whatever order.
+/// \throws what build_map and draw throw.
+/// \snippet snippets.cpp draw_pass
+template <backend B>
+[[nodiscard]] pass_pixels draw_pass(
+    B& device, std::shared_ptr<world<B>> of, const camera& view, const render_settings& settings, uint number)
+{
+    std::optional<built_map<B>> first; // for the radii of all passes
+    pass_options<B> options;
+    if (has_shrinking_radii(settings)) {
+        const auto with = settings_of_radius_map(settings, device.caps());
+        map_building<B> building(device, of, with, map_use::first_radii);
+        while (!building.finished())
+            building.advance();
+        first.emplace(building.take());
+        options.radii = radii_of_pass(*first, with, number);
     }
-    finish_pass(device, built, stats);
-    return light;
+    const auto with = settings_of_pass(settings, number);
+    render_stats stats;
+    return draw_pass(device, build_map(device, std::move(of), with), view, with, stats, options);
 }
 
 /// Draws one pass over a view, from an existing map: no photons are traced, and radii are those of the map. Pixels that

@@ -2,9 +2,8 @@
 // same_map() compares changes (figure 1).
 #pragma once
 
-#include <photongrid/render/stages.hpp>
+#include <photongrid/render/scene_map.hpp>
 
-#include <functional>
 #include <memory>
 #include <optional>
 
@@ -37,11 +36,8 @@ struct map_key {
 template <backend B>
 class map_keeper {
 public:
-    /// The steps to a map.
-    using way = step_list (*)(map_building<B>&);
-
     /// `device` must outlive it.
-    explicit map_keeper(B& device, way steps = map_steps<B>) : device_(device), way_(steps) {}
+    explicit map_keeper(B& device, map_use use = map_use::light) : device_(device), use_(use) {}
 
     /// The map in use; there must be one.
     const built_map<B>& map() const { return *built_; }
@@ -63,31 +59,28 @@ public:
     /// How many maps were started.
     std::uint64_t begun() const { return begun_; }
 
-    /// The steps to the map of `source` in its world, `of`: none if it is in use, the remaining ones if it is being
-    /// built. `use` is called just before the new map replaces the one in use.
-    step_list steps_to(const map_key& source, std::shared_ptr<world<B>> of, std::function<void()> use)
+    /// Takes a step to the map of `source` in its world, `of`. Returns whether that map is in use. Views of the one
+    /// before must be gone.
+    /// \throws what map_building throws.
+    bool advance(const map_key& source, std::shared_ptr<world<B>> of)
     {
         if (serves(source))
-            return {};
+            return true;
         if (!is_making(source)) {
             making_.reset();
-            if (built_ && !of_.is_preview_of(source)) { // a preview's map stays until the new one is complete
-                use();
+            if (built_ && !of_.is_preview_of(source)) // a preview's map stays until the new one is complete
                 built_.reset();
-            }
             making_of_ = source;
-            making_.emplace(device_, std::move(of), making_of_.settings);
+            making_.emplace(device_, std::move(of), making_of_.settings, use_);
             ++begun_;
         }
-        auto steps = way_(*making_);
-        steps.expand([this, use = std::move(use)] {
-            use();
-            built_.emplace(making_->take());
-            of_ = std::move(making_of_);
-            making_.reset();
-            return step_list();
-        });
-        return steps;
+        making_->advance();
+        if (!making_->finished())
+            return false;
+        built_.emplace(making_->take());
+        of_ = std::move(making_of_);
+        making_.reset();
+        return true;
     }
     /// Discards both maps.
     void clear()
@@ -98,7 +91,7 @@ public:
 
 private:
     B& device_;
-    way way_;
+    map_use use_;
     std::optional<built_map<B>> built_;
     map_key of_; ///< inputs of built_
     std::optional<map_building<B>> making_;

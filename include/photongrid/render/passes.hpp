@@ -4,7 +4,6 @@
 #include <photongrid/render/film.hpp>
 #include <photongrid/render/previews.hpp>
 #include <photongrid/render/scene_map.hpp>
-#include <photongrid/render/step_list.hpp>
 #include <photongrid/render/view_pass.hpp>
 
 #include <bit>
@@ -154,20 +153,6 @@ void finish_pass(B& device, const built_map<B>& built, render_stats& stats)
     if (built.stats.map.builder == map_builder::route)
         stats.map.redistributed_power = redistributed_power(device, built.map());
     stats.peak_device_bytes = device.peak_bytes();
-}
-
-/// Runs all steps, and calls `ran` with the stage's name after each.
-/// \throws render_cancelled.
-template <class Ran>
-void run(step_list steps, const render_observer& observer, const Ran& ran)
-{
-    while (!steps.finished()) {
-        if (observer.cancelled && observer.cancelled())
-            throw render_cancelled();
-        const auto stage = steps.stage();
-        steps.advance();
-        ran(stage);
-    }
 }
 
 } // namespace photongrid

@@ -1,6 +1,10 @@
 // The interactive loop (section 3.4): a picture is started, advanced in steps, displayed at any time, changed and
-// cancelled. It has the only loop over passes; stages.hpp has those of a pass. The photon map is rebuilt only if
-// geometry, materials or lights change (figure 1).
+// cancelled. It has the only loop over passes, each of which is figure 1 of the paper:
+//
+//     world  -> trace_photons -> build_map ---------------------------+
+//     camera -> trace_eye -> direct_light -> irradiance (2.3) -> shade -> film
+//
+// The photon map is rebuilt only if geometry, materials or lights change.
 //
 //     progressive_render<B> drawing(device);
 //     for (drawing.start(scene, settings); !drawing.finished(); show(drawing.picture()))
@@ -8,7 +12,7 @@
 #pragma once
 
 #include <photongrid/render/map_keeper.hpp>
-#include <photongrid/render/passes.hpp>
+#include <photongrid/render/pass_drawing.hpp>
 #include <photongrid/render/picture_end.hpp>
 #include <photongrid/render/renderer.hpp>
 
@@ -52,29 +56,28 @@ public:
         check(s, settings_);
         film_ = std::move(s.film);
         unfinished_ = std::move(s.pass);
-        light_ = std::move(unfinished_.light);
         previews_.enabled = false;
         clock_ = work_clock(s.seconds);
         judge_.resume(film_, s.seconds);
         stats_.end = judge_.result();
         if (film_.passes() > 0)
             ++pictures_;
-        steps_ = picture_steps();
     }
     render_state state() override
     {
         render_state s{film_, unfinished_, clock_.seconds()};
-        if (unfinished_.empty()) // otherwise resume()'s state has not been consumed
-            s.pass = {pass_, rows_done()};
-        if (view_ && !view_->is_preview()) {
-            const auto& band = view_->light();
-            s.pass.rays = band.rays;
+        if (!pass_) // resume()'s state has not been consumed
+            return s;
+        s.pass = {number_.value_or(0), rows_done()};
+        s.pass.light = pass_->light();
+        if (const auto* band = pass_->band()) {
+            const auto& light = band->light();
+            s.pass.rays = light.rays;
             s.pass.band
-                = {device_.download(band.pixels), device_.download(band.searches), device_.download(band.errors),
-                    {device_.download(band.biases.bias), device_.download(band.biases.tilt),
-                        device_.download(band.biases.jump)}};
+                = {device_.download(light.pixels), device_.download(light.searches), device_.download(light.errors),
+                    {device_.download(light.biases.bias), device_.download(light.biases.tilt),
+                        device_.download(light.biases.jump)}};
         }
-        s.pass.light = light_;
         return s;
     }
 
@@ -86,7 +89,7 @@ public:
         clock_.go_on();
         try {
             while (!finished()) {
-                steps_.advance();
+                advance();
                 note_new_picture();
                 judge_.during_pass(clock_.seconds(), pictures_ > 0);
                 stats_.end = judge_.result();
@@ -94,7 +97,8 @@ public:
                     break;
             }
         } catch (...) {
-            view_.reset();
+            preview_.reset();
+            pass_.reset();
             maps_.clear();
             radius_maps_.clear();
             making_world_.reset();
@@ -117,13 +121,13 @@ public:
             return std::move(developed.picture);
         }
         std::uint64_t invalid = 0;
-        if (view_ && view_->grown() > 0 && !has_bands())
-            return view_->running_estimate(invalid);
+        if (auto* band = drawn_band(); band != nullptr && band->grown() > 0 && !has_bands())
+            return band->running_estimate(invalid);
         auto shown = shown_
             ? detail::to_image(device_.download(shown_->pixels), shown_->raster, settings_, shown_scale_, invalid)
             : image{settings_.output.width, settings_.output.height, std::vector<glm::vec3>(picture_size())};
         std::uint64_t invalid_above = 0;
-        const auto above = detail::finite_pixels(light_.pixels, 1, invalid_above);
+        const auto above = detail::finite_pixels(finished_bands().pixels, 1, invalid_above);
         std::copy(above.begin(), above.end(), shown.pixels.begin());
         return shown;
     }
@@ -149,17 +153,17 @@ private:
         if (!has_world())
             return {"prepare_scene", making_world_ ? making_world_->fraction() : 0.0, pixels, 1, settings_.map.photons,
                 film_.passes()};
-        if (const auto photons = maps_.making_photons(); photons || (!view_ && rows_done() == 0))
+        if (const auto photons = maps_.making_photons(); photons || (!preview_ && !pass_ && rows_done() == 0))
             return {maps_.fraction() < 1 ? "trace_photons" : "build_map", maps_.fraction(), pixels, 1,
                 photons.value_or(settings_.map.photons), film_.passes()};
-        if (view_ && view_->is_preview())
-            return {"preview", view_->fraction(), view_->unfinished(), view_->divisor(),
-                maps_.of().settings.map.photons, film_.passes()};
-        const std::uint64_t above = light_.pixels.size(), band = view_ ? view_->light().raster.size() : 0;
-        const double drawn = static_cast<double>(above) + (view_ ? view_->fraction() * static_cast<double>(band) : 0);
-        return {"radiance_estimate", drawn / static_cast<double>(pixels),
-            pixels - above - band + (view_ ? view_->unfinished() : 0), 1, maps_.of().settings.map.photons,
-            film_.passes()};
+        const uint photons = maps_.of().settings.map.photons;
+        if (preview_)
+            return {
+                "preview", preview_->fraction(), preview_->unfinished(), preview_->divisor(), photons, film_.passes()};
+        const auto* band = pass_ ? pass_->band() : nullptr;
+        const std::uint64_t done = finished_bands().pixels.size() + (band != nullptr ? band->light().raster.size() : 0);
+        return {"radiance_estimate", pass_ ? pass_->fraction() : 0.0,
+            pixels - done + (band != nullptr ? band->unfinished() : 0), 1, photons, film_.passes()};
     }
     /// A pass takes as long as those before. Within the first, what is drawn of it tells how long the rest takes.
     picture_forecast forecast(const render_progress& now) const
@@ -175,16 +179,19 @@ private:
 
     void begin_picture()
     {
-        view_.reset();
+        preview_.reset();
+        pass_.reset();
+        number_.reset();
         kept_.clear();
         shown_.reset();
         film_ = {};
         unfinished_ = {};
-        light_ = {};
         pictures_ = 0;
         judge_ = picture_judge(settings_.output);
         clock_ = work_clock();
         drawing_since_ = 0;
+        early_ = previews_of();
+        whole_ = previews_of();
         if (!maps_.serves(pass(next_pass())))
             stats_ = {};
         stats_.prepare_scene = has_world() ? world_->prepared : stage_stats{};
@@ -193,10 +200,77 @@ private:
         stats_.photons = {};
         stats_.invalid_pixels = 0;
         stats_.end = {};
-        steps_ = picture_steps();
     }
 
-    // The order of work. Each list is created when it is reached.
+    /// A step of the picture. Each of these takes one and returns true, or has nothing left to do.
+    void advance()
+    {
+        const bool took_step
+            = prepare_world() || draw_early_previews() || draw_whole_previews() || find_first_radii() || draw_pass();
+        static_cast<void>(took_step);
+    }
+
+    // The world.
+
+    /// Whether scene_ is on the device.
+    bool has_world() const { return world_ && world_is_ == world_wanted_; }
+    bool prepare_world()
+    {
+        if (has_world())
+            return false;
+        if (!making_world_)
+            making_world_.emplace(device_, scene_, world_);
+        if (making_world_->advance()) {
+            world_ = making_world_->take();
+            making_world_.reset();
+            world_is_ = world_wanted_;
+            stats_.prepare_scene = world_->prepared;
+        }
+        return true;
+    }
+
+    // Maps.
+
+    /// The inputs of the map for pass `number`.
+    map_key pass(uint number) const { return {world_wanted_, settings_of_pass(settings_, number), number}; }
+    bool make_map(const map_key& wanted)
+    {
+        if (maps_.serves(wanted))
+            return false;
+        if (!maps_.advance(wanted, world_))
+            return true;
+        const auto& made = maps_.map().stats;
+        if (film_.passes() == 0)
+            stats_.trace_photons = stats_.build_map = {};
+        detail::add_map(stats_, made);
+        if (const auto photons = maps_.map().map().photons.size(); photons > 0)
+            costs_.ms_per_photon = (made.trace_photons.ms + made.build_map.ms) / photons;
+        return true;
+    }
+    /// Makes the map that gives the first radii of all passes.
+    bool find_first_radii()
+    {
+        if (!has_shrinking_radii(settings_))
+            return false;
+        const map_key wanted{world_wanted_, settings_of_radius_map(settings_, device_.caps()), radius_pass};
+        if (radius_maps_.serves(wanted))
+            return false;
+        if (radius_maps_.advance(wanted, world_)) {
+            const auto& made = radius_maps_.map().stats;
+            detail::add(stats_.trace_photons, made.trace_photons);
+            detail::add(stats_.build_map, made.build_map);
+        }
+        return true;
+    }
+
+    // Previews.
+
+    /// The previews that are drawn with one map.
+    struct previews_of {
+        std::optional<map_key> map;                ///< once it is known
+        std::optional<std::vector<preview>> to_do; ///< once the map is there; the last one first
+        bool done = false;
+    };
 
     /// Whether previews are drawn, and not running estimates in their place.
     bool has_previews() const { return previews_.enabled && !shows_running_estimates(); }
@@ -205,81 +279,95 @@ private:
         return previews_.running_estimates && !has_bands() && !has_shrinking_radii(settings_)
             && detail::sums_while_growing(detail::search_for(settings_));
     }
-
-    /// The scene, a preview with few photons, the map, previews with all photons, then the passes.
-    step_list picture_steps()
-    {
-        step_list steps;
-        if (!has_world())
-            steps.add("prepare_scene", [this] { return prepare_world(); });
-        steps.expand([this] { return early_preview_steps(); });
-        steps.expand([this] { return steps_to_map(pass(first_pass())); });
-        steps.expand([this] { return preview_steps(); });
-        steps.expand([this] { return steps_to_radii(); });
-        steps.repeat(film_.passes(), settings_.output.passes, [this](uint) {
-            judge_.before_pass(film_, clock_.seconds());
-            return judge_.ended() ? step_list() : pass_steps(next_pass());
-        });
-        return steps;
-    }
     /// If there is no map yet and tracing all photons would take long: a preview with fewer photons.
-    step_list early_preview_steps()
+    bool draw_early_previews()
+    {
+        if (!early_.done && !early_.map) {
+            early_.map = early_map();
+            early_.done = !early_.map;
+        }
+        return draw_previews(early_);
+    }
+    std::optional<map_key> early_map() const
     {
         auto fewer = pass(first_pass());
         if (!has_previews() || maps_.serves(fewer) || settings_.output.only == light_part::direct)
             return {};
-        step_list steps;
-        if (!maps_.serves_preview_of(fewer)) {
-            auto& with = fewer.settings;
-            const uint photons = preview_photons(with, costs_, previews_.target_ms);
-            if (photons == with.map.photons || maps_.is_making(fewer))
-                return {};
-            const uint divisor = with.map.photons / photons;
-            divide_k(with.estimate, divisor);
-            if (with.map.caustic_photons > 0)
-                with.map.caustic_photons = std::max(1u, with.map.caustic_photons / divisor);
-            with.map.photons = photons;
-            steps.expand([this, fewer] { return steps_to_map(fewer); });
-        }
-        steps.expand([this] { return preview_steps(); });
-        return steps;
+        if (maps_.serves_preview_of(fewer))
+            return maps_.of();
+        auto& with = fewer.settings;
+        const uint photons = preview_photons(with, costs_, previews_.target_ms);
+        if (photons == with.map.photons || maps_.is_making(fewer))
+            return {};
+        const uint divisor = with.map.photons / photons;
+        divide_k(with.estimate, divisor);
+        if (with.map.caustic_photons > 0)
+            with.map.caustic_photons = std::max(1u, with.map.caustic_photons / divisor);
+        with.map.photons = photons;
+        return fewer;
     }
-    step_list preview_steps()
+    /// Previews with all photons.
+    bool draw_whole_previews()
     {
-        step_list steps;
-        if (!has_previews())
-            return steps;
-        const uint photons = maps_.of().settings.map.photons;
-        const bool early_shown = pictures_ > 0; // before the map with all photons there is no other picture
-        for (const auto& p : preview_schedule(settings_, photons, early_shown, costs_, previews_.target_ms)) {
-            steps.expand([this, p] { return steps_of_view(first_pass(), p); });
-            steps.expand([this] { return end_preview(); });
-        }
-        return steps;
+        if (!whole_.done && !whole_.map)
+            whole_.map = pass(first_pass());
+        return draw_previews(whole_);
     }
-    step_list pass_steps(uint number)
+    bool draw_previews(previews_of& p)
     {
-        step_list steps;
-        steps.expand([this, number] { return steps_to_map(pass(number)); });
-        steps.expand([this, number] {
-            return band_steps(
-                settings_.output, rows_done(), [this, number](row_band b) { return steps_of_view(number, {}, b); },
-                [this] { end_band(); });
-        });
-        steps.expand([this, number] { return end_pass(number); });
-        return steps;
+        if (p.done)
+            return false;
+        if (make_map(*p.map))
+            return true;
+        if (!p.to_do) {
+            const uint photons = maps_.of().settings.map.photons;
+            const bool early_shown = pictures_ > 0; // before the map with all photons there is no other picture
+            p.to_do.emplace();
+            if (has_previews())
+                p.to_do = preview_schedule(settings_, photons, early_shown, costs_, previews_.target_ms);
+            std::reverse(p.to_do->begin(), p.to_do->end());
+        }
+        if (!preview_ && !p.to_do->empty()) {
+            begin_preview(p.to_do->back());
+            p.to_do->pop_back();
+        }
+        p.done = !preview_ && p.to_do->empty();
+        if (p.done)
+            return false;
+        if (preview_->advance())
+            end_preview();
+        return true;
     }
-
+    void begin_preview(const preview& p)
+    {
+        const uint number = begin_views(first_pass());
+        auto with = settings_of_pass(settings_, number);
+        divide_k(with.estimate, std::max(1u, with.map.photons / maps_.of().settings.map.photons));
+        preview_.emplace(device_, maps_.map(), scene_.camera, with, view_settings(p), stats_);
+        preview_->use_samples(kept_);
+    }
+    void end_preview()
+    {
+        if (pictures_ == 0)
+            costs_.ms_per_preview_pixel = ms_of_views() / static_cast<double>(preview_->light().pixels.size());
+        show(preview_->take(), 1);
+        preview_.reset();
+    }
     /// For a map with so many times fewer photons.
     static void divide_k(estimate_settings& e, uint divisor)
     {
         for (const bool of_caustics : {false, true})
             e.sought(of_caustics) = std::max(1u, e.sought(of_caustics) / divisor);
     }
+
+    // Passes.
+
     std::size_t picture_size() const { return std::size_t{settings_.output.width} * settings_.output.height; }
     bool has_bands() const { return bands_of(settings_.output).size() > 1; }
     /// Of the pass that is drawn.
-    uint rows_done() const { return static_cast<uint>(light_.pixels.size() / settings_.output.width); }
+    const pass_pixels& finished_bands() const { return pass_ ? pass_->light() : unfinished_.light; }
+    uint rows_done() const { return static_cast<uint>(finished_bands().pixels.size() / settings_.output.width); }
+    view_pass<B>* drawn_band() { return pass_ ? pass_->band() : nullptr; }
 
     /// The pass to draw next: first one that was begun, then one for the map in use, then one that needs another map.
     /// With a stop rule the one for the map in use has to wait: which passes a picture has must depend on their number
@@ -305,122 +393,80 @@ private:
     {
         return has_previews() && unfinished_.empty() && has_map_of_unfinished_pass() ? maps_.of().pass : next_pass();
     }
-    /// The inputs of the map for pass `number`.
-    map_key pass(uint number) const { return {world_wanted_, settings_of_pass(settings_, number), number}; }
-
-    /// Whether scene_ is on the device.
-    bool has_world() const { return world_ && world_is_ == world_wanted_; }
-    /// Takes a step to that; returns whether it was the last.
-    bool prepare_world()
+    bool draw_pass()
     {
-        if (!making_world_)
-            making_world_.emplace(device_, scene_, world_);
-        if (!making_world_->advance())
+        if (!number_ && !choose_pass())
             return false;
-        world_ = making_world_->take();
-        making_world_.reset();
-        world_is_ = world_wanted_;
-        stats_.prepare_scene = world_->prepared;
+        if (make_map(pass(*number_)))
+            return true;
+        if (!pass_)
+            begin_pass();
+        const uint rows = rows_done();
+        pass_->advance();
+        if (rows_done() > rows)
+            end_band(rows_done() - rows);
+        if (pass_->finished())
+            end_pass();
         return true;
     }
-
-    step_list steps_to_map(const map_key& source)
+    /// Returns whether there is another pass to draw.
+    bool choose_pass()
     {
-        if (maps_.serves(source))
-            return {};
-        auto steps = maps_.steps_to(source, world_, [this] { view_.reset(); });
-        steps.expand([this] { return use_map(); });
-        return steps;
+        judge_.before_pass(film_, clock_.seconds());
+        if (!judge_.ended())
+            number_ = next_pass();
+        return number_.has_value();
     }
-    /// The map that gives the first radii of all passes.
-    step_list steps_to_radii()
+    void begin_pass()
     {
-        const map_key source{world_wanted_, settings_of_radius_map(settings_, device_.caps()), radius_pass};
-        if (!has_shrinking_radii(settings_) || radius_maps_.serves(source))
-            return {};
-        auto steps = radius_maps_.steps_to(source, world_, [this] { view_.reset(); });
-        steps.expand([this] {
-            const auto& made = radius_maps_.map().stats;
-            detail::add(stats_.trace_photons, made.trace_photons);
-            detail::add(stats_.build_map, made.build_map);
-            return step_list();
-        });
-        return steps;
-    }
-    step_list use_map()
-    {
-        const auto& made = maps_.map().stats;
-        if (film_.passes() == 0)
-            stats_.trace_photons = stats_.build_map = {};
-        detail::add_map(stats_, made);
-        if (const auto photons = maps_.map().map().photons.size(); photons > 0)
-            costs_.ms_per_photon = (made.trace_photons.ms + made.build_map.ms) / photons;
-        return {};
-    }
-
-    // Views.
-
-    step_list steps_of_view(uint number, std::optional<preview> p, std::optional<row_band> band = {})
-    {
-        if (std::exchange(pass_, number) != number)
-            kept_.clear(); // of a preview of another pass
-        auto with = settings_of_pass(settings_, number);
-        if (p)
-            divide_k(with.estimate, std::max(1u, with.map.photons / maps_.of().settings.map.photons));
-        ms_before_ = ms_of_views();
-        if (!p && rows_done() == 0)
+        begin_views(*number_);
+        pass_.emplace(
+            device_, maps_.map(), scene_.camera, settings_of_pass(settings_, *number_), view_settings({}), stats_);
+        pass_->use_samples(kept_);
+        if (has_shrinking_radii(settings_))
+            pass_->use_radii(
+                radii_of_pass(radius_maps_.map(), settings_of_radius_map(settings_, device_.caps()), *number_));
+        pass_->resume(std::exchange(unfinished_, {}));
+        pass_->begin_band();
+        if (rows_done() == 0)
             drawing_since_ = clock_.seconds();
-        samples_shown_ = grown_shown_ = 0;
-        view_.emplace(device_, maps_.map(), scene_.camera, with,
-            view_pass_settings{p, step_size::small, previews_.enabled && !has_bands(), shows_running_estimates(), band},
-            stats_);
-        view_->use_samples(kept_);
-        if (!p && has_shrinking_radii(settings_))
-            view_->use_radii(
-                radii_of_pass(radius_maps_.map(), settings_of_radius_map(settings_, device_.caps()), number));
-        if (!p && !unfinished_.empty()) {
-            const auto& light = unfinished_.band;
-            if (unfinished_.rays > 0)
-                view_->resume({{}, unfinished_.rays, upload(device_, light.pixels), upload(device_, light.searches),
-                    upload(device_, light.errors),
-                    {upload(device_, light.biases.bias), upload(device_, light.biases.tilt),
-                        upload(device_, light.biases.jump)}});
-            unfinished_ = {};
-        }
-        return view_steps(*view_);
     }
-    double ms_of_views() const { return stats_.trace_rays.ms + stats_.radiance_estimate.ms; }
-    double ms_per_pixel_of_view() const
+    void end_band(uint rows)
     {
-        return (ms_of_views() - ms_before_) / static_cast<double>(view_->light().pixels.size());
-    }
-    step_list end_preview()
-    {
-        if (pictures_ == 0)
-            costs_.ms_per_preview_pixel = ms_per_pixel_of_view();
-        show(view_->take(), 1);
-        view_.reset();
-        return {};
-    }
-    void end_band()
-    {
-        costs_.ms_per_pixel = ms_per_pixel_of_view();
-        finish_band(device_, *view_, light_, stats_);
-        view_.reset();
-        if (light_.pixels.size() < picture_size() && film_.passes() == 0)
+        costs_.ms_per_pixel = ms_of_views() / (1.0 * rows * settings_.output.width);
+        begin_views(*number_);
+        if (!pass_->finished() && film_.passes() == 0)
             ++pictures_;
     }
-    step_list end_pass(uint number)
+    void end_pass()
     {
-        finish_pass(device_, maps_.map(), stats_);
         if (film_.size() == 0)
             film_ = film_for(scene_, world_->scene.layout, settings_);
-        film_.add(number, std::exchange(light_, {}));
+        film_.add(*number_, pass_->take());
+        pass_.reset();
+        number_.reset();
         judge_.after_pass(film_, clock_.seconds(), stats_);
-        unfinished_ = {};
         shown_.reset();
         ++pictures_;
-        return {};
+        if (!judge_.ended() && choose_pass() && maps_.serves(pass(*number_)))
+            begin_pass();
+    }
+
+    // Views: previews and bands.
+
+    /// Views of pass `number` follow. Returns it.
+    uint begin_views(uint number)
+    {
+        if (std::exchange(views_of_, number) != number)
+            kept_.clear(); // of a preview of another pass
+        ms_before_ = stats_.trace_rays.ms + stats_.radiance_estimate.ms;
+        samples_shown_ = grown_shown_ = 0;
+        return number;
+    }
+    double ms_of_views() const { return stats_.trace_rays.ms + stats_.radiance_estimate.ms - ms_before_; }
+    view_pass_settings view_settings(std::optional<preview> p) const
+    {
+        return {p, step_size::small, previews_.enabled && !has_bands(), shows_running_estimates(), {}};
     }
     void show(canvas<B> c, float scale)
     {
@@ -431,15 +477,16 @@ private:
     /// During the first pass the picture improves after each sample, and while a growing search runs (3.4).
     void note_new_picture()
     {
-        if (!view_ || view_->is_preview() || film_.passes() > 0 || has_bands())
+        auto* band = drawn_band();
+        if (band == nullptr || film_.passes() > 0 || has_bands())
             return;
-        if (view_->grown() > grown_shown_) {
-            grown_shown_ = view_->grown();
+        if (band->grown() > grown_shown_) {
+            grown_shown_ = band->grown();
             ++pictures_;
         }
-        if (view_->has_whole_samples() && view_->samples() > samples_shown_) {
-            samples_shown_ = view_->samples();
-            show(view_->snapshot(), static_cast<float>(settings_.view.spp) / static_cast<float>(samples_shown_));
+        if (band->has_whole_samples() && band->samples() > samples_shown_) {
+            samples_shown_ = band->samples();
+            show(band->snapshot(), static_cast<float>(settings_.view.spp) / static_cast<float>(samples_shown_));
         }
     }
 
@@ -447,7 +494,6 @@ private:
     scene scene_;
     preview_settings previews_;
     work_costs costs_;
-    step_list steps_; ///< those of the whole picture
     picture_judge judge_;
     work_clock clock_;         ///< of the picture
     double drawing_since_ = 0; ///< when the light of a pass began to be drawn, s
@@ -459,15 +505,17 @@ private:
     map_keeper<B> radius_maps_; ///< shrinking_radii.hpp
 
     // Pictures.
+    previews_of early_, whole_;
+    std::optional<view_pass<B>> preview_;
     unfinished_pass unfinished_; ///< to resume from
-    pass_pixels light_;          ///< the finished bands of the pass that is drawn
-    std::optional<view_pass<B>> view_;
-    uint pass_ = 0; ///< of view_
-    kept_samples<B> kept_;
+    std::optional<uint> number_; ///< of the pass that is drawn, or whose map is made
+    std::optional<pass_drawing<B>> pass_;
+    uint views_of_ = 0;              ///< the pass that preview_ and pass_ are of
+    kept_samples<B> kept_;           ///< of that pass
     std::optional<canvas<B>> shown_; ///< until the first pass is finished
     float shown_scale_ = 1;
-    uint samples_shown_ = 0, grown_shown_ = 0; ///< of view_
-    double ms_before_ = 0;                     ///< time spent on views before view_
+    uint samples_shown_ = 0, grown_shown_ = 0; ///< of the view that is drawn
+    double ms_before_ = 0;                     ///< time spent on views before it
 };
 
 // Defined outside the class: functions defined inside are implicitly inline, and `extern template` does not suppress
@@ -475,7 +523,7 @@ private:
 
 template <backend B>
 progressive_render<B>::progressive_render(B& device)
-    : device_(device), maps_(device), radius_maps_(device, radius_map_steps<B>)
+    : device_(device), maps_(device), radius_maps_(device, map_use::first_radii)
 {
 }
 

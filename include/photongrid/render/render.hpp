@@ -1,4 +1,4 @@
-// Draws a whole picture: the mean of passes over one world, each of which is figure 1 of the paper (stages.hpp).
+// Draws a whole picture: the mean of passes over one world, each of which is figure 1 of the paper.
 //
 // The loop over passes is that of progressive_render, which the program, the window and photongrid::renderer run.
 #pragma once

@@ -95,8 +95,7 @@ protected:
     const bool watched = observer.progress || observer.cancelled || shows;
     device.start(s, settings, {.enabled = shows});
     for (std::uint64_t shown = 0; !device.step(watched ? renderer::milliseconds(0) : renderer::no_limit);) {
-        if (observer.cancelled && observer.cancelled())
-            throw render_cancelled();
+        detail::stop_if_cancelled(observer);
         if (observer.progress) {
             const auto now = device.progress();
             observer.progress(now.stage, now.fraction);

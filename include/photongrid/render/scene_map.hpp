@@ -69,6 +69,9 @@ inline bool same_map(const render_settings& as, const render_settings& bs)
         && (as.output.only != light_part::direct || bs.output.only == light_part::direct); // it has no photons
 }
 
+/// What a map is for: all light, or only the first radii of estimates (shrinking_radii.hpp).
+enum class map_use { light, first_radii };
+
 /// Builds a photon map batch by batch, so that it can be interrupted.
 template <backend B>
 class map_building {
@@ -76,8 +79,8 @@ public:
     /// It traces nothing yet. In a scene that has no indirect light the map has no photons. It adds emission guides to
     /// the world.
     /// \throws std::invalid_argument for settings that check() rejects, backend_error.
-    map_building(B& device, std::shared_ptr<world<B>> of, const render_settings& settings)
-        : device_(device), settings_(settings)
+    map_building(B& device, std::shared_ptr<world<B>> of, const render_settings& settings, map_use use = map_use::light)
+        : device_(device), settings_(settings), use_(use)
     {
         check(settings);
         built_.world = std::move(of);
@@ -89,49 +92,21 @@ public:
     map_building(const map_building&) = delete;
     map_building& operator=(const map_building&) = delete;
 
-    /// Traces one more batch of photon paths; returns whether all photons are stored (2.1).
+    /// A step: the left side of figure 1, which runs again only if geometry, materials or lights change.
     /// \throws backend_error.
-    bool trace_photons()
+    void advance()
     {
-        detail::time_stage(device_, built_.stats.trace_photons, [&] {
-            if (tracing_) {
-                tracing_->advance();
-            } else if (pilot_ && pilot_->advance()) {
-                built_.world->add_guide(settings_, traced().request, pilot_->guide());
-                pilot_.reset();
-                begin_tracing();
-            }
-            if (tracing_ && tracing_->finished())
-                end_tracing();
-        });
-        return !pilot_ && !tracing_;
+        if (stage() == "trace_photons")
+            trace_photons(); // 2.1
+        else if (!is_built_)
+            build_map(); // 2.2
+        else
+            estimate_at_photons();
     }
-    /// Builds the map of the photons (2.2) in one step. Returns true.
-    /// \throws backend_error.
-    bool build_map()
-    {
-        if (!is_built_)
-            detail::time_stage(device_, built_.stats.build_map, [&] { build(); });
-        is_built_ = true;
-        return true;
-    }
-    /// Computes the irradiance at photons for a final gather, if there is one; returns whether it is done.
-    /// \throws backend_error.
-    bool estimate_at_photons()
-    {
-        if (!gather_)
-            return true;
-        detail::time_stage(device_, built_.stats.build_map, [&] {
-            if (gather_->advance()) {
-                built_.gather = gather_->take();
-                gather_.reset();
-            }
-        });
-        return !gather_;
-    }
-
+    /// The stage of the next step.
+    std::string_view stage() const { return pilot_ || tracing_ ? "trace_photons" : "build_map"; }
     /// Whether take() may be called.
-    bool finished() const { return is_built_ && !gather_; }
+    bool finished() const { return is_built_ && (!gather_ || use_ == map_use::first_radii); }
     /// The fraction of the photons that have been traced.
     double fraction() const
     {
@@ -150,6 +125,37 @@ public:
     built_map<B> take() { return std::move(built_); }
 
 private:
+    /// Traces one more batch of photon paths.
+    void trace_photons()
+    {
+        detail::time_stage(device_, built_.stats.trace_photons, [&] {
+            if (tracing_) {
+                tracing_->advance();
+            } else if (pilot_ && pilot_->advance()) {
+                built_.world->add_guide(settings_, traced().request, pilot_->guide());
+                pilot_.reset();
+                begin_tracing();
+            }
+            if (tracing_ && tracing_->finished())
+                end_tracing();
+        });
+    }
+    /// Builds the map of the photons in one step.
+    void build_map()
+    {
+        detail::time_stage(device_, built_.stats.build_map, [&] { build(); });
+        is_built_ = true;
+    }
+    /// Computes the irradiance at photons for a final gather.
+    void estimate_at_photons()
+    {
+        detail::time_stage(device_, built_.stats.build_map, [&] {
+            if (gather_->advance()) {
+                built_.gather = gather_->take();
+                gather_.reset();
+            }
+        });
+    }
     const scene_layout& layout() const { return built_.scene().layout; }
     /// The light map whose photons are traced.
     light_map<B>& traced() { return built_.lights[at_]; }
@@ -228,6 +234,7 @@ private:
 
     B& device_;
     render_settings settings_;
+    map_use use_;
     std::size_t at_ = 0; // number of the light map whose photons are traced
     bool is_built_ = false;
     built_map<B> built_;

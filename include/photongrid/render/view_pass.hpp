@@ -1,5 +1,4 @@
-// The stages of a pass over the pixels of a view, from a photon map (sections 2.4 and 2.3; figure 1, right). stages.hpp
-// runs them in order.
+// The stages of a pass over the pixels of a view, from a photon map (sections 2.4 and 2.3; figure 1, right).
 #pragma once
 
 #include <photongrid/core/copy_vectors.kernel.hpp>
@@ -19,6 +18,7 @@
 #include <photongrid/render/tally_error.kernel.hpp>
 #include <photongrid/render/tally_search.kernel.hpp>
 
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -37,8 +37,7 @@ struct view_pass_settings {
     std::optional<row_band> band{}; ///< the rows of the picture to draw; empty: all
 };
 
-/// One pass over a band of the picture's rows, or over a preview. Each stage does part of its work for eye ray `ray`
-/// (sample x branches + branch) and returns whether it has finished that ray.
+/// One pass over a band of the picture's rows, or over a preview.
 template <backend B>
 class view_pass {
 public:
@@ -101,39 +100,18 @@ public:
     /// The most searches per pixel: one in each map where rays end.
     uint searches() const { return rays() * static_cast<uint>(built_.lights.size()); }
 
-    /// Traces eye rays through mirrors and glass to their ends (2.4).
-    bool trace_eye(uint ray);
-
-    /// Traces shadow rays from there to the lights (2.4).
-    bool direct_light(uint ray);
-
-    /// Adds the light of a final gather there, if the picture has one (final_gather.hpp).
-    bool gather(uint ray);
-
-    /// Estimates the irradiance there from the photon map (2.3).
-    bool irradiance(uint ray)
+    /// A step of the right side of figure 1, which runs for every view: traces eye rays, computes direct light and
+    /// irradiance at their hits, and adds both to the pixels. Returns whether it was the last.
+    /// \throws backend_error.
+    bool advance()
     {
-        bool finished = false;
-        detail::time_stage(device_, stats_.radiance_estimate, [&] {
-            if (!search_)
-                search_.emplace(device_, sources(next_light()), pixels_of(ray), samples_->hits.points,
-                    samples_->hits.surfaces, next_light() > 0 ? running_estimate_kind::none : shown_while_running(),
-                    how_.size);
-            // Previews have the light of all branches; running estimates among them must, too.
-            if (search_->is_shown() && (how_.may_search_twice || canvas_.rays + 1 == branches_))
-                ++running_pictures_;
-            finished = search_->advance();
-            if (finished && next_light() > 0) {
-                found_.push_back(search_->take());
-                search_.reset();
-                finished = false;
-            }
-        });
-        return finished;
+        using stage = bool (view_pass::*)(uint ray);
+        static constexpr std::array<stage, 5> stages{&view_pass::trace_eye, &view_pass::direct_light,
+            &view_pass::gather, &view_pass::irradiance, &view_pass::shade};
+        if (canvas_.rays < rays() && (this->*stages[stage_])(canvas_.rays))
+            stage_ = (stage_ + 1) % stages.size();
+        return canvas_.rays == rays();
     }
-
-    /// Adds the radiance of direct and indirect light to the pixels (2.4).
-    bool shade(uint ray);
 
     /// The number of pixels of the whole picture.
     std::size_t picture_size() const { return std::size_t{settings_.output.width} * settings_.output.height; }
@@ -203,6 +181,43 @@ public:
     }
 
 private:
+    // Each stage does part of its work for eye ray `ray` (sample x branches + branch), and returns whether it has
+    // finished that ray.
+
+    /// Traces eye rays through mirrors and glass to their ends (2.4).
+    bool trace_eye(uint ray);
+
+    /// Traces shadow rays from there to the lights (2.4).
+    bool direct_light(uint ray);
+
+    /// Adds the light of a final gather there, if the picture has one (final_gather.hpp).
+    bool gather(uint ray);
+
+    /// Estimates the irradiance there from the photon map (2.3).
+    bool irradiance(uint ray)
+    {
+        bool finished = false;
+        detail::time_stage(device_, stats_.radiance_estimate, [&] {
+            if (!search_)
+                search_.emplace(device_, sources(next_light()), pixels_of(ray), samples_->hits.points,
+                    samples_->hits.surfaces, next_light() > 0 ? running_estimate_kind::none : shown_while_running(),
+                    how_.size);
+            // Previews have the light of all branches; running estimates among them must, too.
+            if (search_->is_shown() && (how_.may_search_twice || canvas_.rays + 1 == branches_))
+                ++running_pictures_;
+            finished = search_->advance();
+            if (finished && next_light() > 0) {
+                found_.push_back(search_->take());
+                search_.reset();
+                finished = false;
+            }
+        });
+        return finished;
+    }
+
+    /// Adds the radiance of direct and indirect light to the pixels (2.4).
+    bool shade(uint ray);
+
     running_estimate_kind shown_while_running() const
     {
         return running_estimate_of<B>(
@@ -272,6 +287,8 @@ private:
     view_pass_settings how_;
     render_stats& stats_;
     uint branches_; ///< combinations of Fresnel branches, a pass over the pixels each
+
+    std::size_t stage_ = 0; ///< the next one
 
     // Data passed from stage to stage.
     kept_samples<B> own_samples_; ///< used unless others are given

@@ -89,8 +89,7 @@ std::shared_ptr<world<B>> prepare(B& device, const scene& s, const render_observ
 {
     world_building<B> building(device, s);
     do {
-        if (observer.cancelled && observer.cancelled())
-            throw render_cancelled();
+        detail::stop_if_cancelled(observer);
         building.advance();
         if (observer.progress)
             observer.progress("prepare_scene", building.fraction());

@@ -27,6 +27,15 @@ struct render_observer {
     std::function<bool()> cancelled;
 };
 
+namespace detail {
+    /// \throws render_cancelled if the observer says so.
+    inline void stop_if_cancelled(const render_observer& observer)
+    {
+        if (observer.cancelled && observer.cancelled())
+            throw render_cancelled();
+    }
+} // namespace detail
+
 } // namespace photongrid
 
 #include <photongrid/core/exact_end.hpp>
