@@ -64,14 +64,6 @@ std::optional<double> parsed_setting(
 glm::uvec2 parsed_setting(const std::string& option, const std::string& text, const setting_table::pixels&);
 glm::uvec3 parsed_setting(const std::string& option, const std::string& text, const setting_table::cells&);
 leak_policy parsed_setting(const std::string& option, const std::string& text, const setting_table::policies&);
-template <class Value, std::size_t N>
-Value parsed_setting(const std::string& option, const std::string& text, const setting_table::one_of<Value, N>& words)
-{
-    if (const auto* value = words.find(text))
-        return *value;
-    throw CLI::ValidationError(option, "\"" + text + "\" given; expected " + type_of(words));
-}
-
 inline std::string type_of(const setting_table::whole_range&) { return "N"; }
 inline std::string type_of(const setting_table::real_or_auto& r) { return std::string(r.range.unit + 1) + "|auto"; }
 inline std::string type_of(const setting_table::any_length&) { return "METRES"; }
@@ -86,6 +78,14 @@ std::string type_of(const setting_table::one_of<Value, N>& words)
     for (const auto& n : words.values)
         all += (all.empty() ? "" : "|") + std::string(n.name);
     return all;
+}
+
+template <class Value, std::size_t N>
+Value parsed_setting(const std::string& option, const std::string& text, const setting_table::one_of<Value, N>& words)
+{
+    if (const auto* value = words.find(text))
+        return *value;
+    throw CLI::ValidationError(option, "\"" + text + "\" given; expected " + type_of(words));
 }
 
 /// What --help adds about how a value is written.

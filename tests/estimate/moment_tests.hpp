@@ -34,7 +34,7 @@ TYPED_TEST_P(edges, moments_equal_integration_over_lines)
             const auto on = [&](auto& device, const auto& uploaded) {
                 const auto m = covered_moments(device, uploaded, device.upload(std::span<const glm::vec4>(d.points)),
                     device.upload(std::span<const glm::vec4>(d.normals)),
-                    device.upload(std::span<const glm::vec4>(d.estimates)), f.kind, 0);
+                    device.upload(std::span<const glm::vec4>(d.estimates)), f.kind);
                 return std::array{device.download(m.shares), device.download(m.firsts), device.download(m.seconds)};
             };
             const auto [shares, firsts, seconds] = on(b, scene);

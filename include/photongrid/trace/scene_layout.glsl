@@ -2,9 +2,8 @@
 // of shape has a number below that: its SWITCH in kernels, the record of its table, and Closest::kind.
 #ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
-const uint SCENE_TABLES = 16u;
-const uint MATERIAL_TABLE = 4u; // no kind of shape has the numbers 4 to 7 or 12 to 15, the SWITCHes of materials and
-                                // lights, or 9 to 11, those of meshes
+const uint SCENE_TABLES = 32u;
+const uint MATERIAL_TABLE = 4u; // no kind of shape has the numbers 4 to 7 or 9 to 22, other SWITCHes (scene_feature)
 const uint SCENE_SIZES = 5u;    // x: what ray_offset adds for curved shapes, m
 const uint LIGHT_TABLE = 6u;    // see trace/light_record.glsl
 const uint TEXTURE_TABLE = 7u; // of the materials that have one; see trace/mesh_color.glsl

@@ -255,6 +255,11 @@ namespace gltf_export {
                     {{"type", "directional"}}, l.name, l.irradiance, node_at(frame_about(-l.direction), dvec3(0)));
             }
             void add_light(const environment_light&) { log_.add(place_, "the environment is left out; glTF has none"); }
+            template <class Light>
+            void add_light(const Light& l)
+            {
+                log_.add(place_, light_kind<Light>::name + (" " + shown_word(l.name)) + " is left out; glTF has none");
+            }
 
             /// `emission`: W/sr or W/m^2. Such a light shines along its node's -z.
             void add_punctual(json light, const std::string& name, const dvec3& emission, json node)

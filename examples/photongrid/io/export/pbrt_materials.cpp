@@ -155,6 +155,11 @@ void material_writer::write(text_writer& to)
                 write_roughness(to, m, rough);
                 break;
             case material_kind::mixture: break;
+            default:
+                write_reflectance(to.quoted("diffuse"), m, color);
+                note(m,
+                    std::string("is matte here; pbrt has no ") + material_kinds[static_cast<std::size_t>(m.kind)].name);
+                break;
             }
             to.line();
         }

@@ -237,6 +237,11 @@ namespace pbrt_export {
                 to_.word("LightSource \"distant\"").parameter("rgb L", l.irradiance);
                 to_.parameter("point3 from", dvec3(0)).parameter("point3 to", l.direction).line();
             }
+            template <class Light>
+            void write_light(const Light& l)
+            {
+                log_.add(place_, light_kind<Light>::name + (" " + shown_word(l.name)) + " is left out; pbrt has none");
+            }
             void write_light(const environment_light& l)
             {
                 if (!l.map) {
