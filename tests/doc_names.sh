@@ -5,7 +5,7 @@
 #   tests/doc_names.sh
 #
 # A name is an identifier or an option in a tracked source (comments and measures do not count), a tracked path or the
-# end of one, or a word of tests/doc_words.txt. In paths <...>, * and words in capitals stand for anything. Single
+# end of one, or a word of tests/doc_words.txt. What the pages add_a_*.md make is there, too (tests/growth.sh). In paths <...>, * and words in capitals stand for anything. Single
 # letters, numbers and what build folders hold are not looked up. Prints what is missing as PAGE:LINE and exits 1.
 # shellcheck disable=SC2016 # awk's variables
 set -euo pipefail
@@ -25,7 +25,9 @@ sources() { grep -E "$1" "$work/paths" | grep -vxE 'tests/doc_words\.txt|tests/d
   sources '(\.(cmake|sh|py|in|supp)|CMakeLists\.txt|Doxyfile|\.ci/run)$' | sed -E 's/(^|[[:space:]])#.*//'
   sources '\.(json|dict)$'
   cat .clang-format 2>/dev/null || true
+  awk '/^```/ { fenced = !fenced; next } fenced' docs/guide/add_a_*.md
 } >"$work/text"
+sed -n 's/^New file `\(.*\)`:$/\1/p' docs/guide/add_a_*.md >>"$work/paths"
 grep -oE '[A-Za-z_][A-Za-z0-9_]*' "$work/text" | sort -u >"$work/names"
 grep -oE -e '--[a-z][a-z0-9_-]*' "$work/text" | sort -u >"$work/options"
 awk '!/^#/ && NF { if (NF < 2) { print "tests/doc_words.txt:" FNR ": " $1 ": give a reason" >"/dev/stderr"; exit 1 } print $1 }' \

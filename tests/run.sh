@@ -17,7 +17,8 @@
 #   --filter WORD      only cases with WORD in their names, long ones too; on the serial backend without --only
 #
 # The stages, in turn; the run stops at the first that fails:
-#   texts       clang-format, that each planted fault still finds its place, and the length of commits' subjects
+#   texts       clang-format, that each planted fault still finds its place, in how many files a kind of shape, light or
+#               material or a setting is added, and the length of commits' subjects
 #   sanitizers  the serial backend under clang's address and undefined behaviour sanitizers (build-asan/); in full every
 #               backend under g++'s (build-asan-gcc/)
 #   clang       headers, kernels and a smoke test with clang 14 (build-clang/)
@@ -151,6 +152,7 @@ done
 stage_texts() {
   find backends bench examples include tests -name '*.[hc]pp' -print0 | xargs -0 clang-format-14 --dry-run --Werror
   tests/planted_faults.sh --check
+  tests/growth.sh
   check_subjects
 }
 # Subjects have at most 72 characters, which git log shows whole on 80 columns; the rule is younger than the repository.
