@@ -1,6 +1,6 @@
 // The filters of an estimate: how much a photon counts by its distance d from the query point, for a radius r (Jensen
-// 2001, section 7.3; Silverman 1986). Included by kernels. All that devices compute of a filter is here; its
-// enumerator, its name and its norm are in filter.hpp.
+// 2001, section 7.3; Silverman 1986). Included by kernels: the only code on devices that depends on the
+// filter. Its enumerator, its name and its norm are in filter.hpp.
 #include <photongrid/core/natural_log.glsl>
 
 // None of them on: the constant filter. The bit of filter f is 15 + f (filter_switch); kernels use bits below 16.

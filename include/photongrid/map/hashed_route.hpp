@@ -163,7 +163,7 @@ namespace detail {
 /// survivors' squared y_j N/K, with the mean N/K times the sum of all y_j^2. This exceeds the sum of y_j^2, the
 /// variance of the unthinned Poisson process, by (N/K - 1) times that sum, and the variance above is at most that:
 /// equal if one y_j differs from 0, zero if all are equal. Where the k-th photon sets the radius, there are fewer
-/// photons, so the radius grows, and the statement holds as nearly as the error's own formula does.
+/// photons, so the radius grows, and the bound holds only approximately.
 ///
 /// With m = 1, `hash` is the stochastic hashing of Hachisuka and Jensen (Parallel Progressive Photon Mapping on GPUs,
 /// SIGGRAPH Asia 2010 sketches): an entry of the table keeps one photon and the number of those that came.

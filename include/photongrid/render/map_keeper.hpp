@@ -42,43 +42,43 @@ public:
     /// The map in use; there must be one.
     const built_map<B>& map() const { return *built_; }
     /// The inputs of the map in use.
-    const map_key& of() const { return of_; }
-    /// Whether the map in use is that of `source`.
-    bool serves(const map_key& source) const { return built_ && of_.same(source); }
-    /// Whether the map in use is that of `source` with fewer photons.
-    bool serves_preview_of(const map_key& source) const { return built_ && of_.is_preview_of(source); }
-    /// Whether the map of `source` is being built.
-    bool is_making(const map_key& source) const { return making_ && making_of_.same(source); }
+    const map_key& source() const { return source_; }
+    /// Whether the map in use is that of `wanted`.
+    bool serves(const map_key& wanted) const { return built_ && source_.same(wanted); }
+    /// Whether the map in use is that of `wanted` with fewer photons.
+    bool serves_preview_of(const map_key& wanted) const { return built_ && source_.is_preview_of(wanted); }
+    /// Whether the map of `wanted` is being built.
+    bool is_making(const map_key& wanted) const { return making_ && making_source_.same(wanted); }
     /// The number of photons of the map being built, if one is.
     std::optional<uint> making_photons() const
     {
-        return making_ ? std::optional(making_of_.settings.map.photons) : std::nullopt;
+        return making_ ? std::optional(making_source_.settings.map.photons) : std::nullopt;
     }
     /// The fraction of that map's photons that have been traced.
     double fraction() const { return making_ ? making_->fraction() : 0.0; }
     /// How many maps were started.
     std::uint64_t begun() const { return begun_; }
 
-    /// Takes a step to the map of `source` in its world, `of`. Returns whether that map is in use. Views of the one
+    /// Takes a step to the map of `wanted` in its world, `of`. Returns whether that map is in use. Views of the one
     /// before must be gone.
     /// \throws what map_building throws.
-    bool advance(const map_key& source, std::shared_ptr<world<B>> of)
+    bool advance(const map_key& wanted, std::shared_ptr<world<B>> of)
     {
-        if (serves(source))
+        if (serves(wanted))
             return true;
-        if (!is_making(source)) {
+        if (!is_making(wanted)) {
             making_.reset();
-            if (built_ && !of_.is_preview_of(source)) // a preview's map stays until the new one is complete
+            if (built_ && !source_.is_preview_of(wanted)) // a preview's map stays until the new one is complete
                 built_.reset();
-            making_of_ = source;
-            making_.emplace(device_, std::move(of), making_of_.settings, use_);
+            making_source_ = wanted;
+            making_.emplace(device_, std::move(of), making_source_.settings, use_);
             ++begun_;
         }
         making_->advance();
         if (!making_->finished())
             return false;
         built_.emplace(making_->take());
-        of_ = std::move(making_of_);
+        source_ = std::move(making_source_);
         making_.reset();
         return true;
     }
@@ -93,9 +93,9 @@ private:
     B& device_;
     map_use use_;
     std::optional<built_map<B>> built_;
-    map_key of_; ///< inputs of built_
+    map_key source_; ///< of built_
     std::optional<map_building<B>> making_;
-    map_key making_of_;
+    map_key making_source_;
     std::uint64_t begun_ = 0;
 };
 

@@ -31,10 +31,9 @@ inline render_settings settings_of_pass(render_settings s, std::uint32_t pass)
     return s;
 }
 
-/// The settings of the map that gives the first radii of all passes. Where many photons are sought it has fewer, and as
-/// many times fewer are sought in it. It is built once and searched in every pass, also at points that are far from its
-/// photons, as most are from a caustic: a block map on devices that prefer it. Exact searches find the same radii in
-/// it.
+/// The settings of the map that gives the first radii of all passes. It needs few photons: k is capped, and the number
+/// of photons scaled alike. It is built once and searched in every pass. Most query points lie far from caustics, where
+/// block maps are faster, so devices that prefer them get one; exact searches find the same radii in it.
 inline render_settings settings_of_radius_map(const render_settings& s, const capabilities& device)
 {
     auto with = settings_of_pass(s, radius_pass);

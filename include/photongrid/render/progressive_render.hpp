@@ -156,7 +156,7 @@ private:
         if (const auto photons = maps_.making_photons(); photons || (!preview_ && !pass_ && rows_done() == 0))
             return {maps_.fraction() < 1 ? "trace_photons" : "build_map", maps_.fraction(), pixels, 1,
                 photons.value_or(settings_.map.photons), film_.passes()};
-        const uint photons = maps_.of().settings.map.photons;
+        const uint photons = maps_.source().settings.map.photons;
         if (preview_)
             return {
                 "preview", preview_->fraction(), preview_->unfinished(), preview_->divisor(), photons, film_.passes()};
@@ -294,7 +294,7 @@ private:
         if (!has_previews() || maps_.serves(fewer) || settings_.output.only == light_part::direct)
             return {};
         if (maps_.serves_preview_of(fewer))
-            return maps_.of();
+            return maps_.source();
         auto& with = fewer.settings;
         const uint photons = preview_photons(with, costs_, previews_.target_ms);
         if (photons == with.map.photons || maps_.is_making(fewer))
@@ -320,7 +320,7 @@ private:
         if (make_map(*p.map))
             return true;
         if (!p.to_do) {
-            const uint photons = maps_.of().settings.map.photons;
+            const uint photons = maps_.source().settings.map.photons;
             const bool early_shown = pictures_ > 0; // before the map with all photons there is no other picture
             p.to_do.emplace();
             if (has_previews())
@@ -342,7 +342,7 @@ private:
     {
         const uint number = begin_views(first_pass());
         auto with = settings_of_pass(settings_, number);
-        divide_k(with.estimate, std::max(1u, with.map.photons / maps_.of().settings.map.photons));
+        divide_k(with.estimate, std::max(1u, with.map.photons / maps_.source().settings.map.photons));
         preview_.emplace(device_, maps_.map(), scene_.camera, with, view_settings(p), stats_);
         preview_->use_samples(kept_);
     }
@@ -377,7 +377,7 @@ private:
         if (!unfinished_.empty())
             return unfinished_.number;
         if (!settings_.output.has_stop_rule() && has_map_of_unfinished_pass())
-            return maps_.of().pass;
+            return maps_.source().pass;
         uint first = 0;
         while (film_.holds(first))
             ++first;
@@ -385,13 +385,14 @@ private:
     }
     bool has_map_of_unfinished_pass() const
     {
-        const uint kept = maps_.of().pass;
+        const uint kept = maps_.source().pass;
         return kept < settings_.output.passes && !film_.holds(kept) && maps_.serves(pass(kept));
     }
     /// The pass of the map before passes begin: previews may have any.
     uint first_pass() const
     {
-        return has_previews() && unfinished_.empty() && has_map_of_unfinished_pass() ? maps_.of().pass : next_pass();
+        return has_previews() && unfinished_.empty() && has_map_of_unfinished_pass() ? maps_.source().pass
+                                                                                     : next_pass();
     }
     bool draw_pass()
     {

@@ -165,9 +165,9 @@ void for_each_light_sample(const scene_layout& layout, const render_settings& se
     }
 }
 
-/// Lowers what arrives along shadow rays by what they meet on meshes.
+/// Attenuates shadow rays by the opacity of the meshes that they cross.
 template <backend B>
-void take_through(
+void attenuate(
     B& device, const device_scene<B>& s, mesh_rays<B>& rays, mesh_hits<B>& hits, buffer_of<B, glm::vec4>& arriving)
 {
     for (bool finished = false; !finished;) {
@@ -213,10 +213,10 @@ void add_light_samples(B& device, const device_scene<B>& s, const ray_of_pixels&
             writes(rays.origins, rays.directions, arriving));
         change(rays.directions, arriving);
         if (through)
-            take_through(device, s, rays, *met, arriving);
+            attenuate(device, s, rays, *met, arriving);
         else if (s.has_meshes())
             found = rays.search(device, s, hit_kind::any);
-        // Those that went through know already what is blocked.
+        // Attenuated rays were tested against meshes above.
         const uint features = s.layout.features & ~(through ? uint{has_meshes} : 0u);
         device.template run<kernels::add_unblocked>(
             {pixels.elements, pixels.first, features}, {.first = pixels.first}, reads(arriving, found), writes(light));
@@ -327,7 +327,7 @@ void direct_light(B& device, const device_scene<B>& s, const ray_of_pixels& of, 
 {
     const auto& [settings, ray, pixels] = of;
     device.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
-    // What direct_light.glsl does not know.
+    // Features that direct_light.glsl does not handle.
     constexpr uint others
         = has_meshes | has_coats | (all_light_switches & ~(uint{has_point_lights} | uint{has_area_lights}));
     // A part of a lamp that is taken whole is seen whole or not at all: where something covers a part of it, the mean

@@ -1,6 +1,10 @@
-// A path's event at one surface, stored in the w of its position in a frame: kind of surface + 4 * end + 32 * power
-// that leaves + 2^22 * surfaces before.
+// A path's event at one surface, stored in the w of its position in a frame as a whole number below 2^24. From its low
+// bits on: the kind of surface, how the path ends, the power that leaves, the surfaces before.
 #ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
+
+const uint EVENT_END_SHIFT = 2u;
+const uint EVENT_LEAVING_SHIFT = 5u;
+const uint EVENT_BEFORE_SHIFT = 22u;
 
 // Kinds of surface
 const uint NO_SURFACE = 0u;
@@ -25,7 +29,7 @@ const uint DIFFUSE_BEFORE = 2u;
 
 inline float event_code(uint kind, uint end, uint before)
 {
-    return float(kind + 4u * end + 4194304u * before);
+    return float(kind + (end << EVENT_END_SHIFT) + (before << EVENT_BEFORE_SHIFT));
 }
 inline uint event_kind(vec4 position)
 {
@@ -33,11 +37,11 @@ inline uint event_kind(vec4 position)
 }
 inline uint event_end(vec4 position)
 {
-    return (uint(position.w) >> 2u) & 7u;
+    return (uint(position.w) >> EVENT_END_SHIFT) & 7u;
 }
 inline uint event_before(vec4 position)
 {
-    return uint(position.w) >> 22u;
+    return uint(position.w) >> EVENT_BEFORE_SHIFT;
 }
 // Whether the surface stored the photon, or left it to the direct light.
 inline bool event_is_diffuse(vec4 position)
@@ -58,11 +62,11 @@ inline float event_of_both(uint end, uint before, float leaving, float u)
 {
     precise float steps = leaving * 256.0f + u;
     uint rounded = steps < 65536.0f ? uint(steps) : 65536u;
-    return event_code(BOTH_SURFACES, end, before) + float(32u * rounded);
+    return event_code(BOTH_SURFACES, end, before) + float(rounded << EVENT_LEAVING_SHIFT);
 }
 inline float event_leaving(vec4 position)
 {
-    return float((uint(position.w) >> 5u) & 131071u) / 256.0f;
+    return float((uint(position.w) >> EVENT_LEAVING_SHIFT) & 131071u) / 256.0f;
 }
 
 #endif
