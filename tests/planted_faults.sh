@@ -8,8 +8,8 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# name | file | what to replace | by what (plain text, which must be there) | the test program that should see it, if not
-# that of tests_of below
+# name | file | what to replace | by what (plain text) | the test program that should see it, if not that of tests_of below.
+# Where the text has moved to another file, and is in no third one, it is found there.
 faults=(
   "an edited scene keeps its old meshes|include/photongrid/trace/scene_records.hpp|before_->meshes == from;|from.first_light + 1 > 0;"
   "an edited scene keeps its old textures|include/photongrid/trace/scene_records.hpp|before_->textures == out_.sources.textures;|before_->textures.size() == out_.sources.textures.size();"
@@ -204,7 +204,7 @@ faults=(
   "rays: a box is not enlarged|include/photongrid/trace/ray_tests.glsl|* 9.5367432e-7f|* 0.0f"
   "rays: a hit may be outside of its box|include/photongrid/trace/ray_tests.glsl|t = t > inside.x ? t : inside.x;|"
   "rays: ties go to the tree|include/photongrid/trace/trace_ray.glsl| \|\| (t == so_far.t && id < so_far.triangle)|"
-  "rays: the other child is forgotten|include/photongrid/trace/trace_ray.glsl|v.both = v.next != NO_PAIR;|both = next != NO_PAIR && pair != 5u;"
+  "rays: the other child is forgotten|include/photongrid/trace/trace_ray.glsl|v.both = v.next != NO_PAIR;|v.both = v.next != NO_PAIR && pair != 5u;"
   "rays: a tree may become deep|include/photongrid/trace/tree_split.hpp|if (std::max(halves[0].size(), halves[1].size()) <= limits_.most_below(at + 1))|if (halves[0].size() > 0)"
   "rays: slivers that look like lines are missed|include/photongrid/trace/ray_tests.glsl|least_of(x) <= 0.0f && most_of(x)|least_of(x) > 0.0f && most_of(x)"
   "rays: pieces of a tree keep the numbers of their pairs|include/photongrid/trace/triangle_tree.hpp|is_leaf(child) ? child : child + p.first_pair; };|is_leaf(child) ? child : child; };"
@@ -426,18 +426,22 @@ faults=(
 )
 
 # The separator is a bar, so bars inside are written \|.
-# parse FAULT: sets name, file, from, to and program
+# parse FAULT: sets name, file, from, to and program. Code may have moved: then file is the only one that holds `from`.
 parse() {
-  local rest=${1//\\|/$'\001'}
+  local rest=${1//\\|/$'\001'} found
   IFS='|' read -r name file from to program <<<"$rest"
   from=${from//$'\001'/|} to=${to//$'\001'/|}
+  if [[ ! -r $file ]] || ! grep -qF -- "$from" "$file"; then
+    found=$(grep -rlF --include='*.?pp' --include='*.glsl' -- "$from" include backends examples || true)
+    [[ -z $found || $found == *$'\n'* ]] || file=$found
+  fi
 }
 if [[ ${1:-} == --check ]]; then
   stale=0
   for fault in "${faults[@]}"; do
     parse "$fault"
-    if [[ ! -r $file || $(cat "$file") != *"$from"* ]]; then
-      echo "planted_faults: \"$name\": $file no longer holds: $from; move the fault to the text that took its place" >&2
+    if [[ ! -r $file ]] || ! grep -qF -- "$from" "$file"; then
+      echo "planted_faults: \"$name\": neither $file nor one other file holds: $from; say what took its place" >&2
       stale=1
     fi
   done
