@@ -68,6 +68,7 @@
     EXTERN template class view_pass<B>;                                                                                \
     EXTERN template pass_pixels draw_pass(                                                                             \
         B&, const built_map<B>&, const camera&, const render_settings&, render_stats&, const pass_options<B>&);        \
+    EXTERN template pass_pixels draw_pass(B&, std::shared_ptr<world<B>>, const camera&, const render_settings&, uint); \
     EXTERN template rendered render(B&, const scene&, const render_settings&, const render_observer&);                 \
     EXTERN template class progressive_render<B>;
 // NOLINTEND(bugprone-macro-parentheses)
