@@ -203,12 +203,7 @@ private:
     }
 
     /// A step of the picture. Each of these takes one and returns true, or has nothing left to do.
-    void advance()
-    {
-        const bool took_step
-            = prepare_world() || draw_early_previews() || draw_whole_previews() || find_first_radii() || draw_pass();
-        static_cast<void>(took_step);
-    }
+    void advance();
 
     // The world.
 
@@ -526,6 +521,14 @@ template <backend B>
 progressive_render<B>::progressive_render(B& device)
     : device_(device), maps_(device), radius_maps_(device, map_use::first_radii)
 {
+}
+
+template <backend B>
+void progressive_render<B>::advance()
+{
+    const bool took_step
+        = prepare_world() || draw_early_previews() || draw_whole_previews() || find_first_radii() || draw_pass();
+    static_cast<void>(took_step);
 }
 
 } // namespace photongrid
