@@ -10,12 +10,13 @@ namespace photongrid::testing {
 namespace {
 
     /// A surface, the direction in which a ray meets it, and one way by which light leaves.
+    const dvec3 verb_normal = glm::normalize(dvec3(0.3, 0.8, -0.5)); ///< outward
     struct verb_case {
         material m;
         dvec3 d;
         uint way;
+        dvec3 shading = verb_normal;
     };
-    const dvec3 verb_normal = glm::normalize(dvec3(0.3, 0.8, -0.5)); ///< outward
 
     std::string name_of(const verb_case& c)
     {
@@ -63,8 +64,11 @@ namespace {
                 normals(n, glm::vec4(glm::vec3(verb_normal), 0.0f));
             const auto on_device = [&](const auto& v) { return b.upload(std::span<const glm::vec4>(v)); };
             auto to = b.template make<glm::vec4>(n), answers = b.template make<glm::vec4>(n);
-            b.template run<probes::scatter_probe>({n, 0u, layout.features}, {.way = c.way, .seed = 7},
-                reads(device.records, on_device(d), on_device(normals), on_device(towards)), writes(to, answers));
+            const uint smooth = c.shading != verb_normal ? has_smooth_meshes : 0u;
+            const std::vector<glm::vec4> shadings(n, glm::vec4(glm::vec3(c.shading), 0.0f));
+            b.template run<probes::scatter_probe>({n, 0u, layout.features | smooth}, {.way = c.way, .seed = 7},
+                reads(device.records, on_device(d), on_device(normals), on_device(towards), on_device(shadings)),
+                writes(to, answers));
             sampled = b.download(to);
             verbs = b.download(answers);
         }
@@ -94,6 +98,19 @@ namespace {
                 EXPECT_EQ(a.verbs[0].y, 0.0f);
             }
         }
+    }
+
+    /// By its shading normal it would be refracted back into the glass, and by its geometric one it is reflected
+    /// totally.
+    TEST(verbs, a_ray_that_stays_in_smooth_glass_keeps_its_radiance)
+    {
+        const dvec3 d = turned_off(verb_normal, std::acos(0.4), 0);
+        const dvec3 shading = turned_off(verb_normal, std::acos(0.4) - std::acos(0.8), 0);
+        const verb_case c{{"glass", material_kind::glass, dvec3(1), 1.5}, d, kernels::BY_REFRACTION, shading};
+        const verb_answers a(c, {glm::vec4(0)});
+        const dvec3 reflected = d - 2 * glm::dot(d, verb_normal) * verb_normal;
+        EXPECT_TRUE(close(dvec3(glm::vec3(a.sampled[0])), reflected, 1e-6));
+        EXPECT_EQ(a.verbs[0].w, 1.0f);
     }
 
     TEST(verbs, a_sample_carries_what_the_bsdf_and_its_density_say)

@@ -1,5 +1,5 @@
-// The filters of an estimate by name. To add one: its enumerator and row here, its SWITCH, weight and edge integral in
-// filter.glsl, and its weight in vectors in the cpu backend's gather_simd.hpp.
+// The filters of an estimate by name. To add one: its enumerator and row here, its SWITCH, weight and edge integral and
+// edge moment in filter.glsl, and its weight in vectors in the cpu backend's gather_simd.hpp.
 #pragma once
 
 #include <photongrid/core/kernel.hpp>

@@ -1,4 +1,5 @@
-// One pass over a view from its map, band by band: a function of the map, the view and the settings alone.
+// One pass over a view from its map, band by band: a function of the map, the view, the settings and, if there are any,
+// the radii.
 #pragma once
 
 #include <photongrid/render/passes.hpp>
@@ -15,14 +16,16 @@ namespace photongrid {
 template <backend B>
 class pass_drawing {
 public:
-    /// It draws nothing yet. `settings`: those of the pass; of `how`, preview and band are not used. It adds times and
+    /// It draws nothing yet. `settings`: those of the pass; `how` has neither preview nor band. It adds times and
     /// counts to `stats`. `built` and `stats` must outlive it.
-    /// \throws std::invalid_argument for a camera or settings that check() rejects, backend_error.
+    /// \throws std::invalid_argument for a camera or settings that check() rejects, or a preview or band; backend_error.
     pass_drawing(B& device, const built_map<B>& built, const camera& view, const render_settings& settings,
         const view_pass_settings& how, render_stats& stats)
         : device_(device), built_(built), view_(view), settings_(settings), how_(how), stats_(stats)
     {
         check(settings);
+        if (how.preview || how.band)
+            throw std::invalid_argument("pass_drawing: how: a pass has no preview, and all bands");
     }
     pass_drawing(B&, const built_map<B>&&, const camera&, const render_settings&, const view_pass_settings&,
         render_stats&)

@@ -1,8 +1,8 @@
 // The interactive loop (section 3.4): a picture is started, advanced in steps, displayed at any time, changed and
 // cancelled. It has the only loop over passes, each of which is figure 1 of the paper:
 //
-//     world  -> trace_photons -> build_map ---------------------------+
-//     camera -> trace_eye -> direct_light -> irradiance (2.3) -> shade -> film
+//     world  -> trace_photons -> build_map ------------------+
+//     camera -> trace_eye -> direct_light -> gather -> irradiance (2.3) -> shade -> film
 //
 // The photon map is rebuilt only if geometry, materials or lights change.
 //
@@ -40,7 +40,7 @@ public:
         stop_asked_ = false;
         if (!started_ || !same_light_paths(scene_, s)) {
             making_world_.reset(); // it has a reference to scene_
-            ++world_wanted_;
+            ++wanted_world_;
         }
         scene_ = s;
         settings_ = settings;
@@ -53,6 +53,9 @@ public:
     {
         if (!started_)
             throw std::logic_error("progressive_render::resume: no picture was started; call start()");
+        if (preview_ || number_ || film_.passes() > 0)
+            throw std::logic_error(
+                "progressive_render::resume: the picture has begun; call it between start() and step()");
         check(s, settings_);
         film_ = std::move(s.film);
         unfinished_ = std::move(s.pass);
@@ -66,9 +69,9 @@ public:
     render_state state() override
     {
         render_state s{film_, unfinished_, clock_.seconds()};
-        if (!pass_) // resume()'s state has not been consumed
+        if (!pass_) // no pass has begun; what resume() gave, if anything, is still to come
             return s;
-        s.pass = {number_.value_or(0), rows_done()};
+        s.pass = {*number_, rows_done()};
         s.pass.light = pass_->light();
         if (const auto* band = pass_->band()) {
             const auto& light = band->light();
@@ -153,8 +156,9 @@ private:
         if (!has_world())
             return {"prepare_scene", making_world_ ? making_world_->fraction() : 0.0, pixels, 1, settings_.map.photons,
                 film_.passes()};
-        if (const auto photons = maps_.making_photons(); photons || (!preview_ && !pass_ && rows_done() == 0))
-            return {maps_.fraction() < 1 ? "trace_photons" : "build_map", maps_.fraction(), pixels, 1,
+        const auto& made = radius_maps_.making_photons() ? radius_maps_ : maps_;
+        if (const auto photons = made.making_photons(); photons || (!preview_ && !pass_ && rows_done() == 0))
+            return {made.fraction() < 1 ? "trace_photons" : "build_map", made.fraction(), pixels, 1,
                 photons.value_or(settings_.map.photons), film_.passes()};
         const uint photons = maps_.source().settings.map.photons;
         if (preview_)
@@ -192,7 +196,7 @@ private:
         drawing_since_ = 0;
         early_ = previews_of();
         whole_ = previews_of();
-        if (!maps_.serves(pass(next_pass())))
+        if (!maps_.serves(key_of_pass(next_pass())))
             stats_ = {};
         stats_.prepare_scene = has_world() ? world_->prepared : stage_stats{};
         stats_.trace_rays = stats_.radiance_estimate = {};
@@ -202,13 +206,14 @@ private:
         stats_.end = {};
     }
 
-    /// A step of the picture. Each of these takes one and returns true, or has nothing left to do.
-    void advance();
+    /// Takes the next step of the picture; returns whether there was one. Each function that it calls takes one step
+    /// and returns true, or returns false if it has nothing left to do.
+    bool advance();
 
     // The world.
 
     /// Whether scene_ is on the device.
-    bool has_world() const { return world_ && world_is_ == world_wanted_; }
+    bool has_world() const { return world_ && world_number_ == wanted_world_; }
     bool prepare_world()
     {
         if (has_world())
@@ -218,7 +223,7 @@ private:
         if (making_world_->advance()) {
             world_ = making_world_->take();
             making_world_.reset();
-            world_is_ = world_wanted_;
+            world_number_ = wanted_world_;
             stats_.prepare_scene = world_->prepared;
         }
         return true;
@@ -227,7 +232,7 @@ private:
     // Maps.
 
     /// The inputs of the map for pass `number`.
-    map_key pass(uint number) const { return {world_wanted_, settings_of_pass(settings_, number), number}; }
+    map_key key_of_pass(uint number) const { return {wanted_world_, settings_of_pass(settings_, number), number}; }
     bool make_map(const map_key& wanted)
     {
         if (maps_.serves(wanted))
@@ -247,7 +252,7 @@ private:
     {
         if (!has_shrinking_radii(settings_))
             return false;
-        const map_key wanted{world_wanted_, settings_of_radius_map(settings_, device_.caps()), radius_pass};
+        const map_key wanted{wanted_world_, settings_of_radius_map(settings_, device_.caps()), radius_pass};
         if (radius_maps_.serves(wanted))
             return false;
         if (radius_maps_.advance(wanted, world_)) {
@@ -285,7 +290,7 @@ private:
     }
     std::optional<map_key> early_map() const
     {
-        auto fewer = pass(first_pass());
+        auto fewer = key_of_pass(first_pass());
         if (!has_previews() || maps_.serves(fewer) || settings_.output.only == light_part::direct)
             return {};
         if (maps_.serves_preview_of(fewer))
@@ -305,7 +310,7 @@ private:
     bool draw_whole_previews()
     {
         if (!whole_.done && !whole_.map)
-            whole_.map = pass(first_pass());
+            whole_.map = key_of_pass(first_pass());
         return draw_previews(whole_);
     }
     bool draw_previews(previews_of& p)
@@ -381,7 +386,7 @@ private:
     bool has_map_of_unfinished_pass() const
     {
         const uint kept = maps_.source().pass;
-        return kept < settings_.output.passes && !film_.holds(kept) && maps_.serves(pass(kept));
+        return kept < settings_.output.passes && !film_.holds(kept) && maps_.serves(key_of_pass(kept));
     }
     /// The pass of the map before passes begin: previews may have any.
     uint first_pass() const
@@ -393,7 +398,7 @@ private:
     {
         if (!number_ && !choose_pass())
             return false;
-        if (make_map(pass(*number_)))
+        if (make_map(key_of_pass(*number_)))
             return true;
         if (!pass_)
             begin_pass();
@@ -444,7 +449,7 @@ private:
         judge_.after_pass(film_, clock_.seconds(), stats_);
         shown_.reset();
         ++pictures_;
-        if (!judge_.ended() && choose_pass() && maps_.serves(pass(*number_)))
+        if (!judge_.ended() && choose_pass() && maps_.serves(key_of_pass(*number_)))
             begin_pass();
     }
 
@@ -496,7 +501,7 @@ private:
 
     std::shared_ptr<world<B>> world_; ///< of scene_, or of the one before until that of scene_ is ready
     std::optional<world_building<B>> making_world_;
-    std::uint64_t world_is_ = 0, world_wanted_ = 0; ///< numbers of world_, and of the world of scene_
+    std::uint64_t world_number_ = 0, wanted_world_ = 0; ///< numbers of world_, and of the world of scene_
     map_keeper<B> maps_;
     map_keeper<B> radius_maps_; ///< shrinking_radii.hpp
 
@@ -524,11 +529,9 @@ progressive_render<B>::progressive_render(B& device)
 }
 
 template <backend B>
-void progressive_render<B>::advance()
+bool progressive_render<B>::advance()
 {
-    const bool took_step
-        = prepare_world() || draw_early_previews() || draw_whole_previews() || find_first_radii() || draw_pass();
-    static_cast<void>(took_step);
+    return prepare_world() || draw_early_previews() || draw_whole_previews() || find_first_radii() || draw_pass();
 }
 
 } // namespace photongrid

@@ -111,24 +111,27 @@ void for_each_light(Scene& s, F&& f)
 
 namespace detail {
     template <class... Lists>
-    constexpr std::uint32_t shape_bits(const std::tuple<Lists...>*)
+    constexpr auto shape_numbers(const std::tuple<Lists...>*)
     {
-        return ((1u << shape_kind<item_of<Lists>>::number) | ...);
+        return std::array{shape_kind<item_of<Lists>>::number...};
     }
     template <class... Lists>
-    constexpr std::uint32_t light_bits(const std::tuple<Lists...>*)
+    constexpr auto light_numbers(const std::tuple<Lists...>*)
     {
-        return ((1u << light_kind<item_of<Lists>>::number) | ...);
+        return std::array{light_kind<item_of<Lists>>::number...};
+    }
+    constexpr std::uint32_t bits_of(std::span<const std::uint32_t> numbers)
+    {
+        std::uint32_t bits = 0;
+        for (const auto n : numbers)
+            bits |= 1u << n;
+        return bits;
     }
 } // namespace detail
 
-/// \name The SWITCHes of all kinds
-/// @{
-inline constexpr std::uint32_t all_shape_switches
-    = detail::shape_bits(static_cast<decltype(shape_lists(std::declval<scene&>()))*>(nullptr));
+/// The SWITCHes of all kinds of lights.
 inline constexpr std::uint32_t all_light_switches
-    = detail::light_bits(static_cast<decltype(light_lists(std::declval<scene&>()))*>(nullptr));
-/// @}
+    = detail::bits_of(detail::light_numbers(static_cast<decltype(light_lists(std::declval<scene&>()))*>(nullptr)));
 
 /// The number of shapes of a scene; a mesh is one.
 inline std::size_t count_shapes(const scene& s)

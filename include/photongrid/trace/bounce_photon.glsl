@@ -16,6 +16,7 @@ struct Params {
 PARAMS(Params)
 SWITCH(4, MIRRORS)
 SWITCH(5, GLASS)
+SWITCH(7, AREA_LIGHTS)
 INPUT(0, vec4, scene)
 INPUT(1, vec4, positions)
 INPUT(2, vec4, powers)
@@ -47,6 +48,7 @@ OUTPUT(4, vec4, next_direction)
 struct Photon {
     uint id;
     uint frame;
+    vec4 power;  // W, of this photon
     uint before; // what it hit before: see photon_event.glsl
     uint end;    // how it goes on if it leaves a surface
 };
@@ -83,8 +85,8 @@ vec4 arriving_power(uint before, vec4 last)
     return arrived;
 }
 
-// The kind of surface that a photon meets. `other`: the part of a mixture that it does not leave as from, which may
-// store it; `r`: its random numbers.
+// The kind of surface that a photon meets. `other`: the part of the mixture that was not drawn; it may still store the
+// photon. `r`: its random numbers.
 uint surface_for(Surface s, uint other, vec4 r)
 {
     if (s.way == BY_BASE)
@@ -97,24 +99,26 @@ uint surface_for(Surface s, uint other, vec4 r)
     return is_stored ? BOTH_SURFACES : SPECULAR_SURFACE;
 }
 
-void scale_power(float factor)
+// Writes power and normal of the photon that the surface receives.
+void receive(vec3 received, vec3 normal)
 {
-    precise vec3 scaled = vec3(power) * factor;
-    power = vec4(scaled.x, scaled.y, scaled.z, power.w);
+    power = vec4(received.x, received.y, received.z, normal.x);
+    next_origin.w = normal.y;
+    next_direction.w = normal.z;
 }
 
-void leave(Hit hit, vec3 d)
+void leave(Hit hit, vec3 d, vec3 normal)
 {
     vec3 start = ray_start(hit.position, hit.normal, d);
-    next_origin = vec4(start.x, start.y, start.z, next_origin.w);
-    next_direction = vec4(d.x, d.y, d.z, next_direction.w);
+    next_origin = vec4(start.x, start.y, start.z, normal.y);
+    next_direction = vec4(d.x, d.y, d.z, normal.z);
 }
 
 // The photon passes a surface that is clear in part.
 void pass_clear(Hit hit, vec3 d, Photon photon)
 {
     direction.w = color_code(vec3(1.0f, 1.0f, 1.0f));
-    leave(hit, d);
+    leave(hit, d, vec3(0.0f, 0.0f, 0.0f));
     position.w = event_code(NO_SURFACE, photon.end, photon.before);
 }
 
@@ -131,15 +135,14 @@ void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by)
         direction.w = survival > 0.0f ? color_code(s.material.reflectance) : 0.0f;
     uint surface = surface_for(s, other, r);
     float received = surface == SPECULAR_SURFACE ? 1.0f : received_by_base(s);
-    scale_power(received); // the base sends it out about its geometric normal
-    power.w = s.shading.x;
-    next_origin.w = s.shading.y;
-    next_direction.w = s.shading.z;
+    precise vec3 at_base = vec3(photon.power) * received; // which sends it out about its geometric normal
+    receive(at_base, s.shading);
     position.w = event_code(surface, ABSORBED, photon.before);
     if ((args.to_diffuse != 0u && surface == DIFFUSE_SURFACE) || !(r.x < survival))
         return;
     Scattered l = scatter_photon(s, facet, r.y, r.z, uvec4(photon.id, photon.frame, 0u, args.seed));
-    // Roulette by what other facets hide, too: r.x is even below the reflectance. A coat passes it on.
+    // r.x is uniform below `survival`, so the same number also decides whether another facet hides the photon. What hides
+    // it from a coat's reflection goes to the base.
     precise float unhidden_survival = survival * (is_coated(s) ? 1.0f : l.unhidden);
     if (!(r.x < unhidden_survival) || !(l.power_scale > 0.0f))
         return;
@@ -148,9 +151,10 @@ void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by)
         precise float leaving = l.power_scale / received;
         position.w = event_of_both(photon.end, photon.before, leaving, round_by);
     } else if (surface == SPECULAR_SURFACE) {
-        scale_power(l.power_scale);
+        precise vec3 scaled = at_base * l.power_scale;
+        receive(scaled, s.shading);
     }
-    leave(hit, l.direction);
+    leave(hit, l.direction, s.shading);
 }
 
 void kernel(uint i)
@@ -170,12 +174,13 @@ void kernel(uint i)
     if (event_end(last) != GOES_ON)
         return;
     photon.before = hit_before(last);
-    power = photon.frame > 1u ? arriving_power(before, last) : powers(before);
+    photon.power = photon.frame > 1u ? arriving_power(before, last) : powers(before);
+    power = photon.power;
     vec3 o = vec3(next_origins(before));
     vec3 d = vec3(next_directions(before));
     direction = vec4(d.x, d.y, d.z, 0.0f);
     position.w = event_code(NO_SURFACE, NOT_A_NUMBER, NOTHING_BEFORE);
-    if (!is_finite3(o) || !is_finite3(d) || !is_finite3(vec3(power)))
+    if (!is_finite3(o) || !is_finite3(d) || !is_finite3(vec3(photon.power)))
         return;
     Hit hit = intersect_closest(o, d);
     bool on_mesh = MESHES && mesh_is_closer(hit, number);

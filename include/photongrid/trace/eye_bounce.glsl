@@ -9,8 +9,9 @@
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
-    uint branch;     // bit n, at the n-th split: reflected (1) or refracted, or below a coat (0); ends (1) at a rough
-                     // surface or not (0); the second (1) or first part of a mixture; meets a surface (1) or passes
+    uint branch;     // bit n, at the n-th split; at glass: 1 reflected, 0 refracted; at a coat: 1 reflected, 0 the base;
+                     // at a rough surface: 1 ends, 0 goes on; of a mixture: 1 the second part, 0 the first; where a
+                     // surface is clear in part: 1 meets it, 0 passes
     uint splits;     // how often a ray splits at most
     uint depth;      // surfaces a ray passes at most
     float light_samples; // of each light with a size at rough surfaces; 0: such lights are left to rays
@@ -22,6 +23,7 @@ struct Params {
 PARAMS(Params)
 SWITCH(4, MIRRORS)
 SWITCH(5, GLASS)
+SWITCH(7, AREA_LIGHTS)
 SWITCH(15, ENVIRONMENT_LIGHTS)
 INPUT(0, vec4, scene)
 INPUT(1, vec4, mesh_places) // these three: see mesh_surface.glsl
@@ -112,12 +114,6 @@ float stratified_number(uint i, uint what)
     return sequence2(args.nth, uvec4(i + args.first_pixel, args.branch, what, args.seed)).x;
 }
 
-// Numbers that choose a facet, stratified too, and the same in all branches.
-vec2 facet_numbers(uint i, uint hits)
-{
-    return sequence2(args.nth, uvec4(i + args.first_pixel, 0u, 4000u + hits, args.seed));
-}
-
 // The branch that a ray takes where it may be one of two, and the factor on its throughput. At glass and coats the
 // first one is what they reflect; of a mixture the second part; of what is clear in part, what meets it.
 struct Branch {
@@ -155,7 +151,7 @@ Branch split_branch(float share)
 Branch sampled_branch(uint i, uint what, float share)
 {
     Branch b;
-    b.first = true; // total internal reflection
+    b.first = true; // no other branch
     b.share = 1.0f;
     if (!(share >= 1.0f)) {
         precise float least = 0.25f - 0.25f * max(max(throughput.x, throughput.y), throughput.z);
@@ -212,8 +208,8 @@ void pass_clear(Hit hit, vec3 d, float share)
     }
 }
 
-// The coat of a surface reflects the ray (the first branch) or passes it to the base. The share is less that of the
-// facet by which the coat reflects.
+// The coat of a surface reflects the ray (the first branch) or passes it to the base. The share leaves out the facet's
+// reflectance, which scatter() multiplies by.
 Branch coat_branch(uint i, uint hits, Surface s)
 {
     Coat coat = coat_of(s.number);
@@ -248,8 +244,8 @@ void end_on_rough(Hit hit, Surface s, vec3 reflected)
     surface = vec4(s.shading.x, s.shading.y, s.shading.z, float(s.number));
 }
 
-// Some rays end on a rough surface for samples of lights: in a pass of their own, or every other one. That one ends and
-// the other goes on is the first branch.
+// Some rays end on a rough surface for samples of lights: in a pass of their own, or every other one. In the first branch
+// the ray ends here.
 Branch rough_branch(uint i, uint hits)
 {
     Branch b;

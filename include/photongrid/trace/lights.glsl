@@ -12,8 +12,8 @@
 #include <photongrid/trace/lights/directional_light.glsl>
 #include <photongrid/trace/lights/environment_light.glsl>
 
-// A photon of the light whose records are at `at`, for random numbers r and s but s.x. Kinds set what differs from
-// this: the light's power.
+// A photon of the light whose records are at `at`, for random numbers r and s; s.x has already chosen the light. The
+// default has the light's power; each kind sets origin and direction.
 Emitted emitted_photon(uint at, vec4 r, vec4 s)
 {
     uint kind = kind_of_light(at);
@@ -40,7 +40,7 @@ Emitted emitted_photon(uint at, vec4 r, vec4 s)
     return e;
 }
 
-// A sample of a light, but for points and rectangles: see trace/light_sample.glsl. Kinds set what differs from this: no
+// A sample of any light but a point or a rectangle, of which trace/light_sample.glsl takes several. The default is no
 // light.
 ArrivingLight arriving_light(uint at, SampleNumbers n, LitPoint lit)
 {

@@ -3,11 +3,13 @@
 //
 // A ray meets a surface at a facet, facet_met(), whose normal is the shading normal unless the surface is rough. The
 // facet reflects a share of the light, reflected_share(). The rest is refracted into the body, or scattered by the
-// matte base. The caller chooses: leaving_by(). Of the surface as it sends light that way,
+// matte base. The caller chooses: leaving_by(). Of the surface for light that leaves that way,
 //
 //     scatter_sample()  draws a direction
 //     scatter_eval()    is the BSDF of light that comes from a direction, divided by the reflectance
-//     scatter_pdf()     is the density with which scatter_sample() draws the direction that an eye ray takes
+//     scatter_pdf()     is the density with which scatter_sample() draws a direction; of the base of a smooth mesh it is
+//                       about the shading normal, by which light is received, not about the geometric one, by which
+//                       photons leave
 //     is_delta()        tells whether there is but one direction: then the BSDF and the density are 0
 #include <photongrid/trace/coat.glsl>
 #include <photongrid/trace/microfacet.glsl>
@@ -40,8 +42,8 @@ bool is_delta(Surface s)
     return s.way != BY_BASE && !has_facets(s);
 }
 
-// The surface as it sends light one way: of a coated one, what its coat reflects is white, and what leaves its base is
-// what does not fall back to it.
+// The surface for light that leaves by `way`. A coated one gets the reflectance of that way: white for the coat; for the
+// base, the share that gets out through the coat.
 Surface leaving_by(Surface s, uint way)
 {
     s.way = way;
@@ -51,7 +53,7 @@ Surface leaving_by(Surface s, uint way)
     return s;
 }
 
-// The way of what a surface does or does not reflect.
+// By which way light leaves, if the facet reflected it or did not.
 uint way_of(Surface s, bool reflected)
 {
     if (reflected)
@@ -66,7 +68,7 @@ Surface surface_met(Hit hit, vec3 d, Material material)
     Surface s;
     s.material = material;
     s.number = hit.material;
-    s.way = material.kind == LAMBERTIAN_SURFACE ? BY_BASE : BY_REFLECTION;
+    s.way = material.kind == LAMBERTIAN_SURFACE || !(MIRRORS || GLASS) ? BY_BASE : BY_REFLECTION;
     s.d = d;
     s.outside = !(dot3(hit.normal, d) > 0.0f);
     s.geometric = s.outside ? hit.normal : -hit.normal;
@@ -112,8 +114,8 @@ struct Scattered {
                           // Methods for Light Transport Simulation, 1997, section 5.3); 0: none leaves
 };
 
-// Light in a direction that goes to the ray's side, or away from it. A surface has a shading normal that is not its
-// geometric one: Veach's factor for that, at most 8.
+// Veach's factor on power where the shading normal is not the geometric one, at most 8. `geometric`, `shading`: cosines of
+// the leaving direction with these normals.
 float shading_factor(Surface s, float geometric, float shading)
 {
     precise float factor
@@ -157,10 +159,9 @@ Scattered leave_smooth(Surface s, Facet facet)
             l.power_scale = shading_factor(s, side, dot3(l.direction, s.shading));
         } else {
             Fresnel g = fresnel(s.d, s.outside ? s.geometric : -s.geometric, s.material.index_of_refraction);
-            if (reflected || !(g.reflected < 1.0f))
-                l.direction = reflect_direction(s.d, s.geometric);
-            else
-                l.direction = g.refracted;
+            bool turns_back = reflected || !(g.reflected < 1.0f);
+            l.direction = turns_back ? reflect_direction(s.d, s.geometric) : g.refracted;
+            l.radiance_scale = turns_back ? 1.0f : g.radiance_scale;
         }
     }
     return l;
@@ -194,7 +195,6 @@ Scattered where_eye_rays_come_from(Surface s, Scattered l, float u)
 Scattered leave_base(Surface s, float u, float v, uvec4 stream)
 {
     Scattered l;
-    l.direction = s.shading;
     l.unhidden = 1.0f;
     l.radiance_scale = 1.0f;
     l.power_scale = 1.0f;

@@ -41,8 +41,24 @@ enum scene_feature : uint {
     has_clear = 1u << 22, ///< surfaces through which some light goes straight on
 };
 
-static_assert(all_light_switches == (all_light_switches & ~(all_shape_switches | has_mirrors | has_glass)),
-    "light_kind::number: is taken");
+static_assert(
+    [] {
+        std::uint32_t taken = has_mirrors | has_glass | has_meshes | has_smooth_meshes | has_textures | has_rough
+            | has_shape_tree | has_coats | has_instances | has_mixtures | has_clear;
+        bool distinct = true;
+        std::uint32_t before = kernels::SCENE_TABLES; // kinds of shapes with the same kernel code follow each other
+        const auto take = [&](std::uint32_t number) {
+            distinct = distinct && (number == before || (taken >> number & 1u) == 0);
+            taken |= 1u << number;
+            before = number;
+        };
+        for (const auto n : detail::shape_numbers(static_cast<decltype(shape_lists(std::declval<scene&>()))*>(nullptr)))
+            take(n);
+        for (const auto n : detail::light_numbers(static_cast<decltype(light_lists(std::declval<scene&>()))*>(nullptr)))
+            take(n);
+        return distinct;
+    }(),
+    "shape_kind::number, light_kind::number: is taken");
 static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SURFACE
     && static_cast<uint>(surface_kind::reflecting) == kernels::MIRROR_SURFACE
     && static_cast<uint>(surface_kind::refracting) == kernels::GLASS_SURFACE
@@ -123,6 +139,26 @@ namespace detail {
         else
             return 2; // the shaft; the closest hit, or occlusion
     }
+
+    /// How many records each of some items has.
+    class record_lengths {
+    public:
+        explicit record_lengths(const record_writer& w) : w_(&w), end_(w.next()) {}
+        /// An item has been written.
+        void note_end()
+        {
+            const uint length = w_->next() - std::exchange(end_, w_->next());
+            differ_ = differ_ || (length_ != 0 && length != length_);
+            length_ = length;
+        }
+        /// The length of all; 0 if they differ.
+        uint all() const { return differ_ ? 0 : length_; }
+
+    private:
+        const record_writer* w_;
+        uint end_, length_ = 0;
+        bool differ_ = false;
+    };
 
     /// Lays a scene out. Each member function writes one part.
     class layout_writer {
@@ -221,28 +257,28 @@ namespace detail {
         {
             uint number = kernels::NO_SHAPE, first = 0;
             std::size_t count = 0;
+            record_lengths lengths(w);
             for_each_shape(s_, [&](const auto& list, auto kind) {
                 if (kind.number != number) {
                     number = kind.number;
                     first = w.next();
                     count = 0;
+                    lengths = record_lengths(w);
                 }
-                const uint begin = w.next();
                 for (const auto& x : list) {
                     place(kind, x, w.next());
                     kind.write(w, x);
+                    lengths.note_end();
                 }
-                const std::size_t written = list.size() + write_surfaces_of_lights(w, kind);
-                count += written;
-                constexpr bool lengths_differ = requires { kind.steps(list[0]); };
-                if (written > 0)
-                    enter(number, first, count, lengths_differ ? 0 : (w.next() - begin) / static_cast<uint>(written));
+                count += list.size() + write_surfaces_of_lights(w, kind, lengths);
+                if (count > 0)
+                    enter(number, first, count, lengths.all());
             });
         }
 
         /// Writes the surfaces of lights that are shapes of this kind. Returns how many there are.
         template <class Kind>
-        std::size_t write_surfaces_of_lights(record_writer& w, Kind kind)
+        std::size_t write_surfaces_of_lights(record_writer& w, Kind kind, record_lengths& lengths)
         {
             std::size_t light = 0, written = 0;
             for_each_light(s_, [&](const auto& list, auto) {
@@ -252,6 +288,7 @@ namespace detail {
                         const auto surface = surface_of(l);
                         place(kind, surface, w.next());
                         kind.write(w, surface, light);
+                        lengths.note_end();
                         ++written;
                     }
                 }

@@ -14,6 +14,7 @@ INPUT(0, vec4, scene)
 INPUT(1, vec4, directions) // xyz: of the ray; w: number of the material
 INPUT(2, vec4, normals)    // xyz: outward
 INPUT(3, vec4, towards)    // xyz: unit vector; of length 0: the sample's direction
+INPUT(4, vec4, shadings)   // xyz: outward shading normal
 OUTPUT(0, vec4, sampled)   // xyz: direction; w: the share of the light that goes there, and that nothing hides
 OUTPUT(1, vec4, verbs)     // x: BSDF, sr^-1; y: density, sr^-1; z: 1 if it is a delta; w: radiance_scale of the sample
 
@@ -30,7 +31,7 @@ void kernel(uint i)
     hit.light = 0u;
     hit.position = vec3(0.0f, 0.0f, 0.0f);
     hit.normal = vec3(normals(i));
-    hit.shading = hit.normal;
+    hit.shading = vec3(shadings(i));
     vec4 r = random4(uvec4(i, 0u, 0u, args.seed));
     Surface s = leaving_by(surface_met(hit, vec3(d), material_of(hit.material)), args.way);
     Facet facet = facet_met(s, r.x, r.y);

@@ -89,7 +89,7 @@ Hit polygon_surface(uint at, Hit hit)
     hit.position = onto_plane(polygon_plane(at), hit.position);
     hit.normal = vec3(polygon_plane(at));
     hit.material = polygon_material(at);
-    if (is_light_surface(at)) {
+    if (AREA_LIGHTS && is_light_surface(at)) {
         hit.material = NO_MATERIAL;
         hit.light = polygon_light(at);
     }

@@ -1,6 +1,6 @@
-// Spotlights (scene/spot_light.hpp). Records: at + 1: position; at + 2: unit vector of the axis; w: greatest intensity divided by the power, sr^-1; at + 3: 1 -
-// cosine of the inner angle; that of the outer angle less that of the inner one; share of the power within the inner
-// angle.
+// Spotlights (scene/spot_light.hpp). Records: at + 1: position; at + 2: unit vector of the axis; w: greatest intensity
+// divided by the power, sr^-1; at + 3: 1 - cosine of the inner angle; that of the outer angle less that of the inner
+// one; share of the power within the inner angle.
 SWITCH(13, SPOT_LIGHTS)
 const uint SPOT_LIGHT = 13u;
 
@@ -27,8 +27,8 @@ vec3 spot_direction(uint at, float part, float u, float turn, vec3 three)
     vec4 cone = scene(at + 3u);
     precise float below = cone.x * u; // 1 - cosine
     if (!(part < cone.z)) {
-        // The median of three numbers is at most t with probability 3 t^2 - 2 t^3. Where it is not, 1 - t has the same
-        // density as t has where it is, so that none is in vain.
+        // u is taken if the median of three numbers is at most u, with probability 3 u^2 - 2 u^3. Otherwise 1 - u is
+        // taken, which has the same density, so no number is rejected.
         float median = max(min(three.x, three.y), min(max(three.x, three.y), three.z));
         float t = median > u ? 1.0f - u : u;
         precise float outside = cone.x + cone.y * (1.0f - t);
