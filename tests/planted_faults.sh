@@ -377,6 +377,7 @@ faults=(
   "coats let all direct light pass|include/photongrid/trace/shadow_ray.glsl|scale * passes_coat(coat_of(uint(surface.w)), dot3(found.direction, lit.normal))|scale|on_serial_pictures"
   "a base under a coat is seen without it|include/photongrid/trace/eye_bounce.glsl|: b.share / coat.mean_passed;|: b.share;|on_serial_pictures"
   "a base under a coat scatters as a bare one|include/photongrid/trace/scatter.glsl|passed * passes_coat(c, -dot3(s.d, s.shading)) / c.mean_passed|even|optics"
+  "rays that stay in smooth glass are scaled|include/photongrid/trace/scatter.glsl|turns_back ? 1.0f : g.radiance_scale|facet.f.radiance_scale|optics"
   "the density of a base forgets its coat|include/photongrid/trace/scatter.glsl|even = passing;|even = even * 1.0f;|optics"
   "coats are bright from inside|include/photongrid/trace/scatter.glsl|s.outside \|\| !is_refracting ? facet : -facet|s.outside ? facet : -facet|optics"
   "shares of a rough coat are those of the next cosine|include/photongrid/trace/coat.glsl|(high - low) * (at - float(step))|(high - low)|optics"
