@@ -19,12 +19,12 @@ INPUT(1, vec4, points)   // w > 0: compute direct light
 INPUT(2, vec4, surfaces) // xyz: normal
 STATE(0, vec4, irradiance)
 
-#include <photongrid/trace/intersect.glsl>
 #include <photongrid/trace/light_record.glsl>
 #include <photongrid/trace/lit_point.glsl>
 #include <photongrid/trace/lights/point_light.glsl>
 #include <photongrid/trace/lights/rectangle_light.glsl>
 #include <photongrid/trace/light_sample.glsl>
+#include <photongrid/trace/intersect.glsl>
 
 void kernel(uint i)
 {

@@ -33,10 +33,10 @@ OUTPUT(1, vec4, direction) // xyz: unit vector
 // samples of the light, sr^-1; 0 of lights without size
 OUTPUT(2, vec4, arriving)
 
-#include <photongrid/trace/intersect.glsl>
 #include <photongrid/trace/lights.glsl>
 #include <photongrid/trace/light_sample.glsl>
 #include <photongrid/trace/chosen_light.glsl>
+#include <photongrid/trace/intersect.glsl>
 #include <photongrid/trace/materials.glsl>
 #include <photongrid/trace/optics.glsl>
 #include <photongrid/trace/coat.glsl>
