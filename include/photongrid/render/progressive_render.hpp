@@ -53,10 +53,10 @@ public:
     {
         if (!started_)
             throw std::logic_error("progressive_render::resume: no picture was started; call start()");
+        check(s, settings_);
         if (preview_ || number_ || film_.passes() > 0)
             throw std::logic_error(
                 "progressive_render::resume: the picture has begun; call it between start() and step()");
-        check(s, settings_);
         film_ = std::move(s.film);
         unfinished_ = std::move(s.pass);
         previews_.enabled = false;
