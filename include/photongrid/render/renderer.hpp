@@ -39,7 +39,7 @@ public:
     /// same bytes. Call it after start() and before step().
     /// \throws std::invalid_argument for the state of another picture: of another size, with passes that this one does
     ///         not have, or with other bands. step() throws it for a state with too many rays.
-    /// \throws std::logic_error before start().
+    /// \throws std::logic_error before start() or after step().
     virtual void resume(render_state s) = 0;
     /// The state so far, for resume().
     virtual render_state state() = 0;
