@@ -74,12 +74,11 @@ TYPED_TEST_P(progressive, what_cannot_be_drawn_leaves_the_picture_alone)
 REGISTER_TYPED_TEST_SUITE_P(progressive, ends_with_the_bytes_of_render, previews_are_as_bright_as_the_picture,
     running_estimates_approach_the_picture, a_map_serves_until_the_light_changes,
     a_camera_that_moves_while_photons_are_traced_does_not_begin_them_anew, an_edited_scene_shares_what_is_the_same,
-    an_edit_draws_the_picture_of_the_edited_scene, all_passes_share_one_world,
-    a_pass_is_a_function_of_its_number, a_preparation_can_be_interrupted,
-    previews_that_are_no_longer_wanted_are_not_drawn, a_cancelled_step_ends_after_its_pass,
-    a_picture_goes_on_from_its_state, passes_add_up_in_any_order, bands_of_rows_make_the_same_picture,
-    bands_of_rows_are_shown_from_the_top, bands_of_rows_go_on_from_their_states, a_state_of_more_passes_is_refused,
-    a_picture_that_its_error_ends_has_the_bytes_of_as_many_passes,
+    an_edit_draws_the_picture_of_the_edited_scene, all_passes_share_one_world, a_pass_is_a_function_of_its_number,
+    a_preparation_can_be_interrupted, previews_that_are_no_longer_wanted_are_not_drawn,
+    a_cancelled_step_ends_after_its_pass, a_picture_goes_on_from_its_state, passes_add_up_in_any_order,
+    bands_of_rows_make_the_same_picture, bands_of_rows_are_shown_from_the_top, bands_of_rows_go_on_from_their_states,
+    a_state_of_more_passes_is_refused, a_picture_that_its_error_ends_has_the_bytes_of_as_many_passes,
     a_picture_that_time_ends_has_the_bytes_of_as_many_passes, what_cannot_be_drawn_leaves_the_picture_alone);
 
 } // namespace photongrid::testing
