@@ -48,7 +48,7 @@ struct minimal_backend {
         return 0;
     }
     template <route_kernel K, class R>
-    void route(launch, const typename K::Params&, R, uint, uint, buffer<uint>&, buffer<glm::vec4>&)
+    void route(launch, const typename K::Params&, R, const route_shape&, buffer<uint>&, buffer<glm::vec4>&)
     {
     }
     void finish() {}
