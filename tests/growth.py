@@ -11,6 +11,8 @@ MOST = {"shape": 8, "light": 8, "material": 6, "setting": 5}
 # Files that a command makes of the table of settings: "photongrid_setting_texts".
 MADE = {"setting": ["examples/scenes/photongrid-scene.schema.json", "docs/reference/settings.md"]}
 NEW = re.compile(r"New file `([^`]+)`:")
+BLOCK = re.compile(
+    r"(?P<said>[^\n][^`\n]*(?:`[^`]*`[^`\n]*)*)\n\n```(?P<kind>\w+)\n(?P<text>.*?)```\n", re.DOTALL)
 EDIT = re.compile(r"In `([^`]+)`, (after|before|in place of) `([^`]+)`:", re.DOTALL)
 
 
@@ -21,7 +23,7 @@ class Page:
         self.name = name
         self.commands = []
         self.files = []  # (path, place, anchor, text); place None: a new file
-        for block in re.finditer(r"(?P<said>[^\n][^`\n]*(?:`[^`]*`[^`\n]*)*)\n\n```(?P<kind>\w+)\n(?P<text>.*?)```\n", text, re.DOTALL):
+        for block in BLOCK.finditer(text):
             if block["kind"] == "sh":
                 self.commands.append(block["text"])
             elif new := NEW.fullmatch(block["said"]):
@@ -29,7 +31,8 @@ class Page:
             elif edit := EDIT.fullmatch(block["said"]):
                 self.files.append((edit[1], edit[2], edit[3], block["text"]))
             else:
-                sys.exit(f"{name}: a block of {block['kind']} after: {block['said']}\n  say \"New file `X`:\" or \"In `X`, after `Y`:\"")
+                sys.exit(f"{name}: a block of {block['kind']} after: {block['said']}\n"
+                         '  say "New file `X`:" or "In `X`, after `Y`:"')
 
     def follow(self, root):
         for path, place, anchor, text in self.files:
@@ -59,7 +62,8 @@ class Page:
 
 
 def copy_sources(to):
-    listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], check=True, capture_output=True)
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    listed = subprocess.run(command, check=True, capture_output=True)
     for path in listed.stdout.decode().split("\0"):
         if path and pathlib.Path(path).is_file():
             target = to / path
@@ -95,7 +99,8 @@ def main(arguments):
         configure = "cmake --preset release -DPHOTONGRID_WERROR=ON"
         if shutil.which("ccache"):
             configure += " -DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
-        run(f"{configure} >configure.log || {{ cat configure.log; false; }}\ncmake --build build --target photongrid_program", root.resolve())
+        run(f"{configure} >configure.log || {{ cat configure.log; false; }}", root.resolve())
+        run("cmake --build build --target photongrid_program", root.resolve())
         for page in pages:
             for command in page.commands:
                 run(command, root.resolve())

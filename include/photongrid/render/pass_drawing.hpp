@@ -18,7 +18,7 @@ class pass_drawing {
 public:
     /// It draws nothing yet. `settings`: those of the pass; `how` has neither preview nor band. It adds times and
     /// counts to `stats`. `built` and `stats` must outlive it.
-    /// \throws std::invalid_argument for a camera or settings that check() rejects, or a preview or band; backend_error.
+    /// \throws std::invalid_argument for a camera or settings that check() rejects, a preview or a band; backend_error.
     pass_drawing(B& device, const built_map<B>& built, const camera& view, const render_settings& settings,
         const view_pass_settings& how, render_stats& stats)
         : device_(device), built_(built), view_(view), settings_(settings), how_(how), stats_(stats)

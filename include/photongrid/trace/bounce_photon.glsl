@@ -141,8 +141,8 @@ void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by)
     if ((args.to_diffuse != 0u && surface == DIFFUSE_SURFACE) || !(r.x < survival))
         return;
     Scattered l = scatter_photon(s, facet, r.y, r.z, uvec4(photon.id, photon.frame, 0u, args.seed));
-    // r.x is uniform below `survival`, so the same number also decides whether another facet hides the photon. What hides
-    // it from a coat's reflection goes to the base.
+    // r.x is uniform below `survival`, so the same number also decides whether another facet hides the photon. What
+    // hides it from a coat's reflection goes to the base.
     precise float unhidden_survival = survival * (is_coated(s) ? 1.0f : l.unhidden);
     if (!(r.x < unhidden_survival) || !(l.power_scale > 0.0f))
         return;

@@ -9,7 +9,7 @@
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
-    uint branch;     // bit n, at the n-th split; at glass: 1 reflected, 0 refracted; at a coat: 1 reflected, 0 the base;
+    uint branch;     // bit n, at the n-th split; at glass: 1 reflected, 0 refracted; at a coat: 1 reflected, 0 base;
                      // at a rough surface: 1 ends, 0 goes on; of a mixture: 1 the second part, 0 the first; where a
                      // surface is clear in part: 1 meets it, 0 passes
     uint splits;     // how often a ray splits at most
@@ -93,7 +93,8 @@ void see_light(Hit hit, vec3 d)
         precise float weighted = scale * weight_of_hit(sampled_density(light, hit, d));
         scale = weighted;
     }
-    emitted = vec4(throughput.x * power.x * scale, throughput.y * power.y * scale, throughput.z * power.z * scale, 0.0f);
+    emitted = vec4(throughput.x * power.x * scale, throughput.y * power.y * scale,
+        throughput.z * power.z * scale, 0.0f);
 }
 
 // The ray sees the environment.
@@ -244,8 +245,8 @@ void end_on_rough(Hit hit, Surface s, vec3 reflected)
     surface = vec4(s.shading.x, s.shading.y, s.shading.z, float(s.number));
 }
 
-// Some rays end on a rough surface for samples of lights: in a pass of their own, or every other one. In the first branch
-// the ray ends here.
+// Some rays end on a rough surface for samples of lights: in a pass of their own, or every other one. In the first
+// branch the ray ends here.
 Branch rough_branch(uint i, uint hits)
 {
     Branch b;

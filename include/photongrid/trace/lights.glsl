@@ -1,5 +1,6 @@
-// The table of lights: what each kind emits, how points are lit by it, and how much to expect of it. Included by kernels
-// after the INPUTs of trace/lights/mesh_light.glsl, trace/environment.glsl and trace/lights/environment_light.glsl.
+// The table of lights: what each kind emits, how points are lit by it, and how much to expect of it. Included by
+// kernels after the INPUTs of trace/lights/mesh_light.glsl, trace/environment.glsl and
+// trace/lights/environment_light.glsl.
 #include <photongrid/trace/light_record.glsl>
 #include <photongrid/trace/lit_point.glsl>
 #include <photongrid/trace/environment.glsl>

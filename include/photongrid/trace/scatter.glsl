@@ -7,8 +7,8 @@
 //
 //     scatter_sample()  draws a direction
 //     scatter_eval()    is the BSDF of light that comes from a direction, divided by the reflectance
-//     scatter_pdf()     is the density with which scatter_sample() draws a direction; of the base of a smooth mesh it is
-//                       about the shading normal, by which light is received, not about the geometric one, by which
+//     scatter_pdf()     is the density with which scatter_sample() draws a direction; of the base of a smooth mesh
+//                       it is about the shading normal, by which light is received, not about the geometric one, by which
 //                       photons leave
 //     is_delta()        tells whether there is but one direction: then the BSDF and the density are 0
 #include <photongrid/trace/coat.glsl>
@@ -42,8 +42,8 @@ bool is_delta(Surface s)
     return s.way != BY_BASE && !has_facets(s);
 }
 
-// The surface for light that leaves by `way`. A coated one gets the reflectance of that way: white for the coat; for the
-// base, the share that gets out through the coat.
+// The surface for light that leaves by `way`. A coated one gets the reflectance of that way: white for the coat; for
+// the base, the share that gets out through the coat.
 Surface leaving_by(Surface s, uint way)
 {
     s.way = way;
@@ -114,8 +114,8 @@ struct Scattered {
                           // Methods for Light Transport Simulation, 1997, section 5.3); 0: none leaves
 };
 
-// Veach's factor on power where the shading normal is not the geometric one, at most 8. `geometric`, `shading`: cosines of
-// the leaving direction with these normals.
+// Veach's factor on power where the shading normal is not the geometric one, at most 8. `geometric`, `shading`: cosines
+// of the leaving direction with these normals.
 float shading_factor(Surface s, float geometric, float shading)
 {
     precise float factor
@@ -143,8 +143,8 @@ Scattered leave_facet(Surface s, Facet facet)
     return l;
 }
 
-// By a smooth mirror, coat or glass. Where the shading normal would lead to the wrong side of the surface, the geometric
-// normal decides.
+// By a smooth mirror, coat or glass. Where the shading normal would lead to the wrong side of the surface, the
+// geometric normal decides.
 Scattered leave_smooth(Surface s, Facet facet)
 {
     bool reflected = s.way == BY_REFLECTION;
@@ -167,8 +167,8 @@ Scattered leave_smooth(Surface s, Facet facet)
     return l;
 }
 
-// A photon that is reflected must go where an eye ray comes from. Reflected by the shading normal it does, if that leads
-// out of the surface; and along the geometric reflection, if an eye ray that comes from there falls back to the
+// A photon that is reflected must go where an eye ray comes from. Reflected by the shading normal it does, if that
+// leads out of the surface; and along the geometric reflection, if an eye ray that comes from there falls back to the
 // geometric normal. Where both are possible, `u` chooses; where neither is, no power leaves. `l`: what leave_smooth()
 // finds.
 Scattered where_eye_rays_come_from(Surface s, Scattered l, float u)

@@ -15,8 +15,8 @@ const uint LIGHT_TREE = 12u;
 // w of the table's record: the node after all that shadow rays to rectangle lights can meet. If that is not the last
 // one, the root is left out, too.
 const uint SHAPE_TREE = 13u;
-// How samples of a light differ: not at all; by points that are even over its area; by directions that are even over the
-// solid angle of a ball (trace/light_record.glsl); else.
+// How samples of a light differ: not at all; by points that are even over its area; by directions that are even over
+// the solid angle of a ball (trace/light_record.glsl); else.
 const uint SAMPLED_ONCE = 0u;
 const uint SAMPLED_BY_AREA = 1u;
 const uint SAMPLED_BY_SOLID_ANGLE = 2u;

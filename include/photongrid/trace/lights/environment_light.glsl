@@ -73,8 +73,8 @@ ArrivingLight environment_arriving(uint at, ArrivingLight a, SampleNumbers n, Li
 
 float environment_importance(uint at, float watts)
 {
-    // The irradiance of an even sky. A convex body's outline is a quarter of its surface, on average over all directions,
-    // so that its power is that irradiance times the surface of the box.
+    // The irradiance of an even sky. A convex body's outline is a quarter of its surface, on average over all
+    // directions, so that its power is that irradiance times the surface of the box.
     precise vec3 size = vec3(scene(at + 3u)) - vec3(scene(at + 2u));
     precise float even = 0.5f * watts / (size.x * size.y + size.y * size.z + size.z * size.x);
     return even;

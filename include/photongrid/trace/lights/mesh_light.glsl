@@ -1,6 +1,6 @@
 // Meshes that are lights (scene/lights.hpp). Included by kernels after the INPUTs faces, planes and vertices
-// (mesh_surface.glsl) and `shares`: of each triangle of a light the share of the light's area that is in it and in
-// the light's earlier triangles, times 2^32. Records: at + 1: middle of a ball that holds it; at + 2: its first triangle;
+// (mesh_surface.glsl) and `shares`: of each triangle of a light the share of the light's area that is in it and in the
+// light's earlier triangles, times 2^32. Records: at + 1: middle of a ball that holds it; at + 2: its first triangle;
 // at + 3: how many it has; at + 4: the ball's radius.
 SWITCH(11, MESH_LIGHTS)
 const uint MESH_LIGHT = 11u;
