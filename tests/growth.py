@@ -62,13 +62,14 @@ class Page:
 
 
 def copy_sources(to):
-    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
-    listed = subprocess.run(command, check=True, capture_output=True)
-    for path in listed.stdout.decode().split("\0"):
-        if path and pathlib.Path(path).is_file():
+    for folder, folders, files in os.walk("."):
+        if folder == ".":
+            folders[:] = [f for f in folders if f not in (".git", "out") and not f.startswith("build")]
+        for name in files:
+            path = pathlib.Path(folder, name)
             target = to / path
             target.parent.mkdir(parents=True, exist_ok=True)
-            if not target.exists() or target.read_bytes() != pathlib.Path(path).read_bytes():
+            if not target.exists() or target.read_bytes() != path.read_bytes():
                 shutil.copy2(path, target)  # what has not changed need not be built again
 
 
