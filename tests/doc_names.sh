@@ -5,8 +5,9 @@
 #   tests/doc_names.sh
 #
 # A name is an identifier or an option in a tracked source (comments and measures do not count), a tracked path or the
-# end of one, or a word of tests/doc_words.txt. What the pages add_a_*.md make is there, too (tests/growth.sh). In paths <...>, * and words in capitals stand for anything. Single
-# letters, numbers and what build folders hold are not looked up. Prints what is missing as PAGE:LINE and exits 1.
+# end of one, or a word of tests/doc_words.txt. What the pages add_a_*.md make is there, too (tests/growth.sh).
+# In paths <...>, * and words in capitals stand for anything. Single letters, numbers and what build folders hold are
+# not looked up. Prints what is missing as PAGE:LINE and exits 1.
 # shellcheck disable=SC2016 # awk's variables
 set -euo pipefail
 export LC_ALL=C

@@ -15,10 +15,10 @@ namespace photongrid {
 /// Traces photons and builds the map for a pass. A scene without indirect light has an empty map.
 /// \throws std::invalid_argument for settings that check() rejects, backend_error, render_cancelled.
 template <backend B>
-built_map<B> build_map(
-    B& device, std::shared_ptr<world<B>> of, const render_settings& settings, const render_observer& observer = {})
+built_map<B> build_map(B& device, std::shared_ptr<world<B>> of, const render_settings& settings,
+    const render_observer& observer = {}, map_use use = map_use::light)
 {
-    map_building<B> map(device, std::move(of), settings);
+    map_building<B> map(device, std::move(of), settings, use);
     while (!map.finished()) {
         const auto stage = map.stage();
         detail::stop_if_cancelled(observer);
@@ -78,10 +78,7 @@ template <backend B>
     pass_options<B> options;
     if (has_shrinking_radii(settings)) {
         const auto with = settings_of_radius_map(settings, device.caps());
-        map_building<B> building(device, of, with, map_use::first_radii);
-        while (!building.finished())
-            building.advance();
-        first.emplace(building.take());
+        first.emplace(build_map(device, of, with, {}, map_use::first_radii));
         options.radii = radii_of_pass(*first, with, number);
     }
     const auto with = settings_of_pass(settings, number);

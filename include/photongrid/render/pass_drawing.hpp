@@ -50,16 +50,12 @@ public:
     bool advance()
     {
         if (!finished()) {
-            if (!band_)
-                begin_band();
+            begin_band();
             if (band_->advance()) {
                 finish_band(device_, *band_, light_, stats_);
                 band_.reset();
             }
-            if (finished())
-                finish_pass(device_, built_, stats_);
-            else
-                begin_band();
+            begin_band();
         }
         return finished();
     }
@@ -73,7 +69,13 @@ public:
 
     /// The light of the finished bands.
     const pass_pixels& light() const { return light_; }
-    pass_pixels take() { return std::move(light_); }
+    /// The light of the finished pass, whose counts are added to the statistics.
+    /// \throws backend_error.
+    pass_pixels take()
+    {
+        finish_pass(device_, built_, stats_);
+        return std::move(light_);
+    }
     /// The band that is drawn; null between two.
     view_pass<B>* band() { return band_ ? &*band_ : nullptr; }
     const view_pass<B>* band() const { return band_ ? &*band_ : nullptr; }

@@ -8,8 +8,8 @@
 //     scatter_sample()  draws a direction
 //     scatter_eval()    is the BSDF of light that comes from a direction, divided by the reflectance
 //     scatter_pdf()     is the density with which scatter_sample() draws a direction; of the base of a smooth mesh
-//                       it is about the shading normal, by which light is received, not about the geometric one, by which
-//                       photons leave
+//                       it is about the shading normal, by which light is received, not about the geometric one, by
+//                       which photons leave
 //     is_delta()        tells whether there is but one direction: then the BSDF and the density are 0
 #include <photongrid/trace/coat.glsl>
 #include <photongrid/trace/microfacet.glsl>

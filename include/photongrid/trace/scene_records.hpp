@@ -404,8 +404,9 @@ namespace detail {
             const glm::vec4* record = &out_.records[lights.first];
             for_each_light(s_, [&](const auto& list, auto kind) {
                 for (const auto& l : list) {
-                    if (const auto ball = ball_around(kind, l, record); ball && lights.count > most_lights_sampled_each)
-                        balls.push_back(*ball);
+                    if (lights.count > most_lights_sampled_each)
+                        if (const auto ball = ball_around(kind, l, record))
+                            balls.push_back(*ball);
                     record += lights.stride;
                 }
             });
