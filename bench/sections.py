@@ -471,6 +471,16 @@ int main()
     files += [(b, f"photongrid-{b}", smallest(f"{b}/{b}.hpp", f"{b}_backend")) for b in backends]
     if not quick:
         files.append(("cpu, by kernels", "photongrid-cpu", smallest("cpu/cpu_by_kernels.hpp", "cpu_by_kernels")))
+        files.append(("cpu, compiled library", "photongrid-cpu_compiled", includes("backends/cpu/compiled.hpp", own) + """
+struct photon { glm::vec3 position, power; };
+int main()
+{
+    photongrid::cpu_backend device;
+    const glm::vec3 o(0), x(1, 0, 0), power(1);
+    const photongrid::photon_map map(device, std::vector<photon>{{o, power}, {x, power}}, {.k = 2});
+    return map.irradiance(std::vector<glm::vec4>{{0.2f, 0.3f, 0, 1}})[0].value > 0 ? 0 : 1;
+}
+"""))
     took = [[] for _ in files]
     for _ in range(1 if quick else 3):  # in turn
         for i, (_, package, text) in enumerate(files):

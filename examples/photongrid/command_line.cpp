@@ -294,7 +294,8 @@ namespace {
               "a picture like A with another seed: also print what part of relMSE is noise of A, blotches too")
             ->type_name("A2.exr|.pfm");
         to.add_flag("--noise", o.noise,
-            "also print what relMSE the noise of each picture makes, told from that picture alone; blotches of photon "
+            "also print what relMSE the noise of each picture makes, estimated from that picture alone; blotches of "
+            "photon "
             "maps are not found");
         add_exposure(to, o.exposure, "compare the looks of pixel values times 2^EV; default: auto, fitted to B");
     }

@@ -75,7 +75,7 @@ struct compare_options {
     std::optional<double> exposure; ///< EV, for structural similarity; none: fitted to the reference
     std::uint32_t average = 1;      ///< blocks of so many pixels a side are compared
     std::string again;              ///< a picture like a with another seed
-    bool noise = false;             ///< whether the pictures' own noise is told
+    bool noise = false;             ///< whether to estimate the pictures' own noise
 };
 
 /// A region that a picture gives `error`.

@@ -78,10 +78,10 @@ std::string picture_identity(const scene& s, const render_settings& settings, co
     // through the pixel's middle.
     auto of_passes = settings;
     of_passes.output = settings.output.without_stop_rule();
-    of_passes.output.tell_bias = output_settings{}.tell_bias; // what follows from it is compared below
+    of_passes.output.report_bias = output_settings{}.report_bias; // what follows from it is compared below
     const json all = {{"version", PHOTONGRID_VERSION}, {"backend", caps.backend}, {"device", caps.device},
         {"scene", json::parse(scene_text(s, {}))}, {"set of settings", json::parse(settings_text(of_passes))},
-        {"choice of layers", settings.output.aov}, {"choice of biases", tells_bias(settings)}};
+        {"choice of layers", settings.output.aov}, {"choice of biases", reports_bias(settings)}};
     return all.dump();
 }
 

@@ -18,11 +18,11 @@ namespace {
     constexpr double pi = std::numbers::pi;
     using field = std::function<double(double, double)>; ///< irradiance, W/m^2, at (x, z)
 
-    struct told {
+    struct biased_estimate {
         double irradiance, bias;
         glm::dvec3 tilt, jump;
     };
-    told told_by(serial_backend& b, const map_buffers<serial_backend>& map, const knn_settings& s)
+    biased_estimate reported_by(serial_backend& b, const map_buffers<serial_backend>& map, const knn_settings& s)
     {
         const std::vector<vec4> at(1, vec4(0, 0, 0, 1)), up(1, vec4(0, 1, 0, 0));
         const auto points = b.upload(std::span<const vec4>(at)), normals = b.upload(std::span<const vec4>(up));
@@ -49,10 +49,10 @@ namespace {
                 }
             map_ = sorted_map(b_, upload_photons(b_, s), s.g);
         }
-        told operator()(filter_kind f, float radius)
+        biased_estimate operator()(filter_kind f, float radius)
         {
             knn_settings s{.max_radius = radius, .search = search_kind::fixed_radius, .filter = f, .biases = true};
-            return told_by(b_, map_, s);
+            return reported_by(b_, map_, s);
         }
 
     private:
@@ -89,7 +89,7 @@ namespace {
         EXPECT_FLOAT_EQ(detail::bias_factor(filter_kind::silverman), 1.5f);
     }
 
-    /// A paraboloid has no derivatives but those that estimates see: what is told is what the estimate is wrong by.
+    /// A paraboloid has no derivatives but those that estimates see: what is reported is what the estimate is wrong by.
     TEST(biases, of_a_paraboloid_are_its_bias)
     {
         lattice dish([](double x, double z) { return 1 + 0.4 * x + 2 * x * x + z * z; });
@@ -104,7 +104,7 @@ namespace {
     }
 
     /// A slope has no bias and no jump; a step has both moments that are promised, across it.
-    TEST(biases, moments_tell_a_step_from_a_slope)
+    TEST(biases, moments_distinguish_a_step_from_a_slope)
     {
         const double slope = 0.9;
         const auto s = lattice([&](double x, double) { return 2 + slope * x; })(filter_kind::silverman, 1);
@@ -164,7 +164,7 @@ namespace {
             }
             const auto map = sorted_map(b, upload_photons(b, s), s.g);
             for (auto& r : rows) {
-                const auto e = told_by(b, map,
+                const auto e = reported_by(b, map,
                     {.max_radius = static_cast<float>(r.radius),
                         .search = search_kind::fixed_radius,
                         .filter = r.filter,
@@ -175,8 +175,9 @@ namespace {
                 r.bias_squares += e.bias * e.bias / maps;
             }
         }
-        std::printf("| filter | radius | bias | what is told, by integration | told | noise | of what is told |\n"
-                    "|---|---|---|---|---|---|---|\n");
+        std::printf(
+            "| filter | radius | bias | what is reported, by integration | reported | noise | of what is reported |\n"
+            "|---|---|---|---|---|---|---|\n");
         for (const auto& r : rows) {
             const bool even = r.filter == filter_kind::constant;
             const double factor = even ? 3 : 1.5, noise = std::sqrt(r.squares - r.light * r.light),
@@ -184,13 +185,13 @@ namespace {
             const double bias = means_of([&](double rho) {
                 return (even ? 1 : 3 * std::pow(1 - rho * rho, 2)) * rise(r.radius * rho);
             }).first;
-            const double told
+            const double reported
                 = means_of([&](double rho) { return factor * (2 * rho * rho - 1) * rise(r.radius * rho); }).first;
             std::printf("| %s | %.1f | %.4f | %.4f | %.4f | %.3f | %.3f |\n", detail::entry_of(r.filter).name, r.radius,
-                bias, told, r.bias, noise, own);
+                bias, reported, r.bias, noise, own);
             EXPECT_NEAR(r.light - light(0, 0), bias, 4 * noise / std::sqrt(maps));
-            EXPECT_NEAR(r.bias, told, 4 * own / std::sqrt(maps));
-            EXPECT_NEAR(told / bias, 1, r.radius < 0.15 ? 0.06 : 0.15);
+            EXPECT_NEAR(r.bias, reported, 4 * own / std::sqrt(maps));
+            EXPECT_NEAR(reported / bias, 1, r.radius < 0.15 ? 0.06 : 0.15);
             EXPECT_LT(std::abs(bias), 0.5);
             // Variance of a sum with these weights; the number of photons of a map is given.
             const auto variance = [&](const std::function<double(double)>& weight) {

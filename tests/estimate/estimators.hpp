@@ -75,7 +75,7 @@ protected:
         const auto irradiance = b.download(e.irradiance);
         const auto used = b.download(e.used);
         const auto standard_error = b.download(e.standard_error);
-        const auto told = biases_of(e);
+        const auto reported = biases_of(e);
         for (std::size_t q = 0; q < s.points.size(); ++q) {
             auto own = settings;
             if (settings.radii_at_points) // all are powers of two
@@ -103,7 +103,7 @@ protected:
                     return "standard error " + std::to_string(c) + " is " + std::to_string(standard_error[q][c])
                         + ", not " + std::to_string(expected.standard_error[c]) + where;
             if (settings.biases)
-                if (const auto wrong = other_biases(told, q, expected); !wrong.empty())
+                if (const auto wrong = other_biases(reported, q, expected); !wrong.empty())
                     return wrong + where;
         }
         return {};
@@ -113,10 +113,10 @@ protected:
     bool compares_biases_ = true;
 
     /// Biases, downloaded.
-    struct told_biases {
+    struct biases_found {
         std::vector<vec4> bias, tilt, jump, constant;
     };
-    told_biases biases_of(const knn_estimates<B>& e)
+    biases_found biases_of(const knn_estimates<B>& e)
     {
         auto& b = this->b();
         return {b.download(e.biases.bias), b.download(e.biases.tilt), b.download(e.biases.jump),
@@ -124,7 +124,7 @@ protected:
     }
     /// What differs between the biases of a point and what brute force finds, or nothing. Their sums have terms of
     /// either sign.
-    static std::string other_biases(const told_biases& told, std::size_t q, const brute_estimate& expected)
+    static std::string other_biases(const biases_found& reported, std::size_t q, const brute_estimate& expected)
     {
         const double all = std::max({expected.constant.x, expected.constant.y, expected.constant.z});
         const auto differ = [&](const char* name, const vec4& found, const glm::dvec3& known) {
@@ -134,9 +134,9 @@ protected:
                         + std::to_string(known[c]);
             return std::string();
         };
-        for (const auto& wrong :
-            {differ("bias", told.bias[q], expected.bias), differ("tilt", told.tilt[q], expected.tilt),
-                differ("jump", told.jump[q], expected.jump), differ("constant", told.constant[q], expected.constant)})
+        for (const auto& wrong : {differ("bias", reported.bias[q], expected.bias),
+                 differ("tilt", reported.tilt[q], expected.tilt), differ("jump", reported.jump[q], expected.jump),
+                 differ("constant", reported.constant[q], expected.constant)})
             if (!wrong.empty())
                 return wrong;
         return {};

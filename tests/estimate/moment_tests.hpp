@@ -79,7 +79,7 @@ TYPED_TEST_P(edges, moments_equal_integration_over_lines)
 }
 
 /// Light with a slope, of which an estimate at an edge is too high or too low by as much as it tells.
-TYPED_TEST_P(edges, a_slope_beside_an_edge_is_told)
+TYPED_TEST_P(edges, a_slope_beside_an_edge_is_reported)
 {
     auto& b = this->b();
     const squares all;
@@ -113,13 +113,13 @@ TYPED_TEST_P(edges, a_slope_beside_an_edge_is_told)
             .max_radius = 0.45f, .search = search_kind::fixed_radius, .filter = f.kind, .biases = true};
         auto e = knn_grid_estimate(b, map, p, np, k);
         correct_edges(b, scene, p, np, e, f.kind);
-        const auto estimates = b.download(e.irradiance), told = b.download(e.biases.bias);
+        const auto estimates = b.download(e.irradiance), reported = b.download(e.biases.bias);
         for (std::size_t place = 0; place < places.size(); ++place) {
             const double known = light(places[place].x, places[place].y);
             glm::dvec3 bias(0), difference(0), squares(0);
             for (std::size_t i = place; i < points.size(); i += places.size()) {
                 const glm::dvec3 is = glm::dvec3(estimates[i]) - known * glm::dvec3(0.5, 1, 1.5),
-                                 off = glm::dvec3(told[i]) - is;
+                                 off = glm::dvec3(reported[i]) - is;
                 bias += is / squares_drawn;
                 difference += off / squares_drawn;
                 squares += off * off / squares_drawn;
@@ -130,7 +130,7 @@ TYPED_TEST_P(edges, a_slope_beside_an_edge_is_told)
                 EXPECT_LT(error, 0.03) << "the test sees enough";
             }
             if (f.kind == filter_kind::silverman)
-                std::printf("edges: slope, %s, (%g, %g): bias %+.3f, told %+.3f\n", f.name, places[place].x,
+                std::printf("edges: slope, %s, (%g, %g): bias %+.3f, reported %+.3f\n", f.name, places[place].x,
                     places[place].y, bias.y, bias.y + difference.y);
         }
     }

@@ -183,14 +183,14 @@ TYPED_TEST_P(estimators, biases_do_not_change_what_they_are_of)
         const auto e = knn_grid_estimate(b, m.map, at, normals, k);
         EXPECT_EQ(count_different_bits(b.download(e.used), b.download(plain.used)), 0u) << int(search);
         const auto light = b.download(e.irradiance), plain_light = b.download(plain.irradiance);
-        const auto told = this->biases_of(e);
+        const auto reported = this->biases_of(e);
         for (std::size_t q = 0; q < 2; ++q)
-            EXPECT_EQ(told.bias[q] + told.tilt[q] + told.jump[q] + told.constant[q], vec4(0)) << q;
+            EXPECT_EQ(reported.bias[q] + reported.tilt[q] + reported.jump[q] + reported.constant[q], vec4(0)) << q;
         double largest = 0;
         for (std::size_t q = 2; q < s.points.size(); ++q) {
             ASSERT_NEAR(light[q].x, plain_light[q].x, 1e-6f * plain_light[q].x);
             const auto expected = estimate_by_force(s, m.ids, m.powers, q, k, std::optional<float>(light[q].w));
-            EXPECT_EQ(this->other_biases(told, q, expected), "") << int(search) << ", point " << q;
+            EXPECT_EQ(this->other_biases(reported, q, expected), "") << int(search) << ", point " << q;
             largest = std::max(largest, std::abs(expected.bias.x));
         }
         EXPECT_GT(largest, 0);

@@ -109,7 +109,7 @@ namespace {
         EXPECT_NE(
             contents(folder / "a.exr")
                 .find(
-                    R"("search":"fixed_radius","filter":"silverman","bias":"paper","leaks":{"min_cosine":0.25,"flattening":3.0},"edge_correction":"polygons","indirect":"map","gather_rays":16,"radii":"shrinking","interpolation":0.5,"tell_bias":"auto","only":"all")"),
+                    R"("search":"fixed_radius","filter":"silverman","bias":"paper","leaks":{"min_cosine":0.25,"flattening":3.0},"edge_correction":"polygons","indirect":"map","gather_rays":16,"radii":"shrinking","interpolation":0.5,"report_bias":"auto","only":"all")"),
             std::string::npos)
             << "the EXR's note";
         arguments.insert(arguments.end(), {"--filter", "cone", "--leaks", "side", "--edge-correction", "none"});

@@ -27,7 +27,8 @@ namespace {
         EXPECT_LE(end.at("error").get<double>(), 0.5);
         const auto passes = end.at("passes").get<unsigned>();
         ASSERT_GE(passes, 4u);
-        const auto counted = picture_of({"--passes", std::to_string(passes), "--tell-bias", "yes", "-o", "passes.pfm"});
+        const auto counted
+            = picture_of({"--passes", std::to_string(passes), "--report-bias", "yes", "-o", "passes.pfm"});
         EXPECT_EQ(contents(folder / "error.pfm"), contents(folder / "passes.pfm"));
         EXPECT_EQ(counted.at("ended_by"), "passes");
         EXPECT_EQ(counted.at("error"), end.at("error"));
@@ -132,7 +133,7 @@ namespace {
         EXPECT_EQ(contents(folder / "a.pfm"), contents(folder / "whole.pfm"));
         // The time of all runs counts, and --quiet says nothing.
         const auto late = run(small_with(
-            {"--seconds", "0.000001", "--tell-bias", "yes", "--resume", "unfinished", "-o", "b.pfm", "--quiet"}));
+            {"--seconds", "0.000001", "--report-bias", "yes", "--resume", "unfinished", "-o", "b.pfm", "--quiet"}));
         EXPECT_EQ(late.code, 0);
         EXPECT_EQ(late.err, "");
         EXPECT_EQ(contents(folder / "b.pfm"), contents(folder / "whole.pfm"));

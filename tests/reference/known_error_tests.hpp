@@ -1,5 +1,5 @@
-// How exact pictures (as_exact) converge, and whether pictures tell their error: --until-error, noise and bias. Against
-// light that is known, and the mean of many passes.
+// How exact pictures (as_exact) converge, and whether pictures report their error: --until-error, noise and bias.
+// Against light that is known, and the mean of many passes.
 #pragma once
 
 #include <photongrid/backends/any/any.hpp>
@@ -252,7 +252,7 @@ namespace {
         exact.output.passes = 300;
         const truth known(drawn(*drawing, s, exact));
         settings.estimate.k = 50;
-        settings.output.tell_bias = bias_telling::yes;
+        settings.output.report_bias = bias_report::yes;
         std::printf(
             "| radii | passes | within 2 (noise + bias) | within 2 noise | claimed / true |\n|---|---|---|---|---|\n");
         for (const auto radii : {radius_kind::per_pass, radius_kind::shrinking})

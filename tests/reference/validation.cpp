@@ -7,5 +7,5 @@
 #include "mirror_tests.hpp"
 #include "mixed_light_tests.hpp"
 #include "nearest_tests.hpp"
+#include "reported_bias_tests.hpp"
 #include "shading_normal_tests.hpp"
-#include "told_bias_tests.hpp"

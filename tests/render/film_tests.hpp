@@ -111,10 +111,10 @@ TEST(film, is_the_mean_and_its_noise_the_spread_of_groups)
     }
 }
 
-/// Of passes of one number a pixel: the root mean square of what the film tells of the noise of their mean, and of what
-/// it is.
+/// Of passes of one number a pixel: the root mean square of what the film reports as the noise of their mean, and of
+/// what it is.
 template <class Value>
-std::pair<double, double> told_and_true_noise(std::uint32_t passes, double mean, const Value& value)
+std::pair<double, double> reported_and_true_noise(std::uint32_t passes, double mean, const Value& value)
 {
     constexpr std::size_t n = 4000;
     film f(n, 1, 1, true);
@@ -127,31 +127,31 @@ std::pair<double, double> told_and_true_noise(std::uint32_t passes, double mean,
         f.add(pass, p);
     }
     const auto picture = f.picture().picture;
-    double told = 0, right = 0;
+    double reported = 0, right = 0;
     for (std::size_t i = 0; i < n; ++i) {
-        told += std::pow(picture.layers.noise[i], 2) / n;
+        reported += std::pow(picture.layers.noise[i], 2) / n;
         right += std::pow(static_cast<double>(picture.pixels[i].x) - mean, 2) / n;
     }
-    return {std::sqrt(told), std::sqrt(right)};
+    return {std::sqrt(reported), std::sqrt(right)};
 }
 
 /// However many groups there are, and whatever the last one has.
-TEST(film, noise_of_independent_passes_is_told_right)
+TEST(film, noise_of_independent_passes_is_right)
 {
     for (const std::uint32_t passes : {2u, 5u, 16u, 17u, 33u, 50u, 128u, 200u}) {
         std::mt19937 random(passes);
         std::uniform_real_distribution<float> light(0, 2);
-        const auto [told, right]
-            = told_and_true_noise(passes, 1, [&](std::uint32_t, std::uint32_t) { return light(random); });
+        const auto [reported, right]
+            = reported_and_true_noise(passes, 1, [&](std::uint32_t, std::uint32_t) { return light(random); });
         const double known = std::sqrt(1.0 / (3 * passes));
-        EXPECT_NEAR(told, known, 0.05 * known) << passes << " passes"; // five standard errors
+        EXPECT_NEAR(reported, known, 0.05 * known) << passes << " passes"; // five standard errors
         EXPECT_NEAR(right, known, 0.05 * known) << passes << " passes";
     }
 }
 
 /// A part of each pixel is covered, and its passes share out their rays: numbers of the van der Corput sequence, turned
 /// at random, are in or out. The spread of single passes would tell several times the noise that there is.
-TEST(film, noise_of_passes_that_share_out_their_rays_is_nearly_told_right)
+TEST(film, noise_of_passes_that_share_out_their_rays_is_nearly_right)
 {
     const auto uncovered = [](std::uint32_t pass, std::uint32_t pixel) {
         std::uint32_t reversed = 0;
@@ -162,12 +162,13 @@ TEST(film, noise_of_passes_that_share_out_their_rays_is_nearly_told_right)
         return (static_cast<float>(turned >> 8) * 0x1p-24f < covered ? 1.0f : 0.0f) - covered;
     };
     for (const std::uint32_t passes : {64u, 100u, 256u, 1000u}) {
-        const auto [told, right] = told_and_true_noise(passes, 0, uncovered);
+        const auto [reported, right] = reported_and_true_noise(passes, 0, uncovered);
         const double of_single_passes = std::sqrt(0.22 / passes); // the mean of covered (1 - covered)
-        std::printf("[          ] %u passes: the noise that is told is %.1f of the true one; by single passes %.1f\n",
-            passes, told / right, of_single_passes / right);
-        EXPECT_GT(told, right) << passes << " passes";
-        EXPECT_LT(told, 4.5 * right) << passes << " passes";
+        std::printf(
+            "[          ] %u passes: the noise that is reported is %.1f of the true one; by single passes %.1f\n",
+            passes, reported / right, of_single_passes / right);
+        EXPECT_GT(reported, right) << passes << " passes";
+        EXPECT_LT(reported, 4.5 * right) << passes << " passes";
         EXPECT_GT(of_single_passes, 6 * right) << passes << " passes";
     }
 }

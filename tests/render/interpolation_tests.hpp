@@ -199,7 +199,7 @@ TYPED_TEST_P(pictures, interpolated_pictures_are_close_and_equal_serials)
     settings.output.width = 48;
     settings.output.height = 40;
     settings.output.aov = true;
-    settings.output.tell_bias = bias_telling::yes;
+    settings.output.report_bias = bias_report::yes;
     render_stats few, all;
     const auto picture = this->picture(s, settings, &few);
     auto without = settings;

@@ -46,7 +46,7 @@ struct biased_passes {
     }
 };
 
-TEST(pixel_bias, is_the_mean_of_what_passes_tell)
+TEST(pixel_bias, is_the_mean_of_what_passes_report)
 {
     const auto f = biased_passes{.bias = -0.125}.of(5);
     EXPECT_TRUE(f.has_biases());
@@ -64,7 +64,8 @@ TEST(pixel_bias, is_the_mean_of_what_passes_tell)
     EXPECT_TRUE(without.picture().picture.layers.bias.empty());
 }
 
-/// The squares of what is told have the mean of the square of the bias, but for the half of the noise that is cut off.
+/// The squares of what is reported have the mean of the square of the bias, but for the half of the noise that is cut
+/// off.
 TEST(pixel_bias, its_noise_is_no_bias)
 {
     constexpr double noise = 0.2, of_mean = noise / 4;

@@ -11,7 +11,7 @@ TYPED_TEST_P(progressive, a_picture_goes_on_from_its_state)
     auto s = this->small_scene();
     s.render.view.spp = 4;
     s.render.output.aov = true;
-    s.render.output.tell_bias = bias_telling::yes;
+    s.render.output.report_bias = bias_report::yes;
     const auto expected = this->whole(s, s.render);
     render_state state;
     uint least = 1;
@@ -38,7 +38,7 @@ TYPED_TEST_P(progressive, a_picture_goes_on_from_its_state)
 
     typename TestFixture::loop other(this->b());
     auto larger = s.render, without_layers = s.render, without_biases = s.render;
-    without_biases.output.tell_bias = bias_telling::no;
+    without_biases.output.report_bias = bias_report::no;
     larger.output.width += 1;
     without_layers.output.aov = false;
     for (const auto& settings : {larger, without_layers, without_biases}) {

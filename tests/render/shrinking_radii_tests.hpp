@@ -118,11 +118,11 @@ TYPED_TEST_P(pictures, biases_equal_serials)
             settings.estimate.leaks.min_cosine = 0.5f;
             const auto plain = this->picture(s, settings);
             EXPECT_TRUE(plain.layers.bias.empty());
-            settings.output.tell_bias = bias_telling::yes;
-            const auto told = this->picture(s, settings);
-            EXPECT_TRUE(same_bytes(told, plain));
-            const auto& bias = told.layers.bias;
-            ASSERT_EQ(bias.size(), told.pixels.size());
+            settings.output.report_bias = bias_report::yes;
+            const auto reported = this->picture(s, settings);
+            EXPECT_TRUE(same_bytes(reported, plain));
+            const auto& bias = reported.layers.bias;
+            ASSERT_EQ(bias.size(), reported.pixels.size());
             if (!b.caps().exact_division || !b.caps().exact_sqrt)
                 continue;
             const auto expected = render(serial, s, settings).picture.layers.bias;

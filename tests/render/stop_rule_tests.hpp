@@ -25,7 +25,7 @@ TYPED_TEST_P(progressive, a_picture_that_its_error_ends_has_the_bytes_of_as_many
     auto counted = s.render;
     counted.output.until_error = 0;
     counted.output.passes = end.passes;
-    counted.output.tell_bias = bias_telling::yes;
+    counted.output.report_bias = bias_report::yes;
     const auto expected = render(this->b(), s, counted);
     EXPECT_TRUE(same_bytes(drawn.picture, expected.picture));
     EXPECT_EQ(expected.stats.end.by, ended_by::passes);

@@ -1,4 +1,4 @@
-// The noise of a picture, told from the picture itself.
+// The noise of a picture, estimated from the picture itself.
 #pragma once
 
 #include <photongrid/render/image.hpp>

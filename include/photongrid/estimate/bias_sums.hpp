@@ -45,7 +45,7 @@ namespace detail {
         return none;
     }
 
-    /// The sums over the photons of estimates that tell their biases, in steps.
+    /// The sums over the photons of estimates that report their biases, in steps.
     template <backend B>
     class bias_sums {
     public:

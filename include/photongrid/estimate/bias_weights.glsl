@@ -1,4 +1,4 @@
-// The weights of a photon in the sums that tell the bias of an estimate (gather_bias.glsl). t = d^2 / r^2, from 0 to 1,
+// The weights of a photon in the sums for the bias of an estimate (gather_bias.glsl). t = d^2 / r^2, from 0 to 1,
 // for a photon at distance d in a disc of radius r; rho = d / r. Included by kernels.
 
 // Legendre's polynomial of degree 1 in t: its mean over the disc is 0 where light is even or has a slope, and for light

@@ -1,4 +1,4 @@
-// Sums, over the photons within the radius of an estimate, from which bias_estimate.glsl tells its bias. The photon
+// Sums, over the photons within the radius of an estimate, from which bias_estimate.glsl computes its bias. The photon
 // that sets the radius is not among them: without it the means of the sums are right (gather_photons.glsl).
 //
 // All sums are plain ones. Rounding adds less than 1e-6 of the light to them for 1,000 photons, and they are of use as

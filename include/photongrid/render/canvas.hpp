@@ -10,7 +10,7 @@
 namespace photongrid {
 
 /// The bias of pixels, and the moments that find steps of the light (estimate_biases): sums over eye rays as those of
-/// the light, W/(m^2 sr). Empty if they are not told.
+/// the light, W/(m^2 sr). Empty if they are not reported.
 template <backend B>
 struct pixel_biases {
     buffer_of<B, glm::vec4> bias; ///< rgb

@@ -4,7 +4,7 @@
 // over its share. Two equations have E and G: sums of the photons' flux, and of flux times offset, by the constant
 // filter, against the moments of the part of the disc (covered_moments.glsl).
 //
-// So the bias is that of the slope, plus that of curvature, told by the difference of two estimates less what the
+// So the bias is that of the slope, plus that of curvature, from the difference of two estimates less what the
 // slope adds to it. The moments of the light over a part of a disc tell nothing of steps, so they become 0.
 #include <photongrid/core/vector.glsl>
 

@@ -1,5 +1,5 @@
 // Moments of the part of an estimate's disc that lies on polygons, in units of the radius, along the two axes of
-// basis_about(normal): what correct_bias.glsl needs to tell a slope of the light. The number of polygons per pass is
+// basis_about(normal): what correct_bias.glsl needs for a slope of the light. The number of polygons per pass is
 // bounded.
 //
 // Let u be the offset from the disc's centre, w a radial weight, and Psi(rho) the integral of s w(s) from rho to the

@@ -28,7 +28,7 @@ struct pass_pixels {
     // Empty unless output_settings::aov.
     std::vector<glm::vec4> searches; ///< sums over a pixel's searches: photons used, radius, photons visited, searches
     std::vector<glm::vec4> errors;   ///< x: sum of relative standard errors
-    pass_biases biases{};            ///< empty unless they are told (tells_bias)
+    pass_biases biases{};            ///< empty unless they are told (reports_bias)
 
     /// All of its vectors, in the order of a film's bytes.
     std::array<std::vector<glm::vec4>*, 6> parts()
@@ -54,7 +54,7 @@ public:
     film() = default;
     /// For pictures of width x height pixels. `unit` is a typical radiance, a power of two: sums have a resolution of
     /// 2^-64 units, and pixels above 2^40 units count as infinite. `layers`: also sum the layers
-    /// (output_settings::aov). `biases`: also sum the biases of pixels (tells_bias).
+    /// (output_settings::aov). `biases`: also sum the biases of pixels (reports_bias).
     film(std::uint32_t width, std::uint32_t height, double unit, bool layers, bool biases = false)
         : width_(width), height_(height), unit_(unit), layers_(layers), biases_(biases)
     {
@@ -234,10 +234,10 @@ public:
         }
     }
 
-    /// Whether the biases of pixels are told.
+    /// Whether the biases of pixels are reported.
     bool has_biases() const { return biases_; }
     /// The bias of the mean of the passes at a pixel, W/(m^2 sr), mean of the channels: detail::pixel_bias_sums::value.
-    /// 0 if biases are not told.
+    /// 0 if biases are not reported.
     double bias_of(std::size_t pixel) const
     {
         if (!bias_sums_.empty())

@@ -18,7 +18,7 @@ struct estimate_layers {
     std::vector<float> relative_error;
     std::vector<float> noise; ///< standard error of the mean of the passes, mean of the channels; empty for one pass
     /// How much too bright the blur of estimates makes a pixel on the average, W/(m^2 sr), mean of the channels; where
-    /// it is found by a step of the light, the sign tells nothing (film::bias_of). Empty unless tells_bias().
+    /// it is found by a step of the light, the sign tells nothing (film::bias_of). Empty unless reports_bias().
     std::vector<float> bias;
 };
 
@@ -27,7 +27,7 @@ struct image {
     std::uint32_t width = 0;       ///< pixels
     std::uint32_t height = 0;      ///< pixels
     std::vector<glm::vec3> pixels; ///< width x height
-    estimate_layers layers{};      ///< empty unless output_settings::aov or tells_bias()
+    estimate_layers layers{};      ///< empty unless output_settings::aov or reports_bias()
 };
 
 } // namespace photongrid

@@ -55,7 +55,7 @@ struct picture_forecast {
 /// Decides when a picture ends. Times are in s, since the picture was begun.
 class picture_judge {
 public:
-    /// Fewer passes do not tell the error well enough to stop by it.
+    /// The error of fewer passes is too uncertain to stop by.
     static constexpr std::uint32_t least_passes = 4;
 
     picture_judge() = default;

@@ -1,5 +1,5 @@
-// The error of a picture: how far most of its pixels are from the picture that more passes would converge to, told from
-// the spread of its passes.
+// The error of a picture: how far most of its pixels are from the picture that more passes would converge to, estimated
+// from the spread of its passes.
 #pragma once
 
 #include <photongrid/render/film.hpp>
@@ -85,7 +85,7 @@ namespace detail {
 /// Pixels in which all passes agree do not count. Of a share of 1, as of any that asks for more than half a pixel
 /// less than all, the largest difference is as likely above as below. Infinite for fewer than two passes, 0 if all
 /// passes agree. A pixel is expected to differ by a normal number: its deviation is the pixel's standard error, its
-/// mean the bias that all passes share, 0 if the film does not tell biases.
+/// mean the bias that all passes share, 0 if the film has no biases.
 inline double picture_error(const film& sum, double share)
 {
     constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -30,7 +30,7 @@ inline knn_settings search_for(const render_settings& s)
     if (s.output.only == light_part::direct || (has_gather_rays(s) && s.output.only == light_part::indirect))
         k.max_radius = 0; // nothing of the map is seen
     k.errors = s.output.aov;
-    k.biases = tells_bias(s);
+    k.biases = reports_bias(s);
     return k;
 }
 /// The search for caustic photons, whichever map they are in.
@@ -39,7 +39,7 @@ inline knn_settings search_for_caustics(const render_settings& s)
     knn_settings k = search_for(s.estimate);
     k.k = s.estimate.sought(has_caustic_map(s));
     k.errors = s.output.aov;
-    k.biases = tells_bias(s);
+    k.biases = reports_bias(s);
     return k;
 }
 

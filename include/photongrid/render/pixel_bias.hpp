@@ -15,7 +15,7 @@
 
 namespace photongrid {
 
-/// The biases of the pixels of one pass: see pixel_biases (canvas.hpp). Empty if they are not told.
+/// The biases of the pixels of one pass: see pixel_biases (canvas.hpp). Empty if they are not reported.
 struct pass_biases {
     std::vector<glm::vec4> bias; ///< rgb, W/(m^2 sr)
     std::vector<glm::vec4> tilt; ///< xyz, W/(m^2 sr)

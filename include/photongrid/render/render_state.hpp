@@ -63,7 +63,7 @@ inline void check(const render_state& s, const render_settings& settings)
     };
     if (!(s.seconds >= 0) || std::isinf(s.seconds))
         fail("seconds: must be finite and not negative");
-    if (s.film.size() > 0 && !s.film.is_for(o.width, o.height, o.aov, tells_bias(settings)))
+    if (s.film.size() > 0 && !s.film.is_for(o.width, o.height, o.aov, reports_bias(settings)))
         fail("film: its size or its layers differ");
     std::uint32_t known = 0; // of the film's passes
     for (std::uint32_t number = 0; number < passes; ++number)
@@ -80,7 +80,7 @@ inline void check(const render_state& s, const render_settings& settings)
     const auto has = [&](const pass_pixels& pixels, std::size_t rows, bool searches) {
         const std::size_t n = rows * o.width;
         return pixels.pixels.size() == n && pixels.searches.size() == (searches ? n : 0)
-            && pixels.errors.size() == (o.aov ? n : 0) && pixels.biases.have(tells_bias(settings) ? n : 0);
+            && pixels.errors.size() == (o.aov ? n : 0) && pixels.biases.have(reports_bias(settings) ? n : 0);
     };
     const auto bands = bands_of(o);
     const auto next = std::find_if(bands.begin(), bands.end(), [&](auto b) { return b.first == p.rows; });

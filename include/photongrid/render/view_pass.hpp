@@ -68,7 +68,7 @@ public:
         }
         detail::time_stage(device_, stats_.trace_rays, [&] {
             const std::size_t layers = !is_preview() && settings_.output.aov ? r.size() : 0;
-            const std::size_t biases = !is_preview() && tells_bias(settings_) ? r.size() : 0;
+            const std::size_t biases = !is_preview() && reports_bias(settings_) ? r.size() : 0;
             canvas_ = {r, 0, dark(r.size()), dark(r.size()), dark(layers), {dark(biases), dark(biases), dark(biases)}};
         });
         own_samples_.resize(branches_);
@@ -417,11 +417,11 @@ knn_estimates<B> view_pass<B>::shade(
 template <backend B>
 void view_pass<B>::shade_bias(const estimate_biases<B>& of, float share)
 {
-    auto& told = canvas_.biases;
-    if (told.bias.size() > 0)
-        device_.template run<kernels::shade_bias>(told.bias.size(), {.share = share},
+    auto& biases = canvas_.biases;
+    if (biases.bias.size() > 0)
+        device_.template run<kernels::shade_bias>(biases.bias.size(), {.share = share},
             reads(samples_->hits.points, samples_->hits.throughputs, of.bias, of.tilt, of.jump),
-            writes(told.bias, told.tilt, told.jump));
+            writes(biases.bias, biases.tilt, biases.jump));
 }
 
 template <backend B>

@@ -176,7 +176,7 @@ struct light_kind<mesh_light> {
 
 namespace detail {
     /// Whether no lamp stands before another by more than `least`, m: then none blocks light on its way from another.
-    /// False also where it would take long to tell: of thousands of lamps that face thousands of ways.
+    /// False also where it would take long to find out: of thousands of lamps that face thousands of ways.
     inline bool lamps_block_none(const std::vector<rectangle_light>& lamps, double least)
     {
         std::vector<dvec3> corners;

@@ -75,8 +75,8 @@ enum class indirect_kind { map, gather, paths };
 /// those that the search finds in a map of its own (shrinking_radii.hpp), if the picture has several passes.
 enum class radius_kind { per_pass, shrinking };
 
-/// Whether a picture tells the bias of its pixels (tells_bias).
-enum class bias_telling { automatic, no, yes };
+/// Whether a picture tells the bias of its pixels (reports_bias).
+enum class bias_report { automatic, no, yes };
 
 /// The irradiance estimate (the paper's radiance estimate) of a picture (2.3).
 struct estimate_settings {
@@ -131,7 +131,7 @@ struct output_settings {
     light_part only = light_part::all; ///< the part of the light to draw
     /// Whether the picture has the layer `bias`, and until_error counts it. Automatic: with until_error, of a picture
     /// whose radii shrink; others do not end by an error that their blur exceeds.
-    bias_telling tell_bias = bias_telling::automatic;
+    bias_report report_bias = bias_report::automatic;
     /// EV for tone-mapped output: pixel values times 2^exposure; none: fitted to the picture.
     std::optional<double> exposure{};
     bool aov = false; ///< radius, count and relative standard error of the estimate per pixel
@@ -217,11 +217,11 @@ inline bool has_shrinking_radii(const render_settings& s)
     return s.estimate.radii == radius_kind::shrinking && s.output.only != light_part::direct
         && s.output.passes_at_most() > 1;
 }
-/// Whether it tells the bias of its pixels.
-inline bool tells_bias(const render_settings& s)
+/// Whether it reports the bias of its pixels.
+inline bool reports_bias(const render_settings& s)
 {
-    return s.output.tell_bias == bias_telling::yes
-        || (s.output.tell_bias == bias_telling::automatic && s.output.until_error > 0 && has_shrinking_radii(s));
+    return s.output.report_bias == bias_report::yes
+        || (s.output.report_bias == bias_report::automatic && s.output.until_error > 0 && has_shrinking_radii(s));
 }
 /// Whether photons keep the normals of their surfaces.
 inline bool keeps_normals(const render_settings& s) { return s.estimate.leaks.needs_photon_normals() || gathers(s); }

@@ -393,8 +393,8 @@ namespace setting_table {
             .more = "Fewer searches, a little more blur.",
             .section = "interpolation",
             .slider = {0, 0.5, "%.2f"}}};
-    inline constexpr setting tell_bias{"tell_bias", of(&output_settings::tell_bias),
-        one_of{{named{"auto", bias_telling::automatic}, {"no", bias_telling::no}, {"yes", bias_telling::yes}}},
+    inline constexpr setting report_bias{"report_bias", of(&output_settings::report_bias),
+        one_of{{named{"auto", bias_report::automatic}, {"no", bias_report::no}, {"yes", bias_report::yes}}},
         in_scenes::optional,
         {.group = setting_group::picture,
             .what = "find the blur's part of each pixel, as a layer of EXRs, and count it in `until_error`; *auto*: "
@@ -419,7 +419,7 @@ constexpr void for_each_setting(const Visit& visit)
     all(t::size, t::photons, t::caustic_photons, t::k, t::caustic_k, t::grid, t::max_radius, t::light_samples, t::spp,
         t::pixel_filter, t::passes, t::until_error, t::percentile, t::depth, t::photon_depth, t::emission, t::seed,
         t::map, t::slots, t::surplus, t::exposure, t::search, t::filter, t::bias, t::leaks, t::edge_correction,
-        t::indirect, t::gather_rays, t::radii, t::interpolation, t::tell_bias, t::only, t::seconds);
+        t::indirect, t::gather_rays, t::radii, t::interpolation, t::report_bias, t::only, t::seconds);
 }
 
 /// \throws std::invalid_argument "name: must be …" for a setting out of its range, or for two incompatible settings.

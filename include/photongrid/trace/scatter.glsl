@@ -10,7 +10,7 @@
 //     scatter_pdf()     is the density with which scatter_sample() draws a direction; of the base of a smooth mesh
 //                       it is about the shading normal, by which light is received, not about the geometric one, by
 //                       which photons leave
-//     is_delta()        tells whether there is but one direction: then the BSDF and the density are 0
+//     is_delta()        whether there is but one direction: then the BSDF and the density are 0
 #include <photongrid/trace/coat.glsl>
 #include <photongrid/trace/microfacet.glsl>
 SWITCH(10, SMOOTH)

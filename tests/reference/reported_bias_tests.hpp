@@ -1,4 +1,4 @@
-// Whether the noise and the bias that a picture tells of its pixels cover its true error, where the light is known.
+// Whether the noise and the bias that a picture reports of its pixels cover its true error, where the light is known.
 #pragma once
 
 #include "../backends/serial_pictures.hpp"
@@ -29,7 +29,7 @@ namespace {
                 .view = {.spp = 1, .light_samples = 1},
                 .output = {.width = 24, .height = 24}};
             s.render.output.only = light_part::caustic;
-            s.render.output.tell_bias = bias_telling::yes;
+            s.render.output.report_bias = bias_report::yes;
             return s;
         }
         /// Radiance at a place of the floor.
@@ -45,14 +45,14 @@ namespace {
     };
 
     /// In at least nine of ten pixels, and of the picture's mean.
-    TEST(told_bias, covers_the_true_error_of_known_light)
+    TEST(reported_bias, covers_the_true_error_of_known_light)
     {
         serial_backend b;
         struct row {
             const char* name;
             mirrored_floor floor;
             radius_kind radii;
-            double least_gain; ///< of the covered share by telling bias
+            double least_gain; ///< of the covered share by reporting bias
         };
         const mirrored_floor even{}, square{.mirror = 0.06};
         for (const auto& r :
