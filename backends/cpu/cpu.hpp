@@ -1,5 +1,5 @@
 // The cpu backend: runs kernels on any number of threads, and sorts, builds maps and searches by its own SIMD code. It
-// is compiled for several instruction sets and therefore slow to compile: include it in one file of a program, or link
+// is compiled for several instruction sets (overrides/simd.hpp) and therefore slowly: include it in one file, or link
 // photongrid::cpu_compiled.
 #pragma once
 

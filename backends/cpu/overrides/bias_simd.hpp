@@ -1,4 +1,4 @@
-// SIMD code that tells the bias of an estimate from the photons that its search found. Included once per instruction
+// SIMD code that computes the bias of an estimate from the photons that its search found. Included once per instruction
 // set, so it has no include guard; other files include simd.hpp.
 #include <photongrid/backends/cpu/overrides/gather_simd.hpp>
 #include <photongrid/estimate/bias_estimate.kernel.hpp>
@@ -25,7 +25,7 @@ HWY_INLINE vector jump_weight_of(vector t)
 
 /// Computes and stores the bias of the estimate at a point with the radius `r`, as gather_bias.glsl and
 /// bias_estimate.glsl do, from the packet's photons and their distances.
-HWY_NOINLINE inline void tell_bias(const search_job& j, uint point, chosen_radius r, const packet& near)
+HWY_NOINLINE inline void store_bias(const search_job& j, uint point, chosen_radius r, const packet& near)
 {
     const floats d;
     constexpr std::size_t width = hn::MaxLanes(d);

@@ -133,11 +133,27 @@ struct ring_of_cells {
     glm::uvec3 low, high; ///< its lowest and highest cells
 };
 
-/// Visits a ring, row by row: the whole row on a face of the box, else its two end cells, either of which may lie
-/// outside the grid. A register's width of rows is tested at once, with the limit before the first of them. The limit
-/// only shrinks, so rows that fail stay out; the others are tested again.
-template <class Growth>
-HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& found)
+/// Rows of a ring, as many as a register has lanes.
+struct ring_rows {
+    struct ends { // one end cell of each row, or the whole row: its range of photons, and its squared distance
+        int first[lanes], past[lanes];
+        float away2[lanes];
+        std::uint8_t some[8] = {};
+        bool has(uint i) const { return (some[i / 8] >> i % 8 & 1) != 0; }
+    };
+    ends lower, upper;
+
+    /// The rows that have photons within the limit, as bits.
+    uint some() const
+    {
+        return static_cast<uint>(lower.some[0] | upper.some[0] | (lower.some[1] | upper.some[1]) << 8);
+    }
+};
+
+/// Finds rows of a ring from row y of layer z on, y relative to the box, and moves y and z past them: the whole row on
+/// a face of the box, else its two end cells, either of which may lie outside the grid.
+HWY_NOINLINE inline ring_rows find_ring_rows(
+    const search_job& j, const ring_of_cells& r, float within_limit2, uint& z, uint& y)
 {
     const grid& g = j.cells_of;
     const floats d;
@@ -156,61 +172,60 @@ HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& 
     const bool together = layer < 1u << 26;
     const uint across = r.high.y - r.low.y + 1;
     const auto of_across = hn::Set(d, 1.0f / static_cast<float>(across));
-    struct ends { // one end cell of each row, or the whole row: its range of photons, and its squared distance
-        int first[lanes], past[lanes];
-        float away2[lanes];
-        std::uint8_t some[8] = {};
-        bool has(uint i) const { return (some[i / 8] >> i % 8 & 1) != 0; }
-    };
-    for (uint z = r.low.z, y = 0; z <= r.high.z;) { // the first of these rows; y relative to the box
-        const uint left = together ? (r.high.z - z + 1) * across - y : across - y;
-        const uint rows = std::min(left, static_cast<uint>(hn::Lanes(d)));
-        // Lanes past the last row repeat it. Adding 1/2 makes the division safe against the reciprocal's rounding.
-        const auto nth = hn::Min(hn::Add(every(y), hn::Iota(di, 0)), every(y + rows - 1));
-        const auto layers = hn::ConvertTo(di, hn::Mul(hn::Add(hn::ConvertTo(d, nth), hn::Set(d, 0.5f)), of_across));
-        const auto cell_y = hn::Add(hn::Sub(nth, hn::Mul(layers, every(across))), every(r.low.y)),
-                   cell_z = hn::Add(layers, every(z));
-        const auto* const base = reinterpret_cast<const int*>(j.cells.data() + z * layer);
-        for (y += rows; y >= across && z <= r.high.z; y -= across)
-            ++z;
+    const uint left = together ? (r.high.z - z + 1) * across - y : across - y;
+    const uint rows = std::min(left, static_cast<uint>(hn::Lanes(d)));
+    // Lanes past the last row repeat it. Adding 1/2 makes the division safe against the reciprocal's rounding.
+    const auto nth = hn::Min(hn::Add(every(y), hn::Iota(di, 0)), every(y + rows - 1));
+    const auto layers = hn::ConvertTo(di, hn::Mul(hn::Add(hn::ConvertTo(d, nth), hn::Set(d, 0.5f)), of_across));
+    const auto cell_y = hn::Add(hn::Sub(nth, hn::Mul(layers, every(across))), every(r.low.y)),
+               cell_z = hn::Add(layers, every(z));
+    const auto* const base = reinterpret_cast<const int*>(j.cells.data() + z * layer);
+    for (y += rows; y >= across && z <= r.high.z; y -= across)
+        ++z;
 
-        const auto gap_y = gaps(cell_y, r.u.y, r.c.y, g.cell.y), gap_z = gaps(cell_z, r.u.z, r.c.z, g.cell.z);
-        const auto row2 = hn::Add(hn::Mul(gap_y, gap_y), hn::Mul(gap_z, gap_z)), limit2 = hn::Set(d, found.limit2());
-        const auto within = hn::And(hn::FirstN(d, rows), hn::Le(row2, limit2));
-        if (hn::AllFalse(d, within))
-            continue;
-        const auto at_distance = [&](hn::VFromD<ints> cell, uint c) HWY_ATTR {
-            return hn::RebindMask(d, hn::Eq(hn::Abs(hn::Sub(cell, every(c))), every(r.ring)));
-        };
-        const auto whole = hn::Or(at_distance(cell_y, r.c.y), at_distance(cell_z, r.c.z));
-        const auto row = hn::Mul(hn::Add(hn::Mul(layers, every(g.resolution.y)), cell_y), every(g.resolution.x));
-        const auto low = hn::Add(row, every(r.low.x)), high = hn::Add(row, every(r.high.x));
-        const auto find_ends = [&](ends& e, hn::VFromD<ints> from, hn::VFromD<ints> to, vector away2,
-                                   hn::Mask<floats> rows_within) HWY_ATTR {
-            const auto twice_from = hn::Add(from, from), twice_to = hn::Add(to, to);
-            const auto first = hn::GatherIndex(di, base, twice_from);
-            const auto past = hn::Add(hn::GatherIndex(di, base, twice_to), hn::GatherIndex(di, base + 1, twice_to));
-            hn::StoreU(first, di, e.first);
-            hn::StoreU(past, di, e.past);
-            hn::StoreU(away2, d, e.away2);
-            hn::StoreMaskBits(d,
-                hn::And(rows_within, hn::And(hn::Le(away2, limit2), hn::RebindMask(d, hn::Lt(first, past)))), e.some);
-        };
-        ends lower, upper;
-        const auto whole_int = hn::RebindMask(di, whole);
-        find_ends(lower, low, hn::IfThenElse(whole_int, high, low),
-            hn::IfThenElse(whole, row2, hn::Add(row2, low_gap_x2)), has_low ? within : hn::And(within, whole));
-        if (has_high)
-            find_ends(upper, high, high, hn::Add(row2, high_gap_x2), hn::AndNot(whole, within));
-        const auto visit = [&](const ends& e, uint i) HWY_ATTR {
-            if (e.has(i) && e.away2[i] <= found.limit2())
-                found.visit(static_cast<uint>(e.first[i]), static_cast<uint>(e.past[i]));
-        };
-        for (uint some = static_cast<uint>(lower.some[0] | upper.some[0] | (lower.some[1] | upper.some[1]) << 8);
-             some != 0; some &= some - 1) {
+    ring_rows found;
+    const auto gap_y = gaps(cell_y, r.u.y, r.c.y, g.cell.y), gap_z = gaps(cell_z, r.u.z, r.c.z, g.cell.z);
+    const auto row2 = hn::Add(hn::Mul(gap_y, gap_y), hn::Mul(gap_z, gap_z)), limit2 = hn::Set(d, within_limit2);
+    const auto within = hn::And(hn::FirstN(d, rows), hn::Le(row2, limit2));
+    if (hn::AllFalse(d, within))
+        return found;
+    const auto at_distance = [&](hn::VFromD<ints> cell, uint c) HWY_ATTR {
+        return hn::RebindMask(d, hn::Eq(hn::Abs(hn::Sub(cell, every(c))), every(r.ring)));
+    };
+    const auto whole = hn::Or(at_distance(cell_y, r.c.y), at_distance(cell_z, r.c.z));
+    const auto row = hn::Mul(hn::Add(hn::Mul(layers, every(g.resolution.y)), cell_y), every(g.resolution.x));
+    const auto low = hn::Add(row, every(r.low.x)), high = hn::Add(row, every(r.high.x));
+    const auto find_ends = [&](ring_rows::ends& e, hn::VFromD<ints> from, hn::VFromD<ints> to, vector away2,
+                               hn::Mask<floats> rows_within) HWY_ATTR {
+        const auto twice_from = hn::Add(from, from), twice_to = hn::Add(to, to);
+        const auto first = hn::GatherIndex(di, base, twice_from);
+        const auto past = hn::Add(hn::GatherIndex(di, base, twice_to), hn::GatherIndex(di, base + 1, twice_to));
+        hn::StoreU(first, di, e.first);
+        hn::StoreU(past, di, e.past);
+        hn::StoreU(away2, d, e.away2);
+        hn::StoreMaskBits(
+            d, hn::And(rows_within, hn::And(hn::Le(away2, limit2), hn::RebindMask(d, hn::Lt(first, past)))), e.some);
+    };
+    const auto whole_int = hn::RebindMask(di, whole);
+    find_ends(found.lower, low, hn::IfThenElse(whole_int, high, low),
+        hn::IfThenElse(whole, row2, hn::Add(row2, low_gap_x2)), has_low ? within : hn::And(within, whole));
+    if (has_high)
+        find_ends(found.upper, high, high, hn::Add(row2, high_gap_x2), hn::AndNot(whole, within));
+    return found;
+}
+
+/// Visits a ring. A register's width of rows is tested at once, with the limit before the first of them. The limit only
+/// shrinks, so rows that fail stay out; the others are tested again.
+template <class Growth>
+HWY_INLINE void visit_ring(const search_job& j, const ring_of_cells& r, Growth& found)
+{
+    for (uint z = r.low.z, y = 0; z <= r.high.z;) {
+        const ring_rows rows = find_ring_rows(j, r, found.limit2(), z, y);
+        for (uint some = rows.some(); some != 0; some &= some - 1) {
             const auto i = static_cast<uint>(std::countr_zero(some));
-            visit(lower, i);
-            visit(upper, i);
+            for (const auto* const e : {&rows.lower, &rows.upper})
+                if (e->has(i) && e->away2[i] <= found.limit2())
+                    found.visit(static_cast<uint>(e->first[i]), static_cast<uint>(e->past[i]));
         }
     }
 }
@@ -258,7 +273,7 @@ HWY_NOINLINE void grow_points(const search_job& j, std::size_t begin, std::size_
 {
     const bool store = j.filter != filter_kind::constant || j.leave_out || j.errors || j.biases.bias != nullptr;
     packet held;
-    std::vector<uint> at_radius;
+    result_scratch scratch;
     for (std::size_t o = begin; o < end; ++o) {
         const uint point = j.order[o];
         if (!needs_estimate(j, point)) {
@@ -275,12 +290,7 @@ HWY_NOINLINE void grow_points(const search_job& j, std::size_t begin, std::size_
         growth<POLICIES, true> found(j, q, held);
         visit_rings(j, j.points[point], found);
         held.fetch_powers(j);
-        finish(j, point, found.chosen(),
-            j.errors ? gather<true>(j, point, found.chosen(), held, at_radius)
-                     : gather<false>(j, point, found.chosen(), held, at_radius),
-            found.visited());
-        if (j.biases.bias != nullptr)
-            tell_bias(j, point, found.chosen(), held);
+        store_result(j, point, found.chosen(), held, found.visited(), scratch);
     }
 }
 

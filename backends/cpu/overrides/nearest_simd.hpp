@@ -1,5 +1,5 @@
-// SIMD code that finds the nearest photon of each point in a block map: exact_k with k = 1. Included once per
-// instruction set, so it has no include guard; other files include simd.hpp.
+// SIMD code that finds the nearest photon of each point in a block map: exact_k with k = 1, without leak policies.
+// Included once per instruction set, so it has no include guard; other files include simd.hpp.
 //
 // Consecutive points lie close together, so a group of them shares a walk through the tree. First each point of the
 // group examines the two blocks at which the point before the group found its photon. The distances found there bound
@@ -15,7 +15,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// The nearest photon that the search of a point has found so far; of several at the same distance, that of the least
 /// id.
-template <int POLICIES>
 class nearest_found {
     const search_job* j_ = nullptr;
     query at_;
@@ -51,7 +50,7 @@ private:
         HWY_ALIGN float distances2[COUNT * kernels::BLOCK];
         auto least = far;
         for (std::size_t i = first, n = 0; i < past; i += width, n += width) {
-            const auto d2 = hn::IfThenElse(hn::FirstN(d, past - i), squared_distances<POLICIES>(*j_, q, *j_, i), far);
+            const auto d2 = hn::IfThenElse(hn::FirstN(d, past - i), squared_distances<0>(*j_, q, *j_, i), far);
             hn::Store(d2, d, distances2 + n);
             least = hn::Min(least, d2);
         }
@@ -78,8 +77,7 @@ private:
 };
 
 /// Stores what the search of a point has found.
-template <int POLICIES>
-HWY_INLINE void store_nearest(const search_job& j, uint point, const nearest_found<POLICIES>& found)
+HWY_INLINE void store_nearest(const search_job& j, uint point, const nearest_found& found)
 {
     if (j.ids != nullptr) {
         j.ids[point] = found.id();
@@ -91,13 +89,12 @@ HWY_INLINE void store_nearest(const search_job& j, uint point, const nearest_fou
 }
 
 /// Finds the nearest photons of the points order[begin] to order[end - 1].
-template <int POLICIES>
-HWY_NOINLINE void find_nearest(const search_job& j, std::size_t begin, std::size_t end)
+HWY_NOINLINE inline void find_nearest(const search_job& j, std::size_t begin, std::size_t end)
 {
     constexpr std::size_t most = 16;    // points of a group
     constexpr std::size_t many = 24;    // blocks that are too many for a group
     constexpr std::size_t ahead = most; // points to fetch ahead: in order, they are far apart in memory
-    nearest_found<POLICIES> group[most];
+    nearest_found group[most];
     uint points[most];
     near_blocks shared;
     std::size_t size = most; // of the next group
@@ -116,11 +113,11 @@ HWY_NOINLINE void find_nearest(const search_job& j, std::size_t begin, std::size
         for (; n < size && o < end; ++o) {
             const uint point = j.order[o];
             if (!needs_estimate(j, point)) {
-                store_nearest(j, point, nearest_found<POLICIES>(j, {}));
+                store_nearest(j, point, nearest_found(j, {}));
                 continue;
             }
             auto& found = group[n];
-            found = {j, query_at<POLICIES>(j, point)};
+            found = {j, query_at<0>(j, point)};
             points[n++] = point;
             if (!is_known)
                 known = block_near(j, found.at());

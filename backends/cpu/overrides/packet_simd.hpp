@@ -45,7 +45,7 @@ public:
 
     /// Copies the photons within `radius` of `center`, and perhaps some that are a little farther. Returns how many it
     /// examined; if these were more than `most`, it copies none.
-    HWY_INLINE std::size_t fill(const search_job& j, const glm::vec3& center, float radius, std::size_t most)
+    HWY_NOINLINE std::size_t fill(const search_job& j, const glm::vec3& center, float radius, std::size_t most)
     {
         const floats d;
         const uints du;
@@ -190,7 +190,7 @@ public:
         size_ = n;
         return last_id;
     }
-    /// Loads the powers of all photons that add() has added, and their positions if biases are told.
+    /// Loads the powers of all photons that add() has added, and their positions if biases are reported.
     HWY_INLINE void fetch_powers(const search_job& j)
     {
         const floats d;

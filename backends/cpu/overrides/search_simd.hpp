@@ -27,7 +27,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Computes the squared distance of every photon, counts those up to low2, and keeps the distances above low2 and up to
 /// high2. Returns {counted, kept}.
 template <int POLICIES>
-HWY_INLINE glm::uvec2 scan(const search_job& j, const query& at, float low2, float high2, const packet& near)
+HWY_NOINLINE glm::uvec2 scan(const search_job& j, const query& at, float low2, float high2, const packet& near)
 {
     const floats d;
     const std::size_t width = hn::Lanes(d),
@@ -86,8 +86,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
     // In block maps packets of fewer points are faster alone.
     constexpr uint few_points = 3;
     packet near;
-    std::vector<uint> at_radius;
-    std::vector<std::uint64_t> keys;
+    result_scratch scratch;
     query last;
     float last_radius = -1;          // distance of the last query's k-th photon; none: -1
     float expected = -1;             // the distance to expect for the next query; -1: derive it from last_radius
@@ -96,16 +95,6 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
         grows = j.search == search_kind::at_least_k,          // and takes the next radius of a series
         in_tree = j.levels > 0;
     const float max_radius = std::sqrt(j.max_radius2);
-    const auto store = [&](uint point, chosen_radius r, uint visited) HWY_ATTR {
-        if (j.ids != nullptr)
-            list(j, point, r, near, keys);
-        else
-            finish(j, point, r,
-                j.errors ? gather<true>(j, point, r, near, at_radius) : gather<false>(j, point, r, near, at_radius),
-                visited);
-        if (j.biases.bias != nullptr)
-            tell_bias(j, point, r, near);
-    };
     const auto search_alone = [&](const query& q, uint point) HWY_ATTR {
         float bound2 = j.max_radius2;
         if (exact && last_radius >= 0 && (POLICIES == 0 || q.normal == last.normal)) {
@@ -117,7 +106,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
         const tree_result found = search_tree<POLICIES>(j, q, bound2, near);
         if (j.ids == nullptr)
             near.fetch_powers(j);
-        store(point, found.radius, found.visited);
+        store_result(j, point, found.radius, near, found.visited, scratch);
         last_radius = found.kth2 >= 0 ? std::sqrt(found.kth2) : -1;
         last = q;
     };
@@ -246,7 +235,7 @@ HWY_NOINLINE void search_points(const search_job& j, std::size_t begin, std::siz
                     break;
                 }
             }
-            store(point, r, visited);
+            store_result(j, point, r, near, visited, scratch);
             visited = 0;
             last_radius = kth2 >= 0 ? std::sqrt(kth2) : -1;
             last = q;
@@ -263,8 +252,8 @@ HWY_INLINE void search_or_grow(const search_job& j, std::size_t begin, std::size
 {
     if (j.search == search_kind::at_least_k && j.levels == 0)
         grow_points<POLICIES>(j, begin, end);
-    else if (j.search == search_kind::exact_k && j.k == 1 && j.levels > 0)
-        find_nearest<POLICIES>(j, begin, end);
+    else if (POLICIES == 0 && j.search == search_kind::exact_k && j.k == 1 && j.levels > 0)
+        find_nearest(j, begin, end);
     else
         search_points<POLICIES>(j, begin, end);
 }

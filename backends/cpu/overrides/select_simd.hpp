@@ -13,7 +13,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// The n-th smallest (from 1) of `count` numbers that are above low (or 0) and at most high. If they are evenly
 /// distributed, a few rounds of interpolation and counting find a pivot that n or n - 1 of them do not exceed. `values`
 /// is overwritten, up to four registers' width past its end.
-HWY_INLINE float nth_smallest(float* values, std::size_t count, std::size_t n, float low, float high)
+HWY_NOINLINE inline float nth_smallest(float* values, std::size_t count, std::size_t n, float low, float high)
 {
     const floats d;
     const std::size_t width = hn::Lanes(d), whole = (count + 4 * width - 1) / (4 * width) * (4 * width);
@@ -67,10 +67,14 @@ inline void end_list(const search_job& j, uint point, std::size_t held)
     std::fill(j.distances2 + first + held, j.distances2 + first + j.k, std::numeric_limits<float>::infinity());
 }
 
-/// Lists the photons within the radius, nearest first, from the distances of scan(). `keys` is scratch. It is not
-/// inlined, because sorting would take registers from the search for estimates.
-HWY_NOINLINE inline void list(
-    const search_job& j, uint point, chosen_radius r, const packet& near, std::vector<std::uint64_t>& keys)
+/// Memory that results need, kept from point to point.
+struct result_scratch {
+    std::vector<uint> at_radius;
+    std::vector<std::uint64_t> keys;
+};
+
+/// Lists the photons within the radius, nearest first, from the distances of scan(). `keys` is scratch.
+inline void list(const search_job& j, uint point, chosen_radius r, const packet& near, std::vector<std::uint64_t>& keys)
 {
     const floats d;
     const uints du;
@@ -98,6 +102,21 @@ HWY_NOINLINE inline void list(
         distances2[i] = std::bit_cast<float>(static_cast<uint>(keys[i] >> 32));
     }
     end_list(j, point, held);
+}
+
+/// Stores the result for a point from the packet's photons and their distances: a list, or an estimate and its bias.
+/// One function for all searches, which compilers spend most of their time on if they inline it.
+HWY_NOINLINE inline void store_result(
+    const search_job& j, uint point, chosen_radius r, const packet& near, uint visited, result_scratch& s)
+{
+    if (j.ids != nullptr)
+        list(j, point, r, near, s.keys);
+    else
+        finish(j, point, r,
+            j.errors ? gather<true>(j, point, r, near, s.at_radius) : gather<false>(j, point, r, near, s.at_radius),
+            visited);
+    if (j.biases.bias != nullptr)
+        store_bias(j, point, r, near);
 }
 
 } // namespace photongrid::cpu::HWY_NAMESPACE
